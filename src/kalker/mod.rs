@@ -1,0 +1,43 @@
+//! Rolling contact of one elliptical Hertzian patch in Kalker's scaled form.
+//!
+//! Everything here is free of load, friction and size: with `c = sqrt(a b)` and the peak pressure `p0`,
+//! creepages enter as `h = creepage G/(mu p0)` (spin: `spin c G/(mu p0)`) and forces leave as `F/(mu Q)` and
+//! `M_z/(mu Q c)`; Kalker's problem then depends on axis ratio, Poisson's ratio and rolling direction alone
+//! (Kalker 1967; checked by a test).
+//!
+//! Signs follow paper eq. 11 and 14: slip `s_x/V = c_x - phi y`, `s_y/V = c_y + phi x` is the velocity of body 1
+//! minus that of body 2, the material flows towards -x (leading edge at +x), and forces are those of body 1 ON
+//! BODY 2, so that they point along the creepage. The friction force on body 1 is the opposite.
+
+/// What a rolling contact patch looks like to Kalker's theory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patch {
+    /// [-] semi-axis along the ellipse's x axis over the one along y, 0.05 to 20.
+    pub axis_ratio: f64,
+    /// [-] Poisson's ratio of both bodies, 0 to 0.5.
+    pub poisson_ratio: f64,
+    /// [rad] direction of rolling measured from the ellipse's x axis; 0 is rolling along x.
+    pub rolling_angle: f64,
+}
+
+/// Creepages times `G/(mu p0)`, components along the ellipse axes; the spin times `c` as well.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ScaledCreepage {
+    /// [-] slip of body 1 over body 2 along x, over the rolling speed, times `G/(mu p0)`.
+    pub x: f64,
+    /// [-] the same along y.
+    pub y: f64,
+    /// [-] normal relative angular velocity over the rolling speed, times `c G/(mu p0)`.
+    pub spin: f64,
+}
+
+/// Net effect of a rolling contact, of body 1 on body 2.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ScaledForces {
+    /// [-] force along x over `mu Q`.
+    pub fx: f64,
+    /// [-] force along y over `mu Q`.
+    pub fy: f64,
+    /// [-] spin moment over `mu Q c`.
+    pub mz: f64,
+}

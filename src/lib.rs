@@ -1,0 +1,3 @@
+//! `roulement`: a 3-D dynamic ball bearing for gearbox co-simulation.
+
+pub mod kalker;
