@@ -1,0 +1,164 @@
+//! The scene file: one bearing, its load, and what is to be simulated.
+//!
+//! A scene is TOML; every number is SI or text with a unit ([`crate::units`]). Unknown keys, missing keys and values
+//! out of range are errors that name the key, the value and the allowed range.
+
+mod schedule;
+mod sections;
+mod validate;
+
+use std::path::Path;
+
+use serde::Deserialize;
+use thiserror::Error;
+
+pub use schedule::Schedule;
+pub use sections::*;
+
+/// Why a scene was refused.
+#[derive(Debug, Error)]
+pub enum SceneError {
+    /// The file could not be read.
+    #[error("cannot read the scene file {path}: {source}")]
+    Read {
+        /// Path as given.
+        path: String,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// Not TOML, an unknown or missing key, or a value of the wrong kind or dimension.
+    #[error("{0}")]
+    Format(#[from] toml::de::Error),
+    /// A value outside its range.
+    #[error("{key} = {value} {unit} is out of range: allowed is {range}")]
+    Range {
+        /// Key with its section.
+        key: String,
+        /// Value in SI.
+        value: f64,
+        /// SI unit.
+        unit: &'static str,
+        /// Allowed range in words.
+        range: String,
+    },
+    /// Keys that do not go together.
+    #[error("{key}: {why}")]
+    Conflict {
+        /// Key with its section.
+        key: String,
+        /// What is wrong, and what would be right.
+        why: String,
+    },
+}
+
+/// A bearing, its load and its simulation, as described by a scene file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// One line for plots and reports.
+    #[serde(default)]
+    pub title: String,
+    /// Internal geometry.
+    pub bearing: BearingSection,
+    /// Ball material.
+    #[serde(default)]
+    pub ball: Material,
+    /// Race material.
+    #[serde(default)]
+    pub race: Material,
+    /// Coulomb friction coefficients.
+    #[serde(default)]
+    pub friction: Friction,
+    /// Which effects are simulated.
+    #[serde(default)]
+    pub effects: Effects,
+    /// Inner race.
+    #[serde(default)]
+    pub inner: RaceSection,
+    /// Outer race.
+    #[serde(default)]
+    pub outer: RaceSection,
+    /// Time integration.
+    #[serde(default)]
+    pub solver: Solver,
+    /// Duration, speeds and load of the inner race.
+    pub load: Load,
+    /// Interface of the FMU.
+    #[serde(default)]
+    pub interface: Interface,
+    /// The text the scene was read from.
+    #[serde(skip)]
+    pub source: String,
+}
+
+impl Scene {
+    /// Reads a scene from its text.
+    ///
+    /// # Errors
+    /// See [`SceneError`].
+    pub fn parse(text: &str) -> Result<Self, SceneError> {
+        let mut scene: Self = toml::from_str(text)?;
+        scene.source = text.to_string();
+        validate::validate(&scene)?;
+        Ok(scene)
+    }
+
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// See [`SceneError`].
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| SceneError::Read { path: path.display().to_string(), source })?;
+        Self::parse(&text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const THRUST: &str = include_str!("../../scenes/thrust.toml");
+
+    #[test]
+    fn the_shipped_scenes_are_read() {
+        let scene = Scene::parse(THRUST).unwrap();
+        assert_eq!(scene.load.conditions()[0], Condition::Load(Schedule::Constant(1500.0)));
+        Scene::parse(include_str!("../../scenes/radial.toml")).unwrap();
+    }
+
+    #[test]
+    fn errors_name_key_value_and_allowed_range() {
+        let cases = [
+            ("balls = 10 ", "balls = 0 ", &["bearing.balls = 0", "[1, 200]"][..]),
+            ("balls = 10 ", "bals = 10 ", &["bals", "expected"]),
+            ("balls = 10 ", "", &["missing field", "balls"]),
+            ("\"9.525 mm\"", "\"9.525 kg\"", &["9.525 kg", "incompatible"]),
+            ("alpha_f = 0.05", "alpha_f = 0.4", &["solver.alpha_f = 0.4", "(0, 0.3333333333333333]"]),
+            ("alpha_f = 0.05", "alpha_f = nan", &["solver.alpha_f", "NaN"]),
+            ("x = { force = \"1500 N\" }", "x = { force = \"1 mm\" }", &["1 mm", "incompatible"]),
+            ("x = { force = \"1500 N\" }", "x = { force = 1.0, displacement = 0.0 }", &["load.x", "at most one"]),
+            ("x = { force = \"1500 N\" }", "x = { force = [[0, 1], [0, 2]] }", &["times must grow"]),
+            ("mass = \"0.2 kg\"", "", &["inner", "give its mass"]),
+            ("contact_angle = \"25 deg\"", "", &["exactly one of contact_angle"]),
+        ];
+        for (from, to, parts) in cases {
+            assert!(THRUST.contains(from));
+            let message = Scene::parse(&THRUST.replace(from, to)).unwrap_err().to_string();
+            for part in parts {
+                assert!(message.contains(part), "{message}\nshould name {part}");
+            }
+        }
+    }
+
+    #[test]
+    fn schedules_interpolate_and_hold() {
+        let text = THRUST.replace("\"1500 N\"", "[[0.0, 0.0], [\"1 ms\", \"1 kN\"], [0.003, 0.0]]");
+        let Condition::Load(force) = Scene::parse(&text).unwrap().load.conditions()[0].clone() else {
+            panic!("a load was written")
+        };
+        assert_eq!([force.at(-1.0), force.at(0.0005), force.at(0.001)], [0.0, 500.0, 1000.0]);
+        assert_eq!([force.at(0.002), force.at(0.003), force.at(9.0)], [500.0, 0.0, 0.0]);
+        assert_eq!([force.rate(0.0), force.rate(0.002), force.rate(0.003)], [1e6, -5e5, 0.0]);
+    }
+}

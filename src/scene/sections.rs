@@ -1,0 +1,293 @@
+//! The sections of a scene file, one struct each; defaults stand beside their fields.
+
+use serde::Deserialize;
+
+use super::schedule::{self, Schedule};
+use crate::units::*;
+
+/// Internal geometry of the bearing.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BearingSection {
+    /// [-] number of balls, 1 to 200.
+    pub balls: usize,
+    /// [m] ball diameter D.
+    pub ball_diameter: Length,
+    /// [m] pitch diameter dm: circle through the ball centres of the unloaded bearing.
+    pub pitch_diameter: Length,
+    /// [rad] free contact angle; exactly one of this and `diametral_clearance` is given.
+    pub contact_angle: Option<Angle>,
+    /// [m] diametral clearance; negative is interference.
+    pub diametral_clearance: Option<Length>,
+    /// [-] inner groove radius over ball diameter.
+    pub inner_conformity: f64,
+    /// [-] outer groove radius over ball diameter.
+    pub outer_conformity: f64,
+    /// [rad] azimuth of ball 1, from +y towards +z.
+    #[serde(default = "zero_angle")]
+    pub first_ball_azimuth: Angle,
+}
+
+fn zero_angle() -> Angle {
+    Angle(0.0)
+}
+
+/// An elastic material; bearing steel by default.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Material {
+    /// [Pa] Young's modulus.
+    pub youngs_modulus: Pressure,
+    /// [-] Poisson's ratio.
+    pub poisson_ratio: f64,
+    /// [kg/m3] density.
+    pub density: Density,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self { youngs_modulus: Pressure(206e9), poisson_ratio: 0.3, density: Density(7800.0) }
+    }
+}
+
+/// Coulomb friction coefficients.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Friction {
+    /// [-] ball on race.
+    pub ball_race: f64,
+}
+
+impl Default for Friction {
+    fn default() -> Self {
+        // The paper's dry estimate (section 5).
+        Self { ball_race: 0.08 }
+    }
+}
+
+/// Creep law of the ball-race contacts (see [`crate::contact::creep`]).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CreepLaw {
+    /// No tangential force.
+    Frictionless,
+    /// Kalker's linear theory, unbounded.
+    Linear,
+    /// The paper's regularised law without spin coupling.
+    Regularised,
+    /// Linear theory, saturated as a vector.
+    #[default]
+    Saturated,
+}
+
+/// Effects, each off unless asked for; one that is off has no state and costs nothing.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Effects {
+    /// Creep law of the ball-race contacts.
+    pub creep: CreepLaw,
+    /// [s/m] Hunt-Crossley dissipation factor of the ball-race contacts; 0 is off.
+    pub damping: DissipationFactor,
+    /// [m/s2] acceleration of gravity, components along x, y, z.
+    pub gravity: [Acceleration; 3],
+    /// Report every ball in the FMU (`ball[j].*`).
+    pub per_ball_outputs: bool,
+}
+
+impl Default for Effects {
+    fn default() -> Self {
+        Self {
+            creep: CreepLaw::default(),
+            damping: DissipationFactor(0.0),
+            gravity: [Acceleration(0.0); 3],
+            per_ball_outputs: false,
+        }
+    }
+}
+
+/// How a race gets its motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Drive {
+    /// Rests in its frame, spinning at the prescribed speed.
+    #[default]
+    Fixed,
+    /// Pose and twist are given from outside.
+    Pose,
+    /// A rigid body under an applied wrench, with prescribed spin speed.
+    Wrench,
+}
+
+/// One race.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RaceSection {
+    /// How the race gets its motion.
+    pub drive: Drive,
+    /// [kg] mass; needed when the race is a body.
+    pub mass: Option<Mass>,
+    /// [kg m2] moments of inertia about the race's x, y and z axes; needed when the race is a body.
+    pub inertia: Option<[Inertia; 3]>,
+    /// Constant misalignment of a fixed race.
+    pub misalignment: Misalignment,
+}
+
+/// Rotation vector [0, ry, rz] of a race's frame.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Misalignment {
+    /// [rad] about y.
+    pub ry: Angle,
+    /// [rad] about z.
+    pub rz: Angle,
+}
+
+impl Default for Misalignment {
+    fn default() -> Self {
+        Self { ry: Angle(0.0), rz: Angle(0.0) }
+    }
+}
+
+/// Time integration.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Solver {
+    /// [-] HHT damping, in (0, 1/3]; 0.05 is the paper's.
+    pub alpha_f: f64,
+    /// [-] local error of a step over the ball diameter.
+    pub tolerance: f64,
+    /// [s] first step.
+    pub initial_step: Time,
+    /// [s] largest step.
+    pub max_step: Time,
+    /// [s] smallest step; needing a smaller one is an error.
+    pub min_step: Time,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            alpha_f: 0.05,
+            tolerance: 1e-6,
+            initial_step: Time(1e-6),
+            max_step: Time(1e-5),
+            min_step: Time(1e-10),
+        }
+    }
+}
+
+/// One translational direction of the inner race: a force or a displacement.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Translation {
+    /// [N] external force on the inner race.
+    #[serde(deserialize_with = "some_schedule::<Force, _>")]
+    pub force: Option<Schedule>,
+    /// [m] displacement of the inner race from the bearing centre.
+    #[serde(deserialize_with = "some_schedule::<Length, _>")]
+    pub displacement: Option<Schedule>,
+}
+
+/// One tilt direction of the inner race: a moment or a rotation.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Tilt {
+    /// [N m] external moment on the inner race.
+    #[serde(deserialize_with = "some_schedule::<Moment, _>")]
+    pub moment: Option<Schedule>,
+    /// [rad] component of the rotation vector.
+    #[serde(deserialize_with = "some_schedule::<Angle, _>")]
+    pub rotation: Option<Schedule>,
+}
+
+fn some_schedule<'de, Q: Quantity + for<'a> Deserialize<'a>, D: serde::Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Schedule>, D::Error> {
+    schedule::deserialize::<Q, D>(deserializer).map(Some)
+}
+
+/// Duration, speeds, and the load of the inner race per direction; a direction left out is free of load.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Load {
+    /// [s] simulated time.
+    #[serde(default = "default_duration")]
+    pub duration: Time,
+    /// [s] distance of two rows of results, and communication step of a native run.
+    #[serde(default = "default_output_interval")]
+    pub output_interval: Time,
+    /// [rad/s] spin of the inner race about its own axis.
+    #[serde(default, deserialize_with = "schedule::deserialize::<AngularVelocity, _>")]
+    pub inner_speed: Schedule,
+    /// [rad/s] spin of the outer race about its own axis.
+    #[serde(default, deserialize_with = "schedule::deserialize::<AngularVelocity, _>")]
+    pub outer_speed: Schedule,
+    /// Along x, the bearing axis.
+    #[serde(default)]
+    pub x: Translation,
+    /// Along y.
+    #[serde(default)]
+    pub y: Translation,
+    /// Along z.
+    #[serde(default)]
+    pub z: Translation,
+    /// About y.
+    #[serde(default)]
+    pub ry: Tilt,
+    /// About z.
+    #[serde(default)]
+    pub rz: Tilt,
+}
+
+fn default_duration() -> Time {
+    Time(0.05)
+}
+
+fn default_output_interval() -> Time {
+    Time(1e-4)
+}
+
+/// What is asked of one of the five directions x, y, z, ry, rz of the inner race.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Condition {
+    /// External force [N] or moment [N m].
+    Load(Schedule),
+    /// Imposed displacement [m] or rotation vector component [rad].
+    Motion(Schedule),
+}
+
+impl Load {
+    /// The conditions of the five directions, in the order x, y, z, ry, rz.
+    pub fn conditions(&self) -> [Condition; 5] {
+        let of = |load: &Option<Schedule>, motion: &Option<Schedule>| match motion {
+            Some(motion) => Condition::Motion(motion.clone()),
+            None => Condition::Load(load.clone().unwrap_or_default()),
+        };
+        [
+            of(&self.x.force, &self.x.displacement),
+            of(&self.y.force, &self.y.displacement),
+            of(&self.z.force, &self.z.displacement),
+            of(&self.ry.moment, &self.ry.rotation),
+            of(&self.rz.moment, &self.rz.rotation),
+        ]
+    }
+}
+
+/// How the FMU writes an orientation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Orientation {
+    /// Unit quaternion, components w, x, y, z.
+    #[default]
+    Quaternion,
+    /// Cardan angles, intrinsic x-y-z.
+    Cardan,
+}
+
+/// Interface of the FMU.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Interface {
+    /// How orientations are written.
+    pub orientation: Orientation,
+}
