@@ -1,0 +1,128 @@
+//! The immutable bearing: geometry and materials in SI, from the scene.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::Vector3;
+
+use crate::scene::Scene;
+
+/// One raceway: a groove of circular section swept about the race's own x axis (a torus).
+///
+/// Lengths are in the race frame, whose origin is the bearing centre of the unloaded bearing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Raceway {
+    /// [m] radius of the groove's section.
+    pub groove_radius: f64,
+    /// [m] radius of the circle of groove centres.
+    pub groove_circle_radius: f64,
+    /// [m] axial position of the groove centres.
+    pub groove_offset: f64,
+}
+
+/// A ball: homogeneous sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// [m] radius.
+    pub radius: f64,
+    /// [kg] mass.
+    pub mass: f64,
+    /// [kg m2] moment of inertia about any axis through the centre.
+    pub inertia: f64,
+}
+
+/// A ball bearing: everything that does not change while it runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bearing {
+    /// [-] number of balls.
+    pub n_balls: usize,
+    /// The ball.
+    pub ball: Ball,
+    /// [m] pitch diameter dm.
+    pub pitch_diameter: f64,
+    /// [rad] azimuth of ball 1, from +y towards +z.
+    pub first_ball_azimuth: f64,
+    /// [rad] free contact angle; 0 for a bearing given by its clearance.
+    pub free_contact_angle: f64,
+    /// Inner raceway.
+    pub inner: Raceway,
+    /// Outer raceway.
+    pub outer: Raceway,
+    /// [1/Pa] `(1 - nu1^2)/E1 + (1 - nu2^2)/E2` of ball and race.
+    pub contact_compliance: f64,
+    /// [Pa] shear modulus G of the rolling contact: `1/G = (1/G1 + 1/G2)/2` (Kalker 1967).
+    pub shear_modulus: f64,
+    /// [-] Poisson's ratio of the rolling contact: `nu/G = (nu1/G1 + nu2/G2)/2` (Kalker 1967).
+    pub poisson_ratio: f64,
+}
+
+impl Bearing {
+    /// Builds the bearing of a scene (design conventions: groove centres from contact angle or clearance).
+    pub fn new(scene: &Scene) -> Self {
+        let section = &scene.bearing;
+        let (diameter, pitch) = (section.ball_diameter.0, section.pitch_diameter.0);
+        let (f_i, f_o) = (section.inner_conformity, section.outer_conformity);
+        // Distance A of the groove centres of a bearing without clearance.
+        let centre_distance = (f_i + f_o - 1.0) * diameter;
+        let (inner_circle, inner_offset, outer_circle, outer_offset) = match section.contact_angle {
+            Some(angle) => {
+                let (sin, cos) = angle.0.sin_cos();
+                let outer_circle = pitch / 2.0 - (f_o - 0.5) * diameter * cos;
+                let offsets = ((f_i - 0.5) * diameter * sin, -(f_o - 0.5) * diameter * sin);
+                (outer_circle + centre_distance * cos, offsets.0, outer_circle, offsets.1)
+            }
+            None => {
+                let clearance = section.diametral_clearance.map_or(0.0, |clearance| clearance.0);
+                let outer_circle = (pitch + diameter) / 2.0 + clearance / 4.0 - f_o * diameter;
+                (outer_circle + centre_distance - clearance / 2.0, 0.0, outer_circle, 0.0)
+            }
+        };
+        let radius = diameter / 2.0;
+        let mass = scene.ball.density.0 * 4.0 / 3.0 * PI * radius.powi(3);
+        let materials = [&scene.ball, &scene.race].map(|m| (m.youngs_modulus.0, m.poisson_ratio));
+        let shear = materials.map(|(youngs, nu)| youngs / (2.0 * (1.0 + nu)));
+        let shear_modulus = 2.0 / (1.0 / shear[0] + 1.0 / shear[1]);
+        Self {
+            n_balls: section.balls,
+            ball: Ball { radius, mass, inertia: 0.4 * mass * radius * radius },
+            pitch_diameter: pitch,
+            first_ball_azimuth: section.first_ball_azimuth.0,
+            free_contact_angle: section.contact_angle.map_or(0.0, |angle| angle.0),
+            inner: Raceway {
+                groove_radius: f_i * diameter,
+                groove_circle_radius: inner_circle,
+                groove_offset: inner_offset,
+            },
+            outer: Raceway {
+                groove_radius: f_o * diameter,
+                groove_circle_radius: outer_circle,
+                groove_offset: outer_offset,
+            },
+            contact_compliance: materials.iter().map(|(youngs, nu)| (1.0 - nu * nu) / youngs).sum(),
+            shear_modulus,
+            poisson_ratio: shear_modulus * (materials[0].1 / shear[0] + materials[1].1 / shear[1]) / 2.0,
+        }
+    }
+
+    /// [rad] azimuth of a ball (0 for the first) of the bearing at rest.
+    pub fn ball_azimuth(&self, index: usize) -> f64 {
+        self.first_ball_azimuth + TAU * index as f64 / self.n_balls as f64
+    }
+
+    /// [-] ratio of cage speed to inner race speed at a contact angle [rad], outer race at rest, pure rolling:
+    /// `(1 - gamma)/2`, `gamma = D cos(alpha)/dm`.
+    pub fn epicyclic_ratio(&self, contact_angle: f64) -> f64 {
+        0.5 * (1.0 - 2.0 * self.ball.radius * contact_angle.cos() / self.pitch_diameter)
+    }
+
+    /// [rad/s] cage speed of pure rolling at one contact angle, both races turning.
+    pub fn epicyclic_speed(&self, contact_angle: f64, inner_speed: f64, outer_speed: f64) -> f64 {
+        let ratio = self.epicyclic_ratio(contact_angle);
+        ratio * inner_speed + (1.0 - ratio) * outer_speed
+    }
+}
+
+/// Unit vectors at an azimuth [rad]: radial and tangential (direction of growing azimuth).
+pub fn azimuth_directions(azimuth: f64) -> (Vector3<f64>, Vector3<f64>) {
+    let (sin, cos) = azimuth.sin_cos();
+    (Vector3::new(0.0, cos, sin), Vector3::new(0.0, -sin, cos))
+}

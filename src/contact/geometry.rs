@@ -1,0 +1,53 @@
+//! Where a ball touches a raceway: exact for a torus at any finite tilt.
+
+use nalgebra::Vector3;
+
+use crate::bearing::Raceway;
+use crate::scalar::Scalar;
+
+/// Ball against raceway, in world axes.
+#[derive(Clone, Copy, Debug)]
+pub struct GrooveContact<S: Scalar> {
+    /// [m] approach; positive in contact.
+    pub approach: S,
+    /// [-] unit normal, from groove centre to ball centre: out of the ball into the raceway.
+    pub normal: Vector3<S>,
+    /// [-] unit radial direction of the race through the ball centre.
+    pub radial: Vector3<S>,
+    /// [-] circumferential direction: race axis x radial.
+    pub circumferential: Vector3<S>,
+    /// [m] distance of the ball centre from the race axis.
+    pub radius: S,
+    /// [m] distance of the ball centre from the groove centre.
+    pub distance: S,
+    /// [1/m] curvature of the raceway along its circumference at the contact; convex (inner race) positive.
+    pub circumferential_curvature: S,
+}
+
+impl<S: Scalar> GrooveContact<S> {
+    /// Contact of a ball of radius `ball_radius` [m] whose centre is at `offset` [m] from the race centre,
+    /// with a race of unit axis `axis`.
+    #[inline(always)]
+    pub fn new(raceway: &Raceway, ball_radius: f64, offset: &Vector3<S>, axis: &Vector3<S>) -> Self {
+        let axial = offset.dot(axis);
+        let radial_vector = offset - axis * axial;
+        let radius = radial_vector.dot(&radial_vector).sqrt();
+        let radial = radial_vector.map(|component| component / radius);
+        // From the groove centre of this azimuth to the ball centre.
+        let out = radius - S::constant(raceway.groove_circle_radius);
+        let along = axial - S::constant(raceway.groove_offset);
+        let distance = (out.square() + along.square()).sqrt();
+        let (cos, sin) = (out / distance, along / distance);
+        // A torus's second principal curvature: cosine of the normal's angle over the radius of the contact point.
+        let contact_radius = radius + cos.scale(ball_radius);
+        Self {
+            approach: distance - S::constant(raceway.groove_radius - ball_radius),
+            normal: radial * cos + axis * sin,
+            radial,
+            circumferential: axis.cross(&radial),
+            radius,
+            distance,
+            circumferential_curvature: -cos / contact_radius,
+        }
+    }
+}

@@ -1,0 +1,263 @@
+//! Number types of the contact kernel: `f64` for values, [`Dual`] for values with exact first derivatives.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use nalgebra::Vector3;
+
+/// What the contact kernel needs of a number. Branch-free on purpose, so that lanes of numbers can implement it.
+pub trait Scalar:
+    Copy
+    + Debug
+    + PartialEq
+    + 'static
+    + num_traits::Zero
+    + num_traits::One
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+{
+    /// A constant: all derivatives are zero.
+    fn constant(value: f64) -> Self;
+
+    /// The value without derivatives.
+    fn value(self) -> f64;
+
+    /// Multiplies by a constant.
+    fn scale(self, factor: f64) -> Self;
+
+    /// Square root; the derivative at 0 is taken as 0, for quantities that are switched on at 0.
+    fn sqrt(self) -> Self;
+
+    /// `self` where `condition > 0`, `other` elsewhere.
+    fn where_positive(self, condition: Self, other: Self) -> Self;
+
+    /// `max(self, 0)`.
+    fn positive_part(self) -> Self {
+        self.where_positive(self, Self::zero())
+    }
+
+    /// `self` limited to `[low, high]`.
+    fn clamp_to(self, low: f64, high: f64) -> Self {
+        let (low, high) = (Self::constant(low), Self::constant(high));
+        let bounded = self.where_positive(self - low, low);
+        bounded.where_positive(high - bounded, high)
+    }
+
+    /// `self * self`.
+    fn square(self) -> Self {
+        self * self
+    }
+}
+
+impl Scalar for f64 {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn scale(self, factor: f64) -> Self {
+        self * factor
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn where_positive(self, condition: Self, other: Self) -> Self {
+        if condition > 0.0 { self } else { other }
+    }
+}
+
+/// A number and its derivatives in `N` directions (forward-mode differentiation).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual<const N: usize> {
+    /// Value.
+    pub value: f64,
+    /// Derivatives.
+    pub derivatives: [f64; N],
+}
+
+impl<const N: usize> Dual<N> {
+    /// An independent variable: derivative `rate` in direction `direction`, 0 in all others.
+    pub fn variable(value: f64, direction: usize, rate: f64) -> Self {
+        let mut derivatives = [0.0; N];
+        derivatives[direction] = rate;
+        Self { value, derivatives }
+    }
+
+    /// Chain rule: a function's value and its slope at this number.
+    #[inline(always)]
+    fn chain(self, value: f64, slope: f64) -> Self {
+        let mut derivatives = self.derivatives;
+        for d in &mut derivatives {
+            *d *= slope;
+        }
+        Self { value, derivatives }
+    }
+
+    /// `p self' + q other'` with a given value.
+    #[inline(always)]
+    fn combine(self, p: f64, other: Self, q: f64, value: f64) -> Self {
+        let mut derivatives = self.derivatives;
+        for (d, o) in derivatives.iter_mut().zip(other.derivatives) {
+            *d = *d * p + o * q;
+        }
+        Self { value, derivatives }
+    }
+}
+
+impl<const N: usize> Scalar for Dual<N> {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self { value, derivatives: [0.0; N] }
+    }
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self.value
+    }
+    #[inline(always)]
+    fn scale(self, factor: f64) -> Self {
+        self.chain(self.value * factor, factor)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chain(root, if root > 0.0 { 0.5 / root } else { 0.0 })
+    }
+    #[inline(always)]
+    fn where_positive(self, condition: Self, other: Self) -> Self {
+        if condition.value > 0.0 { self } else { other }
+    }
+}
+
+impl<const N: usize> num_traits::Zero for Dual<N> {
+    fn zero() -> Self {
+        Self::constant(0.0)
+    }
+    fn is_zero(&self) -> bool {
+        *self == Self::constant(0.0)
+    }
+}
+
+impl<const N: usize> num_traits::One for Dual<N> {
+    fn one() -> Self {
+        Self::constant(1.0)
+    }
+}
+
+impl<const N: usize> Neg for Dual<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.chain(-self.value, -1.0)
+    }
+}
+
+impl<const N: usize> Add for Dual<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(mut self, other: Self) -> Self {
+        self.value += other.value;
+        for (d, o) in self.derivatives.iter_mut().zip(other.derivatives) {
+            *d += o;
+        }
+        self
+    }
+}
+
+impl<const N: usize> Sub for Dual<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(mut self, other: Self) -> Self {
+        self.value -= other.value;
+        for (d, o) in self.derivatives.iter_mut().zip(other.derivatives) {
+            *d -= o;
+        }
+        self
+    }
+}
+
+impl<const N: usize> Mul for Dual<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.combine(other.value, other, self.value, self.value * other.value)
+    }
+}
+
+impl<const N: usize> Div for Dual<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let inverse = 1.0 / other.value;
+        let quotient = self.value / other.value;
+        self.combine(inverse, other, -quotient * inverse, quotient)
+    }
+}
+
+macro_rules! assign {
+    ($($trait:ident $method:ident $operator:tt),*) => {$(
+        impl<const N: usize> $trait for Dual<N> {
+            #[inline(always)]
+            fn $method(&mut self, other: Self) {
+                *self = *self $operator other;
+            }
+        }
+    )*};
+}
+assign!(AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *, DivAssign div_assign /);
+
+/// Lifts a vector of constants.
+#[inline(always)]
+pub fn constant_vector<S: Scalar>(v: &Vector3<f64>) -> Vector3<S> {
+    v.map(S::constant)
+}
+
+/// Values of a vector, without derivatives.
+#[inline(always)]
+pub fn values<S: Scalar>(v: &Vector3<S>) -> Vector3<f64> {
+    v.map(S::value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A function that uses every operation, smooth at the point tested.
+    fn sample<S: Scalar>(x: S, y: S) -> S {
+        let one = S::one();
+        let mut r = (x * y - x / y + y.sqrt()).scale(3.0) + (-x).square() - one;
+        r += x.positive_part() * y;
+        r -= x.clamp_to(-0.5, 0.25) * y;
+        r *= y;
+        r /= x + y;
+        r
+    }
+
+    #[test]
+    fn dual_derivatives_agree_with_differences() {
+        let (x, y, h) = (0.7, 1.9, 1e-6);
+        let dual = sample(Dual::<2>::variable(x, 0, 1.0), Dual::<2>::variable(y, 1, 1.0));
+        let dx = (sample(x + h, y) - sample(x - h, y)) / (2.0 * h);
+        let dy = (sample(x, y + h) - sample(x, y - h)) / (2.0 * h);
+        assert_eq!(dual.value, sample(x, y));
+        assert!((dual.derivatives[0] - dx).abs() < 1e-8 && (dual.derivatives[1] - dy).abs() < 1e-8);
+    }
+
+    #[test]
+    fn a_root_switched_on_at_zero_has_finite_derivatives() {
+        let x = Dual::<1>::variable(-1.0, 0, 1.0).positive_part();
+        assert_eq!((x * x.sqrt()).derivatives, [0.0]);
+    }
+}
