@@ -35,6 +35,9 @@ pub trait Scalar:
     /// Square root; the derivative at 0 is taken as 0, for quantities that are switched on at 0.
     fn sqrt(self) -> Self;
 
+    /// A smooth function of this number, given as value and slope.
+    fn map_smooth(self, function: impl Fn(f64) -> (f64, f64)) -> Self;
+
     /// `self` where `condition > 0`, `other` elsewhere.
     fn where_positive(self, condition: Self, other: Self) -> Self;
 
@@ -72,6 +75,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn map_smooth(self, function: impl Fn(f64) -> (f64, f64)) -> Self {
+        function(self).0
     }
     #[inline(always)]
     fn where_positive(self, condition: Self, other: Self) -> Self {
@@ -134,6 +141,11 @@ impl<const N: usize> Scalar for Dual<N> {
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.chain(root, if root > 0.0 { 0.5 / root } else { 0.0 })
+    }
+    #[inline(always)]
+    fn map_smooth(self, function: impl Fn(f64) -> (f64, f64)) -> Self {
+        let (value, slope) = function(self.value);
+        self.chain(value, slope)
     }
     #[inline(always)]
     fn where_positive(self, condition: Self, other: Self) -> Self {

@@ -1,4 +1,186 @@
 //! Contact between a ball and a raceway: geometry, Hertz, creepage, creep laws.
 
+pub mod creep;
 pub mod geometry;
 pub mod hertz;
+pub mod shape;
+
+use nalgebra::Vector3;
+
+use crate::bearing::Raceway;
+use crate::scalar::Scalar;
+use crate::scene::CreepLaw;
+use creep::{CreepForces, Creepage, LinearTheory};
+use geometry::GrooveContact;
+use shape::ContactShape;
+
+/// [m/s] rolling speed below which creepages are held finite: `V -> sqrt(V^2 + v^2)`. Forces stay linear in the slip
+/// speed at rest; at 1 m/s it changes creepages by 5e-7.
+const REGULARISATION_SPEED: f64 = 1e-3;
+
+/// Motion of a ball, in world axes.
+#[derive(Clone, Copy, Debug)]
+pub struct BallMotion<S: Scalar> {
+    /// [m] centre.
+    pub position: Vector3<S>,
+    /// [m/s] velocity of the centre.
+    pub velocity: Vector3<S>,
+    /// [rad/s] angular velocity.
+    pub angular_velocity: Vector3<S>,
+}
+
+/// Motion of a race, in world axes.
+#[derive(Clone, Copy, Debug)]
+pub struct RaceMotion<S: Scalar> {
+    /// [m] origin of the race frame.
+    pub position: Vector3<S>,
+    /// [-] unit vector of the race's own axis.
+    pub axis: Vector3<S>,
+    /// [m/s] velocity of the origin.
+    pub velocity: Vector3<S>,
+    /// [rad/s] angular velocity.
+    pub angular_velocity: Vector3<S>,
+}
+
+/// What does not change in a ball-race contact during a step.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactModel<'a> {
+    /// The raceway.
+    pub raceway: &'a Raceway,
+    /// Its contacts' shape.
+    pub shape: &'a ContactShape,
+    /// [m] ball radius.
+    pub ball_radius: f64,
+    /// Creep law.
+    pub law: CreepLaw,
+    /// [-] friction coefficient.
+    pub friction: f64,
+    /// [s/m] Hunt-Crossley dissipation factor.
+    pub damping: f64,
+}
+
+/// Forces of one ball-race contact and the quantities they came from.
+#[derive(Clone, Copy, Debug)]
+pub struct BallRaceContact<S: Scalar> {
+    /// Geometry of the contact.
+    pub geometry: GrooveContact<S>,
+    /// [N] normal load.
+    pub load: S,
+    /// [N/m^1.5] Hertz stiffness.
+    pub stiffness: S,
+    /// [m/s] rolling speed, regularised.
+    pub rolling_speed: S,
+    /// Creepages in the contact frame whose x axis is the circumferential direction of the race.
+    pub creepage: Creepage<S>,
+    /// Creep forces of the ball on the race, same frame.
+    pub creep: CreepForces<S>,
+    /// [-] cosine of the rolling direction against the circumferential direction, near +-1.
+    pub rolling_cosine: S,
+    /// [N] force on the ball, world axes.
+    pub force: Vector3<S>,
+    /// [N m] moment on the ball about its centre, world axes.
+    pub ball_moment: Vector3<S>,
+    /// [N m] moment on the race about its origin, world axes.
+    pub race_moment: Vector3<S>,
+    /// [W] power lost to friction.
+    pub friction_power: S,
+    /// [W] power lost to contact damping.
+    pub damping_power: S,
+}
+
+impl ContactModel<'_> {
+    /// Evaluates the contact of a ball with the race: the whole chain from motion to forces, written once for values
+    /// and for exact derivatives.
+    #[inline(always)]
+    pub fn evaluate<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        let radius = self.ball_radius;
+        let offset = ball.position - race.position;
+        let geometry = GrooveContact::new(self.raceway, radius, &offset, &race.axis);
+        let normal = geometry.normal;
+
+        // velocities of both surfaces at the contact point, and of the contact point itself
+        let arm = normal.map(|component| component.scale(radius));
+        let ball_surface = ball.velocity + ball.angular_velocity.cross(&arm);
+        let race_arm = offset + arm;
+        let race_surface = race.velocity + race.angular_velocity.cross(&race_arm);
+        let slip = ball_surface - race_surface;
+        let approach_rate = normal.dot(&slip);
+        let contact_point = ball.velocity + normal_rate(&geometry, &offset, ball, race).map(|c| c.scale(radius));
+
+        // normal load: Hertz with Hunt-Crossley dissipation, never pulling
+        let depth = geometry.approach.positive_part();
+        let root = depth.sqrt();
+        let shape = self.shape.at(geometry.circumferential_curvature);
+        let elastic = shape.stiffness * depth * root;
+        let load = (elastic * (S::one() + approach_rate.scale(self.damping))).positive_part();
+
+        // contact frame: x along the circumference, z from the raceway into the ball
+        let x = geometry.circumferential;
+        let y = x.cross(&normal);
+        // the contact moves over the material opposite to the mean material velocity seen from it
+        let rolling = contact_point - (ball_surface + race_surface).map(|c| c.scale(0.5));
+        let (rolling_x, rolling_y) = (rolling.dot(&x), rolling.dot(&y));
+        let floor = S::constant(REGULARISATION_SPEED * REGULARISATION_SPEED);
+        let rolling_speed = (rolling_x.square() + rolling_y.square() + floor).sqrt();
+        let rolling_cosine = rolling_x / rolling_speed;
+        let (slip_x, slip_y) = (slip.dot(&x), slip.dot(&y));
+        let spin = (race.angular_velocity - ball.angular_velocity).dot(&normal);
+        let per_speed = S::one() / rolling_speed;
+        let creepage =
+            Creepage { longitudinal: slip_x * per_speed, lateral: slip_y * per_speed, spin: spin * per_speed };
+
+        // creep forces of the ball on the race
+        let friction_limit = load.scale(self.friction);
+        let theory = LinearTheory {
+            longitudinal: shape.longitudinal * depth,
+            lateral: shape.lateral * depth,
+            coupling: shape.coupling * depth * root * rolling_cosine,
+            spin: shape.spin * depth.square(),
+            friction_limit,
+            moment_limit: friction_limit * shape.spin_arm * root,
+            mean_semi_axis: shape.mean_semi_axis * root,
+        };
+        let creep = theory.forces(self.law, &creepage);
+
+        // wrenches
+        let tangential = x * creep.longitudinal + y * creep.lateral;
+        let force = -(normal * load + tangential);
+        let spin_moment = normal * creep.spin_moment;
+        BallRaceContact {
+            geometry,
+            load,
+            stiffness: shape.stiffness,
+            rolling_speed,
+            creepage,
+            creep,
+            rolling_cosine,
+            force,
+            ball_moment: spin_moment - arm.cross(&tangential),
+            race_moment: -race_arm.cross(&force) - spin_moment,
+            friction_power: creep.longitudinal * slip_x + creep.lateral * slip_y + creep.spin_moment * spin,
+            damping_power: (load - elastic) * approach_rate,
+        }
+    }
+}
+
+/// [1/s] rate of change of the contact normal.
+#[inline(always)]
+fn normal_rate<S: Scalar>(
+    geometry: &GrooveContact<S>,
+    offset: &Vector3<S>,
+    ball: &BallMotion<S>,
+    race: &RaceMotion<S>,
+) -> Vector3<S> {
+    // Seen from the race, whose axis is at rest, the ball centre moves with this velocity.
+    let relative = ball.velocity - race.velocity - race.angular_velocity.cross(offset);
+    let radial_rate = relative.dot(&geometry.radial);
+    let around = relative.dot(&geometry.circumferential) / geometry.radius;
+    let axial_rate = relative.dot(&race.axis);
+    // The groove centre of the ball's azimuth turns with it; what remains turns the normal about the groove centre.
+    let out = geometry.normal.dot(&geometry.radial);
+    let in_plane = geometry.radial * radial_rate + race.axis * axial_rate;
+    let across = in_plane - geometry.normal * geometry.normal.dot(&in_plane);
+    across.map(|c| c / geometry.distance)
+        + geometry.circumferential * (around * out)
+        + race.angular_velocity.cross(&geometry.normal)
+}

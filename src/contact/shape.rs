@@ -1,0 +1,224 @@
+//! Load-independent properties of a ball-race contact over the raceway's curvature, as smooth polynomials.
+//!
+//! The transverse curvature of a groove contact is constant; the one along rolling varies with the contact angle.
+//! Everything that Hertz and Kalker need then is a function of that one curvature, tabulated once per raceway.
+
+use std::f64::consts::PI;
+
+use crate::bearing::{Bearing, Raceway};
+use crate::contact::hertz::{HertzContact, complete_elliptic_integrals};
+use crate::kalker::Patch;
+use crate::kalker::linear::creep_coefficients;
+use crate::scalar::Scalar;
+
+/// Nodes per polynomial. The interval of curvatures is short, so that they converge at about two digits a node:
+/// the relative error of the stiffness is below 1e-10 for ball over pitch diameter up to 0.4 (tested).
+const NODES: usize = 14;
+
+/// A polynomial in a variable that is scaled to [-1, 1], ascending powers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Polynomial([f64; NODES]);
+
+impl Polynomial {
+    /// Interpolates values at the Chebyshev nodes.
+    fn interpolate(values: &[f64; NODES]) -> Self {
+        // Chebyshev coefficients by the discrete orthogonality of the nodes, then T_k in powers by recurrence.
+        let n = NODES as f64;
+        let mut powers = [0.0; NODES];
+        let mut previous = [0.0; NODES];
+        let mut current = [0.0; NODES];
+        current[0] = 1.0;
+        for k in 0..NODES {
+            let weight = if k == 0 { 1.0 } else { 2.0 } / n;
+            let coefficient: f64 = (0..NODES)
+                .map(|j| weight * values[j] * (k as f64 * PI * (j as f64 + 0.5) / n).cos())
+                .sum();
+            for (power, term) in powers.iter_mut().zip(current) {
+                *power += coefficient * term;
+            }
+            let mut next = [0.0; NODES];
+            let double = if k == 0 { 1.0 } else { 2.0 };
+            for i in 0..NODES {
+                let shifted = if i > 0 { double * current[i - 1] } else { 0.0 };
+                next[i] = shifted - if k == 0 { 0.0 } else { previous[i] };
+            }
+            previous = current;
+            current = next;
+        }
+        Self(powers)
+    }
+
+    /// Value and slope.
+    #[inline(always)]
+    fn at(&self, x: f64) -> (f64, f64) {
+        let (mut value, mut slope) = (0.0, 0.0);
+        for coefficient in self.0.iter().rev() {
+            slope = slope * x + value;
+            value = value * x + coefficient;
+        }
+        (value, slope)
+    }
+}
+
+/// Position of Chebyshev node j in [-1, 1].
+fn node(j: usize) -> f64 {
+    (PI * (j as f64 + 0.5) / NODES as f64).cos()
+}
+
+/// Properties of the contacts of one raceway at one curvature; multiply by the named power of the approach.
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeAt<S> {
+    /// [N/m^1.5] `Q = stiffness delta^1.5` (paper eq. 8).
+    pub stiffness: S,
+    /// [N/m] `G c^2 C11` over `delta`.
+    pub longitudinal: S,
+    /// [N/m] `G c^2 C22` over `delta`.
+    pub lateral: S,
+    /// [N/m^0.5] `G c^3 C23` over `delta^1.5`.
+    pub coupling: S,
+    /// [N] `G c^4 C33` over `delta^2`.
+    pub spin: S,
+    /// [m^0.5] `c = sqrt(a b)` over `sqrt(delta)`.
+    pub mean_semi_axis: S,
+    /// [m^0.5] spin moment of complete slip over `mu Q sqrt(delta)`.
+    pub spin_arm: S,
+}
+
+/// Shape of all contacts of one raceway.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactShape {
+    /// [1/m] middle and half width of the interval of circumferential curvatures.
+    middle: f64,
+    half_width: f64,
+    transverse_curvature: f64,
+    ball_curvature: f64,
+    compliance: f64,
+    stiffness: Polynomial,
+    longitudinal: Polynomial,
+    lateral: Polynomial,
+    coupling: Polynomial,
+    spin: Polynomial,
+    mean_semi_axis: Polynomial,
+    spin_arm: Polynomial,
+}
+
+impl ContactShape {
+    /// Tabulates the contacts of a raceway of the bearing.
+    ///
+    /// # Errors
+    /// If Kalker's linear theory has no answer for an axis ratio that occurs.
+    pub fn new(bearing: &Bearing, raceway: &Raceway) -> Result<Self, crate::kalker::linear::LinearError> {
+        let radius = bearing.ball.radius;
+        // Curvature at contact angle 0; beyond a right angle the contact has left any real groove.
+        let contact_radius = if raceway.groove_circle_radius > bearing.pitch_diameter / 2.0 {
+            raceway.groove_circle_radius - raceway.groove_radius
+        } else {
+            -(raceway.groove_circle_radius + raceway.groove_radius)
+        };
+        let extreme = 1.05 / contact_radius;
+        let (middle, half_width) = (0.475 * extreme, 0.525 * extreme.abs());
+        let ball_curvature = 1.0 / radius;
+        let transverse_curvature = ball_curvature - 1.0 / raceway.groove_radius;
+        let shear = bearing.shear_modulus;
+        let mut columns = [[0.0; NODES]; 7];
+        for j in 0..NODES {
+            let curvature = middle + half_width * node(j);
+            let hertz = HertzContact::new(
+                ball_curvature + curvature,
+                transverse_curvature,
+                bearing.contact_compliance,
+            );
+            let (along, across) = (hertz.semi_axis_rolling, hertz.semi_axis_transverse);
+            let patch =
+                Patch { axis_ratio: along / across, poisson_ratio: bearing.poisson_ratio, rolling_angle: 0.0 };
+            let creep = creep_coefficients(patch)?;
+            let area = along * across;
+            let (long, short) = (along.max(across), along.min(across));
+            let (_, second) = complete_elliptic_integrals(1.0 - (short / long).powi(2));
+            let row = [
+                hertz.stiffness,
+                shear * area * creep.c11,
+                shear * area * creep.c22,
+                shear * area.powf(1.5) * creep.c23,
+                shear * area.powi(2) * creep.c33,
+                area.sqrt(),
+                // Hertzian pressure times distance from the centre, integrated: 3/8 of the long axis times E(m).
+                0.375 * long * second,
+            ];
+            for (column, value) in columns.iter_mut().zip(row) {
+                column[j] = value;
+            }
+        }
+        let [stiffness, longitudinal, lateral, coupling, spin, mean_semi_axis, spin_arm] =
+            columns.map(|column| Polynomial::interpolate(&column));
+        Ok(Self {
+            middle,
+            half_width,
+            transverse_curvature,
+            ball_curvature,
+            compliance: bearing.contact_compliance,
+            stiffness,
+            longitudinal,
+            lateral,
+            coupling,
+            spin,
+            mean_semi_axis,
+            spin_arm,
+        })
+    }
+
+    #[inline(always)]
+    fn scaled<S: Scalar>(&self, curvature: S) -> S {
+        (curvature - S::constant(self.middle)).scale(1.0 / self.half_width).clamp_to(-1.0, 1.0)
+    }
+
+    /// [N/m^1.5] Hertz stiffness at a circumferential curvature of the raceway [1/m].
+    #[inline(always)]
+    pub fn stiffness<S: Scalar>(&self, curvature: S) -> S {
+        self.scaled(curvature).map_smooth(|x| self.stiffness.at(x))
+    }
+
+    /// All properties at a circumferential curvature of the raceway [1/m].
+    #[inline(always)]
+    pub fn at<S: Scalar>(&self, curvature: S) -> ShapeAt<S> {
+        let x = self.scaled(curvature);
+        ShapeAt {
+            stiffness: x.map_smooth(|x| self.stiffness.at(x)),
+            longitudinal: x.map_smooth(|x| self.longitudinal.at(x)),
+            lateral: x.map_smooth(|x| self.lateral.at(x)),
+            coupling: x.map_smooth(|x| self.coupling.at(x)),
+            spin: x.map_smooth(|x| self.spin.at(x)),
+            mean_semi_axis: x.map_smooth(|x| self.mean_semi_axis.at(x)),
+            spin_arm: x.map_smooth(|x| self.spin_arm.at(x)),
+        }
+    }
+
+    /// The exact Hertz contact at a circumferential curvature of the raceway [1/m], not interpolated.
+    pub fn hertz(&self, curvature: f64) -> HertzContact {
+        HertzContact::new(self.ball_curvature + curvature, self.transverse_curvature, self.compliance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    #[test]
+    fn interpolated_stiffness_is_exact_to_1e_10() {
+        let text = include_str!("../../scenes/thrust.toml");
+        for pitch in ["24 mm", "46 mm", "300 mm"] {
+            let text = text.replace("\"46 mm\"", &format!("\"{pitch}\"")).replace("balls = 10 ", "balls = 7 ");
+            let bearing = Bearing::new(&Scene::parse(&text).unwrap());
+            for raceway in [&bearing.inner, &bearing.outer] {
+                let shape = ContactShape::new(&bearing, raceway).unwrap();
+                for i in 0..=50 {
+                    let curvature = shape.middle + shape.half_width * (f64::from(i) / 25.0 - 1.0);
+                    let exact = shape.hertz(curvature).stiffness;
+                    let error = (shape.stiffness(curvature) / exact - 1.0).abs();
+                    assert!(error < 1e-10, "pitch {pitch}, curvature {curvature}: {error:e}");
+                }
+            }
+        }
+    }
+}
