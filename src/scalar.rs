@@ -127,7 +127,10 @@ impl<const N: usize> Dual<N> {
 impl<const N: usize> Scalar for Dual<N> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        Self { value, derivatives: [0.0; N] }
+        Self {
+            value,
+            derivatives: [0.0; N],
+        }
     }
     #[inline(always)]
     fn value(self) -> f64 {

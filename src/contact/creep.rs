@@ -58,9 +58,11 @@ impl<S: Scalar> LinearTheory<S> {
     #[inline(always)]
     pub fn forces(&self, law: CreepLaw, creepage: &Creepage<S>) -> CreepForces<S> {
         match law {
-            CreepLaw::Frictionless => {
-                CreepForces { longitudinal: S::zero(), lateral: S::zero(), spin_moment: S::zero() }
-            }
+            CreepLaw::Frictionless => CreepForces {
+                longitudinal: S::zero(),
+                lateral: S::zero(),
+                spin_moment: S::zero(),
+            },
             CreepLaw::Linear => self.linear(creepage),
             CreepLaw::Regularised => self.regularised(creepage),
             CreepLaw::Saturated => self.saturated(creepage),
@@ -113,9 +115,8 @@ impl<S: Scalar> LinearTheory<S> {
     fn regularised(&self, creepage: &Creepage<S>) -> CreepForces<S> {
         let magnitude = |x: S| (x.square() + S::constant(CREEP_FLOOR * CREEP_FLOOR)).sqrt();
         let spin = self.mean_semi_axis * creepage.spin;
-        let total = magnitude(
-            (creepage.longitudinal.square() + creepage.lateral.square() + spin.square()).sqrt(),
-        );
+        let total =
+            magnitude((creepage.longitudinal.square() + creepage.lateral.square() + spin.square()).sqrt());
         // phi(c, eps) = (2 - c/eps) c/eps up to eps = 2 mu Q/(C G c^2), then 1 (eq. 15).
         let per_force = S::one() / (self.friction_limit + S::constant(FORCE_FLOOR));
         let phi = |stiffness: S, creep: S| {

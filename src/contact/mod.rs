@@ -105,7 +105,8 @@ impl ContactModel<'_> {
         let race_surface = race.velocity + race.angular_velocity.cross(&race_arm);
         let slip = ball_surface - race_surface;
         let approach_rate = normal.dot(&slip);
-        let contact_point = ball.velocity + normal_rate(&geometry, &offset, ball, race).map(|c| c.scale(radius));
+        let contact_point =
+            ball.velocity + normal_rate(&geometry, &offset, ball, race).map(|c| c.scale(radius));
 
         // normal load: Hertz with Hunt-Crossley dissipation, never pulling
         let depth = geometry.approach.positive_part();
@@ -126,8 +127,11 @@ impl ContactModel<'_> {
         let (slip_x, slip_y) = (slip.dot(&x), slip.dot(&y));
         let spin = (race.angular_velocity - ball.angular_velocity).dot(&normal);
         let per_speed = S::one() / rolling_speed;
-        let creepage =
-            Creepage { longitudinal: slip_x * per_speed, lateral: slip_y * per_speed, spin: spin * per_speed };
+        let creepage = Creepage {
+            longitudinal: slip_x * per_speed,
+            lateral: slip_y * per_speed,
+            spin: spin * per_speed,
+        };
 
         // creep forces of the ball on the race
         let friction_limit = load.scale(self.friction);

@@ -129,8 +129,11 @@ impl ContactShape {
                 bearing.contact_compliance,
             );
             let (along, across) = (hertz.semi_axis_rolling, hertz.semi_axis_transverse);
-            let patch =
-                Patch { axis_ratio: along / across, poisson_ratio: bearing.poisson_ratio, rolling_angle: 0.0 };
+            let patch = Patch {
+                axis_ratio: along / across,
+                poisson_ratio: bearing.poisson_ratio,
+                rolling_angle: 0.0,
+            };
             let creep = creep_coefficients(patch)?;
             let area = along * across;
             let (long, short) = (along.max(across), along.min(across));
@@ -149,8 +152,15 @@ impl ContactShape {
                 column[j] = value;
             }
         }
-        let [stiffness, longitudinal, lateral, coupling, spin, mean_semi_axis, spin_arm] =
-            columns.map(|column| Polynomial::interpolate(&column));
+        let [
+            stiffness,
+            longitudinal,
+            lateral,
+            coupling,
+            spin,
+            mean_semi_axis,
+            spin_arm,
+        ] = columns.map(|column| Polynomial::interpolate(&column));
         Ok(Self {
             middle,
             half_width,
@@ -169,7 +179,9 @@ impl ContactShape {
 
     #[inline(always)]
     fn scaled<S: Scalar>(&self, curvature: S) -> S {
-        (curvature - S::constant(self.middle)).scale(1.0 / self.half_width).clamp_to(-1.0, 1.0)
+        (curvature - S::constant(self.middle))
+            .scale(1.0 / self.half_width)
+            .clamp_to(-1.0, 1.0)
     }
 
     /// [N/m^1.5] Hertz stiffness at a circumferential curvature of the raceway [1/m].
@@ -195,7 +207,11 @@ impl ContactShape {
 
     /// The exact Hertz contact at a circumferential curvature of the raceway [1/m], not interpolated.
     pub fn hertz(&self, curvature: f64) -> HertzContact {
-        HertzContact::new(self.ball_curvature + curvature, self.transverse_curvature, self.compliance)
+        HertzContact::new(
+            self.ball_curvature + curvature,
+            self.transverse_curvature,
+            self.compliance,
+        )
     }
 }
 
@@ -208,7 +224,9 @@ mod tests {
     fn interpolated_stiffness_is_exact_to_1e_10() {
         let text = include_str!("../../scenes/thrust.toml");
         for pitch in ["24 mm", "46 mm", "300 mm"] {
-            let text = text.replace("\"46 mm\"", &format!("\"{pitch}\"")).replace("balls = 10 ", "balls = 7 ");
+            let text = text
+                .replace("\"46 mm\"", &format!("\"{pitch}\""))
+                .replace("balls = 10 ", "balls = 7 ");
             let bearing = Bearing::new(&Scene::parse(&text).unwrap());
             for raceway in [&bearing.inner, &bearing.outer] {
                 let shape = ContactShape::new(&bearing, raceway).unwrap();

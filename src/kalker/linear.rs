@@ -37,7 +37,12 @@ pub fn creep_coefficients(patch: Patch) -> Result<CreepCoefficients, LinearError
         if x <= x1 + 1e-9 {
             let t = (x - x0) / (x1 - x0);
             let f = |i: usize| (pair[0][i].ln() * (1.0 - t) + pair[1][i].ln() * t).exp();
-            return Ok(CreepCoefficients { c11: f(1), c22: f(2), c23: f(3), c33: f(4) });
+            return Ok(CreepCoefficients {
+                c11: f(1),
+                c22: f(2),
+                c23: f(3),
+                c33: f(4),
+            });
         }
     }
     Err(LinearError(patch))

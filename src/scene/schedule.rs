@@ -68,7 +68,9 @@ pub fn deserialize<'de, Q: Quantity + for<'a> Deserialize<'a>, D: Deserializer<'
 ) -> Result<Schedule, D::Error> {
     let value = toml::Value::deserialize(deserializer)?;
     let toml::Value::Array(rows) = value else {
-        return Ok(Schedule::Constant(Q::deserialize(value).map_err(Error::custom)?.si()));
+        return Ok(Schedule::Constant(
+            Q::deserialize(value).map_err(Error::custom)?.si(),
+        ));
     };
     let mut points: Vec<(f64, f64)> = Vec::with_capacity(rows.len());
     for row in rows {
@@ -80,9 +82,15 @@ pub fn deserialize<'de, Q: Quantity + for<'a> Deserialize<'a>, D: Deserializer<'
         };
         let time = Time::deserialize(time).map_err(Error::custom)?.si();
         if points.last().is_some_and(|&(last, _)| last >= time) {
-            return Err(Error::custom(format!("table times must grow, but {time} s does not")));
+            return Err(Error::custom(format!(
+                "table times must grow, but {time} s does not"
+            )));
         }
         points.push((time, Q::deserialize(value).map_err(Error::custom)?.si()));
     }
-    if points.is_empty() { Err(Error::custom("the table is empty")) } else { Ok(Schedule::Table(points)) }
+    if points.is_empty() {
+        Err(Error::custom("the table is empty"))
+    } else {
+        Ok(Schedule::Table(points))
+    }
 }

@@ -1,0 +1,56 @@
+//! Pose, twist and wrench of a rigid body, in world axes.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// Position and orientation of a body frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// [m] origin.
+    pub position: Vector3<f64>,
+    /// [-] rotation from body to world axes.
+    pub orientation: UnitQuaternion<f64>,
+}
+
+/// Velocity of a body frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Twist {
+    /// [m/s] of the origin.
+    pub velocity: Vector3<f64>,
+    /// [rad/s] angular velocity.
+    pub angular_velocity: Vector3<f64>,
+}
+
+/// Force and moment about a body's origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// [N] force.
+    pub force: Vector3<f64>,
+    /// [N m] moment.
+    pub moment: Vector3<f64>,
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self {
+            position: Vector3::zeros(),
+            orientation: UnitQuaternion::identity(),
+        }
+    }
+}
+
+impl Twist {
+    /// Power of a wrench on this motion [W].
+    pub fn power(&self, wrench: &Wrench) -> f64 {
+        self.velocity.dot(&wrench.force) + self.angular_velocity.dot(&wrench.moment)
+    }
+}
+
+impl Wrench {
+    /// `(1 - t) self + t other`.
+    pub fn blend(&self, other: &Self, t: f64) -> Self {
+        Self {
+            force: self.force.lerp(&other.force, t),
+            moment: self.moment.lerp(&other.moment, t),
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! How prescribed quantities move between two communication points: continuous, never a jump inside a step.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::motion::{Pose, Twist};
+use crate::rotation::{from_quaternion, rotate, tangent, tangent_inverse, to_quaternion};
+
+/// A cubic in time with given values and rates at both ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Cubic([Vector3<f64>; 4]);
+
+impl Cubic {
+    /// From `x0`, rate `v0` to `x1`, rate `v1` within `duration` [s].
+    fn hermite(
+        x0: Vector3<f64>,
+        v0: Vector3<f64>,
+        x1: Vector3<f64>,
+        v1: Vector3<f64>,
+        duration: f64,
+    ) -> Self {
+        let mean = (x1 - x0) / duration;
+        Self([
+            x0,
+            v0,
+            (mean * 3.0 - v0 * 2.0 - v1) / duration,
+            (v0 + v1 - mean * 2.0) / (duration * duration),
+        ])
+    }
+
+    /// Value and rate after `t` [s].
+    fn at(&self, t: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let [x0, v0, c2, c3] = self.0;
+        (
+            x0 + (v0 + (c2 + c3 * t) * t) * t,
+            v0 + (c2 * 2.0 + c3 * (3.0 * t)) * t,
+        )
+    }
+}
+
+/// Path of a race whose motion is given from outside, over one communication step.
+///
+/// It begins with the pose and twist where the last path ended and ends with those that the inputs announce. The
+/// position is a cubic. The orientation is a turn at the announced angular velocity `w`, on which a small cubic
+/// conformal rotation vector `e(t)` is laid: `R(t) = exp(w t) R(e(t)) R(0)`; a steady turn of any number of
+/// revolutions per step is exact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RacePath {
+    start_time: f64,
+    position: Cubic,
+    orientation: UnitQuaternion<f64>,
+    turn: Vector3<f64>,
+    correction: Cubic,
+}
+
+impl RacePath {
+    /// Steady motion from a pose with a twist.
+    pub fn steady(start_time: f64, pose: &Pose, twist: &Twist) -> Self {
+        let zero = Vector3::zeros();
+        Self {
+            start_time,
+            position: Cubic([pose.position, twist.velocity, zero, zero]),
+            orientation: pose.orientation,
+            turn: twist.angular_velocity,
+            correction: Cubic([zero; 4]),
+        }
+    }
+
+    /// From `start` to where the inputs `pose`, `twist` and `twist_rate` [m/s2, rad/s2], valid at `start_time` [s],
+    /// lead within `duration` [s].
+    pub fn towards(
+        start_time: f64,
+        start: (&Pose, &Twist),
+        pose: &Pose,
+        twist: &Twist,
+        twist_rate: &Twist,
+        duration: f64,
+    ) -> Self {
+        let (start_pose, start_twist) = start;
+        let gain = twist_rate.velocity * duration;
+        let position = Cubic::hermite(
+            start_pose.position,
+            start_twist.velocity,
+            pose.position + (twist.velocity + gain * 0.5) * duration,
+            twist.velocity + gain,
+            duration,
+        );
+        let turn = twist.angular_velocity;
+        let turned = UnitQuaternion::new(turn * duration);
+        let gain = twist_rate.angular_velocity * duration;
+        let ahead = UnitQuaternion::new((turn + gain * 0.5) * duration);
+        let end = turned.inverse() * ahead * pose.orientation * start_pose.orientation.inverse();
+        let end = from_quaternion(&end);
+        // Spatial rate of R(e) is R T e', hence e' = T^-1 R^T of what the end still lacks in angular velocity.
+        let end_rate = tangent_inverse(&end, &rotate(&-end, &(turned.inverse() * gain)));
+        let start_rate = start_twist.angular_velocity - turn;
+        Self {
+            start_time,
+            position,
+            orientation: start_pose.orientation,
+            turn,
+            correction: Cubic::hermite(Vector3::zeros(), start_rate, end, end_rate, duration),
+        }
+    }
+
+    /// Pose and twist at a time [s].
+    pub fn at(&self, time: f64) -> (Pose, Twist) {
+        let t = time - self.start_time;
+        let (position, velocity) = self.position.at(t);
+        let (e, e_rate) = self.correction.at(t);
+        let turned = UnitQuaternion::new(self.turn * t);
+        let orientation = turned * to_quaternion(&e) * self.orientation;
+        let angular_velocity = self.turn + turned * rotate(&e, &tangent(&e, &e_rate));
+        let orientation = UnitQuaternion::new_normalize(orientation.into_inner());
+        (
+            Pose {
+                position,
+                orientation,
+            },
+            Twist {
+                velocity,
+                angular_velocity,
+            },
+        )
+    }
+}
+
+/// A vector that moves linearly from one value to another within a communication step, and is held afterwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ramp<const N: usize> {
+    start_time: f64,
+    duration: f64,
+    from: [f64; N],
+    to: [f64; N],
+}
+
+impl<const N: usize> Ramp<N> {
+    /// A constant.
+    pub fn constant(value: [f64; N]) -> Self {
+        Self {
+            start_time: 0.0,
+            duration: 1.0,
+            from: value,
+            to: value,
+        }
+    }
+
+    /// From the value of `self` at `start_time` [s] to `value` after `duration` [s].
+    pub fn towards(&self, start_time: f64, value: [f64; N], duration: f64) -> Self {
+        Self {
+            start_time,
+            duration,
+            from: self.at(start_time),
+            to: value,
+        }
+    }
+
+    /// Value at a time [s].
+    pub fn at(&self, time: f64) -> [f64; N] {
+        let t = ((time - self.start_time) / self.duration).clamp(0.0, 1.0);
+        std::array::from_fn(|i| self.from[i] + (self.to[i] - self.from[i]) * t)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(a: &(Pose, Twist), b: &(Pose, Twist)) -> f64 {
+        (a.0.position - b.0.position).norm()
+            + a.0.orientation.angle_to(&b.0.orientation)
+            + (a.1.velocity - b.1.velocity).norm()
+            + (a.1.angular_velocity - b.1.angular_velocity).norm()
+    }
+
+    #[test]
+    fn closed_form_steady_turn_is_exact_over_many_revolutions() {
+        let twist = Twist {
+            velocity: Vector3::new(0.1, 0.0, 0.2),
+            angular_velocity: Vector3::new(628.0, 3.0, -2.0),
+        };
+        let (pose, h) = (Pose::default(), 0.1);
+        let path = RacePath::towards(2.0, (&pose, &twist), &pose, &twist, &Twist::default(), h);
+        let exact = RacePath::steady(2.0, &pose, &twist);
+        for i in 0..=10 {
+            let time = 2.0 + h * f64::from(i) / 10.0;
+            assert!(close(&path.at(time), &exact.at(time)) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn invariant_paths_join_in_pose_and_twist_and_twist_is_the_rate_of_pose() {
+        let start = (
+            Pose {
+                position: Vector3::new(1e-5, 0.0, 0.0),
+                orientation: UnitQuaternion::new(Vector3::new(1.0, 0.01, 0.02)),
+            },
+            Twist {
+                velocity: Vector3::new(0.01, 0.02, 0.0),
+                angular_velocity: Vector3::new(600.0, 1.0, 2.0),
+            },
+        );
+        let pose = Pose {
+            position: Vector3::new(2e-5, 1e-5, 0.0),
+            orientation: UnitQuaternion::new(Vector3::new(1.002, 0.012, 0.018)),
+        };
+        let twist = Twist {
+            velocity: Vector3::new(0.0, 0.03, 0.0),
+            angular_velocity: Vector3::new(628.0, -1.0, 2.0),
+        };
+        let rate = Twist {
+            velocity: Vector3::new(5.0, 0.0, 1.0),
+            angular_velocity: Vector3::new(1e3, 20.0, 5.0),
+        };
+        let h = 1e-3;
+        let path = RacePath::towards(0.5, (&start.0, &start.1), &pose, &twist, &rate, h);
+        assert!(close(&path.at(0.5), &start) < 1e-12);
+        let (end, end_twist) = path.at(0.5 + h);
+        assert!(
+            (end_twist.angular_velocity - twist.angular_velocity - rate.angular_velocity * h).norm() < 1e-9
+        );
+        assert!((end_twist.velocity - twist.velocity - rate.velocity * h).norm() < 1e-12);
+        let expected = pose.position + twist.velocity * h + rate.velocity * (0.5 * h * h);
+        assert!((end.position - expected).norm() < 1e-15);
+        for i in 1..10 {
+            let (time, d) = (0.5 + h * f64::from(i) / 10.0, 1e-7);
+            let ((before, _), (_, at), (after, _)) = (path.at(time - d), path.at(time), path.at(time + d));
+            let turn = (after.orientation * before.orientation.inverse()).scaled_axis() / (2.0 * d);
+            assert!(
+                (turn - at.angular_velocity).norm() < 1e-5,
+                "{turn} {}",
+                at.angular_velocity
+            );
+        }
+    }
+
+    #[test]
+    fn a_ramp_is_linear_and_held_afterwards() {
+        let ramp = Ramp::constant([1.0]).towards(2.0, [3.0], 0.5);
+        assert_eq!(
+            [ramp.at(1.0), ramp.at(2.0), ramp.at(2.25), ramp.at(3.0)],
+            [[1.0], [1.0], [2.0], [3.0]]
+        );
+    }
+}

@@ -1,0 +1,141 @@
+//! Finite rotations by the conformal rotation vector `c = 4 tan(theta/4) n` (paper section 2 and its reference 17,
+//! Geradin and Cardona 1988).
+//!
+//! Free of singularity below one full turn. Time integration uses it incrementally, from zero in every step, with a
+//! unit quaternion as memory, so that rotations of any magnitude never come near the singularity; the absolute
+//! vector of the paper, with the correction that keeps it below half a turn, converts to and from that quaternion.
+
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+
+use crate::scalar::Scalar;
+
+/// `c0 = 2 - c.c/8`, the scalar companion of c in the formulas of the reference.
+#[inline(always)]
+fn c0<S: Scalar>(c: &Vector3<S>) -> S {
+    S::constant(2.0) - c.dot(c).scale(0.125)
+}
+
+/// Rotates a vector by the rotation of `c`.
+#[inline(always)]
+pub fn rotate<S: Scalar>(c: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
+    // R = [(c0^2 + 8 c0 - 16) I + 2 c c^T + 2 c0 [c]x] / (4 - c0)^2
+    let c0 = c0(c);
+    let d = S::constant(4.0) - c0;
+    let scale = S::one() / d.square();
+    let diagonal = c0.square() + c0.scale(8.0) - S::constant(16.0);
+    (v * diagonal + c * c.dot(v).scale(2.0) + c.cross(v) * c0.scale(2.0)) * scale
+}
+
+/// Tangent operator: material angular velocity `Omega = T(c) c'` (paper eq. 25).
+#[inline(always)]
+pub fn tangent<S: Scalar>(c: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
+    // T = 2/(4 - c0)^2 (c0 I - [c]x + c c^T/4)
+    let c0 = c0(c);
+    let d = S::constant(4.0) - c0;
+    (v * c0 - c.cross(v) + c * c.dot(v).scale(0.25)) * (S::constant(2.0) / d.square())
+}
+
+/// Inverse of the tangent operator: `c' = T^-1(c) Omega`.
+#[inline(always)]
+pub fn tangent_inverse<S: Scalar>(c: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
+    // T^-1 = 1/2 (c0 I + [c]x + c c^T/4)
+    (v * c0(c) + c.cross(v) + c * c.dot(v).scale(0.25)) * S::constant(0.5)
+}
+
+/// Rate of change of the tangent operator along `rate` = c', applied to `v`: `Omega' = T c'' + T' c'`.
+#[inline(always)]
+pub fn tangent_rate<S: Scalar>(c: &Vector3<S>, rate: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
+    let c0_rate = -c.dot(rate).scale(0.25);
+    let d = S::constant(4.0) - c0(c);
+    let scale = S::constant(2.0) / d.square();
+    let inner = v * c0_rate - rate.cross(v) + (rate * c.dot(v) + c * rate.dot(v)) * S::constant(0.25);
+    tangent(c, v) * (c0_rate.scale(2.0) / d) + inner * scale
+}
+
+/// Conformal rotation vector of a unit quaternion, of the turn below or equal to half a turn.
+pub fn from_quaternion(q: &UnitQuaternion<f64>) -> Vector3<f64> {
+    let sign = if q.w < 0.0 { -1.0 } else { 1.0 };
+    q.imag() * (4.0 * sign / (1.0 + q.w.abs()))
+}
+
+/// Unit quaternion of a conformal rotation vector.
+pub fn to_quaternion(c: &Vector3<f64>) -> UnitQuaternion<f64> {
+    let c0 = c0(c);
+    UnitQuaternion::new_normalize(Quaternion::from_parts(c0 / (4.0 - c0), c / (4.0 - c0)))
+}
+
+/// The paper's correction for rotations of any magnitude: above half a turn (`|c| > 4`) the same rotation is
+/// described from the other side, `c* = -16 c/|c|^2`.
+pub fn correct(c: &Vector3<f64>) -> Vector3<f64> {
+    let square = c.norm_squared();
+    if square > 16.0 { c * (-16.0 / square) } else { *c }
+}
+
+/// Composition: the vector of the rotation `second` after `first` seen in the rotated frame, `R = R(first) R(second)`.
+pub fn compose(first: &Vector3<f64>, second: &Vector3<f64>) -> Vector3<f64> {
+    from_quaternion(&(to_quaternion(first) * to_quaternion(second)))
+}
+
+/// Rotation matrix of a conformal rotation vector.
+pub fn matrix(c: &Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::from_columns(&[Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| rotate(c, &axis)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn vectors() -> impl Iterator<Item = Vector3<f64>> {
+        [0.0, 1e-9, 0.1, 1.0, 3.0, 3.9]
+            .into_iter()
+            .flat_map(|size| [Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.6, -0.64, 0.48)].map(|n| n * size))
+    }
+
+    #[test]
+    fn closed_form_rotation_agrees_with_axis_and_angle() {
+        for c in vectors() {
+            let angle = 4.0 * (c.norm() / 4.0).atan();
+            let axis = c.try_normalize(0.0).unwrap_or_else(Vector3::x);
+            let exact = UnitQuaternion::new(axis * angle);
+            assert!((matrix(&c) - exact.to_rotation_matrix().matrix()).norm() < 1e-14);
+            assert!(to_quaternion(&c).angle_to(&exact) < 1e-7);
+            assert!((from_quaternion(&exact) - c).norm() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn identity_inverse_of_the_tangent_operator() {
+        let v = Vector3::new(0.3, -1.1, 0.7);
+        for c in vectors() {
+            assert!((tangent_inverse(&c, &tangent(&c, &v)) - v).norm() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn identity_tangent_operator_is_the_rotation_rate() {
+        // R^T R' = [Omega]x, the derivative by central differences
+        let (rate, h) = (Vector3::new(0.3, -1.1, 0.7), 1e-5);
+        for c in vectors() {
+            let difference = (matrix(&(c + rate * h)) - matrix(&(c - rate * h))) / (2.0 * h);
+            let skew = matrix(&c).transpose() * difference;
+            let omega = Vector3::new(skew[(2, 1)], skew[(0, 2)], skew[(1, 0)]);
+            assert!((omega - tangent(&c, &rate)).norm() < 1e-8, "{c}");
+            let v = Vector3::new(-0.2, 0.5, 0.9);
+            let slope = (tangent(&(c + rate * h), &v) - tangent(&(c - rate * h), &v)) / (2.0 * h);
+            assert!((slope - tangent_rate(&c, &rate, &v)).norm() < 1e-8, "{c}");
+        }
+    }
+
+    #[test]
+    fn identity_composition_and_correction() {
+        for first in vectors() {
+            for second in vectors() {
+                let product = matrix(&first) * matrix(&second);
+                assert!((matrix(&compose(&first, &second)) - product).norm() < 1e-13);
+            }
+        }
+        let beyond = Vector3::new(3.0, -4.0, 5.0);
+        assert!(beyond.norm() > 4.0 && correct(&beyond).norm() < 4.0);
+        assert!((matrix(&beyond) - matrix(&correct(&beyond))).norm() < 1e-14);
+    }
+}

@@ -1,0 +1,125 @@
+//! Automatic step size: PI control on the local error, quantised so that a settled run keeps one step size.
+
+/// [-] aim below the tolerance.
+const SAFETY: f64 = 0.9;
+/// Exponents of the PI controller for a second-order method (local error of order 3; Gustafsson 1991).
+const PROPORTIONAL: f64 = 0.4 / 3.0;
+const INTEGRAL: f64 = 0.7 / 3.0;
+/// Notches per factor of 2.
+const NOTCHES_PER_OCTAVE: f64 = 4.0;
+/// Largest growth and shrinkage of one step, in notches.
+const MAX_GROWTH: i32 = 4;
+const MAX_SHRINKAGE: i32 = 12;
+/// A step whose Newton iteration failed is tried again this many notches smaller (a factor of 4).
+const FAILURE_NOTCHES: i32 = 8;
+/// Steps without growth after a rejection.
+const STEPS_WITHOUT_GROWTH: u8 = 2;
+
+/// State of the step control. Step sizes are `max_step 2^(notch/4)` with `notch <= 0`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepControl {
+    max_step: f64,
+    min_step: f64,
+    notch: i32,
+    last_error: f64,
+    growth_blocked: u8,
+}
+
+impl StepControl {
+    /// Begins with the largest quantised step not above `initial_step` [s].
+    pub fn new(initial_step: f64, min_step: f64, max_step: f64) -> Self {
+        let notch = ((initial_step / max_step).log2() * NOTCHES_PER_OCTAVE + 1e-9)
+            .floor()
+            .min(0.0) as i32;
+        Self {
+            max_step,
+            min_step,
+            notch,
+            last_error: 1.0,
+            growth_blocked: 0,
+        }
+    }
+
+    /// [s] present step size.
+    pub fn step(&self) -> f64 {
+        self.max_step * (f64::from(self.notch) / NOTCHES_PER_OCTAVE).exp2()
+    }
+
+    /// [s] next step on the way to a point `remaining` [s] ahead; the last few steps before it are made even.
+    pub fn step_within(&self, remaining: f64) -> f64 {
+        const EVEN_STEPS: f64 = 4.0;
+        let steps = (remaining / self.step() * (1.0 - 1e-9)).ceil().max(1.0);
+        if steps <= EVEN_STEPS {
+            remaining / steps
+        } else {
+            self.step()
+        }
+    }
+
+    /// After a converged step with this local error in units of its tolerance: is it accepted? Sets the next step.
+    pub fn judge(&mut self, error: f64) -> bool {
+        // An error of exactly zero must not ask for an infinite step.
+        let error = error.max(1e-10);
+        if error > 1.0 {
+            let notches = NOTCHES_PER_OCTAVE * (SAFETY * error.powf(-1.0 / 3.0)).log2();
+            self.shrink((-notches).ceil() as i32);
+            return false;
+        }
+        let factor = SAFETY * error.powf(-INTEGRAL) * self.last_error.powf(PROPORTIONAL);
+        let change = (NOTCHES_PER_OCTAVE * factor.log2()).floor() as i32;
+        let ceiling = if self.growth_blocked > 0 { 0 } else { MAX_GROWTH };
+        self.notch = (self.notch + change.clamp(-MAX_SHRINKAGE, ceiling)).min(0);
+        self.growth_blocked = self.growth_blocked.saturating_sub(1);
+        self.last_error = error;
+        true
+    }
+
+    /// After a step whose equations could not be solved.
+    pub fn fail(&mut self) {
+        self.shrink(FAILURE_NOTCHES);
+    }
+
+    fn shrink(&mut self, notches: i32) {
+        self.notch -= notches.clamp(1, MAX_SHRINKAGE);
+        self.growth_blocked = STEPS_WITHOUT_GROWTH;
+    }
+
+    /// Is the present step still allowed?
+    pub fn above_minimum(&self) -> bool {
+        self.step() >= self.min_step
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn invariant_steps_are_quantised_bounded_and_end_at_the_point() {
+        let mut control = StepControl::new(1e-6, 1e-10, 1e-5);
+        assert!(control.step() <= 1e-6 && control.step() > 0.8e-6);
+        for error in [1e-3, 0.5, 3.0, 0.2, 0.2, 1e-9, 1e-9, 1e-9, 1e-9] {
+            let before = control.step();
+            assert_eq!(control.judge(error), error <= 1.0);
+            let octaves = (control.step() / before).log2() * 4.0;
+            assert!((octaves - octaves.round()).abs() < 1e-9 && octaves <= 4.0);
+        }
+        assert_eq!(control.step(), 1e-5);
+        let mut remaining = 3.37e-5;
+        while remaining > 1e-18 {
+            let step = control.step_within(remaining);
+            assert!(step <= 1e-5 * (1.0 + 1e-8) && step > 0.4e-5);
+            remaining -= step;
+        }
+    }
+
+    #[test]
+    fn no_growth_for_two_steps_after_a_rejection() {
+        let mut control = StepControl::new(1e-6, 1e-10, 1e-5);
+        assert!(!control.judge(10.0));
+        let step = control.step();
+        assert!(control.judge(1e-6) && control.step() == step);
+        assert!(control.judge(1e-6) && control.step() == step);
+        assert!(control.judge(1e-6) && control.step() > step);
+    }
+}
