@@ -1,14 +1,22 @@
 //! `roulement`: a 3-D dynamic ball bearing for gearbox co-simulation.
 
+pub mod arrowhead;
 pub mod bearing;
 pub mod contact;
+pub mod dynamics;
+pub mod equilibrium;
 pub mod hht;
 pub mod kalker;
+pub mod model;
 pub mod motion;
 pub mod newton;
+pub mod outputs;
 pub mod path;
 pub mod rotation;
 pub mod scalar;
 pub mod scene;
+pub mod simulation;
+pub mod start;
+pub mod state;
 pub mod step_control;
 pub mod units;

@@ -98,7 +98,7 @@ mod tests {
     fn invariant_steps_are_quantised_bounded_and_end_at_the_point() {
         let mut control = StepControl::new(1e-6, 1e-10, 1e-5);
         assert!(control.step() <= 1e-6 && control.step() > 0.8e-6);
-        for error in [1e-3, 0.5, 3.0, 0.2, 0.2, 1e-9, 1e-9, 1e-9, 1e-9] {
+        for error in [1e-3, 0.5, 3.0, 0.2, 0.2, 1e-9, 1e-9, 1e-9, 1e-9, 1e-9, 1e-9, 1e-9] {
             let before = control.step();
             assert_eq!(control.judge(error), error <= 1.0);
             let octaves = (control.step() / before).log2() * 4.0;

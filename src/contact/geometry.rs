@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::bearing::Raceway;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, values};
 
 /// Ball against raceway, in world axes.
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +48,21 @@ impl<S: Scalar> GrooveContact<S> {
             radius,
             distance,
             circumferential_curvature: -cos / contact_radius,
+        }
+    }
+}
+
+impl<S: Scalar> GrooveContact<S> {
+    /// The same without derivatives.
+    pub fn values(&self) -> GrooveContact<f64> {
+        GrooveContact {
+            approach: self.approach.value(),
+            normal: values(&self.normal),
+            radial: values(&self.radial),
+            circumferential: values(&self.circumferential),
+            radius: self.radius.value(),
+            distance: self.distance.value(),
+            circumferential_curvature: self.circumferential_curvature.value(),
         }
     }
 }

@@ -8,7 +8,7 @@ pub mod shape;
 use nalgebra::Vector3;
 
 use crate::bearing::Raceway;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, values};
 use crate::scene::CreepLaw;
 use creep::{CreepForces, Creepage, LinearTheory};
 use geometry::GrooveContact;
@@ -68,6 +68,8 @@ pub struct BallRaceContact<S: Scalar> {
     pub load: S,
     /// [N/m^1.5] Hertz stiffness.
     pub stiffness: S,
+    /// [m^0.5] semi-axes of the ellipse along and transverse to rolling over the root of the approach.
+    pub semi_axes: [S; 2],
     /// [m/s] rolling speed, regularised.
     pub rolling_speed: S,
     /// Creepages in the contact frame whose x axis is the circumferential direction of the race.
@@ -86,6 +88,36 @@ pub struct BallRaceContact<S: Scalar> {
     pub friction_power: S,
     /// [W] power lost to contact damping.
     pub damping_power: S,
+}
+
+impl<S: Scalar> BallRaceContact<S> {
+    /// The same without derivatives.
+    #[inline(always)]
+    pub fn values(&self) -> BallRaceContact<f64> {
+        BallRaceContact {
+            geometry: self.geometry.values(),
+            load: self.load.value(),
+            stiffness: self.stiffness.value(),
+            semi_axes: self.semi_axes.map(S::value),
+            rolling_speed: self.rolling_speed.value(),
+            creepage: Creepage {
+                longitudinal: self.creepage.longitudinal.value(),
+                lateral: self.creepage.lateral.value(),
+                spin: self.creepage.spin.value(),
+            },
+            creep: CreepForces {
+                longitudinal: self.creep.longitudinal.value(),
+                lateral: self.creep.lateral.value(),
+                spin_moment: self.creep.spin_moment.value(),
+            },
+            rolling_cosine: self.rolling_cosine.value(),
+            force: values(&self.force),
+            ball_moment: values(&self.ball_moment),
+            race_moment: values(&self.race_moment),
+            friction_power: self.friction_power.value(),
+            damping_power: self.damping_power.value(),
+        }
+    }
 }
 
 impl ContactModel<'_> {
@@ -154,6 +186,7 @@ impl ContactModel<'_> {
             geometry,
             load,
             stiffness: shape.stiffness,
+            semi_axes: [shape.semi_axis_rolling, shape.semi_axis_transverse],
             rolling_speed,
             creepage,
             creep,

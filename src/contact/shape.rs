@@ -78,6 +78,10 @@ pub struct ShapeAt<S> {
     pub coupling: S,
     /// [N] `G c^4 C33` over `delta^2`.
     pub spin: S,
+    /// [m^0.5] semi-axis along rolling over `sqrt(delta)`.
+    pub semi_axis_rolling: S,
+    /// [m^0.5] semi-axis transverse to rolling over `sqrt(delta)`.
+    pub semi_axis_transverse: S,
     /// [m^0.5] `c = sqrt(a b)` over `sqrt(delta)`.
     pub mean_semi_axis: S,
     /// [m^0.5] spin moment of complete slip over `mu Q sqrt(delta)`.
@@ -98,6 +102,8 @@ pub struct ContactShape {
     lateral: Polynomial,
     coupling: Polynomial,
     spin: Polynomial,
+    semi_axis_rolling: Polynomial,
+    semi_axis_transverse: Polynomial,
     mean_semi_axis: Polynomial,
     spin_arm: Polynomial,
 }
@@ -120,7 +126,7 @@ impl ContactShape {
         let ball_curvature = 1.0 / radius;
         let transverse_curvature = ball_curvature - 1.0 / raceway.groove_radius;
         let shear = bearing.shear_modulus;
-        let mut columns = [[0.0; NODES]; 7];
+        let mut columns = [[0.0; NODES]; 9];
         for j in 0..NODES {
             let curvature = middle + half_width * node(j);
             let hertz = HertzContact::new(
@@ -144,6 +150,8 @@ impl ContactShape {
                 shear * area * creep.c22,
                 shear * area.powf(1.5) * creep.c23,
                 shear * area.powi(2) * creep.c33,
+                along,
+                across,
                 area.sqrt(),
                 // Hertzian pressure times distance from the centre, integrated: 3/8 of the long axis times E(m).
                 0.375 * long * second,
@@ -158,6 +166,8 @@ impl ContactShape {
             lateral,
             coupling,
             spin,
+            semi_axis_rolling,
+            semi_axis_transverse,
             mean_semi_axis,
             spin_arm,
         ] = columns.map(|column| Polynomial::interpolate(&column));
@@ -172,6 +182,8 @@ impl ContactShape {
             lateral,
             coupling,
             spin,
+            semi_axis_rolling,
+            semi_axis_transverse,
             mean_semi_axis,
             spin_arm,
         })
@@ -200,6 +212,8 @@ impl ContactShape {
             lateral: x.map_smooth(|x| self.lateral.at(x)),
             coupling: x.map_smooth(|x| self.coupling.at(x)),
             spin: x.map_smooth(|x| self.spin.at(x)),
+            semi_axis_rolling: x.map_smooth(|x| self.semi_axis_rolling.at(x)),
+            semi_axis_transverse: x.map_smooth(|x| self.semi_axis_transverse.at(x)),
             mean_semi_axis: x.map_smooth(|x| self.mean_semi_axis.at(x)),
             spin_arm: x.map_smooth(|x| self.spin_arm.at(x)),
         }

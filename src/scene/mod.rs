@@ -194,9 +194,11 @@ mod tests {
             [force.at(0.002), force.at(0.003), force.at(9.0)],
             [500.0, 0.0, 0.0]
         );
+        // The smooth path passes the points, rests at the ends and does not overshoot.
         assert_eq!(
-            [force.rate(0.0), force.rate(0.002), force.rate(0.003)],
-            [1e6, -5e5, 0.0]
+            [force.smooth_at(0.0), force.smooth_at(0.001)],
+            [(0.0, 0.0), (1000.0, 0.0)]
         );
+        assert_eq!(force.smooth_at(0.0005), (500.0, 1.5e6));
     }
 }

@@ -30,18 +30,35 @@ impl Schedule {
         }
     }
 
-    /// Rate of change at a time [1/s of the value's unit], of the segment that begins there.
-    pub fn rate(&self, time: f64) -> f64 {
-        match self {
-            Self::Constant(_) => 0.0,
-            Self::Table(points) => {
-                let next = points.partition_point(|&(t, _)| t <= time);
-                match (points.get(next), points.get(next.wrapping_sub(1))) {
-                    (Some(&(t1, v1)), Some(&(t0, v0))) => (v1 - v0) / (t1 - t0),
-                    _ => 0.0,
-                }
+    /// Value and rate at a time [s] of a smooth motion through the points of a table: monotone cubic (Fritsch and
+    /// Carlson 1980), at rest at both ends, so that a scripted displacement has no jump in speed.
+    pub fn smooth_at(&self, time: f64) -> (f64, f64) {
+        let Self::Table(points) = self else {
+            return (self.at(time), 0.0);
+        };
+        let next = points.partition_point(|&(t, _)| t <= time);
+        let (Some(&(t1, v1)), Some(&(t0, v0))) = (points.get(next), points.get(next.wrapping_sub(1))) else {
+            return (self.at(time), 0.0);
+        };
+        // Harmonic mean of the neighbouring secants; 0 at extrema and at the ends.
+        let slope = |i: usize| -> f64 {
+            if i == 0 || i + 1 == points.len() {
+                return 0.0;
             }
-        }
+            let secant = |j: usize| (points[j + 1].1 - points[j].1) / (points[j + 1].0 - points[j].0);
+            let (left, right) = (secant(i - 1), secant(i));
+            if left * right <= 0.0 {
+                0.0
+            } else {
+                2.0 * left * right / (left + right)
+            }
+        };
+        let (duration, s) = (t1 - t0, (time - t0) / (t1 - t0));
+        let (m0, m1) = (slope(next - 1) * duration, slope(next) * duration);
+        let rise = v1 - v0;
+        let value = v0 + s * (m0 + s * (3.0 * rise - 2.0 * m0 - m1 + s * (m0 + m1 - 2.0 * rise)));
+        let rate = m0 + s * (2.0 * (3.0 * rise - 2.0 * m0 - m1) + 3.0 * s * (m0 + m1 - 2.0 * rise));
+        (value, rate / duration)
     }
 
     /// All values the schedule passes through, for range checks.

@@ -1,0 +1,190 @@
+//! One ball in one trial step: motion from its unknown accelerations, contacts, residual and tangent blocks.
+
+use nalgebra::{Matrix6, Vector3, Vector6};
+
+use crate::arrowhead::BallBlock;
+use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
+use crate::hht::HhtStep;
+use crate::model::Model;
+use crate::motion::Wrench;
+use crate::scalar::{Dual, Scalar, constant_vector};
+use crate::state::{BallState, stack};
+
+/// Directions of differentiation: 6 unknowns of the ball, 6 of a race body.
+pub const DIRECTIONS: usize = 12;
+
+/// A race as the balls see it in a trial step.
+#[derive(Clone, Copy, Debug)]
+pub enum RaceSeen {
+    /// Motion given: no unknowns.
+    Prescribed(RaceMotion<f64>),
+    /// A body: its motion and how that depends on its unknowns (directions 6 to 11).
+    Body {
+        /// Motion with derivatives.
+        motion: RaceMotion<Dual<DIRECTIONS>>,
+        /// Value alone.
+        value: RaceMotion<f64>,
+    },
+}
+
+impl RaceSeen {
+    /// Motion without derivatives.
+    pub fn value(&self) -> &RaceMotion<f64> {
+        match self {
+            Self::Prescribed(value) | Self::Body { value, .. } => value,
+        }
+    }
+}
+
+/// Force and moment (world axes) of one contact on a race, with derivatives by ball (0 to 5) and race (6 to 11).
+#[derive(Clone, Copy, Debug)]
+pub struct RaceReaction {
+    /// [N] force.
+    pub force: Vector3<Dual<DIRECTIONS>>,
+    /// [N m] moment about the race origin.
+    pub moment: Vector3<Dual<DIRECTIONS>>,
+}
+
+/// One ball in a trial step.
+#[derive(Clone, Debug)]
+pub struct BallTrial {
+    /// [m/s2] centre acceleration, and [m/s2] angular acceleration times ball radius.
+    pub unknowns: Vector6<f64>,
+    /// Motion at the end of the step.
+    pub motion: BallMotion<f64>,
+    /// Contacts at the end of the step.
+    pub contacts: [BallRaceContact<f64>; 2],
+    /// Total force and moment at the end of the step.
+    pub total: Wrench,
+    /// [N] residual; moments over the ball radius.
+    pub residual: Vector6<f64>,
+    /// Tangent.
+    pub block: BallBlock,
+    /// Reactions on race bodies with their derivatives.
+    pub reactions: [Option<RaceReaction>; 2],
+}
+
+impl BallTrial {
+    /// A ball as it is.
+    pub fn new(ball: &BallState, contacts: &[ContactModel<'_>; 2], races: [&RaceMotion<f64>; 2]) -> Self {
+        let motion = ball.motion();
+        Self {
+            unknowns: Vector6::zeros(),
+            motion,
+            contacts: [0, 1].map(|race: usize| contacts[race].evaluate(&motion, races[race])),
+            total: ball.total,
+            residual: Vector6::zeros(),
+            block: BallBlock::default(),
+            reactions: [None; 2],
+        }
+    }
+
+    /// Evaluates a ball at the end of a step, with its tangent if asked for.
+    pub fn evaluate(
+        &mut self,
+        model: &Model,
+        contacts: &[ContactModel<'_>; 2],
+        step: &HhtStep,
+        start: &BallState,
+        races: &[RaceSeen; 2],
+        with_tangent: bool,
+    ) {
+        let ball = &model.bearing.ball;
+        let acceleration: Vector3<f64> = self.unknowns.fixed_rows::<3>(0).into_owned();
+        let angular_acceleration = self.unknowns.fixed_rows::<3>(3) / ball.radius;
+        self.motion = BallMotion {
+            position: start.position + step.displacement(&start.velocity, &start.acceleration, &acceleration),
+            velocity: step.velocity(&start.velocity, &start.acceleration, &acceleration),
+            angular_velocity: step.velocity(
+                &start.angular_velocity,
+                &start.angular_acceleration,
+                &angular_acceleration,
+            ),
+        };
+        let share = 1.0 - step.alpha_f;
+        let mut tangent: Matrix6<f64> = Matrix6::zeros();
+        self.total = Wrench {
+            force: model.gravity * ball.mass,
+            moment: Vector3::zeros(),
+        };
+        for race in 0..2 {
+            self.reactions[race] = None;
+            let contact = match (&races[race], with_tangent) {
+                (seen, false) => contacts[race].evaluate(&self.motion, seen.value()),
+                (RaceSeen::Prescribed(motion), true) => {
+                    let seeded = seed::<6>(&self.motion, step, ball.radius);
+                    let motion = constant_race(motion);
+                    let contact = contacts[race].evaluate(&seeded, &motion);
+                    tangent += derivatives(&contact.force, &contact.ball_moment, 0);
+                    contact.values()
+                }
+                (RaceSeen::Body { motion, .. }, true) => {
+                    let seeded = seed::<DIRECTIONS>(&self.motion, step, ball.radius);
+                    let contact = contacts[race].evaluate(&seeded, motion);
+                    tangent += derivatives(&contact.force, &contact.ball_moment, 0);
+                    let by_race = derivatives(&contact.force, &contact.ball_moment, 6);
+                    self.block.right[race] = scale_moments(by_race, ball.radius) * -share;
+                    self.reactions[race] = Some(RaceReaction {
+                        force: -contact.force,
+                        moment: contact.race_moment,
+                    });
+                    contact.values()
+                }
+            };
+            self.total.force += contact.force;
+            self.total.moment += contact.ball_moment;
+            self.contacts[race] = contact;
+        }
+        let blended = start.total.blend(&self.total, share);
+        self.residual = stack(
+            &(acceleration * ball.mass - blended.force),
+            &((angular_acceleration * ball.inertia - blended.moment) / ball.radius),
+        );
+        if with_tangent {
+            let rotational = ball.inertia / (ball.radius * ball.radius);
+            let inertia = stack(&Vector3::repeat(ball.mass), &Vector3::repeat(rotational));
+            self.block.diagonal =
+                Matrix6::from_diagonal(&inertia) - scale_moments(tangent, ball.radius) * share;
+        }
+    }
+}
+
+/// A ball's motion as a function of its own unknowns.
+fn seed<const N: usize>(motion: &BallMotion<f64>, step: &HhtStep, radius: f64) -> BallMotion<Dual<N>> {
+    let variable = |v: &Vector3<f64>, first: usize, gain: f64| {
+        Vector3::from_fn(|i, _| Dual::variable(v[i], first + i, gain))
+    };
+    BallMotion {
+        position: variable(&motion.position, 0, step.position_gain()),
+        velocity: variable(&motion.velocity, 0, step.velocity_gain()),
+        angular_velocity: variable(&motion.angular_velocity, 3, step.velocity_gain() / radius),
+    }
+}
+
+/// A race's motion without derivatives, as numbers that could have some.
+fn constant_race<S: Scalar>(motion: &RaceMotion<f64>) -> RaceMotion<S> {
+    RaceMotion {
+        position: constant_vector(&motion.position),
+        axis: constant_vector(&motion.axis),
+        velocity: constant_vector(&motion.velocity),
+        angular_velocity: constant_vector(&motion.angular_velocity),
+    }
+}
+
+/// Derivatives of force (rows 0 to 2) and moment (rows 3 to 5) by six directions from `first` on.
+pub fn derivatives<const N: usize>(
+    force: &Vector3<Dual<N>>,
+    moment: &Vector3<Dual<N>>,
+    first: usize,
+) -> Matrix6<f64> {
+    Matrix6::from_fn(|i, k| {
+        let row = if i < 3 { &force[i] } else { &moment[i - 3] };
+        row.derivatives[first + k]
+    })
+}
+
+/// Divides the moment rows by a length.
+fn scale_moments(mut matrix: Matrix6<f64>, length: f64) -> Matrix6<f64> {
+    matrix.fixed_rows_mut::<3>(3).scale_mut(1.0 / length);
+    matrix
+}

@@ -1,0 +1,540 @@
+//! One implicit step of the whole bearing: Newton's equations of balls and race bodies under the HHT scheme.
+
+mod ball;
+mod race;
+
+use nalgebra::{DMatrix, DVector, Vector3, Vector6};
+
+use crate::arrowhead::{Arrowhead, BLOCK, BallBlock};
+use crate::contact::{BallRaceContact, ContactModel};
+use crate::hht::HhtStep;
+use crate::model::{Model, RaceBody};
+use crate::motion::{Pose, Twist, Wrench};
+use crate::newton::{self, Equations, NewtonBuffers, NewtonFailure};
+use crate::scalar::constant_vector;
+use crate::state::{BallState, Powers, RaceState, State, race_motion};
+use ball::{BallTrial, RaceReaction, RaceSeen};
+pub use race::RaceLoad;
+use race::{RaceScales, RaceTrial};
+
+/// [N] residual that is small enough for any bearing (paper section 5).
+const FORCE_TOLERANCE: f64 = 1e-6;
+/// [-] residual over the largest contact load that is small enough: nine digits of the load.
+const RELATIVE_TOLERANCE: f64 = 1e-9;
+/// [-] units of round-off that positions put into forces through the stiffest contact.
+const ROUND_OFF_UNITS: f64 = 50.0;
+/// [-] accepted violation of position constraints over the ball diameter (paper section 5: 1e-8).
+const CONSTRAINT_TOLERANCE: f64 = 1e-8;
+
+/// What is imposed at the end of a step.
+#[derive(Clone, Debug)]
+pub struct Boundary {
+    /// [s] end of the step.
+    pub time: f64,
+    /// Pose and twist of races with prescribed motion; ignored for bodies.
+    pub motion: [(Pose, Twist); 2],
+    /// Load and speed of race bodies; ignored for the others.
+    pub loads: [RaceLoad; 2],
+    /// [-] friction coefficient of the ball-race contacts.
+    pub friction: f64,
+}
+
+/// Buffers of a step, kept between steps; they carry no state.
+#[derive(Clone, Debug, Default)]
+pub struct Workspace {
+    balls: Vec<BallTrial>,
+    races: [Option<RaceTrial>; 2],
+    arrowhead: Arrowhead,
+    border: DMatrix<f64>,
+    ball_corrections: Vec<Vector6<f64>>,
+    border_correction: DVector<f64>,
+    unknowns: Vec<f64>,
+    newton: NewtonBuffers,
+}
+
+/// The equations of one trial step.
+struct BearingStep<'a> {
+    model: &'a Model,
+    contacts: [ContactModel<'a>; 2],
+    start: &'a State,
+    step: HhtStep,
+    boundary: &'a Boundary,
+    seen: [RaceSeen; 2],
+    force_tolerance: f64,
+    workspace: &'a mut Workspace,
+    contact_values: u64,
+    contact_tangents: u64,
+    fresh: bool,
+}
+
+/// Why a step was not taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepFailure {
+    /// Newton's method gave up; the ball with the largest residual is named.
+    Newton(NewtonFailure, usize),
+    /// The local error is too large; the ball with the largest share is named.
+    Error(usize),
+}
+
+/// First border row of each race body.
+fn offsets(model: &Model) -> [Option<usize>; 2] {
+    let inner = model.border_rows(0);
+    [
+        (inner > 0).then_some(0),
+        (model.border_rows(1) > 0).then_some(inner),
+    ]
+}
+
+/// Tries one step of `h` [s]. On success the state is the new one; otherwise only its statistics and step control
+/// have changed.
+///
+/// # Errors
+/// See [`StepFailure`]; the step control has then been told.
+pub fn try_step(
+    model: &Model,
+    state: &mut State,
+    boundary: &Boundary,
+    h: f64,
+    workspace: &mut Workspace,
+) -> Result<(), StepFailure> {
+    let mut buffers = std::mem::take(&mut workspace.newton);
+    let mut unknowns = std::mem::take(&mut workspace.unknowns);
+    let mut statistics = state.statistics;
+    let mut equations = BearingStep::new(model, state, boundary, h, workspace);
+    equations.predict(&mut unknowns);
+    let solved = newton::solve(
+        &mut equations,
+        &mut unknowns,
+        &mut buffers,
+        &mut statistics.newton,
+    );
+    statistics.contact_values += equations.contact_values;
+    statistics.contact_tangents += equations.contact_tangents;
+    let worst = equations.worst_ball();
+    let step = equations.step;
+    let (error, erring) = equations.local_error();
+    workspace.newton = buffers;
+    workspace.unknowns = unknowns;
+    state.statistics = statistics;
+    if let Err(failure) = solved {
+        state.statistics.rejected_newton += 1;
+        state.control.fail();
+        return Err(StepFailure::Newton(failure, worst));
+    }
+    if !state.control.judge(error) {
+        state.statistics.rejected_error += 1;
+        return Err(StepFailure::Error(erring));
+    }
+    accept(model, state, boundary, &step, workspace);
+    Ok(())
+}
+
+impl<'a> BearingStep<'a> {
+    fn new(
+        model: &'a Model,
+        start: &'a State,
+        boundary: &'a Boundary,
+        h: f64,
+        workspace: &'a mut Workspace,
+    ) -> Self {
+        let contacts = [0, 1].map(|race| model.contact(race, boundary.friction));
+        let seen = [0, 1].map(|race: usize| {
+            let (pose, twist) = &boundary.motion[race];
+            RaceSeen::Prescribed(race_motion(pose, twist))
+        });
+        if workspace.balls.len() != start.balls.len() {
+            let seen_values = [seen[0].value(), seen[1].value()];
+            workspace.balls = start
+                .balls
+                .iter()
+                .map(|ball| BallTrial::new(ball, &contacts, seen_values))
+                .collect();
+        }
+        for race in 0..2 {
+            workspace.races[race] = model.bodies[race]
+                .as_ref()
+                .map(|body| RaceTrial::new(body, &start.races[race]));
+        }
+        // Where nothing but rounding remains: eps times the stiffest contact's dQ/dx times the largest coordinate.
+        let (mut load, mut round_off) = (0.0f64, 0.0f64);
+        for ball in &workspace.balls {
+            for contact in &ball.contacts {
+                load = load.max(contact.load);
+                let stiffness = 1.5 * contact.stiffness.powf(2.0 / 3.0) * contact.load.cbrt();
+                round_off = round_off.max(stiffness * ball.motion.position.amax());
+            }
+        }
+        let force_tolerance = FORCE_TOLERANCE
+            .max(RELATIVE_TOLERANCE * load)
+            .max(ROUND_OFF_UNITS * f64::EPSILON * round_off);
+        Self {
+            model,
+            contacts,
+            start,
+            step: HhtStep::new(model.solver.alpha_f, h),
+            boundary,
+            seen,
+            force_tolerance,
+            workspace,
+            contact_values: 0,
+            contact_tangents: 0,
+            fresh: true,
+        }
+    }
+
+    /// First guess: accelerations and multipliers stay as they are.
+    fn predict(&self, unknowns: &mut Vec<f64>) {
+        unknowns.clear();
+        for ball in &self.start.balls {
+            unknowns.extend(ball.acceleration.iter());
+            unknowns.extend(
+                ball.angular_acceleration
+                    .iter()
+                    .map(|a| a * self.model.bearing.ball.radius),
+            );
+        }
+        let length = self.model.race_length();
+        for (race, body) in self.start.races.iter().zip(&self.model.bodies) {
+            if let Some(body) = body {
+                unknowns.extend(race.acceleration.iter());
+                unknowns.extend(race.rate_derivative.iter().map(|a| a * length));
+                let scales = body.constraints.iter().map(|c| multiplier_scale(c, length));
+                unknowns.extend(race.multipliers.iter().zip(scales).map(|(m, scale)| m / scale));
+            }
+        }
+    }
+
+    fn worst_ball(&self) -> usize {
+        let norms = self.workspace.balls.iter().map(|ball| ball.residual.amax());
+        // A residual that is not a number is the worst.
+        let worse = |a: f64, b: f64| if a.is_nan() { true } else { a > b };
+        let mut worst = (0, f64::NEG_INFINITY);
+        for (index, norm) in norms.enumerate() {
+            if worse(norm, worst.1) {
+                worst = (index, norm);
+            }
+        }
+        worst.0
+    }
+
+    /// Weighted root mean square of the local error of all positions, over its tolerance; and the ball with the
+    /// largest share. Rotations count as displacements at the ball's surface and at the pitch circle.
+    fn local_error(&self) -> (f64, usize) {
+        let ball_radius = self.model.bearing.ball.radius;
+        let scale = self.model.solver.tolerance * 2.0 * ball_radius;
+        let (mut sum, mut count) = (0.0, 0.0);
+        let mut worst = (0, -1.0);
+        for (index, (start, trial)) in self.start.balls.iter().zip(&self.workspace.balls).enumerate() {
+            let acceleration = trial.unknowns.fixed_rows::<3>(0).into_owned();
+            let angular: Vector3<f64> = trial.unknowns.fixed_rows::<3>(3).into_owned();
+            let translation = self.step.local_error(&start.acceleration, &acceleration);
+            let rotation = self
+                .step
+                .local_error(&(start.angular_acceleration * ball_radius), &angular);
+            let square = (translation.norm_squared() + rotation.norm_squared()) / (scale * scale);
+            if square > worst.1 {
+                worst = (index, square);
+            }
+            sum += square;
+            count += 6.0;
+        }
+        let length = self.model.race_length();
+        for (start, trial) in self.start.races.iter().zip(&self.workspace.races) {
+            if let Some(trial) = trial {
+                let translation = self
+                    .step
+                    .local_error(&start.acceleration, &trial.end.acceleration);
+                let angular = trial.end.rate_derivative * length;
+                let rotation = self.step.local_error(&(start.rate_derivative * length), &angular);
+                sum += (translation.norm_squared() + rotation.norm_squared()) / (scale * scale);
+                count += 6.0;
+            }
+        }
+        ((sum / count).sqrt(), worst.0)
+    }
+}
+
+/// A multiplier's unknown is a force: moments are divided by the race length.
+fn multiplier_scale(constraint: &crate::model::Constraint, length: f64) -> f64 {
+    if matches!(constraint, crate::model::Constraint::Position(..)) {
+        1.0
+    } else {
+        length
+    }
+}
+
+impl Equations for BearingStep<'_> {
+    fn residual(&mut self, unknowns: &[f64], with_tangent: bool) -> f64 {
+        let length = self.model.race_length();
+        let offsets = offsets(self.model);
+        let border_start = BLOCK * self.start.balls.len();
+        let mut bearing = [RaceReaction::zero(); 2];
+
+        // race bodies first: the balls see them move
+        for race in 0..2 {
+            if let (Some(trial), Some(offset)) = (&mut self.workspace.races[race], offsets[race]) {
+                let rows = self.model.border_rows(race);
+                let from = border_start + offset;
+                trial.move_to(
+                    &unknowns[from..from + rows],
+                    &self.start.races[race],
+                    &self.step,
+                    length,
+                );
+                self.seen[race] = trial.seen;
+            }
+        }
+
+        // balls; under prescribed races one whose unknowns did not change keeps its last evaluation
+        let independent = offsets == [None; 2];
+        let mut norm = 0.0f64;
+        for (j, trial) in self.workspace.balls.iter_mut().enumerate() {
+            let unknown = Vector6::from_row_slice(&unknowns[BLOCK * j..BLOCK * (j + 1)]);
+            if with_tangent || self.fresh || !independent || unknown != trial.unknowns {
+                trial.unknowns = unknown;
+                let start = &self.start.balls[j];
+                trial.evaluate(
+                    self.model,
+                    &self.contacts,
+                    &self.step,
+                    start,
+                    &self.seen,
+                    with_tangent,
+                );
+                if with_tangent {
+                    self.contact_tangents += 2;
+                } else {
+                    self.contact_values += 2;
+                }
+            }
+            // `max` would drop a NaN.
+            let size = trial.residual.amax() / self.force_tolerance;
+            norm = if size.is_nan() || norm.is_nan() {
+                f64::NAN
+            } else {
+                norm.max(size)
+            };
+            for race in 0..2 {
+                if let Some(race_trial) = &self.workspace.races[race] {
+                    let reaction = match &trial.reactions[race] {
+                        Some(reaction) => *reaction,
+                        None => RaceReaction::constant(&trial.contacts[race]),
+                    };
+                    bearing[race].add(&reaction);
+                    if with_tangent {
+                        trial.block.left[race] = race_trial.coupling(&reaction, &self.step, length);
+                    }
+                }
+            }
+        }
+        self.fresh = false;
+
+        // race bodies
+        let scales = RaceScales {
+            length,
+            length_tolerance: CONSTRAINT_TOLERANCE * 2.0 * self.model.bearing.ball.radius,
+            time: self.boundary.time,
+        };
+        for race in 0..2 {
+            if let (Some(trial), Some(body)) = (&mut self.workspace.races[race], &self.model.bodies[race]) {
+                let load = weighted(&self.boundary.loads[race], body, &self.model.gravity);
+                let start = &self.start.races[race];
+                trial.assemble(body, start, &load, &bearing[race], &self.step, &scales);
+                let size = trial.residual.rows(0, 6).amax() / self.force_tolerance;
+                let size = if size.is_nan() {
+                    f64::NAN
+                } else {
+                    size.max(trial.violation)
+                };
+                norm = if size.is_nan() || norm.is_nan() {
+                    f64::NAN
+                } else {
+                    norm.max(size)
+                };
+            }
+        }
+
+        if with_tangent {
+            self.factorise();
+        }
+        norm
+    }
+
+    fn correction(&mut self, correction: &mut [f64]) -> bool {
+        let offsets = offsets(self.model);
+        let independent = offsets == [None; 2];
+        let workspace = &mut *self.workspace;
+        workspace.ball_corrections.clear();
+        for trial in &workspace.balls {
+            // A ball that is solved already, and that nothing else can disturb, stays where it is.
+            let done = independent && trial.residual.amax() <= self.force_tolerance;
+            workspace
+                .ball_corrections
+                .push(if done { Vector6::zeros() } else { -trial.residual });
+        }
+        let rows = self.model.border_rows(0) + self.model.border_rows(1);
+        workspace.border_correction.resize_vertically_mut(rows, 0.0);
+        for race in 0..2 {
+            if let (Some(trial), Some(offset)) = (&workspace.races[race], offsets[race]) {
+                let rows = trial.residual.len();
+                workspace
+                    .border_correction
+                    .rows_mut(offset, rows)
+                    .copy_from(&-&trial.residual);
+            }
+        }
+        let solved = workspace.arrowhead.solve(
+            &mut workspace.ball_corrections,
+            &mut workspace.border_correction,
+            offsets,
+        );
+        let (balls, border) = correction.split_at_mut(BLOCK * workspace.balls.len());
+        for (chunk, x) in balls.chunks_exact_mut(BLOCK).zip(&workspace.ball_corrections) {
+            chunk.copy_from_slice(x.as_slice());
+        }
+        border.copy_from_slice(workspace.border_correction.as_slice());
+        solved
+    }
+}
+
+impl BearingStep<'_> {
+    fn factorise(&mut self) {
+        let offsets = offsets(self.model);
+        let rows = self.model.border_rows(0) + self.model.border_rows(1);
+        let workspace = &mut *self.workspace;
+        workspace.border.resize_mut(rows, rows, 0.0);
+        workspace.border.fill(0.0);
+        for race in 0..2 {
+            if let (Some(trial), Some(offset)) = (&workspace.races[race], offsets[race]) {
+                let rows = trial.residual.len();
+                workspace
+                    .border
+                    .view_mut((offset, offset), (rows, rows))
+                    .copy_from(&trial.block);
+            }
+        }
+        let blocks: Vec<&BallBlock> = workspace.balls.iter().map(|trial| &trial.block).collect();
+        workspace.arrowhead.factorise(&blocks, &workspace.border, offsets);
+    }
+}
+
+/// Adds the weight of a race body to its applied load.
+fn weighted(load: &RaceLoad, body: &RaceBody, gravity: &Vector3<f64>) -> RaceLoad {
+    let mut load = *load;
+    load.applied.force += gravity * body.mass;
+    load
+}
+
+/// Takes over a solved step.
+fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep, workspace: &Workspace) {
+    state.time = boundary.time;
+    state.statistics.steps += 1;
+    for (ball, trial) in state.balls.iter_mut().zip(&workspace.balls) {
+        *ball = BallState {
+            position: trial.motion.position,
+            velocity: trial.motion.velocity,
+            angular_velocity: trial.motion.angular_velocity,
+            acceleration: trial.unknowns.fixed_rows::<3>(0).into_owned(),
+            angular_acceleration: trial.unknowns.fixed_rows::<3>(3) / model.bearing.ball.radius,
+            total: trial.total,
+        };
+    }
+    for race in 0..2 {
+        match &workspace.races[race] {
+            Some(trial) => state.races[race].clone_from(&trial.end),
+            None => {
+                let (pose, twist) = &boundary.motion[race];
+                let wrench = bearing_wrench(workspace.balls.iter().map(|ball| &ball.contacts[race]));
+                state.races[race] = RaceState::new(*pose, twist, 0);
+                state.races[race].bearing_wrench = wrench;
+            }
+        }
+    }
+    let mut powers = Powers::default();
+    for ball in &workspace.balls {
+        for contact in &ball.contacts {
+            powers.friction += contact.friction_power;
+            powers.damping += contact.damping_power;
+        }
+        powers.input += model.bearing.ball.mass * model.gravity.dot(&ball.motion.velocity);
+    }
+    for (trial, race) in workspace.races.iter().zip(&state.races) {
+        powers.input += match trial {
+            Some(trial) => trial.input_power,
+            None => -race.twist().power(&race.bearing_wrench),
+        };
+    }
+    state.energies.add(&state.powers, &powers, step.h);
+    state.powers = powers;
+}
+
+/// Sum of the contacts' effect on a race.
+pub fn bearing_wrench<'a>(contacts: impl Iterator<Item = &'a BallRaceContact<f64>>) -> Wrench {
+    contacts.fold(Wrench::default(), |sum, contact| Wrench {
+        force: sum.force - contact.force,
+        moment: sum.moment + contact.race_moment,
+    })
+}
+
+impl RaceReaction {
+    fn zero() -> Self {
+        let zero = constant_vector(&Vector3::zeros());
+        Self {
+            force: zero,
+            moment: zero,
+        }
+    }
+
+    fn constant(contact: &BallRaceContact<f64>) -> Self {
+        Self {
+            force: constant_vector(&-contact.force),
+            moment: constant_vector(&contact.race_moment),
+        }
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.force += other.force;
+        self.moment += other.moment;
+    }
+}
+
+/// Makes a state consistent: forces of the present motion, accelerations and multipliers that they ask for.
+///
+/// Multipliers hold the constrained directions still (or at the given rate of the spin speed [rad/s2]).
+pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
+    let contacts = [0, 1].map(|race| model.contact(race, boundary.friction));
+    let races = [0, 1].map(|race: usize| state.races[race].motion());
+    let ball_model = &model.bearing.ball;
+    let mut powers = Powers::default();
+    let mut wrenches = [Wrench::default(); 2];
+    for ball in &mut state.balls {
+        ball.total = Wrench {
+            force: model.gravity * ball_model.mass,
+            moment: Vector3::zeros(),
+        };
+        powers.input += ball_model.mass * model.gravity.dot(&ball.velocity);
+        for race in 0..2 {
+            let contact = contacts[race].evaluate(&ball.motion(), &races[race]);
+            ball.total.force += contact.force;
+            ball.total.moment += contact.ball_moment;
+            powers.friction += contact.friction_power;
+            powers.damping += contact.damping_power;
+            wrenches[race].force -= contact.force;
+            wrenches[race].moment += contact.race_moment;
+        }
+        ball.acceleration = ball.total.force / ball_model.mass;
+        ball.angular_acceleration = ball.total.moment / ball_model.inertia;
+    }
+    for race in 0..2 {
+        let state = &mut state.races[race];
+        state.bearing_wrench = wrenches[race];
+        powers.input += match &model.bodies[race] {
+            Some(body) => {
+                let load = weighted(&boundary.loads[race], body, &model.gravity);
+                race::make_consistent(state, body, &load)
+            }
+            None => -state.twist().power(&wrenches[race]),
+        };
+    }
+    state.powers = powers;
+}

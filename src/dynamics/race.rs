@@ -1,0 +1,329 @@
+//! A race that is a rigid body, in one trial step: motion from its unknown accelerations, residual, constraints.
+
+use nalgebra::{DMatrix, DVector, Matrix6, UnitQuaternion, Vector3};
+
+use super::ball::{DIRECTIONS, RaceReaction, RaceSeen, derivatives};
+use crate::contact::RaceMotion;
+use crate::hht::HhtStep;
+use crate::model::{Constraint, RaceBody};
+use crate::motion::{Pose, Wrench};
+use crate::rotation::{rotate, tangent, tangent_rate, to_quaternion};
+use crate::scalar::{Dual, Scalar, constant_vector, values};
+use crate::state::{RaceState, normalised};
+
+type D = Dual<DIRECTIONS>;
+
+/// [rad/s] accepted violation of a speed constraint (paper section 5).
+const SPEED_TOLERANCE: f64 = 1e-8;
+/// First direction of differentiation that belongs to a race.
+const RACE: usize = 6;
+
+/// What acts on a race body from outside the bearing at the end of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RaceLoad {
+    /// Applied wrench and weight, world axes.
+    pub applied: Wrench,
+    /// [rad/s] prescribed spin speed.
+    pub speed: f64,
+}
+
+/// Lengths and time that a race body's equations are scaled with.
+#[derive(Clone, Copy, Debug)]
+pub struct RaceScales {
+    /// [m] turns moments into forces.
+    pub length: f64,
+    /// [m] accepted violation of a position constraint.
+    pub length_tolerance: f64,
+    /// [s] end of the step.
+    pub time: f64,
+}
+
+/// A race body in a trial step. The rotation is the conformal vector c from the start of the step (paper section 2).
+#[derive(Clone, Debug)]
+pub struct RaceTrial {
+    /// State at the end of the step.
+    pub end: RaceState,
+    /// Unknowns that [`RaceTrial::move_to`] was given.
+    pub unknowns: Vec<f64>,
+    /// Residual rows: force, moment over `length`, then constraints over their gains.
+    pub residual: DVector<f64>,
+    /// [-] largest constraint violation over its tolerance.
+    pub violation: f64,
+    /// [W] power of applied loads and constraints at the end of the step.
+    pub input_power: f64,
+    /// Tangent of the residual by accelerations (angular ones times `length`) and multipliers (moments over `length`).
+    pub block: DMatrix<f64>,
+    /// Motion as the balls see it.
+    pub seen: RaceSeen,
+    /// Rotation vector of the step, with derivatives.
+    rotation: Vector3<D>,
+    /// Material angular velocity and acceleration, with derivatives.
+    rate: Vector3<D>,
+    rate_derivative: Vector3<D>,
+    start_orientation: UnitQuaternion<f64>,
+}
+
+impl RaceTrial {
+    /// Buffers for a race body, as at the start of a step.
+    pub fn new(body: &RaceBody, start: &RaceState) -> Self {
+        let rows = 6 + body.constraints.len();
+        let zero = constant_vector(&Vector3::zeros());
+        Self {
+            end: start.clone(),
+            unknowns: vec![0.0; rows],
+            residual: DVector::zeros(rows),
+            violation: 0.0,
+            input_power: 0.0,
+            block: DMatrix::zeros(rows, rows),
+            seen: RaceSeen::Prescribed(start.motion()),
+            rotation: zero,
+            rate: zero,
+            rate_derivative: zero,
+            start_orientation: start.pose.orientation,
+        }
+    }
+
+    /// Motion at the end of the step: `unknowns` are acceleration [m/s2], conformal acceleration c'' times `length`
+    /// [m/s2], multipliers [N, N m over `length`].
+    pub fn move_to(&mut self, unknowns: &[f64], start: &RaceState, step: &HhtStep, length: f64) {
+        self.unknowns.copy_from_slice(unknowns);
+        let acceleration = Vector3::from_row_slice(&unknowns[0..3]);
+        let angular = Vector3::from_row_slice(&unknowns[3..6]) / length;
+        self.end.acceleration = acceleration;
+        self.end.velocity = step.velocity(&start.velocity, &start.acceleration, &acceleration);
+        let position =
+            start.pose.position + step.displacement(&start.velocity, &start.acceleration, &acceleration);
+        // At c = 0 the tangent operator is the identity and its rate vanishes along c', hence c' = Omega, c'' = Omega'.
+        let c = step.displacement(&start.rate, &start.rate_derivative, &angular);
+        let c_rate = step.velocity(&start.rate, &start.rate_derivative, &angular);
+        let variable =
+            |v: &Vector3<f64>, gain: f64| Vector3::from_fn(|i, _| D::variable(v[i], RACE + 3 + i, gain));
+        self.rotation = variable(&c, step.position_gain() / length);
+        let c_rate = variable(&c_rate, step.velocity_gain() / length);
+        let c_acceleration = variable(&angular, 1.0 / length);
+        self.rate = tangent(&self.rotation, &c_rate);
+        self.rate_derivative =
+            tangent(&self.rotation, &c_acceleration) + tangent_rate(&self.rotation, &c_rate, &c_rate);
+        self.start_orientation = start.pose.orientation;
+        let orientation = normalised(start.pose.orientation * to_quaternion(&c));
+        self.end.pose = Pose {
+            position,
+            orientation,
+        };
+        self.end.rate = values(&self.rate);
+        self.end.rate_derivative = values(&self.rate_derivative);
+        let spatial = |v: &Vector3<D>| turn(&start.pose.orientation, &rotate(&self.rotation, v));
+        let translation =
+            |v: &Vector3<f64>, gain: f64| Vector3::from_fn(|i, _| D::variable(v[i], RACE + i, gain));
+        let motion = RaceMotion {
+            position: translation(&position, step.position_gain()),
+            axis: spatial(&constant_vector(&Vector3::x())),
+            velocity: translation(&self.end.velocity, step.velocity_gain()),
+            angular_velocity: spatial(&self.rate),
+        };
+        let value = RaceMotion {
+            position,
+            axis: values(&motion.axis),
+            velocity: self.end.velocity,
+            angular_velocity: values(&motion.angular_velocity),
+        };
+        self.seen = RaceSeen::Body { motion, value };
+    }
+
+    /// Residual and tangent for the bearing's force and moment on the race, world axes; only their derivatives by the
+    /// race's own unknowns are used.
+    pub fn assemble(
+        &mut self,
+        body: &RaceBody,
+        start: &RaceState,
+        load: &RaceLoad,
+        bearing: &RaceReaction,
+        step: &HhtStep,
+        scales: &RaceScales,
+    ) {
+        let (share, length) = (1.0 - step.alpha_f, scales.length);
+        let RaceSeen::Body { motion, .. } = &self.seen else {
+            return;
+        };
+        let mut force = bearing.force + constant_vector(&load.applied.force);
+        let mut world_moment = bearing.moment + constant_vector(&load.applied.moment);
+        let mut material_moment = Vector3::from_element(D::constant(0.0));
+        self.block.fill(0.0);
+        self.violation = 0.0;
+        self.input_power = load.applied.force.dot(&self.end.velocity)
+            + load.applied.moment.dot(&values(&motion.angular_velocity));
+
+        // constraints: value, direction of the reaction, and multiplier with its penalty (paper eq. 3, 4)
+        for (k, constraint) in body.constraints.iter().enumerate() {
+            let row = 6 + k;
+            let unknown = self.unknowns[row];
+            let (value, gain, scale, inertia, direction) = match constraint {
+                Constraint::Position(axis, schedule) => {
+                    let target = schedule.smooth_at(scales.time).0;
+                    let direction = Vector3::from_fn(|i, _| if i == *axis { 1.0 } else { 0.0 });
+                    let value = motion.position[*axis] - D::constant(target);
+                    (
+                        value,
+                        step.position_gain(),
+                        1.0,
+                        body.mass,
+                        Reaction::Force(direction),
+                    )
+                }
+                Constraint::Tilt(axis, schedule) => {
+                    // About y the axis goes towards -z, about z towards +y.
+                    let (other, sign) = if *axis == 1 { (2, -1.0) } else { (1, 1.0) };
+                    let target = schedule.smooth_at(scales.time).0.sin();
+                    let value = motion.axis[other].scale(sign) - D::constant(target);
+                    let toward = Vector3::from_fn(|i, _| D::constant(if i == other { sign } else { 0.0 }));
+                    let direction = motion.axis.cross(&toward);
+                    (
+                        value,
+                        step.position_gain(),
+                        length,
+                        body.inertia[*axis],
+                        Reaction::Moment(direction),
+                    )
+                }
+                Constraint::Spin => {
+                    let value = self.rate[0] - D::constant(load.speed);
+                    (
+                        value,
+                        step.velocity_gain(),
+                        length,
+                        body.inertia[0],
+                        Reaction::Drive,
+                    )
+                }
+            };
+            let penalty = inertia / gain;
+            let multiplier = D::constant(unknown * scale) + value.scale(penalty);
+            self.end.multipliers[k] = multiplier.value;
+            self.residual[row] = value.value * scale / gain;
+            for i in 0..6 {
+                self.block[(row, i)] = value.derivatives[RACE + i] * scale / gain;
+            }
+            let (column, power) = match &direction {
+                Reaction::Force(direction) => {
+                    force += direction.map(D::constant) * multiplier;
+                    self.violation = self.violation.max(value.value.abs() / scales.length_tolerance);
+                    ((*direction, Vector3::zeros()), direction.dot(&self.end.velocity))
+                }
+                Reaction::Moment(direction) => {
+                    world_moment += direction * multiplier;
+                    self.violation = self
+                        .violation
+                        .max(value.value.abs() * length / scales.length_tolerance);
+                    let material = self.end.pose.orientation.inverse() * values(direction);
+                    (
+                        (Vector3::zeros(), material),
+                        values(direction).dot(&values(&motion.angular_velocity)),
+                    )
+                }
+                Reaction::Drive => {
+                    material_moment[0] += multiplier;
+                    self.violation = self.violation.max(value.value.abs() / SPEED_TOLERANCE);
+                    ((Vector3::zeros(), Vector3::x()), self.end.rate[0])
+                }
+            };
+            self.input_power += power * multiplier.value;
+            // The unknown is the multiplier over `scale`; the moment rows are divided by `length`.
+            for i in 0..3 {
+                self.block[(i, row)] = -share * column.0[i] * scale;
+                self.block[(3 + i, row)] = -share * column.1[i] * scale / length;
+            }
+        }
+
+        // total force (spatial) and moment (material) with the gyroscopic term
+        let momentum = Vector3::from_fn(|i, _| self.rate[i].scale(body.inertia[i]));
+        let seen = turn(&self.start_orientation.inverse(), &world_moment);
+        material_moment += rotate(&-self.rotation, &seen) - self.rate.cross(&momentum);
+        self.end.total = Wrench {
+            force: values(&force),
+            moment: values(&material_moment),
+        };
+        self.end.bearing_wrench = Wrench {
+            force: values(&bearing.force),
+            moment: values(&bearing.moment),
+        };
+
+        for i in 0..3 {
+            let translation = self.end.acceleration[i] * body.mass
+                - share * force[i].value
+                - step.alpha_f * start.total.force[i];
+            let rotation = self.rate_derivative[i].scale(body.inertia[i]) - material_moment[i].scale(share);
+            self.residual[i] = translation;
+            self.residual[3 + i] = (rotation.value - step.alpha_f * start.total.moment[i]) / length;
+            for k in 0..6 {
+                let inertia = if i == k { body.mass } else { 0.0 };
+                self.block[(i, k)] = inertia - share * force[i].derivatives[RACE + k];
+                self.block[(3 + i, k)] = rotation.derivatives[RACE + k] / length;
+            }
+        }
+    }
+
+    /// Rows of a ball's coupling block: derivatives of this race's residual by the ball's unknowns.
+    pub fn coupling(&self, reaction: &RaceReaction, step: &HhtStep, length: f64) -> Matrix6<f64> {
+        let share = 1.0 - step.alpha_f;
+        let world = derivatives(&reaction.force, &reaction.moment, 0);
+        let to_material = self.end.pose.orientation.inverse().to_rotation_matrix();
+        let mut rows = world * -share;
+        let moments = to_material.matrix() * world.fixed_rows::<3>(3) * (-share / length);
+        rows.fixed_rows_mut::<3>(3).copy_from(&moments);
+        rows
+    }
+}
+
+/// Accelerations and multipliers of a race body that follow from its load and the bearing's wrench, with the
+/// constrained directions at rest or in steady rotation. Returns the power of loads and constraints [W].
+pub fn make_consistent(state: &mut RaceState, body: &RaceBody, load: &RaceLoad) -> f64 {
+    let mut force = state.bearing_wrench.force + load.applied.force;
+    let to_material = state.pose.orientation.inverse();
+    let mut moment = to_material * (state.bearing_wrench.moment + load.applied.moment);
+    let momentum = state.rate.component_mul(&body.inertia);
+    moment -= state.rate.cross(&momentum);
+    let mut power = load.applied.force.dot(&state.velocity)
+        + load.applied.moment.dot(&(state.pose.orientation * state.rate));
+    for (constraint, multiplier) in body.constraints.iter().zip(&mut state.multipliers) {
+        match constraint {
+            Constraint::Position(axis, _) => {
+                *multiplier = -force[*axis];
+                power += *multiplier * state.velocity[*axis];
+                force[*axis] = 0.0;
+            }
+            Constraint::Tilt(axis, _) => {
+                let direction = to_material * Vector3::from_fn(|i, _| if i == *axis { 1.0 } else { 0.0 });
+                *multiplier = -moment.dot(&direction);
+                power += *multiplier * state.rate.dot(&direction);
+                moment += direction * *multiplier;
+            }
+            Constraint::Spin => {
+                *multiplier = -moment.x;
+                power += *multiplier * state.rate.x;
+                moment.x = 0.0;
+            }
+        }
+    }
+    state.total = Wrench { force, moment };
+    state.acceleration = force / body.mass;
+    state.rate_derivative = moment.component_div(&body.inertia);
+    power
+}
+
+/// What a constraint acts along.
+enum Reaction {
+    /// World direction of a force.
+    Force(Vector3<f64>),
+    /// World direction of a moment.
+    Moment(Vector3<D>),
+    /// The race's own axis.
+    Drive,
+}
+
+/// Turns a vector by a constant rotation.
+fn turn<S: Scalar>(q: &UnitQuaternion<f64>, v: &Vector3<S>) -> Vector3<S> {
+    let matrix = q.to_rotation_matrix();
+    Vector3::from_fn(|i, _| {
+        v[0].scale(matrix[(i, 0)]) + v[1].scale(matrix[(i, 1)]) + v[2].scale(matrix[(i, 2)])
+    })
+}

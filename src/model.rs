@@ -1,0 +1,132 @@
+//! The immutable model of a run: bearing, contact tables, effects, and which races are bodies.
+
+use nalgebra::Vector3;
+
+use crate::bearing::{Bearing, Raceway};
+use crate::contact::ContactModel;
+use crate::contact::shape::ContactShape;
+use crate::kalker::linear::LinearError;
+use crate::scene::{Condition, CreepLaw, Drive, RaceSection, Scene, Schedule, Solver};
+
+/// Index of the inner race wherever races come in pairs.
+pub const INNER: usize = 0;
+/// Index of the outer race wherever races come in pairs.
+pub const OUTER: usize = 1;
+
+/// A constraint on a race that is a body (paper eq. 1, 2, 24).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Constraint {
+    /// Holonomic: position along a world axis (0, 1, 2) follows a schedule [m].
+    Position(usize, Schedule),
+    /// Holonomic: tilt about world y (1) or z (2) follows a schedule [rad].
+    Tilt(usize, Schedule),
+    /// Non-holonomic: spin about the race's own axis has the prescribed speed (eq. 24).
+    Spin,
+}
+
+/// A race that is a rigid body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RaceBody {
+    /// [kg] mass.
+    pub mass: f64,
+    /// [kg m2] moments of inertia about the race's own axes.
+    pub inertia: Vector3<f64>,
+    /// Constraints, in the order of their multipliers.
+    pub constraints: Vec<Constraint>,
+}
+
+/// Everything that stays the same during a run.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Geometry and materials.
+    pub bearing: Bearing,
+    /// Contact tables of inner and outer raceway.
+    shapes: [ContactShape; 2],
+    /// Creep law.
+    pub law: CreepLaw,
+    /// [s/m] Hunt-Crossley dissipation factor.
+    pub damping: f64,
+    /// [m/s2] gravity.
+    pub gravity: Vector3<f64>,
+    /// Inner and outer race where they are bodies; the others have prescribed motion.
+    pub bodies: [Option<RaceBody>; 2],
+    /// Time integration.
+    pub solver: Solver,
+}
+
+impl Model {
+    /// Builds the model of a scene.
+    ///
+    /// # Errors
+    /// If creep coefficients cannot be computed for the bearing's contacts.
+    pub fn new(scene: &Scene) -> Result<Self, LinearError> {
+        let bearing = Bearing::new(scene);
+        let shapes = [
+            ContactShape::new(&bearing, &bearing.inner)?,
+            ContactShape::new(&bearing, &bearing.outer)?,
+        ];
+        Ok(Self {
+            bearing,
+            shapes,
+            law: scene.effects.creep,
+            damping: scene.effects.damping.0,
+            gravity: Vector3::from(scene.effects.gravity.map(|component| component.0)),
+            bodies: [body(&scene.inner, scene), None],
+            solver: scene.solver,
+        })
+    }
+
+    /// Raceway of a race.
+    pub fn raceway(&self, race: usize) -> &Raceway {
+        if race == INNER {
+            &self.bearing.inner
+        } else {
+            &self.bearing.outer
+        }
+    }
+
+    /// Contact model of the balls with a race at a friction coefficient.
+    pub fn contact(&self, race: usize, friction: f64) -> ContactModel<'_> {
+        ContactModel {
+            raceway: self.raceway(race),
+            shape: &self.shapes[race],
+            ball_radius: self.bearing.ball.radius,
+            law: self.law,
+            friction,
+            damping: self.damping,
+        }
+    }
+
+    /// Border rows of a race body: 6 of motion and one per constraint.
+    pub fn border_rows(&self, race: usize) -> usize {
+        self.bodies[race]
+            .as_ref()
+            .map_or(0, |body| 6 + body.constraints.len())
+    }
+
+    /// [m] length that turns moments of a race into forces of the size of the others.
+    pub fn race_length(&self) -> f64 {
+        0.5 * self.bearing.pitch_diameter
+    }
+}
+
+fn body(section: &RaceSection, scene: &Scene) -> Option<RaceBody> {
+    let (Drive::Wrench, Some(mass), Some(inertia)) = (section.drive, section.mass, section.inertia) else {
+        return None;
+    };
+    let locks = scene
+        .load
+        .conditions()
+        .into_iter()
+        .enumerate()
+        .filter_map(|(direction, condition)| match condition {
+            Condition::Load(_) => None,
+            Condition::Motion(schedule) if direction < 3 => Some(Constraint::Position(direction, schedule)),
+            Condition::Motion(schedule) => Some(Constraint::Tilt(direction - 2, schedule)),
+        });
+    Some(RaceBody {
+        mass: mass.0,
+        inertia: Vector3::from(inertia.map(|moment| moment.0)),
+        constraints: locks.chain([Constraint::Spin]).collect(),
+    })
+}

@@ -1,0 +1,299 @@
+//! A running bearing: model, state, inputs, and the one function that advances it.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use thiserror::Error;
+
+use crate::dynamics::{Boundary, RaceLoad, StepFailure, Workspace, make_consistent, try_step};
+use crate::equilibrium::EquilibriumError;
+use crate::kalker::linear::LinearError;
+use crate::model::{INNER, Model, OUTER};
+use crate::motion::{Pose, Twist, Wrench};
+use crate::outputs::Outputs;
+use crate::path::{RacePath, Ramp};
+use crate::scene::{Condition, Scene};
+use crate::start;
+use crate::state::State;
+
+/// What a race is given from outside, valid at the last communication point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RaceInput {
+    /// Pose of a race with given motion.
+    pub pose: Pose,
+    /// Twist of a race with given motion.
+    pub twist: Twist,
+    /// [m/s2, rad/s2] rate of change of the twist; zero if not known.
+    pub twist_rate: Twist,
+    /// Wrench applied to a race body, about its origin, world axes.
+    pub applied: Wrench,
+    /// [rad/s] prescribed spin of a race body or of a fixed race about its own axis.
+    pub speed: f64,
+}
+
+/// Everything that is given from outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inputs {
+    /// Inner race.
+    pub inner: RaceInput,
+    /// Outer race.
+    pub outer: RaceInput,
+    /// [-] friction coefficient of the ball-race contacts.
+    pub friction: f64,
+}
+
+/// Why a simulation could not start or go on.
+#[derive(Debug, Error)]
+pub enum SimulationError {
+    /// No creep coefficients for the bearing's contacts.
+    #[error("the creep law has no coefficients for this bearing: {0}")]
+    Creep(#[from] LinearError),
+    /// No quasi-static equilibrium to start from.
+    #[error("no equilibrium to start from: {0}")]
+    Start(#[from] EquilibriumError),
+    /// The step size fell below its minimum.
+    #[error(
+        "at {time} s the step fell below solver.min_step = {min_step} s: {cause}, worst at ball {ball} \
+         (inner load {inner_load} N, outer load {outer_load} N)"
+    )]
+    StepTooSmall {
+        /// [s] time reached.
+        time: f64,
+        /// [s] smallest step allowed.
+        min_step: f64,
+        /// What made the last step fail.
+        cause: &'static str,
+        /// Ball with the largest share, counted from 1.
+        ball: usize,
+        /// [N] its load on the inner race.
+        inner_load: f64,
+        /// [N] its load on the outer race.
+        outer_load: f64,
+    },
+    /// A step end that is not a time after the present one.
+    #[error("cannot advance from {from} s to {to} s")]
+    Backwards {
+        /// [s] present time.
+        from: f64,
+        /// [s] asked for.
+        to: f64,
+    },
+}
+
+/// How inputs move during a communication step.
+#[derive(Clone, Debug, PartialEq)]
+struct InputPaths {
+    races: [RacePath; 2],
+    /// Applied force, applied moment, speed.
+    loads: [Ramp<7>; 2],
+}
+
+/// A bearing in motion. Cloning it saves everything; the clone goes on to the same bits.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    scene: Arc<Scene>,
+    model: Arc<Model>,
+    inputs: Inputs,
+    state: State,
+    paths: InputPaths,
+    outputs: Outputs,
+    workspace: Workspace,
+}
+
+impl Simulation {
+    /// Prepares a scene and starts it at time 0 from the quasi-static equilibrium under its load.
+    ///
+    /// # Errors
+    /// See [`SimulationError`].
+    pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
+        let model = Arc::new(Model::new(scene)?);
+        let (inputs, state) = start::from_equilibrium(scene, &model)?;
+        let paths = InputPaths::steady(&inputs, &state);
+        let outputs = Outputs::new(&model, &state, inputs.friction);
+        let mut simulation = Self {
+            scene: Arc::new(scene.clone()),
+            model,
+            inputs,
+            state,
+            paths,
+            outputs,
+            workspace: Workspace::default(),
+        };
+        simulation.settle();
+        Ok(simulation)
+    }
+
+    /// Starts again from the present inputs: given poses and twists become the state of the races, the balls follow
+    /// in the quasi-static equilibrium of that position.
+    ///
+    /// # Errors
+    /// See [`SimulationError`].
+    pub fn initialise(&mut self) -> Result<(), SimulationError> {
+        let inputs = self.inputs;
+        self.state = start::from_inputs(&self.scene, &self.model, &inputs)?;
+        self.paths = InputPaths::steady(&inputs, &self.state);
+        self.settle();
+        Ok(())
+    }
+
+    /// Consistent accelerations and outputs for the state as it is.
+    fn settle(&mut self) {
+        let boundary = self.boundary(self.state.time);
+        make_consistent(&self.model, &mut self.state, &boundary);
+        self.outputs = Outputs::new(&self.model, &self.state, self.inputs.friction);
+    }
+
+    /// [s] time.
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Inputs as set last.
+    pub fn inputs(&self) -> &Inputs {
+        &self.inputs
+    }
+
+    /// Sets the inputs of the next step.
+    pub fn set_inputs(&mut self, inputs: Inputs) {
+        self.inputs = inputs;
+    }
+
+    /// Outputs of the last communication point.
+    pub fn outputs(&self) -> &Outputs {
+        &self.outputs
+    }
+
+    /// Inputs of the scene's own script at a time [s]: loads, speeds and scripted motions.
+    pub fn scripted_inputs(&self, time: f64) -> Inputs {
+        let mut inputs = self.inputs;
+        let load = &self.scene.load;
+        let conditions = load.conditions();
+        let value = |direction: usize| match &conditions[direction] {
+            Condition::Load(schedule) => schedule.at(time),
+            Condition::Motion(_) => 0.0,
+        };
+        inputs.inner.applied = Wrench {
+            force: Vector3::new(value(0), value(1), value(2)),
+            moment: Vector3::new(0.0, value(3), value(4)),
+        };
+        inputs.inner.speed = load.inner_speed.at(time);
+        inputs.outer.speed = load.outer_speed.at(time);
+        for (race, input) in [(INNER, &mut inputs.inner), (OUTER, &mut inputs.outer)] {
+            start::script_motion(&self.scene, race, time, &self.paths.races[race].at(time).0, input);
+        }
+        inputs
+    }
+
+    /// Runs its own steps to exactly `end` [s]. The inputs are taken as valid now, at the start.
+    ///
+    /// # Errors
+    /// See [`SimulationError`]; the state is then that of the last converged step, at [`Simulation::time`].
+    pub fn advance(&mut self, end: f64) -> Result<(), SimulationError> {
+        let begin = self.state.time;
+        if !(end > begin && end.is_finite()) {
+            return Err(SimulationError::Backwards { from: begin, to: end });
+        }
+        self.paths = self.paths.towards(&self.inputs, begin, end - begin);
+        let result = self.step_to(end);
+        self.outputs = Outputs::new(&self.model, &self.state, self.inputs.friction);
+        result
+    }
+
+    fn step_to(&mut self, end: f64) -> Result<(), SimulationError> {
+        while self.state.time < end {
+            let remaining = end - self.state.time;
+            let h = self.state.control.step_within(remaining);
+            // The last step ends at the communication point to the bit.
+            let last = h >= remaining * (1.0 - 1e-9);
+            let boundary = self.boundary(if last { end } else { self.state.time + h });
+            let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
+            let (cause, ball) = match tried {
+                Ok(()) => continue,
+                Err(StepFailure::Newton(_, ball)) => ("Newton's method does not converge", ball),
+                Err(StepFailure::Error(ball)) => ("the local error stays above solver.tolerance", ball),
+            };
+            if !self.state.control.above_minimum() {
+                let outputs = Outputs::new(&self.model, &self.state, self.inputs.friction);
+                return Err(SimulationError::StepTooSmall {
+                    time: self.state.time,
+                    min_step: self.model.solver.min_step.0,
+                    cause,
+                    ball: ball + 1,
+                    inner_load: outputs.balls[ball].inner.load,
+                    outer_load: outputs.balls[ball].outer.load,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn boundary(&self, time: f64) -> Boundary {
+        let load = |race: usize| {
+            let [fx, fy, fz, mx, my, mz, speed] = self.paths.loads[race].at(time);
+            let applied = Wrench {
+                force: Vector3::new(fx, fy, fz),
+                moment: Vector3::new(mx, my, mz),
+            };
+            RaceLoad { applied, speed }
+        };
+        Boundary {
+            time,
+            motion: [INNER, OUTER].map(|race| self.paths.races[race].at(time)),
+            loads: [INNER, OUTER].map(load),
+            friction: self.inputs.friction,
+        }
+    }
+}
+
+impl InputPaths {
+    /// Paths of a state that goes on as it is.
+    fn steady(inputs: &Inputs, state: &State) -> Self {
+        let races = [INNER, OUTER]
+            .map(|race| RacePath::steady(state.time, &state.races[race].pose, &state.races[race].twist()));
+        let loads = [&inputs.inner, &inputs.outer].map(|input| Ramp::constant(load_components(input)));
+        Self { races, loads }
+    }
+
+    /// Paths from here on, over a communication step.
+    fn towards(&self, inputs: &Inputs, time: f64, duration: f64) -> Self {
+        let inputs = [&inputs.inner, &inputs.outer];
+        let races = [INNER, OUTER].map(|race| {
+            let (pose, twist) = self.races[race].at(time);
+            let input = inputs[race];
+            let target = (&input.pose, &input.twist, &input.twist_rate);
+            RacePath::towards(time, (&pose, &twist), target.0, target.1, target.2, duration)
+        });
+        let loads = [INNER, OUTER]
+            .map(|race| self.loads[race].towards(time, load_components(inputs[race]), duration));
+        Self { races, loads }
+    }
+}
+
+/// Applied force, applied moment and speed as one vector.
+fn load_components(input: &RaceInput) -> [f64; 7] {
+    let (force, moment) = (input.applied.force, input.applied.moment);
+    [
+        force.x,
+        force.y,
+        force.z,
+        moment.x,
+        moment.y,
+        moment.z,
+        input.speed,
+    ]
+}

@@ -1,0 +1,173 @@
+//! The complete state of a running bearing: plain data, cloned to save and restore.
+
+use nalgebra::{UnitQuaternion, Vector3, Vector6};
+
+use crate::contact::{BallMotion, RaceMotion};
+use crate::motion::{Pose, Twist, Wrench};
+use crate::newton::NewtonWork;
+use crate::step_control::StepControl;
+
+/// One ball. It is isotropic, so it has no orientation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BallState {
+    /// [m] centre.
+    pub position: Vector3<f64>,
+    /// [m/s] velocity of the centre.
+    pub velocity: Vector3<f64>,
+    /// [rad/s] angular velocity.
+    pub angular_velocity: Vector3<f64>,
+    /// [m/s2] acceleration of the centre.
+    pub acceleration: Vector3<f64>,
+    /// [rad/s2] angular acceleration.
+    pub angular_acceleration: Vector3<f64>,
+    /// Total force and moment about the centre, the `g` of the HHT scheme.
+    pub total: Wrench,
+}
+
+impl BallState {
+    /// The motion that contacts depend on.
+    pub fn motion(&self) -> BallMotion<f64> {
+        BallMotion {
+            position: self.position,
+            velocity: self.velocity,
+            angular_velocity: self.angular_velocity,
+        }
+    }
+}
+
+/// One race. Rates of rotation are material (components along the race's own axes), those of translation spatial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RaceState {
+    /// Pose in world axes.
+    pub pose: Pose,
+    /// [m/s] velocity of the origin.
+    pub velocity: Vector3<f64>,
+    /// [rad/s] material angular velocity.
+    pub rate: Vector3<f64>,
+    /// [m/s2] acceleration of the origin; of a body only.
+    pub acceleration: Vector3<f64>,
+    /// [rad/s2] material angular acceleration; of a body only.
+    pub rate_derivative: Vector3<f64>,
+    /// Total force (spatial) and moment (material) of a body, the `g` of the HHT scheme.
+    pub total: Wrench,
+    /// Lagrange multipliers of a body's constraints [N, N m].
+    pub multipliers: Vec<f64>,
+    /// What the bearing exerts on the race, world axes, about its origin.
+    pub bearing_wrench: Wrench,
+}
+
+impl RaceState {
+    /// A race with a pose and a twist, free of forces.
+    pub fn new(pose: Pose, twist: &Twist, n_constraints: usize) -> Self {
+        Self {
+            pose,
+            velocity: twist.velocity,
+            rate: pose.orientation.inverse() * twist.angular_velocity,
+            acceleration: Vector3::zeros(),
+            rate_derivative: Vector3::zeros(),
+            total: Wrench::default(),
+            multipliers: vec![0.0; n_constraints],
+            bearing_wrench: Wrench::default(),
+        }
+    }
+
+    /// Twist in world axes.
+    pub fn twist(&self) -> Twist {
+        Twist {
+            velocity: self.velocity,
+            angular_velocity: self.pose.orientation * self.rate,
+        }
+    }
+
+    /// The motion that contacts depend on.
+    pub fn motion(&self) -> RaceMotion<f64> {
+        race_motion(&self.pose, &self.twist())
+    }
+}
+
+/// The motion of a race that contacts depend on.
+pub fn race_motion(pose: &Pose, twist: &Twist) -> RaceMotion<f64> {
+    RaceMotion {
+        position: pose.position,
+        axis: pose.orientation * Vector3::x(),
+        velocity: twist.velocity,
+        angular_velocity: twist.angular_velocity,
+    }
+}
+
+/// Powers at one instant [W].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Powers {
+    /// Put in by races, applied loads, drives and gravity.
+    pub input: f64,
+    /// Lost to friction in the contacts.
+    pub friction: f64,
+    /// Lost to contact damping.
+    pub damping: f64,
+}
+
+/// Energies accumulated since the start [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energies {
+    /// Work put in.
+    pub input: f64,
+    /// Lost to friction.
+    pub friction: f64,
+    /// Lost to contact damping.
+    pub damping: f64,
+}
+
+impl Energies {
+    /// Adds a step of `h` [s] by the trapezoidal rule.
+    pub fn add(&mut self, before: &Powers, after: &Powers, h: f64) {
+        self.input += 0.5 * h * (before.input + after.input);
+        self.friction += 0.5 * h * (before.friction + after.friction);
+        self.damping += 0.5 * h * (before.damping + after.damping);
+    }
+}
+
+/// Counters of the integrator since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Steps rejected because of their local error.
+    pub rejected_error: u64,
+    /// Steps rejected because Newton's method did not converge.
+    pub rejected_newton: u64,
+    /// Newton corrections and factorisations, of rejected steps too.
+    pub newton: NewtonWork,
+    /// Evaluations of a ball-race contact for its value.
+    pub contact_values: u64,
+    /// Evaluations of a ball-race contact with exact derivatives.
+    pub contact_tangents: u64,
+}
+
+/// Everything that changes while the bearing runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// [s] time.
+    pub time: f64,
+    /// Balls, by azimuth at the start.
+    pub balls: Vec<BallState>,
+    /// Inner and outer race.
+    pub races: [RaceState; 2],
+    /// Step size.
+    pub control: StepControl,
+    /// Powers now.
+    pub powers: Powers,
+    /// Energies since the start.
+    pub energies: Energies,
+    /// Work since the start.
+    pub statistics: Statistics,
+}
+
+/// Linear part of an orientation-free vector of six: force and moment as one.
+pub fn stack(force: &Vector3<f64>, moment: &Vector3<f64>) -> Vector6<f64> {
+    Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
+}
+
+/// Unit quaternion kept at unit length after many products.
+pub fn normalised(q: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::new_normalize(q.into_inner())
+}
