@@ -53,6 +53,11 @@ pub trait Scalar:
         bounded.where_positive(high - bounded, high)
     }
 
+    /// `1 - x`.
+    fn one_minus(x: Self) -> Self {
+        Self::one() - x
+    }
+
     /// `self * self`.
     fn square(self) -> Self {
         self * self

@@ -129,9 +129,8 @@ impl Simulation {
     /// # Errors
     /// See [`SimulationError`].
     pub fn initialise(&mut self) -> Result<(), SimulationError> {
-        let inputs = self.inputs;
-        self.state = start::from_inputs(&self.scene, &self.model, &inputs)?;
-        self.paths = InputPaths::steady(&inputs, &self.state);
+        self.state = start::from_inputs(&self.scene, &self.model, &mut self.inputs)?;
+        self.paths = InputPaths::steady(&self.inputs, &self.state);
         self.settle();
         Ok(())
     }

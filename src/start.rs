@@ -2,81 +2,189 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::bearing::azimuth_directions;
-use crate::equilibrium;
+use crate::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::{INNER, Model};
-use crate::motion::{Pose, Twist};
+use crate::motion::{Pose, Twist, Wrench};
 use crate::scene::{Condition, Drive, Scene};
 use crate::simulation::{Inputs, RaceInput, SimulationError};
 use crate::state::{BallState, Energies, Powers, RaceState, State, Statistics};
 use crate::step_control::StepControl;
 
-/// Inputs and state of a scene at time 0.
+/// Inputs and state of a scene at time 0: the equilibrium under the scene's load, every race spinning about its own
+/// axis at its scripted speed.
 ///
 /// # Errors
 /// If there is no equilibrium under the scene's load.
 pub fn from_equilibrium(scene: &Scene, model: &Model) -> Result<(Inputs, State), SimulationError> {
-    let speed = scene.load.inner_speed.at(0.0);
-    let Condition::Load(force) = &scene.load.conditions()[0] else {
-        panic!()
+    let problem = EquilibriumInput::from_scene(scene, Gyroscopic::Friction);
+    let solution = equilibrium::solve(model, &problem)?;
+    let [x, y, z, ry, rz] = solution.displacement;
+    let inner_pose = Pose {
+        position: Vector3::new(x, y, z),
+        orientation: UnitQuaternion::new(Vector3::new(0.0, ry, rz)),
     };
-    let eq = equilibrium::thrust(&model.bearing, |a| { let c = model.contact(0, 0.0); let k1 = c.shape.stiffness(a.cos() / (model.bearing.inner.groove_circle_radius - model.bearing.inner.groove_radius * a.cos())); let c = model.contact(1, 0.0); let k2 = c.shape.stiffness(-a.cos() / (model.bearing.outer.groove_circle_radius + model.bearing.outer.groove_radius * a.cos())); (0.5 * (k1.powf(-2.0 / 3.0) + k2.powf(-2.0 / 3.0))).powf(-1.5) }, force.at(0.0), speed);
-    let mut inputs = Inputs {
-        inner: RaceInput::default(),
-        outer: RaceInput::default(),
+    let outer_pose = Pose {
+        position: Vector3::zeros(),
+        orientation: problem.outer_orientation,
+    };
+    let [fx, fy, fz, my, mz] = solution.load;
+    let applied = Wrench {
+        force: Vector3::new(fx, fy, fz),
+        moment: Vector3::new(0.0, my, mz),
+    };
+    let inputs = Inputs {
+        inner: spinning(inner_pose, problem.inner_speed, applied),
+        outer: spinning(outer_pose, problem.outer_speed, Wrench::default()),
         friction: scene.friction.ball_race,
     };
-    inputs.inner.applied.force.x = force.at(0.0);
-    inputs.inner.speed = speed;
-    inputs.inner.pose = Pose {
-        position: Vector3::new(eq.displacement[0], 0.0, 0.0),
-        orientation: UnitQuaternion::identity(),
-    };
-    inputs.inner.twist = Twist {
-        velocity: Vector3::zeros(),
-        angular_velocity: Vector3::new(speed, 0.0, 0.0),
-    };
-    let races = [(INNER, &inputs.inner), (1, &inputs.outer)].map(|(i, input)| {
-        RaceState::new(
-            input.pose,
-            &input.twist,
-            model.bodies[i].as_ref().map_or(0, |b| b.constraints.len()),
-        )
-    });
-    let balls = eq
-        .balls
-        .iter()
-        .map(|b| {
-            let (radial, tangential) = azimuth_directions(b.azimuth);
-            BallState {
-                position: Vector3::x() * b.position.0 + radial * b.position.1,
-                velocity: tangential * (b.orbital_speed * b.position.1),
-                angular_velocity: Vector3::x() * b.spin[0] + radial * b.spin[1] + tangential * b.spin[2],
-                acceleration: Vector3::zeros(),
-                angular_acceleration: Vector3::zeros(),
-                total: crate::motion::Wrench::default(),
-            }
-        })
-        .collect();
-    let s = &scene.solver;
-    let state = State {
-        time: 0.0,
-        balls,
-        races,
-        control: StepControl::new(s.initial_step.0, s.min_step.0, s.max_step.0),
-        powers: Powers::default(),
-        energies: Energies::default(),
-        statistics: Statistics::default(),
-    };
+    let state = state(scene, model, &inputs, &solution);
     Ok((inputs, state))
 }
 
-/// later
-pub fn from_inputs(scene: &Scene, model: &Model, _inputs: &Inputs) -> Result<State, SimulationError> {
-    Ok(from_equilibrium(scene, model)?.1)
+/// State for given inputs: races with given motion are where the inputs put them, a race body is in equilibrium under
+/// its applied wrench.
+///
+/// # Errors
+/// If there is no equilibrium.
+pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<State, SimulationError> {
+    let outer = &inputs.outer.pose;
+    let mut problem = EquilibriumInput::from_scene(scene, Gyroscopic::Friction);
+    problem.friction = inputs.friction;
+    problem.outer_orientation = outer.orientation;
+    problem.outer_speed = own_spin(&inputs.outer);
+    let relative = inputs.inner.pose.position - outer.position;
+    if model.bodies[INNER].is_some() {
+        problem.inner_speed = inputs.inner.speed;
+        let (force, moment) = (inputs.inner.applied.force, inputs.inner.applied.moment);
+        let loads = [force.x, force.y, force.z, moment.y, moment.z];
+        for (condition, load) in problem.conditions.iter_mut().zip(loads) {
+            if let Prescribed::Load(value) = condition {
+                *value = load;
+            }
+        }
+    } else {
+        problem.inner_speed = own_spin(&inputs.inner);
+        let axis = inputs.inner.pose.orientation * Vector3::x();
+        let tilt = UnitQuaternion::rotation_between(&Vector3::x(), &axis)
+            .unwrap_or_default()
+            .scaled_axis();
+        let motion = [relative.x, relative.y, relative.z, tilt.y, tilt.z];
+        problem.conditions = motion.map(Prescribed::Motion);
+    }
+    let solution = equilibrium::solve(model, &problem)?;
+    if model.bodies[INNER].is_some() {
+        let [x, y, z, ry, rz] = solution.displacement;
+        inputs.inner.pose = Pose {
+            position: outer.position + Vector3::new(x, y, z),
+            orientation: UnitQuaternion::new(Vector3::new(0.0, ry, rz)),
+        };
+        let spin = inputs.inner.pose.orientation * Vector3::x() * inputs.inner.speed;
+        inputs.inner.twist = Twist {
+            velocity: Vector3::zeros(),
+            angular_velocity: spin,
+        };
+    }
+    Ok(state(scene, model, inputs, &solution))
 }
 
-/// The scripted pose and twist of a race at a time.
+/// A race that spins about its own axis.
+fn spinning(pose: Pose, speed: f64, applied: Wrench) -> RaceInput {
+    let angular_velocity = pose.orientation * Vector3::x() * speed;
+    let twist = Twist {
+        velocity: Vector3::zeros(),
+        angular_velocity,
+    };
+    RaceInput {
+        pose,
+        twist,
+        twist_rate: Twist::default(),
+        applied,
+        speed,
+    }
+}
+
+fn own_spin(input: &RaceInput) -> f64 {
+    input
+        .twist
+        .angular_velocity
+        .dot(&(input.pose.orientation * Vector3::x()))
+}
+
+/// The state of a solution: balls roll, races move as the inputs say.
+fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::Equilibrium) -> State {
+    let outer = &inputs.outer;
+    // The equilibrium's frame does not spin with the outer race.
+    let axis = outer.pose.orientation * Vector3::x();
+    let frame = UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default();
+    let balls = solution
+        .balls
+        .iter()
+        .map(|ball| BallState {
+            position: outer.pose.position + frame * ball.position,
+            velocity: outer.twist.velocity + frame * ball.velocity,
+            angular_velocity: frame * ball.angular_velocity,
+            acceleration: Vector3::zeros(),
+            angular_acceleration: Vector3::zeros(),
+            total: Wrench::default(),
+        })
+        .collect();
+    let races = [(0, &inputs.inner), (1, outer)].map(|(race, input): (usize, _)| {
+        let n_constraints = model.bodies[race]
+            .as_ref()
+            .map_or(0, |body| body.constraints.len());
+        RaceState::new(input.pose, &input.twist, n_constraints)
+    });
+    let solver = &scene.solver;
+    State {
+        time: 0.0,
+        balls,
+        races,
+        control: StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0),
+        powers: Powers::default(),
+        energies: Energies::default(),
+        statistics: Statistics::default(),
+    }
+}
+
+/// Sets the pose and twist of a race from the scene's script at a time [s]. `now` is where the race is: its angle
+/// about its own axis goes on from there, as a script does not prescribe it.
 pub fn script_motion(scene: &Scene, race: usize, time: f64, now: &Pose, input: &mut RaceInput) {
-    let _ = (scene, race, time, now, input, Drive::Pose);
+    let section = if race == INNER { &scene.inner } else { &scene.outer };
+    let speed = input.speed;
+    let (mut position, mut rates) = (input.pose.position, [0.0; 3]);
+    let mut tilt = tilt_of(&input.pose);
+    let mut tilt_rate = Vector3::zeros();
+    if race == INNER && section.drive == Drive::Pose {
+        for (direction, condition) in scene.load.conditions().iter().enumerate() {
+            if let Condition::Motion(schedule) = condition {
+                let (value, rate) = schedule.smooth_at(time);
+                if direction < 3 {
+                    (position[direction], rates[direction]) = (value, rate);
+                } else {
+                    (tilt[direction - 2], tilt_rate[direction - 2]) = (value, rate);
+                }
+            }
+        }
+    }
+    let tilted = UnitQuaternion::new(tilt);
+    // What is left of the present orientation beyond its tilt is the turn about the race's own axis.
+    let spin = UnitQuaternion::new(tilt_of(now)).inverse() * now.orientation;
+    let orientation = tilted * spin;
+    input.pose = Pose {
+        position,
+        orientation: UnitQuaternion::new_normalize(orientation.into_inner()),
+    };
+    input.twist = Twist {
+        velocity: Vector3::from(rates),
+        // The rotation vector's rate is the angular velocity to first order in the tilt.
+        angular_velocity: tilted * Vector3::x() * speed + tilt_rate,
+    };
+}
+
+/// Rotation vector [0, ry, rz] that carries the x axis to a pose's axis.
+fn tilt_of(pose: &Pose) -> Vector3<f64> {
+    let axis = pose.orientation * Vector3::x();
+    UnitQuaternion::rotation_between(&Vector3::x(), &axis)
+        .unwrap_or_default()
+        .scaled_axis()
 }

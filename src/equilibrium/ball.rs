@@ -1,0 +1,234 @@
+//! Quasi-static balance of one ball in its azimuthal plane.
+
+use nalgebra::{Matrix2, Vector2, Vector3};
+
+use super::{EquilibriumInput, Gyroscopic};
+use crate::bearing::azimuth_directions;
+use crate::contact::geometry::GrooveContact;
+use crate::model::{INNER, Model, OUTER};
+use crate::scalar::{Dual, Scalar, constant_vector};
+
+/// Directions of differentiation: ball axial and radial, inner race x, y, z, ry, rz, cage speed.
+pub const DIRECTIONS: usize = 8;
+/// First direction of the quantities that all balls share.
+pub const SHARED: usize = 2;
+/// Number of shared directions.
+pub const N_SHARED: usize = 6;
+type D = Dual<DIRECTIONS>;
+
+/// [N/m] hold of a ball that nothing else holds, towards the middle of its gap; bearing at rest only. Its force,
+/// below 1e-6 N in any gap, is far below what loads are resolved to.
+const IDLE_HOLD: f64 = 1e-3;
+/// Iterations of one ball.
+const MAX_ITERATIONS: u32 = 100;
+
+/// The inner race as the balls see it: relative to the outer race, with derivatives by the shared directions.
+#[derive(Clone, Copy, Debug)]
+pub struct Shared {
+    /// [m] origin of the inner race.
+    pub position: Vector3<D>,
+    /// [-] axis of the inner race.
+    pub axis: Vector3<D>,
+    /// [rad/s] cage speed.
+    pub cage_speed: D,
+}
+
+/// Forces on one ball, all relative to the outer race's frame.
+#[derive(Clone, Copy, Debug)]
+pub struct BallBalance {
+    /// [N] unbalanced axial and radial force.
+    pub residual: [D; 2],
+    /// [N] force of the inner race on the ball.
+    pub inner_force: Vector3<D>,
+    /// [N m] moment on the inner race's origin of the external load that holds it against this ball.
+    pub inner_moment: Vector3<D>,
+    /// [N] load on the inner race.
+    pub inner_load: D,
+    /// [N] load on the outer race.
+    pub outer_load: D,
+    /// [rad/s] orbital speed that this ball alone would take (outer race control).
+    pub own_orbital_speed: D,
+    /// Inner contact.
+    pub inner: GrooveContact<D>,
+    /// Outer contact.
+    pub outer: GrooveContact<D>,
+    /// [N/m^1.5] Hertz stiffness of inner and outer contact.
+    pub stiffness: [D; 2],
+    /// [N] centrifugal force.
+    pub centrifugal_force: D,
+    /// [N m] gyroscopic moment; negative for a positive contact angle, as in Harris.
+    pub gyroscopic_moment: D,
+    /// [rad/s] angular velocity of the ball, axial and radial component.
+    pub angular_velocity: [D; 2],
+}
+
+/// Balance of the ball at `azimuth` [rad] whose centre is at `place` (axial, radial) [m].
+pub fn balance(
+    model: &Model,
+    input: &EquilibriumInput,
+    shared: &Shared,
+    azimuth: f64,
+    place: &Vector2<f64>,
+) -> BallBalance {
+    let ball = &model.bearing.ball;
+    let (radial, tangential) = azimuth_directions(azimuth);
+    let axial_place = D::variable(place.x, 0, 1.0);
+    let radius = D::variable(place.y, 1, 1.0);
+    let position =
+        radial.map(|c| radius.scale(c)) + Vector3::new(axial_place, D::constant(0.0), D::constant(0.0));
+    let axis = constant_vector(&Vector3::x());
+    let contacts = [INNER, OUTER].map(|race| model.contact(race, 0.0));
+    let offset = position - shared.position;
+    let inner = GrooveContact::new(contacts[INNER].raceway, ball.radius, &offset, &shared.axis);
+    let outer = GrooveContact::new(contacts[OUTER].raceway, ball.radius, &position, &axis);
+    let stiffness = [
+        contacts[INNER].shape.stiffness(inner.circumferential_curvature),
+        contacts[OUTER].shape.stiffness(outer.circumferential_curvature),
+    ];
+    let load = |contact: &GrooveContact<D>, stiffness: D| {
+        let depth = contact.approach.positive_part();
+        stiffness * depth * depth.sqrt()
+    };
+    let (inner_load, outer_load) = (load(&inner, stiffness[INNER]), load(&outer, stiffness[OUTER]));
+
+    // rolling without slip at both contacts and without spin at the outer one (Jones's outer race control)
+    let (inner_cos, inner_sin) = (-inner.normal.dot(&inner.radial), -inner.normal.dot(&shared.axis));
+    let (outer_cos, outer_sin) = (outer.normal.dot(&outer.radial), outer.normal.x);
+    let g = D::constant(ball.radius) / radius;
+    let ratio =
+        (D::one_minus(g * inner_cos)) / (D::constant(1.0) + inner_cos * outer_cos + inner_sin * outer_sin);
+    let own_orbital_speed =
+        ratio.scale(input.inner_speed - input.outer_speed) + D::constant(input.outer_speed);
+    let roll = (shared.cage_speed - D::constant(input.outer_speed)) / g;
+    let spin = [
+        D::constant(input.outer_speed) - roll * outer_cos,
+        roll * outer_sin,
+    ];
+
+    // inertia
+    let centrifugal_force = (radius * shared.cage_speed.square()).scale(ball.mass);
+    let gyroscopic_moment = -(shared.cage_speed * spin[1]).scale(ball.inertia);
+    // friction forces along n x e_t whose moments about the centre give the gyroscopic moment
+    let needed = gyroscopic_moment.scale(1.0 / ball.radius);
+    let [inner_friction, outer_friction] = match input.gyroscopic {
+        Gyroscopic::None => [D::constant(0.0); 2],
+        Gyroscopic::OuterRaceControl => [D::constant(0.0), needed],
+        Gyroscopic::Friction => {
+            let total = inner_load + outer_load + D::constant(f64::MIN_POSITIVE);
+            // Shared in proportion to the loads; beyond the friction limit the ball pivots and the force stays there.
+            let limit = total.scale(input.friction) + D::constant(1e-12);
+            let x = needed / limit;
+            let carried = needed / (D::constant(1.0) + x.square().square()).sqrt().sqrt();
+            [carried * inner_load / total, carried * outer_load / total]
+        }
+    };
+    let tangent = constant_vector(&tangential);
+    let inner_force = -inner.normal * inner_load + inner.normal.cross(&tangent) * inner_friction;
+    let outer_force = -outer.normal * outer_load + outer.normal.cross(&tangent) * outer_friction;
+    let total = inner_force + outer_force;
+    let mut residual = [total.x, total.dot(&constant_vector(&radial)) + centrifugal_force];
+    if shared.cage_speed.value == 0.0 {
+        let middle = middle_of_gap(model, shared, azimuth);
+        residual[0] -= (axial_place - D::constant(middle.x)).scale(IDLE_HOLD);
+        residual[1] -= (radius - D::constant(middle.y)).scale(IDLE_HOLD);
+    }
+    let arm = offset + inner.normal.map(|c| c.scale(ball.radius));
+    BallBalance {
+        residual,
+        inner_force,
+        inner_moment: arm.cross(&inner_force),
+        inner_load,
+        outer_load,
+        own_orbital_speed,
+        inner,
+        outer,
+        stiffness,
+        centrifugal_force,
+        gyroscopic_moment,
+        angular_velocity: spin,
+    }
+}
+
+/// Ball place (axial, radial) [m] with the same approach or gap at both races, on the line of the groove centres.
+pub fn middle_of_gap(model: &Model, shared: &Shared, azimuth: f64) -> Vector2<f64> {
+    let (radial, _) = azimuth_directions(azimuth);
+    let (inner, outer) = (&model.bearing.inner, &model.bearing.outer);
+    let position = shared.position.map(|c| c.value);
+    let axis = shared.axis.map(|c| c.value);
+    // Groove centre of the inner race in the ball's plane, to first order in the tilt.
+    let across = (radial - axis * radial.dot(&axis)).normalize();
+    let centre = position + axis * inner.groove_offset + across * inner.groove_circle_radius;
+    let inner_centre = Vector2::new(centre.x, centre.dot(&radial));
+    let outer_centre = Vector2::new(outer.groove_offset, outer.groove_circle_radius);
+    let line = inner_centre - outer_centre;
+    let length = line.norm();
+    let (l_i, l_o) = (
+        inner.groove_radius - model.bearing.ball.radius,
+        outer.groove_radius - model.bearing.ball.radius,
+    );
+    // The ball lies beyond the inner groove centre as seen from it towards the outer race, and the other way round.
+    let direction = if length > 0.0 {
+        line / length
+    } else {
+        Vector2::new(0.0, 1.0)
+    };
+    outer_centre + direction * (l_o + 0.5 * (length - l_i - l_o))
+}
+
+/// Finds the place where the ball is in balance, starting from `place`; returns the balance there.
+///
+/// Newton's method with a Levenberg shift: the forces derive (nearly) from a potential that is convex but flat where
+/// contacts are open. `None` if the residual does not come below `tolerance` [N].
+pub fn settle(
+    model: &Model,
+    input: &EquilibriumInput,
+    shared: &Shared,
+    azimuth: f64,
+    place: &mut Vector2<f64>,
+    tolerance: f64,
+) -> Option<BallBalance> {
+    let diameter = 2.0 * model.bearing.ball.radius;
+    let longest = 0.02 * diameter;
+    let norm = |b: &BallBalance| b.residual[0].value.hypot(b.residual[1].value);
+    let mut here = balance(model, input, shared, azimuth, place);
+    let mut shift = 0.0;
+    for _ in 0..MAX_ITERATIONS {
+        if norm(&here) <= tolerance {
+            return Some(here);
+        }
+        let r = Vector2::new(here.residual[0].value, here.residual[1].value);
+        let stiffness = Matrix2::from_fn(|i, k| -here.residual[i].derivatives[k]);
+        let shifted = stiffness + Matrix2::identity() * shift;
+        let mut step = shifted.lu().solve(&r).filter(|s| s.iter().all(|c| c.is_finite()));
+        if let Some(step) = &mut step {
+            let length = step.norm();
+            if length > longest {
+                *step *= longest / length;
+            }
+        }
+        let trial_place = step.map(|step| *place + step);
+        let trial = trial_place.map(|p| balance(model, input, shared, azimuth, &p));
+        match (trial, trial_place) {
+            (Some(trial), Some(p)) if norm(&trial) < norm(&here) || opens(&here, &trial) => {
+                *place = p;
+                here = trial;
+                shift = if shift < 1e-3 { 0.0 } else { shift * 0.1 };
+            }
+            _ => {
+                // from a thousandth of the stiffness at a micrometre upwards
+                let scale = 1.5 * here.stiffness[OUTER].value * 1e-3;
+                shift = if shift == 0.0 { 1e-3 * scale } else { shift * 8.0 };
+                if shift > 1e9 * scale {
+                    return None;
+                }
+            }
+        }
+    }
+    None
+}
+
+/// A free ball on its way to a race: the force does not fall until it gets there.
+fn opens(here: &BallBalance, trial: &BallBalance) -> bool {
+    let free = |b: &BallBalance| b.inner_load.value == 0.0 && b.outer_load.value == 0.0;
+    free(here) && free(trial)
+}

@@ -1,0 +1,152 @@
+//! An equilibrium as text and as JSON.
+
+use std::fmt;
+
+use nalgebra::Vector3;
+use serde_json::{Value, json};
+
+use super::Equilibrium;
+use super::ball::BallBalance;
+use crate::contact::geometry::GrooveContact;
+use crate::model::Model;
+use crate::scalar::{Dual, Scalar, values};
+
+/// What is reported of a ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BallReport {
+    /// [N] normal load on the inner race.
+    pub inner_load: f64,
+    /// [N] normal load on the outer race.
+    pub outer_load: f64,
+    /// [rad] contact angle at the inner race, relative to the tilted ring.
+    pub inner_contact_angle: f64,
+    /// [rad] contact angle at the outer race.
+    pub outer_contact_angle: f64,
+    /// [m] approach at the inner race.
+    pub inner_approach: f64,
+    /// [m] approach at the outer race.
+    pub outer_approach: f64,
+    /// [N] centrifugal force.
+    pub centrifugal_force: f64,
+    /// [N m] gyroscopic moment.
+    pub gyroscopic_moment: f64,
+    /// [N/m^1.5] Hertz stiffness of the inner contact.
+    pub inner_hertz_stiffness: f64,
+    /// [N/m^1.5] Hertz stiffness of the outer contact.
+    pub outer_hertz_stiffness: f64,
+}
+
+impl BallReport {
+    /// From the balance of a settled ball; `inner_axis` is the inner race's axis relative to the outer race.
+    pub(super) fn new(_model: &Model, balance: &BallBalance, inner_axis: &Vector3<f64>) -> Self {
+        // atan2(axial, radial) of the force on the ball for the inner race, of the opposite for the outer.
+        let angle = |contact: &GrooveContact<Dual<8>>, axis: &Vector3<f64>, sign: f64| {
+            let normal = values(&contact.normal) * sign;
+            normal.dot(axis).atan2(normal.dot(&values(&contact.radial)))
+        };
+        Self {
+            inner_load: balance.inner_load.value,
+            outer_load: balance.outer_load.value,
+            inner_contact_angle: angle(&balance.inner, inner_axis, -1.0),
+            outer_contact_angle: angle(&balance.outer, &Vector3::x(), 1.0),
+            inner_approach: balance.inner.approach.value,
+            outer_approach: balance.outer.approach.value,
+            centrifugal_force: balance.centrifugal_force.value(),
+            gyroscopic_moment: balance.gyroscopic_moment.value,
+            inner_hertz_stiffness: balance.stiffness[0].value,
+            outer_hertz_stiffness: balance.stiffness[1].value,
+        }
+    }
+}
+
+impl Equilibrium {
+    /// All results as JSON, SI units; keys are part of the command line's contract.
+    pub fn to_json(&self) -> Value {
+        let column = |get: fn(&BallReport) -> f64| -> Vec<f64> {
+            self.balls.iter().map(|ball| get(&ball.report)).collect()
+        };
+        let [x, y, z, ry, rz] = self.displacement;
+        let [fx, fy, fz, my, mz] = self.load;
+        let stiffness: Vec<Vec<f64>> = self
+            .stiffness
+            .row_iter()
+            .map(|row| row.iter().copied().collect())
+            .collect();
+        json!({
+            "units": "SI: m, N, N m, rad, rad/s",
+            "displacement": { "x": x, "y": y, "z": z, "ry": ry, "rz": rz },
+            "load": { "Fx": fx, "Fy": fy, "Fz": fz, "My": my, "Mz": mz },
+            "stiffness": stiffness,
+            "cage_speed": self.cage_speed,
+            "residual": self.residual,
+            "iterations": self.iterations,
+            "balls": {
+                "azimuth": self.balls.iter().map(|ball| ball.azimuth).collect::<Vec<_>>(),
+                "inner_load": column(|b| b.inner_load),
+                "outer_load": column(|b| b.outer_load),
+                "inner_contact_angle": column(|b| b.inner_contact_angle),
+                "outer_contact_angle": column(|b| b.outer_contact_angle),
+                "inner_approach": column(|b| b.inner_approach),
+                "outer_approach": column(|b| b.outer_approach),
+                "centrifugal_force": column(|b| b.centrifugal_force),
+                "gyroscopic_moment": column(|b| b.gyroscopic_moment),
+                "inner_hertz_stiffness": column(|b| b.inner_hertz_stiffness),
+                "outer_hertz_stiffness": column(|b| b.outer_hertz_stiffness),
+            },
+        })
+    }
+}
+
+impl fmt::Display for Equilibrium {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z, ry, rz] = self.displacement;
+        let [fx, fy, fz, my, mz] = self.load;
+        writeln!(
+            f,
+            "inner race    x {:.4} um  y {:.4} um  z {:.4} um",
+            x * 1e6,
+            y * 1e6,
+            z * 1e6
+        )?;
+        writeln!(
+            f,
+            "              ry {:.6} mrad  rz {:.6} mrad",
+            ry * 1e3,
+            rz * 1e3
+        )?;
+        writeln!(f, "load          Fx {fx:.3} N  Fy {fy:.3} N  Fz {fz:.3} N")?;
+        writeln!(f, "              My {my:.5} N m  Mz {mz:.5} N m")?;
+        writeln!(f, "cage speed    {:.4} rad/s", self.cage_speed)?;
+        writeln!(
+            f,
+            "residual      {:.2e} of the load, {} iterations\n",
+            self.residual, self.iterations
+        )?;
+        writeln!(
+            f,
+            "stiffness     Fx, Fy, Fz [N], My, Mz [N m] by x, y, z [m], ry, rz [rad]"
+        )?;
+        for row in self.stiffness.row_iter() {
+            let row: Vec<String> = row.iter().map(|value| format!("{value:12.4e}")).collect();
+            writeln!(f, "              {}", row.join(" "))?;
+        }
+        writeln!(
+            f,
+            "\nball  azimuth [deg]  load inner, outer [N]   contact angle inner, outer [deg]"
+        )?;
+        for (j, ball) in self.balls.iter().enumerate() {
+            let b = &ball.report;
+            writeln!(
+                f,
+                "{:4}  {:13.2}  {:10.3} {:10.3}   {:10.4} {:10.4}",
+                j + 1,
+                ball.azimuth.to_degrees(),
+                b.inner_load,
+                b.outer_load,
+                b.inner_contact_angle.to_degrees(),
+                b.outer_contact_angle.to_degrees()
+            )?;
+        }
+        Ok(())
+    }
+}
