@@ -19,6 +19,8 @@ type D = Dual<DIRECTIONS>;
 /// [N/m] hold of a ball that nothing else holds, towards the middle of its gap; bearing at rest only. Its force,
 /// below 1e-6 N in any gap, is far below what loads are resolved to.
 const IDLE_HOLD: f64 = 1e-3;
+/// [-] units in the last place of the ball's coordinates that count as balanced.
+const ROUND_OFF_UNITS: f64 = 4.0;
 /// Iterations of one ball.
 const MAX_ITERATIONS: u32 = 100;
 
@@ -36,7 +38,7 @@ pub struct Shared {
 /// Forces on one ball, all relative to the outer race's frame.
 #[derive(Clone, Copy, Debug)]
 pub struct BallBalance {
-    /// [N] unbalanced axial and radial force.
+    /// [N] unbalanced force along the two coordinates of [`Place`].
     pub residual: [D; 2],
     /// [N] force of the inner race on the ball.
     pub inner_force: Vector3<D>,
@@ -60,20 +62,36 @@ pub struct BallBalance {
     pub gyroscopic_moment: D,
     /// [rad/s] angular velocity of the ball, axial and radial component.
     pub angular_velocity: [D; 2],
+    /// [m] centre of the ball, axial and radial.
+    pub centre: [D; 2],
 }
 
-/// Balance of the ball at `azimuth` [rad] whose centre is at `place` (axial, radial) [m].
+/// Where a ball is in its azimuthal plane, polar about the outer groove centre: arc and distance [m]. A ball that
+/// slides along the outer groove moves along one coordinate, which Newton's method needs to follow a curved groove.
+pub type Place = Vector2<f64>;
+
+/// [m] reference distance that turns the arc of a [`Place`] into an angle.
+fn arc_radius(model: &Model) -> f64 {
+    model.bearing.outer.groove_radius - model.bearing.ball.radius
+}
+
+/// Balance of the ball at `azimuth` [rad].
 pub fn balance(
     model: &Model,
     input: &EquilibriumInput,
     shared: &Shared,
     azimuth: f64,
-    place: &Vector2<f64>,
+    place: &Place,
 ) -> BallBalance {
     let ball = &model.bearing.ball;
     let (radial, tangential) = azimuth_directions(azimuth);
-    let axial_place = D::variable(place.x, 0, 1.0);
-    let radius = D::variable(place.y, 1, 1.0);
+    let outer_groove = &model.bearing.outer;
+    let angle = D::variable(place.x, 0, 1.0).scale(1.0 / arc_radius(model));
+    let distance = D::variable(place.y, 1, 1.0);
+    let sine = angle.map_smooth(|x| (x.sin(), x.cos()));
+    let cosine = angle.map_smooth(|x| (x.cos(), -x.sin()));
+    let axial_place = distance * sine + D::constant(outer_groove.groove_offset);
+    let radius = distance * cosine + D::constant(outer_groove.groove_circle_radius);
     let position =
         radial.map(|c| radius.scale(c)) + Vector3::new(axial_place, D::constant(0.0), D::constant(0.0));
     let axis = constant_vector(&Vector3::x());
@@ -126,11 +144,15 @@ pub fn balance(
     let inner_force = -inner.normal * inner_load + inner.normal.cross(&tangent) * inner_friction;
     let outer_force = -outer.normal * outer_load + outer.normal.cross(&tangent) * outer_friction;
     let total = inner_force + outer_force;
-    let mut residual = [total.x, total.dot(&constant_vector(&radial)) + centrifugal_force];
+    let (axial, radial_force) = (total.x, total.dot(&constant_vector(&radial)) + centrifugal_force);
+    let mut residual = [
+        axial * cosine - radial_force * sine,
+        axial * sine + radial_force * cosine,
+    ];
     if shared.cage_speed.value == 0.0 {
         let middle = middle_of_gap(model, shared, azimuth);
-        residual[0] -= (axial_place - D::constant(middle.x)).scale(IDLE_HOLD);
-        residual[1] -= (radius - D::constant(middle.y)).scale(IDLE_HOLD);
+        residual[0] -= (angle.scale(arc_radius(model)) - D::constant(middle.x)).scale(IDLE_HOLD);
+        residual[1] -= (distance - D::constant(middle.y)).scale(IDLE_HOLD);
     }
     let arm = offset + inner.normal.map(|c| c.scale(ball.radius));
     BallBalance {
@@ -146,11 +168,12 @@ pub fn balance(
         centrifugal_force,
         gyroscopic_moment,
         angular_velocity: spin,
+        centre: [axial_place, radius],
     }
 }
 
-/// Ball place (axial, radial) [m] with the same approach or gap at both races, on the line of the groove centres.
-pub fn middle_of_gap(model: &Model, shared: &Shared, azimuth: f64) -> Vector2<f64> {
+/// Ball place with the same approach or gap at both races, on the line of the groove centres.
+pub fn middle_of_gap(model: &Model, shared: &Shared, azimuth: f64) -> Place {
     let (radial, _) = azimuth_directions(azimuth);
     let (inner, outer) = (&model.bearing.inner, &model.bearing.outer);
     let position = shared.position.map(|c| c.value);
@@ -166,13 +189,9 @@ pub fn middle_of_gap(model: &Model, shared: &Shared, azimuth: f64) -> Vector2<f6
         inner.groove_radius - model.bearing.ball.radius,
         outer.groove_radius - model.bearing.ball.radius,
     );
-    // The ball lies beyond the inner groove centre as seen from it towards the outer race, and the other way round.
-    let direction = if length > 0.0 {
-        line / length
-    } else {
-        Vector2::new(0.0, 1.0)
-    };
-    outer_centre + direction * (l_o + 0.5 * (length - l_i - l_o))
+    // Groove centres that coincide leave the direction open: any does.
+    let angle = if length > 0.0 { line.x.atan2(line.y) } else { 0.0 };
+    Vector2::new(angle * l_o, l_o + 0.5 * (length - l_i - l_o))
 }
 
 /// Finds the place where the ball is in balance, starting from `place`; returns the balance there.
@@ -184,20 +203,23 @@ pub fn settle(
     input: &EquilibriumInput,
     shared: &Shared,
     azimuth: f64,
-    place: &mut Vector2<f64>,
+    place: &mut Place,
     tolerance: f64,
 ) -> Option<BallBalance> {
     let diameter = 2.0 * model.bearing.ball.radius;
     let longest = 0.02 * diameter;
+    let balance_radius = 0.5 * model.bearing.pitch_diameter;
     let norm = |b: &BallBalance| b.residual[0].value.hypot(b.residual[1].value);
     let mut here = balance(model, input, shared, azimuth, place);
     let mut shift = 0.0;
     for _ in 0..MAX_ITERATIONS {
-        if norm(&here) <= tolerance {
-            return Some(here);
-        }
         let r = Vector2::new(here.residual[0].value, here.residual[1].value);
         let stiffness = Matrix2::from_fn(|i, k| -here.residual[i].derivatives[k]);
+        // A coordinate cannot be set finer than its last digit.
+        let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness.amax() * balance_radius;
+        if r.norm() <= tolerance.max(round_off) {
+            return Some(here);
+        }
         let shifted = stiffness + Matrix2::identity() * shift;
         let mut step = shifted.lu().solve(&r).filter(|s| s.iter().all(|c| c.is_finite()));
         if let Some(step) = &mut step {

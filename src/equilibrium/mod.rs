@@ -7,14 +7,14 @@
 mod ball;
 mod report;
 
-use nalgebra::{Matrix2, SMatrix, SVector, UnitQuaternion, Vector2, Vector3};
+use nalgebra::{Matrix2, SMatrix, SVector, UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use crate::bearing::azimuth_directions;
 use crate::model::Model;
 use crate::scalar::{Dual, Scalar};
 use crate::scene::{Condition, Scene};
-use ball::{BallBalance, N_SHARED, SHARED, Shared, middle_of_gap, settle};
+use ball::{BallBalance, N_SHARED, Place, SHARED, Shared, middle_of_gap, settle};
 pub use report::BallReport;
 
 type D = Dual<{ ball::DIRECTIONS }>;
@@ -155,7 +155,7 @@ struct Trial {
     tangent: SharedMatrix,
     inner_load_sum: f64,
     balances: Vec<BallBalance>,
-    places: Vec<Vector2<f64>>,
+    places: Vec<Place>,
 }
 
 /// Solves a quasi-static problem.
@@ -188,7 +188,7 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
     // A ball loaded by an approach of a millionth of its diameter is the smallest load worth resolving.
     let smallest = model.contact(0, 0.0).shape.stiffness(0.0) * (1e-6 * diameter).powf(1.5);
 
-    let mut places: Option<Vec<Vector2<f64>>> = None;
+    let mut places: Option<Vec<Place>> = None;
     let reference = |trial: &Trial| applied.max(inertia_force).max(smallest).max(trial.inner_load_sum);
     let residual_of = |trial: &Trial| {
         let scale = reference(trial);
@@ -203,7 +203,7 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
         }
         residual
     };
-    let evaluate = |unknowns: &SharedVector, places: &Option<Vec<Vector2<f64>>>| {
+    let evaluate = |unknowns: &SharedVector, places: &Option<Vec<Place>>| {
         let tolerance = 0.01 * TOLERANCE * applied.max(inertia_force).max(smallest);
         evaluate(model, input, unknowns, places.as_deref(), tolerance)
     };
@@ -357,7 +357,7 @@ fn evaluate(
     model: &Model,
     input: &EquilibriumInput,
     unknowns: &SharedVector,
-    start: Option<&[Vector2<f64>]>,
+    start: Option<&[Place]>,
     tolerance: f64,
 ) -> Result<Trial, EquilibriumError> {
     let shared = shared(input, unknowns);
@@ -426,12 +426,13 @@ fn finish(
         .map(|j| {
             let azimuth = model.bearing.ball_azimuth(j);
             let (radial, tangential) = azimuth_directions(azimuth);
-            let (place, balance) = (&trial.places[j], &trial.balances[j]);
+            let balance = &trial.balances[j];
+            let [axial, radius] = balance.centre.map(D::value);
             let spin = balance.angular_velocity.map(D::value);
             BallEquilibrium {
                 azimuth,
-                position: Vector3::x() * place.x + radial * place.y,
-                velocity: tangential * (cage_speed * place.y),
+                position: Vector3::x() * axial + radial * radius,
+                velocity: tangential * (cage_speed * radius),
                 angular_velocity: Vector3::x() * spin[0] + radial * spin[1],
                 report: BallReport::new(model, balance, &shared(input, unknowns).axis.map(D::value)),
             }
