@@ -1,9 +1,10 @@
 //! Pose, twist and wrench of a rigid body, in world axes.
 
 use nalgebra::{UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Position and orientation of a body frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
     /// [m] origin.
     pub position: Vector3<f64>,
@@ -12,7 +13,7 @@ pub struct Pose {
 }
 
 /// Velocity of a body frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Twist {
     /// [m/s] of the origin.
     pub velocity: Vector3<f64>,
@@ -21,7 +22,7 @@ pub struct Twist {
 }
 
 /// Force and moment about a body's origin.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Wrench {
     /// [N] force.
     pub force: Vector3<f64>,

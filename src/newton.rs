@@ -1,5 +1,7 @@
 //! Newton's method with exact tangents, used sparingly, and a backtracking line search.
 
+use serde::{Deserialize, Serialize};
+
 /// Largest number of residual evaluations of one solve; a well-behaved step takes two or three.
 const MAX_EVALUATIONS: u32 = 25;
 /// [-] a correction that leaves more than this share of the residual asks for a new tangent.
@@ -19,7 +21,7 @@ pub trait Equations {
 }
 
 /// Work of one or many solves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NewtonWork {
     /// Corrections applied.
     pub iterations: u64,

@@ -18,6 +18,8 @@ pub struct RaceOutput {
     pub wrench: Wrench,
     /// [N m] torque that keeps a race body at its prescribed speed; for other races, that balances the bearing's.
     pub drive_torque: f64,
+    /// [rad] turned about the own axis since the start, without limit.
+    pub turned: f64,
 }
 
 /// A ball-race contact. Longitudinal is along the rolling direction, lateral transverse to it (frame C).
@@ -204,6 +206,7 @@ fn race_output(race: &RaceState, model: &Model, index: usize) -> RaceOutput {
         twist,
         wrench: race.bearing_wrench,
         drive_torque,
+        turned: race.turned,
     }
 }
 

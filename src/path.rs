@@ -1,12 +1,13 @@
 //! How prescribed quantities move between two communication points: continuous, never a jump inside a step.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{SVector, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 use crate::motion::{Pose, Twist};
 use crate::rotation::{from_quaternion, rotate, tangent, tangent_inverse, to_quaternion};
 
 /// A cubic in time with given values and rates at both ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Cubic([Vector3<f64>; 4]);
 
 impl Cubic {
@@ -43,7 +44,7 @@ impl Cubic {
 /// position is a cubic. The orientation is a turn at the announced angular velocity `w`, on which a small cubic
 /// conformal rotation vector `e(t)` is laid: `R(t) = exp(w t) R(e(t)) R(0)`; a steady turn of any number of
 /// revolutions per step is exact.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RacePath {
     start_time: f64,
     position: Cubic,
@@ -125,17 +126,20 @@ impl RacePath {
 }
 
 /// A vector that moves linearly from one value to another within a communication step, and is held afterwards.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ramp<const N: usize> {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ramp {
     start_time: f64,
     duration: f64,
-    from: [f64; N],
-    to: [f64; N],
+    from: SVector<f64, RAMP_WIDTH>,
+    to: SVector<f64, RAMP_WIDTH>,
 }
 
-impl<const N: usize> Ramp<N> {
+/// Components of a [`Ramp`]: applied force, applied moment, speed.
+pub const RAMP_WIDTH: usize = 7;
+
+impl Ramp {
     /// A constant.
-    pub fn constant(value: [f64; N]) -> Self {
+    pub fn constant(value: SVector<f64, RAMP_WIDTH>) -> Self {
         Self {
             start_time: 0.0,
             duration: 1.0,
@@ -145,7 +149,7 @@ impl<const N: usize> Ramp<N> {
     }
 
     /// From the value of `self` at `start_time` [s] to `value` after `duration` [s].
-    pub fn towards(&self, start_time: f64, value: [f64; N], duration: f64) -> Self {
+    pub fn towards(&self, start_time: f64, value: SVector<f64, RAMP_WIDTH>, duration: f64) -> Self {
         Self {
             start_time,
             duration,
@@ -155,9 +159,9 @@ impl<const N: usize> Ramp<N> {
     }
 
     /// Value at a time [s].
-    pub fn at(&self, time: f64) -> [f64; N] {
+    pub fn at(&self, time: f64) -> SVector<f64, RAMP_WIDTH> {
         let t = ((time - self.start_time) / self.duration).clamp(0.0, 1.0);
-        std::array::from_fn(|i| self.from[i] + (self.to[i] - self.from[i]) * t)
+        self.from + (self.to - self.from) * t
     }
 }
 
@@ -235,10 +239,10 @@ mod tests {
 
     #[test]
     fn a_ramp_is_linear_and_held_afterwards() {
-        let ramp = Ramp::constant([1.0]).towards(2.0, [3.0], 0.5);
+        let ramp = Ramp::constant(SVector::repeat(1.0)).towards(2.0, SVector::repeat(3.0), 0.5);
         assert_eq!(
-            [ramp.at(1.0), ramp.at(2.0), ramp.at(2.25), ramp.at(3.0)],
-            [[1.0], [1.0], [2.0], [3.0]]
+            [1.0, 2.0, 2.25, 3.0].map(|time| ramp.at(time)[4]),
+            [1.0, 1.0, 2.0, 3.0]
         );
     }
 }

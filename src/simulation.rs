@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use nalgebra::{SVector, Vector3};
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::dynamics::{Boundary, RaceLoad, StepFailure, Workspace, make_consistent, try_step};
@@ -11,13 +12,13 @@ use crate::kalker::linear::LinearError;
 use crate::model::{INNER, Model, OUTER};
 use crate::motion::{Pose, Twist, Wrench};
 use crate::outputs::Outputs;
-use crate::path::{RacePath, Ramp};
+use crate::path::{RAMP_WIDTH, RacePath, Ramp};
 use crate::scene::{Condition, Scene};
 use crate::start;
 use crate::state::State;
 
 /// What a race is given from outside, valid at the last communication point.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RaceInput {
     /// Pose of a race with given motion.
     pub pose: Pose,
@@ -32,7 +33,7 @@ pub struct RaceInput {
 }
 
 /// Everything that is given from outside.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// Inner race.
     pub inner: RaceInput,
@@ -81,11 +82,19 @@ pub enum SimulationError {
 }
 
 /// How inputs move during a communication step.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct InputPaths {
     races: [RacePath; 2],
     /// Applied force, applied moment, speed.
-    loads: [Ramp<7>; 2],
+    loads: [Ramp; 2],
+}
+
+/// All that changes in a simulation: enough to go on from here to the same bits, in any instance of the same scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    inputs: Inputs,
+    state: State,
+    paths: InputPaths,
 }
 
 /// A bearing in motion. Cloning it saves everything; the clone goes on to the same bits.
@@ -172,6 +181,31 @@ impl Simulation {
         self.inputs = inputs;
     }
 
+    /// Everything needed to come back to this point.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            inputs: self.inputs,
+            state: self.state.clone(),
+            paths: self.paths.clone(),
+        }
+    }
+
+    /// Goes to a point that a simulation of the same scene was at; false, with nothing changed, if the snapshot is of
+    /// another bearing.
+    #[must_use]
+    pub fn restore(&mut self, snapshot: &Snapshot) -> bool {
+        let constraints = |state: &State| state.races.each_ref().map(|race| race.multipliers.len());
+        let same = snapshot.state.balls.len() == self.state.balls.len()
+            && constraints(&snapshot.state) == constraints(&self.state);
+        if same {
+            self.inputs = snapshot.inputs;
+            self.state.clone_from(&snapshot.state);
+            self.paths.clone_from(&snapshot.paths);
+            self.outputs = Outputs::new(&self.model, &self.state, self.inputs.friction);
+        }
+        same
+    }
+
     /// Outputs of the last communication point.
     pub fn outputs(&self) -> &Outputs {
         &self.outputs
@@ -243,7 +277,7 @@ impl Simulation {
 
     fn boundary(&self, time: f64) -> Boundary {
         let load = |race: usize| {
-            let [fx, fy, fz, mx, my, mz, speed] = self.paths.loads[race].at(time);
+            let [fx, fy, fz, mx, my, mz, speed] = self.paths.loads[race].at(time).into();
             let applied = Wrench {
                 force: Vector3::new(fx, fy, fz),
                 moment: Vector3::new(mx, my, mz),
@@ -284,9 +318,9 @@ impl InputPaths {
 }
 
 /// Applied force, applied moment and speed as one vector.
-fn load_components(input: &RaceInput) -> [f64; 7] {
+fn load_components(input: &RaceInput) -> SVector<f64, RAMP_WIDTH> {
     let (force, moment) = (input.applied.force, input.applied.moment);
-    [
+    SVector::from([
         force.x,
         force.y,
         force.z,
@@ -294,5 +328,5 @@ fn load_components(input: &RaceInput) -> [f64; 7] {
         moment.y,
         moment.z,
         input.speed,
-    ]
+    ])
 }

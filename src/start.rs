@@ -140,6 +140,7 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
         balls,
         races,
         control: StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0),
+        force_tolerance: 0.0,
         powers: Powers::default(),
         energies: Energies::default(),
         statistics: Statistics::default(),

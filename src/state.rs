@@ -2,13 +2,15 @@
 
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
+use serde::{Deserialize, Serialize};
+
 use crate::contact::{BallMotion, RaceMotion};
 use crate::motion::{Pose, Twist, Wrench};
 use crate::newton::NewtonWork;
 use crate::step_control::StepControl;
 
 /// One ball. It is isotropic, so it has no orientation.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BallState {
     /// [m] centre.
     pub position: Vector3<f64>,
@@ -36,7 +38,7 @@ impl BallState {
 }
 
 /// One race. Rates of rotation are material (components along the race's own axes), those of translation spatial.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RaceState {
     /// Pose in world axes.
     pub pose: Pose,
@@ -54,6 +56,8 @@ pub struct RaceState {
     pub multipliers: Vec<f64>,
     /// What the bearing exerts on the race, world axes, about its origin.
     pub bearing_wrench: Wrench,
+    /// [rad] turned about the own axis since the start, without limit.
+    pub turned: f64,
 }
 
 impl RaceState {
@@ -68,6 +72,7 @@ impl RaceState {
             total: Wrench::default(),
             multipliers: vec![0.0; n_constraints],
             bearing_wrench: Wrench::default(),
+            turned: 0.0,
         }
     }
 
@@ -96,7 +101,7 @@ pub fn race_motion(pose: &Pose, twist: &Twist) -> RaceMotion<f64> {
 }
 
 /// Powers at one instant [W].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Powers {
     /// Put in by races, applied loads, drives and gravity.
     pub input: f64,
@@ -107,7 +112,7 @@ pub struct Powers {
 }
 
 /// Energies accumulated since the start [J].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
     /// Work put in.
     pub input: f64,
@@ -127,7 +132,7 @@ impl Energies {
 }
 
 /// Counters of the integrator since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Statistics {
     /// Accepted steps.
     pub steps: u64,
@@ -144,7 +149,7 @@ pub struct Statistics {
 }
 
 /// Everything that changes while the bearing runs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// [s] time.
     pub time: f64,
@@ -154,6 +159,8 @@ pub struct State {
     pub races: [RaceState; 2],
     /// Step size.
     pub control: StepControl,
+    /// [N] residual that counts as converged in the next step.
+    pub force_tolerance: f64,
     /// Powers now.
     pub powers: Powers,
     /// Energies since the start.

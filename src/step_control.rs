@@ -1,5 +1,7 @@
 //! Automatic step size: PI control on the local error, quantised so that a settled run keeps one step size.
 
+use serde::{Deserialize, Serialize};
+
 /// [-] aim below the tolerance.
 const SAFETY: f64 = 0.9;
 /// Exponents of the PI controller for a second-order method (local error of order 3; Gustafsson 1991).
@@ -16,7 +18,7 @@ const FAILURE_NOTCHES: i32 = 8;
 const STEPS_WITHOUT_GROWTH: u8 = 2;
 
 /// State of the step control. Step sizes are `max_step 2^(notch/4)` with `notch <= 0`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepControl {
     max_step: f64,
     min_step: f64,

@@ -52,6 +52,8 @@ pub struct CreepForces<S> {
 const CREEP_FLOOR: f64 = 1e-12;
 /// [N] friction limit below which forces fade to zero, so that an unloaded contact is 0 and not 0/0.
 const FORCE_FLOOR: f64 = 1e-9;
+/// [N m] the same for the spin moment: the force floor on a patch of a micrometre.
+const MOMENT_FLOOR: f64 = 1e-15;
 
 impl<S: Scalar> LinearTheory<S> {
     /// Forces of a law.
@@ -90,8 +92,7 @@ impl<S: Scalar> LinearTheory<S> {
     fn saturated(&self, creepage: &Creepage<S>) -> CreepForces<S> {
         let linear = self.linear(creepage);
         let per_force = S::one() / (self.friction_limit + S::constant(FORCE_FLOOR));
-        let moment_floor = self.mean_semi_axis.scale(FORCE_FLOOR) + S::constant(f64::MIN_POSITIVE);
-        let per_moment = S::one() / (self.moment_limit + moment_floor);
+        let per_moment = S::one() / (self.moment_limit + S::constant(MOMENT_FLOOR));
         let (x, y) = (linear.longitudinal * per_force, linear.lateral * per_force);
         let z = linear.spin_moment * per_moment;
         let q = (x.square() + y.square() + z.square()).sqrt();
@@ -125,8 +126,7 @@ impl<S: Scalar> LinearTheory<S> {
             parabola.where_positive(S::one() - x, S::one())
         };
         let force = |stiffness: S, creep: S| self.friction_limit * creep / total * phi(stiffness, creep);
-        let moment_floor = self.mean_semi_axis.scale(FORCE_FLOOR) + S::constant(f64::MIN_POSITIVE);
-        let x = magnitude(creepage.spin) * self.spin / (self.moment_limit + moment_floor);
+        let x = magnitude(creepage.spin) * self.spin / (self.moment_limit + S::constant(MOMENT_FLOOR));
         let phi_z = x * (S::one() + x) / (S::one() + x + x.square());
         let share = spin / (magnitude(creepage.lateral) + magnitude(spin));
         CreepForces {

@@ -155,18 +155,6 @@ impl<'a> BearingStep<'a> {
                 .as_ref()
                 .map(|body| RaceTrial::new(body, &start.races[race]));
         }
-        // Where nothing but rounding remains: eps times the stiffest contact's dQ/dx times the largest coordinate.
-        let (mut load, mut round_off) = (0.0f64, 0.0f64);
-        for ball in &workspace.balls {
-            for contact in &ball.contacts {
-                load = load.max(contact.load);
-                let stiffness = 1.5 * contact.stiffness.powf(2.0 / 3.0) * contact.load.cbrt();
-                round_off = round_off.max(stiffness * ball.motion.position.amax());
-            }
-        }
-        let force_tolerance = FORCE_TOLERANCE
-            .max(RELATIVE_TOLERANCE * load)
-            .max(ROUND_OFF_UNITS * f64::EPSILON * round_off);
         Self {
             model,
             contacts,
@@ -174,7 +162,7 @@ impl<'a> BearingStep<'a> {
             step: HhtStep::new(model.solver.alpha_f, h),
             boundary,
             seen,
-            force_tolerance,
+            force_tolerance: start.force_tolerance,
             workspace,
             contact_values: 0,
             contact_tangents: 0,
@@ -440,6 +428,8 @@ fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep,
         };
     }
     for race in 0..2 {
+        let before = &state.races[race];
+        let (turned, spin) = (before.turned, before.rate.x);
         match &workspace.races[race] {
             Some(trial) => state.races[race].clone_from(&trial.end),
             None => {
@@ -449,6 +439,7 @@ fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep,
                 state.races[race].bearing_wrench = wrench;
             }
         }
+        state.races[race].turned = turned + 0.5 * step.h * (spin + state.races[race].rate.x);
     }
     let mut powers = Powers::default();
     for ball in &workspace.balls {
@@ -466,6 +457,19 @@ fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep,
     }
     state.energies.add(&state.powers, &powers, step.h);
     state.powers = powers;
+    state.force_tolerance = force_tolerance(workspace.balls.iter().flat_map(|ball| &ball.contacts), model);
+}
+
+/// [N] residual below which nothing but rounding remains: nine digits of the largest load, or a last digit of a
+/// coordinate times the stiffness `dQ/dx` of the stiffest contact.
+fn force_tolerance<'a>(contacts: impl Iterator<Item = &'a BallRaceContact<f64>>, model: &Model) -> f64 {
+    let (mut load, mut stiffness) = (0.0f64, 0.0f64);
+    for contact in contacts {
+        load = load.max(contact.load);
+        stiffness = stiffness.max(1.5 * contact.stiffness.powf(2.0 / 3.0) * contact.load.cbrt());
+    }
+    let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness * 0.5 * model.bearing.pitch_diameter;
+    FORCE_TOLERANCE.max(RELATIVE_TOLERANCE * load).max(round_off)
 }
 
 /// Sum of the contacts' effect on a race.
@@ -507,6 +511,7 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     let ball_model = &model.bearing.ball;
     let mut powers = Powers::default();
     let mut wrenches = [Wrench::default(); 2];
+    let mut all_contacts = Vec::with_capacity(2 * state.balls.len());
     for ball in &mut state.balls {
         ball.total = Wrench {
             force: model.gravity * ball_model.mass,
@@ -521,6 +526,7 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
             powers.damping += contact.damping_power;
             wrenches[race].force -= contact.force;
             wrenches[race].moment += contact.race_moment;
+            all_contacts.push(contact);
         }
         ball.acceleration = ball.total.force / ball_model.mass;
         ball.angular_acceleration = ball.total.moment / ball_model.inertia;
@@ -537,4 +543,5 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
         };
     }
     state.powers = powers;
+    state.force_tolerance = force_tolerance(all_contacts.iter(), model);
 }
