@@ -52,6 +52,22 @@ pub fn tangent_rate<S: Scalar>(c: &Vector3<S>, rate: &Vector3<S>, v: &Vector3<S>
     tangent(c, v) * (c0_rate.scale(2.0) / d) + inner * scale
 }
 
+/// Conformal rotation vector of a rotation vector (axis times angle): `c = x tan(|x|/4)/(|x|/4)`.
+#[inline(always)]
+pub fn from_rotation_vector<S: Scalar>(x: &Vector3<S>) -> Vector3<S> {
+    // f(s) with s = |x|^2, by its series where the closed form is 0/0.
+    let factor = x.dot(x).map_smooth(|s| {
+        if s < 1e-4 {
+            return (1.0 + s / 48.0 + s * s / 1920.0, 1.0 / 48.0 + s / 960.0);
+        }
+        let quarter = 0.25 * s.sqrt();
+        let tan = quarter.tan();
+        let slope = ((1.0 + tan * tan) * quarter - tan) / (2.0 * s * quarter);
+        (tan / quarter, slope)
+    });
+    x * factor
+}
+
 /// Conformal rotation vector of a unit quaternion, of the turn below or equal to half a turn.
 pub fn from_quaternion(q: &UnitQuaternion<f64>) -> Vector3<f64> {
     let sign = if q.w < 0.0 { -1.0 } else { 1.0 };
@@ -83,7 +99,10 @@ pub fn matrix(c: &Vector3<f64>) -> Matrix3<f64> {
 
 #[cfg(test)]
 mod tests {
+    use num_traits::Zero;
+
     use super::*;
+    use crate::scalar::Dual;
 
     fn vectors() -> impl Iterator<Item = Vector3<f64>> {
         [0.0, 1e-9, 0.1, 1.0, 3.0, 3.9]
@@ -100,6 +119,7 @@ mod tests {
             assert!((matrix(&c) - exact.to_rotation_matrix().matrix()).norm() < 1e-14);
             assert!(to_quaternion(&c).angle_to(&exact) < 1e-7);
             assert!((from_quaternion(&exact) - c).norm() < 1e-13);
+            assert!((from_rotation_vector(&(axis * angle)) - c).norm() < 1e-13);
         }
     }
 
@@ -123,6 +143,18 @@ mod tests {
             let v = Vector3::new(-0.2, 0.5, 0.9);
             let slope = (tangent(&(c + rate * h), &v) - tangent(&(c - rate * h), &v)) / (2.0 * h);
             assert!((slope - tangent_rate(&c, &rate, &v)).norm() < 1e-8, "{c}");
+        }
+    }
+
+    #[test]
+    fn identity_derivative_of_the_conversion() {
+        for x in [Vector3::new(2e-3, -1e-3, 3e-3), Vector3::new(0.3, 0.5, -0.7)] {
+            let dual = x.map(Dual::<1>::constant)
+                + Vector3::new(Dual::variable(0.0, 0, 1.0), Dual::zero(), Dual::zero());
+            let h = Vector3::x() * 1e-6;
+            let difference = (from_rotation_vector(&(x + h)) - from_rotation_vector(&(x - h))) / 2e-6;
+            let exact = from_rotation_vector(&dual).map(|c| c.derivatives[0]);
+            assert!((difference - exact).norm() < 1e-9, "{difference} {exact}");
         }
     }
 

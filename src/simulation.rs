@@ -138,10 +138,19 @@ impl Simulation {
     /// # Errors
     /// See [`SimulationError`].
     pub fn initialise(&mut self) -> Result<(), SimulationError> {
+        let time = self.state.time;
         self.state = start::from_inputs(&self.scene, &self.model, &mut self.inputs)?;
+        self.state.time = time;
         self.paths = InputPaths::steady(&self.inputs, &self.state);
         self.settle();
         Ok(())
+    }
+
+    /// Sets the time of a simulation that has not moved yet [s].
+    pub fn set_start_time(&mut self, time: f64) {
+        self.state.time = time;
+        self.paths = InputPaths::steady(&self.inputs, &self.state);
+        self.settle();
     }
 
     /// Consistent accelerations and outputs for the state as it is.

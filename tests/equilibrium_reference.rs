@@ -1,4 +1,5 @@
 //! Quasi-static equilibrium against independent data (tests/data/bearing/README.md) and invariants.
+#![allow(clippy::unwrap_used)]
 
 use nalgebra::{Rotation2, Vector2};
 use roulement::equilibrium::{self, Equilibrium, EquilibriumInput, Gyroscopic, Prescribed};

@@ -14,6 +14,8 @@ use crate::state::{BallState, stack};
 pub const DIRECTIONS: usize = 12;
 
 /// A race as the balls see it in a trial step.
+// Two of these exist; a box would cost an allocation per step.
+#[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug)]
 pub enum RaceSeen {
     /// Motion given: no unknowns.

@@ -1,0 +1,117 @@
+//! Commands and their options.
+
+mod run;
+mod summary;
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum};
+use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
+use roulement::model::Model;
+use roulement::model_description::render;
+use roulement::package::{library_beside_executable, write_fmu};
+use roulement::scene::Scene;
+use roulement::simulation::Simulation;
+
+/// 3-D dynamic ball bearing for gearbox co-simulation.
+#[derive(Parser)]
+#[command(name = "roulement", version, about, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Simulate a scene: result table, plots, summary.
+    Run {
+        /// Scene file.
+        scene: PathBuf,
+        /// Directory for the results; made if missing.
+        #[arg(short, long, default_value = "results")]
+        output: PathBuf,
+    },
+    /// Solve the quasi-static equilibrium of a scene at time 0.
+    Equilibrium {
+        /// Scene file.
+        scene: PathBuf,
+        /// Print JSON instead of text.
+        #[arg(long)]
+        json: bool,
+        /// How the gyroscopic moment of the balls is carried.
+        #[arg(long, value_enum, default_value = "outer-race-control")]
+        gyroscopic: GyroscopicChoice,
+    },
+    /// Pack a scene as an FMI 2.0 co-simulation FMU.
+    Fmu {
+        /// Scene file.
+        scene: PathBuf,
+        /// Package to write.
+        #[arg(short, long)]
+        output: PathBuf,
+        /// Shared library to pack; the one built beside this program if not given.
+        #[arg(long)]
+        library: Option<PathBuf>,
+    },
+    /// Print the model description of a scene's package.
+    Describe {
+        /// Scene file.
+        scene: PathBuf,
+    },
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum GyroscopicChoice {
+    /// By friction at the outer race alone, whatever it takes (Jones).
+    OuterRaceControl,
+    /// Ignored.
+    None,
+    /// By friction at both races, at most the friction limit.
+    Friction,
+}
+
+impl From<GyroscopicChoice> for Gyroscopic {
+    fn from(choice: GyroscopicChoice) -> Self {
+        match choice {
+            GyroscopicChoice::OuterRaceControl => Self::OuterRaceControl,
+            GyroscopicChoice::None => Self::None,
+            GyroscopicChoice::Friction => Self::Friction,
+        }
+    }
+}
+
+/// Reads the command line and does what it says.
+///
+/// # Errors
+/// Whatever went wrong, as a sentence.
+pub fn run() -> Result<(), Box<dyn Error>> {
+    match Arguments::parse().command {
+        Command::Run { scene, output } => run::run(&Scene::load(&scene)?, &output)?,
+        Command::Equilibrium {
+            scene,
+            json,
+            gyroscopic,
+        } => {
+            let scene = Scene::load(&scene)?;
+            let input = EquilibriumInput::from_scene(&scene, gyroscopic.into());
+            let solution = equilibrium::solve(&Model::new(&scene)?, &input)?;
+            if json {
+                println!("{:#}", solution.to_json());
+            } else {
+                print!("{solution}");
+            }
+        }
+        Command::Fmu {
+            scene,
+            output,
+            library,
+        } => {
+            let library = library.map_or_else(library_beside_executable, Ok)?;
+            write_fmu(&Scene::load(&scene)?, &library, &output)?;
+            println!("{}", output.display());
+        }
+        Command::Describe { scene } => print!("{}", render(&Simulation::new(&Scene::load(&scene)?)?)?.xml),
+    }
+    Ok(())
+}

@@ -1,0 +1,18 @@
+//! The FMI 2.0 co-simulation interface of the shared library.
+//!
+//! ```text
+//! exports.rs        the 34 C functions: pointers in, statuses out, nothing else; the only unsafe code
+//! state_machine.rs  which call is allowed when, as data
+//! instance.rs       what the calls do, safe
+//! log.rs            messages to the importer
+//! ```
+
+mod exports;
+mod instance;
+mod log;
+mod state_machine;
+mod types;
+
+pub use instance::SCENE_FILE;
+pub use state_machine::{Call, Phase, allowed};
+pub use types::{CallbackFunctions, Status};
