@@ -27,10 +27,14 @@ pub fn from_equilibrium(scene: &Scene, model: &Model) -> Result<(Inputs, State),
         position: Vector3::zeros(),
         orientation: problem.outer_orientation,
     };
-    let [fx, fy, fz, my, mz] = solution.load;
+    // What is applied is what the scene says; directions with an imposed motion are held by constraints.
+    let load = |direction: usize| match problem.conditions[direction] {
+        Prescribed::Load(load) => load,
+        Prescribed::Motion(_) => 0.0,
+    };
     let applied = Wrench {
-        force: Vector3::new(fx, fy, fz),
-        moment: Vector3::new(0.0, my, mz),
+        force: Vector3::new(load(0), load(1), load(2)),
+        moment: Vector3::new(0.0, load(3), load(4)),
     };
     let inputs = Inputs {
         inner: spinning(inner_pose, problem.inner_speed, applied),

@@ -25,6 +25,8 @@ type SharedMatrix = SMatrix<f64, N_SHARED, N_SHARED>;
 const TOLERANCE: f64 = 1e-11;
 /// Iterations on the displacements; a typical solve takes 5 to 15.
 const MAX_ITERATIONS: u32 = 400;
+/// [-] largest approach over ball diameter of an answer; steel yields at a tenth of that.
+const MAX_APPROACH: f64 = 0.02;
 /// Names of the five directions.
 const DIRECTION_NAMES: [&str; 5] = ["x", "y", "z", "ry", "rz"];
 
@@ -93,6 +95,21 @@ pub enum EquilibriumError {
         ball: usize,
         /// [m, rad] displacement tried.
         displacement: [f64; 5],
+    },
+    /// A contact is deeper than Hertz's theory reaches.
+    #[error(
+        "ball {ball} would be pressed in by {approach:.3e} m at {load:.3e} N: more than {limit} of its diameter, far \
+         beyond elastic Hertzian contact; the load is too large or the imposed displacement is"
+    )]
+    Overload {
+        /// Ball, counted from 1.
+        ball: usize,
+        /// [m] approach.
+        approach: f64,
+        /// [N] load.
+        load: f64,
+        /// [-] largest approach over ball diameter.
+        limit: f64,
     },
     /// The displacements do not converge.
     #[error(
@@ -227,7 +244,8 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
         });
         let accepted = trial.filter(|(_, trial)| {
             // A race that touches nothing yet moves without its residual falling.
-            let untouched = here.inner_load_sum == 0.0 && trial.inner_load_sum == 0.0;
+            let touches = |trial: &Trial| trial.inner_load_sum > 1e-9 * reference(trial);
+            let untouched = !touches(&here) && !touches(trial);
             untouched || residual_of(trial).norm() < residual.norm() * (1.0 - 1e-6)
         });
         match accepted {
@@ -255,14 +273,23 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
             });
         }
     }
-    Ok(finish(
-        model,
-        input,
-        &unknowns,
-        &here,
-        residual.amax(),
-        iterations,
-    ))
+    let solution = finish(model, input, &unknowns, &here, residual.amax(), iterations);
+    for (index, ball) in solution.balls.iter().enumerate() {
+        let b = &ball.report;
+        let (approach, load) = (
+            b.inner_approach.max(b.outer_approach),
+            b.inner_load.max(b.outer_load),
+        );
+        if approach > MAX_APPROACH * diameter {
+            return Err(EquilibriumError::Overload {
+                ball: index + 1,
+                approach,
+                load,
+                limit: MAX_APPROACH,
+            });
+        }
+    }
+    Ok(solution)
 }
 
 /// Newton step of the free directions and the cage speed, shifted by a share of a typical stiffness.

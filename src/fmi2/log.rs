@@ -66,15 +66,16 @@ impl Log {
         }
         if let Some(logger) = self.callbacks.logger {
             let (category, message) = (plain(category), plain(message));
+            // The message is passed as the format: it has no percent sign, and importers whose logger is not variadic
+            // (FMPy's is a Python function) would show nothing but "%s" otherwise.
             // SAFETY: the importer guarantees its logger for the instance's lifetime; all strings live through the
-            // call; the message is an argument of a fixed format, never a format itself.
+            // call; a format without percent signs reads no argument.
             unsafe {
                 logger(
                     self.callbacks.component_environment,
                     self.instance.as_ptr(),
                     status,
                     category.as_ptr(),
-                    c"%s".as_ptr(),
                     message.as_ptr(),
                 );
             }
