@@ -38,6 +38,8 @@ struct Panel {
     x_label: &'static str,
     y_label: &'static str,
     curves: Vec<Curve>,
+    /// [y] smallest range worth magnifying: less is rounding.
+    least: f64,
     /// Points instead of lines.
     scattered: bool,
 }
@@ -86,7 +88,7 @@ pub fn write_plots(
 
 /// A quantity of both contacts of ball 1 over time: what figure 7 of the paper shows.
 fn contact_panels(history: &[Outputs]) -> Vec<Panel> {
-    let panel = |y_label, get: fn(&ContactOutput) -> f64| {
+    let panel = |y_label, least, get: fn(&ContactOutput) -> f64| {
         let curve = |name, side: fn(&BallOutput) -> &ContactOutput| Curve {
             name,
             points: history
@@ -102,18 +104,21 @@ fn contact_panels(history: &[Outputs]) -> Vec<Panel> {
             x_label: "time [ms]",
             y_label,
             curves,
+            least,
             scattered: false,
         }
     };
     vec![
-        panel("load [N]", |c| c.load),
-        panel("contact angle [deg]", |c| c.contact_angle.to_degrees()),
-        panel("longitudinal creepage [1e-3]", |c| c.creepage_longitudinal * 1e3),
-        panel("lateral creepage [1e-3]", |c| c.creepage_lateral * 1e3),
-        panel("spin creepage [1/m]", |c| c.creepage_spin),
-        panel("spin moment [N mm]", |c| c.spin_moment * 1e3),
-        panel("lateral creep force [N]", |c| c.force_lateral),
-        panel("friction power [W]", |c| c.power),
+        panel("load [N]", 0.1, |c| c.load),
+        panel("contact angle [deg]", 0.01, |c| c.contact_angle.to_degrees()),
+        panel("longitudinal creepage [1e-3]", 0.001, |c| {
+            c.creepage_longitudinal * 1e3
+        }),
+        panel("lateral creepage [1e-3]", 0.001, |c| c.creepage_lateral * 1e3),
+        panel("spin creepage [1/m]", 0.01, |c| c.creepage_spin),
+        panel("spin moment [N mm]", 0.001, |c| c.spin_moment * 1e3),
+        panel("lateral creep force [N]", 0.01, |c| c.force_lateral),
+        panel("friction power [W]", 0.0001, |c| c.power),
     ]
 }
 
@@ -122,10 +127,11 @@ fn bearing_panels(model: &Model, history: &[Outputs]) -> Vec<Panel> {
         name,
         points: history.iter().map(|o| (o.time * 1e3, get(o))).collect(),
     };
-    let panel = |y_label, curves| Panel {
+    let panel = |y_label, least, curves| Panel {
         x_label: "time [ms]",
         y_label,
         curves,
+        least,
         scattered: false,
     };
     let epicyclic = |o: &Outputs| {
@@ -138,6 +144,7 @@ fn bearing_panels(model: &Model, history: &[Outputs]) -> Vec<Panel> {
     vec![
         panel(
             "inner race position [um]",
+            0.01,
             vec![
                 curve("x", &|o| o.inner.pose.position.x * 1e6),
                 curve("y", &|o| o.inner.pose.position.y * 1e6),
@@ -146,6 +153,7 @@ fn bearing_panels(model: &Model, history: &[Outputs]) -> Vec<Panel> {
         ),
         panel(
             "force on inner race [N]",
+            1.0,
             vec![
                 curve("x", &|o| o.inner.wrench.force.x),
                 curve("y", &|o| o.inner.wrench.force.y),
@@ -154,6 +162,7 @@ fn bearing_panels(model: &Model, history: &[Outputs]) -> Vec<Panel> {
         ),
         panel(
             "moment on inner race [N m]",
+            0.001,
             vec![
                 curve("y", &|o| o.inner.wrench.moment.y),
                 curve("z", &|o| o.inner.wrench.moment.z),
@@ -161,6 +170,7 @@ fn bearing_panels(model: &Model, history: &[Outputs]) -> Vec<Panel> {
         ),
         panel(
             "cage speed [rad/s]",
+            0.01,
             vec![
                 curve("simulated", &|o| o.cage_speed),
                 curve("epicyclic", &epicyclic),
@@ -168,10 +178,12 @@ fn bearing_panels(model: &Model, history: &[Outputs]) -> Vec<Panel> {
         ),
         panel(
             "friction torque [N mm]",
+            0.01,
             vec![curve("inner race", &|o| o.friction_torque * 1e3)],
         ),
         panel(
             "friction power [W]",
+            0.001,
             vec![curve("all contacts", &|o| o.friction_power)],
         ),
     ]
@@ -181,7 +193,7 @@ fn ball_panels(history: &[Outputs]) -> Vec<Panel> {
     let Some(last) = history.last() else {
         return vec![];
     };
-    let panel = |y_label, get: fn(&ContactOutput) -> f64| {
+    let panel = |y_label, least, get: fn(&ContactOutput) -> f64| {
         let curve = |name, side: fn(&BallOutput) -> &ContactOutput| Curve {
             name,
             points: last
@@ -198,14 +210,15 @@ fn ball_panels(history: &[Outputs]) -> Vec<Panel> {
             x_label: "azimuth [deg]",
             y_label,
             curves,
+            least,
             scattered: true,
         }
     };
     vec![
-        panel("load [N]", |c| c.load),
-        panel("contact angle [deg]", |c| c.contact_angle.to_degrees()),
-        panel("peak pressure [MPa]", |c| c.peak_pressure * 1e-6),
-        panel("friction power [W]", |c| c.power),
+        panel("load [N]", 0.1, |c| c.load),
+        panel("contact angle [deg]", 0.01, |c| c.contact_angle.to_degrees()),
+        panel("peak pressure [MPa]", 1.0, |c| c.peak_pressure * 1e-6),
+        panel("friction power [W]", 0.0001, |c| c.power),
     ]
 }
 
@@ -224,7 +237,7 @@ fn figure(path: &Path, title: &str, panels: &[Panel]) -> Result<(), String> {
 }
 
 /// Range of values with some air; a constant gets a range that shows it as constant.
-fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+fn range(values: impl Iterator<Item = f64>, least: f64) -> std::ops::Range<f64> {
     let (low, high) = values
         .filter(|value| value.is_finite())
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
@@ -233,12 +246,10 @@ fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     if low > high {
         return 0.0..1.0;
     }
-    // Less than a millionth of the value is rounding and numerical damping, not a curve worth magnifying.
-    let least = 1e-6 * low.abs().max(high.abs());
     let air = if high - low > least {
         0.06 * (high - low)
     } else {
-        (0.05 * high.abs()).max(1e-9)
+        (0.05 * high.abs()).max(least)
     };
     low - air..high + air
 }
@@ -248,10 +259,10 @@ fn draw(panel: &Panel, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), 
     let x = if panel.scattered {
         -185.0..185.0
     } else {
-        range(points().map(|p| p.0))
+        range(points().map(|p| p.0), 1e-6)
     };
     // Air above the curves for the legend.
-    let mut y = range(points().map(|p| p.1));
+    let mut y = range(points().map(|p| p.1), panel.least);
     y.end += 0.25 * (y.end - y.start);
     let digits = digits(y.end - y.start);
     let mut chart = ChartBuilder::on(area)

@@ -16,7 +16,7 @@ use roulement::simulation::Simulation;
 
 /// 3-D dynamic ball bearing for gearbox co-simulation.
 #[derive(Parser)]
-#[command(name = "roulement", version, about, arg_required_else_help = true)]
+#[command(name = "roulement", version = env!("ROULEMENT_VERSION"), about, arg_required_else_help = true)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -1,0 +1,219 @@
+//! The command line as a user meets it.
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn roulement(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_roulement"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn scene(name: &str) -> String {
+    format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A directory of its own for a test, removed at the end.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("roulement-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).display().to_string()
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn equilibrium_json_has_the_documented_keys() {
+    for choice in ["outer-race-control", "none", "friction"] {
+        let output = roulement(&["equilibrium", &scene("radial"), "--json", "--gyroscopic", choice]);
+        assert!(output.status.success());
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        for (group, keys) in [
+            ("displacement", &["x", "y", "z", "ry", "rz"][..]),
+            ("load", &["Fx", "Fy", "Fz", "My", "Mz"]),
+            (
+                "balls",
+                &[
+                    "azimuth",
+                    "inner_load",
+                    "outer_load",
+                    "inner_contact_angle",
+                    "outer_contact_angle",
+                ],
+            ),
+        ] {
+            for key in keys {
+                assert!(!json[group][key].is_null(), "{group}.{key}");
+            }
+        }
+        assert_eq!(json["stiffness"].as_array().unwrap().len(), 5);
+        assert_eq!(json["balls"]["inner_load"].as_array().unwrap().len(), 9);
+        assert!(json["cage_speed"].as_f64().unwrap() > 200.0 && json["residual"].as_f64().unwrap() < 1e-9);
+        assert!((json["load"]["Fy"].as_f64().unwrap() - 1500.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn equilibrium_text_has_units() {
+    let output = roulement(&["equilibrium", &scene("thrust")]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in ["um", "mrad", "N m", "rad/s", "[deg]", "load inner, outer [N]"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+#[test]
+fn run_writes_table_plots_and_summary() {
+    let scratch = Scratch::new("run");
+    let text = std::fs::read_to_string(scene("thrust"))
+        .unwrap()
+        .replace("\"50 ms\"", "\"2 ms\"");
+    std::fs::write(scratch.path("short.toml"), text).unwrap();
+    let output = roulement(&["run", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+
+    let table = std::fs::read_to_string(scratch.path("out/results.csv")).unwrap();
+    let mut lines = table.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(header[0], "time [s]");
+    for name in [
+        "inner.force.x [N]",
+        "cage.speed [rad/s]",
+        "ball[10].outer.creepage_spin [1/m]",
+    ] {
+        assert!(header.contains(&name), "{name}");
+    }
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| line.split(',').map(|field| field.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(rows.len(), 21);
+    assert!(
+        rows.iter()
+            .all(|row| row.len() == header.len() && row.iter().all(|value| value.is_finite()))
+    );
+    assert_eq!(rows[20][0], 0.002);
+
+    for (name, labels) in [
+        (
+            "contacts.svg",
+            &["contact angle [deg]", "spin moment [N mm]", "friction power [W]"][..],
+        ),
+        ("bearing.svg", &["cage speed [rad/s]", "inner race position [um]"]),
+        ("balls.svg", &["azimuth [deg]", "peak pressure [MPa]"]),
+    ] {
+        let picture = std::fs::read_to_string(Path::new(&scratch.path("out")).join(name)).unwrap();
+        assert!(picture.starts_with("<svg") && picture.trim_end().ends_with("</svg>"));
+        for label in labels {
+            assert!(picture.contains(label), "{name}: {label}");
+        }
+        assert!(!picture.contains("NaN"));
+    }
+
+    let summary = String::from_utf8(output.stdout).unwrap();
+    for part in [
+        "cage speed",
+        "epicyclic",
+        "friction power",
+        "accepted",
+        "rejected",
+        "Newton",
+        "per simulated second",
+    ] {
+        assert!(summary.contains(part), "{summary}");
+    }
+}
+
+#[test]
+fn wrong_scenes_are_refused_with_key_value_and_range() {
+    let scratch = Scratch::new("wrong");
+    let text = std::fs::read_to_string(scene("thrust")).unwrap();
+    for (from, to, parts) in [
+        (
+            "ball_race = 0.08",
+            "ball_race = -1",
+            &["friction.ball_race = -1", "[0, 2]"][..],
+        ),
+        (
+            "\"46 mm\"",
+            "\"4.6 mm\"",
+            &["bearing.pitch_diameter", "0.0046", "m"],
+        ),
+        ("[load]", "[lod]", &["lod"]),
+        ("\"1500 N\"", "\"300 kN\"", &["beyond elastic Hertzian contact"]),
+    ] {
+        assert!(text.contains(from));
+        std::fs::write(scratch.path("wrong.toml"), text.replace(from, to)).unwrap();
+        for command in ["run", "equilibrium", "describe"] {
+            let output = roulement(&[command, &scratch.path("wrong.toml")]);
+            let message = String::from_utf8(output.stderr).unwrap();
+            assert!(!output.status.success());
+            for part in parts {
+                assert!(message.contains(part), "{command}: {message}");
+            }
+        }
+    }
+    let output = roulement(&["run", &scratch.path("nowhere.toml")]);
+    assert!(String::from_utf8(output.stderr).unwrap().contains("nowhere.toml"));
+}
+
+#[test]
+fn a_missing_library_is_named() {
+    let scratch = Scratch::new("library");
+    let package = scratch.path("x.fmu");
+    let output = roulement(&[
+        "fmu",
+        &scene("thrust"),
+        "-o",
+        &package,
+        "--library",
+        &scratch.path("none.so"),
+    ]);
+    assert!(!output.status.success());
+    assert!(String::from_utf8(output.stderr).unwrap().contains("none.so"));
+    assert!(!Path::new(&package).exists());
+}
+
+#[test]
+fn an_interrupted_run_keeps_what_it_has() {
+    let scratch = Scratch::new("interrupted");
+    // A smallest step that contact cannot be resolved with, after a start that it can.
+    let text = std::fs::read_to_string(scene("thrust")).unwrap().replace(
+        "max_step = \"10 us\"",
+        "max_step = \"10 us\"\nmin_step = \"9 us\"\ntolerance = 1e-12",
+    );
+    let text = text.replace("initial_step = \"1 us\"", "initial_step = \"10 us\"");
+    std::fs::write(scratch.path("hard.toml"), text).unwrap();
+    let output = roulement(&["run", &scratch.path("hard.toml"), "-o", &scratch.path("out")]);
+    assert!(!output.status.success());
+    let message = String::from_utf8(output.stderr).unwrap();
+    for part in ["solver.min_step", "ball", "inner load", "tolerance"] {
+        assert!(message.contains(part), "{message}");
+    }
+    assert!(
+        std::fs::read_to_string(scratch.path("out/results.csv"))
+            .unwrap()
+            .lines()
+            .count()
+            >= 2
+    );
+}
