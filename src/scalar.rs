@@ -238,6 +238,22 @@ macro_rules! assign {
 }
 assign!(AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *, DivAssign div_assign /);
 
+/// Scalar product. nalgebra's own is not inlined for derivatives, which costs a copy of each factor.
+#[inline(always)]
+pub fn dot<S: Scalar>(a: &Vector3<S>, b: &Vector3<S>) -> S {
+    a.x * b.x + a.y * b.y + a.z * b.z
+}
+
+/// Vector product, inlined like [`dot`].
+#[inline(always)]
+pub fn cross<S: Scalar>(a: &Vector3<S>, b: &Vector3<S>) -> Vector3<S> {
+    Vector3::new(
+        a.y * b.z - a.z * b.y,
+        a.z * b.x - a.x * b.z,
+        a.x * b.y - a.y * b.x,
+    )
+}
+
 /// Lifts a vector of constants.
 #[inline(always)]
 pub fn constant_vector<S: Scalar>(v: &Vector3<f64>) -> Vector3<S> {

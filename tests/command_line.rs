@@ -159,7 +159,7 @@ fn wrong_scenes_are_refused_with_key_value_and_range() {
             &["bearing.pitch_diameter", "0.0046", "m"],
         ),
         ("[load]", "[lod]", &["lod"]),
-        ("\"1500 N\"", "\"300 kN\"", &["beyond elastic Hertzian contact"]),
+        ("\"1500 N\"", "\"1 MN\"", &["beyond elastic Hertzian contact"]),
     ] {
         assert!(text.contains(from));
         std::fs::write(scratch.path("wrong.toml"), text.replace(from, to)).unwrap();

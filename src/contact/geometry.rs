@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::bearing::Raceway;
-use crate::scalar::{Scalar, values};
+use crate::scalar::{Scalar, cross, dot, values};
 
 /// Ball against raceway, in world axes.
 #[derive(Clone, Copy, Debug)]
@@ -29,9 +29,9 @@ impl<S: Scalar> GrooveContact<S> {
     /// with a race of unit axis `axis`.
     #[inline(always)]
     pub fn new(raceway: &Raceway, ball_radius: f64, offset: &Vector3<S>, axis: &Vector3<S>) -> Self {
-        let axial = offset.dot(axis);
+        let axial = dot(offset, axis);
         let radial_vector = offset - axis * axial;
-        let radius = radial_vector.dot(&radial_vector).sqrt();
+        let radius = dot(&radial_vector, &radial_vector).sqrt();
         let radial = radial_vector.map(|component| component / radius);
         // From the groove centre of this azimuth to the ball centre.
         let out = radius - S::constant(raceway.groove_circle_radius);
@@ -44,7 +44,7 @@ impl<S: Scalar> GrooveContact<S> {
             approach: distance - S::constant(raceway.groove_radius - ball_radius),
             normal: radial * cos + axis * sin,
             radial,
-            circumferential: axis.cross(&radial),
+            circumferential: cross(axis, &radial),
             radius,
             distance,
             circumferential_curvature: -cos / contact_radius,

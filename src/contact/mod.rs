@@ -8,7 +8,7 @@ pub mod shape;
 use nalgebra::Vector3;
 
 use crate::bearing::Raceway;
-use crate::scalar::{Scalar, values};
+use crate::scalar::{Scalar, cross, dot, values};
 use crate::scene::CreepLaw;
 use creep::{CreepForces, Creepage, LinearTheory};
 use geometry::GrooveContact;
@@ -132,11 +132,11 @@ impl ContactModel<'_> {
 
         // velocities of both surfaces at the contact point, and of the contact point itself
         let arm = normal.map(|component| component.scale(radius));
-        let ball_surface = ball.velocity + ball.angular_velocity.cross(&arm);
+        let ball_surface = ball.velocity + cross(&ball.angular_velocity, &arm);
         let race_arm = offset + arm;
-        let race_surface = race.velocity + race.angular_velocity.cross(&race_arm);
+        let race_surface = race.velocity + cross(&race.angular_velocity, &race_arm);
         let slip = ball_surface - race_surface;
-        let approach_rate = normal.dot(&slip);
+        let approach_rate = dot(&normal, &slip);
         let contact_point =
             ball.velocity + normal_rate(&geometry, &offset, ball, race).map(|c| c.scale(radius));
 
@@ -149,14 +149,14 @@ impl ContactModel<'_> {
 
         // contact frame: x along the circumference, z from the raceway into the ball
         let x = geometry.circumferential;
-        let y = x.cross(&normal);
+        let y = cross(&x, &normal);
         // the contact moves over the material opposite to the mean material velocity seen from it
         let rolling = contact_point - (ball_surface + race_surface).map(|c| c.scale(0.5));
-        let (rolling_x, rolling_y) = (rolling.dot(&x), rolling.dot(&y));
+        let (rolling_x, rolling_y) = (dot(&rolling, &x), dot(&rolling, &y));
         let floor = S::constant(REGULARISATION_SPEED * REGULARISATION_SPEED);
         let rolling_speed = (rolling_x.square() + rolling_y.square() + floor).sqrt();
         let rolling_cosine = rolling_x / rolling_speed;
-        let (slip_x, slip_y) = (slip.dot(&x), slip.dot(&y));
+        let (slip_x, slip_y) = (dot(&slip, &x), dot(&slip, &y));
         let spin = (race.angular_velocity - ball.angular_velocity).dot(&normal);
         let per_speed = S::one() / rolling_speed;
         let creepage = Creepage {
@@ -192,8 +192,8 @@ impl ContactModel<'_> {
             creep,
             rolling_cosine,
             force,
-            ball_moment: spin_moment - arm.cross(&tangential),
-            race_moment: -race_arm.cross(&force) - spin_moment,
+            ball_moment: spin_moment - cross(&arm, &tangential),
+            race_moment: -cross(&race_arm, &force) - spin_moment,
             friction_power: creep.longitudinal * slip_x + creep.lateral * slip_y + creep.spin_moment * spin,
             damping_power: (load - elastic) * approach_rate,
         }
@@ -209,15 +209,15 @@ fn normal_rate<S: Scalar>(
     race: &RaceMotion<S>,
 ) -> Vector3<S> {
     // Seen from the race, whose axis is at rest, the ball centre moves with this velocity.
-    let relative = ball.velocity - race.velocity - race.angular_velocity.cross(offset);
-    let radial_rate = relative.dot(&geometry.radial);
-    let around = relative.dot(&geometry.circumferential) / geometry.radius;
-    let axial_rate = relative.dot(&race.axis);
+    let relative = ball.velocity - race.velocity - cross(&race.angular_velocity, offset);
+    let radial_rate = dot(&relative, &geometry.radial);
+    let around = dot(&relative, &geometry.circumferential) / geometry.radius;
+    let axial_rate = dot(&relative, &race.axis);
     // The groove centre of the ball's azimuth turns with it; what remains turns the normal about the groove centre.
-    let out = geometry.normal.dot(&geometry.radial);
+    let out = dot(&geometry.normal, &geometry.radial);
     let in_plane = geometry.radial * radial_rate + race.axis * axial_rate;
-    let across = in_plane - geometry.normal * geometry.normal.dot(&in_plane);
+    let across = in_plane - geometry.normal * dot(&geometry.normal, &in_plane);
     across.map(|c| c / geometry.distance)
         + geometry.circumferential * (around * out)
-        + race.angular_velocity.cross(&geometry.normal)
+        + cross(&race.angular_velocity, &geometry.normal)
 }

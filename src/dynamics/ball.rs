@@ -10,8 +10,10 @@ use crate::motion::Wrench;
 use crate::scalar::{Dual, Scalar, constant_vector};
 use crate::state::{BallState, stack};
 
-/// Directions of differentiation: 6 unknowns of the ball, 6 of a race body.
-pub const DIRECTIONS: usize = 12;
+/// Directions of differentiation: translation (0 to 2) and rotation (3 to 5) of the ball, rotation of a race body
+/// (6 to 8). A contact depends on the relative translation alone, so that of the race is minus that of the ball: nine
+/// directions do the work of twelve.
+pub const DIRECTIONS: usize = 9;
 
 /// A race as the balls see it in a trial step.
 // Two of these exist; a box would cost an allocation per step.
@@ -20,9 +22,9 @@ pub const DIRECTIONS: usize = 12;
 pub enum RaceSeen {
     /// Motion given: no unknowns.
     Prescribed(RaceMotion<f64>),
-    /// A body: its motion and how that depends on its unknowns (directions 6 to 11).
+    /// A body: its motion and how that depends on its unknowns.
     Body {
-        /// Motion with derivatives.
+        /// Motion with derivatives by the rotation.
         motion: RaceMotion<Dual<DIRECTIONS>>,
         /// Value alone.
         value: RaceMotion<f64>,
@@ -38,7 +40,7 @@ impl RaceSeen {
     }
 }
 
-/// Force and moment (world axes) of one contact on a race, with derivatives by ball (0 to 5) and race (6 to 11).
+/// Force and moment (world axes) of one contact on a race, with derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct RaceReaction {
     /// [N] force.
@@ -117,14 +119,14 @@ impl BallTrial {
                     let seeded = seed::<6>(&self.motion, step, ball.radius);
                     let motion = constant_race(motion);
                     let contact = contacts[race].evaluate(&seeded, &motion);
-                    tangent += derivatives(&contact.force, &contact.ball_moment, 0);
+                    tangent += by_ball(&contact.force, &contact.ball_moment);
                     contact.values()
                 }
                 (RaceSeen::Body { motion, .. }, true) => {
                     let seeded = seed::<DIRECTIONS>(&self.motion, step, ball.radius);
                     let contact = contacts[race].evaluate(&seeded, motion);
-                    tangent += derivatives(&contact.force, &contact.ball_moment, 0);
-                    let by_race = derivatives(&contact.force, &contact.ball_moment, 6);
+                    tangent += by_ball(&contact.force, &contact.ball_moment);
+                    let by_race = by_race(&contact.force, &contact.ball_moment);
                     self.block.right[race] = scale_moments(by_race, ball.radius) * -share;
                     self.reactions[race] = Some(RaceReaction {
                         force: -contact.force,
@@ -173,17 +175,30 @@ fn constant_race<S: Scalar>(motion: &RaceMotion<f64>) -> RaceMotion<S> {
     }
 }
 
-/// Derivatives of force (rows 0 to 2) and moment (rows 3 to 5) by six directions from `first` on.
-pub fn derivatives<const N: usize>(
-    force: &Vector3<Dual<N>>,
-    moment: &Vector3<Dual<N>>,
-    first: usize,
-) -> Matrix6<f64> {
+/// Derivatives of force (rows 0 to 2) and moment (rows 3 to 5) by the ball's unknowns.
+pub fn by_ball<const N: usize>(force: &Vector3<Dual<N>>, moment: &Vector3<Dual<N>>) -> Matrix6<f64> {
     Matrix6::from_fn(|i, k| {
         let row = if i < 3 { &force[i] } else { &moment[i - 3] };
-        row.derivatives[first + k]
+        row.derivatives[k]
     })
 }
+
+/// Derivatives of force (rows 0 to 2) and moment (rows 3 to 5) by the unknowns of a race body.
+fn by_race(force: &Vector3<Dual<DIRECTIONS>>, moment: &Vector3<Dual<DIRECTIONS>>) -> Matrix6<f64> {
+    Matrix6::from_fn(|i, k| by_race_unknown(if i < 3 { &force[i] } else { &moment[i - 3] }, k))
+}
+
+/// Derivative by unknown k of a race body: translation (0 to 2), rotation (3 to 5).
+pub fn by_race_unknown(x: &Dual<DIRECTIONS>, k: usize) -> f64 {
+    if k < 3 {
+        -x.derivatives[k]
+    } else {
+        x.derivatives[RACE_ROTATION + k - 3]
+    }
+}
+
+/// First direction of a race body's rotation.
+pub const RACE_ROTATION: usize = 6;
 
 /// Divides the moment rows by a length.
 fn scale_moments(mut matrix: Matrix6<f64>, length: f64) -> Matrix6<f64> {

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix6, UnitQuaternion, Vector3};
 
-use super::ball::{DIRECTIONS, RaceReaction, RaceSeen, derivatives};
+use super::ball::{DIRECTIONS, RACE_ROTATION, RaceReaction, RaceSeen, by_ball, by_race_unknown};
 use crate::contact::RaceMotion;
 use crate::hht::HhtStep;
 use crate::model::{Constraint, RaceBody};
@@ -15,8 +15,6 @@ type D = Dual<DIRECTIONS>;
 
 /// [rad/s] accepted violation of a speed constraint (paper section 5).
 const SPEED_TOLERANCE: f64 = 1e-8;
-/// First direction of differentiation that belongs to a race.
-const RACE: usize = 6;
 
 /// What acts on a race body from outside the bearing at the end of a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -99,7 +97,7 @@ impl RaceTrial {
         let turn_vector = step.displacement(&start.rate, &start.rate_derivative, &angular);
         let rate = step.velocity(&start.rate, &start.rate_derivative, &angular);
         let variable =
-            |v: &Vector3<f64>, gain: f64| Vector3::from_fn(|i, _| D::variable(v[i], RACE + 3 + i, gain));
+            |v: &Vector3<f64>, gain: f64| Vector3::from_fn(|i, _| D::variable(v[i], RACE_ROTATION + i, gain));
         self.rotation = from_rotation_vector(&variable(&turn_vector, step.position_gain() / length));
         self.rate = variable(&rate, step.velocity_gain() / length);
         self.rate_derivative = variable(&angular, 1.0 / length);
@@ -112,12 +110,10 @@ impl RaceTrial {
         self.end.rate = values(&self.rate);
         self.end.rate_derivative = values(&self.rate_derivative);
         let spatial = |v: &Vector3<D>| turn(&start.pose.orientation, &rotate(&self.rotation, v));
-        let translation =
-            |v: &Vector3<f64>, gain: f64| Vector3::from_fn(|i, _| D::variable(v[i], RACE + i, gain));
         let motion = RaceMotion {
-            position: translation(&position, step.position_gain()),
+            position: constant_vector(&position),
             axis: spatial(&constant_vector(&Vector3::x())),
-            velocity: translation(&self.end.velocity, step.velocity_gain()),
+            velocity: constant_vector(&self.end.velocity),
             angular_velocity: spatial(&self.rate),
         };
         let value = RaceMotion {
@@ -129,8 +125,7 @@ impl RaceTrial {
         self.seen = RaceSeen::Body { motion, value };
     }
 
-    /// Residual and tangent for the bearing's force and moment on the race, world axes; only their derivatives by the
-    /// race's own unknowns are used.
+    /// Residual and tangent for the bearing's force and moment on the race, world axes, summed over the balls.
     pub fn assemble(
         &mut self,
         body: &RaceBody,
@@ -160,7 +155,9 @@ impl RaceTrial {
                 Constraint::Position(axis, schedule) => {
                     let target = schedule.smooth_at(scales.time).0;
                     let direction = Vector3::from_fn(|i, _| if i == *axis { 1.0 } else { 0.0 });
-                    let value = motion.position[*axis] - D::constant(target);
+                    // Directions 0 to 2 are those of the balls, which are minus the race's.
+                    let position = D::variable(self.end.pose.position[*axis], *axis, -step.position_gain());
+                    let value = position - D::constant(target);
                     (
                         value,
                         step.position_gain(),
@@ -200,7 +197,7 @@ impl RaceTrial {
             self.end.multipliers[k] = multiplier.value;
             self.residual[row] = value.value * scale / gain;
             for i in 0..6 {
-                self.block[(row, i)] = value.derivatives[RACE + i] * scale / gain;
+                self.block[(row, i)] = by_race_unknown(&value, i) * scale / gain;
             }
             let (column, power) = match &direction {
                 Reaction::Force(direction) => {
@@ -255,8 +252,8 @@ impl RaceTrial {
             self.residual[3 + i] = (rotation.value - step.alpha_f * start.total.moment[i]) / length;
             for k in 0..6 {
                 let inertia = if i == k { body.mass } else { 0.0 };
-                self.block[(i, k)] = inertia - share * force[i].derivatives[RACE + k];
-                self.block[(3 + i, k)] = rotation.derivatives[RACE + k] / length;
+                self.block[(i, k)] = inertia - share * by_race_unknown(&force[i], k);
+                self.block[(3 + i, k)] = by_race_unknown(&rotation, k) / length;
             }
         }
     }
@@ -264,7 +261,7 @@ impl RaceTrial {
     /// Rows of a ball's coupling block: derivatives of this race's residual by the ball's unknowns.
     pub fn coupling(&self, reaction: &RaceReaction, step: &HhtStep, length: f64) -> Matrix6<f64> {
         let share = 1.0 - step.alpha_f;
-        let world = derivatives(&reaction.force, &reaction.moment, 0);
+        let world = by_ball(&reaction.force, &reaction.moment);
         let to_material = self.end.pose.orientation.inverse().to_rotation_matrix();
         let mut rows = world * -share;
         let moments = to_material.matrix() * world.fixed_rows::<3>(3) * (-share / length);
