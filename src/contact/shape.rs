@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use crate::bearing::{Bearing, Raceway};
 use crate::contact::hertz::{HertzContact, complete_elliptic_integrals};
 use crate::kalker::Patch;
-use crate::kalker::linear::creep_coefficients;
+use crate::kalker::linear::creep_matrix;
 use crate::scalar::Scalar;
 
 /// Nodes per polynomial. The interval of curvatures is short, so that they converge at about two digits a node:
@@ -140,16 +140,16 @@ impl ContactShape {
                 poisson_ratio: bearing.poisson_ratio,
                 rolling_angle: 0.0,
             };
-            let creep = creep_coefficients(patch)?;
+            let creep = creep_matrix(&patch)?;
             let area = along * across;
             let (long, short) = (along.max(across), along.min(across));
             let (_, second) = complete_elliptic_integrals(1.0 - (short / long).powi(2));
             let row = [
                 hertz.stiffness,
-                shear * area * creep.c11,
-                shear * area * creep.c22,
-                shear * area.powf(1.5) * creep.c23,
-                shear * area.powi(2) * creep.c33,
+                shear * area * creep[(0, 0)],
+                shear * area * creep[(1, 1)],
+                shear * area.powf(1.5) * creep[(1, 2)],
+                shear * area.powi(2) * creep[(2, 2)],
                 along,
                 across,
                 area.sqrt(),

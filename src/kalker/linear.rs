@@ -1,206 +1,181 @@
-//! Kalker's linear theory: creep coefficients, interpolated in a table of the solved linear problem.
+//! Kalker's linear theory, solved: full adhesion over the ellipse, for rolling in any direction.
 //!
-//! The table (`creep_coefficients.csv`, origin in tests/data/contact/README.md) holds a high-order polynomial
-//! solution with the traction vanishing at the leading edge. Between its points, logarithms are interpolated by
-//! four-point Lagrange polynomials in ln(axis ratio) and Poisson's ratio.
+//! Without slip the elastic displacement must undo the rigid slip, `du/dr = -(c_x - phi y, c_y + phi x)` along the
+//! rolling direction r (paper eq. 11). That leaves a polynomial in the transverse coordinate free, as in Kalker (1967)
+//! chosen such that the singular traction at the leading edge is least.
 
-use std::sync::OnceLock;
-
+use nalgebra::{DMatrix, Matrix3};
 use thiserror::Error;
 
 use super::Patch;
+use super::load_displacement::{Basis, disc_moment, load_displacement};
 
-/// Creep coefficients of rolling along an ellipse axis (paper eq. 14); `C32 = -C23`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CreepCoefficients {
-    /// [-] longitudinal.
-    pub c11: f64,
-    /// [-] lateral.
-    pub c22: f64,
-    /// [-] lateral force by spin.
-    pub c23: f64,
-    /// [-] spin moment by spin.
-    pub c33: f64,
-}
+/// Degree of the polynomials: odd ones converge faster. Coefficients are within 0.3 % of higher degrees from axis
+/// ratio 0.05 to 20 (tested).
+const DEGREE: usize = 9;
+/// Points on the edge of the ellipse.
+const EDGE_POINTS: usize = 96;
 
-/// Why there are no coefficients.
+/// Why there is no solution.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum LinearError {
-    /// Axis ratio outside the table.
+    /// Axis ratio out of range.
     #[error("axis ratio {0} of the contact ellipse (rolling over transverse) is outside [0.05, 20]")]
     AxisRatio(f64),
-    /// Poisson's ratio outside the table.
+    /// Poisson's ratio out of range.
     #[error("Poisson's ratio {0} is outside [0, 0.5]")]
     PoissonRatio(f64),
-    /// Rolling direction that the table does not have.
-    #[error("creep coefficients are tabulated for rolling along an ellipse axis, not at {0} rad")]
+    /// Rolling direction that is not a number.
+    #[error("rolling direction {0} rad is not a finite number")]
     RollingAngle(f64),
+    /// The linear system is singular, which no valid patch leads to.
+    #[error("the linear theory has no solution for {0:?}")]
+    Singular(Patch),
 }
 
-/// The table: axes and logarithms of the four coefficients.
-struct Table {
-    /// Poisson's ratios, ascending.
-    poisson: Vec<f64>,
-    /// Logarithms of the axis ratios, ascending.
-    log_ratio: Vec<f64>,
-    /// `[poisson][ratio]`.
-    log_coefficients: Vec<Vec<[f64; 4]>>,
-}
-
-const TABLE: &str = include_str!("creep_coefficients.csv");
-
-impl Table {
-    /// Parses the table that is compiled in; its form is checked by a test.
-    fn parse(text: &str) -> Self {
-        let mut table = Self {
-            poisson: vec![],
-            log_ratio: vec![],
-            log_coefficients: vec![],
-        };
-        for line in text.lines().skip(1) {
-            let row: Vec<f64> = line
-                .split(',')
-                .filter_map(|field| field.trim().parse().ok())
-                .collect();
-            let [poisson, ratio, c11, c22, c23, _, c33, _] = row[..] else {
-                continue;
-            };
-            if table.poisson.last() != Some(&poisson) {
-                table.poisson.push(poisson);
-                table.log_coefficients.push(vec![]);
-            }
-            if table.poisson.len() == 1 {
-                table.log_ratio.push(ratio.ln());
-            }
-            if let Some(rows) = table.log_coefficients.last_mut() {
-                rows.push([c11, c22, c23, c33].map(f64::ln));
-            }
+impl Patch {
+    /// Checks the ranges of a patch.
+    ///
+    /// # Errors
+    /// Names the value that is out of range.
+    pub fn check(&self) -> Result<(), LinearError> {
+        if !(0.05..=20.0).contains(&self.axis_ratio) {
+            return Err(LinearError::AxisRatio(self.axis_ratio));
         }
-        table
+        if !(0.0..=0.5).contains(&self.poisson_ratio) {
+            return Err(LinearError::PoissonRatio(self.poisson_ratio));
+        }
+        if !self.rolling_angle.is_finite() {
+            return Err(LinearError::RollingAngle(self.rolling_angle));
+        }
+        Ok(())
     }
 }
 
-/// Four neighbouring points of an axis and their Lagrange weights at x.
-fn stencil(axis: &[f64], x: f64) -> (usize, [f64; 4]) {
-    let above = axis.partition_point(|&point| point < x);
-    let first = above.saturating_sub(2).min(axis.len() - 4);
-    let points = &axis[first..first + 4];
-    let weights = std::array::from_fn(|i| {
-        (0..4)
-            .filter(|&k| k != i)
-            .map(|k| (x - points[k]) / (points[i] - points[k]))
-            .product()
-    });
-    (first, weights)
+/// A polynomial of the basis as its coefficients.
+type Polynomial = Vec<f64>;
+
+/// Product of a polynomial with `alpha X + beta Y`.
+fn times_line(basis: &Basis, polynomial: &[f64], alpha: f64, beta: f64) -> Polynomial {
+    let mut product = vec![0.0; basis.len()];
+    for (&(p, q), &coefficient) in basis.powers.iter().zip(polynomial) {
+        if coefficient != 0.0 {
+            product[basis.index(p + 1, q)] += alpha * coefficient;
+            product[basis.index(p, q + 1)] += beta * coefficient;
+        }
+    }
+    product
 }
 
-/// Creep coefficients of a patch.
+/// Traction polynomials (x components, then y) over G of unit creepages c_x, c_y and spin phi (times c): three columns.
 ///
 /// # Errors
-/// If the patch is outside the table or rolls obliquely.
-pub fn creep_coefficients(patch: Patch) -> Result<CreepCoefficients, LinearError> {
-    static PARSED: OnceLock<Table> = OnceLock::new();
-    let table = PARSED.get_or_init(|| Table::parse(TABLE));
-    if !(0.05..=20.0).contains(&patch.axis_ratio) {
-        return Err(LinearError::AxisRatio(patch.axis_ratio));
-    }
-    if !(0.0..=0.5).contains(&patch.poisson_ratio) {
-        return Err(LinearError::PoissonRatio(patch.poisson_ratio));
-    }
-    if patch.rolling_angle != 0.0 {
-        return Err(LinearError::RollingAngle(patch.rolling_angle));
-    }
-    let (ratio, ratio_weights) = stencil(&table.log_ratio, patch.axis_ratio.ln());
-    let (poisson, poisson_weights) = stencil(&table.poisson, patch.poisson_ratio);
-    let mut logs = [0.0; 4];
-    for (i, poisson_weight) in poisson_weights.iter().enumerate() {
-        for (k, ratio_weight) in ratio_weights.iter().enumerate() {
-            for (log, value) in logs
-                .iter_mut()
-                .zip(table.log_coefficients[poisson + i][ratio + k])
-            {
-                *log += poisson_weight * ratio_weight * value;
-            }
+/// See [`LinearError`].
+pub fn adhesion_tractions(patch: &Patch, basis: &Basis) -> Result<DMatrix<f64>, LinearError> {
+    patch.check()?;
+    let n = basis.len();
+    let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());
+    let (sin, cos) = patch.rolling_angle.sin_cos();
+
+    // polynomials of xi (along rolling) and eta (transverse)
+    let one = {
+        let mut one = vec![0.0; n];
+        one[0] = 1.0;
+        one
+    };
+    let along = |polynomial: &[f64]| times_line(basis, polynomial, a * cos, b * sin);
+    let across = |polynomial: &[f64]| times_line(basis, polynomial, -a * sin, b * cos);
+    let combine = |x: &[f64], p: f64, y: &[f64], q: f64| -> Polynomial {
+        x.iter().zip(y).map(|(x, y)| p * x + q * y).collect()
+    };
+    let xi = along(&one);
+    let (half_square, cross) = (combine(&along(&xi), 0.5, &xi, 0.0), across(&xi));
+    // integrals along rolling of y = xi sin + eta cos and of x = xi cos - eta sin
+    let integral_y = combine(&half_square, sin, &cross, cos);
+    let integral_x = combine(&half_square, cos, &cross, -sin);
+
+    // displacements that undo the rigid slips, and those that no derivative along rolling sees
+    let mut displacements = DMatrix::zeros(2 * n, 3 + 2 * (basis.degree + 1));
+    let mut set = |column: usize, row: usize, polynomial: &[f64], factor: f64| {
+        for (i, value) in polynomial.iter().enumerate() {
+            displacements[(row + i, column)] = factor * value;
+        }
+    };
+    set(0, 0, &xi, -1.0);
+    set(1, n, &xi, -1.0);
+    set(2, 0, &integral_y, 1.0);
+    set(2, n, &integral_x, -1.0);
+    let mut power = one;
+    for k in 0..=basis.degree {
+        set(3 + 2 * k, 0, &power, 1.0);
+        set(4 + 2 * k, n, &power, 1.0);
+        if k < basis.degree {
+            power = across(&power);
         }
     }
-    let [c11, c22, c23, c33] = logs.map(f64::exp);
-    Ok(CreepCoefficients { c11, c22, c23, c33 })
+
+    // tractions of all of them, and the singular traction on the leading edge
+    let tractions = load_displacement(patch, basis)
+        .lu()
+        .solve(&displacements)
+        .ok_or(LinearError::Singular(*patch))?;
+    let edge = leading_edge(patch, basis) * &tractions;
+    let (fixed, free) = (
+        edge.columns(0, 3).into_owned(),
+        edge.columns(3, edge.ncols() - 3).into_owned(),
+    );
+    let amounts = free
+        .svd(true, true)
+        .solve(&-fixed, 1e-13)
+        .map_err(|_| LinearError::Singular(*patch))?;
+    Ok(tractions.columns(0, 3) + tractions.columns(3, amounts.nrows()) * amounts)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn at(axis_ratio: f64, poisson_ratio: f64) -> CreepCoefficients {
-        creep_coefficients(Patch {
-            axis_ratio,
-            poisson_ratio,
-            rolling_angle: 0.0,
-        })
-        .unwrap()
-    }
-
-    #[test]
-    fn independent_data_is_reproduced_at_its_points() {
-        let mut rows = 0;
-        for line in TABLE.lines().skip(1) {
-            let row: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
-            let ours = at(row[1], row[0]);
-            for (value, expected) in [
-                (ours.c11, row[2]),
-                (ours.c22, row[3]),
-                (ours.c23, row[4]),
-                (ours.c33, row[6]),
-            ] {
-                assert!((value / expected - 1.0).abs() < 1e-12, "{line}");
-            }
-            rows += 1;
-        }
-        assert_eq!(rows, 115);
-    }
-
-    #[test]
-    fn published_numbers_of_the_circle() {
-        // Kalker's table at a/b = 1, nu = 0.25: 4.11, 3.67, 1.47, 1.19 (C33 1.18 when solved to high order).
-        let ours = at(1.0, 0.25);
-        assert!((ours.c11 - 4.11).abs() < 0.01 && (ours.c22 - 3.67).abs() < 0.01);
-        assert!((ours.c23 - 1.47).abs() < 0.01 && (ours.c33 - 1.18).abs() < 0.015);
-    }
-
-    #[test]
-    fn interpolation_error_is_below_half_a_percent_when_every_other_point_is_left_out() {
-        // Interpolating with twice the spacing errs 16 times more than the table itself does.
-        let table = Table::parse(TABLE);
-        let coarse: Vec<f64> = table.log_ratio.iter().copied().step_by(2).collect();
-        for rows in &table.log_coefficients {
-            for (i, &x) in table.log_ratio.iter().enumerate() {
-                if x > *coarse.last().unwrap() {
-                    continue;
-                }
-                let (first, weights) = stencil(&coarse, x);
-                for c in 0..4 {
-                    let value: f64 = (0..4).map(|k| weights[k] * rows[2 * (first + k)][c]).sum();
-                    assert!((value - rows[i][c]).abs() < 5e-3, "point {i}, coefficient {c}");
-                }
-            }
+/// Rows that give the singular traction `sum d X^p Y^q` (x, then y) on the leading edge, weighted by how squarely the
+/// edge meets the rolling direction.
+pub fn leading_edge(patch: &Patch, basis: &Basis) -> DMatrix<f64> {
+    let n = basis.len();
+    let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());
+    let (sin, cos) = patch.rolling_angle.sin_cos();
+    let mut rows = DMatrix::zeros(2 * EDGE_POINTS, 2 * n);
+    for point in 0..EDGE_POINTS {
+        let angle = std::f64::consts::TAU * (point as f64 + 0.5) / EDGE_POINTS as f64;
+        let (y, x) = angle.sin_cos();
+        let normal = (x / a, y / b);
+        let facing = (normal.0 * cos + normal.1 * sin) / normal.0.hypot(normal.1);
+        let weight = (facing.max(0.0) / EDGE_POINTS as f64).sqrt();
+        for (i, &(p, q)) in basis.powers.iter().enumerate() {
+            let value = weight * x.powi(p as i32) * y.powi(q as i32);
+            rows[(point, i)] = value;
+            rows[(EDGE_POINTS + point, n + i)] = value;
         }
     }
+    rows
+}
 
-    #[test]
-    fn values_outside_are_refused() {
-        for (ratio, poisson, angle) in [
-            (0.04, 0.3, 0.0),
-            (21.0, 0.3, 0.0),
-            (1.0, 0.6, 0.0),
-            (1.0, 0.3, 0.1),
-            (f64::NAN, 0.3, 0.0),
-        ] {
-            let patch = Patch {
-                axis_ratio: ratio,
-                poisson_ratio: poisson,
-                rolling_angle: angle,
-            };
-            assert!(creep_coefficients(patch).is_err());
-        }
+/// Row of net force x, y and moment z (over `G c^2`, `G c^3`) by traction polynomials.
+pub fn resultants(patch: &Patch, basis: &Basis) -> DMatrix<f64> {
+    let n = basis.len();
+    let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());
+    let mut rows = DMatrix::zeros(3, 2 * n);
+    for (i, &(p, q)) in basis.powers.iter().enumerate() {
+        rows[(0, i)] = disc_moment(p, q);
+        rows[(1, n + i)] = disc_moment(p, q);
+        rows[(2, i)] = -b * disc_moment(p, q + 1);
+        rows[(2, n + i)] = a * disc_moment(p + 1, q);
     }
+    rows
+}
+
+/// Creep coefficients of rolling in any direction: `(F_x/(G c^2), F_y/(G c^2), M_z/(G c^3))` by
+/// `(c_x, c_y, c phi)`, components along the ellipse axes. For rolling along x it is
+/// `[[C11, 0, 0], [0, C22, C23], [0, C32, C33]]` (paper eq. 14).
+///
+/// # Errors
+/// See [`LinearError`].
+pub fn creep_matrix(patch: &Patch) -> Result<Matrix3<f64>, LinearError> {
+    let basis = Basis::new(DEGREE);
+    let tractions = adhesion_tractions(patch, &basis)?;
+    let matrix = resultants(patch, &basis) * tractions;
+    Ok(Matrix3::from_fn(|i, k| matrix[(i, k)]))
 }

@@ -10,6 +10,7 @@
 //! BODY 2, so that they point along the creepage. The friction force on body 1 is the opposite.
 
 pub mod linear;
+pub mod load_displacement;
 
 /// What a rolling contact patch looks like to Kalker's theory.
 #[derive(Clone, Copy, Debug, PartialEq)]
