@@ -18,6 +18,7 @@ pub mod package;
 pub mod path;
 pub mod plots;
 pub mod results;
+pub mod rolling_contact;
 pub mod rotation;
 pub mod scalar;
 pub mod scene;

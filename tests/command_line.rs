@@ -217,3 +217,44 @@ fn an_interrupted_run_keeps_what_it_has() {
             >= 2
     );
 }
+
+#[test]
+fn contact_prints_the_documented_columns_for_any_column_order() {
+    let scratch = Scratch::new("contact");
+    let table = "spin,note,id,creep_y,creep_x,semi_axis_y,semi_axis_x,peak_pressure,friction,shear_modulus,poisson_ratio,rolling_angle\n\
+                 0,x,one,0,1e-3,1e-4,1e-4,1.2e9,0.08,8.1e10,0.3,0\n\
+                 0,y,two,0,1e-1,1e-4,1e-4,1.2e9,0.08,8.1e10,0.3,0\n";
+    std::fs::write(scratch.path("cases.csv"), table).unwrap();
+    for law in ["frictionless", "linear", "regularised", "saturated", "kalker"] {
+        let output = roulement(&[
+            "contact",
+            "--law",
+            law,
+            &scratch.path("cases.csv"),
+            "--degree",
+            "3",
+        ]);
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let text = String::from_utf8(output.stdout).unwrap();
+        let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+        assert_eq!(lines[0], ["id", "fx", "fy", "mz", "power", "stick"]);
+        assert_eq!((lines[1][0], lines[2][0], lines.len()), ("one", "two", 3));
+        // A stick fraction only where the law has one.
+        assert_eq!(lines[1][5].is_empty(), law != "kalker");
+        let sliding: f64 = lines[2][1].parse().unwrap();
+        if ["regularised", "saturated", "kalker"].contains(&law) {
+            assert!((sliding - 1.0).abs() < 5e-3, "{law}: {sliding}");
+        }
+    }
+    std::fs::write(scratch.path("cases.csv"), table.replace("1.2e9", "-1")).unwrap();
+    let output = roulement(&["contact", "--law", "kalker", &scratch.path("cases.csv")]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        !output.status.success() && message.contains("peak_pressure") && message.contains("one"),
+        "{message}"
+    );
+}

@@ -11,7 +11,8 @@ use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::model::Model;
 use roulement::model_description::render;
 use roulement::package::{library_beside_executable, write_fmu};
-use roulement::scene::Scene;
+use roulement::rolling_contact::{Law, RollingContact};
+use roulement::scene::{CreepLaw, Scene};
 use roulement::simulation::Simulation;
 
 /// 3-D dynamic ball bearing for gearbox co-simulation.
@@ -54,11 +55,37 @@ enum Command {
         #[arg(long)]
         library: Option<PathBuf>,
     },
+    /// Evaluate single rolling contacts of a CSV table; prints CSV.
+    Contact {
+        /// Table of cases: id, poisson_ratio, shear_modulus [Pa], friction, peak_pressure [Pa], semi_axis_x [m],
+        /// semi_axis_y [m], rolling_angle [rad], creep_x, creep_y, spin [1/m]; other columns are ignored.
+        cases: PathBuf,
+        /// Creep law.
+        #[arg(long, value_enum)]
+        law: LawChoice,
+        /// Degree of the traction polynomials of `kalker`, 1 to 7.
+        #[arg(long, default_value_t = 5)]
+        degree: usize,
+    },
     /// Print the model description of a scene's package.
     Describe {
         /// Scene file.
         scene: PathBuf,
     },
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum LawChoice {
+    /// No tangential force.
+    Frictionless,
+    /// Kalker's linear theory, unbounded.
+    Linear,
+    /// The paper's regularised law without spin coupling.
+    Regularised,
+    /// Linear theory, saturated as a vector.
+    Saturated,
+    /// Kalker's nonlinear theory in polynomials.
+    Kalker,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -110,6 +137,25 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             let library = library.map_or_else(library_beside_executable, Ok)?;
             write_fmu(&Scene::load(&scene)?, &library, &output)?;
             println!("{}", output.display());
+        }
+        Command::Contact { cases, law, degree } => {
+            let law = match law {
+                LawChoice::Frictionless => Law::Simulated(CreepLaw::Frictionless),
+                LawChoice::Linear => Law::Simulated(CreepLaw::Linear),
+                LawChoice::Regularised => Law::Simulated(CreepLaw::Regularised),
+                LawChoice::Saturated => Law::Simulated(CreepLaw::Saturated),
+                LawChoice::Kalker => Law::Kalker(degree),
+            };
+            let cannot_read = |why: csv::Error| format!("{}: {why}", cases.display());
+            let mut table = csv::ReaderBuilder::new()
+                .trim(csv::Trim::All)
+                .from_path(&cases)
+                .map_err(cannot_read)?;
+            let mut answers = csv::Writer::from_writer(std::io::stdout().lock());
+            for case in table.deserialize::<RollingContact>() {
+                answers.serialize(case.map_err(cannot_read)?.evaluate(law)?)?;
+            }
+            answers.flush()?;
         }
         Command::Describe { scene } => print!("{}", render(&Simulation::new(&Scene::load(&scene)?)?)?.xml),
     }

@@ -55,6 +55,15 @@ const FORCE_FLOOR: f64 = 1e-9;
 /// [N m] the same for the spin moment: the force floor on a patch of a micrometre.
 const MOMENT_FLOOR: f64 = 1e-15;
 
+/// Saturated over linear force at a linear force of `q` times its limit: the cubic of Vermeulen and Johnson (1964).
+#[inline(always)]
+pub fn saturation<S: Scalar>(q: S) -> S {
+    // 1/q is used above q = 3 only; the guard keeps the other branch finite.
+    let inverse = S::one() / q.where_positive(q - S::one(), S::one());
+    let cubic = S::one() - q.scale(1.0 / 3.0) + q.square().scale(1.0 / 27.0);
+    inverse.where_positive(q - S::constant(3.0), cubic)
+}
+
 impl<S: Scalar> LinearTheory<S> {
     /// Forces of a law.
     #[inline(always)]
@@ -95,11 +104,7 @@ impl<S: Scalar> LinearTheory<S> {
         let per_moment = S::one() / (self.moment_limit + S::constant(MOMENT_FLOOR));
         let (x, y) = (linear.longitudinal * per_force, linear.lateral * per_force);
         let z = linear.spin_moment * per_moment;
-        let q = (x.square() + y.square() + z.square()).sqrt();
-        // 1/q is used above q = 3 only; the guard keeps the other branch finite.
-        let inverse = S::one() / q.where_positive(q - S::one(), S::one());
-        let cubic = S::one() - q.scale(1.0 / 3.0) + q.square().scale(1.0 / 27.0);
-        let factor = inverse.where_positive(q - S::constant(3.0), cubic);
+        let factor = saturation((x.square() + y.square() + z.square()).sqrt());
         CreepForces {
             longitudinal: x * factor * self.friction_limit,
             lateral: y * factor * self.friction_limit,

@@ -11,6 +11,7 @@
 
 pub mod linear;
 pub mod load_displacement;
+pub mod nonlinear;
 
 /// What a rolling contact patch looks like to Kalker's theory.
 #[derive(Clone, Copy, Debug, PartialEq)]

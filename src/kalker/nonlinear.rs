@@ -1,0 +1,441 @@
+//! Kalker's nonlinear theory in polynomials (paper section 3.1.1), with an objective that determines the solution.
+//!
+//! The printed objective, the integral of T S (eq. 13), is zero for every full-stick traction, bounded or not. Here
+//! the unknown coefficients of the traction polynomials (eq. 12) minimise instead the sum over an elliptical grid of
+//!
+//! ```text
+//! | f - P(f + k s) |^2
+//! ```
+//!
+//! with f the traction over mu p0, s the slip in the same scale and P the projection on the Coulomb disc: it vanishes
+//! exactly where Coulomb's law holds (stick: s = 0 and |f| below the bound; slip: f at the bound along s). A penalty on
+//! the singular traction at the leading edge takes the place of the condition that fresh material enters unstrained.
+//! Minimised by Levenberg-Marquardt from the linear solution, or from a neighbouring one.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{DMatrix, DVector};
+use thiserror::Error;
+
+use super::linear::{LinearError, adhesion_tractions, leading_edge, resultants};
+use super::load_displacement::{Basis, load_displacement};
+use super::{Patch, ScaledCreepage, ScaledForces};
+
+/// [-] slip against traction in the projection.
+const SLIP_WEIGHT: f64 = 2.0;
+/// [-] weight of the leading-edge rows.
+const EDGE_WEIGHT: f64 = 8.0;
+/// Iterations of one solve; 6 to 10 are usual.
+const MAX_ITERATIONS: u32 = 200;
+/// [-] relative decrease of the objective that ends the iteration.
+const DECREASE: f64 = 1e-7;
+/// [-] scaled creepage beyond which a contact slides as a whole, to within this number's inverse; larger ones are
+/// scaled back to it.
+const LARGEST_CREEPAGE: f64 = 1e5;
+
+/// Why there is no solution.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum KalkerError {
+    /// The patch is out of range.
+    #[error(transparent)]
+    Patch(#[from] LinearError),
+    /// Degree outside 1 to 7.
+    #[error("the degree {0} of the traction polynomials is outside [1, 7]")]
+    Degree(usize),
+    /// A creepage that is NaN or infinite.
+    #[error("the creepages {0:?} are not finite")]
+    NotFinite(ScaledCreepage),
+    /// The minimisation did not end.
+    #[error("Kalker's nonlinear problem does not converge at the scaled creepages {0:?}")]
+    NoConvergence(ScaledCreepage),
+}
+
+/// A point of the elliptical grid.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    x: f64,
+    y: f64,
+    /// Area on the unit disc.
+    weight: f64,
+    /// Coulomb's bound over mu p0.
+    bound: f64,
+}
+
+/// The problem of one patch: everything that does not depend on the creepages.
+#[derive(Clone, Debug)]
+pub struct Kalker {
+    patch: Patch,
+    points: Vec<Point>,
+    /// Traction polynomials at the points: one row a point, one column a monomial.
+    values: DMatrix<f64>,
+    /// Slip at the points by all coefficients: rows x of each point, then y.
+    slips: DMatrix<f64>,
+    edge_square: DMatrix<f64>,
+    /// Linear solutions of unit creepages.
+    adhesion: DMatrix<f64>,
+    /// Net forces over mu Q and mu Q c by all coefficients.
+    resultants: DMatrix<f64>,
+    monomials: usize,
+}
+
+/// The solution at one creepage.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// Coefficients of the traction polynomials over mu p0: x components, then y.
+    pub coefficients: DVector<f64>,
+    /// Net forces; never above 1.
+    pub forces: ScaledForces,
+    /// [-] adhesion area over contact area.
+    pub stick: f64,
+    /// Iterations spent.
+    pub iterations: u32,
+}
+
+/// Local state at a point of the grid, for pictures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LocalState {
+    /// [-] X = x/a, Y = y/b.
+    pub place: [f64; 2],
+    /// [-] traction over mu p0, within the Coulomb bound.
+    pub traction: [f64; 2],
+    /// [-] slip velocity over V, times G/(mu p0).
+    pub slip: [f64; 2],
+    /// [-] Coulomb bound over mu p0.
+    pub bound: f64,
+}
+
+/// Nodes and weights of Gauss-Legendre quadrature on [0, 1].
+fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+    (0..n)
+        .map(|i| {
+            let mut x = (PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
+            let mut slope = 1.0;
+            for _ in 0..100 {
+                let (mut p, mut last) = (1.0, 0.0);
+                for k in 0..n {
+                    let k = k as f64;
+                    (p, last) = (((2.0 * k + 1.0) * x * p - k * last) / (k + 1.0), p);
+                }
+                slope = n as f64 * (x * p - last) / (x * x - 1.0);
+                let step = p / slope;
+                x -= step;
+                if step.abs() < 1e-15 {
+                    break;
+                }
+            }
+            (0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope))
+        })
+        .collect()
+}
+
+/// Projection of v on the disc of radius `bound`, and its derivative (symmetric: xx, xy, yy).
+fn project(v: [f64; 2], bound: f64) -> ([f64; 2], [f64; 3]) {
+    let size = v[0].hypot(v[1]);
+    if size <= bound {
+        return (v, [1.0, 0.0, 1.0]);
+    }
+    let (c, s, ratio) = (v[0] / size, v[1] / size, bound / size);
+    (
+        [bound * c, bound * s],
+        [ratio * s * s, -ratio * c * s, ratio * c * c],
+    )
+}
+
+impl Kalker {
+    /// Prepares the problem of a patch for polynomials of a degree (1 to 7; 3 serves most, 5 is accurate).
+    ///
+    /// # Errors
+    /// If patch or degree are out of range.
+    pub fn new(patch: Patch, degree: usize) -> Result<Self, KalkerError> {
+        if !(1..=7).contains(&degree) {
+            return Err(KalkerError::Degree(degree));
+        }
+        let basis = Basis::new(degree);
+        let n = basis.len();
+        // Spin needs a quadratic; what a lower degree cannot hold of the start is dropped.
+        let start_basis = Basis::new(degree.max(2));
+        let tractions = adhesion_tractions(&patch, &start_basis)?;
+        let mut adhesion = DMatrix::zeros(2 * n, 3);
+        adhesion.rows_mut(0, n).copy_from(&tractions.rows(0, n));
+        adhesion
+            .rows_mut(n, n)
+            .copy_from(&tractions.rows(start_basis.len(), n));
+        let stiffness = load_displacement(&patch, &basis);
+        let (radial, angular) = (degree + 3, 4 * degree + 8);
+        let mut points = Vec::with_capacity(radial * angular);
+        for (square, share) in gauss_legendre(radial) {
+            for k in 0..angular {
+                let (sin, cos) = (TAU * (k as f64 + 0.5) / angular as f64).sin_cos();
+                let r = square.sqrt();
+                let weight = share * PI / angular as f64;
+                points.push(Point {
+                    x: r * cos,
+                    y: r * sin,
+                    weight,
+                    bound: (1.0 - square).sqrt(),
+                });
+            }
+        }
+        // A quadrature that gives the whole contact's sliding force exactly.
+        let sum: f64 = points.iter().map(|p| p.weight * p.bound).sum();
+        for point in &mut points {
+            point.weight *= TAU / 3.0 / sum;
+        }
+
+        let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());
+        let (sin, cos) = patch.rolling_angle.sin_cos();
+        let rows = points.len();
+        let mut values = DMatrix::zeros(rows, n);
+        let mut gradients = DMatrix::zeros(rows, n);
+        for (row, point) in points.iter().enumerate() {
+            for (column, &(p, q)) in basis.powers.iter().enumerate() {
+                let power = |x: f64, k: usize| x.powi(k as i32);
+                values[(row, column)] = power(point.x, p) * power(point.y, q) / point.bound;
+                // derivative along rolling of the displacement monomial
+                let by_x = if p > 0 {
+                    p as f64 * power(point.x, p - 1) * power(point.y, q)
+                } else {
+                    0.0
+                };
+                let by_y = if q > 0 {
+                    q as f64 * power(point.x, p) * power(point.y, q - 1)
+                } else {
+                    0.0
+                };
+                gradients[(row, column)] = cos * by_x / a + sin * by_y / b;
+            }
+        }
+        let mut slips = DMatrix::zeros(2 * rows, 2 * n);
+        slips
+            .rows_mut(0, rows)
+            .copy_from(&(&gradients * stiffness.rows(0, n)));
+        slips
+            .rows_mut(rows, rows)
+            .copy_from(&(&gradients * stiffness.rows(n, n)));
+        let edge = leading_edge(&patch, &basis) * EDGE_WEIGHT;
+        Ok(Self {
+            patch,
+            points,
+            values,
+            slips,
+            edge_square: edge.transpose() * edge,
+            adhesion,
+            resultants: resultants(&patch, &basis) * (1.5 / PI),
+            monomials: n,
+        })
+    }
+
+    /// Rigid slip at a point.
+    fn rigid(&self, h: &ScaledCreepage, point: &Point) -> [f64; 2] {
+        let (a, b) = (self.patch.axis_ratio.sqrt(), 1.0 / self.patch.axis_ratio.sqrt());
+        [h.x - h.spin * b * point.y, h.y + h.spin * a * point.x]
+    }
+
+    /// Traction and slip at every point.
+    fn fields(&self, z: &DVector<f64>, h: &ScaledCreepage) -> Vec<([f64; 2], [f64; 2])> {
+        let n = self.monomials;
+        let (fx, fy) = (&self.values * z.rows(0, n), &self.values * z.rows(n, n));
+        let elastic = &self.slips * z;
+        let rows = self.points.len();
+        self.points
+            .iter()
+            .enumerate()
+            .map(|(i, point)| {
+                let rigid = self.rigid(h, point);
+                (
+                    [fx[i], fy[i]],
+                    [rigid[0] + elastic[i], rigid[1] + elastic[rows + i]],
+                )
+            })
+            .collect()
+    }
+
+    /// The objective at z.
+    fn objective(&self, z: &DVector<f64>, h: &ScaledCreepage) -> f64 {
+        let mut sum = (&self.edge_square * z).dot(z);
+        for (point, (f, s)) in self.points.iter().zip(self.fields(z, h)) {
+            let (p, _) = project(
+                [f[0] + SLIP_WEIGHT * s[0], f[1] + SLIP_WEIGHT * s[1]],
+                point.bound,
+            );
+            sum += point.weight * ((f[0] - p[0]).powi(2) + (f[1] - p[1]).powi(2));
+        }
+        sum
+    }
+
+    /// Gauss-Newton matrix and gradient of the objective, and the derivative of the gradient by the creepages.
+    fn normal_equations(
+        &self,
+        z: &DVector<f64>,
+        h: &ScaledCreepage,
+    ) -> (DMatrix<f64>, DVector<f64>, DMatrix<f64>) {
+        let n = self.monomials;
+        let rows = self.points.len();
+        let mut jacobian = DMatrix::zeros(2 * n, 2 * rows);
+        let mut residual = DVector::zeros(2 * rows);
+        let mut by_creepage = DMatrix::zeros(2 * rows, 3);
+        let (a, b) = (self.patch.axis_ratio.sqrt(), 1.0 / self.patch.axis_ratio.sqrt());
+        for (i, (point, (f, s))) in self.points.iter().zip(self.fields(z, h)).enumerate() {
+            let k = SLIP_WEIGHT;
+            let (p, [xx, xy, yy]) = project([f[0] + k * s[0], f[1] + k * s[1]], point.bound);
+            let root = point.weight.sqrt();
+            residual[2 * i] = root * (f[0] - p[0]);
+            residual[2 * i + 1] = root * (f[1] - p[1]);
+            for j in 0..n {
+                let value = self.values[(i, j)];
+                // column j drives f_x, column n + j drives f_y; both drive both slips
+                for (column, v) in [(j, [value, 0.0]), (n + j, [0.0, value])] {
+                    let argument = [
+                        v[0] + k * self.slips[(i, column)],
+                        v[1] + k * self.slips[(rows + i, column)],
+                    ];
+                    jacobian[(column, 2 * i)] = root * (v[0] - xx * argument[0] - xy * argument[1]);
+                    jacobian[(column, 2 * i + 1)] = root * (v[1] - xy * argument[0] - yy * argument[1]);
+                }
+            }
+            for (column, slip) in [[1.0, 0.0], [0.0, 1.0], [-b * point.y, a * point.x]]
+                .into_iter()
+                .enumerate()
+            {
+                by_creepage[(2 * i, column)] = -root * k * (xx * slip[0] + xy * slip[1]);
+                by_creepage[(2 * i + 1, column)] = -root * k * (xy * slip[0] + yy * slip[1]);
+            }
+        }
+        let matrix = &jacobian * jacobian.transpose() + &self.edge_square;
+        let gradient = &jacobian * residual + &self.edge_square * z;
+        (matrix, gradient, jacobian * by_creepage)
+    }
+
+    /// Solves for creepages, from the linear solution or from that of neighbouring creepages.
+    ///
+    /// # Errors
+    /// See [`KalkerError`]; for every finite creepage there is a result or an error, never a NaN.
+    pub fn solve(
+        &self,
+        creepage: &ScaledCreepage,
+        start: Option<&Solution>,
+    ) -> Result<Solution, KalkerError> {
+        let components = [creepage.x, creepage.y, creepage.spin];
+        if !components.iter().all(|component| component.is_finite()) {
+            return Err(KalkerError::NotFinite(*creepage));
+        }
+        let size = components
+            .iter()
+            .fold(0.0f64, |size, component| size.max(component.abs()));
+        let shrink = if size > LARGEST_CREEPAGE {
+            LARGEST_CREEPAGE / size
+        } else {
+            1.0
+        };
+        let h = ScaledCreepage {
+            x: creepage.x * shrink,
+            y: creepage.y * shrink,
+            spin: creepage.spin * shrink,
+        };
+        let mut z = match start {
+            Some(start) => start.coefficients.clone(),
+            None => {
+                // The linear solution, brought down where it is far above the bound.
+                let linear = &self.adhesion * DVector::from_column_slice(&[h.x, h.y, h.spin]);
+                let excess = linear.amax();
+                linear * if excess > 1.0 { 1.0 / excess } else { 1.0 }
+            }
+        };
+        let mut objective = self.objective(&z, &h);
+        let mut damping = 1e-3;
+        let mut iterations = 0;
+        while iterations < MAX_ITERATIONS {
+            let (matrix, gradient, _) = self.normal_equations(&z, &h);
+            let before = objective;
+            loop {
+                iterations += 1;
+                let mut damped = matrix.clone();
+                for i in 0..damped.nrows() {
+                    damped[(i, i)] += damping * (matrix[(i, i)] + 1e-12);
+                }
+                let trial = damped.cholesky().map(|factor| &z - factor.solve(&gradient));
+                let reached = trial
+                    .as_ref()
+                    .map_or(f64::INFINITY, |trial| self.objective(trial, &h));
+                if let Some(trial) = trial
+                    && reached < objective
+                {
+                    z = trial;
+                    objective = reached;
+                    damping = (damping * 0.1).max(1e-12);
+                    break;
+                }
+                damping *= 10.0;
+                if damping > 1e12 {
+                    // No direction leads down: this is the minimum to rounding.
+                    return Ok(self.finish(z, &h, iterations));
+                }
+                if iterations >= MAX_ITERATIONS {
+                    return Err(KalkerError::NoConvergence(*creepage));
+                }
+            }
+            if before - objective <= DECREASE * before {
+                return Ok(self.finish(z, &h, iterations));
+            }
+        }
+        Err(KalkerError::NoConvergence(*creepage))
+    }
+
+    fn finish(&self, z: DVector<f64>, h: &ScaledCreepage, iterations: u32) -> Solution {
+        let net = &self.resultants * &z;
+        let mut forces = ScaledForces {
+            fx: net[0],
+            fy: net[1],
+            mz: net[2],
+        };
+        // A polynomial may overstep the bound by its own error: a sliding contact stays at the friction limit.
+        let size = forces.fx.hypot(forces.fy);
+        if size > 1.0 {
+            forces.fx /= size * (1.0 + f64::EPSILON);
+            forces.fy /= size * (1.0 + f64::EPSILON);
+        }
+        let (mut stick, mut area) = (0.0, 0.0);
+        for (point, (f, s)) in self.points.iter().zip(self.fields(&z, h)) {
+            let argument = [f[0] + SLIP_WEIGHT * s[0], f[1] + SLIP_WEIGHT * s[1]];
+            area += point.weight;
+            if argument[0].hypot(argument[1]) <= point.bound {
+                stick += point.weight;
+            }
+        }
+        Solution {
+            coefficients: z,
+            forces,
+            stick: stick / area,
+            iterations,
+        }
+    }
+
+    /// Derivatives of the forces (fx, fy, mz) by the scaled creepages (x, y, spin).
+    ///
+    /// By implicit differentiation of the minimum in its Gauss-Newton form: what the second derivatives of the
+    /// residuals would add is left out.
+    pub fn derivatives(&self, solution: &Solution, creepage: &ScaledCreepage) -> Option<[[f64; 3]; 3]> {
+        let z = &solution.coefficients;
+        let (mut matrix, _, by_creepage) = self.normal_equations(z, creepage);
+        for i in 0..matrix.nrows() {
+            matrix[(i, i)] *= 1.0 + 1e-12;
+        }
+        let follow = matrix.cholesky()?.solve(&-by_creepage);
+        let net = &self.resultants * follow;
+        Some(std::array::from_fn(|i| std::array::from_fn(|k| net[(i, k)])))
+    }
+
+    /// Traction and slip at the points of the grid.
+    pub fn local_states(&self, solution: &Solution, creepage: &ScaledCreepage) -> Vec<LocalState> {
+        self.points
+            .iter()
+            .zip(self.fields(&solution.coefficients, creepage))
+            .map(|(point, (f, slip))| LocalState {
+                place: [point.x, point.y],
+                traction: project(f, point.bound).0,
+                slip,
+                bound: point.bound,
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,239 @@
+//! Kalker's nonlinear theory in polynomials against independent data, and what must hold for any creepage.
+#![allow(clippy::unwrap_used)]
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use roulement::kalker::linear::creep_matrix;
+use roulement::kalker::nonlinear::{Kalker, KalkerError};
+use roulement::kalker::{Patch, ScaledCreepage};
+
+struct Case {
+    kind: String,
+    patch: Patch,
+    creepage: ScaledCreepage,
+    expected: [f64; 3],
+}
+
+/// The independent data, scaled as Kalker's problem scales.
+fn cases() -> Vec<Case> {
+    let text = include_str!("data/contact/random.csv");
+    let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    text.lines()
+        .skip(1)
+        .map(|line| {
+            let row: Vec<&str> = line.split(',').collect();
+            let get = |name: &str| row[header.iter().position(|h| *h == name).unwrap()];
+            let number = |name: &str| get(name).parse::<f64>().unwrap();
+            let (a, b) = (number("semi_axis_x"), number("semi_axis_y"));
+            let scale = number("shear_modulus") / (number("friction") * number("peak_pressure"));
+            Case {
+                kind: get("kind").to_string(),
+                patch: Patch {
+                    axis_ratio: a / b,
+                    poisson_ratio: number("poisson_ratio"),
+                    rolling_angle: number("rolling_angle"),
+                },
+                creepage: ScaledCreepage {
+                    x: number("creep_x") * scale,
+                    y: number("creep_y") * scale,
+                    spin: number("spin") * (a * b).sqrt() * scale,
+                },
+                expected: [number("fx"), number("fy"), number("mz")],
+            }
+        })
+        .collect()
+}
+
+/// Mean errors of fx, fy, mz and the largest force error, by kind of case.
+fn errors(degree: usize) -> BTreeMap<String, ([f64; 3], f64, f64, f64)> {
+    let mut table: BTreeMap<String, ([f64; 3], f64, f64, f64)> = BTreeMap::new();
+    for case in cases() {
+        let kalker = Kalker::new(case.patch, degree).unwrap();
+        let solution = kalker.solve(&case.creepage, None).unwrap();
+        let f = solution.forces;
+        let row = table.entry(case.kind).or_default();
+        for (i, (ours, theirs)) in [f.fx, f.fy, f.mz].into_iter().zip(case.expected).enumerate() {
+            let error = (ours - theirs).abs();
+            row.0[i] += error;
+            if i < 2 {
+                row.1 = row.1.max(error);
+            }
+        }
+        row.2 += 1.0;
+        row.3 += f64::from(solution.iterations);
+    }
+    for row in table.values_mut() {
+        row.0 = row.0.map(|sum| sum / row.2);
+        row.3 /= row.2;
+    }
+    table
+}
+
+#[test]
+fn independent_data_by_degree() {
+    let mut general = vec![];
+    for degree in [1, 3, 5] {
+        for (kind, (mean, worst, _, iterations)) in errors(degree) {
+            println!(
+                "M = {degree} {kind:8} mean fx {:.4} fy {:.4} mz {:.4}, worst force {worst:.3}, {iterations:.1} iterations",
+                mean[0], mean[1], mean[2]
+            );
+            let force = 0.5 * (mean[0] + mean[1]);
+            if kind == "general" {
+                general.push(force);
+            }
+            // The goals for M = 5; other kinds and degrees are reported.
+            let goal = match (degree, kind.as_str()) {
+                (5, "general") => 0.03,
+                (5, "bearing") => 0.012,
+                _ => continue,
+            };
+            assert!(force < goal, "{kind}: mean force error {force}");
+        }
+    }
+    assert!(
+        general.windows(2).all(|pair| pair[1] < 0.7 * pair[0]),
+        "errors fall with the degree: {general:?}"
+    );
+}
+
+fn kalker(axis_ratio: f64, degree: usize) -> Kalker {
+    Kalker::new(
+        Patch {
+            axis_ratio,
+            poisson_ratio: 0.3,
+            rolling_angle: 0.0,
+        },
+        degree,
+    )
+    .unwrap()
+}
+
+fn forces(kalker: &Kalker, x: f64, y: f64, spin: f64) -> [f64; 3] {
+    let f = kalker.solve(&ScaledCreepage { x, y, spin }, None).unwrap().forces;
+    [f.fx, f.fy, f.mz]
+}
+
+#[test]
+fn closed_form_small_creepages_give_linear_theory() {
+    // F/(mu Q) = G c^2 C cx/(mu Q) = 3/(2 pi) C hx.
+    for ratio in [0.1, 1.0, 5.0] {
+        let kalker = kalker(ratio, 5);
+        let matrix = creep_matrix(&Patch {
+            axis_ratio: ratio,
+            poisson_ratio: 0.3,
+            rolling_angle: 0.0,
+        })
+        .unwrap();
+        let h = [2e-4, -1e-4, 1.5e-4];
+        let ours = forces(&kalker, h[0], h[1], h[2]);
+        for i in 0..3 {
+            let linear: f64 = (0..3).map(|k| 1.5 / PI * matrix[(i, k)] * h[k]).sum();
+            // Degree 5 against degree 9, and slip that begins at the trailing edge: 3 % of the size of the forces.
+            assert!(
+                (ours[i] - linear).abs() < 0.03 * 1e-3,
+                "{ratio} {i}: {} {linear}",
+                ours[i]
+            );
+        }
+    }
+}
+
+#[test]
+fn invariant_symmetries() {
+    for ratio in [0.15, 1.0, 3.0] {
+        let kalker = kalker(ratio, 3);
+        for (x, y, spin) in [(0.2, 0.1, 0.3), (0.05, -0.3, 1.0), (1.0, 0.4, -2.0)] {
+            let [fx, fy, mz] = forces(&kalker, x, y, spin);
+            // Exact symmetries of the problem; the iteration ends where the objective falls by less than 1e-7.
+            let close = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 2e-3);
+            assert!(close(forces(&kalker, -x, -y, -spin), [-fx, -fy, -mz]), "odd");
+            assert!(close(forces(&kalker, x, -y, -spin), [fx, -fy, -mz]), "mirror");
+        }
+    }
+}
+
+#[test]
+fn invariant_bounds_and_dissipation_from_rest_to_extremes() {
+    let sizes = [0.0, 1e-300, 1e-9, 1e-3, 0.1, 1.0, 10.0, 1e4, 1e8, 1e300];
+    for ratio in [0.08, 1.0] {
+        let kalker = kalker(ratio, 3);
+        for &x in &sizes {
+            for &y in &[0.0, 0.3, -1e6] {
+                for &spin in &sizes {
+                    let creepage = ScaledCreepage { x, y, spin };
+                    let solution = kalker.solve(&creepage, None).unwrap();
+                    let f = solution.forces;
+                    assert!(
+                        f.fx.is_finite() && f.fy.is_finite() && f.mz.is_finite(),
+                        "{creepage:?}"
+                    );
+                    assert!(f.fx.hypot(f.fy) <= 1.0, "{creepage:?}: {f:?}");
+                    assert!((0.0..=1.0).contains(&solution.stick));
+                    let size = x.abs().max(y.abs()).max(spin).max(f64::MIN_POSITIVE);
+                    let power = f.fx * (x / size) + f.fy * (y / size) + f.mz * (spin / size);
+                    assert!(power > -5e-3, "{creepage:?}: {power}");
+                }
+            }
+        }
+    }
+    let kalker = kalker(1.0, 3);
+    for wrong in [f64::NAN, f64::INFINITY] {
+        let creepage = ScaledCreepage {
+            x: wrong,
+            y: 0.0,
+            spin: 0.0,
+        };
+        assert!(matches!(
+            kalker.solve(&creepage, None),
+            Err(KalkerError::NotFinite(_))
+        ));
+    }
+    let patch = Patch {
+        axis_ratio: 1.0,
+        poisson_ratio: 0.3,
+        rolling_angle: 0.0,
+    };
+    assert!(matches!(Kalker::new(patch, 0), Err(KalkerError::Degree(0))));
+    assert!(matches!(Kalker::new(patch, 8), Err(KalkerError::Degree(8))));
+}
+
+#[test]
+fn invariant_warm_start_finds_the_cold_solution() {
+    let kalker = kalker(0.2, 5);
+    let near = kalker
+        .solve(
+            &ScaledCreepage {
+                x: 0.2,
+                y: 0.1,
+                spin: 0.8,
+            },
+            None,
+        )
+        .unwrap();
+    let creepage = ScaledCreepage {
+        x: 0.203,
+        y: 0.099,
+        spin: 0.805,
+    };
+    let (warm, cold) = (
+        kalker.solve(&creepage, Some(&near)).unwrap(),
+        kalker.solve(&creepage, None).unwrap(),
+    );
+    assert!((warm.forces.fx - cold.forces.fx).abs() < 2e-3);
+    assert!((warm.forces.fy - cold.forces.fy).abs() < 2e-3);
+    assert!(warm.iterations < cold.iterations);
+}
+
+#[test]
+fn full_slip_reaches_the_friction_limit_and_stick_falls_from_one_to_none() {
+    let kalker = kalker(1.0, 5);
+    let at = |x: f64| {
+        kalker
+            .solve(&ScaledCreepage { x, y: 0.0, spin: 0.0 }, None)
+            .unwrap()
+    };
+    assert!(at(1e-4).stick > 0.98 && at(10.0).stick < 0.02);
+    assert!(at(10.0).forces.fx > 0.995);
+}
