@@ -13,7 +13,7 @@ use crate::model::{INNER, Model, OUTER};
 use crate::motion::{Pose, Twist, Wrench};
 use crate::outputs::Outputs;
 use crate::path::{RAMP_WIDTH, RacePath, Ramp};
-use crate::scene::{Condition, Scene};
+use crate::scene::{Condition, Drive, Scene};
 use crate::start;
 use crate::state::State;
 
@@ -250,10 +250,30 @@ impl Simulation {
         if !(end > begin && end.is_finite()) {
             return Err(SimulationError::Backwards { from: begin, to: end });
         }
+        self.script_fixed_races(begin);
         self.paths = self.paths.towards(&self.inputs, begin, end - begin);
         let result = self.step_to(end);
         self.outputs = Outputs::new(&self.model, &self.state, self.inputs.friction);
         result
+    }
+
+    /// A race that is fixed in its frame has no inputs: the scene's script says how it spins.
+    fn script_fixed_races(&mut self, time: f64) {
+        let load = &self.scene.load;
+        for (race, section, speed) in [
+            (INNER, &self.scene.inner, &load.inner_speed),
+            (OUTER, &self.scene.outer, &load.outer_speed),
+        ] {
+            if section.drive == Drive::Fixed {
+                let input = if race == INNER {
+                    &mut self.inputs.inner
+                } else {
+                    &mut self.inputs.outer
+                };
+                input.speed = speed.at(time);
+                start::script_motion(&self.scene, race, time, &self.paths.races[race].at(time).0, input);
+            }
+        }
     }
 
     fn step_to(&mut self, end: f64) -> Result<(), SimulationError> {

@@ -203,3 +203,45 @@ fn steps_that_make_no_sense_are_refused() {
     }
     assert_eq!(simulation.time(), 0.0);
 }
+
+#[test]
+fn closed_form_counter_rotating_rings_leave_the_cage_nearly_at_rest() {
+    let text = THRUST.replace("[load]", "[load]\nouter_speed = \"-6000 rpm\"");
+    let (simulation, history) = run(&text, 200);
+    let last = &history[200];
+    let speed = 200.0 * std::f64::consts::PI;
+    let angle = 0.5 * (last.balls[0].inner.contact_angle + last.balls[0].outer.contact_angle);
+    let expected = simulation.model().bearing.epicyclic_speed(angle, speed, -speed);
+    assert!(
+        (last.cage_speed - expected).abs() < 1e-2 * speed,
+        "{} {expected}",
+        last.cage_speed
+    );
+    assert!((last.outer.twist.angular_velocity.x + speed).abs() < 1e-9);
+}
+
+#[test]
+fn start_from_rest_reaches_the_epicyclic_speed_without_failures() {
+    let line = THRUST
+        .lines()
+        .find(|line| line.starts_with("inner_speed"))
+        .unwrap();
+    let text = THRUST.replace(line, "inner_speed = [[0.0, 0.0], [0.02, \"6000 rpm\"]]");
+    let (_, history) = run(&text, 300);
+    assert_eq!(history[0].cage_speed, 0.0);
+    let last = &history[300];
+    assert!(last.cage_slip.abs() < 0.02, "{}", last.cage_slip);
+    // Friction only ever takes energy, and the balls only ever gain speed.
+    assert!(
+        history
+            .windows(2)
+            .all(|pair| pair[1].dissipated >= pair[0].dissipated)
+    );
+    assert!(
+        history[..200]
+            .windows(2)
+            .all(|pair| pair[1].cage_speed >= pair[0].cage_speed - 1e-3)
+    );
+    let balance = last.work - last.dissipated - (last.stored_energy - history[0].stored_energy);
+    assert!(balance.abs() < 1e-2 * last.work, "{balance} of {}", last.work);
+}

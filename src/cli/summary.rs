@@ -87,12 +87,10 @@ fn write_summary(
     )?;
     writeln!(out, "friction torque  {:.5} N m", mean(|o| o.friction_torque))?;
     let balance = now.work - now.dissipated - (now.stored_energy - history[0].stored_energy);
-    let scale = now.work.abs() + now.dissipated;
-    let share = if scale > 0.0 { balance / scale * 100.0 } else { 0.0 };
     writeln!(
         out,
-        "energy           work {:.5} J, lost {:.5} J, balance {balance:.2e} J ({share:.4} %)",
-        now.work, now.dissipated
+        "energy           work {:.5} J, lost {:.5} J, stored {:.5} J, balance {balance:.2e} J",
+        now.work, now.dissipated, now.stored_energy
     )?;
     let s = &now.statistics;
     let steps = s.steps.max(1) as f64;

@@ -161,6 +161,12 @@ fn load(scene: &Scene) -> Result<(), SceneError> {
             return Err(conflict(key, both));
         }
     }
+    let varies = |condition: &Condition| matches!(condition, Condition::Load(Schedule::Table(_)));
+    if scene.inner.drive != Drive::Wrench && load.conditions().iter().any(varies) {
+        let why = "a load that changes needs inner.drive = \"wrench\": otherwise the race is held where the load at \
+                   the start puts it";
+        return Err(conflict("load", why));
+    }
     let keys = ["load.x", "load.y", "load.z", "load.ry", "load.rz"];
     for (direction, (key, condition)) in keys.into_iter().zip(load.conditions()).enumerate() {
         let (range, schedule) = match &condition {

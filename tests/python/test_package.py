@@ -51,9 +51,11 @@ def test_simulate_fmu_reaches_the_load(packages, drive):
     assert all(np.isfinite(result[name]).all() for name in result.dtype.names)
 
 
-@pytest.mark.parametrize("drive", ["wrench", "pose"])
+@pytest.mark.parametrize("drive", ["wrench", "pose", "counter-rotating"])
 def test_native_run_and_package_agree_to_the_last_bit(thrust_text, tmp_path, drive):
-    text = thrust_text if drive == "wrench" else pose_drive(thrust_text)
+    text = pose_drive(thrust_text) if drive == "pose" else thrust_text
+    if drive == "counter-rotating":
+        text = text.replace("[load]", '[load]\nouter_speed = "-3000 rpm"')
     # A power of two: sums of communication steps are exact, so that both have equal communication points.
     text = text.replace('"50 ms"', "0.009765625").replace('"100 us"', "0.0001220703125")
     package = build(text, tmp_path, drive)
@@ -247,3 +249,19 @@ def test_committed_model_description_is_current():
     printed = roulement("describe", ROOT / "scenes" / "thrust.toml").stdout
     committed = (ROOT / "modelDescription" / "modelDescription.xml").read_text()
     assert printed == committed, "run: roulement describe scenes/thrust.toml > modelDescription/modelDescription.xml"
+
+
+def test_outer_race_by_its_pose(thrust_text, tmp_path):
+    package = build(thrust_text.replace('drive = "fixed"', 'drive = "pose"'), tmp_path, "outer")
+    assert validate_fmu(str(package)) == []
+    slave = Slave(package, tmp_path / "unzipped").start()
+    # The outer race moves off at 1 mm/s: the inner one, a body under its thrust, follows.
+    for k in range(100):
+        slave.set(outer__position__x=1e-3 * k * STEP, outer__velocity__x=1e-3)
+        slave.fmu.doStep(k * STEP, STEP)
+    inner, outer = slave.get("inner.position.x", "outer.position.x")
+    force = slave.get("outer.force.x")[0]
+    slave.close()
+    assert math.isclose(outer, 1e-3 * 99 * STEP, rel_tol=1e-12)
+    assert 20e-6 < inner - outer < 25e-6
+    assert math.isclose(force, 1500, rel_tol=0.02)
