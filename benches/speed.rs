@@ -25,10 +25,7 @@ fn contact_value(bencher: Bencher, law: CreepLaw) {
     let simulation = Simulation::new(&scene).unwrap();
     let mut contact = simulation.model().contact(INNER, 0.08);
     contact.law = law;
-    let (ball, race) = (
-        simulation.state().balls[0].motion(),
-        simulation.state().races[INNER].motion(),
-    );
+    let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().races[INNER].motion());
     bencher.bench_local(|| contact.evaluate(divan::black_box(&ball), divan::black_box(&race)));
 }
 
@@ -44,18 +41,13 @@ fn equilibrium_solve(bencher: Bencher) {
 /// 10 ms of the thrust case at a step cap of 1e-5 s: 1000 steps an iteration, so 1 ms here is 0.1 s per simulated s.
 #[divan::bench(args = ["wrench", "pose"], sample_count = 20)]
 fn ten_milliseconds(bencher: Bencher, drive: &str) {
-    let text = if drive == "wrench" {
-        THRUST.to_string()
-    } else {
-        prescribed()
-    };
+    let text = if drive == "wrench" { THRUST.to_string() } else { prescribed() };
     let mut start = Simulation::new(&Scene::parse(&text).unwrap()).unwrap();
     start.advance(5e-3).unwrap();
-    bencher
-        .counter(ItemsCount::new(1000u32))
-        .with_inputs(|| start.clone())
-        .bench_local_values(|mut simulation| {
+    bencher.counter(ItemsCount::new(1000u32)).with_inputs(|| start.clone()).bench_local_values(
+        |mut simulation| {
             simulation.advance(15e-3).unwrap();
             simulation.state().statistics.steps
-        });
+        },
+    );
 }

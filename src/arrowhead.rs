@@ -28,11 +28,7 @@ pub struct BallBlock {
 impl Default for BallBlock {
     fn default() -> Self {
         let zero = Matrix6::zeros();
-        Self {
-            diagonal: zero,
-            right: [zero; 2],
-            left: [zero; 2],
-        }
+        Self { diagonal: zero, right: [zero; 2], left: [zero; 2] }
     }
 }
 
@@ -74,11 +70,7 @@ impl Arrowhead {
                     }
                 }
             }
-            self.balls.push(Factor {
-                diagonal,
-                right,
-                left: block.left,
-            });
+            self.balls.push(Factor { diagonal, right, left: block.left });
         }
         self.border = if border.is_empty() { None } else { Some(schur.lu()) };
     }
@@ -125,9 +117,7 @@ mod tests {
     fn numbers() -> impl FnMut() -> f64 {
         let mut state = 1u64;
         move || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
             (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
         }
     }
@@ -142,33 +132,24 @@ mod tests {
         let border_start = BLOCK * n_balls;
         for (j, block) in blocks.iter_mut().enumerate() {
             block.diagonal = Matrix6::from_fn(|i, k| random() + if i == k { 3.0 } else { 0.0 });
-            dense
-                .fixed_view_mut::<BLOCK, BLOCK>(BLOCK * j, BLOCK * j)
-                .copy_from(&block.diagonal);
+            dense.fixed_view_mut::<BLOCK, BLOCK>(BLOCK * j, BLOCK * j).copy_from(&block.diagonal);
             for (body, offset) in [(0, 0), (1, 7)] {
                 block.right[body] = Matrix6::from_fn(|_, _| random());
                 block.left[body] = Matrix6::from_fn(|_, _| random());
                 let at = border_start + offset;
-                dense
-                    .fixed_view_mut::<BLOCK, BLOCK>(BLOCK * j, at)
-                    .copy_from(&block.right[body]);
-                dense
-                    .fixed_view_mut::<BLOCK, BLOCK>(at, BLOCK * j)
-                    .copy_from(&block.left[body]);
+                dense.fixed_view_mut::<BLOCK, BLOCK>(BLOCK * j, at).copy_from(&block.right[body]);
+                dense.fixed_view_mut::<BLOCK, BLOCK>(at, BLOCK * j).copy_from(&block.left[body]);
             }
         }
         let border = DMatrix::from_fn(n_border, n_border, |_, _| random());
-        dense
-            .view_mut((border_start, border_start), (n_border, n_border))
-            .copy_from(&border);
+        dense.view_mut((border_start, border_start), (n_border, n_border)).copy_from(&border);
         let rhs = DVector::from_fn(size, |_, _| random());
         let exact = dense.lu().solve(&rhs).unwrap();
 
         let mut arrowhead = Arrowhead::default();
         arrowhead.factorise(&blocks.iter().collect::<Vec<_>>(), &border, offsets);
-        let mut balls: Vec<_> = (0..n_balls)
-            .map(|j| rhs.fixed_rows::<BLOCK>(BLOCK * j).into_owned())
-            .collect();
+        let mut balls: Vec<_> =
+            (0..n_balls).map(|j| rhs.fixed_rows::<BLOCK>(BLOCK * j).into_owned()).collect();
         let mut tail = rhs.rows(border_start, n_border).into_owned();
         assert!(arrowhead.solve(&mut balls, &mut tail, offsets));
         for (j, x) in balls.iter().enumerate() {

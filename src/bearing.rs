@@ -68,22 +68,12 @@ impl Bearing {
                 let (sin, cos) = angle.0.sin_cos();
                 let outer_circle = pitch / 2.0 - (f_o - 0.5) * diameter * cos;
                 let offsets = ((f_i - 0.5) * diameter * sin, -(f_o - 0.5) * diameter * sin);
-                (
-                    outer_circle + centre_distance * cos,
-                    offsets.0,
-                    outer_circle,
-                    offsets.1,
-                )
+                (outer_circle + centre_distance * cos, offsets.0, outer_circle, offsets.1)
             }
             None => {
                 let clearance = section.diametral_clearance.map_or(0.0, |clearance| clearance.0);
                 let outer_circle = (pitch + diameter) / 2.0 + clearance / 4.0 - f_o * diameter;
-                (
-                    outer_circle + centre_distance - clearance / 2.0,
-                    0.0,
-                    outer_circle,
-                    0.0,
-                )
+                (outer_circle + centre_distance - clearance / 2.0, 0.0, outer_circle, 0.0)
             }
         };
         let radius = diameter / 2.0;
@@ -93,11 +83,7 @@ impl Bearing {
         let shear_modulus = 2.0 / (1.0 / shear[0] + 1.0 / shear[1]);
         Self {
             n_balls: section.balls,
-            ball: Ball {
-                radius,
-                mass,
-                inertia: 0.4 * mass * radius * radius,
-            },
+            ball: Ball { radius, mass, inertia: 0.4 * mass * radius * radius },
             pitch_diameter: pitch,
             first_ball_azimuth: section.first_ball_azimuth.0,
             free_contact_angle: section.contact_angle.map_or(0.0, |angle| angle.0),
@@ -111,10 +97,7 @@ impl Bearing {
                 groove_circle_radius: outer_circle,
                 groove_offset: outer_offset,
             },
-            contact_compliance: materials
-                .iter()
-                .map(|(youngs, nu)| (1.0 - nu * nu) / youngs)
-                .sum(),
+            contact_compliance: materials.iter().map(|(youngs, nu)| (1.0 - nu * nu) / youngs).sum(),
             shear_modulus,
             poisson_ratio: shear_modulus * (materials[0].1 / shear[0] + materials[1].1 / shear[1]) / 2.0,
         }

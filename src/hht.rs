@@ -21,12 +21,7 @@ pub struct HhtStep {
 impl HhtStep {
     /// A step of size `h` [s].
     pub fn new(alpha_f: f64, h: f64) -> Self {
-        Self {
-            h,
-            alpha_f,
-            beta: 0.25 * (1.0 + alpha_f).powi(2),
-            gamma: 0.5 + alpha_f,
-        }
+        Self { h, alpha_f, beta: 0.25 * (1.0 + alpha_f).powi(2), gamma: 0.5 + alpha_f }
     }
 
     /// [m] displacement over the step from velocity and the accelerations at start and end.

@@ -8,6 +8,7 @@ pub mod equilibrium;
 #[allow(non_snake_case)]
 pub mod fmi2;
 pub mod hht;
+pub mod inputs;
 pub mod kalker;
 pub mod model;
 pub mod model_description;

@@ -61,10 +61,8 @@ impl Model {
     /// If creep coefficients cannot be computed for the bearing's contacts.
     pub fn new(scene: &Scene) -> Result<Self, LinearError> {
         let bearing = Bearing::new(scene);
-        let shapes = [
-            ContactShape::new(&bearing, &bearing.inner)?,
-            ContactShape::new(&bearing, &bearing.outer)?,
-        ];
+        let shapes =
+            [ContactShape::new(&bearing, &bearing.inner)?, ContactShape::new(&bearing, &bearing.outer)?];
         Ok(Self {
             bearing,
             shapes,
@@ -78,11 +76,7 @@ impl Model {
 
     /// Raceway of a race.
     pub fn raceway(&self, race: usize) -> &Raceway {
-        if race == INNER {
-            &self.bearing.inner
-        } else {
-            &self.bearing.outer
-        }
+        if race == INNER { &self.bearing.inner } else { &self.bearing.outer }
     }
 
     /// Contact model of the balls with a race at a friction coefficient.
@@ -99,9 +93,7 @@ impl Model {
 
     /// Border rows of a race body: 6 of motion and one per constraint.
     pub fn border_rows(&self, race: usize) -> usize {
-        self.bodies[race]
-            .as_ref()
-            .map_or(0, |body| 6 + body.constraints.len())
+        self.bodies[race].as_ref().map_or(0, |body| 6 + body.constraints.len())
     }
 
     /// [m] length that turns moments of a race into forces of the size of the others.
@@ -114,16 +106,16 @@ fn body(section: &RaceSection, scene: &Scene) -> Option<RaceBody> {
     let (Drive::Wrench, Some(mass), Some(inertia)) = (section.drive, section.mass, section.inertia) else {
         return None;
     };
-    let locks = scene
-        .load
-        .conditions()
-        .into_iter()
-        .enumerate()
-        .filter_map(|(direction, condition)| match condition {
-            Condition::Load(_) => None,
-            Condition::Motion(schedule) if direction < 3 => Some(Constraint::Position(direction, schedule)),
-            Condition::Motion(schedule) => Some(Constraint::Tilt(direction - 2, schedule)),
-        });
+    let locks =
+        scene.load.conditions().into_iter().enumerate().filter_map(
+            |(direction, condition)| match condition {
+                Condition::Load(_) => None,
+                Condition::Motion(schedule) if direction < 3 => {
+                    Some(Constraint::Position(direction, schedule))
+                }
+                Condition::Motion(schedule) => Some(Constraint::Tilt(direction - 2, schedule)),
+            },
+        );
     Some(RaceBody {
         mass: mass.0,
         inertia: Vector3::from(inertia.map(|moment| moment.0)),

@@ -8,7 +8,8 @@ use sha2::{Digest, Sha256};
 
 use crate::scene::Scene;
 use crate::simulation::Simulation;
-use crate::variables::{Causality, Kind, Unit, Variable, Variables, units};
+use crate::variables::units::{self, Unit};
+use crate::variables::{Causality, Kind, Variable, Variables};
 
 /// Model identifier: the name of the shared library in a package.
 pub const MODEL_IDENTIFIER: &str = "roulement";
@@ -45,22 +46,12 @@ pub fn render(simulation: &Simulation) -> std::io::Result<ModelDescription> {
     let mut digest = Sha256::new();
     digest.update(draft.as_bytes());
     digest.update(scene.source.as_bytes());
-    let hex = digest
-        .finalize()
-        .iter()
-        .take(16)
-        .fold(String::new(), |mut text, byte| {
-            let _ = write!(text, "{byte:02x}");
-            text
-        });
-    let guid = format!(
-        "{{{}-{}-{}-{}-{}}}",
-        &hex[0..8],
-        &hex[8..12],
-        &hex[12..16],
-        &hex[16..20],
-        &hex[20..32]
-    );
+    let hex = digest.finalize().iter().take(16).fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    });
+    let guid =
+        format!("{{{}-{}-{}-{}-{}}}", &hex[0..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..32]);
     let xml = document(simulation, &variables, &guid)?;
     Ok(ModelDescription { xml, guid })
 }
@@ -69,11 +60,7 @@ fn document(simulation: &Simulation, variables: &Variables, guid: &str) -> std::
     let scene = simulation.scene();
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    let title = if scene.title.is_empty() {
-        "ball bearing"
-    } else {
-        &scene.title
-    };
+    let title = if scene.title.is_empty() { "ball bearing" } else { &scene.title };
     xml.create_element("fmiModelDescription")
         .with_attributes([
             ("fmiVersion", "2.0"),
@@ -92,9 +79,7 @@ fn document(simulation: &Simulation, variables: &Variables, guid: &str) -> std::
             xml.create_element("LogCategories").write_inner_content(|xml| {
                 for (name, description) in LOG_CATEGORIES {
                     let attributes = [("name", name), ("description", description)];
-                    xml.create_element("Category")
-                        .with_attributes(attributes)
-                        .write_empty()?;
+                    xml.create_element("Category").with_attributes(attributes).write_empty()?;
                 }
                 Ok(())
             })?;
@@ -140,41 +125,28 @@ fn unit_definitions(xml: &mut Xml) -> std::io::Result<()> {
 }
 
 fn unit_definition(xml: &mut Xml, unit: &Unit) -> std::io::Result<()> {
-    xml.create_element("Unit")
-        .with_attribute(("name", unit.name))
-        .write_inner_content(|xml| {
-            let mut base = xml.create_element("BaseUnit");
-            for (name, exponent) in ["kg", "m", "s", "rad"].into_iter().zip(unit.exponents) {
-                if exponent != 0 {
-                    base = base.with_attribute((name, exponent.to_string().as_str()));
-                }
+    xml.create_element("Unit").with_attribute(("name", unit.name)).write_inner_content(|xml| {
+        let mut base = xml.create_element("BaseUnit");
+        for (name, exponent) in ["kg", "m", "s", "rad"].into_iter().zip(unit.exponents) {
+            if exponent != 0 {
+                base = base.with_attribute((name, exponent.to_string().as_str()));
             }
-            base.write_empty()?;
-            if let Some((name, factor)) = unit.display {
-                let factor = factor.to_string();
-                let attributes = [("name", name), ("factor", factor.as_str())];
-                xml.create_element("DisplayUnit")
-                    .with_attributes(attributes)
-                    .write_empty()?;
-            }
-            Ok(())
-        })?;
+        }
+        base.write_empty()?;
+        if let Some((name, factor)) = unit.display {
+            let factor = factor.to_string();
+            let attributes = [("name", name), ("factor", factor.as_str())];
+            xml.create_element("DisplayUnit").with_attributes(attributes).write_empty()?;
+        }
+        Ok(())
+    })?;
     Ok(())
 }
 
 fn default_experiment(xml: &mut Xml, scene: &Scene) -> std::io::Result<()> {
-    let (stop, step) = (
-        scene.load.duration.0.to_string(),
-        scene.load.output_interval.0.to_string(),
-    );
-    let attributes = [
-        ("startTime", "0"),
-        ("stopTime", stop.as_str()),
-        ("stepSize", step.as_str()),
-    ];
-    xml.create_element("DefaultExperiment")
-        .with_attributes(attributes)
-        .write_empty()?;
+    let (stop, step) = (scene.load.duration.0.to_string(), scene.load.output_interval.0.to_string());
+    let attributes = [("startTime", "0"), ("stopTime", stop.as_str()), ("stepSize", step.as_str())];
+    xml.create_element("DefaultExperiment").with_attributes(attributes).write_empty()?;
     Ok(())
 }
 
@@ -231,9 +203,7 @@ fn model_structure(xml: &mut Xml, variables: &Variables) -> std::io::Result<()> 
         for list in ["Outputs", "InitialUnknowns"] {
             xml.create_element(list).write_inner_content(|xml| {
                 for index in outputs() {
-                    xml.create_element("Unknown")
-                        .with_attribute(("index", index.as_str()))
-                        .write_empty()?;
+                    xml.create_element("Unknown").with_attribute(("index", index.as_str())).write_empty()?;
                 }
                 Ok(())
             })?;

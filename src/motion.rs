@@ -32,10 +32,7 @@ pub struct Wrench {
 
 impl Default for Pose {
     fn default() -> Self {
-        Self {
-            position: Vector3::zeros(),
-            orientation: UnitQuaternion::identity(),
-        }
+        Self { position: Vector3::zeros(), orientation: UnitQuaternion::identity() }
     }
 }
 
@@ -49,9 +46,6 @@ impl Twist {
 impl Wrench {
     /// `(1 - t) self + t other`.
     pub fn blend(&self, other: &Self, t: f64) -> Self {
-        Self {
-            force: self.force.lerp(&other.force, t),
-            moment: self.moment.lerp(&other.moment, t),
-        }
+        Self { force: self.force.lerp(&other.force, t), moment: self.moment.lerp(&other.moment, t) }
     }
 }

@@ -147,16 +147,8 @@ mod tests {
         let run = |target: f64, start: f64| {
             let mut x = [start];
             let mut work = NewtonWork::default();
-            let mut equations = Cube {
-                target,
-                residual: 0.0,
-                slope: 0.0,
-            };
-            (
-                solve(&mut equations, &mut x, &mut NewtonBuffers::default(), &mut work),
-                x[0],
-                work,
-            )
+            let mut equations = Cube { target, residual: 0.0, slope: 0.0 };
+            (solve(&mut equations, &mut x, &mut NewtonBuffers::default(), &mut work), x[0], work)
         };
         let (result, root, work) = run(8.0, 1.5);
         assert_eq!(result, Ok(()));

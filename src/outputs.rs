@@ -151,9 +151,7 @@ impl Outputs {
             model.bearing.free_contact_angle
         };
         let speeds = [INNER, OUTER].map(|race| state.races[race].rate.x);
-        let epicyclic = model
-            .bearing
-            .epicyclic_speed(contact_angle, speeds[INNER], speeds[OUTER]);
+        let epicyclic = model.bearing.epicyclic_speed(contact_angle, speeds[INNER], speeds[OUTER]);
         let [inner, outer] = [INNER, OUTER].map(|race| race_output(&state.races[race], model, race));
         Self {
             time: state.time,
@@ -162,11 +160,7 @@ impl Outputs {
             outer,
             balls,
             cage_speed,
-            cage_slip: if epicyclic == 0.0 {
-                0.0
-            } else {
-                1.0 - cage_speed / epicyclic
-            },
+            cage_slip: if epicyclic == 0.0 { 0.0 } else { 1.0 - cage_speed / epicyclic },
             friction_power,
             damping_power,
             stored_energy,
@@ -193,32 +187,20 @@ fn race_output(race: &RaceState, model: &Model, index: usize) -> RaceOutput {
     let twist = race.twist();
     let axis = race.pose.orientation * Vector3::x();
     let spin = model.bodies[index].as_ref().and_then(|body| {
-        body.constraints
-            .iter()
-            .position(|constraint| matches!(constraint, crate::model::Constraint::Spin))
+        body.constraints.iter().position(|constraint| matches!(constraint, crate::model::Constraint::Spin))
     });
     let drive_torque = match spin {
         Some(index) => race.multipliers[index],
         None => -race.bearing_wrench.moment.dot(&axis),
     };
-    RaceOutput {
-        pose: race.pose,
-        twist,
-        wrench: race.bearing_wrench,
-        drive_torque,
-        turned: race.turned,
-    }
+    RaceOutput { pose: race.pose, twist, wrench: race.bearing_wrench, drive_torque, turned: race.turned }
 }
 
 fn contact_output(contact: &BallRaceContact<f64>, axis: &Vector3<f64>) -> ContactOutput {
     let normal = &contact.geometry.normal;
     // The outer normal points outwards, the inner one inwards: the angle is that of the force on the ball for the
     // inner race, and of its opposite for the outer, so that both are positive under the same thrust.
-    let outwards = if normal.dot(&contact.geometry.radial) < 0.0 {
-        -1.0
-    } else {
-        1.0
-    };
+    let outwards = if normal.dot(&contact.geometry.radial) < 0.0 { -1.0 } else { 1.0 };
     let (axial, radial) = (normal.dot(axis), normal.dot(&contact.geometry.radial));
     let contact_angle = (outwards * axial).atan2(radial.abs());
     // Frame C has x along the rolling direction; the kernel's x is along the circumference.
@@ -238,10 +220,6 @@ fn contact_output(contact: &BallRaceContact<f64>, axis: &Vector3<f64>) -> Contac
         power: contact.friction_power,
         semi_axis_rolling: rolling,
         semi_axis_transverse: transverse,
-        peak_pressure: if area > 0.0 {
-            1.5 * contact.load / area
-        } else {
-            0.0
-        },
+        peak_pressure: if area > 0.0 { 1.5 * contact.load / area } else { 0.0 },
     }
 }

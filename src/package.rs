@@ -57,18 +57,11 @@ const PLATFORM: (&str, &str) = if cfg!(windows) {
 /// # Errors
 /// If it is not there.
 pub fn library_beside_executable() -> Result<PathBuf, PackageError> {
-    let name = if cfg!(windows) {
-        "roulement.dll".into()
-    } else {
-        format!("lib{MODEL_IDENTIFIER}.{}", PLATFORM.1)
-    };
+    let name =
+        if cfg!(windows) { "roulement.dll".into() } else { format!("lib{MODEL_IDENTIFIER}.{}", PLATFORM.1) };
     let executable = std::env::current_exe()?;
     let path = executable.with_file_name(name);
-    if path.is_file() {
-        Ok(path)
-    } else {
-        Err(PackageError::NoLibrary(path.display().to_string()))
-    }
+    if path.is_file() { Ok(path) } else { Err(PackageError::NoLibrary(path.display().to_string())) }
 }
 
 /// Writes the package of a scene to `output`; an existing file is replaced only by a complete one.
@@ -110,11 +103,7 @@ pub fn write_fmu(scene: &Scene, library: &Path, output: &Path) -> Result<(), Pac
 fn documentation(simulation: &Simulation) -> String {
     let escape = |text: &str| quick_xml::escape::escape(text).into_owned();
     let scene = simulation.scene();
-    let title = if scene.title.is_empty() {
-        "Ball bearing"
-    } else {
-        &scene.title
-    };
+    let title = if scene.title.is_empty() { "Ball bearing" } else { &scene.title };
     let drive = |drive: Drive| match drive {
         Drive::Pose => "pose and twist are inputs, the bearing's wrench is an output",
         Drive::Wrench => "a rigid body: applied wrench and spin speed are inputs, pose and twist are outputs",
@@ -122,11 +111,7 @@ fn documentation(simulation: &Simulation) -> String {
     };
     let mut rows = String::new();
     for row in Variables::new(scene).rows() {
-        let causality = if row.causality == Causality::Input {
-            "input"
-        } else {
-            "output"
-        };
+        let causality = if row.causality == Causality::Input { "input" } else { "output" };
         rows += &format!(
             "<tr><td><code>{}</code></td><td>{}</td><td>{causality}</td><td>{}</td></tr>\n",
             escape(&row.name),

@@ -31,10 +31,7 @@ impl Cubic {
     /// Value and rate after `t` [s].
     fn at(&self, t: f64) -> (Vector3<f64>, Vector3<f64>) {
         let [x0, v0, c2, c3] = self.0;
-        (
-            x0 + (v0 + (c2 + c3 * t) * t) * t,
-            v0 + (c2 * 2.0 + c3 * (3.0 * t)) * t,
-        )
+        (x0 + (v0 + (c2 + c3 * t) * t) * t, v0 + (c2 * 2.0 + c3 * (3.0 * t)) * t)
     }
 }
 
@@ -112,16 +109,7 @@ impl RacePath {
         let orientation = turned * to_quaternion(&e) * self.orientation;
         let angular_velocity = self.turn + turned * rotate(&e, &tangent(&e, &e_rate));
         let orientation = UnitQuaternion::new_normalize(orientation.into_inner());
-        (
-            Pose {
-                position,
-                orientation,
-            },
-            Twist {
-                velocity,
-                angular_velocity,
-            },
-        )
+        (Pose { position, orientation }, Twist { velocity, angular_velocity })
     }
 }
 
@@ -140,22 +128,12 @@ pub const RAMP_WIDTH: usize = 7;
 impl Ramp {
     /// A constant.
     pub fn constant(value: SVector<f64, RAMP_WIDTH>) -> Self {
-        Self {
-            start_time: 0.0,
-            duration: 1.0,
-            from: value,
-            to: value,
-        }
+        Self { start_time: 0.0, duration: 1.0, from: value, to: value }
     }
 
     /// From the value of `self` at `start_time` [s] to `value` after `duration` [s].
     pub fn towards(&self, start_time: f64, value: SVector<f64, RAMP_WIDTH>, duration: f64) -> Self {
-        Self {
-            start_time,
-            duration,
-            from: self.at(start_time),
-            to: value,
-        }
+        Self { start_time, duration, from: self.at(start_time), to: value }
     }
 
     /// Value at a time [s].
@@ -178,10 +156,8 @@ mod tests {
 
     #[test]
     fn closed_form_steady_turn_is_exact_over_many_revolutions() {
-        let twist = Twist {
-            velocity: Vector3::new(0.1, 0.0, 0.2),
-            angular_velocity: Vector3::new(628.0, 3.0, -2.0),
-        };
+        let twist =
+            Twist { velocity: Vector3::new(0.1, 0.0, 0.2), angular_velocity: Vector3::new(628.0, 3.0, -2.0) };
         let (pose, h) = (Pose::default(), 0.1);
         let path = RacePath::towards(2.0, (&pose, &twist), &pose, &twist, &Twist::default(), h);
         let exact = RacePath::steady(2.0, &pose, &twist);
@@ -211,10 +187,8 @@ mod tests {
             velocity: Vector3::new(0.0, 0.03, 0.0),
             angular_velocity: Vector3::new(628.0, -1.0, 2.0),
         };
-        let rate = Twist {
-            velocity: Vector3::new(5.0, 0.0, 1.0),
-            angular_velocity: Vector3::new(1e3, 20.0, 5.0),
-        };
+        let rate =
+            Twist { velocity: Vector3::new(5.0, 0.0, 1.0), angular_velocity: Vector3::new(1e3, 20.0, 5.0) };
         let h = 1e-3;
         let path = RacePath::towards(0.5, (&start.0, &start.1), &pose, &twist, &rate, h);
         assert!(close(&path.at(0.5), &start) < 1e-12);
@@ -229,20 +203,13 @@ mod tests {
             let (time, d) = (0.5 + h * f64::from(i) / 10.0, 1e-7);
             let ((before, _), (_, at), (after, _)) = (path.at(time - d), path.at(time), path.at(time + d));
             let turn = (after.orientation * before.orientation.inverse()).scaled_axis() / (2.0 * d);
-            assert!(
-                (turn - at.angular_velocity).norm() < 1e-5,
-                "{turn} {}",
-                at.angular_velocity
-            );
+            assert!((turn - at.angular_velocity).norm() < 1e-5, "{turn} {}", at.angular_velocity);
         }
     }
 
     #[test]
     fn a_ramp_is_linear_and_held_afterwards() {
         let ramp = Ramp::constant(SVector::repeat(1.0)).towards(2.0, SVector::repeat(3.0), 0.5);
-        assert_eq!(
-            [1.0, 2.0, 2.25, 3.0].map(|time| ramp.at(time)[4]),
-            [1.0, 1.0, 2.0, 3.0]
-        );
+        assert_eq!([1.0, 2.0, 2.25, 3.0].map(|time| ramp.at(time)[4]), [1.0, 1.0, 2.0, 3.0]);
     }
 }

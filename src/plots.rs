@@ -19,12 +19,8 @@ pub struct PlotError {
 }
 
 /// Colour-blind safe colours (Okabe and Ito).
-const COLOURS: [RGBColor; 4] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-];
+const COLOURS: [RGBColor; 4] =
+    [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
 const PANEL: (u32, u32) = (520, 270);
 
 /// A curve: its name and points.
@@ -54,32 +50,17 @@ pub fn write_plots(
     history: &[Outputs],
     directory: &Path,
 ) -> Result<Vec<PathBuf>, PlotError> {
-    let title = if scene.title.is_empty() {
-        "ball bearing"
-    } else {
-        &scene.title
-    };
+    let title = if scene.title.is_empty() { "ball bearing" } else { &scene.title };
     let figures = [
-        (
-            "contacts.svg",
-            format!("{title}: contacts of ball 1"),
-            contact_panels(history),
-        ),
+        ("contacts.svg", format!("{title}: contacts of ball 1"), contact_panels(history)),
         ("bearing.svg", title.to_string(), bearing_panels(model, history)),
-        (
-            "balls.svg",
-            format!("{title}: all balls at the end"),
-            ball_panels(history),
-        ),
+        ("balls.svg", format!("{title}: all balls at the end"), ball_panels(history)),
     ];
     figures
         .into_iter()
         .map(|(name, title, panels)| {
             let path = directory.join(name);
-            let failed = |why: String| PlotError {
-                path: path.display().to_string(),
-                why,
-            };
+            let failed = |why: String| PlotError { path: path.display().to_string(), why };
             figure(&path, &title, &panels).map_err(failed)?;
             Ok(path)
         })
@@ -91,29 +72,15 @@ fn contact_panels(history: &[Outputs]) -> Vec<Panel> {
     let panel = |y_label, least, get: fn(&ContactOutput) -> f64| {
         let curve = |name, side: fn(&BallOutput) -> &ContactOutput| Curve {
             name,
-            points: history
-                .iter()
-                .map(|o| (o.time * 1e3, get(side(&o.balls[0]))))
-                .collect(),
+            points: history.iter().map(|o| (o.time * 1e3, get(side(&o.balls[0])))).collect(),
         };
-        let curves = vec![
-            curve("inner race", |b| &b.inner),
-            curve("outer race", |b| &b.outer),
-        ];
-        Panel {
-            x_label: "time [ms]",
-            y_label,
-            curves,
-            least,
-            scattered: false,
-        }
+        let curves = vec![curve("inner race", |b| &b.inner), curve("outer race", |b| &b.outer)];
+        Panel { x_label: "time [ms]", y_label, curves, least, scattered: false }
     };
     vec![
         panel("load [N]", 0.1, |c| c.load),
         panel("contact angle [deg]", 0.01, |c| c.contact_angle.to_degrees()),
-        panel("longitudinal creepage [1e-3]", 0.001, |c| {
-            c.creepage_longitudinal * 1e3
-        }),
+        panel("longitudinal creepage [1e-3]", 0.001, |c| c.creepage_longitudinal * 1e3),
         panel("lateral creepage [1e-3]", 0.001, |c| c.creepage_lateral * 1e3),
         panel("spin creepage [1/m]", 0.01, |c| c.creepage_spin),
         panel("spin moment [N mm]", 0.001, |c| c.spin_moment * 1e3),
@@ -127,13 +94,8 @@ fn bearing_panels(model: &Model, history: &[Outputs]) -> Vec<Panel> {
         name,
         points: history.iter().map(|o| (o.time * 1e3, get(o))).collect(),
     };
-    let panel = |y_label, least, curves| Panel {
-        x_label: "time [ms]",
-        y_label,
-        curves,
-        least,
-        scattered: false,
-    };
+    let panel =
+        |y_label, least, curves| Panel { x_label: "time [ms]", y_label, curves, least, scattered: false };
     let epicyclic = |o: &Outputs| {
         if o.cage_slip == 1.0 {
             model.bearing.epicyclic_speed(0.0, 0.0, 0.0)
@@ -163,29 +125,15 @@ fn bearing_panels(model: &Model, history: &[Outputs]) -> Vec<Panel> {
         panel(
             "moment on inner race [N m]",
             0.001,
-            vec![
-                curve("y", &|o| o.inner.wrench.moment.y),
-                curve("z", &|o| o.inner.wrench.moment.z),
-            ],
+            vec![curve("y", &|o| o.inner.wrench.moment.y), curve("z", &|o| o.inner.wrench.moment.z)],
         ),
         panel(
             "cage speed [rad/s]",
             0.01,
-            vec![
-                curve("simulated", &|o| o.cage_speed),
-                curve("epicyclic", &epicyclic),
-            ],
+            vec![curve("simulated", &|o| o.cage_speed), curve("epicyclic", &epicyclic)],
         ),
-        panel(
-            "friction torque [N mm]",
-            0.01,
-            vec![curve("inner race", &|o| o.friction_torque * 1e3)],
-        ),
-        panel(
-            "friction power [W]",
-            0.001,
-            vec![curve("all contacts", &|o| o.friction_power)],
-        ),
+        panel("friction torque [N mm]", 0.01, vec![curve("inner race", &|o| o.friction_torque * 1e3)]),
+        panel("friction power [W]", 0.001, vec![curve("all contacts", &|o| o.friction_power)]),
     ]
 }
 
@@ -196,23 +144,10 @@ fn ball_panels(history: &[Outputs]) -> Vec<Panel> {
     let panel = |y_label, least, get: fn(&ContactOutput) -> f64| {
         let curve = |name, side: fn(&BallOutput) -> &ContactOutput| Curve {
             name,
-            points: last
-                .balls
-                .iter()
-                .map(|b| (b.azimuth.to_degrees(), get(side(b))))
-                .collect(),
+            points: last.balls.iter().map(|b| (b.azimuth.to_degrees(), get(side(b)))).collect(),
         };
-        let curves = vec![
-            curve("inner race", |b| &b.inner),
-            curve("outer race", |b| &b.outer),
-        ];
-        Panel {
-            x_label: "azimuth [deg]",
-            y_label,
-            curves,
-            least,
-            scattered: true,
-        }
+        let curves = vec![curve("inner race", |b| &b.inner), curve("outer race", |b| &b.outer)];
+        Panel { x_label: "azimuth [deg]", y_label, curves, least, scattered: true }
     };
     vec![
         panel("load [N]", 0.1, |c| c.load),
@@ -240,27 +175,17 @@ fn figure(path: &Path, title: &str, panels: &[Panel]) -> Result<(), String> {
 fn range(values: impl Iterator<Item = f64>, least: f64) -> std::ops::Range<f64> {
     let (low, high) = values
         .filter(|value| value.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-            (low.min(value), high.max(value))
-        });
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
     if low > high {
         return 0.0..1.0;
     }
-    let air = if high - low > least {
-        0.06 * (high - low)
-    } else {
-        (0.05 * high.abs()).max(least)
-    };
+    let air = if high - low > least { 0.06 * (high - low) } else { (0.05 * high.abs()).max(least) };
     low - air..high + air
 }
 
 fn draw(panel: &Panel, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), Box<dyn std::error::Error>> {
     let points = || panel.curves.iter().flat_map(|curve| curve.points.iter());
-    let x = if panel.scattered {
-        -185.0..185.0
-    } else {
-        range(points().map(|p| p.0), 1e-6)
-    };
+    let x = if panel.scattered { -185.0..185.0 } else { range(points().map(|p| p.0), 1e-6) };
     // Air above the curves for the legend.
     let mut y = range(points().map(|p| p.1), panel.least);
     y.end += 0.25 * (y.end - y.start);
@@ -284,10 +209,7 @@ fn draw(panel: &Panel, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), 
         .draw()?;
     for (curve, colour) in panel.curves.iter().zip(COLOURS) {
         if panel.scattered {
-            let dots = curve
-                .points
-                .iter()
-                .map(|&point| Circle::new(point, 4, colour.filled()));
+            let dots = curve.points.iter().map(|&point| Circle::new(point, 4, colour.filled()));
             chart
                 .draw_series(dots)?
                 .label(curve.name)
@@ -311,9 +233,5 @@ fn draw(panel: &Panel, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), 
 
 /// Decimals that tell neighbouring tick labels of a range apart.
 fn digits(span: f64) -> usize {
-    if span > 0.0 {
-        (1.5 - span.log10()).ceil().clamp(0.0, 9.0) as usize
-    } else {
-        0
-    }
+    if span > 0.0 { (1.5 - span.log10()).ceil().clamp(0.0, 9.0) as usize } else { 0 }
 }

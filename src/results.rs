@@ -5,9 +5,9 @@ use std::path::Path;
 
 use thiserror::Error;
 
+use crate::inputs::Inputs;
 use crate::outputs::Outputs;
 use crate::scene::Scene;
-use crate::simulation::Inputs;
 use crate::variables::Variables;
 
 /// Why results could not be written.
@@ -32,25 +32,13 @@ impl ResultsWriter {
     /// If the file cannot be written.
     pub fn create(path: &Path, scene: &Scene) -> Result<Self, ResultsError> {
         let name = path.display().to_string();
-        let failed = |source| ResultsError {
-            path: name.clone(),
-            source,
-        };
+        let failed = |source| ResultsError { path: name.clone(), source };
         let variables = Variables::with_balls(scene, true);
         let mut writer = csv::Writer::from_path(path).map_err(failed)?;
         let mut header = vec!["time [s]".to_string()];
-        header.extend(
-            variables
-                .rows()
-                .iter()
-                .map(|row| format!("{} [{}]", row.name, row.unit.name)),
-        );
+        header.extend(variables.rows().iter().map(|row| format!("{} [{}]", row.name, row.unit.name)));
         writer.write_record(&header).map_err(failed)?;
-        Ok(Self {
-            variables,
-            writer,
-            path: name,
-        })
+        Ok(Self { variables, writer, path: name })
     }
 
     /// Adds a row.
@@ -59,13 +47,8 @@ impl ResultsWriter {
     /// If the file cannot be written.
     pub fn write(&mut self, inputs: &Inputs, outputs: &Outputs) -> Result<(), ResultsError> {
         let values = self.variables.values(inputs, outputs);
-        let row = std::iter::once(outputs.time)
-            .chain(values)
-            .map(|value| value.to_string());
-        self.writer.write_record(row).map_err(|source| ResultsError {
-            path: self.path.clone(),
-            source,
-        })
+        let row = std::iter::once(outputs.time).chain(values).map(|value| value.to_string());
+        self.writer.write_record(row).map_err(|source| ResultsError { path: self.path.clone(), source })
     }
 
     /// Makes sure that every row is in the file.
@@ -73,9 +56,6 @@ impl ResultsWriter {
     /// # Errors
     /// If the file cannot be written.
     pub fn finish(mut self) -> Result<(), ResultsError> {
-        self.writer.flush().map_err(|source| ResultsError {
-            path: self.path,
-            source: source.into(),
-        })
+        self.writer.flush().map_err(|source| ResultsError { path: self.path, source: source.into() })
     }
 }

@@ -119,25 +119,12 @@ impl RollingContact {
             }
         };
         let power = self.creep_x * fx + self.creep_y * fy + self.spin * c * mz;
-        Ok(RollingForces {
-            id: self.id.clone(),
-            fx,
-            fy,
-            mz,
-            power,
-            stick,
-        })
+        Ok(RollingForces { id: self.id.clone(), fx, fy, mz, power, stick })
     }
 
     fn check(&self) -> Result<(), ContactError> {
-        let refuse = |name, value, range| {
-            Err(ContactError::Range {
-                id: self.id.clone(),
-                name,
-                value,
-                range,
-            })
-        };
+        let refuse =
+            |name, value, range| Err(ContactError::Range { id: self.id.clone(), name, value, range });
         for (name, value) in [
             ("shear_modulus", self.shear_modulus),
             ("friction", self.friction),
@@ -149,11 +136,7 @@ impl RollingContact {
                 return refuse(name, value, "a positive number");
             }
         }
-        for (name, value) in [
-            ("creep_x", self.creep_x),
-            ("creep_y", self.creep_y),
-            ("spin", self.spin),
-        ] {
+        for (name, value) in [("creep_x", self.creep_x), ("creep_y", self.creep_y), ("spin", self.spin)] {
             if !value.is_finite() {
                 return refuse(name, value, "a finite number");
             }
@@ -198,11 +181,7 @@ impl RollingContact {
                     mean_semi_axis: c,
                 };
                 let creep = turn.inverse() * nalgebra::Vector2::new(self.creep_x, self.creep_y);
-                let creepage = Creepage {
-                    longitudinal: creep.x,
-                    lateral: creep.y,
-                    spin: self.spin,
-                };
+                let creepage = Creepage { longitudinal: creep.x, lateral: creep.y, spin: self.spin };
                 let f = theory.forces(law, &creepage);
                 let force = turn * nalgebra::Vector2::new(f.longitudinal, f.lateral) / limit;
                 [force.x, force.y, f.spin_moment / (limit * c)]

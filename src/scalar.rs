@@ -132,10 +132,7 @@ impl<const N: usize> Dual<N> {
 impl<const N: usize> Scalar for Dual<N> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        Self {
-            value,
-            derivatives: [0.0; N],
-        }
+        Self { value, derivatives: [0.0; N] }
     }
     #[inline(always)]
     fn value(self) -> f64 {
@@ -247,11 +244,7 @@ pub fn dot<S: Scalar>(a: &Vector3<S>, b: &Vector3<S>) -> S {
 /// Vector product, inlined like [`dot`].
 #[inline(always)]
 pub fn cross<S: Scalar>(a: &Vector3<S>, b: &Vector3<S>) -> Vector3<S> {
-    Vector3::new(
-        a.y * b.z - a.z * b.y,
-        a.z * b.x - a.x * b.z,
-        a.x * b.y - a.y * b.x,
-    )
+    Vector3::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 }
 
 /// Lifts a vector of constants.

@@ -8,40 +8,15 @@ use thiserror::Error;
 
 use crate::dynamics::{Boundary, RaceLoad, StepFailure, Workspace, make_consistent, try_step};
 use crate::equilibrium::EquilibriumError;
+use crate::inputs::{Inputs, RaceInput};
 use crate::kalker::linear::LinearError;
 use crate::model::{INNER, Model, OUTER};
-use crate::motion::{Pose, Twist, Wrench};
+use crate::motion::Wrench;
 use crate::outputs::Outputs;
 use crate::path::{RAMP_WIDTH, RacePath, Ramp};
 use crate::scene::{Condition, Drive, Scene};
 use crate::start;
 use crate::state::State;
-
-/// What a race is given from outside, valid at the last communication point.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct RaceInput {
-    /// Pose of a race with given motion.
-    pub pose: Pose,
-    /// Twist of a race with given motion.
-    pub twist: Twist,
-    /// [m/s2, rad/s2] rate of change of the twist; zero if not known.
-    pub twist_rate: Twist,
-    /// Wrench applied to a race body, about its origin, world axes.
-    pub applied: Wrench,
-    /// [rad/s] prescribed spin of a race body or of a fixed race about its own axis.
-    pub speed: f64,
-}
-
-/// Everything that is given from outside.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Inputs {
-    /// Inner race.
-    pub inner: RaceInput,
-    /// Outer race.
-    pub outer: RaceInput,
-    /// [-] friction coefficient of the ball-race contacts.
-    pub friction: f64,
-}
 
 /// Why a simulation could not start or go on.
 #[derive(Debug, Error)]
@@ -192,11 +167,7 @@ impl Simulation {
 
     /// Everything needed to come back to this point.
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot {
-            inputs: self.inputs,
-            state: self.state.clone(),
-            paths: self.paths.clone(),
-        }
+        Snapshot { inputs: self.inputs, state: self.state.clone(), paths: self.paths.clone() }
     }
 
     /// Goes to a point that a simulation of the same scene was at; false, with nothing changed, if the snapshot is of
@@ -260,16 +231,11 @@ impl Simulation {
     /// A race that is fixed in its frame has no inputs: the scene's script says how it spins.
     fn script_fixed_races(&mut self, time: f64) {
         let load = &self.scene.load;
-        for (race, section, speed) in [
-            (INNER, &self.scene.inner, &load.inner_speed),
-            (OUTER, &self.scene.outer, &load.outer_speed),
-        ] {
+        for (race, section, speed) in
+            [(INNER, &self.scene.inner, &load.inner_speed), (OUTER, &self.scene.outer, &load.outer_speed)]
+        {
             if section.drive == Drive::Fixed {
-                let input = if race == INNER {
-                    &mut self.inputs.inner
-                } else {
-                    &mut self.inputs.outer
-                };
+                let input = if race == INNER { &mut self.inputs.inner } else { &mut self.inputs.outer };
                 input.speed = speed.at(time);
                 start::script_motion(&self.scene, race, time, &self.paths.races[race].at(time).0, input);
             }
@@ -307,10 +273,7 @@ impl Simulation {
     fn boundary(&self, time: f64) -> Boundary {
         let load = |race: usize| {
             let [fx, fy, fz, mx, my, mz, speed] = self.paths.loads[race].at(time).into();
-            let applied = Wrench {
-                force: Vector3::new(fx, fy, fz),
-                moment: Vector3::new(mx, my, mz),
-            };
+            let applied = Wrench { force: Vector3::new(fx, fy, fz), moment: Vector3::new(mx, my, mz) };
             RaceLoad { applied, speed }
         };
         Boundary {
@@ -349,13 +312,5 @@ impl InputPaths {
 /// Applied force, applied moment and speed as one vector.
 fn load_components(input: &RaceInput) -> SVector<f64, RAMP_WIDTH> {
     let (force, moment) = (input.applied.force, input.applied.moment);
-    SVector::from([
-        force.x,
-        force.y,
-        force.z,
-        moment.x,
-        moment.y,
-        moment.z,
-        input.speed,
-    ])
+    SVector::from([force.x, force.y, force.z, moment.x, moment.y, moment.z, input.speed])
 }

@@ -2,11 +2,11 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
+use crate::equilibrium::{self, EquilibriumError, EquilibriumInput, Gyroscopic, Prescribed};
+use crate::inputs::{Inputs, RaceInput};
 use crate::model::{INNER, Model};
 use crate::motion::{Pose, Twist, Wrench};
 use crate::scene::{Condition, Drive, Scene};
-use crate::simulation::{Inputs, RaceInput, SimulationError};
 use crate::state::{BallState, Energies, Powers, RaceState, State, Statistics};
 use crate::step_control::StepControl;
 
@@ -15,18 +15,13 @@ use crate::step_control::StepControl;
 ///
 /// # Errors
 /// If there is no equilibrium under the scene's load.
-pub fn from_equilibrium(scene: &Scene, model: &Model) -> Result<(Inputs, State), SimulationError> {
+pub fn from_equilibrium(scene: &Scene, model: &Model) -> Result<(Inputs, State), EquilibriumError> {
     let problem = EquilibriumInput::from_scene(scene, Gyroscopic::Friction);
     let solution = equilibrium::solve(model, &problem)?;
     let [x, y, z, ry, rz] = solution.displacement;
-    let inner_pose = Pose {
-        position: Vector3::new(x, y, z),
-        orientation: UnitQuaternion::new(Vector3::new(0.0, ry, rz)),
-    };
-    let outer_pose = Pose {
-        position: Vector3::zeros(),
-        orientation: problem.outer_orientation,
-    };
+    let inner_pose =
+        Pose { position: Vector3::new(x, y, z), orientation: UnitQuaternion::new(Vector3::new(0.0, ry, rz)) };
+    let outer_pose = Pose { position: Vector3::zeros(), orientation: problem.outer_orientation };
     // What is applied is what the scene says; directions with an imposed motion are held by constraints.
     let load = |direction: usize| match problem.conditions[direction] {
         Prescribed::Load(load) => load,
@@ -50,7 +45,7 @@ pub fn from_equilibrium(scene: &Scene, model: &Model) -> Result<(Inputs, State),
 ///
 /// # Errors
 /// If there is no equilibrium.
-pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<State, SimulationError> {
+pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<State, EquilibriumError> {
     let outer = &inputs.outer.pose;
     let mut problem = EquilibriumInput::from_scene(scene, Gyroscopic::Friction);
     problem.friction = inputs.friction;
@@ -69,9 +64,7 @@ pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<
     } else {
         problem.inner_speed = own_spin(&inputs.inner);
         let axis = inputs.inner.pose.orientation * Vector3::x();
-        let tilt = UnitQuaternion::rotation_between(&Vector3::x(), &axis)
-            .unwrap_or_default()
-            .scaled_axis();
+        let tilt = UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default().scaled_axis();
         let motion = [relative.x, relative.y, relative.z, tilt.y, tilt.z];
         problem.conditions = motion.map(Prescribed::Motion);
     }
@@ -83,10 +76,7 @@ pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<
             orientation: UnitQuaternion::new(Vector3::new(0.0, ry, rz)),
         };
         let spin = inputs.inner.pose.orientation * Vector3::x() * inputs.inner.speed;
-        inputs.inner.twist = Twist {
-            velocity: Vector3::zeros(),
-            angular_velocity: spin,
-        };
+        inputs.inner.twist = Twist { velocity: Vector3::zeros(), angular_velocity: spin };
     }
     Ok(state(scene, model, inputs, &solution))
 }
@@ -94,24 +84,12 @@ pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<
 /// A race that spins about its own axis.
 fn spinning(pose: Pose, speed: f64, applied: Wrench) -> RaceInput {
     let angular_velocity = pose.orientation * Vector3::x() * speed;
-    let twist = Twist {
-        velocity: Vector3::zeros(),
-        angular_velocity,
-    };
-    RaceInput {
-        pose,
-        twist,
-        twist_rate: Twist::default(),
-        applied,
-        speed,
-    }
+    let twist = Twist { velocity: Vector3::zeros(), angular_velocity };
+    RaceInput { pose, twist, twist_rate: Twist::default(), applied, speed }
 }
 
 fn own_spin(input: &RaceInput) -> f64 {
-    input
-        .twist
-        .angular_velocity
-        .dot(&(input.pose.orientation * Vector3::x()))
+    input.twist.angular_velocity.dot(&(input.pose.orientation * Vector3::x()))
 }
 
 /// The state of a solution: balls roll, races move as the inputs say.
@@ -133,9 +111,7 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
         })
         .collect();
     let races = [(0, &inputs.inner), (1, outer)].map(|(race, input): (usize, _)| {
-        let n_constraints = model.bodies[race]
-            .as_ref()
-            .map_or(0, |body| body.constraints.len());
+        let n_constraints = model.bodies[race].as_ref().map_or(0, |body| body.constraints.len());
         RaceState::new(input.pose, &input.twist, n_constraints)
     });
     let solver = &scene.solver;
@@ -175,10 +151,7 @@ pub fn script_motion(scene: &Scene, race: usize, time: f64, now: &Pose, input: &
     // What is left of the present orientation beyond its tilt is the turn about the race's own axis.
     let spin = UnitQuaternion::new(tilt_of(now)).inverse() * now.orientation;
     let orientation = tilted * spin;
-    input.pose = Pose {
-        position,
-        orientation: UnitQuaternion::new_normalize(orientation.into_inner()),
-    };
+    input.pose = Pose { position, orientation: UnitQuaternion::new_normalize(orientation.into_inner()) };
     input.twist = Twist {
         velocity: Vector3::from(rates),
         // The rotation vector's rate is the angular velocity to first order in the tilt.
@@ -189,7 +162,5 @@ pub fn script_motion(scene: &Scene, race: usize, time: f64, now: &Pose, input: &
 /// Rotation vector [0, ry, rz] that carries the x axis to a pose's axis.
 fn tilt_of(pose: &Pose) -> Vector3<f64> {
     let axis = pose.orientation * Vector3::x();
-    UnitQuaternion::rotation_between(&Vector3::x(), &axis)
-        .unwrap_or_default()
-        .scaled_axis()
+    UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default().scaled_axis()
 }

@@ -78,10 +78,7 @@ impl RaceState {
 
     /// Twist in world axes.
     pub fn twist(&self) -> Twist {
-        Twist {
-            velocity: self.velocity,
-            angular_velocity: self.pose.orientation * self.rate,
-        }
+        Twist { velocity: self.velocity, angular_velocity: self.pose.orientation * self.rate }
     }
 
     /// The motion that contacts depend on.

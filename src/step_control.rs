@@ -30,16 +30,8 @@ pub struct StepControl {
 impl StepControl {
     /// Begins with the largest quantised step not above `initial_step` [s].
     pub fn new(initial_step: f64, min_step: f64, max_step: f64) -> Self {
-        let notch = ((initial_step / max_step).log2() * NOTCHES_PER_OCTAVE + 1e-9)
-            .floor()
-            .min(0.0) as i32;
-        Self {
-            max_step,
-            min_step,
-            notch,
-            last_error: 1.0,
-            growth_blocked: 0,
-        }
+        let notch = ((initial_step / max_step).log2() * NOTCHES_PER_OCTAVE + 1e-9).floor().min(0.0) as i32;
+        Self { max_step, min_step, notch, last_error: 1.0, growth_blocked: 0 }
     }
 
     /// [s] present step size.
@@ -51,11 +43,7 @@ impl StepControl {
     pub fn step_within(&self, remaining: f64) -> f64 {
         const EVEN_STEPS: f64 = 4.0;
         let steps = (remaining / self.step() * (1.0 - 1e-9)).ceil().max(1.0);
-        if steps <= EVEN_STEPS {
-            remaining / steps
-        } else {
-            self.step()
-        }
+        if steps <= EVEN_STEPS { remaining / steps } else { self.step() }
     }
 
     /// After a converged step with this local error in units of its tolerance: is it accepted? Sets the next step.

@@ -13,10 +13,7 @@ const MAX_EXPONENT: i32 = 99;
 
 /// A value as written: a number in SI or text with a unit.
 #[derive(Deserialize)]
-#[serde(
-    untagged,
-    expecting = "expected a number in SI or text with a unit, such as \"9.525 mm\""
-)]
+#[serde(untagged, expecting = "expected a number in SI or text with a unit, such as \"9.525 mm\"")]
 enum Written {
     Number(f64),
     Text(String),
@@ -45,25 +42,16 @@ pub fn parse(text: &str, unit: &str) -> Result<f64, String> {
     if written_unit.is_empty() {
         return refuse("the unit is missing (a bare number in SI is written without quotes)");
     }
-    if written_unit
-        .chars()
-        .any(|c| c.is_ascii_digit() && !"123456".contains(c))
-    {
+    if written_unit.chars().any(|c| c.is_ascii_digit() && !"123456".contains(c)) {
         return refuse("the unit is not known");
     }
     let question = format!("(1 {written_unit}) to 20 sf to {unit}");
     let answer = match fend_core::evaluate(&question, &mut fend_core::Context::new()) {
-        Ok(answer) => answer
-            .get_main_result()
-            .trim_start_matches("approx. ")
-            .to_string(),
+        Ok(answer) => answer.get_main_result().trim_start_matches("approx. ").to_string(),
         Err(why) => return refuse(&why),
     };
     // The calculator answers "factor unit", exactly for all units but those with pi.
-    let factor = answer
-        .split_whitespace()
-        .next()
-        .and_then(|word| word.parse::<f64>().ok());
+    let factor = answer.split_whitespace().next().and_then(|word| word.parse::<f64>().ok());
     match factor {
         // A power of ten that divides exactly is divided by: 9.525 mm is then the f64 nearest to 0.009525.
         Some(factor) if factor < 1.0 && (1.0 / factor).fract() == 0.0 => Ok(number / (1.0 / factor)),

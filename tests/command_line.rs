@@ -7,10 +7,7 @@ use std::process::{Command, Output};
 use serde_json::Value;
 
 fn roulement(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_roulement"))
-        .args(arguments)
-        .output()
-        .unwrap()
+    Command::new(env!("CARGO_BIN_EXE_roulement")).args(arguments).output().unwrap()
 }
 
 fn scene(name: &str) -> String {
@@ -47,16 +44,7 @@ fn equilibrium_json_has_the_documented_keys() {
         for (group, keys) in [
             ("displacement", &["x", "y", "z", "ry", "rz"][..]),
             ("load", &["Fx", "Fy", "Fz", "My", "Mz"]),
-            (
-                "balls",
-                &[
-                    "azimuth",
-                    "inner_load",
-                    "outer_load",
-                    "inner_contact_angle",
-                    "outer_contact_angle",
-                ],
-            ),
+            ("balls", &["azimuth", "inner_load", "outer_load", "inner_contact_angle", "outer_contact_angle"]),
         ] {
             for key in keys {
                 assert!(!json[group][key].is_null(), "{group}.{key}");
@@ -81,43 +69,26 @@ fn equilibrium_text_has_units() {
 #[test]
 fn run_writes_table_plots_and_summary() {
     let scratch = Scratch::new("run");
-    let text = std::fs::read_to_string(scene("thrust"))
-        .unwrap()
-        .replace("\"50 ms\"", "\"2 ms\"");
+    let text = std::fs::read_to_string(scene("thrust")).unwrap().replace("\"50 ms\"", "\"2 ms\"");
     std::fs::write(scratch.path("short.toml"), text).unwrap();
     let output = roulement(&["run", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 
     let table = std::fs::read_to_string(scratch.path("out/results.csv")).unwrap();
     let mut lines = table.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
     assert_eq!(header[0], "time [s]");
-    for name in [
-        "inner.force.x [N]",
-        "cage.speed [rad/s]",
-        "ball[10].outer.creepage_spin [1/m]",
-    ] {
+    for name in ["inner.force.x [N]", "cage.speed [rad/s]", "ball[10].outer.creepage_spin [1/m]"] {
         assert!(header.contains(&name), "{name}");
     }
-    let rows: Vec<Vec<f64>> = lines
-        .map(|line| line.split(',').map(|field| field.parse().unwrap()).collect())
-        .collect();
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect();
     assert_eq!(rows.len(), 21);
-    assert!(
-        rows.iter()
-            .all(|row| row.len() == header.len() && row.iter().all(|value| value.is_finite()))
-    );
+    assert!(rows.iter().all(|row| row.len() == header.len() && row.iter().all(|value| value.is_finite())));
     assert_eq!(rows[20][0], 0.002);
 
     for (name, labels) in [
-        (
-            "contacts.svg",
-            &["contact angle [deg]", "spin moment [N mm]", "friction power [W]"][..],
-        ),
+        ("contacts.svg", &["contact angle [deg]", "spin moment [N mm]", "friction power [W]"][..]),
         ("bearing.svg", &["cage speed [rad/s]", "inner race position [um]"]),
         ("balls.svg", &["azimuth [deg]", "peak pressure [MPa]"]),
     ] {
@@ -148,16 +119,8 @@ fn wrong_scenes_are_refused_with_key_value_and_range() {
     let scratch = Scratch::new("wrong");
     let text = std::fs::read_to_string(scene("thrust")).unwrap();
     for (from, to, parts) in [
-        (
-            "ball_race = 0.08",
-            "ball_race = -1",
-            &["friction.ball_race = -1", "[0, 2]"][..],
-        ),
-        (
-            "\"46 mm\"",
-            "\"4.6 mm\"",
-            &["bearing.pitch_diameter", "0.0046", "m"],
-        ),
+        ("ball_race = 0.08", "ball_race = -1", &["friction.ball_race = -1", "[0, 2]"][..]),
+        ("\"46 mm\"", "\"4.6 mm\"", &["bearing.pitch_diameter", "0.0046", "m"]),
         ("[load]", "[lod]", &["lod"]),
         ("\"1500 N\"", "\"1 MN\"", &["beyond elastic Hertzian contact"]),
     ] {
@@ -180,14 +143,7 @@ fn wrong_scenes_are_refused_with_key_value_and_range() {
 fn a_missing_library_is_named() {
     let scratch = Scratch::new("library");
     let package = scratch.path("x.fmu");
-    let output = roulement(&[
-        "fmu",
-        &scene("thrust"),
-        "-o",
-        &package,
-        "--library",
-        &scratch.path("none.so"),
-    ]);
+    let output = roulement(&["fmu", &scene("thrust"), "-o", &package, "--library", &scratch.path("none.so")]);
     assert!(!output.status.success());
     assert!(String::from_utf8(output.stderr).unwrap().contains("none.so"));
     assert!(!Path::new(&package).exists());
@@ -197,10 +153,9 @@ fn a_missing_library_is_named() {
 fn an_interrupted_run_keeps_what_it_has() {
     let scratch = Scratch::new("interrupted");
     // A smallest step that contact cannot be resolved with, after a start that it can.
-    let text = std::fs::read_to_string(scene("thrust")).unwrap().replace(
-        "max_step = \"10 us\"",
-        "max_step = \"10 us\"\nmin_step = \"9 us\"\ntolerance = 1e-12",
-    );
+    let text = std::fs::read_to_string(scene("thrust"))
+        .unwrap()
+        .replace("max_step = \"10 us\"", "max_step = \"10 us\"\nmin_step = \"9 us\"\ntolerance = 1e-12");
     let text = text.replace("initial_step = \"1 us\"", "initial_step = \"10 us\"");
     std::fs::write(scratch.path("hard.toml"), text).unwrap();
     let output = roulement(&["run", &scratch.path("hard.toml"), "-o", &scratch.path("out")]);
@@ -209,13 +164,7 @@ fn an_interrupted_run_keeps_what_it_has() {
     for part in ["solver.min_step", "ball", "inner load", "tolerance"] {
         assert!(message.contains(part), "{message}");
     }
-    assert!(
-        std::fs::read_to_string(scratch.path("out/results.csv"))
-            .unwrap()
-            .lines()
-            .count()
-            >= 2
-    );
+    assert!(std::fs::read_to_string(scratch.path("out/results.csv")).unwrap().lines().count() >= 2);
 }
 
 #[test]
@@ -226,19 +175,8 @@ fn contact_prints_the_documented_columns_for_any_column_order() {
                  0,y,two,0,1e-1,1e-4,1e-4,1.2e9,0.08,8.1e10,0.3,0\n";
     std::fs::write(scratch.path("cases.csv"), table).unwrap();
     for law in ["frictionless", "linear", "regularised", "saturated", "kalker"] {
-        let output = roulement(&[
-            "contact",
-            "--law",
-            law,
-            &scratch.path("cases.csv"),
-            "--degree",
-            "3",
-        ]);
-        assert!(
-            output.status.success(),
-            "{}",
-            String::from_utf8_lossy(&output.stderr)
-        );
+        let output = roulement(&["contact", "--law", law, &scratch.path("cases.csv"), "--degree", "3"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let text = String::from_utf8(output.stdout).unwrap();
         let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
         assert_eq!(lines[0], ["id", "fx", "fy", "mz", "power", "stick"]);

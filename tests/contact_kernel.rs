@@ -9,12 +9,8 @@ use roulement::model::{INNER, Model, OUTER};
 use roulement::scalar::{Dual, Scalar};
 use roulement::scene::{CreepLaw, Scene};
 
-const LAWS: [CreepLaw; 4] = [
-    CreepLaw::Frictionless,
-    CreepLaw::Linear,
-    CreepLaw::Regularised,
-    CreepLaw::Saturated,
-];
+const LAWS: [CreepLaw; 4] =
+    [CreepLaw::Frictionless, CreepLaw::Linear, CreepLaw::Regularised, CreepLaw::Saturated];
 
 fn model() -> Model {
     Model::new(&Scene::parse(include_str!("../scenes/thrust.toml")).unwrap()).unwrap()
@@ -26,11 +22,7 @@ fn motion(race: usize) -> [f64; 18] {
     let input = EquilibriumInput::from_scene(&scene, Gyroscopic::None);
     let solution = equilibrium::solve(&model(), &input).unwrap();
     let ball = &solution.balls[1];
-    let (displacement, speed) = if race == INNER {
-        (solution.displacement[0], 628.0)
-    } else {
-        (0.0, 0.3)
-    };
+    let (displacement, speed) = if race == INNER { (solution.displacement[0], 628.0) } else { (0.0, 0.3) };
     let (p, v, w) = (ball.position, ball.velocity, ball.angular_velocity);
     [
         // ball: position, velocity, angular velocity
@@ -60,11 +52,7 @@ fn evaluate<S: Scalar>(model: &Model, law: CreepLaw, race: usize, x: &[S; 18]) -
     let mut contact = model.contact(race, 0.08);
     contact.law = law;
     let vector = |i: usize| Vector3::new(x[i], x[i + 1], x[i + 2]);
-    let ball = BallMotion {
-        position: vector(0),
-        velocity: vector(3),
-        angular_velocity: vector(6),
-    };
+    let ball = BallMotion { position: vector(0), velocity: vector(3), angular_velocity: vector(6) };
     let tilt = Vector3::new(S::one(), x[13], -x[12]);
     let length = tilt.dot(&tilt).sqrt();
     let race = RaceMotion {
@@ -99,11 +87,7 @@ fn invariant_exact_tangents_agree_with_differences_to_1e_6() {
             let x = motion(race);
             let dual: [Dual<18>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i, 1.0));
             let exact = rows(&evaluate(&model, law, race, &dual));
-            assert!(
-                exact[0].value > 50.0,
-                "the contact must be loaded: {} N",
-                exact[0].value
-            );
+            assert!(exact[0].value > 50.0, "the contact must be loaded: {} N", exact[0].value);
             for i in 0..18 {
                 let at = |sign: f64| {
                     let mut moved = x;
@@ -186,38 +170,18 @@ fn bounded_law_suite(law: CreepLaw) {
         let size = f.longitudinal.hypot(f.lateral);
         // finite, bounded
         assert!(size.is_finite() && f.spin_moment.is_finite(), "{law:?} {c:?}");
-        assert!(
-            size <= theory.friction_limit * (1.0 + 1e-12),
-            "{law:?} {c:?}: {size} N"
-        );
-        assert!(
-            f.spin_moment.abs() <= theory.moment_limit * (1.0 + 1e-12),
-            "{law:?} {c:?}"
-        );
+        assert!(size <= theory.friction_limit * (1.0 + 1e-12), "{law:?} {c:?}: {size} N");
+        assert!(f.spin_moment.abs() <= theory.moment_limit * (1.0 + 1e-12), "{law:?} {c:?}");
         // dissipative
         let power = f.longitudinal * c.longitudinal + f.lateral * c.lateral + f.spin_moment * c.spin;
         assert!(power >= 0.0, "{law:?} {c:?}: {power} W");
         // odd, and mirror symmetric about the rolling direction
-        let opposite = Creepage {
-            longitudinal: -c.longitudinal,
-            lateral: -c.lateral,
-            spin: -c.spin,
-        };
+        let opposite = Creepage { longitudinal: -c.longitudinal, lateral: -c.lateral, spin: -c.spin };
         let g = theory.forces(law, &opposite);
-        assert_eq!(
-            [g.longitudinal, g.lateral, g.spin_moment],
-            [-f.longitudinal, -f.lateral, -f.spin_moment]
-        );
-        let mirrored = Creepage {
-            longitudinal: c.longitudinal,
-            lateral: -c.lateral,
-            spin: -c.spin,
-        };
+        assert_eq!([g.longitudinal, g.lateral, g.spin_moment], [-f.longitudinal, -f.lateral, -f.spin_moment]);
+        let mirrored = Creepage { longitudinal: c.longitudinal, lateral: -c.lateral, spin: -c.spin };
         let g = theory.forces(law, &mirrored);
-        assert_eq!(
-            [g.longitudinal, g.lateral, g.spin_moment],
-            [f.longitudinal, -f.lateral, -f.spin_moment]
-        );
+        assert_eq!([g.longitudinal, g.lateral, g.spin_moment], [f.longitudinal, -f.lateral, -f.spin_moment]);
     }
 }
 
@@ -234,15 +198,8 @@ fn invariant_suite_regularised() {
 #[test]
 fn closed_form_saturated_is_tangent_to_linear_theory_with_and_without_spin() {
     let theory = theory();
-    let c = Creepage {
-        longitudinal: 2e-8,
-        lateral: -1e-8,
-        spin: 3e-5,
-    };
-    let (linear, ours) = (
-        theory.forces(CreepLaw::Linear, &c),
-        theory.forces(CreepLaw::Saturated, &c),
-    );
+    let c = Creepage { longitudinal: 2e-8, lateral: -1e-8, spin: 3e-5 };
+    let (linear, ours) = (theory.forces(CreepLaw::Linear, &c), theory.forces(CreepLaw::Saturated, &c));
     // The cubic leaves linear theory by q/3, here q is a few 1e-5.
     assert!((ours.longitudinal / linear.longitudinal - 1.0).abs() < 1e-4);
     assert!((ours.lateral / linear.lateral - 1.0).abs() < 1e-4);
@@ -271,11 +228,7 @@ fn closed_form_regularised_pure_creep_is_equation_15() {
     // eps = 2 mu Q/(C11 G c^2) (eq. A.3)
     let eps = 2.0 * theory.friction_limit / theory.longitudinal;
     for share in [0.1, 0.5, 0.99, 1.5] {
-        let c = Creepage {
-            longitudinal: share * eps,
-            lateral: 0.0,
-            spin: 0.0,
-        };
+        let c = Creepage { longitudinal: share * eps, lateral: 0.0, spin: 0.0 };
         let phi = if share <= 1.0 { (2.0 - share) * share } else { 1.0 };
         let ours = theory.forces(CreepLaw::Regularised, &c).longitudinal;
         assert!((ours / (theory.friction_limit * phi) - 1.0).abs() < 1e-8);

@@ -8,9 +8,7 @@ use roulement::scene::Scene;
 use serde_json::Value;
 
 fn number(value: &Value) -> f64 {
-    value
-        .as_f64()
-        .unwrap_or_else(|| panic!("{value} is not a number"))
+    value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
 /// Scene text of a reference case, as a user would write it.
@@ -28,10 +26,8 @@ fn scene_text(case: &Value) -> String {
             text += &format!("{key} = {value}\n");
         }
     }
-    text += &format!(
-        "[load]\ninner_speed = {}\nouter_speed = {}\n",
-        case["inner_speed"], case["outer_speed"]
-    );
+    text +=
+        &format!("[load]\ninner_speed = {}\nouter_speed = {}\n", case["inner_speed"], case["outer_speed"]);
     for (key, condition) in case["conditions"].as_object().unwrap() {
         let (kind, value) = condition.as_object().unwrap().iter().next().unwrap();
         text += &format!("{key} = {{ {kind} = {value} }}\n");
@@ -56,33 +52,17 @@ struct Difference {
 }
 
 fn difference(ours: &Equilibrium, reference: &Value) -> Difference {
-    let list = |key: &str| -> Vec<f64> {
-        reference["balls"][key]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(number)
-            .collect()
-    };
+    let list =
+        |key: &str| -> Vec<f64> { reference["balls"][key].as_array().unwrap().iter().map(number).collect() };
     let largest = list("inner_load").into_iter().fold(0.0, f64::max);
-    let mut d = Difference {
-        load: 0.0,
-        angle: 0.0,
-        displacement: 0.0,
-        cage_speed: 0.0,
-        stiffness: 0.0,
-    };
+    let mut d = Difference { load: 0.0, angle: 0.0, displacement: 0.0, cage_speed: 0.0, stiffness: 0.0 };
     for (j, ball) in ours.balls.iter().enumerate() {
         let b = &ball.report;
         d.load = d.load.max((b.inner_load - list("inner_load")[j]).abs() / largest);
         d.load = d.load.max((b.outer_load - list("outer_load")[j]).abs() / largest);
         if list("inner_load")[j] > 0.0 {
-            d.angle = d
-                .angle
-                .max((b.inner_contact_angle - list("inner_contact_angle")[j]).abs());
-            d.angle = d
-                .angle
-                .max((b.outer_contact_angle - list("outer_contact_angle")[j]).abs());
+            d.angle = d.angle.max((b.inner_contact_angle - list("inner_contact_angle")[j]).abs());
+            d.angle = d.angle.max((b.outer_contact_angle - list("outer_contact_angle")[j]).abs());
         }
     }
     for (i, key) in ["x", "y", "z"].into_iter().enumerate() {
@@ -107,10 +87,9 @@ fn independent_data_twenty_cases_under_both_hypotheses() {
     let cases = data["cases"].as_array().unwrap();
     assert_eq!(cases.len(), 20);
     for case in cases {
-        for (key, gyroscopic) in [
-            ("outer_race_control", Gyroscopic::OuterRaceControl),
-            ("no_gyro", Gyroscopic::None),
-        ] {
+        for (key, gyroscopic) in
+            [("outer_race_control", Gyroscopic::OuterRaceControl), ("no_gyro", Gyroscopic::None)]
+        {
             let ours = solve(&scene_text(case), gyroscopic);
             let d = difference(&ours, &case[key]);
             let name = format!("{} {key}", case["id"]);
@@ -118,18 +97,10 @@ fn independent_data_twenty_cases_under_both_hypotheses() {
             // stiffness by differences. Asked for: loads 1e-5 at rest, 0.5 % and 0.1 deg at speed.
             assert!(d.load < 1e-5, "{name}: load {:e}", d.load);
             assert!(d.angle < 1e-6, "{name}: angle {:e} rad", d.angle);
-            assert!(
-                d.displacement < 2e-5,
-                "{name}: displacement {:e} of 10 um",
-                d.displacement
-            );
+            assert!(d.displacement < 2e-5, "{name}: displacement {:e} of 10 um", d.displacement);
             assert!(d.cage_speed < 1e-7, "{name}: cage speed {:e}", d.cage_speed);
             assert!(d.stiffness < 2e-5, "{name}: stiffness {:e}", d.stiffness);
-            assert!(
-                ours.residual < 1e-9 && ours.iterations < 20,
-                "{name}: {} iterations",
-                ours.iterations
-            );
+            assert!(ours.residual < 1e-9 && ours.iterations < 20, "{name}: {} iterations", ours.iterations);
         }
     }
 }
@@ -191,18 +162,13 @@ inner_conformity = 0.52
 outer_conformity = 0.52"#;
     let load = "x = { displacement = 0.0 }\ny = { force = \"8900 N\" }\nz = { displacement = 0.0 }\n\
                 ry = { rotation = 0.0 }\nrz = { rotation = 0.0 }";
-    for (clearance, expected) in [
-        ("15 um", [4530.6, 2841.2, 60.4, 0.0, 0.0]),
-        ("0 um", [4340.6, 2908.4, 312.0, 0.0, 0.0]),
-    ] {
+    for (clearance, expected) in
+        [("15 um", [4530.6, 2841.2, 60.4, 0.0, 0.0]), ("0 um", [4340.6, 2908.4, 312.0, 0.0, 0.0])]
+    {
         let geometry = format!("{geometry}\ndiametral_clearance = \"{clearance}\"");
         let solution = solve(&bearing_text(&geometry, load), Gyroscopic::None);
         for (ball, expected) in solution.balls.iter().zip(expected) {
-            assert!(
-                (ball.report.inner_load - expected).abs() < 0.06,
-                "{clearance}: {:?}",
-                ball.report
-            );
+            assert!((ball.report.inner_load - expected).abs() < 0.06, "{clearance}: {:?}", ball.report);
         }
         if clearance == "15 um" {
             assert!((solution.displacement[1] - 60.76e-6).abs() < 6e-9);
@@ -221,12 +187,9 @@ fn independent_data_static_iso_16281_type_references() {
         )
     };
     let fixed = "ry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\nz = { displacement = 0.0 }";
-    for (clearance, direction, expected) in [
-        ("0 um", 1, 15.115),
-        ("0 um", 0, 133.53),
-        ("10 um", 1, 21.230),
-        ("10 um", 0, 149.16),
-    ] {
+    for (clearance, direction, expected) in
+        [("0 um", 1, 15.115), ("0 um", 0, 133.53), ("10 um", 1, 21.230), ("10 um", 0, 149.16)]
+    {
         let load = if direction == 0 {
             format!("x = {{ force = 1000.0 }}\ny = {{ displacement = 0.0 }}\n{fixed}")
         } else {
@@ -235,10 +198,7 @@ fn independent_data_static_iso_16281_type_references() {
         let solution = solve(&bearing_text(&geometry(clearance), &load), Gyroscopic::None);
         let ours = solution.displacement[direction] * 1e6;
         let digit = if expected > 100.0 { 6e-3 } else { 6e-4 };
-        assert!(
-            (ours - expected).abs() < digit,
-            "{clearance}: {ours} against {expected} um"
-        );
+        assert!((ours - expected).abs() < digit, "{clearance}: {ours} against {expected} um");
     }
 }
 
@@ -250,12 +210,8 @@ fn invariant_under_rotation_by_one_ball_pitch() {
     let model = Model::new(&scene).unwrap();
     let input = EquilibriumInput::from_scene(&scene, Gyroscopic::OuterRaceControl);
     let one = equilibrium::solve(&model, &input).unwrap();
-    let Prescribed::Load(fy) = input.conditions[1] else {
-        panic!("y is a force in this case")
-    };
-    let Prescribed::Load(fz) = input.conditions[2] else {
-        panic!("z is a force in this case")
-    };
+    let Prescribed::Load(fy) = input.conditions[1] else { panic!("y is a force in this case") };
+    let Prescribed::Load(fz) = input.conditions[2] else { panic!("z is a force in this case") };
     let turn = Rotation2::new(std::f64::consts::TAU / model.bearing.n_balls as f64);
     let force = turn * Vector2::new(fy, fz);
     let mut turned = input.clone();
@@ -291,10 +247,7 @@ fn invariant_stiffness_is_the_derivative_of_the_load() {
         for i in 0..5 {
             let difference = (plus[i] - minus[i]) / (2.0 * steps[k]);
             let scale = (here.stiffness[(i, i)] * here.stiffness[(k, k)]).abs().sqrt();
-            assert!(
-                (difference - here.stiffness[(i, k)]).abs() < 1e-6 * scale,
-                "{i} by {k}"
-            );
+            assert!((difference - here.stiffness[(i, k)]).abs() < 1e-6 * scale, "{i} by {k}");
         }
     }
 }
@@ -311,10 +264,7 @@ fn closed_form_axial_play_between_the_flanks() {
     // Grooves are whole tori: the other flanks take a thrust the other way after 2 A sin(alpha0).
     let play = 2.0 * (2.0 * 0.5232 - 1.0) * 22.23e-3 * 40f64.to_radians().sin();
     let (forward, backward) = (solve_at(1000.0), solve_at(-1000.0));
-    assert!(
-        (forward + backward + play).abs() < 1e-12,
-        "{forward} {backward} {play}"
-    );
+    assert!((forward + backward + play).abs() < 1e-12, "{forward} {backward} {play}");
 }
 
 #[test]
@@ -323,9 +273,6 @@ fn a_load_that_no_bearing_takes_is_refused_with_its_reason() {
     let scene = Scene::parse(&bearing_text(ANGULAR_218, load)).unwrap();
     let input = EquilibriumInput::from_scene(&scene, Gyroscopic::None);
     let refusal = equilibrium::solve(&Model::new(&scene).unwrap(), &input);
-    let message = refusal
-        .map(|solution| solution.displacement)
-        .unwrap_err()
-        .to_string();
+    let message = refusal.map(|solution| solution.displacement).unwrap_err().to_string();
     assert!(message.contains("beyond elastic Hertzian contact"), "{message}");
 }

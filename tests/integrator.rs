@@ -91,11 +91,7 @@ fn observed_order(error: impl Fn(u32) -> f64, n: u32) -> f64 {
 #[test]
 fn order_two_on_a_damped_oscillator() {
     for alpha_f in [0.01, 0.05, 0.2, 1.0 / 3.0] {
-        let oscillator = Oscillator {
-            stiffness: 9.0,
-            damping: 0.4,
-            cubic: 0.0,
-        };
+        let oscillator = Oscillator { stiffness: 9.0, damping: 0.4, cubic: 0.0 };
         let time = 3.0;
         let decay = 0.5 * oscillator.damping;
         let omega = (oscillator.stiffness - decay * decay).sqrt();
@@ -110,11 +106,7 @@ fn order_two_on_a_damped_oscillator() {
 #[test]
 fn order_two_on_a_nonlinear_oscillator() {
     // Energy of the first component: v^2/2 + k x^2/2 + q x^4/4 is constant without damping.
-    let oscillator = Oscillator {
-        stiffness: 4.0,
-        damping: 0.0,
-        cubic: 5.0,
-    };
+    let oscillator = Oscillator { stiffness: 4.0, damping: 0.0, cubic: 5.0 };
     let energy = |x: f64, v: f64| {
         0.5 * v * v + 0.5 * oscillator.stiffness * x * x + 0.25 * oscillator.cubic * x.powi(4)
     };
@@ -131,11 +123,7 @@ fn closed_form_high_frequencies_are_damped_and_never_grow() {
     // The spectral radius at infinite frequency is (1 - alpha_f)/(1 + alpha_f); a quarter of the steps leaves room for the
     // growth of a multiple root.
     for alpha_f in [0.05, 0.2, 1.0 / 3.0] {
-        let oscillator = Oscillator {
-            stiffness: 1e12,
-            damping: 0.0,
-            cubic: 0.0,
-        };
+        let oscillator = Oscillator { stiffness: 1e12, damping: 0.0, cubic: 0.0 };
         let (x, _) = integrate(&oscillator, alpha_f, 2.0, 400);
         let radius: f64 = (1.0 - alpha_f) / (1.0 + alpha_f);
         assert!(x.amax() < radius.powi(100).max(1e-11), "alpha_f {alpha_f}: {x}");

@@ -5,20 +5,13 @@ use roulement::kalker::Patch;
 use roulement::kalker::linear::creep_matrix;
 
 fn patch(axis_ratio: f64, poisson_ratio: f64, rolling_angle: f64) -> Patch {
-    Patch {
-        axis_ratio,
-        poisson_ratio,
-        rolling_angle,
-    }
+    Patch { axis_ratio, poisson_ratio, rolling_angle }
 }
 
 #[test]
 fn independent_data_within_half_a_percent() {
     let mut worst = (0.0, String::new());
-    for line in include_str!("data/contact/creep_coefficients.csv")
-        .lines()
-        .skip(1)
-    {
+    for line in include_str!("data/contact/creep_coefficients.csv").lines().skip(1) {
         let row: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
         let ours = creep_matrix(&patch(row[1], row[0], 0.0)).unwrap();
         for (value, expected) in [
@@ -64,10 +57,7 @@ fn invariant_spin_coupling_is_skew_for_every_direction() {
             let forward = creep_matrix(&patch(ratio, 0.3, angle)).unwrap();
             let backward = creep_matrix(&patch(ratio, 0.3, angle + std::f64::consts::PI)).unwrap();
             let difference = (forward - backward.transpose()).amax();
-            assert!(
-                difference < 2e-3 * forward.amax(),
-                "{ratio} {angle}: {difference}"
-            );
+            assert!(difference < 2e-3 * forward.amax(), "{ratio} {angle}: {difference}");
         }
     }
 }
@@ -104,13 +94,9 @@ fn invariant_a_circle_rolls_alike_in_all_directions() {
 
 #[test]
 fn patches_out_of_range_are_refused() {
-    for (ratio, poisson, angle) in [
-        (0.04, 0.3, 0.0),
-        (21.0, 0.3, 0.0),
-        (1.0, 0.6, 0.0),
-        (1.0, 0.3, f64::NAN),
-        (f64::NAN, 0.3, 0.0),
-    ] {
+    for (ratio, poisson, angle) in
+        [(0.04, 0.3, 0.0), (21.0, 0.3, 0.0), (1.0, 0.6, 0.0), (1.0, 0.3, f64::NAN), (f64::NAN, 0.3, 0.0)]
+    {
         assert!(creep_matrix(&patch(ratio, poisson, angle)).is_err());
     }
 }

@@ -99,15 +99,7 @@ fn independent_data_by_degree() {
 }
 
 fn kalker(axis_ratio: f64, degree: usize) -> Kalker {
-    Kalker::new(
-        Patch {
-            axis_ratio,
-            poisson_ratio: 0.3,
-            rolling_angle: 0.0,
-        },
-        degree,
-    )
-    .unwrap()
+    Kalker::new(Patch { axis_ratio, poisson_ratio: 0.3, rolling_angle: 0.0 }, degree).unwrap()
 }
 
 fn forces(kalker: &Kalker, x: f64, y: f64, spin: f64) -> [f64; 3] {
@@ -120,22 +112,14 @@ fn closed_form_small_creepages_give_linear_theory() {
     // F/(mu Q) = G c^2 C cx/(mu Q) = 3/(2 pi) C hx.
     for ratio in [0.1, 1.0, 5.0] {
         let kalker = kalker(ratio, 5);
-        let matrix = creep_matrix(&Patch {
-            axis_ratio: ratio,
-            poisson_ratio: 0.3,
-            rolling_angle: 0.0,
-        })
-        .unwrap();
+        let matrix =
+            creep_matrix(&Patch { axis_ratio: ratio, poisson_ratio: 0.3, rolling_angle: 0.0 }).unwrap();
         let h = [2e-4, -1e-4, 1.5e-4];
         let ours = forces(&kalker, h[0], h[1], h[2]);
         for i in 0..3 {
             let linear: f64 = (0..3).map(|k| 1.5 / PI * matrix[(i, k)] * h[k]).sum();
             // Degree 5 against degree 9, and slip that begins at the trailing edge: 3 % of the size of the forces.
-            assert!(
-                (ours[i] - linear).abs() < 0.03 * 1e-3,
-                "{ratio} {i}: {} {linear}",
-                ours[i]
-            );
+            assert!((ours[i] - linear).abs() < 0.03 * 1e-3, "{ratio} {i}: {} {linear}", ours[i]);
         }
     }
 }
@@ -165,10 +149,7 @@ fn invariant_bounds_and_dissipation_from_rest_to_extremes() {
                     let creepage = ScaledCreepage { x, y, spin };
                     let solution = kalker.solve(&creepage, None).unwrap();
                     let f = solution.forces;
-                    assert!(
-                        f.fx.is_finite() && f.fy.is_finite() && f.mz.is_finite(),
-                        "{creepage:?}"
-                    );
+                    assert!(f.fx.is_finite() && f.fy.is_finite() && f.mz.is_finite(), "{creepage:?}");
                     assert!(f.fx.hypot(f.fy) <= 1.0, "{creepage:?}: {f:?}");
                     assert!((0.0..=1.0).contains(&solution.stick));
                     let size = x.abs().max(y.abs()).max(spin).max(f64::MIN_POSITIVE);
@@ -180,21 +161,10 @@ fn invariant_bounds_and_dissipation_from_rest_to_extremes() {
     }
     let kalker = kalker(1.0, 3);
     for wrong in [f64::NAN, f64::INFINITY] {
-        let creepage = ScaledCreepage {
-            x: wrong,
-            y: 0.0,
-            spin: 0.0,
-        };
-        assert!(matches!(
-            kalker.solve(&creepage, None),
-            Err(KalkerError::NotFinite(_))
-        ));
+        let creepage = ScaledCreepage { x: wrong, y: 0.0, spin: 0.0 };
+        assert!(matches!(kalker.solve(&creepage, None), Err(KalkerError::NotFinite(_))));
     }
-    let patch = Patch {
-        axis_ratio: 1.0,
-        poisson_ratio: 0.3,
-        rolling_angle: 0.0,
-    };
+    let patch = Patch { axis_ratio: 1.0, poisson_ratio: 0.3, rolling_angle: 0.0 };
     assert!(matches!(Kalker::new(patch, 0), Err(KalkerError::Degree(0))));
     assert!(matches!(Kalker::new(patch, 8), Err(KalkerError::Degree(8))));
 }
@@ -202,25 +172,10 @@ fn invariant_bounds_and_dissipation_from_rest_to_extremes() {
 #[test]
 fn invariant_warm_start_finds_the_cold_solution() {
     let kalker = kalker(0.2, 5);
-    let near = kalker
-        .solve(
-            &ScaledCreepage {
-                x: 0.2,
-                y: 0.1,
-                spin: 0.8,
-            },
-            None,
-        )
-        .unwrap();
-    let creepage = ScaledCreepage {
-        x: 0.203,
-        y: 0.099,
-        spin: 0.805,
-    };
-    let (warm, cold) = (
-        kalker.solve(&creepage, Some(&near)).unwrap(),
-        kalker.solve(&creepage, None).unwrap(),
-    );
+    let near = kalker.solve(&ScaledCreepage { x: 0.2, y: 0.1, spin: 0.8 }, None).unwrap();
+    let creepage = ScaledCreepage { x: 0.203, y: 0.099, spin: 0.805 };
+    let (warm, cold) =
+        (kalker.solve(&creepage, Some(&near)).unwrap(), kalker.solve(&creepage, None).unwrap());
     assert!((warm.forces.fx - cold.forces.fx).abs() < 2e-3);
     assert!((warm.forces.fy - cold.forces.fy).abs() < 2e-3);
     assert!(warm.iterations < cold.iterations);
@@ -229,11 +184,7 @@ fn invariant_warm_start_finds_the_cold_solution() {
 #[test]
 fn full_slip_reaches_the_friction_limit_and_stick_falls_from_one_to_none() {
     let kalker = kalker(1.0, 5);
-    let at = |x: f64| {
-        kalker
-            .solve(&ScaledCreepage { x, y: 0.0, spin: 0.0 }, None)
-            .unwrap()
-    };
+    let at = |x: f64| kalker.solve(&ScaledCreepage { x, y: 0.0, spin: 0.0 }, None).unwrap();
     assert!(at(1e-4).stick > 0.98 && at(10.0).stick < 0.02);
     assert!(at(10.0).forces.fx > 0.995);
 }

@@ -16,9 +16,7 @@ fn run(text: &str, points: u32) -> (Simulation, Vec<Outputs>) {
     let mut history = vec![simulation.outputs().clone()];
     for point in 1..=points {
         simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
-        simulation
-            .advance(f64::from(point) * scene.load.output_interval.0)
-            .unwrap();
+        simulation.advance(f64::from(point) * scene.load.output_interval.0).unwrap();
         history.push(simulation.outputs().clone());
     }
     (simulation, history)
@@ -34,11 +32,7 @@ fn invariant_energy_balance_and_work_of_the_thrust_case() {
     assert!(last.work > 1.0);
     // Drive power is dissipated power but for the slow change of the balls' own spin.
     let drive = last.inner.drive_torque * last.inner.twist.angular_velocity.x;
-    assert!(
-        (drive / last.friction_power - 1.0).abs() < 5e-3,
-        "{drive} W, {} W",
-        last.friction_power
-    );
+    assert!((drive / last.friction_power - 1.0).abs() < 5e-3, "{drive} W, {} W", last.friction_power);
     for ball in &last.balls {
         assert!(ball.inner.power > 0.0 && ball.outer.power > 0.0);
     }
@@ -63,17 +57,9 @@ fn invariant_all_balls_are_alike_under_pure_thrust() {
 fn closed_form_steady_thrust_load_and_race_speed() {
     let (_, history) = run(THRUST, 500);
     let last = &history[500];
-    assert!(
-        (last.inner.wrench.force.x + 1500.0).abs() < 1e-3,
-        "{}",
-        last.inner.wrench.force.x
-    );
+    assert!((last.inner.wrench.force.x + 1500.0).abs() < 1e-3, "{}", last.inner.wrench.force.x);
     assert!((last.inner.twist.angular_velocity.x - 200.0 * std::f64::consts::PI).abs() < 1e-8);
-    let axial: f64 = last
-        .balls
-        .iter()
-        .map(|b| b.inner.load * b.inner.contact_angle.sin())
-        .sum();
+    let axial: f64 = last.balls.iter().map(|b| b.inner.load * b.inner.contact_angle.sin()).sum();
     // What the normal loads leave of the thrust is carried by lateral creep forces, at most mu Q.
     assert!((axial - 1500.0).abs() < 0.08 * 10.0 * last.balls[0].inner.load);
 }
@@ -112,25 +98,16 @@ fn independent_solver_dynamic_loads_lie_near_the_quasi_static_ones() {
             |e: &equilibrium::Equilibrium| e.balls.iter().map(|b| b.report.inner_load).fold(0.0, f64::max);
         let band = (largest(&control) - largest(&none)).abs() + 0.01 * largest(&none);
         // Balls travel through the load zone: the largest load ever seen is the one under the load.
-        let seen = history[200..]
-            .iter()
-            .flat_map(|o| o.balls.iter().map(|b| b.inner.load))
-            .fold(0.0, f64::max);
-        assert!(
-            (seen - largest(&none)).abs() < band,
-            "{seen} N, {} N",
-            largest(&none)
-        );
+        let seen =
+            history[200..].iter().flat_map(|o| o.balls.iter().map(|b| b.inner.load)).fold(0.0, f64::max);
+        assert!((seen - largest(&none)).abs() < band, "{seen} N, {} N", largest(&none));
     }
 }
 
 #[test]
 fn closed_form_cage_speed_of_the_radial_case() {
     let (simulation, history) = run(RADIAL, 300);
-    let expected = simulation
-        .model()
-        .bearing
-        .epicyclic_speed(0.0, 200.0 * std::f64::consts::PI, 0.0);
+    let expected = simulation.model().bearing.epicyclic_speed(0.0, 200.0 * std::f64::consts::PI, 0.0);
     let mean = history[100..].iter().map(|o| o.cage_speed).sum::<f64>() / 201.0;
     assert!((mean / expected - 1.0).abs() < 1e-3, "{mean} {expected}");
 }
@@ -168,24 +145,17 @@ fn all_creep_laws_run_both_scenes() {
 
 #[test]
 fn misaligned_outer_race_changes_the_ball_speeds_once_per_orbit() {
-    let text = THRUST.replace(
-        "drive = \"fixed\"",
-        "drive = \"fixed\"\nmisalignment = { ry = \"0.01 deg\" }",
-    ) + "y = { displacement = 0.0 }\nz = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";
+    let text = THRUST.replace("drive = \"fixed\"", "drive = \"fixed\"\nmisalignment = { ry = \"0.01 deg\" }")
+        + "y = { displacement = 0.0 }\nz = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";
     let (_, history) = run(&text, 200);
     let last = &history[200];
     let loads: Vec<f64> = last.balls.iter().map(|b| b.inner.load).collect();
-    let (low, high) = loads
-        .iter()
-        .fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = loads.iter().fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(*v), h.max(*v)));
     assert!(high > 1.1 * low, "{loads:?}");
     // Once per turn: first harmonic of the load over azimuth beats the second.
     let harmonic = |k: f64| {
         let (c, s) = last.balls.iter().fold((0.0, 0.0), |(c, s), b| {
-            (
-                c + b.inner.load * (k * b.azimuth).cos(),
-                s + b.inner.load * (k * b.azimuth).sin(),
-            )
+            (c + b.inner.load * (k * b.azimuth).cos(), s + b.inner.load * (k * b.azimuth).sin())
         });
         c.hypot(s)
     };
@@ -196,10 +166,7 @@ fn misaligned_outer_race_changes_the_ball_speeds_once_per_orbit() {
 fn steps_that_make_no_sense_are_refused() {
     let mut simulation = Simulation::new(&Scene::parse(THRUST).unwrap()).unwrap();
     for end in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(
-            simulation.advance(end),
-            Err(SimulationError::Backwards { .. })
-        ));
+        assert!(matches!(simulation.advance(end), Err(SimulationError::Backwards { .. })));
     }
     assert_eq!(simulation.time(), 0.0);
 }
@@ -212,36 +179,21 @@ fn closed_form_counter_rotating_rings_leave_the_cage_nearly_at_rest() {
     let speed = 200.0 * std::f64::consts::PI;
     let angle = 0.5 * (last.balls[0].inner.contact_angle + last.balls[0].outer.contact_angle);
     let expected = simulation.model().bearing.epicyclic_speed(angle, speed, -speed);
-    assert!(
-        (last.cage_speed - expected).abs() < 1e-2 * speed,
-        "{} {expected}",
-        last.cage_speed
-    );
+    assert!((last.cage_speed - expected).abs() < 1e-2 * speed, "{} {expected}", last.cage_speed);
     assert!((last.outer.twist.angular_velocity.x + speed).abs() < 1e-9);
 }
 
 #[test]
 fn start_from_rest_reaches_the_epicyclic_speed_without_failures() {
-    let line = THRUST
-        .lines()
-        .find(|line| line.starts_with("inner_speed"))
-        .unwrap();
+    let line = THRUST.lines().find(|line| line.starts_with("inner_speed")).unwrap();
     let text = THRUST.replace(line, "inner_speed = [[0.0, 0.0], [0.02, \"6000 rpm\"]]");
     let (_, history) = run(&text, 300);
     assert_eq!(history[0].cage_speed, 0.0);
     let last = &history[300];
     assert!(last.cage_slip.abs() < 0.02, "{}", last.cage_slip);
     // Friction only ever takes energy, and the balls only ever gain speed.
-    assert!(
-        history
-            .windows(2)
-            .all(|pair| pair[1].dissipated >= pair[0].dissipated)
-    );
-    assert!(
-        history[..200]
-            .windows(2)
-            .all(|pair| pair[1].cage_speed >= pair[0].cage_speed - 1e-3)
-    );
+    assert!(history.windows(2).all(|pair| pair[1].dissipated >= pair[0].dissipated));
+    assert!(history[..200].windows(2).all(|pair| pair[1].cage_speed >= pair[0].cage_speed - 1e-3));
     let balance = last.work - last.dissipated - (last.stored_energy - history[0].stored_energy);
     assert!(balance.abs() < 1e-2 * last.work, "{balance} of {}", last.work);
 }

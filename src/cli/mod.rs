@@ -115,11 +115,7 @@ impl From<GyroscopicChoice> for Gyroscopic {
 pub fn run() -> Result<(), Box<dyn Error>> {
     match Arguments::parse().command {
         Command::Run { scene, output } => run::run(&Scene::load(&scene)?, &output)?,
-        Command::Equilibrium {
-            scene,
-            json,
-            gyroscopic,
-        } => {
+        Command::Equilibrium { scene, json, gyroscopic } => {
             let scene = Scene::load(&scene)?;
             let input = EquilibriumInput::from_scene(&scene, gyroscopic.into());
             let solution = equilibrium::solve(&Model::new(&scene)?, &input)?;
@@ -129,11 +125,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
                 print!("{solution}");
             }
         }
-        Command::Fmu {
-            scene,
-            output,
-            library,
-        } => {
+        Command::Fmu { scene, output, library } => {
             let library = library.map_or_else(library_beside_executable, Ok)?;
             write_fmu(&Scene::load(&scene)?, &library, &output)?;
             println!("{}", output.display());
@@ -147,10 +139,8 @@ pub fn run() -> Result<(), Box<dyn Error>> {
                 LawChoice::Kalker => Law::Kalker(degree),
             };
             let cannot_read = |why: csv::Error| format!("{}: {why}", cases.display());
-            let mut table = csv::ReaderBuilder::new()
-                .trim(csv::Trim::All)
-                .from_path(&cases)
-                .map_err(cannot_read)?;
+            let mut table =
+                csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(&cases).map_err(cannot_read)?;
             let mut answers = csv::Writer::from_writer(std::io::stdout().lock());
             for case in table.deserialize::<RollingContact>() {
                 answers.serialize(case.map_err(cannot_read)?.evaluate(law)?)?;

@@ -31,11 +31,7 @@ pub fn run(scene: &Scene, directory: &Path) -> Result<(), Box<dyn Error>> {
     let mut history = vec![simulation.outputs().clone()];
     let mut interrupted = None;
     for point in 1..=points {
-        let end = if point == points {
-            scene.load.duration.0
-        } else {
-            point as f64 * interval
-        };
+        let end = if point == points { scene.load.duration.0 } else { point as f64 * interval };
         simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
         let advanced = simulation.advance(end);
         results.write(simulation.inputs(), simulation.outputs())?;

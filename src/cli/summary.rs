@@ -30,26 +30,12 @@ fn write_summary(
         writeln!(out, "{title}")?;
     }
     writeln!(out, "at {:.3} ms", now.time * 1e3)?;
-    writeln!(
-        out,
-        "force on inner   x {:.3}  y {:.3}  z {:.3} N",
-        force.x, force.y, force.z
-    )?;
-    writeln!(
-        out,
-        "moment on inner  x {:.5}  y {:.5}  z {:.5} N m",
-        moment.x, moment.y, moment.z
-    )?;
-    writeln!(
-        out,
-        "inner race at    x {:.4}  y {:.4}  z {:.4} um",
-        position.x, position.y, position.z
-    )?;
+    writeln!(out, "force on inner   x {:.3}  y {:.3}  z {:.3} N", force.x, force.y, force.z)?;
+    writeln!(out, "moment on inner  x {:.5}  y {:.5}  z {:.5} N m", moment.x, moment.y, moment.z)?;
+    writeln!(out, "inner race at    x {:.4}  y {:.4}  z {:.4} um", position.x, position.y, position.z)?;
     let extremes = |get: fn(&roulement::outputs::BallOutput) -> f64| {
         let values = now.balls.iter().map(get);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-            (l.min(v), h.max(v))
-        });
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         format!("{low:.3} to {high:.3}")
     };
     writeln!(
@@ -64,11 +50,7 @@ fn write_summary(
         extremes(|b| b.inner.contact_angle.to_degrees()),
         extremes(|b| b.outer.contact_angle.to_degrees())
     )?;
-    writeln!(
-        out,
-        "means over the last {:.3} ms",
-        (now.time - half[0].time) * 1e3
-    )?;
+    writeln!(out, "means over the last {:.3} ms", (now.time - half[0].time) * 1e3)?;
     let slip = mean(|o| o.cage_slip);
     writeln!(
         out,
@@ -79,12 +61,7 @@ fn write_summary(
     writeln!(out, "friction power   {:.4} W", mean(|o| o.friction_power))?;
     let inner = mean(|o| o.balls.iter().map(|b| b.inner.power).sum::<f64>() / o.balls.len() as f64);
     let outer = mean(|o| o.balls.iter().map(|b| b.outer.power).sum::<f64>() / o.balls.len() as f64);
-    writeln!(
-        out,
-        "per ball         inner {:.4} mW, outer {:.4} mW",
-        inner * 1e3,
-        outer * 1e3
-    )?;
+    writeln!(out, "per ball         inner {:.4} mW, outer {:.4} mW", inner * 1e3, outer * 1e3)?;
     writeln!(out, "friction torque  {:.5} N m", mean(|o| o.friction_torque))?;
     let balance = now.work - now.dissipated - (now.stored_energy - history[0].stored_energy);
     writeln!(
@@ -106,16 +83,8 @@ fn write_summary(
         s.newton.iterations as f64 / steps,
         s.newton.factorisations
     )?;
-    writeln!(
-        out,
-        "contacts         {} values, {} with derivatives",
-        s.contact_values, s.contact_tangents
-    )?;
+    writeln!(out, "contacts         {} values, {} with derivatives", s.contact_values, s.contact_tangents)?;
     let seconds = wall.as_secs_f64();
     let simulated = now.time - history[0].time;
-    writeln!(
-        out,
-        "wall time        {seconds:.3} s, {:.2} s per simulated second",
-        seconds / simulated
-    )
+    writeln!(out, "wall time        {seconds:.3} s, {:.2} s per simulated second", seconds / simulated)
 }

@@ -69,11 +69,9 @@ impl<S: Scalar> LinearTheory<S> {
     #[inline(always)]
     pub fn forces(&self, law: CreepLaw, creepage: &Creepage<S>) -> CreepForces<S> {
         match law {
-            CreepLaw::Frictionless => CreepForces {
-                longitudinal: S::zero(),
-                lateral: S::zero(),
-                spin_moment: S::zero(),
-            },
+            CreepLaw::Frictionless => {
+                CreepForces { longitudinal: S::zero(), lateral: S::zero(), spin_moment: S::zero() }
+            }
             CreepLaw::Linear => self.linear(creepage),
             CreepLaw::Regularised => self.regularised(creepage),
             CreepLaw::Saturated => self.saturated(creepage),

@@ -74,11 +74,8 @@ fn solve_ellipticity(difference: f64) -> f64 {
             (high, residuals.1) = (x, residual);
         }
         let secant = low - residuals.0 * (high - low) / (residuals.1 - residuals.0);
-        let next = if iteration % 2 == 0 && secant > low && secant < high {
-            secant
-        } else {
-            0.5 * (low + high)
-        };
+        let next =
+            if iteration % 2 == 0 && secant > low && secant < high { secant } else { 0.5 * (low + high) };
         if (high - low) < 1e-15 * high || next == x {
             break;
         }
@@ -108,16 +105,9 @@ impl HertzContact {
         let per_root = (2.0 / (factors.approach * sum)).sqrt();
         let stiffness = per_root.powi(3) * sum / (1.5 * compliance);
         let (long, short) = (factors.long * per_root, factors.short * per_root);
-        let (rolling, transverse) = if curvature_rolling > curvature_transverse {
-            (short, long)
-        } else {
-            (long, short)
-        };
-        Self {
-            stiffness,
-            semi_axis_rolling: rolling,
-            semi_axis_transverse: transverse,
-        }
+        let (rolling, transverse) =
+            if curvature_rolling > curvature_transverse { (short, long) } else { (long, short) };
+        Self { stiffness, semi_axis_rolling: rolling, semi_axis_transverse: transverse }
     }
 }
 
@@ -163,10 +153,7 @@ mod tests {
 
     #[test]
     fn invariant_under_exchange_of_the_axes() {
-        let (one, other) = (
-            HertzContact::new(300.0, 8.0, 1e-11),
-            HertzContact::new(8.0, 300.0, 1e-11),
-        );
+        let (one, other) = (HertzContact::new(300.0, 8.0, 1e-11), HertzContact::new(8.0, 300.0, 1e-11));
         assert_eq!(one.stiffness, other.stiffness);
         assert_eq!(one.semi_axis_rolling, other.semi_axis_transverse);
     }
@@ -174,10 +161,7 @@ mod tests {
     #[test]
     fn elliptic_integrals_satisfy_legendre_relation() {
         for m in [1e-9, 0.1, 0.5, 0.9, 0.999, 1.0 - 1e-9] {
-            let ((k, e), (kc, ec)) = (
-                complete_elliptic_integrals(m),
-                complete_elliptic_integrals(1.0 - m),
-            );
+            let ((k, e), (kc, ec)) = (complete_elliptic_integrals(m), complete_elliptic_integrals(1.0 - m));
             assert!((e * kc + ec * k - k * kc - PI / 2.0).abs() < 1e-11, "m = {m}");
         }
     }

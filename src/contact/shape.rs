@@ -30,9 +30,8 @@ impl Polynomial {
         current[0] = 1.0;
         for k in 0..NODES {
             let weight = if k == 0 { 1.0 } else { 2.0 } / n;
-            let coefficient: f64 = (0..NODES)
-                .map(|j| weight * values[j] * (k as f64 * PI * (j as f64 + 0.5) / n).cos())
-                .sum();
+            let coefficient: f64 =
+                (0..NODES).map(|j| weight * values[j] * (k as f64 * PI * (j as f64 + 0.5) / n).cos()).sum();
             for (power, term) in powers.iter_mut().zip(current) {
                 *power += coefficient * term;
             }
@@ -191,9 +190,7 @@ impl ContactShape {
 
     #[inline(always)]
     fn scaled<S: Scalar>(&self, curvature: S) -> S {
-        (curvature - S::constant(self.middle))
-            .scale(1.0 / self.half_width)
-            .clamp_to(-1.0, 1.0)
+        (curvature - S::constant(self.middle)).scale(1.0 / self.half_width).clamp_to(-1.0, 1.0)
     }
 
     /// [N/m^1.5] Hertz stiffness at a circumferential curvature of the raceway [1/m].
@@ -221,11 +218,7 @@ impl ContactShape {
 
     /// The exact Hertz contact at a circumferential curvature of the raceway [1/m], not interpolated.
     pub fn hertz(&self, curvature: f64) -> HertzContact {
-        HertzContact::new(
-            self.ball_curvature + curvature,
-            self.transverse_curvature,
-            self.compliance,
-        )
+        HertzContact::new(self.ball_curvature + curvature, self.transverse_curvature, self.compliance)
     }
 }
 
@@ -238,9 +231,8 @@ mod tests {
     fn interpolated_stiffness_is_exact_to_1e_10() {
         let text = include_str!("../../scenes/thrust.toml");
         for pitch in ["24 mm", "46 mm", "300 mm"] {
-            let text = text
-                .replace("\"46 mm\"", &format!("\"{pitch}\""))
-                .replace("balls = 10 ", "balls = 7 ");
+            let text =
+                text.replace("\"46 mm\"", &format!("\"{pitch}\"")).replace("balls = 10 ", "balls = 7 ");
             let bearing = Bearing::new(&Scene::parse(&text).unwrap());
             for raceway in [&bearing.inner, &bearing.outer] {
                 let shape = ContactShape::new(&bearing, raceway).unwrap();

@@ -107,10 +107,7 @@ impl BallTrial {
         };
         let share = 1.0 - step.alpha_f;
         let mut tangent: Matrix6<f64> = Matrix6::zeros();
-        self.total = Wrench {
-            force: model.gravity * ball.mass,
-            moment: Vector3::zeros(),
-        };
+        self.total = Wrench { force: model.gravity * ball.mass, moment: Vector3::zeros() };
         for race in 0..2 {
             self.reactions[race] = None;
             let contact = match (&races[race], with_tangent) {
@@ -128,10 +125,8 @@ impl BallTrial {
                     tangent += by_ball(&contact.force, &contact.ball_moment);
                     let by_race = by_race(&contact.force, &contact.ball_moment);
                     self.block.right[race] = scale_moments(by_race, ball.radius) * -share;
-                    self.reactions[race] = Some(RaceReaction {
-                        force: -contact.force,
-                        moment: contact.race_moment,
-                    });
+                    self.reactions[race] =
+                        Some(RaceReaction { force: -contact.force, moment: contact.race_moment });
                     contact.values()
                 }
             };
@@ -190,11 +185,7 @@ fn by_race(force: &Vector3<Dual<DIRECTIONS>>, moment: &Vector3<Dual<DIRECTIONS>>
 
 /// Derivative by unknown k of a race body: translation (0 to 2), rotation (3 to 5).
 pub fn by_race_unknown(x: &Dual<DIRECTIONS>, k: usize) -> f64 {
-    if k < 3 {
-        -x.derivatives[k]
-    } else {
-        x.derivatives[RACE_ROTATION + k - 3]
-    }
+    if k < 3 { -x.derivatives[k] } else { x.derivatives[RACE_ROTATION + k - 3] }
 }
 
 /// First direction of a race body's rotation.

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 use crate::arrowhead::{Arrowhead, BLOCK, BallBlock};
 use crate::contact::{BallRaceContact, ContactModel};
 use crate::hht::HhtStep;
-use crate::model::{Model, RaceBody};
+use crate::model::{Constraint, Model, RaceBody};
 use crate::motion::{Pose, Twist, Wrench};
 use crate::newton::{self, Equations, NewtonBuffers, NewtonFailure};
 use crate::scalar::constant_vector;
@@ -79,10 +79,7 @@ pub enum StepFailure {
 /// First border row of each race body.
 fn offsets(model: &Model) -> [Option<usize>; 2] {
     let inner = model.border_rows(0);
-    [
-        (inner > 0).then_some(0),
-        (model.border_rows(1) > 0).then_some(inner),
-    ]
+    [(inner > 0).then_some(0), (model.border_rows(1) > 0).then_some(inner)]
 }
 
 /// Tries one step of `h` [s]. On success the state is the new one; otherwise only its statistics and step control
@@ -102,12 +99,7 @@ pub fn try_step(
     let mut statistics = state.statistics;
     let mut equations = BearingStep::new(model, state, boundary, h, workspace);
     equations.predict(&mut unknowns);
-    let solved = newton::solve(
-        &mut equations,
-        &mut unknowns,
-        &mut buffers,
-        &mut statistics.newton,
-    );
+    let solved = newton::solve(&mut equations, &mut unknowns, &mut buffers, &mut statistics.newton);
     statistics.contact_values += equations.contact_values;
     statistics.contact_tangents += equations.contact_tangents;
     let worst = equations.worst_ball();
@@ -144,16 +136,12 @@ impl<'a> BearingStep<'a> {
         });
         if workspace.balls.len() != start.balls.len() {
             let seen_values = [seen[0].value(), seen[1].value()];
-            workspace.balls = start
-                .balls
-                .iter()
-                .map(|ball| BallTrial::new(ball, &contacts, seen_values))
-                .collect();
+            workspace.balls =
+                start.balls.iter().map(|ball| BallTrial::new(ball, &contacts, seen_values)).collect();
         }
         for race in 0..2 {
-            workspace.races[race] = model.bodies[race]
-                .as_ref()
-                .map(|body| RaceTrial::new(body, &start.races[race]));
+            workspace.races[race] =
+                model.bodies[race].as_ref().map(|body| RaceTrial::new(body, &start.races[race]));
         }
         Self {
             model,
@@ -175,11 +163,7 @@ impl<'a> BearingStep<'a> {
         unknowns.clear();
         for ball in &self.start.balls {
             unknowns.extend(ball.acceleration.iter());
-            unknowns.extend(
-                ball.angular_acceleration
-                    .iter()
-                    .map(|a| a * self.model.bearing.ball.radius),
-            );
+            unknowns.extend(ball.angular_acceleration.iter().map(|a| a * self.model.bearing.ball.radius));
         }
         let length = self.model.race_length();
         for (race, body) in self.start.races.iter().zip(&self.model.bodies) {
@@ -216,9 +200,7 @@ impl<'a> BearingStep<'a> {
             let acceleration = trial.unknowns.fixed_rows::<3>(0).into_owned();
             let angular: Vector3<f64> = trial.unknowns.fixed_rows::<3>(3).into_owned();
             let translation = self.step.local_error(&start.acceleration, &acceleration);
-            let rotation = self
-                .step
-                .local_error(&(start.angular_acceleration * ball_radius), &angular);
+            let rotation = self.step.local_error(&(start.angular_acceleration * ball_radius), &angular);
             let square = (translation.norm_squared() + rotation.norm_squared()) / (scale * scale);
             if square > worst.1 {
                 worst = (index, square);
@@ -229,9 +211,7 @@ impl<'a> BearingStep<'a> {
         let length = self.model.race_length();
         for (start, trial) in self.start.races.iter().zip(&self.workspace.races) {
             if let Some(trial) = trial {
-                let translation = self
-                    .step
-                    .local_error(&start.acceleration, &trial.end.acceleration);
+                let translation = self.step.local_error(&start.acceleration, &trial.end.acceleration);
                 let angular = trial.end.rate_derivative * length;
                 let rotation = self.step.local_error(&(start.rate_derivative * length), &angular);
                 sum += (translation.norm_squared() + rotation.norm_squared()) / (scale * scale);
@@ -243,12 +223,8 @@ impl<'a> BearingStep<'a> {
 }
 
 /// A multiplier's unknown is a force: moments are divided by the race length.
-fn multiplier_scale(constraint: &crate::model::Constraint, length: f64) -> f64 {
-    if matches!(constraint, crate::model::Constraint::Position(..)) {
-        1.0
-    } else {
-        length
-    }
+fn multiplier_scale(constraint: &Constraint, length: f64) -> f64 {
+    if matches!(constraint, Constraint::Position(..)) { 1.0 } else { length }
 }
 
 impl Equations for BearingStep<'_> {
@@ -263,12 +239,7 @@ impl Equations for BearingStep<'_> {
             if let (Some(trial), Some(offset)) = (&mut self.workspace.races[race], offsets[race]) {
                 let rows = self.model.border_rows(race);
                 let from = border_start + offset;
-                trial.move_to(
-                    &unknowns[from..from + rows],
-                    &self.start.races[race],
-                    &self.step,
-                    length,
-                );
+                trial.move_to(&unknowns[from..from + rows], &self.start.races[race], &self.step, length);
                 self.seen[race] = trial.seen;
             }
         }
@@ -281,14 +252,7 @@ impl Equations for BearingStep<'_> {
             if with_tangent || self.fresh || !independent || unknown != trial.unknowns {
                 trial.unknowns = unknown;
                 let start = &self.start.balls[j];
-                trial.evaluate(
-                    self.model,
-                    &self.contacts,
-                    &self.step,
-                    start,
-                    &self.seen,
-                    with_tangent,
-                );
+                trial.evaluate(self.model, &self.contacts, &self.step, start, &self.seen, with_tangent);
                 if with_tangent {
                     self.contact_tangents += 2;
                 } else {
@@ -297,11 +261,7 @@ impl Equations for BearingStep<'_> {
             }
             // `max` would drop a NaN.
             let size = trial.residual.amax() / self.force_tolerance;
-            norm = if size.is_nan() || norm.is_nan() {
-                f64::NAN
-            } else {
-                norm.max(size)
-            };
+            norm = if size.is_nan() || norm.is_nan() { f64::NAN } else { norm.max(size) };
             for race in 0..2 {
                 if let Some(race_trial) = &self.workspace.races[race] {
                     let reaction = match &trial.reactions[race] {
@@ -329,16 +289,8 @@ impl Equations for BearingStep<'_> {
                 let start = &self.start.races[race];
                 trial.assemble(body, start, &load, &bearing[race], &self.step, &scales);
                 let size = trial.residual.rows(0, 6).amax() / self.force_tolerance;
-                let size = if size.is_nan() {
-                    f64::NAN
-                } else {
-                    size.max(trial.violation)
-                };
-                norm = if size.is_nan() || norm.is_nan() {
-                    f64::NAN
-                } else {
-                    norm.max(size)
-                };
+                let size = if size.is_nan() { f64::NAN } else { size.max(trial.violation) };
+                norm = if size.is_nan() || norm.is_nan() { f64::NAN } else { norm.max(size) };
             }
         }
 
@@ -356,19 +308,14 @@ impl Equations for BearingStep<'_> {
         for trial in &workspace.balls {
             // A ball that is solved already, and that nothing else can disturb, stays where it is.
             let done = independent && trial.residual.amax() <= self.force_tolerance;
-            workspace
-                .ball_corrections
-                .push(if done { Vector6::zeros() } else { -trial.residual });
+            workspace.ball_corrections.push(if done { Vector6::zeros() } else { -trial.residual });
         }
         let rows = self.model.border_rows(0) + self.model.border_rows(1);
         workspace.border_correction.resize_vertically_mut(rows, 0.0);
         for race in 0..2 {
             if let (Some(trial), Some(offset)) = (&workspace.races[race], offsets[race]) {
                 let rows = trial.residual.len();
-                workspace
-                    .border_correction
-                    .rows_mut(offset, rows)
-                    .copy_from(&-&trial.residual);
+                workspace.border_correction.rows_mut(offset, rows).copy_from(&-&trial.residual);
             }
         }
         let solved = workspace.arrowhead.solve(
@@ -395,10 +342,7 @@ impl BearingStep<'_> {
         for race in 0..2 {
             if let (Some(trial), Some(offset)) = (&workspace.races[race], offsets[race]) {
                 let rows = trial.residual.len();
-                workspace
-                    .border
-                    .view_mut((offset, offset), (rows, rows))
-                    .copy_from(&trial.block);
+                workspace.border.view_mut((offset, offset), (rows, rows)).copy_from(&trial.block);
             }
         }
         let blocks: Vec<&BallBlock> = workspace.balls.iter().map(|trial| &trial.block).collect();
@@ -483,17 +427,11 @@ pub fn bearing_wrench<'a>(contacts: impl Iterator<Item = &'a BallRaceContact<f64
 impl RaceReaction {
     fn zero() -> Self {
         let zero = constant_vector(&Vector3::zeros());
-        Self {
-            force: zero,
-            moment: zero,
-        }
+        Self { force: zero, moment: zero }
     }
 
     fn constant(contact: &BallRaceContact<f64>) -> Self {
-        Self {
-            force: constant_vector(&-contact.force),
-            moment: constant_vector(&contact.race_moment),
-        }
+        Self { force: constant_vector(&-contact.force), moment: constant_vector(&contact.race_moment) }
     }
 
     fn add(&mut self, other: &Self) {
@@ -513,10 +451,7 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     let mut wrenches = [Wrench::default(); 2];
     let mut all_contacts = Vec::with_capacity(2 * state.balls.len());
     for ball in &mut state.balls {
-        ball.total = Wrench {
-            force: model.gravity * ball_model.mass,
-            moment: Vector3::zeros(),
-        };
+        ball.total = Wrench { force: model.gravity * ball_model.mass, moment: Vector3::zeros() };
         powers.input += ball_model.mass * model.gravity.dot(&ball.velocity);
         for race in 0..2 {
             let contact = contacts[race].evaluate(&ball.motion(), &races[race]);

@@ -103,10 +103,7 @@ impl RaceTrial {
         self.rate_derivative = variable(&angular, 1.0 / length);
         self.start_orientation = start.pose.orientation;
         let orientation = normalised(start.pose.orientation * to_quaternion(&values(&self.rotation)));
-        self.end.pose = Pose {
-            position,
-            orientation,
-        };
+        self.end.pose = Pose { position, orientation };
         self.end.rate = values(&self.rate);
         self.end.rate_derivative = values(&self.rate_derivative);
         let spatial = |v: &Vector3<D>| turn(&start.pose.orientation, &rotate(&self.rotation, v));
@@ -158,13 +155,7 @@ impl RaceTrial {
                     // Directions 0 to 2 are those of the balls, which are minus the race's.
                     let position = D::variable(self.end.pose.position[*axis], *axis, -step.position_gain());
                     let value = position - D::constant(target);
-                    (
-                        value,
-                        step.position_gain(),
-                        1.0,
-                        body.mass,
-                        Reaction::Force(direction),
-                    )
+                    (value, step.position_gain(), 1.0, body.mass, Reaction::Force(direction))
                 }
                 Constraint::Tilt(axis, schedule) => {
                     // About y the axis goes towards -z, about z towards +y.
@@ -173,23 +164,11 @@ impl RaceTrial {
                     let value = motion.axis[other].scale(sign) - D::constant(target);
                     let toward = Vector3::from_fn(|i, _| D::constant(if i == other { sign } else { 0.0 }));
                     let direction = motion.axis.cross(&toward);
-                    (
-                        value,
-                        step.position_gain(),
-                        length,
-                        body.inertia[*axis],
-                        Reaction::Moment(direction),
-                    )
+                    (value, step.position_gain(), length, body.inertia[*axis], Reaction::Moment(direction))
                 }
                 Constraint::Spin => {
                     let value = self.rate[0] - D::constant(load.speed);
-                    (
-                        value,
-                        step.velocity_gain(),
-                        length,
-                        body.inertia[0],
-                        Reaction::Drive,
-                    )
+                    (value, step.velocity_gain(), length, body.inertia[0], Reaction::Drive)
                 }
             };
             let penalty = inertia / gain;
@@ -207,14 +186,9 @@ impl RaceTrial {
                 }
                 Reaction::Moment(direction) => {
                     world_moment += direction * multiplier;
-                    self.violation = self
-                        .violation
-                        .max(value.value.abs() * length / scales.length_tolerance);
+                    self.violation = self.violation.max(value.value.abs() * length / scales.length_tolerance);
                     let material = self.end.pose.orientation.inverse() * values(direction);
-                    (
-                        (Vector3::zeros(), material),
-                        values(direction).dot(&values(&motion.angular_velocity)),
-                    )
+                    ((Vector3::zeros(), material), values(direction).dot(&values(&motion.angular_velocity)))
                 }
                 Reaction::Drive => {
                     material_moment[0] += multiplier;
@@ -234,14 +208,8 @@ impl RaceTrial {
         let momentum = Vector3::from_fn(|i, _| self.rate[i].scale(body.inertia[i]));
         let seen = turn(&self.start_orientation.inverse(), &world_moment);
         material_moment += rotate(&-self.rotation, &seen) - self.rate.cross(&momentum);
-        self.end.total = Wrench {
-            force: values(&force),
-            moment: values(&material_moment),
-        };
-        self.end.bearing_wrench = Wrench {
-            force: values(&bearing.force),
-            moment: values(&bearing.moment),
-        };
+        self.end.total = Wrench { force: values(&force), moment: values(&material_moment) };
+        self.end.bearing_wrench = Wrench { force: values(&bearing.force), moment: values(&bearing.moment) };
 
         for i in 0..3 {
             let translation = self.end.acceleration[i] * body.mass

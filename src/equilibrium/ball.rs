@@ -118,10 +118,7 @@ pub fn balance(
     let own_orbital_speed =
         ratio.scale(input.inner_speed - input.outer_speed) + D::constant(input.outer_speed);
     let roll = (shared.cage_speed - D::constant(input.outer_speed)) / g;
-    let spin = [
-        D::constant(input.outer_speed) - roll * outer_cos,
-        roll * outer_sin,
-    ];
+    let spin = [D::constant(input.outer_speed) - roll * outer_cos, roll * outer_sin];
 
     // inertia
     let centrifugal_force = (radius * shared.cage_speed.square()).scale(ball.mass);
@@ -145,10 +142,7 @@ pub fn balance(
     let outer_force = -outer.normal * outer_load + outer.normal.cross(&tangent) * outer_friction;
     let total = inner_force + outer_force;
     let (axial, radial_force) = (total.x, total.dot(&constant_vector(&radial)) + centrifugal_force);
-    let mut residual = [
-        axial * cosine - radial_force * sine,
-        axial * sine + radial_force * cosine,
-    ];
+    let mut residual = [axial * cosine - radial_force * sine, axial * sine + radial_force * cosine];
     if shared.cage_speed.value == 0.0 {
         let middle = middle_of_gap(model, shared, azimuth);
         residual[0] -= (angle.scale(arc_radius(model)) - D::constant(middle.x)).scale(IDLE_HOLD);
@@ -185,10 +179,8 @@ pub fn middle_of_gap(model: &Model, shared: &Shared, azimuth: f64) -> Place {
     let outer_centre = Vector2::new(outer.groove_offset, outer.groove_circle_radius);
     let line = inner_centre - outer_centre;
     let length = line.norm();
-    let (l_i, l_o) = (
-        inner.groove_radius - model.bearing.ball.radius,
-        outer.groove_radius - model.bearing.ball.radius,
-    );
+    let (l_i, l_o) =
+        (inner.groove_radius - model.bearing.ball.radius, outer.groove_radius - model.bearing.ball.radius);
     // Groove centres that coincide leave the direction open: any does.
     let angle = if length > 0.0 { line.x.atan2(line.y) } else { 0.0 };
     Vector2::new(angle * l_o, l_o + 0.5 * (length - l_i - l_o))

@@ -276,17 +276,9 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
     let solution = finish(model, input, &unknowns, &here, residual.amax(), iterations);
     for (index, ball) in solution.balls.iter().enumerate() {
         let b = &ball.report;
-        let (approach, load) = (
-            b.inner_approach.max(b.outer_approach),
-            b.inner_load.max(b.outer_load),
-        );
+        let (approach, load) = (b.inner_approach.max(b.outer_approach), b.inner_load.max(b.outer_load));
         if approach > MAX_APPROACH * diameter {
-            return Err(EquilibriumError::Overload {
-                ball: index + 1,
-                approach,
-                load,
-                limit: MAX_APPROACH,
-            });
+            return Err(EquilibriumError::Overload { ball: index + 1, approach, load, limit: MAX_APPROACH });
         }
     }
     Ok(solution)
@@ -324,13 +316,8 @@ fn newton_step(
         matrix[(5, 5)] = 1.0;
     }
     // Rows and columns of comparable size, so that pivoting compares like with like.
-    let column = SharedVector::from_fn(|i, _| {
-        if i < 5 {
-            1.0 / size(i)
-        } else {
-            speed_scale.max(1.0) / size(3)
-        }
-    });
+    let column =
+        SharedVector::from_fn(|i, _| if i < 5 { 1.0 / size(i) } else { speed_scale.max(1.0) / size(3) });
     let scaled = matrix * SharedMatrix::from_diagonal(&column);
     let row = SharedVector::from_fn(|i, _| 1.0 / scaled.row(i).amax().max(f64::MIN_POSITIVE));
     let system = SharedMatrix::from_diagonal(&row) * scaled;
@@ -350,29 +337,17 @@ fn shared(input: &EquilibriumInput, unknowns: &SharedVector) -> Shared {
     let axis = Vector3::new(cosine, sine * rz, -(sine * ry));
     let position = Vector3::new(variable(0), variable(1), variable(2));
     let seen = |v: &Vector3<D>| turn(&input.outer_orientation.inverse(), v);
-    Shared {
-        position: seen(&position),
-        axis: seen(&axis),
-        cage_speed: variable(5),
-    }
+    Shared { position: seen(&position), axis: seen(&axis), cage_speed: variable(5) }
 }
 
 /// `sin(t)/t` with `s = t^2`.
 fn sinc(s: f64) -> f64 {
-    if s < 1e-6 {
-        1.0 - s / 6.0 + s * s / 120.0
-    } else {
-        s.sqrt().sin() / s.sqrt()
-    }
+    if s < 1e-6 { 1.0 - s / 6.0 + s * s / 120.0 } else { s.sqrt().sin() / s.sqrt() }
 }
 
 /// Derivative of [`sinc`] by s.
 fn sinc_slope(s: f64) -> f64 {
-    if s < 1e-6 {
-        -1.0 / 6.0 + s / 60.0
-    } else {
-        (s.sqrt().cos() - sinc(s)) / (2.0 * s)
-    }
+    if s < 1e-6 { -1.0 / 6.0 + s / 60.0 } else { (s.sqrt().cos() - sinc(s)) / (2.0 * s) }
 }
 
 fn turn(q: &UnitQuaternion<f64>, v: &Vector3<D>) -> Vector3<D> {
@@ -461,7 +436,7 @@ fn finish(
                 position: Vector3::x() * axial + radial * radius,
                 velocity: tangential * (cage_speed * radius),
                 angular_velocity: Vector3::x() * spin[0] + radial * spin[1],
-                report: BallReport::new(model, balance, &shared(input, unknowns).axis.map(D::value)),
+                report: BallReport::new(balance, &shared(input, unknowns).axis.map(D::value)),
             }
         })
         .collect();
@@ -469,11 +444,7 @@ fn finish(
     let t = &trial.tangent;
     let pivot = t[(5, 5)];
     let stiffness = SMatrix::<f64, 5, 5>::from_fn(|i, k| {
-        let follow = if pivot == 0.0 {
-            0.0
-        } else {
-            t[(i, 5)] * t[(5, k)] / pivot
-        };
+        let follow = if pivot == 0.0 { 0.0 } else { t[(i, 5)] * t[(5, k)] / pivot };
         t[(i, k)] - follow
     });
     Equilibrium {

@@ -8,7 +8,6 @@ use serde_json::{Value, json};
 use super::Equilibrium;
 use super::ball::BallBalance;
 use crate::contact::geometry::GrooveContact;
-use crate::model::Model;
 use crate::scalar::{Dual, Scalar, values};
 
 /// What is reported of a ball.
@@ -38,7 +37,7 @@ pub struct BallReport {
 
 impl BallReport {
     /// From the balance of a settled ball; `inner_axis` is the inner race's axis relative to the outer race.
-    pub(super) fn new(_model: &Model, balance: &BallBalance, inner_axis: &Vector3<f64>) -> Self {
+    pub(super) fn new(balance: &BallBalance, inner_axis: &Vector3<f64>) -> Self {
         // atan2(axial, radial) of the force on the ball for the inner race, of the opposite for the outer.
         let angle = |contact: &GrooveContact<Dual<8>>, axis: &Vector3<f64>, sign: f64| {
             let normal = values(&contact.normal) * sign;
@@ -67,11 +66,8 @@ impl Equilibrium {
         };
         let [x, y, z, ry, rz] = self.displacement;
         let [fx, fy, fz, my, mz] = self.load;
-        let stiffness: Vec<Vec<f64>> = self
-            .stiffness
-            .row_iter()
-            .map(|row| row.iter().copied().collect())
-            .collect();
+        let stiffness: Vec<Vec<f64>> =
+            self.stiffness.row_iter().map(|row| row.iter().copied().collect()).collect();
         json!({
             "units": "SI: m, N, N m, rad, rad/s",
             "displacement": { "x": x, "y": y, "z": z, "ry": ry, "rz": rz },
@@ -101,39 +97,18 @@ impl fmt::Display for Equilibrium {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z, ry, rz] = self.displacement;
         let [fx, fy, fz, my, mz] = self.load;
-        writeln!(
-            f,
-            "inner race    x {:.4} um  y {:.4} um  z {:.4} um",
-            x * 1e6,
-            y * 1e6,
-            z * 1e6
-        )?;
-        writeln!(
-            f,
-            "              ry {:.6} mrad  rz {:.6} mrad",
-            ry * 1e3,
-            rz * 1e3
-        )?;
+        writeln!(f, "inner race    x {:.4} um  y {:.4} um  z {:.4} um", x * 1e6, y * 1e6, z * 1e6)?;
+        writeln!(f, "              ry {:.6} mrad  rz {:.6} mrad", ry * 1e3, rz * 1e3)?;
         writeln!(f, "load          Fx {fx:.3} N  Fy {fy:.3} N  Fz {fz:.3} N")?;
         writeln!(f, "              My {my:.5} N m  Mz {mz:.5} N m")?;
         writeln!(f, "cage speed    {:.4} rad/s", self.cage_speed)?;
-        writeln!(
-            f,
-            "residual      {:.2e} of the load, {} iterations\n",
-            self.residual, self.iterations
-        )?;
-        writeln!(
-            f,
-            "stiffness     Fx, Fy, Fz [N], My, Mz [N m] by x, y, z [m], ry, rz [rad]"
-        )?;
+        writeln!(f, "residual      {:.2e} of the load, {} iterations\n", self.residual, self.iterations)?;
+        writeln!(f, "stiffness     Fx, Fy, Fz [N], My, Mz [N m] by x, y, z [m], ry, rz [rad]")?;
         for row in self.stiffness.row_iter() {
             let row: Vec<String> = row.iter().map(|value| format!("{value:12.4e}")).collect();
             writeln!(f, "              {}", row.join(" "))?;
         }
-        writeln!(
-            f,
-            "\nball  azimuth [deg]  load inner, outer [N]   contact angle inner, outer [deg]"
-        )?;
+        writeln!(f, "\nball  azimuth [deg]  load inner, outer [N]   contact angle inner, outer [deg]")?;
         for (j, ball) in self.balls.iter().enumerate() {
             let b = &ball.report;
             writeln!(

@@ -32,10 +32,9 @@ fn guard(component: *mut c_void, call: Call, work: impl FnOnce(&mut Instance) ->
             status
         }
         Err(_) => {
-            instance.log.write(
-                Status::Fatal,
-                &format!("{call:?} failed inside; this is a fault of the model"),
-            );
+            instance
+                .log
+                .write(Status::Fatal, &format!("{call:?} failed inside; this is a fault of the model"));
             Status::Fatal
         }
     };
@@ -109,10 +108,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
             return Err((Status::Error, "the instance name is missing".into()));
         }
         let (Some(guid), Some(location)) = (text(guid), text(resource_location)) else {
-            return Err((
-                Status::Error,
-                "the guid or the resource location is missing".into(),
-            ));
+            return Err((Status::Error, "the guid or the resource location is missing".into()));
         };
         Instance::new(&name, &guid, &location, callbacks, logging_on != 0)
     });
@@ -152,15 +148,9 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
     categories: *const *const c_char,
 ) -> Status {
     guard(component, Call::SetDebugLogging, |instance| {
-        let names: Vec<String> = list(categories, n)?
-            .iter()
-            .filter_map(|name| text(*name))
-            .collect();
-        let known = |name: &String| {
-            crate::model_description::LOG_CATEGORIES
-                .iter()
-                .any(|(known, _)| known == name)
-        };
+        let names: Vec<String> = list(categories, n)?.iter().filter_map(|name| text(*name)).collect();
+        let known =
+            |name: &String| crate::model_description::LOG_CATEGORIES.iter().any(|(known, _)| known == name);
         if let Some(unknown) = names.iter().find(|name| !known(name)) {
             return refuse(&format!("there is no log category {unknown}"));
         }
@@ -196,11 +186,7 @@ pub unsafe extern "C" fn fmi2EnterInitializationMode(component: *mut c_void) -> 
 /// Starts from the inputs as set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2ExitInitializationMode(component: *mut c_void) -> Status {
-    guard(
-        component,
-        Call::ExitInitializationMode,
-        Instance::exit_initialization,
-    )
+    guard(component, Call::ExitInitializationMode, Instance::exit_initialization)
 }
 
 /// Ends the simulation; results can still be read.
@@ -277,11 +263,7 @@ pub unsafe extern "C" fn fmi2GetString(
 }
 
 fn none_of_type(n: usize, kind: &str) -> Outcome {
-    if n == 0 {
-        Ok(())
-    } else {
-        refuse(&format!("there are no {kind} variables that this could mean"))
-    }
+    if n == 0 { Ok(()) } else { refuse(&format!("there are no {kind} variables that this could mean")) }
 }
 
 /// Sets real inputs.
@@ -292,9 +274,7 @@ pub unsafe extern "C" fn fmi2SetReal(
     n: usize,
     values: *const f64,
 ) -> Status {
-    guard(component, Call::Set, |instance| {
-        instance.set(list(references, n)?, Kind::Real, list(values, n)?)
-    })
+    guard(component, Call::Set, |instance| instance.set(list(references, n)?, Kind::Real, list(values, n)?))
 }
 
 /// There are no integer inputs.
@@ -305,9 +285,7 @@ pub unsafe extern "C" fn fmi2SetInteger(
     n: usize,
     _values: *const c_int,
 ) -> Status {
-    guard(component, Call::Set, |instance| {
-        instance.set(list(references, n)?, Kind::Integer, &vec![0.0; n])
-    })
+    guard(component, Call::Set, |instance| instance.set(list(references, n)?, Kind::Integer, &vec![0.0; n]))
 }
 
 /// There are no boolean variables.
@@ -410,10 +388,7 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
         };
         let content = instance.serialise(state)?;
         if size < content.len() {
-            return refuse(&format!(
-                "the FMU state takes {} bytes, not {size}",
-                content.len()
-            ));
+            return refuse(&format!("the FMU state takes {} bytes, not {size}", content.len()));
         }
         list_mut(bytes, size)?[..content.len()].copy_from_slice(&content);
         Ok(())
@@ -565,8 +540,5 @@ pub unsafe extern "C" fn fmi2GetStringStatus(
 }
 
 fn discard_status() -> Outcome {
-    Err((
-        Status::Discard,
-        "steps are synchronous: there is no such status".into(),
-    ))
+    Err((Status::Discard, "steps are synchronous: there is no such status".into()))
 }

@@ -75,12 +75,9 @@ fn resource_path(location: &str) -> Outcome<PathBuf> {
         Some(authority) => authority.find('/').map_or("", |slash| &authority[slash..]),
         None => rest,
     };
-    let path = percent_decode_str(path).decode_utf8().map_err(|_| {
-        (
-            Status::Error,
-            format!("the resource location \"{location}\" is not UTF-8"),
-        )
-    })?;
+    let path = percent_decode_str(path)
+        .decode_utf8()
+        .map_err(|_| (Status::Error, format!("the resource location \"{location}\" is not UTF-8")))?;
     // file:///C:/path is C:/path on Windows
     let drive = path.len() > 2 && path.as_bytes()[2] == b':' && path.starts_with('/');
     Ok(PathBuf::from(if drive { &path[1..] } else { &path }))
@@ -160,9 +157,7 @@ impl Instance {
             return error(format!("the start time {start} s is not a finite number"));
         }
         if let Some(stop) = stop.filter(|stop| !(*stop > start && stop.is_finite())) {
-            return error(format!(
-                "the stop time {stop} s is not after the start time {start} s"
-            ));
+            return error(format!("the stop time {stop} s is not after the start time {start} s"));
         }
         self.simulation.set_start_time(start);
         Ok(())
@@ -179,9 +174,7 @@ impl Instance {
     /// If the inputs allow no start.
     pub fn exit_initialization(&mut self) -> Outcome {
         self.refresh()?;
-        self.previous_outputs = self
-            .variables
-            .values(self.simulation.inputs(), self.simulation.outputs());
+        self.previous_outputs = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         self.phase = Phase::StepComplete;
         Ok(())
     }
@@ -192,16 +185,14 @@ impl Instance {
             let inputs = self.read_inputs()?;
             let mut simulation = self.simulation.clone();
             simulation.set_inputs(inputs);
-            simulation
-                .initialise()
-                .map_err(|why| (Status::Error, why.to_string()))?;
+            simulation.initialise().map_err(|why| (Status::Error, why.to_string()))?;
             self.simulation = simulation;
             self.changed = false;
         }
         Ok(())
     }
 
-    fn read_inputs(&self) -> Outcome<crate::simulation::Inputs> {
+    fn read_inputs(&self) -> Outcome<crate::inputs::Inputs> {
         self.variables
             .inputs(&self.values, &self.rates, self.simulation.inputs())
             .map_err(|why| (Status::Error, why.to_string()))
@@ -215,9 +206,7 @@ impl Instance {
     /// `fmi2Reset`: as freshly instantiated.
     pub fn reset(&mut self) {
         self.simulation = (*self.fresh).clone();
-        self.values = self
-            .variables
-            .values(self.simulation.inputs(), self.simulation.outputs());
+        self.values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         self.previous_outputs.clone_from(&self.values);
         self.rates.fill(0.0);
         self.last_step = 0.0;
@@ -229,10 +218,7 @@ impl Instance {
         let index = reference as usize;
         match self.variables.rows().get(index) {
             Some(row) if row.kind == kind => Ok(index),
-            Some(row) => error(format!(
-                "{} (value reference {reference}) is not of type {kind:?}",
-                row.name
-            )),
+            Some(row) => error(format!("{} (value reference {reference}) is not of type {kind:?}", row.name)),
             None => error(format!("there is no variable with value reference {reference}")),
         }
     }
@@ -251,8 +237,7 @@ impl Instance {
             *value = match row.causality {
                 Causality::Input => self.values[index],
                 Causality::Output => {
-                    self.variables
-                        .value(row, self.simulation.inputs(), self.simulation.outputs())
+                    self.variables.value(row, self.simulation.inputs(), self.simulation.outputs())
                 }
             };
         }
@@ -292,15 +277,10 @@ impl Instance {
                 return error(format!("{} is an output: it takes no input derivative", row.name));
             }
             if *order != 1 {
-                return error(format!(
-                    "input derivatives of order {order} are not offered, only of order 1"
-                ));
+                return error(format!("input derivatives of order {order} are not offered, only of order 1"));
             }
             if !value.is_finite() {
-                return error(format!(
-                    "the derivative of {} = {value} is not a finite number",
-                    row.name
-                ));
+                return error(format!("the derivative of {} = {value} is not a finite number", row.name));
             }
         }
         for (reference, value) in references.iter().zip(values) {
@@ -325,15 +305,9 @@ impl Instance {
                     "output derivatives of order {order} are not offered, only of order 1"
                 ));
             }
-            let now = self
-                .variables
-                .value(row, self.simulation.inputs(), self.simulation.outputs());
+            let now = self.variables.value(row, self.simulation.inputs(), self.simulation.outputs());
             let change = now - self.previous_outputs[index];
-            *value = if self.last_step > 0.0 {
-                change / self.last_step
-            } else {
-                0.0
-            };
+            *value = if self.last_step > 0.0 { change / self.last_step } else { 0.0 };
         }
         Ok(())
     }
@@ -350,19 +324,13 @@ impl Instance {
         }
         let scale = now.abs().max(time.abs()).max(step);
         if time.is_nan() || (time - now).abs() > TIME_TOLERANCE * scale {
-            return error(format!(
-                "the communication point {time} s is not the instance's time {now} s"
-            ));
+            return error(format!("the communication point {time} s is not the instance's time {now} s"));
         }
         if time + step <= now {
-            return error(format!(
-                "the communication step {step} s is lost in rounding at {now} s"
-            ));
+            return error(format!("the communication step {step} s is lost in rounding at {now} s"));
         }
         let inputs = self.read_inputs()?;
-        self.previous_outputs = self
-            .variables
-            .values(self.simulation.inputs(), self.simulation.outputs());
+        self.previous_outputs = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         let before = self.simulation.clone();
         self.simulation.set_inputs(inputs);
         let advanced = self.simulation.advance(time + step);
@@ -370,9 +338,7 @@ impl Instance {
         self.rates.fill(0.0);
         let reached = self.simulation.time();
         self.last_step = reached - now;
-        let values = self
-            .variables
-            .values(self.simulation.inputs(), self.simulation.outputs());
+        let values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         if !values.iter().all(|value| value.is_finite()) {
             self.simulation = before;
             self.last_step = 0.0;

@@ -43,12 +43,7 @@ fn plain(text: &str) -> CString {
 impl Log {
     /// A log that writes to an importer.
     pub fn new(callbacks: CallbackFunctions, instance: &str, on: bool) -> Self {
-        Self {
-            callbacks,
-            instance: plain(instance),
-            on,
-            categories: vec![],
-        }
+        Self { callbacks, instance: plain(instance), on, categories: vec![] }
     }
 
     /// Switches logging, for the named categories or, if there are none, for all.

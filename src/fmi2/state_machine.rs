@@ -57,14 +57,7 @@ pub enum Call {
 }
 
 const RUNNING: &[Phase] = &[Initialization, StepComplete, StepFailed, Terminated, Error];
-const ALIVE: &[Phase] = &[
-    Instantiated,
-    Initialization,
-    StepComplete,
-    StepFailed,
-    Terminated,
-    Error,
-];
+const ALIVE: &[Phase] = &[Instantiated, Initialization, StepComplete, StepFailed, Terminated, Error];
 
 /// The standard's table.
 pub const ALLOWED: [(Call, &[Phase]); 15] = [
@@ -78,14 +71,8 @@ pub const ALLOWED: [(Call, &[Phase]); 15] = [
     (Call::Set, &[Instantiated, Initialization, StepComplete]),
     (Call::FmuState, ALIVE),
     (Call::GetDirectionalDerivative, RUNNING),
-    (
-        Call::SetRealInputDerivatives,
-        &[Instantiated, Initialization, StepComplete],
-    ),
-    (
-        Call::GetRealOutputDerivatives,
-        &[StepComplete, StepFailed, Terminated, Error],
-    ),
+    (Call::SetRealInputDerivatives, &[Instantiated, Initialization, StepComplete]),
+    (Call::GetRealOutputDerivatives, &[StepComplete, StepFailed, Terminated, Error]),
     (Call::DoStep, &[StepComplete]),
     (Call::CancelStep, &[]),
     (Call::GetStatus, &[StepComplete, StepFailed, Terminated]),
@@ -93,7 +80,5 @@ pub const ALLOWED: [(Call, &[Phase]); 15] = [
 
 /// May this function be called in this phase?
 pub fn allowed(call: Call, phase: Phase) -> bool {
-    ALLOWED
-        .iter()
-        .any(|(listed, phases)| *listed == call && phases.contains(&phase))
+    ALLOWED.iter().any(|(listed, phases)| *listed == call && phases.contains(&phase))
 }

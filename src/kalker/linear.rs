@@ -115,19 +115,11 @@ pub fn adhesion_tractions(patch: &Patch, basis: &Basis) -> Result<DMatrix<f64>, 
     }
 
     // tractions of all of them, and the singular traction on the leading edge
-    let tractions = load_displacement(patch, basis)
-        .lu()
-        .solve(&displacements)
-        .ok_or(LinearError::Singular(*patch))?;
+    let tractions =
+        load_displacement(patch, basis).lu().solve(&displacements).ok_or(LinearError::Singular(*patch))?;
     let edge = leading_edge(patch, basis) * &tractions;
-    let (fixed, free) = (
-        edge.columns(0, 3).into_owned(),
-        edge.columns(3, edge.ncols() - 3).into_owned(),
-    );
-    let amounts = free
-        .svd(true, true)
-        .solve(&-fixed, 1e-13)
-        .map_err(|_| LinearError::Singular(*patch))?;
+    let (fixed, free) = (edge.columns(0, 3).into_owned(), edge.columns(3, edge.ncols() - 3).into_owned());
+    let amounts = free.svd(true, true).solve(&-fixed, 1e-13).map_err(|_| LinearError::Singular(*patch))?;
     Ok(tractions.columns(0, 3) + tractions.columns(3, amounts.nrows()) * amounts)
 }
 

@@ -29,9 +29,7 @@ pub struct Basis {
 impl Basis {
     /// All monomials up to `degree`.
     pub fn new(degree: usize) -> Self {
-        let powers = (0..=degree)
-            .flat_map(|total| (0..=total).map(move |q| (total - q, q)))
-            .collect();
+        let powers = (0..=degree).flat_map(|total| (0..=total).map(move |q| (total - q, q))).collect();
         Self { powers, degree }
     }
 
@@ -59,9 +57,7 @@ fn binomial(n: usize, k: usize) -> f64 {
 
 /// Powers `x^0 .. x^n`.
 fn powers(x: f64, n: usize) -> Vec<f64> {
-    std::iter::successors(Some(1.0), |last| Some(last * x))
-        .take(n + 1)
-        .collect()
+    std::iter::successors(Some(1.0), |last| Some(last * x)).take(n + 1).collect()
 }
 
 /// Coefficients of n^0 .. n^(p+q) of the mean of `X^p Y^q` over the chord of direction t: on it
@@ -164,11 +160,7 @@ mod tests {
         // Mindlin 1949: traction (1 - r^2)^(-1/2) on a circle of radius 1 moves one body rigidly by
         // pi (2 - nu)/(4 G); two bodies by twice that.
         for nu in [0.0, 0.3, 0.5] {
-            let patch = Patch {
-                axis_ratio: 1.0,
-                poisson_ratio: nu,
-                rolling_angle: 0.0,
-            };
+            let patch = Patch { axis_ratio: 1.0, poisson_ratio: nu, rolling_angle: 0.0 };
             let basis = Basis::new(2);
             let k = load_displacement(&patch, &basis);
             assert!((k[(0, 0)] - PI * (2.0 - nu) / 2.0).abs() < 1e-13, "{}", k[(0, 0)]);
@@ -182,14 +174,7 @@ mod tests {
     fn invariant_under_exchange_of_the_axes() {
         let basis = Basis::new(5);
         let at = |ratio| {
-            load_displacement(
-                &Patch {
-                    axis_ratio: ratio,
-                    poisson_ratio: 0.3,
-                    rolling_angle: 0.0,
-                },
-                &basis,
-            )
+            load_displacement(&Patch { axis_ratio: ratio, poisson_ratio: 0.3, rolling_angle: 0.0 }, &basis)
         };
         let (one, other) = (at(0.2), at(5.0));
         let n = basis.len();
@@ -204,16 +189,9 @@ mod tests {
     #[test]
     fn refined_rule_changes_nothing() {
         // The number of points grows with the degree: the same entries with many more of them.
-        let patch = Patch {
-            axis_ratio: 0.05,
-            poisson_ratio: 0.3,
-            rolling_angle: 0.0,
-        };
+        let patch = Patch { axis_ratio: 0.05, poisson_ratio: 0.3, rolling_angle: 0.0 };
         let (small, large) = (Basis::new(4), Basis::new(24));
-        let (few, many) = (
-            load_displacement(&patch, &small),
-            load_displacement(&patch, &large),
-        );
+        let (few, many) = (load_displacement(&patch, &small), load_displacement(&patch, &large));
         for i in 0..small.len() {
             for j in 0..small.len() {
                 let error = (few[(i, j)] - many[(i, j)]).abs();

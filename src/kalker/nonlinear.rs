@@ -135,10 +135,7 @@ fn project(v: [f64; 2], bound: f64) -> ([f64; 2], [f64; 3]) {
         return (v, [1.0, 0.0, 1.0]);
     }
     let (c, s, ratio) = (v[0] / size, v[1] / size, bound / size);
-    (
-        [bound * c, bound * s],
-        [ratio * s * s, -ratio * c * s, ratio * c * c],
-    )
+    ([bound * c, bound * s], [ratio * s * s, -ratio * c * s, ratio * c * c])
 }
 
 impl Kalker {
@@ -157,9 +154,7 @@ impl Kalker {
         let tractions = adhesion_tractions(&patch, &start_basis)?;
         let mut adhesion = DMatrix::zeros(2 * n, 3);
         adhesion.rows_mut(0, n).copy_from(&tractions.rows(0, n));
-        adhesion
-            .rows_mut(n, n)
-            .copy_from(&tractions.rows(start_basis.len(), n));
+        adhesion.rows_mut(n, n).copy_from(&tractions.rows(start_basis.len(), n));
         let stiffness = load_displacement(&patch, &basis);
         let (radial, angular) = (degree + 3, 4 * degree + 8);
         let mut points = Vec::with_capacity(radial * angular);
@@ -168,12 +163,7 @@ impl Kalker {
                 let (sin, cos) = (TAU * (k as f64 + 0.5) / angular as f64).sin_cos();
                 let r = square.sqrt();
                 let weight = share * PI / angular as f64;
-                points.push(Point {
-                    x: r * cos,
-                    y: r * sin,
-                    weight,
-                    bound: (1.0 - square).sqrt(),
-                });
+                points.push(Point { x: r * cos, y: r * sin, weight, bound: (1.0 - square).sqrt() });
             }
         }
         // A quadrature that gives the whole contact's sliding force exactly.
@@ -192,26 +182,14 @@ impl Kalker {
                 let power = |x: f64, k: usize| x.powi(k as i32);
                 values[(row, column)] = power(point.x, p) * power(point.y, q) / point.bound;
                 // derivative along rolling of the displacement monomial
-                let by_x = if p > 0 {
-                    p as f64 * power(point.x, p - 1) * power(point.y, q)
-                } else {
-                    0.0
-                };
-                let by_y = if q > 0 {
-                    q as f64 * power(point.x, p) * power(point.y, q - 1)
-                } else {
-                    0.0
-                };
+                let by_x = if p > 0 { p as f64 * power(point.x, p - 1) * power(point.y, q) } else { 0.0 };
+                let by_y = if q > 0 { q as f64 * power(point.x, p) * power(point.y, q - 1) } else { 0.0 };
                 gradients[(row, column)] = cos * by_x / a + sin * by_y / b;
             }
         }
         let mut slips = DMatrix::zeros(2 * rows, 2 * n);
-        slips
-            .rows_mut(0, rows)
-            .copy_from(&(&gradients * stiffness.rows(0, n)));
-        slips
-            .rows_mut(rows, rows)
-            .copy_from(&(&gradients * stiffness.rows(n, n)));
+        slips.rows_mut(0, rows).copy_from(&(&gradients * stiffness.rows(0, n)));
+        slips.rows_mut(rows, rows).copy_from(&(&gradients * stiffness.rows(n, n)));
         let edge = leading_edge(&patch, &basis) * EDGE_WEIGHT;
         Ok(Self {
             patch,
@@ -242,10 +220,7 @@ impl Kalker {
             .enumerate()
             .map(|(i, point)| {
                 let rigid = self.rigid(h, point);
-                (
-                    [fx[i], fy[i]],
-                    [rigid[0] + elastic[i], rigid[1] + elastic[rows + i]],
-                )
+                ([fx[i], fy[i]], [rigid[0] + elastic[i], rigid[1] + elastic[rows + i]])
             })
             .collect()
     }
@@ -254,10 +229,7 @@ impl Kalker {
     fn objective(&self, z: &DVector<f64>, h: &ScaledCreepage) -> f64 {
         let mut sum = (&self.edge_square * z).dot(z);
         for (point, (f, s)) in self.points.iter().zip(self.fields(z, h)) {
-            let (p, _) = project(
-                [f[0] + SLIP_WEIGHT * s[0], f[1] + SLIP_WEIGHT * s[1]],
-                point.bound,
-            );
+            let (p, _) = project([f[0] + SLIP_WEIGHT * s[0], f[1] + SLIP_WEIGHT * s[1]], point.bound);
             sum += point.weight * ((f[0] - p[0]).powi(2) + (f[1] - p[1]).powi(2));
         }
         sum
@@ -285,17 +257,14 @@ impl Kalker {
                 let value = self.values[(i, j)];
                 // column j drives f_x, column n + j drives f_y; both drive both slips
                 for (column, v) in [(j, [value, 0.0]), (n + j, [0.0, value])] {
-                    let argument = [
-                        v[0] + k * self.slips[(i, column)],
-                        v[1] + k * self.slips[(rows + i, column)],
-                    ];
+                    let argument =
+                        [v[0] + k * self.slips[(i, column)], v[1] + k * self.slips[(rows + i, column)]];
                     jacobian[(column, 2 * i)] = root * (v[0] - xx * argument[0] - xy * argument[1]);
                     jacobian[(column, 2 * i + 1)] = root * (v[1] - xy * argument[0] - yy * argument[1]);
                 }
             }
-            for (column, slip) in [[1.0, 0.0], [0.0, 1.0], [-b * point.y, a * point.x]]
-                .into_iter()
-                .enumerate()
+            for (column, slip) in
+                [[1.0, 0.0], [0.0, 1.0], [-b * point.y, a * point.x]].into_iter().enumerate()
             {
                 by_creepage[(2 * i, column)] = -root * k * (xx * slip[0] + xy * slip[1]);
                 by_creepage[(2 * i + 1, column)] = -root * k * (xy * slip[0] + yy * slip[1]);
@@ -319,19 +288,10 @@ impl Kalker {
         if !components.iter().all(|component| component.is_finite()) {
             return Err(KalkerError::NotFinite(*creepage));
         }
-        let size = components
-            .iter()
-            .fold(0.0f64, |size, component| size.max(component.abs()));
-        let shrink = if size > LARGEST_CREEPAGE {
-            LARGEST_CREEPAGE / size
-        } else {
-            1.0
-        };
-        let h = ScaledCreepage {
-            x: creepage.x * shrink,
-            y: creepage.y * shrink,
-            spin: creepage.spin * shrink,
-        };
+        let size = components.iter().fold(0.0f64, |size, component| size.max(component.abs()));
+        let shrink = if size > LARGEST_CREEPAGE { LARGEST_CREEPAGE / size } else { 1.0 };
+        let h =
+            ScaledCreepage { x: creepage.x * shrink, y: creepage.y * shrink, spin: creepage.spin * shrink };
         let mut z = match start {
             Some(start) => start.coefficients.clone(),
             None => {
@@ -354,9 +314,7 @@ impl Kalker {
                     damped[(i, i)] += damping * (matrix[(i, i)] + 1e-12);
                 }
                 let trial = damped.cholesky().map(|factor| &z - factor.solve(&gradient));
-                let reached = trial
-                    .as_ref()
-                    .map_or(f64::INFINITY, |trial| self.objective(trial, &h));
+                let reached = trial.as_ref().map_or(f64::INFINITY, |trial| self.objective(trial, &h));
                 if let Some(trial) = trial
                     && reached < objective
                 {
@@ -383,11 +341,7 @@ impl Kalker {
 
     fn finish(&self, z: DVector<f64>, h: &ScaledCreepage, iterations: u32) -> Solution {
         let net = &self.resultants * &z;
-        let mut forces = ScaledForces {
-            fx: net[0],
-            fy: net[1],
-            mz: net[2],
-        };
+        let mut forces = ScaledForces { fx: net[0], fy: net[1], mz: net[2] };
         // A polynomial may overstep the bound by its own error: a sliding contact stays at the friction limit.
         let size = forces.fx.hypot(forces.fy);
         if size > 1.0 {
@@ -402,12 +356,7 @@ impl Kalker {
                 stick += point.weight;
             }
         }
-        Solution {
-            coefficients: z,
-            forces,
-            stick: stick / area,
-            iterations,
-        }
+        Solution { coefficients: z, forces, stick: stick / area, iterations }
     }
 
     /// Derivatives of the forces (fx, fy, mz) by the scaled creepages (x, y, spin).

@@ -108,10 +108,8 @@ impl Scene {
     /// # Errors
     /// See [`SceneError`].
     pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let text = std::fs::read_to_string(path).map_err(|source| SceneError::Read {
-            path: path.display().to_string(),
-            source,
-        })?;
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| SceneError::Read { path: path.display().to_string(), source })?;
         Self::parse(&text)
     }
 }
@@ -125,51 +123,28 @@ mod tests {
     #[test]
     fn the_shipped_scenes_are_read() {
         let scene = Scene::parse(THRUST).unwrap();
-        assert_eq!(
-            scene.load.conditions()[0],
-            Condition::Load(Schedule::Constant(1500.0))
-        );
+        assert_eq!(scene.load.conditions()[0], Condition::Load(Schedule::Constant(1500.0)));
         Scene::parse(include_str!("../../scenes/radial.toml")).unwrap();
     }
 
     #[test]
     fn errors_name_key_value_and_allowed_range() {
         let cases = [
-            (
-                "balls = 10 ",
-                "balls = 0 ",
-                &["bearing.balls = 0", "[1, 200]"][..],
-            ),
+            ("balls = 10 ", "balls = 0 ", &["bearing.balls = 0", "[1, 200]"][..]),
             ("balls = 10 ", "bals = 10 ", &["bals", "expected"]),
             ("balls = 10 ", "", &["missing field", "balls"]),
             ("\"9.525 mm\"", "\"9.525 kg\"", &["9.525 kg", "incompatible"]),
-            (
-                "alpha_f = 0.05",
-                "alpha_f = 0.4",
-                &["solver.alpha_f = 0.4", "(0, 0.3333333333333333]"],
-            ),
+            ("alpha_f = 0.05", "alpha_f = 0.4", &["solver.alpha_f = 0.4", "(0, 0.3333333333333333]"]),
             ("alpha_f = 0.05", "alpha_f = nan", &["solver.alpha_f", "NaN"]),
-            (
-                "x = { force = \"1500 N\" }",
-                "x = { force = \"1 mm\" }",
-                &["1 mm", "incompatible"],
-            ),
+            ("x = { force = \"1500 N\" }", "x = { force = \"1 mm\" }", &["1 mm", "incompatible"]),
             (
                 "x = { force = \"1500 N\" }",
                 "x = { force = 1.0, displacement = 0.0 }",
                 &["load.x", "at most one"],
             ),
-            (
-                "x = { force = \"1500 N\" }",
-                "x = { force = [[0, 1], [0, 2]] }",
-                &["times must grow"],
-            ),
+            ("x = { force = \"1500 N\" }", "x = { force = [[0, 1], [0, 2]] }", &["times must grow"]),
             ("mass = \"0.2 kg\"", "", &["inner", "give its mass"]),
-            (
-                "contact_angle = \"25 deg\"",
-                "",
-                &["exactly one of contact_angle"],
-            ),
+            ("contact_angle = \"25 deg\"", "", &["exactly one of contact_angle"]),
         ];
         for (from, to, parts) in cases {
             assert!(THRUST.contains(from));
@@ -186,19 +161,10 @@ mod tests {
         let Condition::Load(force) = Scene::parse(&text).unwrap().load.conditions()[0].clone() else {
             panic!("a load was written")
         };
-        assert_eq!(
-            [force.at(-1.0), force.at(0.0005), force.at(0.001)],
-            [0.0, 500.0, 1000.0]
-        );
-        assert_eq!(
-            [force.at(0.002), force.at(0.003), force.at(9.0)],
-            [500.0, 0.0, 0.0]
-        );
+        assert_eq!([force.at(-1.0), force.at(0.0005), force.at(0.001)], [0.0, 500.0, 1000.0]);
+        assert_eq!([force.at(0.002), force.at(0.003), force.at(9.0)], [500.0, 0.0, 0.0]);
         // The smooth path passes the points, rests at the ends and does not overshoot.
-        assert_eq!(
-            [force.smooth_at(0.0), force.smooth_at(0.001)],
-            [(0.0, 0.0), (1000.0, 0.0)]
-        );
+        assert_eq!([force.smooth_at(0.0), force.smooth_at(0.001)], [(0.0, 0.0), (1000.0, 0.0)]);
         assert_eq!(force.smooth_at(0.0005), (500.0, 1.5e6));
     }
 }

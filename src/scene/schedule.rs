@@ -47,11 +47,7 @@ impl Schedule {
             }
             let secant = |j: usize| (points[j + 1].1 - points[j].1) / (points[j + 1].0 - points[j].0);
             let (left, right) = (secant(i - 1), secant(i));
-            if left * right <= 0.0 {
-                0.0
-            } else {
-                2.0 * left * right / (left + right)
-            }
+            if left * right <= 0.0 { 0.0 } else { 2.0 * left * right / (left + right) }
         };
         let (duration, s) = (t1 - t0, (time - t0) / (t1 - t0));
         let (m0, m1) = (slope(next - 1) * duration, slope(next) * duration);
@@ -85,9 +81,7 @@ pub fn deserialize<'de, Q: Quantity + for<'a> Deserialize<'a>, D: Deserializer<'
 ) -> Result<Schedule, D::Error> {
     let value = toml::Value::deserialize(deserializer)?;
     let toml::Value::Array(rows) = value else {
-        return Ok(Schedule::Constant(
-            Q::deserialize(value).map_err(Error::custom)?.si(),
-        ));
+        return Ok(Schedule::Constant(Q::deserialize(value).map_err(Error::custom)?.si()));
     };
     let mut points: Vec<(f64, f64)> = Vec::with_capacity(rows.len());
     for row in rows {
@@ -99,15 +93,9 @@ pub fn deserialize<'de, Q: Quantity + for<'a> Deserialize<'a>, D: Deserializer<'
         };
         let time = Time::deserialize(time).map_err(Error::custom)?.si();
         if points.last().is_some_and(|&(last, _)| last >= time) {
-            return Err(Error::custom(format!(
-                "table times must grow, but {time} s does not"
-            )));
+            return Err(Error::custom(format!("table times must grow, but {time} s does not")));
         }
         points.push((time, Q::deserialize(value).map_err(Error::custom)?.si()));
     }
-    if points.is_empty() {
-        Err(Error::custom("the table is empty"))
-    } else {
-        Ok(Schedule::Table(points))
-    }
+    if points.is_empty() { Err(Error::custom("the table is empty")) } else { Ok(Schedule::Table(points)) }
 }

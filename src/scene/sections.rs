@@ -46,11 +46,7 @@ pub struct Material {
 
 impl Default for Material {
     fn default() -> Self {
-        Self {
-            youngs_modulus: Pressure(206e9),
-            poisson_ratio: 0.3,
-            density: Density(7800.0),
-        }
+        Self { youngs_modulus: Pressure(206e9), poisson_ratio: 0.3, density: Density(7800.0) }
     }
 }
 
@@ -148,10 +144,7 @@ pub struct Misalignment {
 
 impl Default for Misalignment {
     fn default() -> Self {
-        Self {
-            ry: Angle(0.0),
-            rz: Angle(0.0),
-        }
+        Self { ry: Angle(0.0), rz: Angle(0.0) }
     }
 }
 

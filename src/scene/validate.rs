@@ -11,57 +11,31 @@ struct Range {
 }
 
 const fn closed(low: f64, high: f64, unit: &'static str) -> Range {
-    Range {
-        low,
-        low_open: false,
-        high,
-        unit,
-    }
+    Range { low, low_open: false, high, unit }
 }
 
 const fn above(low: f64, high: f64, unit: &'static str) -> Range {
-    Range {
-        low,
-        low_open: true,
-        high,
-        unit,
-    }
+    Range { low, low_open: true, high, unit }
 }
 
 impl Range {
     fn check(&self, key: &str, value: f64) -> Result<(), SceneError> {
-        let inside = value <= self.high
-            && if self.low_open {
-                value > self.low
-            } else {
-                value >= self.low
-            };
+        let inside = value <= self.high && if self.low_open { value > self.low } else { value >= self.low };
         if inside {
             return Ok(());
         }
         let bracket = if self.low_open { "(" } else { "[" };
         let range = format!("{bracket}{}, {}] {}", self.low, self.high, self.unit);
-        Err(SceneError::Range {
-            key: key.to_string(),
-            value,
-            unit: self.unit,
-            range,
-        })
+        Err(SceneError::Range { key: key.to_string(), value, unit: self.unit, range })
     }
 
     fn check_all(&self, key: &str, schedule: &Schedule) -> Result<(), SceneError> {
-        schedule
-            .values()
-            .into_iter()
-            .try_for_each(|value| self.check(key, value))
+        schedule.values().into_iter().try_for_each(|value| self.check(key, value))
     }
 }
 
 fn conflict(key: &str, why: &str) -> SceneError {
-    SceneError::Conflict {
-        key: key.to_string(),
-        why: why.to_string(),
-    }
+    SceneError::Conflict { key: key.to_string(), why: why.to_string() }
 }
 
 /// Checks every value of a scene against its range, and the keys against one another.
