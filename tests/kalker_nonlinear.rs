@@ -1,49 +1,15 @@
 //! Kalker's nonlinear theory in polynomials against independent data, and what must hold for any creepage.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
+use common::cases;
 use roulement::kalker::linear::creep_matrix;
 use roulement::kalker::nonlinear::{Kalker, KalkerError};
 use roulement::kalker::{Patch, ScaledCreepage};
-
-struct Case {
-    kind: String,
-    patch: Patch,
-    creepage: ScaledCreepage,
-    expected: [f64; 3],
-}
-
-/// The independent data, scaled as Kalker's problem scales.
-fn cases() -> Vec<Case> {
-    let text = include_str!("data/contact/random.csv");
-    let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
-    text.lines()
-        .skip(1)
-        .map(|line| {
-            let row: Vec<&str> = line.split(',').collect();
-            let get = |name: &str| row[header.iter().position(|h| *h == name).unwrap()];
-            let number = |name: &str| get(name).parse::<f64>().unwrap();
-            let (a, b) = (number("semi_axis_x"), number("semi_axis_y"));
-            let scale = number("shear_modulus") / (number("friction") * number("peak_pressure"));
-            Case {
-                kind: get("kind").to_string(),
-                patch: Patch {
-                    axis_ratio: a / b,
-                    poisson_ratio: number("poisson_ratio"),
-                    rolling_angle: number("rolling_angle"),
-                },
-                creepage: ScaledCreepage {
-                    x: number("creep_x") * scale,
-                    y: number("creep_y") * scale,
-                    spin: number("spin") * (a * b).sqrt() * scale,
-                },
-                expected: [number("fx"), number("fy"), number("mz")],
-            }
-        })
-        .collect()
-}
 
 /// Mean errors of fx, fy, mz and the largest force error, by kind of case.
 fn errors(degree: usize) -> BTreeMap<String, ([f64; 3], f64, f64, f64)> {

@@ -1,0 +1,264 @@
+//! Reference solution of one steadily rolling contact: tractions constant on the cells of a grid, half-space influence
+//! functions, Coulomb's bound in every cell. Slow and plain: the yardstick for all other laws.
+//!
+//! Scaled as everything in [`crate::kalker`]: tractions over mu p0, slip times G/(mu p0), lengths over `c`. In steady
+//! rolling the slip of a particle is its rigid slip plus the change of its elastic displacement from the place one
+//! step upstream, where it comes from (backward difference along rolling; Vollebregt 2010). Cells are solved one by one
+//! from the leading edge on, each exactly: sticking if its traction then is below the bound, else sliding along its
+//! traction; sweeps are repeated until nothing changes.
+
+use std::f64::consts::PI;
+
+use thiserror::Error;
+
+use super::linear::LinearError;
+use super::{Patch, ScaledCreepage, ScaledForces};
+
+/// [-] change of a traction over mu p0 in a sweep that counts as none.
+const TOLERANCE: f64 = 1e-5;
+/// [-] share of a cell's change that is taken. With the whole change neighbouring sliding cells turn each other to and
+/// fro for ever; with this share all reference cases come to rest in 15 to 40 sweeps.
+const RELAXATION: f64 = 0.6;
+/// Sweeps after which a smaller share is tried.
+const PATIENCE: u32 = 100;
+const MAX_SWEEPS: u32 = 1000;
+
+/// Why there is no solution.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum HalfSpaceError {
+    /// The patch is out of range.
+    #[error(transparent)]
+    Patch(#[from] LinearError),
+    /// A grid too coarse or too fine.
+    #[error("the grid of {0} cells across the ellipse is outside [4, 256]")]
+    Grid(usize),
+    /// A creepage that is NaN or infinite.
+    #[error("the creepages {0:?} are not finite")]
+    NotFinite(ScaledCreepage),
+    /// The sweeps do not come to rest.
+    #[error("the tractions still change by {change:.1e} of mu p0 after {sweeps} sweeps")]
+    NoConvergence {
+        /// [-] largest change in the last sweep.
+        change: f64,
+        /// Sweeps done.
+        sweeps: u32,
+    },
+}
+
+/// A cell of the grid.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    /// Indices in the grid.
+    i: usize,
+    j: usize,
+    /// Centre over c.
+    x: f64,
+    y: f64,
+    /// Coulomb's bound over mu p0.
+    bound: f64,
+}
+
+/// Change of displacement over one step along rolling, per unit traction of a cell, over the step: xx, xy, yy.
+type Influence = [f64; 3];
+
+/// The problem of one patch on one grid.
+#[derive(Clone, Debug)]
+pub struct HalfSpace {
+    /// Cells from the leading edge on.
+    cells: Vec<Cell>,
+    /// Influences by difference of indices, from -(n-1) to n-1 in both.
+    influences: Vec<Influence>,
+    n: usize,
+}
+
+/// The solution at one creepage.
+#[derive(Clone, Debug)]
+pub struct Tractions {
+    /// Tractions over mu p0, cell by cell.
+    pub tractions: Vec<[f64; 2]>,
+    /// Net forces.
+    pub forces: ScaledForces,
+    /// [-] adhesion area over contact area.
+    pub stick: f64,
+    /// Sweeps spent.
+    pub sweeps: u32,
+}
+
+/// Displacement at an offset from the centre of a rectangle of half sides (hx, hy) under unit traction, times G: the
+/// integrals of Boussinesq and Cerruti in closed form, for the relative displacement of two like bodies.
+fn displacement(x: f64, y: f64, (hx, hy): (f64, f64), nu: f64) -> Influence {
+    let mut sum = [0.0; 3];
+    for (sx, sy, sign) in [(1.0, 1.0, 1.0), (1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0)] {
+        let (u, v) = (x + sx * hx, y + sy * hy);
+        let r = u.hypot(v);
+        // ln(v + r) loses all digits where v is negative and u small; ln(u^2/(r - v)) does not.
+        let log = |a: f64, b: f64| if b > 0.0 { (b + r).ln() } else { 2.0 * a.abs().ln() - (r - b).ln() };
+        let p = if u == 0.0 { 0.0 } else { u * log(u, v) };
+        let q = if v == 0.0 { 0.0 } else { v * log(v, u) };
+        sum[0] += sign * ((1.0 - nu) * p + q);
+        sum[1] -= sign * nu * r;
+        sum[2] += sign * (p + (1.0 - nu) * q);
+    }
+    sum.map(|value| value / PI)
+}
+
+impl HalfSpace {
+    /// Prepares a grid of `n` cells across each axis of the ellipse.
+    ///
+    /// # Errors
+    /// If patch or grid are out of range.
+    pub fn new(patch: &Patch, n: usize) -> Result<Self, HalfSpaceError> {
+        patch.check()?;
+        if !(4..=256).contains(&n) {
+            return Err(HalfSpaceError::Grid(n));
+        }
+        let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());
+        let (sin, cos) = patch.rolling_angle.sin_cos();
+        let centre = |i: usize| (2.0 * i as f64 + 1.0) / n as f64 - 1.0;
+        let mut cells = vec![];
+        for i in 0..n {
+            for j in 0..n {
+                let (x, y) = (centre(i), centre(j));
+                let square = x * x + y * y;
+                if square < 1.0 {
+                    cells.push(Cell { i, j, x: a * x, y: b * y, bound: (1.0 - square).sqrt() });
+                }
+            }
+        }
+        cells.sort_by(|one, other| {
+            let along = |cell: &Cell| cell.x * cos + cell.y * sin;
+            along(other).total_cmp(&along(one))
+        });
+        let half = (a / n as f64, b / n as f64);
+        // One cell along rolling: the smaller of the two crossings of a cell.
+        let step = (2.0 * half.0 / cos.abs().max(1e-12)).min(2.0 * half.1 / sin.abs().max(1e-12));
+        let mut influences = vec![];
+        for di in 0..2 * n - 1 {
+            for dj in 0..2 * n - 1 {
+                let x = (di as f64 - (n as f64 - 1.0)) * 2.0 * half.0;
+                let y = (dj as f64 - (n as f64 - 1.0)) * 2.0 * half.1;
+                let here = displacement(x, y, half, patch.poisson_ratio);
+                let upstream = displacement(x + step * cos, y + step * sin, half, patch.poisson_ratio);
+                influences.push(std::array::from_fn(|k| (upstream[k] - here[k]) / step));
+            }
+        }
+        Ok(Self { cells, influences, n })
+    }
+
+    /// Influence of the traction of cell `by` on the slip of cell `on`.
+    #[inline(always)]
+    fn influence(&self, on: &Cell, by: &Cell) -> &Influence {
+        &self.influences[(on.i + self.n - 1 - by.i) * (2 * self.n - 1) + (on.j + self.n - 1 - by.j)]
+    }
+
+    /// Solves for creepages, from zero tractions or from those of neighbouring creepages.
+    ///
+    /// # Errors
+    /// See [`HalfSpaceError`].
+    pub fn solve(
+        &self,
+        creepage: &ScaledCreepage,
+        start: Option<&Tractions>,
+    ) -> Result<Tractions, HalfSpaceError> {
+        let components = [creepage.x, creepage.y, creepage.spin];
+        if !components.iter().all(|component| component.is_finite()) {
+            return Err(HalfSpaceError::NotFinite(*creepage));
+        }
+        let count = self.cells.len();
+        let mut tractions = start.map_or_else(|| vec![[0.0; 2]; count], |start| start.tractions.clone());
+        let mut sticking = vec![true; count];
+        let own = self.influence(&self.cells[0], &self.cells[0]);
+        // Own influence: a traction along the slip takes slip away.
+        let flexibility = [-own[0], -own[2]];
+        let mut change = f64::INFINITY;
+        let mut relaxation = RELAXATION;
+        for sweep in 1..=MAX_SWEEPS {
+            change = 0.0;
+            for (index, cell) in self.cells.iter().enumerate() {
+                // slip without the cell's own traction
+                let mut slip = [creepage.x - creepage.spin * cell.y, creepage.y + creepage.spin * cell.x];
+                for (other, f) in self.cells.iter().zip(&tractions) {
+                    let [xx, xy, yy] = self.influence(cell, other);
+                    slip[0] += xx * f[0] + xy * f[1];
+                    slip[1] += xy * f[0] + yy * f[1];
+                }
+                let old = tractions[index];
+                slip[0] -= own[0] * old[0];
+                slip[1] -= own[2] * old[1];
+                let (solved, sticks) = solve_cell(slip, flexibility, cell.bound);
+                let traction = [0, 1].map(|k| old[k] + relaxation * (solved[k] - old[k]));
+                change = change.max((traction[0] - old[0]).abs()).max((traction[1] - old[1]).abs());
+                tractions[index] = traction;
+                sticking[index] = sticks;
+            }
+            if sweep % PATIENCE == 0 {
+                relaxation *= RELAXATION;
+            }
+            if change < TOLERANCE {
+                return Ok(self.finish(tractions, &sticking, sweep));
+            }
+        }
+        Err(HalfSpaceError::NoConvergence { change, sweeps: MAX_SWEEPS })
+    }
+
+    fn finish(&self, tractions: Vec<[f64; 2]>, sticking: &[bool], sweeps: u32) -> Tractions {
+        // The cells' own sum of bounds stands for mu Q: what the staircase of the edge loses cancels.
+        let limit: f64 = self.cells.iter().map(|cell| cell.bound).sum();
+        let mut forces = ScaledForces::default();
+        for (cell, f) in self.cells.iter().zip(&tractions) {
+            forces.fx += f[0] / limit;
+            forces.fy += f[1] / limit;
+            forces.mz += (cell.x * f[1] - cell.y * f[0]) / limit;
+        }
+        let stick = sticking.iter().filter(|sticks| **sticks).count() as f64 / sticking.len() as f64;
+        Tractions { tractions, forces, stick, sweeps }
+    }
+}
+
+/// Traction of a cell whose slip without it is `slip`: sticking, or sliding with the slip that remains along it.
+fn solve_cell(slip: [f64; 2], flexibility: [f64; 2], bound: f64) -> ([f64; 2], bool) {
+    let sticking = [slip[0] / flexibility[0], slip[1] / flexibility[1]];
+    if sticking[0].hypot(sticking[1]) <= bound {
+        return (sticking, true);
+    }
+    // slip - L f = lambda f with |f| = bound: f_k = slip_k/(lambda + L_k). The size of f falls with lambda.
+    let at = |lambda: f64| [0, 1].map(|k| slip[k] / (lambda + flexibility[k]));
+    let size = slip[0].hypot(slip[1]);
+    let mut lambda = (size / bound - flexibility[0].max(flexibility[1])).max(0.0);
+    for _ in 0..50 {
+        let f = at(lambda);
+        let square = f[0] * f[0] + f[1] * f[1];
+        let slope: f64 = (0..2).map(|k| f[k] * f[k] / (lambda + flexibility[k])).sum();
+        // Newton on 1/|f| = 1/bound, which is nearly linear in lambda.
+        let length = square.sqrt();
+        let step = (length / bound - 1.0) * square / slope;
+        lambda = (lambda + step).max(0.0);
+        if step.abs() < 1e-14 * (lambda + flexibility[0]) {
+            break;
+        }
+    }
+    let f = at(lambda);
+    let length = f[0].hypot(f[1]);
+    (f.map(|component| component * bound / length), false)
+}
+
+/// Forces on grids of `n` and `2 n` cells, extrapolated to zero cell size (the method is of first order).
+///
+/// # Errors
+/// See [`HalfSpaceError`].
+pub fn extrapolated(
+    patch: &Patch,
+    creepage: &ScaledCreepage,
+    n: usize,
+) -> Result<ScaledForces, HalfSpaceError> {
+    let [coarse, fine] = [
+        HalfSpace::new(patch, n)?.solve(creepage, None)?,
+        HalfSpace::new(patch, 2 * n)?.solve(creepage, None)?,
+    ];
+    let limit = |coarse: f64, fine: f64| 2.0 * fine - coarse;
+    Ok(ScaledForces {
+        fx: limit(coarse.forces.fx, fine.forces.fx),
+        fy: limit(coarse.forces.fy, fine.forces.fy),
+        mz: limit(coarse.forces.mz, fine.forces.mz),
+    })
+}
