@@ -4,8 +4,10 @@ use nalgebra::Vector3;
 
 use crate::bearing::{Bearing, Raceway};
 use crate::contact::ContactModel;
+use crate::contact::creep::Law;
 use crate::contact::shape::ContactShape;
 use crate::kalker::linear::LinearError;
+use crate::kalker::table::CreepTable;
 use crate::scene::{Condition, CreepLaw, Drive, RaceSection, Scene, Schedule, Solver};
 
 /// Index of the inner race wherever races come in pairs.
@@ -35,6 +37,16 @@ pub struct RaceBody {
     pub constraints: Vec<Constraint>,
 }
 
+/// Creep law with its tables, one per raceway.
+#[derive(Clone, Debug)]
+enum ModelLaw {
+    Frictionless,
+    Linear,
+    Regularised,
+    Saturated,
+    Tables([CreepTable; 2]),
+}
+
 /// Everything that stays the same during a run.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -43,7 +55,7 @@ pub struct Model {
     /// Contact tables of inner and outer raceway.
     shapes: [ContactShape; 2],
     /// Creep law.
-    pub law: CreepLaw,
+    law: ModelLaw,
     /// [s/m] Hunt-Crossley dissipation factor.
     pub damping: f64,
     /// [m/s2] gravity.
@@ -63,10 +75,18 @@ impl Model {
         let bearing = Bearing::new(scene);
         let shapes =
             [ContactShape::new(&bearing, &bearing.inner)?, ContactShape::new(&bearing, &bearing.outer)?];
+        let table = |shape: &ContactShape| CreepTable::new(&shape.typical_patch(bearing.poisson_ratio));
+        let law = match scene.effects.creep {
+            CreepLaw::Frictionless => ModelLaw::Frictionless,
+            CreepLaw::Linear => ModelLaw::Linear,
+            CreepLaw::Regularised => ModelLaw::Regularised,
+            CreepLaw::Saturated => ModelLaw::Saturated,
+            CreepLaw::KalkerTable => ModelLaw::Tables([table(&shapes[INNER])?, table(&shapes[OUTER])?]),
+        };
         Ok(Self {
             bearing,
+            law,
             shapes,
-            law: scene.effects.creep,
             damping: scene.effects.damping.0,
             gravity: Vector3::from(scene.effects.gravity.map(|component| component.0)),
             bodies: [body(&scene.inner, scene), None],
@@ -85,7 +105,13 @@ impl Model {
             raceway: self.raceway(race),
             shape: &self.shapes[race],
             ball_radius: self.bearing.ball.radius,
-            law: self.law,
+            law: match &self.law {
+                ModelLaw::Frictionless => Law::Frictionless,
+                ModelLaw::Linear => Law::Linear,
+                ModelLaw::Regularised => Law::Regularised,
+                ModelLaw::Saturated => Law::Saturated,
+                ModelLaw::Tables(tables) => Law::Table(&tables[race]),
+            },
             friction,
             damping: self.damping,
         }

@@ -4,10 +4,12 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::contact::creep::{Creepage, LinearTheory, saturation};
+use crate::contact::creep::{self, Creepage, LinearTheory, saturation};
 use crate::contact::hertz::complete_elliptic_integrals;
+use crate::kalker::half_space::{HalfSpaceError, extrapolated};
 use crate::kalker::linear::{LinearError, creep_matrix};
 use crate::kalker::nonlinear::{Kalker, KalkerError};
+use crate::kalker::table::CreepTable;
 use crate::kalker::{Patch, ScaledCreepage};
 use crate::scene::CreepLaw;
 
@@ -63,6 +65,8 @@ pub enum Law {
     Simulated(CreepLaw),
     /// Kalker's nonlinear theory with polynomials of this degree.
     Kalker(usize),
+    /// The half-space reference solver, extrapolated from grids of this many cells and twice as many.
+    Reference(usize),
 }
 
 /// Why a contact could not be evaluated.
@@ -83,6 +87,9 @@ pub enum ContactError {
     /// The linear theory refuses the patch.
     #[error("case {0}: {1}")]
     Linear(String, LinearError),
+    /// The reference solver has no answer.
+    #[error("case {0}: {1}")]
+    Reference(String, HalfSpaceError),
     /// The nonlinear theory has no answer.
     #[error("case {0}: {1}")]
     Kalker(String, KalkerError),
@@ -103,13 +110,13 @@ impl RollingContact {
         let c = (self.semi_axis_x * self.semi_axis_y).sqrt();
         let ([fx, fy, mz], stick) = match law {
             Law::Simulated(law) => (self.simulated(law, &patch, c)?, None),
+            Law::Reference(cells) => {
+                let failed = |why| ContactError::Reference(self.id.clone(), why);
+                let f = extrapolated(&patch, &self.scaled(c), cells).map_err(failed)?;
+                ([f.fx, f.fy, f.mz], None)
+            }
             Law::Kalker(degree) => {
-                let scale = self.shear_modulus / (self.friction * self.peak_pressure);
-                let creepage = ScaledCreepage {
-                    x: self.creep_x * scale,
-                    y: self.creep_y * scale,
-                    spin: self.spin * c * scale,
-                };
+                let creepage = self.scaled(c);
                 let failed = |why| ContactError::Kalker(self.id.clone(), why);
                 let solution = Kalker::new(patch, degree)
                     .and_then(|kalker| kalker.solve(&creepage, None))
@@ -120,6 +127,12 @@ impl RollingContact {
         };
         let power = self.creep_x * fx + self.creep_y * fy + self.spin * c * mz;
         Ok(RollingForces { id: self.id.clone(), fx, fy, mz, power, stick })
+    }
+
+    /// Creepages in Kalker's scale.
+    fn scaled(&self, c: f64) -> ScaledCreepage {
+        let scale = self.shear_modulus / (self.friction * self.peak_pressure);
+        ScaledCreepage { x: self.creep_x * scale, y: self.creep_y * scale, spin: self.spin * c * scale }
     }
 
     fn check(&self) -> Result<(), ContactError> {
@@ -164,6 +177,28 @@ impl RollingContact {
                 let q = Vector3::new(linear.x, linear.y, linear.z / moment_limit).norm();
                 (linear * saturation(q)).into()
             }
+            CreepLaw::KalkerTable => {
+                // Along the rolling direction and across it, on an ellipse that is as long in both directions: exact
+                // for rolling along an axis, an approximation (see the tests) for oblique rolling.
+                let (sin, cos) = self.rolling_angle.sin_cos();
+                let along = 1.0 / (cos / a).hypot(sin / b);
+                let across = 1.0 / (sin / a).hypot(cos / b);
+                let seen = Patch { axis_ratio: along / across, rolling_angle: 0.0, ..*patch };
+                let failed = |why| ContactError::Linear(self.id.clone(), why);
+                let table = CreepTable::new(&seen).map_err(failed)?;
+                let coefficients = creep_matrix(&seen).map_err(failed)?;
+                let turn = nalgebra::Rotation2::new(self.rolling_angle);
+                let creep = turn.inverse() * nalgebra::Vector2::new(self.creep_x, self.creep_y);
+                let scale = self.shear_modulus * c * c / limit;
+                let q = [
+                    coefficients[(0, 0)] * creep.x * scale,
+                    coefficients[(1, 1)] * creep.y * scale,
+                    coefficients[(2, 2)] * self.spin * c * scale / moment_limit,
+                ];
+                let ([x, y, z], _) = table.evaluate(q);
+                let force = turn * nalgebra::Vector2::new(x, y);
+                [force.x, force.y, z * moment_limit]
+            }
             CreepLaw::Regularised => {
                 // The law is written for rolling along an axis: components along and across the rolling direction.
                 let (sin, cos) = self.rolling_angle.sin_cos();
@@ -182,7 +217,7 @@ impl RollingContact {
                 };
                 let creep = turn.inverse() * nalgebra::Vector2::new(self.creep_x, self.creep_y);
                 let creepage = Creepage { longitudinal: creep.x, lateral: creep.y, spin: self.spin };
-                let f = theory.forces(law, &creepage);
+                let f = theory.forces(creep::Law::Regularised, &creepage);
                 let force = turn * nalgebra::Vector2::new(f.longitudinal, f.lateral) / limit;
                 [force.x, force.y, f.spin_moment / (limit * c)]
             }

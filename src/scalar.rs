@@ -38,6 +38,9 @@ pub trait Scalar:
     /// A smooth function of this number, given as value and slope.
     fn map_smooth(self, function: impl Fn(f64) -> (f64, f64)) -> Self;
 
+    /// A smooth function of three numbers, given as values and gradients.
+    fn map_smooth_three(x: [Self; 3], function: impl Fn([f64; 3]) -> ([f64; 3], [[f64; 3]; 3])) -> [Self; 3];
+
     /// `self` where `condition > 0`, `other` elsewhere.
     fn where_positive(self, condition: Self, other: Self) -> Self;
 
@@ -84,6 +87,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn map_smooth(self, function: impl Fn(f64) -> (f64, f64)) -> Self {
         function(self).0
+    }
+    #[inline(always)]
+    fn map_smooth_three(x: [Self; 3], function: impl Fn([f64; 3]) -> ([f64; 3], [[f64; 3]; 3])) -> [Self; 3] {
+        function(x).0
     }
     #[inline(always)]
     fn where_positive(self, condition: Self, other: Self) -> Self {
@@ -151,6 +158,17 @@ impl<const N: usize> Scalar for Dual<N> {
     fn map_smooth(self, function: impl Fn(f64) -> (f64, f64)) -> Self {
         let (value, slope) = function(self.value);
         self.chain(value, slope)
+    }
+    #[inline(always)]
+    fn map_smooth_three(x: [Self; 3], function: impl Fn([f64; 3]) -> ([f64; 3], [[f64; 3]; 3])) -> [Self; 3] {
+        let (values, gradient) = function(x.map(|component| component.value));
+        std::array::from_fn(|m| {
+            let [a, b, c] = gradient[m];
+            let derivatives = std::array::from_fn(|d| {
+                a * x[0].derivatives[d] + b * x[1].derivatives[d] + c * x[2].derivatives[d]
+            });
+            Self { value: values[m], derivatives }
+        })
     }
     #[inline(always)]
     fn where_positive(self, condition: Self, other: Self) -> Self {

@@ -2,15 +2,14 @@
 #![allow(clippy::unwrap_used)]
 
 use nalgebra::Vector3;
-use roulement::contact::creep::{Creepage, LinearTheory};
+use roulement::contact::creep::{Creepage, Law, LinearTheory};
 use roulement::contact::{BallMotion, BallRaceContact, RaceMotion};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::model::{INNER, Model, OUTER};
 use roulement::scalar::{Dual, Scalar};
-use roulement::scene::{CreepLaw, Scene};
+use roulement::scene::Scene;
 
-const LAWS: [CreepLaw; 4] =
-    [CreepLaw::Frictionless, CreepLaw::Linear, CreepLaw::Regularised, CreepLaw::Saturated];
+const LAWS: [Law<'static>; 4] = [Law::Frictionless, Law::Linear, Law::Regularised, Law::Saturated];
 
 fn model() -> Model {
     Model::new(&Scene::parse(include_str!("../scenes/thrust.toml")).unwrap()).unwrap()
@@ -48,7 +47,7 @@ fn motion(race: usize) -> [f64; 18] {
     ]
 }
 
-fn evaluate<S: Scalar>(model: &Model, law: CreepLaw, race: usize, x: &[S; 18]) -> BallRaceContact<S> {
+fn evaluate<S: Scalar>(model: &Model, law: Law<'_>, race: usize, x: &[S; 18]) -> BallRaceContact<S> {
     let mut contact = model.contact(race, 0.08);
     contact.law = law;
     let vector = |i: usize| Vector3::new(x[i], x[i + 1], x[i + 2]);
@@ -163,7 +162,7 @@ fn creepages() -> Vec<Creepage<f64>> {
 }
 
 /// The suite that every bounded creep law passes.
-fn bounded_law_suite(law: CreepLaw) {
+fn bounded_law_suite(law: Law<'_>) {
     let theory = theory();
     for c in creepages() {
         let f = theory.forces(law, &c);
@@ -187,19 +186,19 @@ fn bounded_law_suite(law: CreepLaw) {
 
 #[test]
 fn invariant_suite_saturated() {
-    bounded_law_suite(CreepLaw::Saturated);
+    bounded_law_suite(Law::Saturated);
 }
 
 #[test]
 fn invariant_suite_regularised() {
-    bounded_law_suite(CreepLaw::Regularised);
+    bounded_law_suite(Law::Regularised);
 }
 
 #[test]
 fn closed_form_saturated_is_tangent_to_linear_theory_with_and_without_spin() {
     let theory = theory();
     let c = Creepage { longitudinal: 2e-8, lateral: -1e-8, spin: 3e-5 };
-    let (linear, ours) = (theory.forces(CreepLaw::Linear, &c), theory.forces(CreepLaw::Saturated, &c));
+    let (linear, ours) = (theory.forces(Law::Linear, &c), theory.forces(Law::Saturated, &c));
     // The cubic leaves linear theory by q/3, here q is a few 1e-5.
     assert!((ours.longitudinal / linear.longitudinal - 1.0).abs() < 1e-4);
     assert!((ours.lateral / linear.lateral - 1.0).abs() < 1e-4);
@@ -217,7 +216,7 @@ fn closed_form_saturated_pure_creep_is_the_cubic_of_vermeulen_and_johnson() {
             spin: 0.0,
         };
         let expected = theory.friction_limit * (1.0 - (1.0 - share / 3.0).powi(3));
-        let ours = theory.forces(CreepLaw::Saturated, &c).longitudinal;
+        let ours = theory.forces(Law::Saturated, &c).longitudinal;
         assert!((ours / expected - 1.0).abs() < 1e-8, "{share}: {ours} {expected}");
     }
 }
@@ -230,7 +229,7 @@ fn closed_form_regularised_pure_creep_is_equation_15() {
     for share in [0.1, 0.5, 0.99, 1.5] {
         let c = Creepage { longitudinal: share * eps, lateral: 0.0, spin: 0.0 };
         let phi = if share <= 1.0 { (2.0 - share) * share } else { 1.0 };
-        let ours = theory.forces(CreepLaw::Regularised, &c).longitudinal;
+        let ours = theory.forces(Law::Regularised, &c).longitudinal;
         assert!((ours / (theory.friction_limit * phi) - 1.0).abs() < 1e-8);
     }
 }

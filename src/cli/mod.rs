@@ -66,6 +66,9 @@ enum Command {
         /// Degree of the traction polynomials of `kalker`, 1 to 7.
         #[arg(long, default_value_t = 5)]
         degree: usize,
+        /// Cells across the ellipse of the coarser grid of `reference`, 4 to 128.
+        #[arg(long, default_value_t = 16)]
+        grid: usize,
     },
     /// Print the model description of a scene's package.
     Describe {
@@ -86,6 +89,11 @@ enum LawChoice {
     Saturated,
     /// Kalker's nonlinear theory in polynomials.
     Kalker,
+    /// Kalker's nonlinear theory as a smooth table.
+    #[value(name = "kalker_table", alias = "kalker-table")]
+    KalkerTable,
+    /// Half-space reference solver: slow.
+    Reference,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -130,13 +138,15 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             write_fmu(&Scene::load(&scene)?, &library, &output)?;
             println!("{}", output.display());
         }
-        Command::Contact { cases, law, degree } => {
+        Command::Contact { cases, law, degree, grid } => {
             let law = match law {
                 LawChoice::Frictionless => Law::Simulated(CreepLaw::Frictionless),
                 LawChoice::Linear => Law::Simulated(CreepLaw::Linear),
                 LawChoice::Regularised => Law::Simulated(CreepLaw::Regularised),
                 LawChoice::Saturated => Law::Simulated(CreepLaw::Saturated),
                 LawChoice::Kalker => Law::Kalker(degree),
+                LawChoice::KalkerTable => Law::Simulated(CreepLaw::KalkerTable),
+                LawChoice::Reference => Law::Reference(grid),
             };
             let cannot_read = |why: csv::Error| format!("{}: {why}", cases.display());
             let mut table =

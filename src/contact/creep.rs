@@ -4,8 +4,23 @@
 //! ball; velocity of the ball minus that of the raceway) and forces of the ball ON THE RACEWAY, which point along the
 //! creepage (paper eq. 14). The force on the ball is the opposite.
 
+use crate::kalker::table::CreepTable;
 use crate::scalar::Scalar;
-use crate::scene::CreepLaw;
+
+/// A law with what it needs beside the contact's linear theory; chosen once per step.
+#[derive(Clone, Copy, Debug)]
+pub enum Law<'a> {
+    /// No tangential force.
+    Frictionless,
+    /// Kalker's linear theory, unbounded.
+    Linear,
+    /// The paper's regularised law without spin coupling.
+    Regularised,
+    /// Linear theory, saturated as a vector.
+    Saturated,
+    /// Kalker's nonlinear theory as a table.
+    Table(&'a CreepTable),
+}
 
 /// Creepages of a contact.
 #[derive(Clone, Copy, Debug)]
@@ -67,14 +82,15 @@ pub fn saturation<S: Scalar>(q: S) -> S {
 impl<S: Scalar> LinearTheory<S> {
     /// Forces of a law.
     #[inline(always)]
-    pub fn forces(&self, law: CreepLaw, creepage: &Creepage<S>) -> CreepForces<S> {
+    pub fn forces(&self, law: Law<'_>, creepage: &Creepage<S>) -> CreepForces<S> {
         match law {
-            CreepLaw::Frictionless => {
+            Law::Frictionless => {
                 CreepForces { longitudinal: S::zero(), lateral: S::zero(), spin_moment: S::zero() }
             }
-            CreepLaw::Linear => self.linear(creepage),
-            CreepLaw::Regularised => self.regularised(creepage),
-            CreepLaw::Saturated => self.saturated(creepage),
+            Law::Linear => self.linear(creepage),
+            Law::Regularised => self.regularised(creepage),
+            Law::Saturated => self.saturated(creepage),
+            Law::Table(table) => self.tabulated(table, creepage),
         }
     }
 
@@ -107,6 +123,25 @@ impl<S: Scalar> LinearTheory<S> {
             longitudinal: x * factor * self.friction_limit,
             lateral: y * factor * self.friction_limit,
             spin_moment: z * factor * self.moment_limit,
+        }
+    }
+
+    /// Kalker's nonlinear theory from a table. Rolling against the x axis is rolling along it seen turned by half a turn.
+    #[inline(always)]
+    fn tabulated(&self, table: &CreepTable, creepage: &Creepage<S>) -> CreepForces<S> {
+        let per_force = S::one() / (self.friction_limit + S::constant(FORCE_FLOOR));
+        let per_moment = S::one() / (self.moment_limit + S::constant(MOMENT_FLOOR));
+        let turned = S::constant(1.0).where_positive(self.coupling, S::constant(-1.0));
+        let q = [
+            turned * self.longitudinal * creepage.longitudinal * per_force,
+            turned * self.lateral * creepage.lateral * per_force,
+            self.spin * creepage.spin * per_moment,
+        ];
+        let [x, y, z] = S::map_smooth_three(q, |q| table.evaluate(q));
+        CreepForces {
+            longitudinal: turned * x * self.friction_limit,
+            lateral: turned * y * self.friction_limit,
+            spin_moment: z * self.moment_limit,
         }
     }
 

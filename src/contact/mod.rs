@@ -9,8 +9,7 @@ use nalgebra::Vector3;
 
 use crate::bearing::Raceway;
 use crate::scalar::{Scalar, cross, dot, values};
-use crate::scene::CreepLaw;
-use creep::{CreepForces, Creepage, LinearTheory};
+use creep::{CreepForces, Creepage, Law, LinearTheory};
 use geometry::GrooveContact;
 use shape::ContactShape;
 
@@ -52,7 +51,7 @@ pub struct ContactModel<'a> {
     /// [m] ball radius.
     pub ball_radius: f64,
     /// Creep law.
-    pub law: CreepLaw,
+    pub law: Law<'a>,
     /// [-] friction coefficient.
     pub friction: f64,
     /// [s/m] Hunt-Crossley dissipation factor.

@@ -188,6 +188,14 @@ impl ContactShape {
         })
     }
 
+    /// A patch in the middle of those that occur: the axis ratio of a raceway's contacts hardly changes with the
+    /// contact angle, and not with load.
+    pub fn typical_patch(&self, poisson_ratio: f64) -> Patch {
+        let hertz = self.hertz(self.middle);
+        let axis_ratio = hertz.semi_axis_rolling / hertz.semi_axis_transverse;
+        Patch { axis_ratio, poisson_ratio, rolling_angle: 0.0 }
+    }
+
     #[inline(always)]
     fn scaled<S: Scalar>(&self, curvature: S) -> S {
         (curvature - S::constant(self.middle)).scale(1.0 / self.half_width).clamp_to(-1.0, 1.0)

@@ -13,6 +13,7 @@ pub mod half_space;
 pub mod linear;
 pub mod load_displacement;
 pub mod nonlinear;
+pub mod table;
 
 /// What a rolling contact patch looks like to Kalker's theory.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -78,6 +78,8 @@ pub enum CreepLaw {
     /// Linear theory, saturated as a vector.
     #[default]
     Saturated,
+    /// Kalker's nonlinear theory as a smooth table.
+    KalkerTable,
 }
 
 /// Effects, each off unless asked for; one that is off has no state and costs nothing.

@@ -1,0 +1,140 @@
+//! The table of Kalker's nonlinear theory against independent data, and its smoothness.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use std::f64::consts::PI;
+
+use common::cases;
+use roulement::kalker::linear::creep_matrix;
+use roulement::kalker::table::CreepTable;
+use roulement::kalker::{Patch, ScaledCreepage};
+
+fn patch(axis_ratio: f64) -> Patch {
+    Patch { axis_ratio, poisson_ratio: 0.3, rolling_angle: 0.0 }
+}
+
+/// Largest spin moment of complete slip over mu Q c: the integral of pressure times distance, by a plain sum.
+fn largest_moment(axis_ratio: f64) -> f64 {
+    let (a, b) = (axis_ratio.sqrt(), 1.0 / axis_ratio.sqrt());
+    let n = 4000;
+    let mean = (0..n)
+        .map(|k| {
+            let (sin, cos) = (2.0 * PI * (f64::from(k) + 0.5) / f64::from(n)).sin_cos();
+            (a * cos).hypot(b * sin)
+        })
+        .sum::<f64>()
+        / f64::from(n);
+    3.0 * PI / 16.0 * mean
+}
+
+/// Forces (fx, fy over mu Q, mz over mu Q c) of scaled creepages.
+fn forces(patch: &Patch, h: &ScaledCreepage) -> [f64; 3] {
+    let c = creep_matrix(patch).unwrap() * (1.5 / PI);
+    let moment = largest_moment(patch.axis_ratio);
+    let q = [c[(0, 0)] * h.x, c[(1, 1)] * h.y, c[(2, 2)] * h.spin / moment];
+    let ([x, y, z], _) = CreepTable::new(patch).unwrap().evaluate(q);
+    [x, y, z * moment]
+}
+
+#[test]
+fn independent_data_general_and_bearing_contacts() {
+    for kind in ["general", "bearing"] {
+        let (mut mean, mut worst, mut count) = ([0.0; 3], [0.0f64; 3], 0.0);
+        for case in cases().iter().filter(|case| case.kind == kind) {
+            let ours = forces(&case.patch, &case.creepage);
+            for i in 0..3 {
+                let error = (ours[i] - case.expected[i]).abs();
+                mean[i] += error;
+                worst[i] = worst[i].max(error);
+            }
+            count += 1.0;
+        }
+        let mean = mean.map(|sum| sum / count);
+        println!("{kind:8} mean {mean:.4?} worst {worst:.4?} of {count} cases");
+        assert!(mean[0].max(mean[1]) < 0.005 && worst[0].max(worst[1]) < 0.03, "{kind}: {mean:?} {worst:?}");
+        assert!(mean[2] < 0.01 && worst[2] < 0.05, "{kind}: {mean:?} {worst:?}");
+    }
+}
+
+/// Points all over the space of q, the poles and planes of symmetry among them.
+fn points() -> Vec<[f64; 3]> {
+    let sizes = [0.0, 1e-9, 1e-4, 0.03, 0.2, 0.7, 1.0, 1.7, 3.0, 8.0, 50.0, 1e4];
+    let mut list = vec![];
+    for &x in &sizes {
+        for &y in &sizes {
+            for &z in &sizes {
+                list.extend([[x, y, z], [-x, y, z], [x, -y, z], [x, y, -z], [-x, -y, -z]]);
+            }
+        }
+    }
+    list
+}
+
+#[test]
+fn invariant_bounds_symmetry_and_dissipation() {
+    for ratio in [0.05, 0.107, 0.6, 1.0, 3.3, 20.0] {
+        let table = CreepTable::new(&patch(ratio)).unwrap();
+        for q in points() {
+            let ([x, y, z], gradient) = table.evaluate(q);
+            assert!(x.hypot(y) <= 1.0 && z.abs() <= 1.0, "{ratio} {q:?}: {x} {y} {z}");
+            assert!(gradient.iter().flatten().all(|slope| slope.is_finite()), "{ratio} {q:?}");
+            let (mirrored, _) = table.evaluate([-q[0], q[1], q[2]]);
+            assert_eq!(mirrored, [-x, y, z]);
+            let (turned, _) = table.evaluate([q[0], -q[1], -q[2]]);
+            // The plane phi = 0 is stored from one side only.
+            for (one, other) in turned.into_iter().zip([x, -y, -z]) {
+                assert!((one - other).abs() < 1e-12, "{ratio} {q:?}");
+            }
+        }
+        for wild in [[1e300, 0.0, 0.0], [1e300, -1e300, 1e300], [1e-300, 1e-300, 0.0]] {
+            assert!(table.evaluate(wild).0.iter().all(|value| value.is_finite()));
+        }
+    }
+}
+
+#[test]
+fn invariant_gradients_agree_with_differences_across_cells_and_poles() {
+    for ratio in [0.107, 1.0, 6.0] {
+        let table = CreepTable::new(&patch(ratio)).unwrap();
+        for q in points() {
+            let size = q[0].hypot(q[1]).hypot(q[2]);
+            if !(1e-3..1e3).contains(&size) {
+                continue;
+            }
+            let (values, gradient) = table.evaluate(q);
+            if values[0].hypot(values[1]) > 0.9999 {
+                continue;
+            }
+            let h = 1e-5 * size;
+            for n in 0..3 {
+                let at = |step: f64| {
+                    let mut moved = q;
+                    moved[n] += step;
+                    table.evaluate(moved).0
+                };
+                let (plus, minus) = (at(h), at(-h));
+                for m in 0..3 {
+                    let difference = (plus[m] - minus[m]) / (2.0 * h);
+                    // Second derivatives jump at the edges of cells: there differences are of first order in h.
+                    let tolerance = 2e-4 / (1.0 + size);
+                    let error = (difference - gradient[m][n]).abs();
+                    assert!(error < tolerance, "{ratio} {q:?} row {m} by {n}: {difference} {}", gradient[m][n]);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn closed_form_small_creepages_are_linear_theory() {
+    for ratio in [0.05, 0.3, 1.0, 7.0] {
+        let c = creep_matrix(&patch(ratio)).unwrap() * (1.5 / PI);
+        let h = [3e-6, -2e-6, 4e-6];
+        let ours = forces(&patch(ratio), &ScaledCreepage { x: h[0], y: h[1], spin: h[2] });
+        for i in 0..3 {
+            let linear: f64 = (0..3).map(|k| c[(i, k)] * h[k]).sum();
+            assert!((ours[i] - linear).abs() < 1e-3 * c.amax() * 4e-6, "{ratio}: {ours:?} {linear}");
+        }
+    }
+}
