@@ -4,7 +4,8 @@ use roulement::kalker::{Patch, ScaledCreepage};
 
 /// A reference case, scaled as Kalker's problem scales.
 pub struct Case {
-    /// general, bearing or oblique.
+    /// general, bearing or oblique; not every test asks.
+    #[allow(dead_code)]
     pub kind: String,
     pub patch: Patch,
     pub creepage: ScaledCreepage,
