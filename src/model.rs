@@ -5,8 +5,11 @@ use nalgebra::Vector3;
 use crate::bearing::{Bearing, Raceway};
 use crate::contact::ContactModel;
 use crate::contact::creep::Law;
+use crate::contact::identification::identify_by_table;
+use crate::contact::regularised::Parameters;
 use crate::contact::shape::ContactShape;
-use crate::kalker::linear::LinearError;
+use crate::kalker::nonlinear::KalkerError;
+use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
 use crate::scene::{Condition, CreepLaw, Drive, RaceSection, Scene, Schedule, Solver};
 
@@ -37,14 +40,46 @@ pub struct RaceBody {
     pub constraints: Vec<Constraint>,
 }
 
-/// Creep law with its tables, one per raceway.
+/// Creep law of a raceway with what it needs.
 #[derive(Clone, Debug)]
-enum ModelLaw {
+enum RacewayLaw {
     Frictionless,
     Linear,
-    Regularised,
+    Regularised(Parameters),
     Saturated,
-    Tables([CreepTable; 2]),
+    Table(CreepTable),
+    Kalker(Box<ScaledKalker>),
+}
+
+impl RacewayLaw {
+    fn new(scene: &Scene, shape: &ContactShape, bearing: &Bearing, race: usize) -> Result<Self, KalkerError> {
+        let patch = shape.typical_patch(bearing.poisson_ratio);
+        let given = [scene.regularised.inner, scene.regularised.outer][race];
+        Ok(match scene.effects.creep {
+            CreepLaw::Frictionless => Self::Frictionless,
+            CreepLaw::Linear => Self::Linear,
+            CreepLaw::Regularised => Self::Regularised(match given {
+                Some(parameters) => parameters,
+                None => identify_by_table(&patch)?.parameters,
+            }),
+            CreepLaw::Saturated => Self::Saturated,
+            CreepLaw::KalkerTable => Self::Table(CreepTable::new(&patch)?),
+            CreepLaw::Kalker => {
+                Self::Kalker(Box::new(ScaledKalker::new(&patch, scene.effects.kalker_degree)?))
+            }
+        })
+    }
+
+    fn law(&self) -> Law<'_> {
+        match self {
+            Self::Frictionless => Law::Frictionless,
+            Self::Linear => Law::Linear,
+            Self::Regularised(parameters) => Law::Regularised(parameters),
+            Self::Saturated => Law::Saturated,
+            Self::Table(table) => Law::Table(table),
+            Self::Kalker(kalker) => Law::Kalker(kalker),
+        }
+    }
 }
 
 /// Everything that stays the same during a run.
@@ -54,8 +89,10 @@ pub struct Model {
     pub bearing: Bearing,
     /// Contact tables of inner and outer raceway.
     shapes: [ContactShape; 2],
-    /// Creep law.
-    law: ModelLaw,
+    /// Creep law on inner and outer raceway.
+    laws: [RacewayLaw; 2],
+    /// [1/m] mean transverse curvature of ball and groove over 2, where its slip is simulated.
+    groove_bends: [Option<f64>; 2],
     /// [s/m] Hunt-Crossley dissipation factor.
     pub damping: f64,
     /// [m/s2] gravity.
@@ -71,21 +108,19 @@ impl Model {
     ///
     /// # Errors
     /// If creep coefficients cannot be computed for the bearing's contacts.
-    pub fn new(scene: &Scene) -> Result<Self, LinearError> {
+    pub fn new(scene: &Scene) -> Result<Self, KalkerError> {
         let bearing = Bearing::new(scene);
         let shapes =
             [ContactShape::new(&bearing, &bearing.inner)?, ContactShape::new(&bearing, &bearing.outer)?];
-        let table = |shape: &ContactShape| CreepTable::new(&shape.typical_patch(bearing.poisson_ratio));
-        let law = match scene.effects.creep {
-            CreepLaw::Frictionless => ModelLaw::Frictionless,
-            CreepLaw::Linear => ModelLaw::Linear,
-            CreepLaw::Regularised => ModelLaw::Regularised,
-            CreepLaw::Saturated => ModelLaw::Saturated,
-            CreepLaw::KalkerTable => ModelLaw::Tables([table(&shapes[INNER])?, table(&shapes[OUTER])?]),
-        };
+        let law = |race: usize| RacewayLaw::new(scene, &shapes[race], &bearing, race);
+        let laws = [law(INNER)?, law(OUTER)?];
+        let bend = |raceway: &Raceway| 0.25 * (1.0 / bearing.ball.radius + 1.0 / raceway.groove_radius);
+        let groove_bends = [&bearing.inner, &bearing.outer]
+            .map(|raceway| scene.effects.heathcote_slip.then(|| bend(raceway)));
         Ok(Self {
             bearing,
-            law,
+            laws,
+            groove_bends,
             shapes,
             damping: scene.effects.damping.0,
             gravity: Vector3::from(scene.effects.gravity.map(|component| component.0)),
@@ -105,13 +140,8 @@ impl Model {
             raceway: self.raceway(race),
             shape: &self.shapes[race],
             ball_radius: self.bearing.ball.radius,
-            law: match &self.law {
-                ModelLaw::Frictionless => Law::Frictionless,
-                ModelLaw::Linear => Law::Linear,
-                ModelLaw::Regularised => Law::Regularised,
-                ModelLaw::Saturated => Law::Saturated,
-                ModelLaw::Tables(tables) => Law::Table(&tables[race]),
-            },
+            law: self.laws[race].law(),
+            groove_bend: self.groove_bends[race],
             friction,
             damping: self.damping,
         }

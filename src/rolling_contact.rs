@@ -1,17 +1,21 @@
 //! Single rolling contacts, as `roulement contact` evaluates them: a patch, its load and its creepages.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Rotation2, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::contact::creep::{self, Creepage, LinearTheory, saturation};
 use crate::contact::hertz::complete_elliptic_integrals;
+use crate::contact::identification::identify_by_table;
 use crate::kalker::half_space::{HalfSpaceError, extrapolated};
 use crate::kalker::linear::{LinearError, creep_matrix};
 use crate::kalker::nonlinear::{Kalker, KalkerError};
 use crate::kalker::table::CreepTable;
 use crate::kalker::{Patch, ScaledCreepage};
 use crate::scene::CreepLaw;
+
+/// Degree of the nonlinear theory's polynomials in simulations, where nothing else is said.
+const DEGREE: usize = 3;
 
 /// A rolling contact; columns of a case table have these names.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
@@ -39,6 +43,9 @@ pub struct RollingContact {
     pub creep_y: f64,
     /// [1/m] spin creepage.
     pub spin: f64,
+    /// [1/m2] slip `-curvature y^2` along x over the rolling speed, of a groove that bends across rolling (Heathcote).
+    #[serde(default)]
+    pub curvature: f64,
 }
 
 /// Forces of body 1 on body 2.
@@ -108,12 +115,13 @@ impl RollingContact {
             rolling_angle: self.rolling_angle,
         };
         let c = (self.semi_axis_x * self.semi_axis_y).sqrt();
-        let ([fx, fy, mz], stick) = match law {
+        let ([fx, fy, mz, second_moment], stick) = match law {
+            Law::Simulated(CreepLaw::Kalker) => return self.evaluate(Law::Kalker(DEGREE)),
             Law::Simulated(law) => (self.simulated(law, &patch, c)?, None),
             Law::Reference(cells) => {
                 let failed = |why| ContactError::Reference(self.id.clone(), why);
                 let f = extrapolated(&patch, &self.scaled(c), cells).map_err(failed)?;
-                ([f.fx, f.fy, f.mz], None)
+                ([f.fx, f.fy, f.mz, f.second_moment], None)
             }
             Law::Kalker(degree) => {
                 let creepage = self.scaled(c);
@@ -122,17 +130,23 @@ impl RollingContact {
                     .and_then(|kalker| kalker.solve(&creepage, None))
                     .map_err(failed)?;
                 let f = solution.forces;
-                ([f.fx, f.fy, f.mz], Some(solution.stick))
+                ([f.fx, f.fy, f.mz, f.second_moment], Some(solution.stick))
             }
         };
-        let power = self.creep_x * fx + self.creep_y * fy + self.spin * c * mz;
+        let power = self.creep_x * fx + self.creep_y * fy + self.spin * c * mz
+            - self.curvature * c * c * second_moment;
         Ok(RollingForces { id: self.id.clone(), fx, fy, mz, power, stick })
     }
 
     /// Creepages in Kalker's scale.
     fn scaled(&self, c: f64) -> ScaledCreepage {
         let scale = self.shear_modulus / (self.friction * self.peak_pressure);
-        ScaledCreepage { x: self.creep_x * scale, y: self.creep_y * scale, spin: self.spin * c * scale }
+        ScaledCreepage {
+            x: self.creep_x * scale,
+            y: self.creep_y * scale,
+            spin: self.spin * c * scale,
+            curvature: self.curvature * c * c * scale,
+        }
     }
 
     fn check(&self) -> Result<(), ContactError> {
@@ -149,7 +163,12 @@ impl RollingContact {
                 return refuse(name, value, "a positive number");
             }
         }
-        for (name, value) in [("creep_x", self.creep_x), ("creep_y", self.creep_y), ("spin", self.spin)] {
+        for (name, value) in [
+            ("creep_x", self.creep_x),
+            ("creep_y", self.creep_y),
+            ("spin", self.spin),
+            ("curvature", self.curvature),
+        ] {
             if !value.is_finite() {
                 return refuse(name, value, "a finite number");
             }
@@ -158,7 +177,7 @@ impl RollingContact {
     }
 
     /// Forces by one of the simulation's laws, over mu N and mu N c.
-    fn simulated(&self, law: CreepLaw, patch: &Patch, c: f64) -> Result<[f64; 3], ContactError> {
+    fn simulated(&self, law: CreepLaw, patch: &Patch, c: f64) -> Result<[f64; 4], ContactError> {
         let matrix = creep_matrix(patch).map_err(|why| ContactError::Linear(self.id.clone(), why))?;
         let (a, b) = (self.semi_axis_x, self.semi_axis_y);
         let load = std::f64::consts::TAU / 3.0 * a * b * self.peak_pressure;
@@ -171,56 +190,74 @@ impl RollingContact {
             * Vector3::new(self.creep_x, self.creep_y, self.spin * c)
             * (self.shear_modulus * c * c / limit);
         Ok(match law {
-            CreepLaw::Frictionless => [0.0; 3],
-            CreepLaw::Linear => linear.into(),
-            CreepLaw::Saturated => {
+            CreepLaw::Frictionless => [0.0; 4],
+            CreepLaw::Linear => [linear.x, linear.y, linear.z, 0.0],
+            CreepLaw::Saturated if self.curvature == 0.0 => {
                 let q = Vector3::new(linear.x, linear.y, linear.z / moment_limit).norm();
-                (linear * saturation(q)).into()
+                let forces = linear * saturation(q);
+                [forces.x, forces.y, forces.z, 0.0]
             }
+            _ => self.along_rolling(law, patch, &matrix, limit, limit * c * moment_limit)?,
+        })
+    }
+
+    /// Laws that are written for rolling along an axis of the ellipse, in components along and across rolling. For
+    /// oblique rolling the nonlinear table sees an ellipse that is as long in both directions: an approximation.
+    fn along_rolling(
+        &self,
+        law: CreepLaw,
+        patch: &Patch,
+        matrix: &Matrix3<f64>,
+        friction_limit: f64,
+        moment_limit: f64,
+    ) -> Result<[f64; 4], ContactError> {
+        let failed = |why| ContactError::Linear(self.id.clone(), why);
+        let (sin, cos) = self.rolling_angle.sin_cos();
+        let along = 1.0 / (cos / self.semi_axis_x).hypot(sin / self.semi_axis_y);
+        let half_width = 1.0 / (sin / self.semi_axis_x).hypot(cos / self.semi_axis_y);
+        let c = (self.semi_axis_x * self.semi_axis_y).sqrt();
+        let seen = Patch { axis_ratio: along / half_width, rolling_angle: 0.0, ..*patch };
+        let turn = Rotation2::new(self.rolling_angle);
+        let axis = |turned: Vector2<f64>| Vector3::new(turned.x, turned.y, 0.0);
+        let (x, y) = (axis(turn * Vector2::x()), axis(turn * Vector2::y()));
+        let turned_matrix;
+        let (matrix, x, y) = if law == CreepLaw::KalkerTable {
+            turned_matrix = creep_matrix(&seen).map_err(failed)?;
+            (&turned_matrix, Vector3::x(), Vector3::y())
+        } else {
+            (matrix, x, y)
+        };
+        let stiffness = self.shear_modulus * c * c;
+        let theory = LinearTheory {
+            longitudinal: stiffness * x.dot(&(matrix * x)),
+            lateral: stiffness * y.dot(&(matrix * y)),
+            coupling: stiffness * c * y.dot(&(matrix * Vector3::z())),
+            spin: stiffness * c * c * matrix[(2, 2)],
+            friction_limit,
+            moment_limit,
+            mean_semi_axis: c,
+            half_width,
+        };
+        let creep = turn.inverse() * Vector2::new(self.creep_x, self.creep_y);
+        let creepage = Creepage {
+            longitudinal: creep.x,
+            lateral: creep.y,
+            spin: self.spin,
+            curvature: (self.curvature != 0.0).then_some(self.curvature),
+        };
+        let forces = match law {
             CreepLaw::KalkerTable => {
-                // Along the rolling direction and across it, on an ellipse that is as long in both directions: exact
-                // for rolling along an axis, an approximation (see the tests) for oblique rolling.
-                let (sin, cos) = self.rolling_angle.sin_cos();
-                let along = 1.0 / (cos / a).hypot(sin / b);
-                let across = 1.0 / (sin / a).hypot(cos / b);
-                let seen = Patch { axis_ratio: along / across, rolling_angle: 0.0, ..*patch };
-                let failed = |why| ContactError::Linear(self.id.clone(), why);
                 let table = CreepTable::new(&seen).map_err(failed)?;
-                let coefficients = creep_matrix(&seen).map_err(failed)?;
-                let turn = nalgebra::Rotation2::new(self.rolling_angle);
-                let creep = turn.inverse() * nalgebra::Vector2::new(self.creep_x, self.creep_y);
-                let scale = self.shear_modulus * c * c / limit;
-                let q = [
-                    coefficients[(0, 0)] * creep.x * scale,
-                    coefficients[(1, 1)] * creep.y * scale,
-                    coefficients[(2, 2)] * self.spin * c * scale / moment_limit,
-                ];
-                let ([x, y, z], _) = table.evaluate(q);
-                let force = turn * nalgebra::Vector2::new(x, y);
-                [force.x, force.y, z * moment_limit]
+                theory.forces(creep::Law::Table(&table), &creepage)
             }
             CreepLaw::Regularised => {
-                // The law is written for rolling along an axis: components along and across the rolling direction.
-                let (sin, cos) = self.rolling_angle.sin_cos();
-                let turn = nalgebra::Rotation2::new(self.rolling_angle);
-                let along = Vector3::new(cos, sin, 0.0);
-                let across = Vector3::new(-sin, cos, 0.0);
-                let stiffness = self.shear_modulus * c * c;
-                let theory = LinearTheory {
-                    longitudinal: stiffness * along.dot(&(matrix * along)),
-                    lateral: stiffness * across.dot(&(matrix * across)),
-                    coupling: stiffness * c * across.dot(&(matrix * Vector3::z())),
-                    spin: stiffness * c * c * matrix[(2, 2)],
-                    friction_limit: limit,
-                    moment_limit: limit * c * moment_limit,
-                    mean_semi_axis: c,
-                };
-                let creep = turn.inverse() * nalgebra::Vector2::new(self.creep_x, self.creep_y);
-                let creepage = Creepage { longitudinal: creep.x, lateral: creep.y, spin: self.spin };
-                let f = theory.forces(creep::Law::Regularised, &creepage);
-                let force = turn * nalgebra::Vector2::new(f.longitudinal, f.lateral) / limit;
-                [force.x, force.y, f.spin_moment / (limit * c)]
+                let parameters = identify_by_table(&seen).map_err(failed)?.parameters;
+                theory.forces(creep::Law::Regularised(&parameters), &creepage)
             }
-        })
+            _ => theory.forces(creep::Law::Saturated, &creepage),
+        };
+        let force = turn * Vector2::new(forces.longitudinal, forces.lateral) / friction_limit;
+        let moments = [forces.spin_moment / c, forces.second_moment / (c * c)].map(|m| m / friction_limit);
+        Ok([force.x, force.y, moments[0], moments[1]])
     }
 }

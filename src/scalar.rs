@@ -38,8 +38,11 @@ pub trait Scalar:
     /// A smooth function of this number, given as value and slope.
     fn map_smooth(self, function: impl Fn(f64) -> (f64, f64)) -> Self;
 
-    /// A smooth function of three numbers, given as values and gradients.
-    fn map_smooth_three(x: [Self; 3], function: impl Fn([f64; 3]) -> ([f64; 3], [[f64; 3]; 3])) -> [Self; 3];
+    /// Smooth functions of several numbers, given as values and gradients.
+    fn map_smooth_many<const K: usize, const M: usize>(
+        x: [Self; K],
+        function: impl FnOnce([f64; K]) -> ([f64; M], [[f64; K]; M]),
+    ) -> [Self; M];
 
     /// `self` where `condition > 0`, `other` elsewhere.
     fn where_positive(self, condition: Self, other: Self) -> Self;
@@ -89,7 +92,10 @@ impl Scalar for f64 {
         function(self).0
     }
     #[inline(always)]
-    fn map_smooth_three(x: [Self; 3], function: impl Fn([f64; 3]) -> ([f64; 3], [[f64; 3]; 3])) -> [Self; 3] {
+    fn map_smooth_many<const K: usize, const M: usize>(
+        x: [Self; K],
+        function: impl FnOnce([f64; K]) -> ([f64; M], [[f64; K]; M]),
+    ) -> [Self; M] {
         function(x).0
     }
     #[inline(always)]
@@ -160,13 +166,18 @@ impl<const N: usize> Scalar for Dual<N> {
         self.chain(value, slope)
     }
     #[inline(always)]
-    fn map_smooth_three(x: [Self; 3], function: impl Fn([f64; 3]) -> ([f64; 3], [[f64; 3]; 3])) -> [Self; 3] {
+    fn map_smooth_many<const K: usize, const M: usize>(
+        x: [Self; K],
+        function: impl FnOnce([f64; K]) -> ([f64; M], [[f64; K]; M]),
+    ) -> [Self; M] {
         let (values, gradient) = function(x.map(|component| component.value));
         std::array::from_fn(|m| {
-            let [a, b, c] = gradient[m];
-            let derivatives = std::array::from_fn(|d| {
-                a * x[0].derivatives[d] + b * x[1].derivatives[d] + c * x[2].derivatives[d]
-            });
+            let mut derivatives = [0.0; N];
+            for (slope, component) in gradient[m].iter().zip(&x) {
+                for (derivative, by) in derivatives.iter_mut().zip(component.derivatives) {
+                    *derivative += slope * by;
+                }
+            }
             Self { value: values[m], derivatives }
         })
     }

@@ -9,7 +9,7 @@ use thiserror::Error;
 use crate::dynamics::{Boundary, RaceLoad, StepFailure, Workspace, make_consistent, try_step};
 use crate::equilibrium::EquilibriumError;
 use crate::inputs::{Inputs, RaceInput};
-use crate::kalker::linear::LinearError;
+use crate::kalker::nonlinear::KalkerError;
 use crate::model::{INNER, Model, OUTER};
 use crate::motion::Wrench;
 use crate::outputs::Outputs;
@@ -23,7 +23,7 @@ use crate::state::State;
 pub enum SimulationError {
     /// No creep coefficients for the bearing's contacts.
     #[error("the creep law has no coefficients for this bearing: {0}")]
-    Creep(#[from] LinearError),
+    Creep(#[from] KalkerError),
     /// No quasi-static equilibrium to start from.
     #[error("no equilibrium to start from: {0}")]
     Start(#[from] EquilibriumError),

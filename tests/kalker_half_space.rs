@@ -47,9 +47,9 @@ fn closed_form_full_adhesion_is_linear_theory() {
     let matrix = creep_matrix(&patch).unwrap();
     let h = 1e-3;
     for (creepage, row, column) in [
-        (ScaledCreepage { x: h, y: 0.0, spin: 0.0 }, 0, 0),
-        (ScaledCreepage { x: 0.0, y: h, spin: 0.0 }, 1, 1),
-        (ScaledCreepage { x: 0.0, y: 0.0, spin: h }, 1, 2),
+        (ScaledCreepage { x: h, y: 0.0, spin: 0.0, curvature: 0.0 }, 0, 0),
+        (ScaledCreepage { x: 0.0, y: h, spin: 0.0, curvature: 0.0 }, 1, 1),
+        (ScaledCreepage { x: 0.0, y: 0.0, spin: h, curvature: 0.0 }, 1, 2),
     ] {
         let f = extrapolated(&patch, &creepage, 16).unwrap();
         let ours = [f.fx, f.fy, f.mz][row];
@@ -63,7 +63,8 @@ fn closed_form_full_slip_under_pure_spin() {
     // 3 pi/16 on a circle; 1.20487 at axis ratio 0.1 (tests/data/contact/README.md, contact of complete slip).
     for (axis_ratio, expected) in [(1.0, 3.0 * std::f64::consts::PI / 16.0), (0.1, 1.20487)] {
         let patch = Patch { axis_ratio, poisson_ratio: 0.3, rolling_angle: 0.0 };
-        let f = extrapolated(&patch, &ScaledCreepage { x: 0.0, y: 0.0, spin: 1e4 }, 16).unwrap();
+        let f =
+            extrapolated(&patch, &ScaledCreepage { x: 0.0, y: 0.0, spin: 1e4, curvature: 0.0 }, 16).unwrap();
         assert!((f.mz / expected - 1.0).abs() < 5e-3 && f.fx.abs() < 1e-6 && f.fy.abs() < 2e-2, "{f:?}");
     }
 }
@@ -73,6 +74,6 @@ fn wrong_input_is_refused() {
     let patch = Patch { axis_ratio: 1.0, poisson_ratio: 0.3, rolling_angle: 0.0 };
     assert!(matches!(HalfSpace::new(&patch, 2), Err(HalfSpaceError::Grid(2))));
     let solver = HalfSpace::new(&patch, 8).unwrap();
-    let creepage = ScaledCreepage { x: f64::NAN, y: 0.0, spin: 0.0 };
+    let creepage = ScaledCreepage { x: f64::NAN, y: 0.0, spin: 0.0, curvature: 0.0 };
     assert!(matches!(solver.solve(&creepage, None), Err(HalfSpaceError::NotFinite(_))));
 }

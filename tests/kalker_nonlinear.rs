@@ -69,7 +69,7 @@ fn kalker(axis_ratio: f64, degree: usize) -> Kalker {
 }
 
 fn forces(kalker: &Kalker, x: f64, y: f64, spin: f64) -> [f64; 3] {
-    let f = kalker.solve(&ScaledCreepage { x, y, spin }, None).unwrap().forces;
+    let f = kalker.solve(&ScaledCreepage { x, y, spin, curvature: 0.0 }, None).unwrap().forces;
     [f.fx, f.fy, f.mz]
 }
 
@@ -112,7 +112,7 @@ fn invariant_bounds_and_dissipation_from_rest_to_extremes() {
         for &x in &sizes {
             for &y in &[0.0, 0.3, -1e6] {
                 for &spin in &sizes {
-                    let creepage = ScaledCreepage { x, y, spin };
+                    let creepage = ScaledCreepage { x, y, spin, curvature: 0.0 };
                     let solution = kalker.solve(&creepage, None).unwrap();
                     let f = solution.forces;
                     assert!(f.fx.is_finite() && f.fy.is_finite() && f.mz.is_finite(), "{creepage:?}");
@@ -127,7 +127,7 @@ fn invariant_bounds_and_dissipation_from_rest_to_extremes() {
     }
     let kalker = kalker(1.0, 3);
     for wrong in [f64::NAN, f64::INFINITY] {
-        let creepage = ScaledCreepage { x: wrong, y: 0.0, spin: 0.0 };
+        let creepage = ScaledCreepage { x: wrong, y: 0.0, spin: 0.0, curvature: 0.0 };
         assert!(matches!(kalker.solve(&creepage, None), Err(KalkerError::NotFinite(_))));
     }
     let patch = Patch { axis_ratio: 1.0, poisson_ratio: 0.3, rolling_angle: 0.0 };
@@ -138,8 +138,8 @@ fn invariant_bounds_and_dissipation_from_rest_to_extremes() {
 #[test]
 fn invariant_warm_start_finds_the_cold_solution() {
     let kalker = kalker(0.2, 5);
-    let near = kalker.solve(&ScaledCreepage { x: 0.2, y: 0.1, spin: 0.8 }, None).unwrap();
-    let creepage = ScaledCreepage { x: 0.203, y: 0.099, spin: 0.805 };
+    let near = kalker.solve(&ScaledCreepage { x: 0.2, y: 0.1, spin: 0.8, curvature: 0.0 }, None).unwrap();
+    let creepage = ScaledCreepage { x: 0.203, y: 0.099, spin: 0.805, curvature: 0.0 };
     let (warm, cold) =
         (kalker.solve(&creepage, Some(&near)).unwrap(), kalker.solve(&creepage, None).unwrap());
     assert!((warm.forces.fx - cold.forces.fx).abs() < 2e-3);
@@ -150,7 +150,7 @@ fn invariant_warm_start_finds_the_cold_solution() {
 #[test]
 fn full_slip_reaches_the_friction_limit_and_stick_falls_from_one_to_none() {
     let kalker = kalker(1.0, 5);
-    let at = |x: f64| kalker.solve(&ScaledCreepage { x, y: 0.0, spin: 0.0 }, None).unwrap();
+    let at = |x: f64| kalker.solve(&ScaledCreepage { x, y: 0.0, spin: 0.0, curvature: 0.0 }, None).unwrap();
     assert!(at(1e-4).stick > 0.98 && at(10.0).stick < 0.02);
     assert!(at(10.0).forces.fx > 0.995);
 }

@@ -119,7 +119,11 @@ fn invariant_gradients_agree_with_differences_across_cells_and_poles() {
                     // Second derivatives jump at the edges of cells: there differences are of first order in h.
                     let tolerance = 2e-4 / (1.0 + size);
                     let error = (difference - gradient[m][n]).abs();
-                    assert!(error < tolerance, "{ratio} {q:?} row {m} by {n}: {difference} {}", gradient[m][n]);
+                    assert!(
+                        error < tolerance,
+                        "{ratio} {q:?} row {m} by {n}: {difference} {}",
+                        gradient[m][n]
+                    );
                 }
             }
         }
@@ -131,7 +135,7 @@ fn closed_form_small_creepages_are_linear_theory() {
     for ratio in [0.05, 0.3, 1.0, 7.0] {
         let c = creep_matrix(&patch(ratio)).unwrap() * (1.5 / PI);
         let h = [3e-6, -2e-6, 4e-6];
-        let ours = forces(&patch(ratio), &ScaledCreepage { x: h[0], y: h[1], spin: h[2] });
+        let ours = forces(&patch(ratio), &ScaledCreepage { x: h[0], y: h[1], spin: h[2], curvature: 0.0 });
         for i in 0..3 {
             let linear: f64 = (0..3).map(|k| c[(i, k)] * h[k]).sum();
             assert!((ours[i] - linear).abs() < 1e-3 * c.amax() * 4e-6, "{ratio}: {ours:?} {linear}");

@@ -1,5 +1,6 @@
 //! Commands and their options.
 
+mod identify;
 mod run;
 mod summary;
 
@@ -70,6 +71,8 @@ enum Command {
         #[arg(long, default_value_t = 16)]
         grid: usize,
     },
+    /// Identify the spin coupling of the regularised creep law against Kalker's nonlinear theory.
+    Identify(identify::Options),
     /// Print the model description of a scene's package.
     Describe {
         /// Scene file.
@@ -83,7 +86,7 @@ enum LawChoice {
     Frictionless,
     /// Kalker's linear theory, unbounded.
     Linear,
-    /// The paper's regularised law without spin coupling.
+    /// The paper's regularised law with spin coupling.
     Regularised,
     /// Linear theory, saturated as a vector.
     Saturated,
@@ -157,6 +160,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             }
             answers.flush()?;
         }
+        Command::Identify(options) => identify::run(&options)?,
         Command::Describe { scene } => print!("{}", render(&Simulation::new(&Scene::load(&scene)?)?)?.xml),
     }
     Ok(())

@@ -4,6 +4,9 @@
 //! ball; velocity of the ball minus that of the raceway) and forces of the ball ON THE RACEWAY, which point along the
 //! creepage (paper eq. 14). The force on the ball is the opposite.
 
+use crate::contact::heathcote::curvature_effect;
+use crate::contact::regularised::Parameters;
+use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
 use crate::scalar::Scalar;
 
@@ -14,12 +17,14 @@ pub enum Law<'a> {
     Frictionless,
     /// Kalker's linear theory, unbounded.
     Linear,
-    /// The paper's regularised law without spin coupling.
-    Regularised,
+    /// The paper's regularised law.
+    Regularised(&'a Parameters),
     /// Linear theory, saturated as a vector.
     Saturated,
     /// Kalker's nonlinear theory as a table.
     Table(&'a CreepTable),
+    /// Kalker's nonlinear theory in polynomials.
+    Kalker(&'a ScaledKalker),
 }
 
 /// Creepages of a contact.
@@ -31,6 +36,8 @@ pub struct Creepage<S> {
     pub lateral: S,
     /// [1/m] spin over rolling speed.
     pub spin: S,
+    /// [1/m2] kappa of the slip `-kappa y^2` of a bent groove over rolling speed; none if that effect is off.
+    pub curvature: Option<S>,
 }
 
 /// Kalker's linear theory of the contact in hand, dimensional (paper eq. 14), and its limits.
@@ -50,6 +57,8 @@ pub struct LinearTheory<S> {
     pub moment_limit: S,
     /// [m] `c = sqrt(a b)`.
     pub mean_semi_axis: S,
+    /// [m] semi-axis transverse to rolling.
+    pub half_width: S,
 }
 
 /// Tangential effect of the ball on the raceway.
@@ -61,10 +70,10 @@ pub struct CreepForces<S> {
     pub lateral: S,
     /// [N m] about the normal.
     pub spin_moment: S,
+    /// [N m2] integral of `y^2` times the longitudinal traction; 0 where the groove counts as flat.
+    pub second_moment: S,
 }
 
-/// [-] creepages below this count as zero where a printed formula is 0/0 there.
-const CREEP_FLOOR: f64 = 1e-12;
 /// [N] friction limit below which forces fade to zero, so that an unloaded contact is 0 and not 0/0.
 const FORCE_FLOOR: f64 = 1e-9;
 /// [N m] the same for the spin moment: the force floor on a patch of a micrometre.
@@ -83,25 +92,102 @@ impl<S: Scalar> LinearTheory<S> {
     /// Forces of a law.
     #[inline(always)]
     pub fn forces(&self, law: Law<'_>, creepage: &Creepage<S>) -> CreepForces<S> {
-        match law {
-            Law::Frictionless => {
-                CreepForces { longitudinal: S::zero(), lateral: S::zero(), spin_moment: S::zero() }
+        let flat = match law {
+            Law::Frictionless => [S::zero(); 3],
+            Law::Linear => {
+                let q = self.over_limits(creepage);
+                return self.dimensional(q, S::zero());
             }
-            Law::Linear => self.linear(creepage),
-            Law::Regularised => self.regularised(creepage),
+            Law::Regularised(parameters) => self.regularised(parameters, creepage),
             Law::Saturated => self.saturated(creepage),
-            Law::Table(table) => self.tabulated(table, creepage),
+            Law::Table(table) => {
+                let (turned, q) = self.uncoupled(creepage);
+                let [x, y, z] = S::map_smooth_many(q, |q| table.evaluate(q));
+                [turned * x, turned * y, z]
+            }
+            Law::Kalker(kalker) => return self.polynomials(kalker, creepage),
+        };
+        match creepage.curvature {
+            None => self.dimensional(flat, S::zero()),
+            Some(curvature) => self.bent(flat, creepage, curvature),
         }
     }
 
-    /// Linear theory (paper eq. 14): unbounded.
+    /// Forces from force and moment over their limits.
     #[inline(always)]
-    fn linear(&self, creepage: &Creepage<S>) -> CreepForces<S> {
+    fn dimensional(&self, [x, y, z]: [S; 3], second_moment: S) -> CreepForces<S> {
         CreepForces {
-            longitudinal: self.longitudinal * creepage.longitudinal,
-            lateral: self.lateral * creepage.lateral + self.coupling * creepage.spin,
-            spin_moment: self.spin * creepage.spin - self.coupling * creepage.lateral,
+            longitudinal: x * self.friction_limit,
+            lateral: y * self.friction_limit,
+            spin_moment: z * self.moment_limit,
+            second_moment,
         }
+    }
+
+    /// Inverse friction limit [1/N] and moment limit [1/(N m)], finite without load.
+    #[inline(always)]
+    pub(super) fn per_limits(&self) -> (S, S) {
+        let per_force = S::one() / (self.friction_limit + S::constant(FORCE_FLOOR));
+        (per_force, S::one() / (self.moment_limit + S::constant(MOMENT_FLOOR)))
+    }
+
+    /// Linear theory (paper eq. 14) over the limits of force and moment: unbounded.
+    #[inline(always)]
+    fn over_limits(&self, creepage: &Creepage<S>) -> [S; 3] {
+        let (per_force, per_moment) = self.per_limits();
+        [
+            self.longitudinal * creepage.longitudinal * per_force,
+            (self.lateral * creepage.lateral + self.coupling * creepage.spin) * per_force,
+            (self.spin * creepage.spin - self.coupling * creepage.lateral) * per_moment,
+        ]
+    }
+
+    /// Linear theory without its coupling over the limits, for a contact that rolls along +x: rolling against the x
+    /// axis is rolling along it seen turned by half a turn. The first factor turns the force back.
+    #[inline(always)]
+    fn uncoupled(&self, creepage: &Creepage<S>) -> (S, [S; 3]) {
+        let (per_force, per_moment) = self.per_limits();
+        let turned = S::one().where_positive(self.coupling, -S::one());
+        let q = [
+            turned * self.longitudinal * creepage.longitudinal * per_force,
+            turned * self.lateral * creepage.lateral * per_force,
+            self.spin * creepage.spin * per_moment,
+        ];
+        (turned, q)
+    }
+
+    /// Linear force over mu Q of the slips `phi b` and `kappa b^2` at the side of the contact.
+    #[inline(always)]
+    fn side_slips(&self, spin: S, curvature: S) -> (S, S) {
+        let side = self.longitudinal * self.per_limits().0 * self.half_width;
+        (side * spin, side * self.half_width * curvature)
+    }
+
+    /// A flat law's forces with what the curvature of the groove changes.
+    #[inline(always)]
+    fn bent(&self, [x, y, z]: [S; 3], creepage: &Creepage<S>, curvature: S) -> CreepForces<S> {
+        let (per_force, per_moment) = self.per_limits();
+        let (spin, side) = self.side_slips(creepage.spin, curvature);
+        let q = [
+            self.longitudinal * creepage.longitudinal * per_force,
+            self.lateral * creepage.lateral * per_force,
+            spin,
+            side,
+        ];
+        let [dx, dy, dz, second] = S::map_smooth_many(q, curvature_effect);
+        let [x, y] = within_limit(x + dx, y + dy);
+        let z = (z + dz * self.friction_limit * self.half_width * per_moment).clamp_to(-1.0, 1.0);
+        self.dimensional([x, y, z], second * self.friction_limit * self.half_width.square())
+    }
+
+    /// Kalker's nonlinear theory in polynomials, the curvature of the groove included.
+    #[inline(always)]
+    fn polynomials(&self, kalker: &ScaledKalker, creepage: &Creepage<S>) -> CreepForces<S> {
+        let (turned, [x, y, z]) = self.uncoupled(creepage);
+        let (_, side) = self.side_slips(creepage.spin, creepage.curvature.unwrap_or_else(S::zero));
+        let [x, y, z, second] = S::map_smooth_many([x, y, z, turned * side], |q| kalker.evaluate(q));
+        let arm = self.friction_limit * self.half_width.square();
+        self.dimensional([turned * x, turned * y, z], turned * second * arm)
     }
 
     /// Linear theory saturated as one vector of force and moment.
@@ -112,65 +198,20 @@ impl<S: Scalar> LinearTheory<S> {
     /// every creepage, since one factor scales a linear law whose coupling is skew (C32 = -C23). The moment is
     /// part of the norm because large spin must take the lateral force away, not saturate it.
     #[inline(always)]
-    fn saturated(&self, creepage: &Creepage<S>) -> CreepForces<S> {
-        let linear = self.linear(creepage);
-        let per_force = S::one() / (self.friction_limit + S::constant(FORCE_FLOOR));
-        let per_moment = S::one() / (self.moment_limit + S::constant(MOMENT_FLOOR));
-        let (x, y) = (linear.longitudinal * per_force, linear.lateral * per_force);
-        let z = linear.spin_moment * per_moment;
+    fn saturated(&self, creepage: &Creepage<S>) -> [S; 3] {
+        let [x, y, z] = self.over_limits(creepage);
         let factor = saturation((x.square() + y.square() + z.square()).sqrt());
-        CreepForces {
-            longitudinal: x * factor * self.friction_limit,
-            lateral: y * factor * self.friction_limit,
-            spin_moment: z * factor * self.moment_limit,
-        }
+        [x * factor, y * factor, z * factor]
     }
+}
 
-    /// Kalker's nonlinear theory from a table. Rolling against the x axis is rolling along it seen turned by half a turn.
-    #[inline(always)]
-    fn tabulated(&self, table: &CreepTable, creepage: &Creepage<S>) -> CreepForces<S> {
-        let per_force = S::one() / (self.friction_limit + S::constant(FORCE_FLOOR));
-        let per_moment = S::one() / (self.moment_limit + S::constant(MOMENT_FLOOR));
-        let turned = S::constant(1.0).where_positive(self.coupling, S::constant(-1.0));
-        let q = [
-            turned * self.longitudinal * creepage.longitudinal * per_force,
-            turned * self.lateral * creepage.lateral * per_force,
-            self.spin * creepage.spin * per_moment,
-        ];
-        let [x, y, z] = S::map_smooth_three(q, |q| table.evaluate(q));
-        CreepForces {
-            longitudinal: turned * x * self.friction_limit,
-            lateral: turned * y * self.friction_limit,
-            spin_moment: z * self.moment_limit,
-        }
-    }
-
-    /// The paper's regularised law without spin coupling (eq. 15-17, A.1-A.3, A.5).
-    ///
-    /// Where the printed formulas leave a choice: `c/c_0` and `c_z/c_*` are 0 at rest (their limit times phi); eps_z
-    /// is `M_max/(C33 G c^4)`, which has the right dimension and makes phi_z tangent to linear theory; beta_0 = 1,
-    /// the value identified for all axis ratios to within 1 %.
-    #[inline(always)]
-    fn regularised(&self, creepage: &Creepage<S>) -> CreepForces<S> {
-        let magnitude = |x: S| (x.square() + S::constant(CREEP_FLOOR * CREEP_FLOOR)).sqrt();
-        let spin = self.mean_semi_axis * creepage.spin;
-        let total =
-            magnitude((creepage.longitudinal.square() + creepage.lateral.square() + spin.square()).sqrt());
-        // phi(c, eps) = (2 - c/eps) c/eps up to eps = 2 mu Q/(C G c^2), then 1 (eq. 15).
-        let per_force = S::one() / (self.friction_limit + S::constant(FORCE_FLOOR));
-        let phi = |stiffness: S, creep: S| {
-            let x = (magnitude(creep) * stiffness * per_force).scale(0.5);
-            let parabola = (S::constant(2.0) - x) * x;
-            parabola.where_positive(S::one() - x, S::one())
-        };
-        let force = |stiffness: S, creep: S| self.friction_limit * creep / total * phi(stiffness, creep);
-        let x = magnitude(creepage.spin) * self.spin / (self.moment_limit + S::constant(MOMENT_FLOOR));
-        let phi_z = x * (S::one() + x) / (S::one() + x + x.square());
-        let share = spin / (magnitude(creepage.lateral) + magnitude(spin));
-        CreepForces {
-            longitudinal: force(self.longitudinal, creepage.longitudinal),
-            lateral: force(self.lateral, creepage.lateral),
-            spin_moment: self.moment_limit * share * phi_z,
-        }
-    }
+/// A force over its limit, brought back to the limit with its direction kept where it exceeds it.
+#[inline(always)]
+pub fn within_limit<S: Scalar>(x: S, y: S) -> [S; 2] {
+    let square = x.square() + y.square();
+    let inside = square - S::one();
+    // One unit of rounding inside.
+    let factor = S::constant(1.0 - f64::EPSILON) / square.where_positive(inside, S::one()).sqrt();
+    let factor = factor.where_positive(inside, S::one());
+    [x * factor, y * factor]
 }

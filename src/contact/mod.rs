@@ -2,7 +2,10 @@
 
 pub mod creep;
 pub mod geometry;
+pub mod heathcote;
 pub mod hertz;
+pub mod identification;
+pub mod regularised;
 pub mod shape;
 
 use nalgebra::Vector3;
@@ -56,6 +59,8 @@ pub struct ContactModel<'a> {
     pub friction: f64,
     /// [s/m] Hunt-Crossley dissipation factor.
     pub damping: f64,
+    /// [1/m] mean transverse curvature `1/(2 R)` of ball and groove where its slip (Heathcote) is simulated.
+    pub groove_bend: Option<f64>,
 }
 
 /// Forces of one ball-race contact and the quantities they came from.
@@ -103,11 +108,13 @@ impl<S: Scalar> BallRaceContact<S> {
                 longitudinal: self.creepage.longitudinal.value(),
                 lateral: self.creepage.lateral.value(),
                 spin: self.creepage.spin.value(),
+                curvature: self.creepage.curvature.map(S::value),
             },
             creep: CreepForces {
                 longitudinal: self.creep.longitudinal.value(),
                 lateral: self.creep.lateral.value(),
                 spin_moment: self.creep.spin_moment.value(),
+                second_moment: self.creep.second_moment.value(),
             },
             rolling_cosine: self.rolling_cosine.value(),
             force: values(&self.force),
@@ -157,11 +164,14 @@ impl ContactModel<'_> {
         let rolling_cosine = rolling_x / rolling_speed;
         let (slip_x, slip_y) = (dot(&slip, &x), dot(&slip, &y));
         let spin = (race.angular_velocity - ball.angular_velocity).dot(&normal);
+        let relative_rolling = dot(&(ball.angular_velocity - race.angular_velocity), &y);
         let per_speed = S::one() / rolling_speed;
         let creepage = Creepage {
             longitudinal: slip_x * per_speed,
             lateral: slip_y * per_speed,
             spin: spin * per_speed,
+            // The common surface lies at z = bend y^2, towards the ball, where the relative rolling speed adds slip.
+            curvature: self.groove_bend.map(|bend| (relative_rolling * per_speed).scale(-bend)),
         };
 
         // creep forces of the ball on the race
@@ -174,13 +184,16 @@ impl ContactModel<'_> {
             friction_limit,
             moment_limit: friction_limit * shape.spin_arm * root,
             mean_semi_axis: shape.mean_semi_axis * root,
+            half_width: shape.semi_axis_transverse * root,
         };
         let creep = theory.forces(self.law, &creepage);
 
         // wrenches
         let tangential = x * creep.longitudinal + y * creep.lateral;
         let force = -(normal * load + tangential);
-        let spin_moment = normal * creep.spin_moment;
+        // Tractions along x at the height of the bent surface turn about y.
+        let rolling_moment = creep.second_moment.scale(self.groove_bend.unwrap_or(0.0));
+        let contact_moment = normal * creep.spin_moment - y * rolling_moment;
         BallRaceContact {
             geometry,
             load,
@@ -191,9 +204,12 @@ impl ContactModel<'_> {
             creep,
             rolling_cosine,
             force,
-            ball_moment: spin_moment - cross(&arm, &tangential),
-            race_moment: -cross(&race_arm, &force) - spin_moment,
-            friction_power: creep.longitudinal * slip_x + creep.lateral * slip_y + creep.spin_moment * spin,
+            ball_moment: contact_moment - cross(&arm, &tangential),
+            race_moment: -cross(&race_arm, &force) - contact_moment,
+            friction_power: creep.longitudinal * slip_x
+                + creep.lateral * slip_y
+                + creep.spin_moment * spin
+                + rolling_moment * relative_rolling,
             damping_power: (load - elastic) * approach_rate,
         }
     }

@@ -4,11 +4,14 @@
 //! rolling direction r (paper eq. 11). That leaves a polynomial in the transverse coordinate free, as in Kalker (1967)
 //! chosen such that the singular traction at the leading edge is least.
 
+use std::f64::consts::PI;
+
 use nalgebra::{DMatrix, Matrix3};
 use thiserror::Error;
 
 use super::Patch;
 use super::load_displacement::{Basis, disc_moment, load_displacement};
+use crate::contact::hertz::complete_elliptic_integrals;
 
 /// Degree of the polynomials: odd ones converge faster. Coefficients are within 0.3 % of higher degrees from axis
 /// ratio 0.05 to 20 (tested).
@@ -145,16 +148,18 @@ pub fn leading_edge(patch: &Patch, basis: &Basis) -> DMatrix<f64> {
     rows
 }
 
-/// Row of net force x, y and moment z (over `G c^2`, `G c^3`) by traction polynomials.
+/// Rows of net force x, y, moment z and second moment `y^2 f_x` (over `G c^2`, `G c^3`, `G c^4`) by traction
+/// polynomials.
 pub fn resultants(patch: &Patch, basis: &Basis) -> DMatrix<f64> {
     let n = basis.len();
     let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());
-    let mut rows = DMatrix::zeros(3, 2 * n);
+    let mut rows = DMatrix::zeros(4, 2 * n);
     for (i, &(p, q)) in basis.powers.iter().enumerate() {
         rows[(0, i)] = disc_moment(p, q);
         rows[(1, n + i)] = disc_moment(p, q);
         rows[(2, i)] = -b * disc_moment(p, q + 1);
         rows[(2, n + i)] = a * disc_moment(p + 1, q);
+        rows[(3, i)] = b * b * disc_moment(p, q + 2);
     }
     rows
 }
@@ -170,4 +175,34 @@ pub fn creep_matrix(patch: &Patch) -> Result<Matrix3<f64>, LinearError> {
     let tractions = adhesion_tractions(patch, &basis)?;
     let matrix = resultants(patch, &basis) * tractions;
     Ok(Matrix3::from_fn(|i, k| matrix[(i, k)]))
+}
+
+/// Linear theory of a patch as nonlinear laws need it: coefficients times 3/(2 pi), and the largest spin moment over
+/// mu Q c.
+#[derive(Clone, Copy, Debug)]
+pub struct Scales {
+    /// [-] `3 C11/(2 pi)`: longitudinal force over mu Q by scaled creepage.
+    pub c11: f64,
+    /// [-] the same of C22.
+    pub c22: f64,
+    /// [-] the same of C23.
+    pub c23: f64,
+    /// [-] the same of C33.
+    pub c33: f64,
+    /// [-] spin moment of complete sliding over mu Q c.
+    pub moment: f64,
+}
+
+impl Scales {
+    /// Linear theory of a patch that rolls along the x axis of its ellipse.
+    ///
+    /// # Errors
+    /// See [`LinearError`].
+    pub fn new(patch: &Patch) -> Result<Self, LinearError> {
+        let c = creep_matrix(patch)? * (1.5 / PI);
+        let slender = patch.axis_ratio.min(1.0 / patch.axis_ratio);
+        let (_, second) = complete_elliptic_integrals(1.0 - slender * slender);
+        let moment = 0.375 * second / slender.sqrt();
+        Ok(Self { c11: c[(0, 0)], c22: c[(1, 1)], c23: c[(1, 2)], c33: c[(2, 2)], moment })
+    }
 }

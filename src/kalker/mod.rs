@@ -5,7 +5,7 @@
 //! `M_z/(mu Q c)`; Kalker's problem then depends on axis ratio, Poisson's ratio and rolling direction alone
 //! (Kalker 1967; checked by a test).
 //!
-//! Signs follow paper eq. 11 and 14: slip `s_x/V = c_x - phi y`, `s_y/V = c_y + phi x` is the velocity of body 1
+//! Signs follow paper eq. 11 and 14: slip `s_x/V = c_x - phi y - kappa y^2`, `s_y/V = c_y + phi x` is the velocity of body 1
 //! minus that of body 2, the material flows towards -x (leading edge at +x), and forces are those of body 1 ON
 //! BODY 2, so that they point along the creepage. The friction force on body 1 is the opposite.
 
@@ -13,6 +13,7 @@ pub mod half_space;
 pub mod linear;
 pub mod load_displacement;
 pub mod nonlinear;
+pub mod scaled_law;
 pub mod table;
 
 /// What a rolling contact patch looks like to Kalker's theory.
@@ -35,6 +36,8 @@ pub struct ScaledCreepage {
     pub y: f64,
     /// [-] normal relative angular velocity over the rolling speed, times `c G/(mu p0)`.
     pub spin: f64,
+    /// [-] slip `-curvature y^2` along x of a groove that bends across rolling (Heathcote), times `c^2 G/(mu p0)`.
+    pub curvature: f64,
 }
 
 /// Net effect of a rolling contact, of body 1 on body 2.
@@ -46,4 +49,14 @@ pub struct ScaledForces {
     pub fy: f64,
     /// [-] spin moment over `mu Q c`.
     pub mz: f64,
+    /// [-] integral of `y^2` times the traction along x, over `mu Q c^2`: what the curvature slip works against.
+    pub second_moment: f64,
+}
+
+impl ScaledForces {
+    /// [-] dissipated power over `mu Q V` times `G/(mu p0)`, of the contact that rolls at these creepages.
+    pub fn power(&self, creepage: &ScaledCreepage) -> f64 {
+        creepage.x * self.fx + creepage.y * self.fy + creepage.spin * self.mz
+            - creepage.curvature * self.second_moment
+    }
 }

@@ -28,7 +28,10 @@ const EDGE_WEIGHT: f64 = 8.0;
 /// Iterations of one solve; 6 to 10 are usual.
 const MAX_ITERATIONS: u32 = 200;
 /// [-] relative decrease of the objective that ends the iteration.
-const DECREASE: f64 = 1e-7;
+const DECREASE: f64 = 1e-11;
+/// [-] relative decrease that is enough after `PATIENCE` iterations.
+const IDLE_DECREASE: f64 = 1e-7;
+const PATIENCE: u32 = 30;
 /// [-] scaled creepage beyond which a contact slides as a whole, to within this number's inverse; larger ones are
 /// scaled back to it.
 const LARGEST_CREEPAGE: f64 = 1e5;
@@ -70,10 +73,12 @@ pub struct Kalker {
     values: DMatrix<f64>,
     /// Slip at the points by all coefficients: rows x of each point, then y.
     slips: DMatrix<f64>,
+    /// Arguments of the projection at the points by all coefficients: one column each of x and y.
+    arguments: DMatrix<f64>,
     edge_square: DMatrix<f64>,
     /// Linear solutions of unit creepages.
     adhesion: DMatrix<f64>,
-    /// Net forces over mu Q and mu Q c by all coefficients.
+    /// Net forces over mu Q, mu Q c and mu Q c^2 by all coefficients.
     resultants: DMatrix<f64>,
     monomials: usize,
 }
@@ -126,6 +131,33 @@ fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
             (0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope))
         })
         .collect()
+}
+
+/// Derivatives of the objective at a point.
+struct Expansion {
+    gradient: DVector<f64>,
+    /// Second derivative as Gauss and Newton take it: positive definite.
+    gauss_newton: DMatrix<f64>,
+    /// What the bend of the projection adds to it.
+    bend: DMatrix<f64>,
+    /// Derivative of the gradient by the creepages.
+    by_creepage: DMatrix<f64>,
+}
+
+/// Second derivative of `w P(v)` with the projection P on the disc of radius `bound` (symmetric: xx, xy, yy).
+fn projection_bend(v: [f64; 2], bound: f64, w: [f64; 2]) -> [f64; 3] {
+    let size = v[0].hypot(v[1]);
+    if size <= bound {
+        return [0.0; 3];
+    }
+    let (c, s) = (v[0] / size, v[1] / size);
+    let along = w[0] * c + w[1] * s;
+    let factor = bound / (size * size);
+    [
+        factor * (3.0 * along * c * c - along - 2.0 * w[0] * c),
+        factor * (3.0 * along * c * s - w[0] * s - w[1] * c),
+        factor * (3.0 * along * s * s - along - 2.0 * w[1] * s),
+    ]
 }
 
 /// Projection of v on the disc of radius `bound`, and its derivative (symmetric: xx, xy, yy).
@@ -190,12 +222,21 @@ impl Kalker {
         let mut slips = DMatrix::zeros(2 * rows, 2 * n);
         slips.rows_mut(0, rows).copy_from(&(&gradients * stiffness.rows(0, n)));
         slips.rows_mut(rows, rows).copy_from(&(&gradients * stiffness.rows(n, n)));
+        let mut arguments =
+            SLIP_WEIGHT * DMatrix::from_fn(2 * n, 2 * rows, |k, i| slips[(i / 2 + rows * (i % 2), k)]);
+        for i in 0..rows {
+            for k in 0..n {
+                arguments[(k, 2 * i)] += values[(i, k)];
+                arguments[(n + k, 2 * i + 1)] += values[(i, k)];
+            }
+        }
         let edge = leading_edge(&patch, &basis) * EDGE_WEIGHT;
         Ok(Self {
             patch,
             points,
             values,
             slips,
+            arguments,
             edge_square: edge.transpose() * edge,
             adhesion,
             resultants: resultants(&patch, &basis) * (1.5 / PI),
@@ -206,7 +247,8 @@ impl Kalker {
     /// Rigid slip at a point.
     fn rigid(&self, h: &ScaledCreepage, point: &Point) -> [f64; 2] {
         let (a, b) = (self.patch.axis_ratio.sqrt(), 1.0 / self.patch.axis_ratio.sqrt());
-        [h.x - h.spin * b * point.y, h.y + h.spin * a * point.x]
+        let y = b * point.y;
+        [h.x - (h.spin + h.curvature * y) * y, h.y + h.spin * a * point.x]
     }
 
     /// Traction and slip at every point.
@@ -235,44 +277,55 @@ impl Kalker {
         sum
     }
 
-    /// Gauss-Newton matrix and gradient of the objective, and the derivative of the gradient by the creepages.
-    fn normal_equations(
-        &self,
-        z: &DVector<f64>,
-        h: &ScaledCreepage,
-    ) -> (DMatrix<f64>, DVector<f64>, DMatrix<f64>) {
-        let n = self.monomials;
-        let rows = self.points.len();
+    /// Derivatives of the objective at z.
+    fn expand(&self, z: &DVector<f64>, h: &ScaledCreepage) -> Expansion {
+        let (n, rows) = (self.monomials, self.points.len());
         let mut jacobian = DMatrix::zeros(2 * n, 2 * rows);
+        let mut bent = DMatrix::zeros(2 * n, 2 * rows);
         let mut residual = DVector::zeros(2 * rows);
-        let mut by_creepage = DMatrix::zeros(2 * rows, 3);
+        let mut by_creepage = DMatrix::zeros(2 * rows, 4);
+        let mut bent_by_creepage = DMatrix::zeros(2 * rows, 4);
         let (a, b) = (self.patch.axis_ratio.sqrt(), 1.0 / self.patch.axis_ratio.sqrt());
         for (i, (point, (f, s))) in self.points.iter().zip(self.fields(z, h)).enumerate() {
             let k = SLIP_WEIGHT;
-            let (p, [xx, xy, yy]) = project([f[0] + k * s[0], f[1] + k * s[1]], point.bound);
+            let argument = [f[0] + k * s[0], f[1] + k * s[1]];
+            let (p, [xx, xy, yy]) = project(argument, point.bound);
             let root = point.weight.sqrt();
-            residual[2 * i] = root * (f[0] - p[0]);
-            residual[2 * i + 1] = root * (f[1] - p[1]);
-            for j in 0..n {
-                let value = self.values[(i, j)];
-                // column j drives f_x, column n + j drives f_y; both drive both slips
-                for (column, v) in [(j, [value, 0.0]), (n + j, [0.0, value])] {
-                    let argument =
-                        [v[0] + k * self.slips[(i, column)], v[1] + k * self.slips[(rows + i, column)]];
-                    jacobian[(column, 2 * i)] = root * (v[0] - xx * argument[0] - xy * argument[1]);
-                    jacobian[(column, 2 * i + 1)] = root * (v[1] - xy * argument[0] - yy * argument[1]);
-                }
+            let r = [f[0] - p[0], f[1] - p[1]];
+            (residual[2 * i], residual[2 * i + 1]) = (root * r[0], root * r[1]);
+            let (ax, ay) = (self.arguments.column(2 * i), self.arguments.column(2 * i + 1));
+            let mut row = jacobian.column_mut(2 * i);
+            row.axpy(-root * xx, &ax, 0.0);
+            row.axpy(-root * xy, &ay, 1.0);
+            row.rows_mut(0, n).axpy(root, &self.values.row(i).transpose(), 1.0);
+            let mut row = jacobian.column_mut(2 * i + 1);
+            row.axpy(-root * xy, &ax, 0.0);
+            row.axpy(-root * yy, &ay, 1.0);
+            row.rows_mut(n, n).axpy(root, &self.values.row(i).transpose(), 1.0);
+            // second derivative of -r P(argument)
+            let [hxx, hxy, hyy] = projection_bend(argument, point.bound, r).map(|h| -point.weight * h);
+            if hxx != 0.0 || hyy != 0.0 {
+                let mut row = bent.column_mut(2 * i);
+                row.axpy(hxx, &ax, 0.0);
+                row.axpy(hxy, &ay, 1.0);
+                let mut row = bent.column_mut(2 * i + 1);
+                row.axpy(hxy, &ax, 0.0);
+                row.axpy(hyy, &ay, 1.0);
             }
-            for (column, slip) in
-                [[1.0, 0.0], [0.0, 1.0], [-b * point.y, a * point.x]].into_iter().enumerate()
-            {
+            let (x, y) = (a * point.x, b * point.y);
+            for (column, slip) in [[1.0, 0.0], [0.0, 1.0], [-y, x], [-y * y, 0.0]].into_iter().enumerate() {
                 by_creepage[(2 * i, column)] = -root * k * (xx * slip[0] + xy * slip[1]);
                 by_creepage[(2 * i + 1, column)] = -root * k * (xy * slip[0] + yy * slip[1]);
+                (bent_by_creepage[(2 * i, column)], bent_by_creepage[(2 * i + 1, column)]) =
+                    (k * slip[0], k * slip[1]);
             }
         }
-        let matrix = &jacobian * jacobian.transpose() + &self.edge_square;
-        let gradient = &jacobian * residual + &self.edge_square * z;
-        (matrix, gradient, jacobian * by_creepage)
+        Expansion {
+            gradient: &jacobian * &residual + &self.edge_square * z,
+            gauss_newton: &jacobian * jacobian.transpose() + &self.edge_square,
+            by_creepage: jacobian * by_creepage + &bent * bent_by_creepage,
+            bend: &self.arguments * bent.transpose(),
+        }
     }
 
     /// Solves for creepages, from the linear solution or from that of neighbouring creepages.
@@ -284,46 +337,63 @@ impl Kalker {
         creepage: &ScaledCreepage,
         start: Option<&Solution>,
     ) -> Result<Solution, KalkerError> {
-        let components = [creepage.x, creepage.y, creepage.spin];
+        let components = [creepage.x, creepage.y, creepage.spin, creepage.curvature];
         if !components.iter().all(|component| component.is_finite()) {
             return Err(KalkerError::NotFinite(*creepage));
         }
         let size = components.iter().fold(0.0f64, |size, component| size.max(component.abs()));
         let shrink = if size > LARGEST_CREEPAGE { LARGEST_CREEPAGE / size } else { 1.0 };
-        let h =
-            ScaledCreepage { x: creepage.x * shrink, y: creepage.y * shrink, spin: creepage.spin * shrink };
+        let [x, y, spin, curvature] = components.map(|component| component * shrink);
+        let h = ScaledCreepage { x, y, spin, curvature };
         let mut z = match start {
             Some(start) => start.coefficients.clone(),
             None => {
                 // The linear solution, brought down where it is far above the bound.
-                let linear = &self.adhesion * DVector::from_column_slice(&[h.x, h.y, h.spin]);
+                // The curvature slip at its mean over the pressure: y^2 = b^2/5.
+                let mean = h.x - h.curvature / (5.0 * self.patch.axis_ratio);
+                let linear = &self.adhesion * DVector::from_column_slice(&[mean, h.y, h.spin]);
                 let excess = linear.amax();
                 linear * if excess > 1.0 { 1.0 / excess } else { 1.0 }
             }
         };
         let mut objective = self.objective(&z, &h);
-        let mut damping = 1e-3;
+        let mut damping: f64 = 1e-3;
         let mut iterations = 0;
         while iterations < MAX_ITERATIONS {
-            let (matrix, gradient, _) = self.normal_equations(&z, &h);
+            let Expansion { gradient, gauss_newton, bend, .. } = self.expand(&z, &h);
             let before = objective;
+            iterations += 1;
+            // Newton's own step where the objective is convex: it ends the iteration at the minimum to rounding, so
+            // that results are a smooth function of the creepages.
+            let step = (&gauss_newton + bend).cholesky().map(|factor| factor.solve(&gradient));
+            if let Some(step) = step {
+                let trial = &z - step;
+                let reached = self.objective(&trial, &h);
+                if reached < objective {
+                    (z, objective) = (trial, reached);
+                    damping = (damping * 0.1).max(1e-12);
+                    if before - objective <= DECREASE * before {
+                        return Ok(self.finish(z, &h, iterations));
+                    }
+                    continue;
+                }
+            }
             loop {
-                iterations += 1;
-                let mut damped = matrix.clone();
+                let mut damped = gauss_newton.clone();
                 for i in 0..damped.nrows() {
-                    damped[(i, i)] += damping * (matrix[(i, i)] + 1e-12);
+                    damped[(i, i)] += damping * (gauss_newton[(i, i)] + 1e-12);
                 }
                 let trial = damped.cholesky().map(|factor| &z - factor.solve(&gradient));
                 let reached = trial.as_ref().map_or(f64::INFINITY, |trial| self.objective(trial, &h));
                 if let Some(trial) = trial
                     && reached < objective
                 {
-                    z = trial;
-                    objective = reached;
+                    (z, objective) = (trial, reached);
                     damping = (damping * 0.1).max(1e-12);
                     break;
                 }
                 damping *= 10.0;
+                iterations += 1;
                 if damping > 1e12 {
                     // No direction leads down: this is the minimum to rounding.
                     return Ok(self.finish(z, &h, iterations));
@@ -332,7 +402,8 @@ impl Kalker {
                     return Err(KalkerError::NoConvergence(*creepage));
                 }
             }
-            if before - objective <= DECREASE * before {
+            // Where points change between sticking and sliding for ever, the last digits are not worth more steps.
+            if iterations > PATIENCE && before - objective <= IDLE_DECREASE * before {
                 return Ok(self.finish(z, &h, iterations));
             }
         }
@@ -341,7 +412,7 @@ impl Kalker {
 
     fn finish(&self, z: DVector<f64>, h: &ScaledCreepage, iterations: u32) -> Solution {
         let net = &self.resultants * &z;
-        let mut forces = ScaledForces { fx: net[0], fy: net[1], mz: net[2] };
+        let mut forces = ScaledForces { fx: net[0], fy: net[1], mz: net[2], second_moment: net[3] };
         // A polynomial may overstep the bound by its own error: a sliding contact stays at the friction limit.
         let size = forces.fx.hypot(forces.fy);
         if size > 1.0 {
@@ -359,17 +430,13 @@ impl Kalker {
         Solution { coefficients: z, forces, stick: stick / area, iterations }
     }
 
-    /// Derivatives of the forces (fx, fy, mz) by the scaled creepages (x, y, spin).
+    /// Derivatives of the forces (fx, fy, mz, second moment) by the scaled creepages (x, y, spin, curvature).
     ///
-    /// By implicit differentiation of the minimum in its Gauss-Newton form: what the second derivatives of the
-    /// residuals would add is left out.
-    pub fn derivatives(&self, solution: &Solution, creepage: &ScaledCreepage) -> Option<[[f64; 3]; 3]> {
-        let z = &solution.coefficients;
-        let (mut matrix, _, by_creepage) = self.normal_equations(z, creepage);
-        for i in 0..matrix.nrows() {
-            matrix[(i, i)] *= 1.0 + 1e-12;
-        }
-        let follow = matrix.cholesky()?.solve(&-by_creepage);
+    /// By implicit differentiation of the minimum: where its gradient stays zero, the coefficients follow.
+    /// None where the minimum is not isolated.
+    pub fn derivatives(&self, solution: &Solution, creepage: &ScaledCreepage) -> Option<[[f64; 4]; 4]> {
+        let Expansion { gauss_newton, bend, by_creepage, .. } = self.expand(&solution.coefficients, creepage);
+        let follow = (gauss_newton + bend).lu().solve(&-by_creepage)?;
         let net = &self.resultants * follow;
         Some(std::array::from_fn(|i| std::array::from_fn(|k| net[(i, k)])))
     }

@@ -14,9 +14,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
 
 use super::half_space::{HalfSpace, HalfSpaceError, Tractions};
-use super::linear::{LinearError, creep_matrix};
+use super::linear::{LinearError, Scales};
 use super::{Patch, ScaledCreepage};
-use crate::contact::hertz::complete_elliptic_integrals;
 
 /// Intervals from rest to sliding, from the x axis to the plane of y and spin, and of half a turn in that plane.
 pub const SHAPE: [usize; 3] = [12, 8, 16];
@@ -39,27 +38,6 @@ pub const NODES: usize = (SHAPE[0] + 1) * (SHAPE[1] + 1) * SHAPE[2];
 pub fn knot(index: usize) -> f64 {
     let (low, high) = (0.05f64.ln(), 20f64.ln());
     (low + (high - low) * index as f64 / RATIOS as f64).exp().clamp(0.05, 20.0)
-}
-
-/// Linear theory of a patch as the table needs it: coefficients times 3/(2 pi), and the largest spin moment over
-/// mu Q c.
-#[derive(Clone, Copy, Debug)]
-struct Scales {
-    c11: f64,
-    c22: f64,
-    c23: f64,
-    c33: f64,
-    moment: f64,
-}
-
-impl Scales {
-    fn new(patch: &Patch) -> Result<Self, LinearError> {
-        let c = creep_matrix(patch)? * (1.5 / PI);
-        let slender = patch.axis_ratio.min(1.0 / patch.axis_ratio);
-        let (_, second) = complete_elliptic_integrals(1.0 - slender * slender);
-        let moment = 0.375 * second / slender.sqrt();
-        Ok(Self { c11: c[(0, 0)], c22: c[(1, 1)], c23: c[(1, 2)], c33: c[(2, 2)], moment })
-    }
 }
 
 /// Stored values of all nodes of one axis ratio, t slowest, phi fastest.
@@ -94,6 +72,7 @@ pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
                         x: r * direction[0] / scales.c11,
                         y: r * direction[1] / scales.c22,
                         spin: r * direction[2] * scales.moment / scales.c33,
+                        curvature: 0.0,
                     };
                     let solutions = [
                         coarse.solve(&creepage, starts[0].as_ref())?,

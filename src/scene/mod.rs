@@ -72,6 +72,9 @@ pub struct Scene {
     /// Which effects are simulated.
     #[serde(default)]
     pub effects: Effects,
+    /// Parameters of the regularised creep law.
+    #[serde(default)]
+    pub regularised: Regularised,
     /// Inner race.
     #[serde(default)]
     pub inner: RaceSection,

@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use super::schedule::{self, Schedule};
+use crate::contact::regularised::Parameters;
 use crate::units::*;
 
 /// Internal geometry of the bearing.
@@ -73,13 +74,15 @@ pub enum CreepLaw {
     Frictionless,
     /// Kalker's linear theory, unbounded.
     Linear,
-    /// The paper's regularised law without spin coupling.
+    /// The paper's regularised law with spin coupling.
     Regularised,
     /// Linear theory, saturated as a vector.
     #[default]
     Saturated,
     /// Kalker's nonlinear theory as a smooth table.
     KalkerTable,
+    /// Kalker's nonlinear theory in polynomials of degree `kalker_degree`: slow.
+    Kalker,
 }
 
 /// Effects, each off unless asked for; one that is off has no state and costs nothing.
@@ -88,6 +91,10 @@ pub enum CreepLaw {
 pub struct Effects {
     /// Creep law of the ball-race contacts.
     pub creep: CreepLaw,
+    /// [-] degree of the traction polynomials of the law `kalker`, 1 to 5.
+    pub kalker_degree: usize,
+    /// Slip of grooves that bend across rolling (Heathcote), with the laws that saturate.
+    pub heathcote_slip: bool,
     /// [s/m] Hunt-Crossley dissipation factor of the ball-race contacts; 0 is off.
     pub damping: DissipationFactor,
     /// [m/s2] acceleration of gravity, components along x, y, z.
@@ -100,11 +107,23 @@ impl Default for Effects {
     fn default() -> Self {
         Self {
             creep: CreepLaw::default(),
+            kalker_degree: 3,
+            heathcote_slip: false,
             damping: DissipationFactor(0.0),
             gravity: [Acceleration(0.0); 3],
             per_ball_outputs: false,
         }
     }
+}
+
+/// Parameters of the law `regularised` on each raceway; identified for its axis ratio where not given.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Regularised {
+    /// On the inner raceway.
+    pub inner: Option<Parameters>,
+    /// On the outer raceway.
+    pub outer: Option<Parameters>,
 }
 
 /// How a race gets its motion.

@@ -1,6 +1,7 @@
 //! Ranges of all scene values, in one place.
 
-use super::{Condition, Drive, Scene, SceneError, Schedule};
+use super::{Condition, CreepLaw, Drive, Scene, SceneError, Schedule};
+use crate::contact::regularised::Parameters;
 
 /// Bounds of a range; an open bound is not itself allowed.
 struct Range {
@@ -48,6 +49,28 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
     }
     closed(0.0, 2.0, "").check("friction.ball_race", scene.friction.ball_race)?;
     closed(0.0, 10.0, "s/m").check("effects.damping", scene.effects.damping.0)?;
+    closed(1.0, 5.0, "").check("effects.kalker_degree", scene.effects.kalker_degree as f64)?;
+    if scene.effects.heathcote_slip
+        && matches!(scene.effects.creep, CreepLaw::Frictionless | CreepLaw::Linear)
+    {
+        let why = "needs a creep law that saturates: regularised, saturated, kalker_table or kalker";
+        return Err(conflict("effects.heathcote_slip", why));
+    }
+    for (race, parameters) in [("inner", scene.regularised.inner), ("outer", scene.regularised.outer)] {
+        if let Some(Parameters { eta, beta, alpha }) = parameters {
+            for (name, values) in [("eta", &eta[..]), ("beta", &beta), ("alpha", &alpha)] {
+                let key = format!("regularised.{race}.{name}");
+                values.iter().try_for_each(|value| closed(-1e6, 1e6, "").check(&key, *value))?;
+            }
+            // Denominators without a zero at positive arguments, so that every creepage has a force.
+            let positive = |linear: f64, square: f64| square > 0.0 && linear > -2.0 * square.sqrt();
+            if !(positive(eta[1], eta[2]) && positive(beta[1], beta[0]) && positive(alpha[1], alpha[2])) {
+                let why = "a denominator vanishes: eta_1 > -2 sqrt(eta_2), beta_1 > -2 sqrt(beta_0) and \
+                           alpha_1 > -2 sqrt(alpha_2) with eta_2, beta_0, alpha_2 > 0 are needed";
+                return Err(conflict(&format!("regularised.{race}"), why));
+            }
+        }
+    }
     for component in scene.effects.gravity {
         closed(-1e6, 1e6, "m/s2").check("effects.gravity", component.0)?;
     }

@@ -36,6 +36,7 @@ pub fn cases() -> Vec<Case> {
                     x: number("creep_x") * scale,
                     y: number("creep_y") * scale,
                     spin: number("spin") * (a * b).sqrt() * scale,
+                    curvature: 0.0,
                 },
                 expected: [number("fx"), number("fy"), number("mz")],
             }

@@ -1,0 +1,126 @@
+//! One suite for all creep laws, as the simulation calls them, flat and with bent grooves.
+#![allow(clippy::unwrap_used)]
+
+#[path = "common/laws.rs"]
+mod laws;
+
+use laws::{Laws, theory};
+use roulement::contact::creep::{CreepForces, Creepage, Law};
+
+/// Creepages over many magnitudes and all signs, rest and extremes included; fewer of them for slow laws.
+fn creepages(curved: bool, few: bool) -> Vec<Creepage<f64>> {
+    let all = [0.0, 1e-300, 1e-12, 1e-7, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 1.0, 1e6];
+    let sizes = if few { vec![0.0, 1e-7, 1e-4, 1e-3, 1e-2, 1.0] } else { all.to_vec() };
+    let curvatures = if curved { vec![-3e4, 2e2, 3e4] } else { vec![f64::NAN] };
+    let mut list = vec![];
+    for &x in &sizes {
+        for &y in &sizes {
+            for &z in &sizes {
+                for &curvature in &curvatures {
+                    for signs in 0..8u8 {
+                        let sign = |bit: u8| if signs & (1 << bit) == 0 { 1.0 } else { -1.0 };
+                        list.push(Creepage {
+                            longitudinal: sign(0) * x,
+                            lateral: sign(1) * y,
+                            spin: sign(2) * z * 5e3,
+                            curvature: curved.then_some(curvature),
+                        });
+                    }
+                }
+            }
+        }
+    }
+    list
+}
+
+fn power(c: &Creepage<f64>, f: &CreepForces<f64>) -> f64 {
+    f.longitudinal * c.longitudinal + f.lateral * c.lateral + f.spin_moment * c.spin
+        - f.second_moment * c.curvature.unwrap_or(0.0)
+}
+
+fn close(a: f64, b: f64, scale: f64) -> bool {
+    (a - b).abs() <= 1e-9 * scale
+}
+
+#[test]
+fn invariant_bounded_symmetric_and_dissipative() {
+    let laws = Laws::new();
+    let theory = theory();
+    for curved in [false, true] {
+        for (name, law) in laws.bounded() {
+            let mut worst = 0.0f64;
+            for c in creepages(curved, name == "kalker") {
+                let f = theory.forces(law, &c);
+                let size = f.longitudinal.hypot(f.lateral);
+                assert!(size.is_finite() && f.spin_moment.is_finite(), "{name} {c:?}");
+                assert!(size <= theory.friction_limit * (1.0 + 1e-12), "{name} {c:?}: {size} N");
+                let sliding = theory.friction_limit * 1e-300;
+                let slip = c.longitudinal.abs() + c.lateral.abs() + c.spin.abs() * theory.half_width;
+                worst = worst.max(-power(&c, &f) / (theory.friction_limit * slip + sliding));
+                // odd in everything
+                let opposite = Creepage {
+                    longitudinal: -c.longitudinal,
+                    lateral: -c.lateral,
+                    spin: -c.spin,
+                    curvature: c.curvature.map(|k| -k),
+                };
+                let g = theory.forces(law, &opposite);
+                let limits = [theory.friction_limit, theory.friction_limit, theory.moment_limit];
+                let (mine, other) = (
+                    [f.longitudinal, f.lateral, f.spin_moment],
+                    [-g.longitudinal, -g.lateral, -g.spin_moment],
+                );
+                assert!((0..3).all(|k| close(mine[k], other[k], limits[k])), "{name} {c:?}: {f:?} {g:?}");
+                // mirrored about the rolling direction
+                let mirrored = Creepage { lateral: -c.lateral, spin: -c.spin, ..c };
+                let g = theory.forces(law, &mirrored);
+                let other = [g.longitudinal, -g.lateral, -g.spin_moment];
+                assert!((0..3).all(|k| close(mine[k], other[k], limits[k])), "{name} {c:?}: {f:?} {g:?}");
+            }
+            println!("{name:13} bent groove {curved}: least power {:.1e} of mu Q times slip", -worst);
+            assert!(worst <= 0.0, "{name}, bent groove {curved}: power {worst:e}");
+        }
+    }
+}
+
+#[test]
+fn closed_form_saturated_is_tangent_to_linear_theory_with_and_without_spin() {
+    let theory = theory();
+    let c = Creepage { longitudinal: 2e-8, lateral: -1e-8, spin: 3e-5, curvature: None };
+    let (linear, ours) = (theory.forces(Law::Linear, &c), theory.forces(Law::Saturated, &c));
+    // The cubic leaves linear theory by q/3, here q is a few 1e-5.
+    assert!((ours.longitudinal / linear.longitudinal - 1.0).abs() < 1e-4);
+    assert!((ours.lateral / linear.lateral - 1.0).abs() < 1e-4);
+    assert!((ours.spin_moment / linear.spin_moment - 1.0).abs() < 1e-4);
+    assert!((linear.lateral - (theory.lateral * c.lateral + theory.coupling * c.spin)).abs() < 1e-12);
+}
+
+#[test]
+fn closed_form_saturated_pure_creep_is_the_cubic_of_vermeulen_and_johnson() {
+    let theory = theory();
+    for share in [0.3, 1.0, 2.0, 2.9] {
+        let c = Creepage {
+            longitudinal: share * theory.friction_limit / theory.longitudinal,
+            lateral: 0.0,
+            spin: 0.0,
+            curvature: None,
+        };
+        let expected = theory.friction_limit * (1.0 - (1.0 - share / 3.0).powi(3));
+        let ours = theory.forces(Law::Saturated, &c).longitudinal;
+        assert!((ours / expected - 1.0).abs() < 1e-8, "{share}: {ours} {expected}");
+    }
+}
+
+#[test]
+fn closed_form_regularised_pure_creep_is_equation_15() {
+    let theory = theory();
+    let laws = Laws::new();
+    // eps = 2 mu Q/(C11 G c^2) (eq. A.3)
+    let eps = 2.0 * theory.friction_limit / theory.longitudinal;
+    for share in [0.1, 0.5, 0.99, 1.5] {
+        let c = Creepage { longitudinal: share * eps, lateral: 0.0, spin: 0.0, curvature: None };
+        let phi = if share <= 1.0 { (2.0 - share) * share } else { 1.0 };
+        let ours = theory.forces(Law::Regularised(&laws.parameters), &c).longitudinal;
+        assert!((ours / (theory.friction_limit * phi) - 1.0).abs() < 1e-8);
+    }
+}
