@@ -5,8 +5,10 @@
 //! these, load, size and friction drop out and Poisson's ratio nearly does; the axis ratio is the table's fourth
 //! axis, interpolated once per contact.
 //!
-//! On a ray `t = |q|/(1 + |q|)` runs from rest to complete sliding. With theta the angle from the x axis and phi the
-//! angle from y towards z, what is stored is
+//! Lateral creepage and spin are first scaled so that each alone has a linear response of size one, coupling
+//! included. `t = |q|/(W + |q|)` then runs from rest to complete sliding. The direction is stretched so that both its
+//! ends matter: near rest what counts is linear theory, in complete sliding whether spin outruns creepage inside the
+//! ellipse. With theta the angle from the x axis and phi the angle from y towards z, what is stored is
 //! `f_x/(t cos theta)`, `f_y/(t sin theta)`, `m_z/(t sin theta)`: smooth across rest, the poles and the planes of
 //! symmetry. Interpolation is by cubic Hermite pieces in all three directions: continuous with its first derivatives.
 
@@ -18,13 +20,18 @@ use super::linear::{LinearError, Scales};
 use super::{Patch, ScaledCreepage};
 
 /// Intervals from rest to sliding, from the x axis to the plane of y and spin, and of half a turn in that plane.
-pub const SHAPE: [usize; 3] = [12, 8, 16];
+pub const SHAPE: [usize; 3] = [12, 10, 16];
 /// Intervals of ln(axis ratio) from 0.05 to 20.
 pub const RATIOS: usize = 12;
 /// Poisson's ratio of the table.
 pub const POISSON: f64 = 0.3;
 /// Cells across the ellipse of the coarser grid.
 const CELLS: usize = 16;
+/// [-] size |q| in the middle between rest and sliding.
+const MIDDLE: f64 = 1.5;
+/// [rad] distance from an axis or plane of symmetry at which its limits are taken: near enough for an error below
+/// 0.3 %, far enough for the solver's last digits not to count.
+const ASIDE: f64 = 0.05;
 /// Creepage |q| that stands for complete sliding.
 const SLIDING: f64 = 1e3;
 
@@ -40,56 +47,95 @@ pub fn knot(index: usize) -> f64 {
     (low + (high - low) * index as f64 / RATIOS as f64).exp().clamp(0.05, 20.0)
 }
 
-/// Stored values of all nodes of one axis ratio, t slowest, phi fastest.
+/// How creepages become directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Stretch {
+    /// [-] size of the linear response to lateral creepage and spin, coupling included, over that without.
+    response: [f64; 2],
+    /// [-] stretch of x and of spin against y in directions.
+    direction: [f64; 2],
+}
+
+impl Stretch {
+    fn new(axis_ratio: f64, scales: &Scales) -> Self {
+        let Scales { c11, c22, c23, c33, moment } = *scales;
+        let (a, b) = (axis_ratio.sqrt(), 1.0 / axis_ratio.sqrt());
+        let lateral = c22.hypot(c23 / moment);
+        let spin = c23.hypot(c33 / moment);
+        // In sliding spin counts as `phi a` against c_y and as `phi b` against c_x: half way there.
+        let by_lateral = (lateral * a / spin).sqrt();
+        let by_longitudinal = (spin * by_lateral / (c11 * b)).sqrt();
+        Self { response: [lateral / c22, spin * moment / c33], direction: [by_longitudinal, by_lateral] }
+    }
+
+    /// Unit vector of scaled creepages q at a direction of the table.
+    fn unscaled(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let d = [x / self.direction[0], y, z / self.direction[1]];
+        let size = d[0].hypot(d[1]).hypot(d[2]);
+        d.map(|component| component / size)
+    }
+}
+
+/// Linear theory with its coupling, in units of q before scaling by the response.
+fn linear_forces(scales: &Scales, stretch: &Stretch, d: [f64; 3]) -> [f64; 3] {
+    let (y, z) = (d[1] / stretch.response[0], d[2] / stretch.response[1]);
+    let Scales { c22, c23, c33, moment, .. } = *scales;
+    [d[0], y + c23 * moment / c33 * z, z - c23 / (c22 * moment) * y]
+}
+
+/// Stored values of all nodes of one axis ratio, t slowest, phi fastest. The row at rest, which is linear theory, is
+/// left out of the computation.
 ///
 /// # Errors
 /// If the reference solver has no answer at a node.
 pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
     let patch = Patch { axis_ratio, poisson_ratio: POISSON, rolling_angle: 0.0 };
     let scales = Scales::new(&patch)?;
+    let stretch = Stretch::new(axis_ratio, &scales);
     let (coarse, fine) = (HalfSpace::new(&patch, CELLS)?, HalfSpace::new(&patch, 2 * CELLS)?);
     let mut nodes = vec![[0.0; 3]; NODES];
     let index = |i: usize, j: usize, k: usize| (i * (SHAPE[1] + 1) + j) * SHAPE[2] + k;
     for j in 0..=SHAPE[1] {
-        for k in 0..SHAPE[2] {
-            let theta = FRAC_PI_2 * j as f64 / SHAPE[1] as f64;
+        // On the axis, theta = 0, everything follows from two angles phi.
+        let angles: Vec<usize> = if j == 0 { vec![0, SHAPE[2] / 2] } else { (0..SHAPE[2]).collect() };
+        for k in angles {
+            // On the axis and the plane of symmetry what would be divided by zero has its limit: a little beside them.
+            let theta = (FRAC_PI_2 * j as f64 / SHAPE[1] as f64).clamp(ASIDE, FRAC_PI_2 - ASIDE);
             let phi = PI * k as f64 / SHAPE[2] as f64;
-            // On the axes and planes of symmetry what would be divided by zero has its limit: a little beside them.
-            let aside = |angle: f64| angle.clamp(0.02, FRAC_PI_2 - 0.02);
-            let theta = aside(theta);
-            let direction = [theta.cos(), theta.sin() * phi.cos(), theta.sin() * phi.sin()];
+            let d = stretch.unscaled([theta.cos(), theta.sin() * phi.cos(), theta.sin() * phi.sin()]);
             let mut starts: [Option<Tractions>; 2] = [None, None];
-            for i in 0..=SHAPE[0] {
+            for i in 1..=SHAPE[0] {
                 let t = i as f64 / SHAPE[0] as f64;
-                let coupling = scales.c23;
-                let forces = if i == 0 {
-                    // linear theory with its coupling, over t
-                    let (hy, hz) = (direction[1] / scales.c22, direction[2] * scales.moment / scales.c33);
-                    [direction[0], direction[1] + coupling * hz, direction[2] - coupling * hy / scales.moment]
-                } else {
-                    let r = if i == SHAPE[0] { SLIDING } else { t / (1.0 - t) };
-                    let creepage = ScaledCreepage {
-                        x: r * direction[0] / scales.c11,
-                        y: r * direction[1] / scales.c22,
-                        spin: r * direction[2] * scales.moment / scales.c33,
-                        curvature: 0.0,
-                    };
-                    let solutions = [
-                        coarse.solve(&creepage, starts[0].as_ref())?,
-                        fine.solve(&creepage, starts[1].as_ref())?,
-                    ];
-                    let limit = |get: fn(&Tractions) -> f64| 2.0 * get(&solutions[1]) - get(&solutions[0]);
-                    let values = [
-                        limit(|s| s.forces.fx),
-                        limit(|s| s.forces.fy),
-                        limit(|s| s.forces.mz) / scales.moment,
-                    ];
-                    starts = solutions.map(Some);
-                    values.map(|value| value / t)
+                let r = if i == SHAPE[0] { SLIDING } else { MIDDLE * t / (1.0 - t) };
+                let creepage = ScaledCreepage {
+                    x: r * d[0] / scales.c11,
+                    y: r * d[1] / (scales.c22 * stretch.response[0]),
+                    spin: r * d[2] * scales.moment / (scales.c33 * stretch.response[1]),
+                    curvature: 0.0,
                 };
-                nodes[index(i, j, k)] =
-                    [forces[0] / theta.cos(), forces[1] / theta.sin(), forces[2] / theta.sin()];
+                let solutions = [
+                    coarse.solve(&creepage, starts[0].as_ref())?,
+                    fine.solve(&creepage, starts[1].as_ref())?,
+                ];
+                let limit = |get: fn(&Tractions) -> f64| (2.0 * get(&solutions[1]) - get(&solutions[0])) / t;
+                nodes[index(i, j, k)] = [
+                    limit(|s| s.forces.fx) / theta.cos(),
+                    limit(|s| s.forces.fy) / theta.sin(),
+                    limit(|s| s.forces.mz) / (scales.moment * theta.sin()),
+                ];
+                starts = solutions.map(Some);
             }
+        }
+    }
+    for i in 1..=SHAPE[0] {
+        let (along, across) = (nodes[index(i, 0, 0)], nodes[index(i, 0, SHAPE[2] / 2)]);
+        for k in 0..SHAPE[2] {
+            let (sin, cos) = (PI * k as f64 / SHAPE[2] as f64).sin_cos();
+            nodes[index(i, 0, k)] = [
+                0.5 * (along[0] + across[0]),
+                along[1] * cos + across[1] * sin,
+                along[2] * cos + across[2] * sin,
+            ];
         }
     }
     Ok(nodes)
@@ -100,6 +146,7 @@ pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
 pub struct CreepTable {
     nodes: Vec<[f64; 3]>,
     coupling: [f64; 2],
+    stretch: Stretch,
 }
 
 /// Padded sizes: one node more on each side in t and theta, one before and two behind in phi.
@@ -174,11 +221,11 @@ impl CreepTable {
                 Some(knot) => add(knot, weight),
             }
         }
-        Ok(Self::padded(&nodes, &scales))
+        Ok(Self::padded(&nodes, &scales, Stretch::new(patch.axis_ratio, &scales)))
     }
 
     /// Pads the nodes of one axis ratio; the row at rest is linear theory's own.
-    fn padded(nodes: &[[f64; 3]], scales: &Scales) -> Self {
+    fn padded(nodes: &[[f64; 3]], scales: &Scales, stretch: Stretch) -> Self {
         let coupling = [scales.c23 * scales.moment / scales.c33, -scales.c23 / (scales.c22 * scales.moment)];
         let (n_t, n_theta, n_phi) = (SHAPE[0] as isize, SHAPE[1] as isize, SHAPE[2] as isize);
         let at = |i: isize, j: isize, k: isize| -> [f64; 3] {
@@ -192,9 +239,17 @@ impl CreepTable {
             let sign = if turns.rem_euclid(2) == 1 { -1.0 } else { 1.0 };
             let k = k.rem_euclid(n_phi);
             let [x, y, z] = if i == 0 {
-                let phi = PI * k as f64 / n_phi as f64;
-                let (sin, cos) = phi.sin_cos();
-                [1.0, cos + coupling[0] * sin, sin + coupling[1] * cos]
+                let theta = FRAC_PI_2 * j as f64 / n_theta as f64;
+                let (sin, cos) = (PI * k as f64 / n_phi as f64).sin_cos();
+                // size that a direction with these components has before it is made a unit vector
+                let raw = [
+                    theta.cos() / stretch.direction[0],
+                    theta.sin() * cos,
+                    theta.sin() * sin / stretch.direction[1],
+                ];
+                let size = raw[0].hypot(raw[1]).hypot(raw[2]);
+                let limits = [1.0 / stretch.direction[0], cos, sin / stretch.direction[1]];
+                linear_forces(scales, &stretch, limits).map(|force| MIDDLE * force / size)
             } else {
                 nodes[((i * (n_theta + 1) + j) * n_phi + k) as usize]
             };
@@ -215,7 +270,7 @@ impl CreepTable {
                 }
             }
         }
-        Self { nodes: padded, coupling }
+        Self { nodes: padded, coupling, stretch }
     }
 
     /// Forces over mu Q, mu Q and M_max at `q`, and their derivatives by q: row by force, column by q.
@@ -226,14 +281,19 @@ impl CreepTable {
             let tangent = [[1.0, 0.0, 0.0], [0.0, 1.0, yz], [0.0, zy, 1.0]];
             return ([q[0], q[1] + yz * q[2], q[2] + zy * q[1]], tangent);
         }
-        // into the quarter that is stored
+        // into the quarter that is stored, with responses of size one
         let sign_x = if q[0] < 0.0 { -1.0 } else { 1.0 };
         let sign_yz = if q[2] < 0.0 || (q[2] == 0.0 && q[1] < 0.0) { -1.0 } else { 1.0 };
-        let (x, y, z) = (sign_x * q[0], sign_yz * q[1], sign_yz * q[2]);
+        let [response_y, response_z] = self.stretch.response;
+        let scaled = [sign_x * q[0], sign_yz * q[1] * response_y, sign_yz * q[2] * response_z];
+        let size = scaled[0].hypot(scaled[1]).hypot(scaled[2]);
+        let [stretch_x, stretch_z] = self.stretch.direction;
+        let (x, y, z) = (scaled[0] * stretch_x, scaled[1], scaled[2] * stretch_z);
         let across = y.hypot(z);
-        let (cos_theta, sin_theta) = (x / size, across / size);
+        let length = x.hypot(across);
+        let (cos_theta, sin_theta) = (x / length, across / length);
         let (cos_phi, sin_phi) = if across > 0.0 { (y / across, z / across) } else { (1.0, 0.0) };
-        let (per_rest, t) = (1.0 / (1.0 + size), size / (1.0 + size));
+        let t = size / (MIDDLE + size);
         let theta = across.atan2(x);
         let phi = sin_phi.atan2(cos_phi);
         let density = [SHAPE[0] as f64, SHAPE[1] as f64 / FRAC_PI_2, SHAPE[2] as f64 / PI];
@@ -263,28 +323,31 @@ impl CreepTable {
             }
         }
 
-        // forces and gradient: along the ray, and along theta and phi over the radius
+        // forces and gradient: by t, theta and phi, and these by q
         let factor = [cos_theta, sin_theta, sin_theta];
         let factor_slope = [-sin_theta, cos_theta, cos_theta];
-        let ray = [cos_theta, sin_theta * cos_phi, sin_theta * sin_phi];
         let polar = [-sin_theta, cos_theta * cos_phi, cos_theta * sin_phi];
         let azimuthal = [0.0, -sin_phi, cos_phi];
         let signs = [sign_x, sign_yz, sign_yz];
+        let t_slope = (1.0 - t) / (MIDDLE + size);
+        let by_direction = [stretch_x, 1.0, stretch_z];
+        let by_response = [1.0, response_y, response_z];
         let mut forces = [0.0; 3];
         let mut gradient = [[0.0; 3]; 3];
         for m in 0..3 {
             forces[m] = signs[m] * t * factor[m] * value[m];
-            let along = per_rest * per_rest * factor[m] * (value[m] + t * by_t[m] * density[0]);
-            let down = per_rest * (factor_slope[m] * value[m] + factor[m] * by_theta[m] * density[1]);
+            let along = t_slope * factor[m] * (value[m] + t * by_t[m] * density[0]);
+            let down = t / length * (factor_slope[m] * value[m] + factor[m] * by_theta[m] * density[1]);
             // f_x does not depend on phi at the pole, the others carry sin(theta) in front
             let around = match m {
                 0 if sin_theta < 1e-9 => 0.0,
-                0 => per_rest * cos_theta / sin_theta * by_phi[0] * density[2],
-                _ => per_rest * by_phi[m] * density[2],
+                0 => t / length * cos_theta / sin_theta * by_phi[0] * density[2],
+                _ => t / length * by_phi[m] * density[2],
             };
             for n in 0..3 {
-                let slope = along * ray[n] + down * polar[n] + around * azimuthal[n];
-                gradient[m][n] = signs[m] * signs[n] * slope;
+                let turn = (down * polar[n] + around * azimuthal[n]) * by_direction[n];
+                let slope = along * scaled[n] / size + turn;
+                gradient[m][n] = signs[m] * signs[n] * slope * by_response[n];
             }
         }
         limit(&mut forces, &mut gradient);
