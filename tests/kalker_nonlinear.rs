@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 use common::cases;
 use roulement::kalker::linear::creep_matrix;
 use roulement::kalker::nonlinear::{Kalker, KalkerError};
+use roulement::kalker::printed;
 use roulement::kalker::{Patch, ScaledCreepage};
 
 /// Mean errors of fx, fy, mz and the largest force error, by kind of case.
@@ -153,4 +154,34 @@ fn full_slip_reaches_the_friction_limit_and_stick_falls_from_one_to_none() {
     let at = |x: f64| kalker.solve(&ScaledCreepage { x, y: 0.0, spin: 0.0, curvature: 0.0 }, None).unwrap();
     assert!(at(1e-4).stick > 0.98 && at(10.0).stick < 0.02);
     assert!(at(10.0).forces.fx > 0.995);
+}
+
+/// The printed objective against the repaired one: what the repair is worth.
+#[test]
+#[ignore = "an experiment of some seconds"]
+fn independent_data_printed_objective_by_degree() {
+    for degree in [1, 3, 5] {
+        let (mut printed, mut repaired, mut count, mut vanishing) = ([0.0; 3], [0.0; 3], 0.0, 0.0);
+        for case in cases().iter().filter(|case| case.kind == "general") {
+            let kalker = Kalker::new(case.patch, degree).unwrap();
+            let (solution, objective) = printed::solve(&kalker, &case.creepage);
+            let reference = kalker.solve(&case.creepage, None).unwrap();
+            for (sum, forces) in [(&mut printed, solution.forces), (&mut repaired, reference.forces)] {
+                for (sum, (ours, expected)) in
+                    sum.iter_mut().zip([forces.fx, forces.fy, forces.mz].into_iter().zip(case.expected))
+                {
+                    *sum += (ours - expected).abs();
+                }
+            }
+            count += 1.0;
+            vanishing += if objective < 1e-9 { 1.0 } else { 0.0 };
+        }
+        let mean = |sum: [f64; 3]| sum.map(|s| s / count);
+        println!(
+            "M = {degree}: printed {:.3?} ({vanishing} of {count} at objective 0), repaired {:.3?}",
+            mean(printed),
+            mean(repaired)
+        );
+        assert!(mean(printed)[0] > mean(repaired)[0] && mean(printed)[2] > mean(repaired)[2]);
+    }
 }

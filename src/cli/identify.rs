@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use roulement::bearing::Bearing;
-use roulement::contact::identification::{Identification, identify};
+use roulement::contact::identification::{identify, identify_by_table};
 use roulement::contact::shape::ContactShape;
 use roulement::kalker::Patch;
 use roulement::kalker::nonlinear::Kalker;
@@ -27,9 +27,9 @@ pub struct Options {
     /// Friction coefficient. The parameters do not depend on it: it drops out of Kalker's scaled creepages.
     #[arg(long)]
     friction: Option<f64>,
-    /// Degree of the nonlinear theory's traction polynomials, 1 to 7.
-    #[arg(long, default_value_t = 5)]
-    degree: usize,
+    /// Fit to the polynomials of this degree, 1 to 7, instead of the table of the nonlinear theory.
+    #[arg(long)]
+    degree: Option<usize>,
     /// Scene file to write: the scene with the parameters in it; without a scene, the section alone.
     #[arg(short, long)]
     output: Option<PathBuf>,
@@ -78,18 +78,24 @@ fn write_parameters(
     section: &mut String,
     race: &str,
     patch: &Patch,
-    degree: usize,
+    degree: Option<usize>,
 ) -> Result<(), Box<dyn Error>> {
-    let kalker = Kalker::new(*patch, degree)?;
-    let found: Identification = identify(patch, |h| kalker.solve(h, None).map(|solution| solution.forces))?;
+    let (found, theory) = match degree {
+        None => (identify_by_table(patch)?, "the table of Kalker's nonlinear theory".to_string()),
+        Some(degree) => {
+            let kalker = Kalker::new(*patch, degree)?;
+            let found = identify(patch, |h| kalker.solve(h, None).map(|solution| solution.forces))?;
+            (found, format!("Kalker's nonlinear theory in polynomials of degree {degree}"))
+        }
+    };
     let [eta, beta, alpha] = found.residuals();
     let list = |values: &[f64]| values.iter().map(|v| format!("{v:.5}")).collect::<Vec<_>>().join(", ");
     let parameters = &found.parameters;
     writeln!(section, "[regularised.{race}]")?;
     writeln!(
         section,
-        "# axis ratio {:.4}, Poisson's ratio {:.3}; fitted to Kalker's nonlinear theory of degree {degree},\n\
-         # 50 spins and 50 lateral creepages; residuals over mu Q (eta) and M_max (beta, alpha)",
+        "# axis ratio {:.4}, Poisson's ratio {:.3}; fitted to\n\
+         # {theory}, 50 spins and 50 lateral creepages; residuals over mu Q (eta) and M_max (beta, alpha)",
         patch.axis_ratio, patch.poisson_ratio
     )?;
     for (name, values, [rms, largest]) in [

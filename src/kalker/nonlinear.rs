@@ -55,24 +55,24 @@ pub enum KalkerError {
 
 /// A point of the elliptical grid.
 #[derive(Clone, Copy, Debug)]
-struct Point {
+pub(super) struct Point {
     x: f64,
     y: f64,
     /// Area on the unit disc.
-    weight: f64,
+    pub(super) weight: f64,
     /// Coulomb's bound over mu p0.
-    bound: f64,
+    pub(super) bound: f64,
 }
 
 /// The problem of one patch: everything that does not depend on the creepages.
 #[derive(Clone, Debug)]
 pub struct Kalker {
     patch: Patch,
-    points: Vec<Point>,
+    pub(super) points: Vec<Point>,
     /// Traction polynomials at the points: one row a point, one column a monomial.
-    values: DMatrix<f64>,
+    pub(super) values: DMatrix<f64>,
     /// Slip at the points by all coefficients: rows x of each point, then y.
-    slips: DMatrix<f64>,
+    pub(super) slips: DMatrix<f64>,
     /// Arguments of the projection at the points by all coefficients: one column each of x and y.
     arguments: DMatrix<f64>,
     edge_square: DMatrix<f64>,
@@ -80,7 +80,7 @@ pub struct Kalker {
     adhesion: DMatrix<f64>,
     /// Net forces over mu Q, mu Q c and mu Q c^2 by all coefficients.
     resultants: DMatrix<f64>,
-    monomials: usize,
+    pub(super) monomials: usize,
 }
 
 /// The solution at one creepage.
@@ -252,7 +252,7 @@ impl Kalker {
     }
 
     /// Traction and slip at every point.
-    fn fields(&self, z: &DVector<f64>, h: &ScaledCreepage) -> Vec<([f64; 2], [f64; 2])> {
+    pub(super) fn fields(&self, z: &DVector<f64>, h: &ScaledCreepage) -> Vec<([f64; 2], [f64; 2])> {
         let n = self.monomials;
         let (fx, fy) = (&self.values * z.rows(0, n), &self.values * z.rows(n, n));
         let elastic = &self.slips * z;
@@ -410,7 +410,7 @@ impl Kalker {
         Err(KalkerError::NoConvergence(*creepage))
     }
 
-    fn finish(&self, z: DVector<f64>, h: &ScaledCreepage, iterations: u32) -> Solution {
+    pub(super) fn finish(&self, z: DVector<f64>, h: &ScaledCreepage, iterations: u32) -> Solution {
         let net = &self.resultants * &z;
         let mut forces = ScaledForces { fx: net[0], fy: net[1], mz: net[2], second_moment: net[3] };
         // A polynomial may overstep the bound by its own error: a sliding contact stays at the friction limit.
