@@ -7,7 +7,7 @@
 //! from the leading edge on, each exactly: sticking if its traction then is below the bound, else sliding along its
 //! traction; sweeps are repeated until nothing changes.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use thiserror::Error;
 
@@ -78,7 +78,8 @@ pub struct HalfSpace {
     cells: Vec<Cell>,
     /// Influences xx, xy and yy by difference of indices, from -(n-1) to n-1 in both.
     influences: [Vec<f32>; 3],
-    n: usize,
+    /// Cells along the axes x and y of the ellipse.
+    n: [usize; 2],
 }
 
 /// The solution at one creepage.
@@ -113,22 +114,30 @@ fn displacement(x: f64, y: f64, (hx, hy): (f64, f64), nu: f64) -> Influence {
 }
 
 impl HalfSpace {
-    /// Prepares a grid of `n` cells across each axis of the ellipse.
+    /// Prepares a grid of `n` cells along each axis of the ellipse.
     ///
     /// # Errors
     /// If patch or grid are out of range.
     pub fn new(patch: &Patch, n: usize) -> Result<Self, HalfSpaceError> {
+        Self::with_cells(patch, [n, n])
+    }
+
+    /// Prepares a grid with its own number of cells along the axes x and y of the ellipse.
+    ///
+    /// # Errors
+    /// If patch or grid are out of range.
+    pub fn with_cells(patch: &Patch, n: [usize; 2]) -> Result<Self, HalfSpaceError> {
         patch.check()?;
-        if !(4..=256).contains(&n) {
-            return Err(HalfSpaceError::Grid(n));
+        if let Some(outside) = n.into_iter().find(|n| !(4..=256).contains(n)) {
+            return Err(HalfSpaceError::Grid(outside));
         }
         let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());
         let (sin, cos) = patch.rolling_angle.sin_cos();
-        let centre = |i: usize| (2.0 * i as f64 + 1.0) / n as f64 - 1.0;
+        let centre = |i: usize, n: usize| (2.0 * i as f64 + 1.0) / n as f64 - 1.0;
         let mut cells = vec![];
-        for i in 0..n {
-            for j in 0..n {
-                let (x, y) = (centre(i), centre(j));
+        for i in 0..n[0] {
+            for j in 0..n[1] {
+                let (x, y) = (centre(i, n[0]), centre(j, n[1]));
                 let square = x * x + y * y;
                 if square < 1.0 {
                     cells.push(Cell { i, j, x: a * x, y: b * y, bound: (1.0 - square).sqrt() });
@@ -139,14 +148,14 @@ impl HalfSpace {
             let along = |cell: &Cell| cell.x * cos + cell.y * sin;
             along(other).total_cmp(&along(one))
         });
-        let half = (a / n as f64, b / n as f64);
+        let half = (a / n[0] as f64, b / n[1] as f64);
         // One cell along rolling: the smaller of the two crossings of a cell.
         let step = (2.0 * half.0 / cos.abs().max(1e-12)).min(2.0 * half.1 / sin.abs().max(1e-12));
         let mut influences = [const { Vec::new() }; 3];
-        for di in 0..2 * n - 1 {
-            for dj in 0..2 * n - 1 {
-                let x = (di as f64 - (n as f64 - 1.0)) * 2.0 * half.0;
-                let y = (dj as f64 - (n as f64 - 1.0)) * 2.0 * half.1;
+        for di in 0..2 * n[0] - 1 {
+            for dj in 0..2 * n[1] - 1 {
+                let x = (di as f64 - (n[0] as f64 - 1.0)) * 2.0 * half.0;
+                let y = (dj as f64 - (n[1] as f64 - 1.0)) * 2.0 * half.1;
                 let here = displacement(x, y, half, patch.poisson_ratio);
                 let upstream = displacement(x + step * cos, y + step * sin, half, patch.poisson_ratio);
                 for (k, list) in influences.iter_mut().enumerate() {
@@ -161,9 +170,9 @@ impl HalfSpace {
     #[inline(always)]
     fn add(&self, slips: &mut Slips, by: &Cell, change: [f64; 2]) {
         let change = change.map(|component| component as f32);
-        let (n, width) = (self.n, 2 * self.n - 1);
-        for i in 0..n {
-            let start = (i + n - 1 - by.i) * width + n - 1 - by.j;
+        let ([rows, n], width) = (self.n, 2 * self.n[1] - 1);
+        for i in 0..rows {
+            let start = (i + rows - 1 - by.i) * width + n - 1 - by.j;
             let [xx, xy, yy] = self.influences.each_ref().map(|list| &list[start..start + n]);
             let row = i * n..(i + 1) * n;
             let (x, y) = (&mut slips.x[row.clone()], &mut slips.y[row]);
@@ -190,10 +199,11 @@ impl HalfSpace {
         let count = self.cells.len();
         let mut tractions = start.map_or_else(|| vec![[0.0; 2]; count], |start| start.tractions.clone());
         let mut sticking = vec![true; count];
-        let centre = (self.n - 1) * (2 * self.n - 1) + self.n - 1;
+        let [rows, n] = self.n;
+        let centre = (rows - 1) * (2 * n - 1) + n - 1;
         // Own influence: a traction along the slip takes slip away.
         let flexibility = [0, 2].map(|k| -f64::from(self.influences[k][centre]));
-        let mut slips = Slips { x: vec![0.0; self.n * self.n], y: vec![0.0; self.n * self.n] };
+        let mut slips = Slips { x: vec![0.0; rows * n], y: vec![0.0; rows * n] };
         for (cell, traction) in self.cells.iter().zip(&tractions) {
             if *traction != [0.0; 2] {
                 self.add(&mut slips, cell, *traction);
@@ -204,7 +214,7 @@ impl HalfSpace {
         for sweep in 1..=MAX_SWEEPS {
             change = 0.0;
             for (index, cell) in self.cells.iter().enumerate() {
-                let (old, place) = (tractions[index], cell.i * self.n + cell.j);
+                let (old, place) = (tractions[index], cell.i * n + cell.j);
                 // slip without the cell's own traction
                 let slip = [
                     creepage.x - (creepage.spin + creepage.curvature * cell.y) * cell.y
@@ -283,15 +293,32 @@ pub fn extrapolated(
     creepage: &ScaledCreepage,
     n: usize,
 ) -> Result<ScaledForces, HalfSpaceError> {
+    let [x, y] = cells(patch, n);
     let [coarse, fine] = [
-        HalfSpace::new(patch, n)?.solve(creepage, None)?,
-        HalfSpace::new(patch, 2 * n)?.solve(creepage, None)?,
+        HalfSpace::with_cells(patch, [x, y])?.solve(creepage, None)?,
+        HalfSpace::with_cells(patch, [2 * x, 2 * y])?.solve(creepage, None)?,
     ];
-    let limit = |coarse: f64, fine: f64| 2.0 * fine - coarse;
-    Ok(ScaledForces {
-        fx: limit(coarse.forces.fx, fine.forces.fx),
-        fy: limit(coarse.forces.fy, fine.forces.fy),
-        mz: limit(coarse.forces.mz, fine.forces.mz),
-        second_moment: limit(coarse.forces.second_moment, fine.forces.second_moment),
-    })
+    Ok(limit(&coarse, &fine))
+}
+
+/// Cells along the axes of an ellipse, about `n * n` in all. An ellipse that is long along rolling gets more cells along
+/// it, as tractions grow fast from its leading edge.
+pub fn cells(patch: &Patch, n: usize) -> [usize; 2] {
+    let along_x = patch.rolling_angle.cos().abs() > FRAC_1_SQRT_2;
+    let along = if along_x { patch.axis_ratio } else { 1.0 / patch.axis_ratio };
+    let stretch = along.max(1.0).powf(0.25);
+    let (along, across) = (n as f64 * stretch, n as f64 / stretch);
+    let cells = [along, across].map(|count| count.round() as usize);
+    if along_x { cells } else { [cells[1], cells[0]] }
+}
+
+/// Forces at zero cell size from those of a grid and of one of half its cell size.
+pub fn limit(coarse: &Tractions, fine: &Tractions) -> ScaledForces {
+    let limit = |get: fn(&ScaledForces) -> f64| 2.0 * get(&fine.forces) - get(&coarse.forces);
+    ScaledForces {
+        fx: limit(|f| f.fx),
+        fy: limit(|f| f.fy),
+        mz: limit(|f| f.mz),
+        second_moment: limit(|f| f.second_moment),
+    }
 }

@@ -15,7 +15,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
 
-use super::half_space::{HalfSpace, HalfSpaceError, Tractions};
+use super::half_space::{HalfSpace, HalfSpaceError, Tractions, cells, limit};
 use super::linear::{LinearError, Scales};
 use super::{Patch, ScaledCreepage};
 
@@ -25,8 +25,9 @@ pub const SHAPE: [usize; 3] = [12, 10, 16];
 pub const RATIOS: usize = 12;
 /// Poisson's ratio of the table.
 pub const POISSON: f64 = 0.3;
-/// Cells across the ellipse of the coarser grid.
-const CELLS: usize = 16;
+/// Cells along an axis of the ellipse of the coarser grid; more where spin and lateral creepage act alike, on ellipses
+/// that are as long along rolling as across or longer.
+const CELLS: [usize; 2] = [16, 20];
 /// [-] size |q| in the middle between rest and sliding.
 const MIDDLE: f64 = 1.5;
 /// [rad] distance from an axis or plane of symmetry at which its limits are taken: near enough for an error below
@@ -92,7 +93,9 @@ pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
     let patch = Patch { axis_ratio, poisson_ratio: POISSON, rolling_angle: 0.0 };
     let scales = Scales::new(&patch)?;
     let stretch = Stretch::new(axis_ratio, &scales);
-    let (coarse, fine) = (HalfSpace::new(&patch, CELLS)?, HalfSpace::new(&patch, 2 * CELLS)?);
+    let [x, y] = cells(&patch, CELLS[usize::from(axis_ratio > 0.99)]);
+    let coarse = HalfSpace::with_cells(&patch, [x, y])?;
+    let fine = HalfSpace::with_cells(&patch, [2 * x, 2 * y])?;
     let mut nodes = vec![[0.0; 3]; NODES];
     let index = |i: usize, j: usize, k: usize| (i * (SHAPE[1] + 1) + j) * SHAPE[2] + k;
     for j in 0..=SHAPE[1] {
@@ -117,11 +120,11 @@ pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
                     coarse.solve(&creepage, starts[0].as_ref())?,
                     fine.solve(&creepage, starts[1].as_ref())?,
                 ];
-                let limit = |get: fn(&Tractions) -> f64| (2.0 * get(&solutions[1]) - get(&solutions[0])) / t;
+                let forces = limit(&solutions[0], &solutions[1]);
                 nodes[index(i, j, k)] = [
-                    limit(|s| s.forces.fx) / theta.cos(),
-                    limit(|s| s.forces.fy) / theta.sin(),
-                    limit(|s| s.forces.mz) / (scales.moment * theta.sin()),
+                    forces.fx / (t * theta.cos()),
+                    forces.fy / (t * theta.sin()),
+                    forces.mz / (scales.moment * t * theta.sin()),
                 ];
                 starts = solutions.map(Some);
             }
@@ -350,13 +353,13 @@ impl CreepTable {
                 gradient[m][n] = signs[m] * signs[n] * slope * by_response[n];
             }
         }
-        limit(&mut forces, &mut gradient);
+        within_limits(&mut forces, &mut gradient);
         (forces, gradient)
     }
 }
 
 /// Keeps the tangential force within the friction limit and the moment within its own, with the gradient.
-fn limit(forces: &mut [f64; 3], gradient: &mut [[f64; 3]; 3]) {
+fn within_limits(forces: &mut [f64; 3], gradient: &mut [[f64; 3]; 3]) {
     let size = forces[0].hypot(forces[1]);
     if size > 1.0 {
         let direction = [forces[0] / size, forces[1] / size];
