@@ -15,7 +15,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
 
-use super::half_space::{HalfSpace, HalfSpaceError, Tractions, cells, limit};
+use super::half_space::{HalfSpace, HalfSpaceError, Tractions, limit};
 use super::linear::{LinearError, Scales};
 use super::{Patch, ScaledCreepage};
 
@@ -25,9 +25,8 @@ pub const SHAPE: [usize; 3] = [12, 10, 16];
 pub const RATIOS: usize = 12;
 /// Poisson's ratio of the table.
 pub const POISSON: f64 = 0.3;
-/// Cells along an axis of the ellipse of the coarser grid; more where spin and lateral creepage act alike, on ellipses
-/// that are as long along rolling as across or longer.
-const CELLS: [usize; 2] = [16, 20];
+/// Cells along both axes of the ellipse of the coarser grid.
+const CELLS: usize = 16;
 /// [-] size |q| in the middle between rest and sliding.
 const MIDDLE: f64 = 1.5;
 /// [rad] distance from an axis or plane of symmetry at which its limits are taken: near enough for an error below
@@ -93,9 +92,7 @@ pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
     let patch = Patch { axis_ratio, poisson_ratio: POISSON, rolling_angle: 0.0 };
     let scales = Scales::new(&patch)?;
     let stretch = Stretch::new(axis_ratio, &scales);
-    let [x, y] = cells(&patch, CELLS[usize::from(axis_ratio > 0.99)]);
-    let coarse = HalfSpace::with_cells(&patch, [x, y])?;
-    let fine = HalfSpace::with_cells(&patch, [2 * x, 2 * y])?;
+    let (coarse, fine) = (HalfSpace::new(&patch, CELLS)?, HalfSpace::new(&patch, 2 * CELLS)?);
     let mut nodes = vec![[0.0; 3]; NODES];
     let index = |i: usize, j: usize, k: usize| (i * (SHAPE[1] + 1) + j) * SHAPE[2] + k;
     for j in 0..=SHAPE[1] {
@@ -155,23 +152,19 @@ pub struct CreepTable {
 /// Padded sizes: one node more on each side in t and theta, one before and two behind in phi.
 const PADDED: [usize; 3] = [SHAPE[0] + 3, SHAPE[1] + 3, SHAPE[2] + 3];
 
-/// Weights and their slopes of the cubic Hermite piece with central differences at `u` in [0, 1].
+/// Weights and their slopes of the cubic Hermite piece at `u` in [0, 1], whose slopes at the nodes are central
+/// differences times `steepness`.
 #[inline(always)]
-fn weights(u: f64) -> ([f64; 4], [f64; 4]) {
+fn weights(u: f64, steepness: f64) -> ([f64; 4], [f64; 4]) {
     let (u2, u3) = (u * u, u * u * u);
+    let step = 3.0 * u2 - 2.0 * u3;
+    let (first, last) = (0.5 * steepness * (u3 - 2.0 * u2 + u), 0.5 * steepness * (u3 - u2));
+    let step_slope = 6.0 * (u - u2);
+    let first_slope = 0.5 * steepness * (3.0 * u2 - 4.0 * u + 1.0);
+    let last_slope = 0.5 * steepness * (3.0 * u2 - 2.0 * u);
     (
-        [
-            0.5 * (-u3 + 2.0 * u2 - u),
-            0.5 * (3.0 * u3 - 5.0 * u2 + 2.0),
-            0.5 * (-3.0 * u3 + 4.0 * u2 + u),
-            0.5 * (u3 - u2),
-        ],
-        [
-            0.5 * (-3.0 * u2 + 4.0 * u - 1.0),
-            0.5 * (9.0 * u2 - 10.0 * u),
-            0.5 * (-9.0 * u2 + 8.0 * u + 1.0),
-            0.5 * (3.0 * u2 - 2.0 * u),
-        ],
+        [-first, 1.0 - step - last, step + first, last],
+        [-first_slope, -step_slope - last_slope, step_slope + first_slope, last_slope],
     )
 }
 
@@ -200,7 +193,7 @@ impl CreepTable {
         // cubic in ln(axis ratio) between the knots
         let position = (patch.axis_ratio / 0.05).ln() / (20f64 / 0.05).ln() * RATIOS as f64;
         let (piece, u) = locate(position.clamp(0.0, RATIOS as f64), RATIOS);
-        let (w, _) = weights(u);
+        let (w, _) = weights(u, 1.0);
         let mut nodes = vec![[0.0; 3]; NODES];
         for (offset, weight) in w.into_iter().enumerate() {
             let mut add = |knot: usize, weight: f64| {
@@ -232,11 +225,8 @@ impl CreepTable {
         let coupling = [scales.c23 * scales.moment / scales.c33, -scales.c23 / (scales.c22 * scales.moment)];
         let (n_t, n_theta, n_phi) = (SHAPE[0] as isize, SHAPE[1] as isize, SHAPE[2] as isize);
         let at = |i: isize, j: isize, k: isize| -> [f64; 3] {
-            // mirror about the plane x = 0; beyond the x axis phi is on the other side
-            let (mut j, mut k) = (if j > n_theta { 2 * n_theta - j } else { j }, k);
-            if j < 0 {
-                (j, k) = (-j, k + n_phi);
-            }
+            // Mirror about the plane x = 0, and through the x axis: what is stored is even in theta.
+            let j = if j > n_theta { 2 * n_theta - j } else { j.abs() };
             // half a turn in phi changes the sign of what is odd in (y, spin)
             let turns = k.div_euclid(n_phi);
             let sign = if turns.rem_euclid(2) == 1 { -1.0 } else { 1.0 };
@@ -303,7 +293,12 @@ impl CreepTable {
         let (i, u) = locate(t * density[0], SHAPE[0]);
         let (j, v) = locate(theta * density[1], SHAPE[1]);
         let (k, w) = locate(phi * density[2], SHAPE[2]);
-        let ((wt, dt), (wv, dv), (ww, dw)) = (weights(u), weights(v), weights(w));
+        let ((wt, dt), (wv, dv)) = (weights(u, 1.0), weights(v, 1.0));
+        // f_y and m_z go like sines and cosines of phi: with this steepness their slopes are exact, and the force is
+        // smooth across the x axis, where all phi meet.
+        let step = PI / SHAPE[2] as f64;
+        let (even, odd) = (weights(w, 1.0), weights(w, step / step.sin()));
+        let (ww, dw) = ([even.0, odd.0, odd.0], [even.1, odd.1, odd.1]);
 
         // value and slopes of the three stored functions
         let (mut value, mut by_t, mut by_theta, mut by_phi) = ([0.0; 3], [0.0; 3], [0.0; 3], [0.0; 3]);
@@ -313,8 +308,8 @@ impl CreepTable {
                 let (mut line, mut slope) = ([0.0; 3], [0.0; 3]);
                 for (c, node) in self.nodes[row..row + 4].iter().enumerate() {
                     for m in 0..3 {
-                        line[m] += ww[c] * node[m];
-                        slope[m] += dw[c] * node[m];
+                        line[m] += ww[m][c] * node[m];
+                        slope[m] += dw[m][c] * node[m];
                     }
                 }
                 for m in 0..3 {
