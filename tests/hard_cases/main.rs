@@ -1,0 +1,12 @@
+//! Hard cases: each tries to break the model; its physics and the gates of `gates.rs` are the assertion.
+//!
+//! `cargo test --release --test hard_cases -- --nocapture --test-threads 1 | grep '^|'` prints the figures of
+//! `docs/stability.md`.
+#![allow(clippy::unwrap_used)]
+
+mod gates;
+mod scenes;
+mod start_and_stop;
+mod contact_loss;
+mod friction;
+mod loads;
