@@ -4,7 +4,10 @@
 //! `docs/stability.md`.
 #![allow(clippy::unwrap_used)]
 
+mod communication;
+mod extremes;
 mod gates;
+mod random;
 mod scenes;
 mod start_and_stop;
 mod contact_loss;

@@ -2,7 +2,7 @@
 
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 
-use crate::gates::Case;
+use crate::gates::{Case, limits};
 use crate::scenes::{ANGULAR, GROOVE, load, scene};
 
 /// [rad/s] of 1 rpm.
@@ -15,7 +15,7 @@ fn ramp(points: &str, rows: &str, milliseconds: f64) -> String {
 #[test]
 fn start_from_rest() {
     let changes = ramp("[[0.0, 0.0], [0.02, \"6000 rpm\"]]", "x = { force = 1500.0 }", 30.0);
-    let case = Case::new("start from rest in 20 ms", scene(ANGULAR, &changes), [4e3, 100.0, 10.0, 3.0]);
+    let case = Case::new("start from rest in 20 ms", scene(ANGULAR, &changes), limits(4000, 100, 10, 3.0));
     let run = case.pass();
     assert_eq!(run.history[0].cage_speed, 0.0);
     assert!(run.last().cage_slip.abs() < 0.02, "{}", run.last().cage_slip);
@@ -27,7 +27,7 @@ fn start_from_rest() {
 #[test]
 fn start_with_the_race_at_full_speed_and_the_balls_at_rest() {
     let changes = ramp("[[0.0, 0.0], [1e-6, \"6000 rpm\"]]", "x = { force = 1500.0 }\noutput_interval = \"50 us\"", 20.0);
-    let case = Case::new("race at 6000 rpm within 50 us, balls at rest", scene(ANGULAR, &changes), [4e3, 100.0, 10.0, 3.0]);
+    let case = Case::new("race at 6000 rpm within 50 us, balls at rest", scene(ANGULAR, &changes), limits(4000, 100, 10, 3.0));
     let run = case.pass();
     assert!(run.last().cage_slip.abs() < 0.02, "{}", run.last().cage_slip);
 }
@@ -39,7 +39,7 @@ fn standstill_under_load() {
         ("standstill, radial load", GROOVE, "y = { force = 1500.0 }\nx = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }"),
     ] {
         let scene = scene(base, &load(50.0, 0.0, rows));
-        let case = Case::new(name, scene, [6e3, 10.0, 10.0, 3.0]);
+        let case = Case::new(name, scene, limits(6000, 10, 10, 3.0));
         let run = case.pass();
         let (first, last) = (&run.history[0], run.last());
         println!("{:e} {:e} {:e}", last.stored_energy - first.stored_energy, last.work, last.dissipated);
@@ -56,7 +56,7 @@ fn speed_reversal() {
     let run = |sign: f64| {
         let points = format!("[[0.0, {}], [0.01, {}], [0.03, {}]]", sign * 6000.0 * RPM, sign * 6000.0 * RPM, -sign * 6000.0 * RPM);
         let changes = ramp(&points, "x = { force = 1500.0 }", 40.0);
-        Case::new(if sign > 0.0 {"reversal from 6000 to -6000 rpm in 20 ms"} else {"reversal from -6000 to 6000 rpm in 20 ms"}, scene(ANGULAR, &changes), [6e3, 100.0, 10.0, 3.0]).pass()
+        Case::new(if sign > 0.0 {"reversal from 6000 to -6000 rpm in 20 ms"} else {"reversal from -6000 to 6000 rpm in 20 ms"}, scene(ANGULAR, &changes), limits(6000, 100, 10, 3.0)).pass()
     };
     let (forward, backward) = (run(1.0), run(-1.0));
     for (a, b) in forward.history.iter().zip(&backward.history) {
@@ -70,7 +70,7 @@ fn speed_reversal() {
 fn fast_and_slow() {
     for (name, rpm, duration) in [("30000 rpm", 30000.0, 20.0), ("0.01 rpm", 0.01, 200.0)] {
         let scene = scene(ANGULAR, &load(duration, rpm, "x = { force = 1500.0 }"));
-        let case = Case::new(name, scene, [4e4, 100.0, 10.0, 9.0]);
+        let case = Case::new(name, scene, limits(40000, 100, 10, 9.0));
         let run = case.pass();
         let last = run.last();
         println!("{} {}", last.cage_slip, last.cage_speed);
