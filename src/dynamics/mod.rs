@@ -425,18 +425,24 @@ fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep,
     }
     state.energies.add(&state.powers, &powers, step.h);
     state.powers = powers;
-    state.force_tolerance = force_tolerance(workspace.balls.iter().flat_map(|ball| &ball.contacts), model);
+    let contacts = workspace.balls.iter().flat_map(|ball| &ball.contacts);
+    state.force_tolerance = force_tolerance(contacts, reach(model, state));
+}
+
+/// [m] largest coordinate of a ball to expect: its last digit is what contacts cannot resolve.
+fn reach(model: &Model, state: &State) -> f64 {
+    state.races.iter().fold(0.0f64, |far, race| far.max(race.pose.position.amax())) + model.race_length()
 }
 
 /// [N] residual below which nothing but rounding remains: nine digits of the largest load, or a last digit of a
 /// coordinate times the stiffness `dQ/dx` of the stiffest contact.
-fn force_tolerance<'a>(contacts: impl Iterator<Item = &'a BallRaceContact<f64>>, model: &Model) -> f64 {
+fn force_tolerance<'a>(contacts: impl Iterator<Item = &'a BallRaceContact<f64>>, reach: f64) -> f64 {
     let (mut load, mut stiffness) = (0.0f64, 0.0f64);
     for contact in contacts {
         load = load.max(contact.load);
         stiffness = stiffness.max(1.5 * contact.stiffness.powf(2.0 / 3.0) * contact.load.cbrt());
     }
-    let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness * 0.5 * model.bearing.pitch_diameter;
+    let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness * reach;
     FORCE_TOLERANCE.max(RELATIVE_TOLERANCE * load).max(round_off)
 }
 
@@ -502,5 +508,5 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
         };
     }
     state.powers = powers;
-    state.force_tolerance = force_tolerance(all_contacts.iter(), model);
+    state.force_tolerance = force_tolerance(all_contacts.iter(), reach(model, state));
 }

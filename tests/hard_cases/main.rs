@@ -5,7 +5,10 @@
 #![allow(clippy::unwrap_used)]
 
 mod communication;
+mod creep_laws;
+mod equilibrium_scenes;
 mod extremes;
+mod free_oscillation;
 mod gates;
 mod random;
 mod scenes;
