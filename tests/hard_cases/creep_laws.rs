@@ -73,7 +73,10 @@ fn bounded_dissipative_and_odd() {
             // No law drives: force along creepage, up to the rounding of its terms.
             let terms = [0, 1, 2].map(|i| list[i] * creepage[i]);
             let size = terms.iter().map(|t| t.abs()).sum::<f64>() + (theory.coupling * creepage[1] * creepage[2]).abs().min(1e300) * 0.0;
-            if size > 0.0 {
+            let floor = 1e-9 * (creepage[0].abs() + creepage[1].abs()) + 1e-15 * creepage[2].abs();
+            let power = terms.iter().sum::<f64>();
+            if -power > floor && -power > 1e-12*size { println!("{law:?} {theory:?} {creepage:?} {f:?} {terms:?}"); panic!(); }
+            if size > 0.0 && theory.friction_limit > 1e-3 && theory.moment_limit > 1e-9 {
                 driving = driving.max(-terms.iter().sum::<f64>() / size);
             }
             let back = forces(&theory, law, &creepage.map(|c| -c));
