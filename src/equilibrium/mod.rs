@@ -207,8 +207,7 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
 
     let mut places: Option<Vec<Place>> = None;
     let reference = |trial: &Trial| applied.max(inertia_force).max(smallest).max(trial.inner_load_sum);
-    let residual_of = |trial: &Trial| {
-        let scale = reference(trial);
+    let residual_over = |trial: &Trial, scale: f64, weight: f64| {
         let mut residual = SharedVector::zeros();
         for i in 0..5 {
             if let Prescribed::Load(load) = input.conditions[i] {
@@ -216,10 +215,13 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
             }
         }
         if speed_scale > 0.0 {
-            residual[5] = trial.cage_excess / (speed_scale * trial.inner_load_sum.max(1e-9 * smallest));
+            residual[5] = trial.cage_excess / (speed_scale * weight);
         }
         residual
     };
+    // What has to vanish: over the forces at work, the cage speed over the load that it is weighted with.
+    let residual_of =
+        |trial: &Trial| residual_over(trial, reference(trial), trial.inner_load_sum.max(1e-9 * smallest));
     let evaluate = |unknowns: &SharedVector, places: &Option<Vec<Place>>| {
         let tolerance = 0.01 * TOLERANCE * applied.max(inertia_force).max(smallest);
         evaluate(model, input, unknowns, places.as_deref(), tolerance)
@@ -242,11 +244,15 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
             let unknowns = unknowns + step;
             evaluate(&unknowns, &places).ok().map(|trial| (unknowns, trial))
         });
+        // What has to fall is measured with one scale: over its own forces, a race that has to let go of its balls would
+        // seem further from balance the less it carries.
+        let scale = reference(&here);
+        let merit = |trial: &Trial| residual_over(trial, scale, scale).norm();
         let accepted = trial.filter(|(_, trial)| {
             // A race that touches nothing yet moves without its residual falling.
             let touches = |trial: &Trial| trial.inner_load_sum > 1e-9 * reference(trial);
             let untouched = !touches(&here) && !touches(trial);
-            untouched || residual_of(trial).norm() < residual.norm() * (1.0 - 1e-6)
+            untouched || merit(trial) < merit(&here) * (1.0 - 1e-6)
         });
         match accepted {
             Some((moved, trial)) => {

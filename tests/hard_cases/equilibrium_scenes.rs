@@ -163,6 +163,7 @@ fn residual(scene: &Scene, solution: &Equilibrium, input: &EquilibriumInput) -> 
             + o.normal.cross(&tangential) * friction
             + o.radial * (mass * wc * wc * rho);
         let balance = on_ball - tangential * on_ball.dot(&tangential);
+        if balance.norm() > 1e-6 * (i.load + o.load) { println!("   ball off {:e}: {:?} {:?} angles {} {}", balance.norm(), i.load, o.load, ball.report.inner_contact_angle.to_degrees(), ball.report.outer_contact_angle.to_degrees()); println!("   {} {}", ball.report.inner_load, ball.report.outer_load); }
         worst = worst.max(balance.norm());
         // No slip along the orbit at the outer race.
         let surface = tangential * (wc * rho) + ball.angular_velocity.cross(&(o.normal * radius));
