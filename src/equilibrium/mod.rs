@@ -7,6 +7,8 @@
 mod ball;
 mod report;
 
+use std::f64::consts::FRAC_PI_2;
+
 use nalgebra::{Matrix2, SMatrix, SVector, UnitQuaternion, Vector3};
 use thiserror::Error;
 
@@ -110,6 +112,19 @@ pub enum EquilibriumError {
         load: f64,
         /// [-] largest approach over ball diameter.
         limit: f64,
+    },
+    /// A contact lies where no groove is.
+    #[error(
+        "ball {ball} would touch the {race} race at a contact angle of {angle:.3} rad: beyond a right angle there is no \
+         groove; the displacement or the tilt is too large"
+    )]
+    LeftGroove {
+        /// Ball, counted from 1.
+        ball: usize,
+        /// Inner or outer.
+        race: &'static str,
+        /// [rad] contact angle.
+        angle: f64,
     },
     /// The displacements do not converge.
     #[error(
@@ -285,6 +300,15 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
         let (approach, load) = (b.inner_approach.max(b.outer_approach), b.inner_load.max(b.outer_load));
         if approach > MAX_APPROACH * diameter {
             return Err(EquilibriumError::Overload { ball: index + 1, approach, load, limit: MAX_APPROACH });
+        }
+        let contacts = [
+            ("inner", b.inner_load, b.inner_contact_angle),
+            ("outer", b.outer_load, b.outer_contact_angle),
+        ];
+        for (race, load, angle) in contacts {
+            if load > 0.0 && angle.abs() > FRAC_PI_2 {
+                return Err(EquilibriumError::LeftGroove { ball: index + 1, race, angle });
+            }
         }
     }
     Ok(solution)

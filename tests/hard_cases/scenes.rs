@@ -45,3 +45,20 @@ pub fn scene(base: &str, changes: &str) -> Scene {
 pub fn load(milliseconds: f64, rpm: f64, rows: &str) -> String {
     format!("[load]\nduration = \"{milliseconds} ms\"\ninner_speed = \"{rpm} rpm\"\n{rows}\n")
 }
+
+/// Section `[load]` as [`load`], the inner race's speed a table.
+pub fn ramp(milliseconds: f64, speed: &str, rows: &str) -> String {
+    format!("[load]\nduration = \"{milliseconds} ms\"\ninner_speed = {speed}\n{rows}\n")
+}
+
+/// Axial motion and tilt held at 0: what a deep-groove bearing under radial load leaves loose.
+pub const FLAT: &str = "x = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";
+
+/// The deep-groove bearing with another diametral clearance [um] and conformity.
+pub fn groove(micrometres: f64, conformity: f64) -> String {
+    format!(
+        "[bearing]\nballs = 9\nball_diameter = \"9.525 mm\"\npitch_diameter = \"46 mm\"\n\
+         diametral_clearance = \"{micrometres} um\"\ninner_conformity = {conformity}\n\
+         outer_conformity = {conformity}\n"
+    )
+}

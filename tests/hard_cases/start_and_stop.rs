@@ -2,20 +2,15 @@
 
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 
-use crate::gates::{Case, limits};
-use crate::scenes::{ANGULAR, GROOVE, load, scene};
+use crate::gates::{Case, Run, limits};
+use crate::scenes::{ANGULAR, FLAT, GROOVE, load, ramp, scene};
 
-/// [rad/s] of 1 rpm.
-const RPM: f64 = std::f64::consts::TAU / 60.0;
-
-fn ramp(points: &str, rows: &str, milliseconds: f64) -> String {
-    format!("[load]\nduration = \"{milliseconds} ms\"\ninner_speed = {points}\n{rows}\n")
-}
+const THRUST: &str = "x = { force = 1500.0 }\n";
 
 #[test]
-fn start_from_rest() {
-    let changes = ramp("[[0.0, 0.0], [0.02, \"6000 rpm\"]]", "x = { force = 1500.0 }", 30.0);
-    let case = Case::new("start from rest in 20 ms", scene(ANGULAR, &changes), limits(4000, 100, 10, 3.0));
+fn from_rest() {
+    let changes = ramp(30.0, "[[0.0, 0.0], [0.02, \"6000 rpm\"]]", THRUST);
+    let case = Case::new("start from rest in 20 ms", scene(ANGULAR, &changes), limits(3300, 5, 0, 1.5));
     let run = case.pass();
     assert_eq!(run.history[0].cage_speed, 0.0);
     assert!(run.last().cage_slip.abs() < 0.02, "{}", run.last().cage_slip);
@@ -25,60 +20,71 @@ fn start_from_rest() {
 }
 
 #[test]
-fn start_with_the_race_at_full_speed_and_the_balls_at_rest() {
-    let changes = ramp("[[0.0, 0.0], [1e-6, \"6000 rpm\"]]", "x = { force = 1500.0 }\noutput_interval = \"50 us\"", 20.0);
-    let case = Case::new("race at 6000 rpm within 50 us, balls at rest", scene(ANGULAR, &changes), limits(4000, 100, 10, 3.0));
-    let run = case.pass();
-    assert!(run.last().cage_slip.abs() < 0.02, "{}", run.last().cage_slip);
+fn race_at_full_speed_and_balls_at_rest() {
+    let rows = format!("{THRUST}output_interval = \"50 us\"");
+    let changes = ramp(20.0, "[[0.0, 0.0], [1e-6, \"6000 rpm\"]]", &rows);
+    let name = "race from rest to 6000 rpm in 50 us";
+    let run = Case::new(name, scene(ANGULAR, &changes), limits(2300, 15, 40, 3.0)).pass();
+    // Complete sliding at first; then the balls roll.
+    assert!(run.history[2].cage_slip > 0.5 && run.last().cage_slip.abs() < 0.02);
 }
 
 #[test]
-fn standstill_under_load() {
+fn standstill() {
+    let combined = "x = { force = 1500.0 }\ny = { force = 400.0 }\nrz = { moment = 3.0 }\n".to_string();
     for (name, base, rows) in [
-        ("standstill, thrust, radial load and moment", ANGULAR, "x = { force = 1500.0 }\ny = { force = 400.0 }\nrz = { moment = 3.0 }"),
-        ("standstill, radial load", GROOVE, "y = { force = 1500.0 }\nx = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }"),
+        ("standstill under thrust, radial load and moment", ANGULAR, combined),
+        ("standstill under radial load", GROOVE, format!("y = {{ force = 1500.0 }}\n{FLAT}")),
     ] {
-        let scene = scene(base, &load(50.0, 0.0, rows));
-        let case = Case::new(name, scene, limits(6000, 10, 10, 3.0));
-        let run = case.pass();
+        let run = Case::new(name, scene(base, &load(50.0, 0.0, &rows)), limits(5500, 5, 60, 2.0)).pass();
         let (first, last) = (&run.history[0], run.last());
-        println!("{:e} {:e} {:e}", last.stored_energy - first.stored_energy, last.work, last.dissipated);
-        let moved = (last.inner.pose.position - first.inner.pose.position).norm();
-        println!("moved {moved:e}");
+        let largest = first.balls.iter().map(|ball| ball.inner.load).fold(0.0, f64::max);
         for (a, b) in first.balls.iter().zip(&last.balls) {
-            println!("{:e} {:e} {:e} | {} {}", (a.position-b.position).norm(), b.angular_velocity.norm(), b.orbital_speed, a.inner.load, b.inner.load);
+            // What remains is creep at the regularisation speed: micrometres per second.
+            assert!((a.position - b.position).norm() < 5e-9 && b.angular_velocity.norm() < 2e-4, "{b:?}");
+            assert!((a.inner.load - b.inner.load).abs() < 5e-4 * largest);
         }
     }
 }
 
 #[test]
 fn speed_reversal() {
-    let run = |sign: f64| {
-        let points = format!("[[0.0, {}], [0.01, {}], [0.03, {}]]", sign * 6000.0 * RPM, sign * 6000.0 * RPM, -sign * 6000.0 * RPM);
-        let changes = ramp(&points, "x = { force = 1500.0 }", 40.0);
-        Case::new(if sign > 0.0 {"reversal from 6000 to -6000 rpm in 20 ms"} else {"reversal from -6000 to 6000 rpm in 20 ms"}, scene(ANGULAR, &changes), limits(6000, 100, 10, 3.0)).pass()
+    let reverse = |name: &str, rpm: f64| -> Run {
+        let points = format!("[[0.0, \"{rpm} rpm\"], [0.01, \"{rpm} rpm\"], [0.03, \"{} rpm\"]]", -rpm);
+        Case::new(name, scene(ANGULAR, &ramp(40.0, &points, THRUST)), limits(4400, 5, 5, 2.0)).pass()
     };
-    let (forward, backward) = (run(1.0), run(-1.0));
+    let forward = reverse("speed from 6000 to -6000 rpm in 20 ms", 6000.0);
+    let backward = reverse("speed from -6000 to 6000 rpm in 20 ms", -6000.0);
+    // One is the mirror image of the other.
     for (a, b) in forward.history.iter().zip(&backward.history) {
-        assert!((a.cage_speed + b.cage_speed).abs() < 1e-6 * (1.0 + a.cage_speed.abs()), "{} {}", a.cage_speed, b.cage_speed);
-        assert!((a.friction_power - b.friction_power).abs() < 1e-6 * (1e-3 + a.friction_power), "{} {}", a.friction_power, b.friction_power);
+        assert!((a.cage_speed + b.cage_speed).abs() < 1e-6 * (1.0 + a.cage_speed.abs()));
+        assert!((a.friction_power - b.friction_power).abs() < 1e-6 * (1e-3 + a.friction_power));
     }
-    assert!(forward.last().cage_slip.abs() < 0.02);
+    assert!(forward.last().cage_slip.abs() < 0.02 && forward.last().cage_speed < 0.0);
 }
 
 #[test]
-fn fast_and_slow() {
-    for (name, rpm, duration) in [("30000 rpm", 30000.0, 20.0), ("0.01 rpm", 0.01, 200.0)] {
-        let scene = scene(ANGULAR, &load(duration, rpm, "x = { force = 1500.0 }"));
-        let case = Case::new(name, scene, limits(40000, 100, 10, 9.0));
-        let run = case.pass();
-        let last = run.last();
-        println!("{} {}", last.cage_slip, last.cage_speed);
-        for gyroscopic in [Gyroscopic::None, Gyroscopic::OuterRaceControl, Gyroscopic::Friction] {
-            let input = EquilibriumInput::from_scene(run.simulation.scene(), gyroscopic);
-            let e = equilibrium::solve(run.simulation.model(), &input).unwrap();
-            println!("{} {} {}", e.cage_speed, e.balls[0].report.inner_load, e.balls[0].report.outer_load);
-        }
-        println!("{} {} {}", last.cage_speed, last.balls[0].inner.load, last.balls[0].outer.load);
-    }
+fn very_fast() {
+    let scene = scene(ANGULAR, &load(20.0, 30_000.0, THRUST));
+    let run = Case::new("30,000 rpm", scene, limits(2700, 5, 5, 4.5)).pass();
+    // Centrifugal force and gyroscopic moment put the loads between those of both quasi-static hypotheses, within what
+    // friction carries of the thrust.
+    let solve = |gyroscopic| {
+        let input = EquilibriumInput::from_scene(run.simulation.scene(), gyroscopic);
+        equilibrium::solve(run.simulation.model(), &input).unwrap().balls[0].report.outer_load
+    };
+    let (none, control) = (solve(Gyroscopic::None), solve(Gyroscopic::OuterRaceControl));
+    let outer = run.last().balls[0].outer.load;
+    let band = (none - control).abs();
+    assert!((outer - none).abs() < band + 0.03 * none, "{outer} {none} {control}");
+}
+
+#[test]
+fn very_slow() {
+    let scene = scene(ANGULAR, &load(50.0, 0.01, THRUST));
+    let run = Case::new("0.01 rpm", scene, limits(5500, 5, 30, 1.5)).pass();
+    // Far below the regularisation speed, and still rolling without slip.
+    assert!(run.last().cage_slip.abs() < 1e-4, "{}", run.last().cage_slip);
+    let (start, end) = (&run.history[0].balls[0], &run.last().balls[0]);
+    assert!((start.inner.load / end.inner.load - 1.0).abs() < 1e-4);
 }
