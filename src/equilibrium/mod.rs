@@ -28,7 +28,7 @@ const TOLERANCE: f64 = 1e-11;
 /// Iterations on the displacements; a typical solve takes 5 to 15.
 const MAX_ITERATIONS: u32 = 400;
 /// [-] largest approach over ball diameter of an answer; steel yields at a tenth of that.
-const MAX_APPROACH: f64 = 0.02;
+pub const MAX_APPROACH: f64 = 0.02;
 /// Names of the five directions.
 const DIRECTION_NAMES: [&str; 5] = ["x", "y", "z", "ry", "rz"];
 

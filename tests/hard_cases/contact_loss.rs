@@ -5,34 +5,44 @@ use roulement::inputs::Inputs;
 use roulement::outputs::Outputs;
 use roulement::simulation::Simulation;
 
-use crate::gates::{Case, limits};
+use crate::gates::{Case, Limits, limits};
 use crate::scenes::{ANGULAR, FLAT, GROOVE, groove, load, scene};
+
+/// 1500 N radially on a bearing with clearance.
+fn loose(name: &str, micrometres: f64, conformity: f64, rpm: f64, milliseconds: f64, limit: Limits) {
+    let rows = format!("y = {{ force = 1500.0 }}\n{FLAT}");
+    let scene = scene(GROOVE, &(groove(micrometres, conformity) + &load(milliseconds, rpm, &rows)));
+    let run = Case::new(name, scene, limit).pass();
+    let ball = run.simulation.model().bearing.ball;
+    let late = &run.history[run.history.len() / 2..];
+    // Opposite to the load the balls touch the outer race alone, with their centrifugal force.
+    let mut unloaded = 0;
+    for b in late.iter().flat_map(|o| &o.balls).filter(|b| b.azimuth.abs() > 2.0) {
+        assert_eq!(b.inner.load, 0.0);
+        unloaded += 1;
+        let centrifugal = ball.mass * b.orbital_speed.powi(2) * b.position.yz().norm();
+        assert!(b.outer.load < 5.0 * centrifugal, "{} N, {centrifugal} N", b.outer.load);
+    }
+    assert!(unloaded > 500);
+    // The race goes as deep as the equilibrium says, from load over a ball to load between balls.
+    let input = EquilibriumInput::from_scene(run.simulation.scene(), Gyroscopic::None);
+    let expected = equilibrium::solve(run.simulation.model(), &input).unwrap().displacement[1];
+    let mean = late.iter().map(|o| o.inner.pose.position.y).sum::<f64>() / late.len() as f64;
+    println!("{name}: mean {mean} expected {expected}");
+    assert!((mean - expected).abs() < 5e-6 + 0.1 * micrometres * 1e-6, "{mean} m, {expected} m");
+}
 
 #[test]
 fn unloaded_zone() {
-    for (name, micrometres, conformity) in
-        [("radial load, clearance 50 um", 50.0, 0.52), ("radial load, clearance 1 mm", 1000.0, 0.56)]
-    {
-        let rows = format!("y = {{ force = 1500.0 }}\n{FLAT}");
-        let scene = scene(GROOVE, &(groove(micrometres, conformity) + &load(50.0, 6000.0, &rows)));
-        let run = Case::new(name, scene, limits(6000, 60, 30, 5.0)).pass();
-        let ball = run.simulation.model().bearing.ball;
-        // Opposite to the load the balls touch the outer race alone, with their centrifugal force.
-        let mut unloaded = 0;
-        for b in run.history[250..].iter().flat_map(|o| &o.balls).filter(|b| b.azimuth.abs() > 2.0) {
-            assert_eq!(b.inner.load, 0.0);
-            unloaded += 1;
-            let centrifugal = ball.mass * b.orbital_speed.powi(2) * b.position.yz().norm();
-            assert!(b.outer.load < 5.0 * centrifugal, "{} N, {centrifugal} N", b.outer.load);
-        }
-        assert!(unloaded > 500);
-        // The race goes as deep as the equilibrium says, between load over a ball and load between balls.
-        let input = EquilibriumInput::from_scene(run.simulation.scene(), Gyroscopic::None);
-        let expected = equilibrium::solve(run.simulation.model(), &input).unwrap().displacement[1];
-        let late = &run.history[250..];
-        let mean = late.iter().map(|o| o.inner.pose.position.y).sum::<f64>() / late.len() as f64;
-        assert!((mean - expected).abs() < 5e-6, "{mean} m, {expected} m");
-    }
+    loose("radial load, clearance 50 um", 50.0, 0.52, 6000.0, 50.0, limits(5700, 10, 10, 4.0));
+    loose("radial load, clearance 1 mm, 1500 rpm", 1000.0, 0.56, 1500.0, 50.0, limits(20_000, 300, 60, 5.0));
+}
+
+#[test]
+#[ignore = "long"]
+fn rattling_in_a_millimetre() {
+    // Chaotic: the race falls from ball to ball, so that only long means repeat.
+    loose("radial load, clearance 1 mm, 6000 rpm", 1000.0, 0.56, 6000.0, 1000.0, limits(450_000, 7000, 1000, 5.0));
 }
 
 #[test]
@@ -69,10 +79,11 @@ fn shock_of_5_kn_across_the_thrust() {
     let run = Case::new("5 kN within 0.1 ms across the thrust", scene, limits(5500, 20, 20, 4.0)).pass();
     // Less than a quarter of the shock reaches one ball while the race's mass takes the rest, then all is as before.
     assert!(peak(&run.history) < 2500.0, "{}", peak(&run.history));
-    let (before, after) = (&run.history[190], run.last());
-    for (a, b) in before.balls.iter().zip(&after.balls) {
-        assert!((a.inner.load / b.inner.load - 1.0).abs() < 0.03, "{} N, {} N", a.inner.load, b.inner.load);
-    }
+    let late = &run.history[run.history.len() - 200..];
+    // The balls' spacing has changed for good, and single loads with it.
+    let sum = |o: &Outputs| o.balls.iter().map(|ball| ball.inner.load).sum::<f64>();
+    let (before, after) = (sum(&run.history[190]), late.iter().map(sum).sum::<f64>() / 200.0);
+    assert!((after / before - 1.0).abs() < 0.01, "{after} N, {before} N");
 }
 
 #[test]
@@ -80,11 +91,13 @@ fn shock_of_5_kn_on_the_radial_load() {
     // With the shaft's mass on the race: 0.25 N s throw 2 kg at 0.125 m/s.
     let inner = "[inner]\ndrive = \"wrench\"\nmass = 2.0\ninertia = [6e-4, 4e-4, 4e-4]\n";
     let rows = format!(
-        "y = {{ force = [[0.0, 500.0], [0.005, 500.0], [0.00505, 5500.0], [0.0051, 500.0]] }}\n\
+        "y = {{ force = [[0.0, 1500.0], [0.005, 1500.0], [0.00505, 6500.0], [0.0051, 1500.0]] }}\n\
          output_interval = \"25 us\"\n{FLAT}"
     );
     let scene = scene(GROOVE, &(load(40.0, 6000.0, &rows) + inner));
-    let run = Case::new("5 kN within 0.1 ms on the radial load", scene, limits(12_000, 90, 90, 7.0)).pass();
+    let mut case = Case::new("5 kN within 0.1 ms on the radial load", scene, limits(12_000, 90, 90, 7.0));
+    case.window = [0.0, 1.0];
+    let run = case.pass();
     // All of the shock's energy in one ball, both contacts in series, bounds the load (Hertz's impact).
     let model = run.simulation.model();
     let stiffness = model.contact(0, 0.0).shape.stiffness(1.0 / 0.0183) / 2f64.powf(1.5);
@@ -119,10 +132,10 @@ fn acceleration_is_gravity() {
         -acceleration
     );
     let standing = Case::new("gravity of 50 g", scene_of(&effects), limits(2300, 10, 10, 3.0)).pass();
-    // Nothing inside the bearing can tell which of both it is, once what the start does differently has died out.
+    // Nothing inside the bearing can tell which of both it is.
     let difference = |i: usize| {
         let (a, b) = (&moving.history[i].inner.wrench.force, &standing.history[i].inner.wrench.force);
         (a - b).norm() / b.norm()
     };
-    println!("{:?}", [1, 10, 50, 100, 150, 200].map(difference));
+    assert!([1, 10, 50, 100, 150, 200].map(difference).iter().all(|d| *d < 1e-9));
 }

@@ -1,11 +1,11 @@
-//! Few and many balls, soft and stiff ones, far from the origin, and very long.
+//! Few and many balls, soft and stiff ones, clearance to its limit, far from the origin, and very long.
 
 use nalgebra::Vector3;
 use roulement::inputs::Inputs;
 use roulement::simulation::Simulation;
 
-use crate::gates::{Case, limits};
-use crate::scenes::{ANGULAR, HELD, POSE, load, scene};
+use crate::gates::{Case, Run, limits};
+use crate::scenes::{ANGULAR, FLAT, GROOVE, HELD, POSE, groove, load, scene};
 
 fn bearing(balls: u32, diameter: &str) -> String {
     format!(
@@ -16,28 +16,44 @@ fn bearing(balls: u32, diameter: &str) -> String {
 
 #[test]
 fn ball_counts() {
-    for (balls, diameter, held) in [(1, "9.525 mm", HELD), (2, "9.525 mm", HELD), (3, "9.525 mm", ""), (40, "3 mm", "")] {
-        let rows = format!("x = {{ force = {} }}\n{held}", 30 * balls);
-        let name = format!("{balls} balls");
-        let run = Case::new(&name, scene(ANGULAR, &(bearing(balls, diameter) + &load(20.0, 6000.0, &rows))), limits(100_000, 100, 100, 5.0)).pass();
-        println!("{:?} {}", run.last().inner.wrench.force, run.last().cage_slip);
+    // Fewer than three balls hold no race in the middle.
+    for (balls, diameter, held) in
+        [(1, "9.525 mm", HELD), (2, "9.525 mm", HELD), (3, "9.525 mm", ""), (40, "3 mm", "")]
+    {
+        let force = f64::from(30 * balls);
+        let rows = format!("x = {{ force = {force} }}\n{held}");
+        let scene = scene(ANGULAR, &(bearing(balls, diameter) + &load(20.0, 6000.0, &rows)));
+        let run = Case::new(&format!("{balls} balls"), scene, limits(2300, 10, 10, 3.0)).pass();
+        let thrust = -run.last().inner.wrench.force.x;
+        assert!((thrust / force - 1.0).abs() < 2e-3, "{thrust} N");
+        assert!(run.last().cage_slip.abs() < 0.01, "{}", run.last().cage_slip);
     }
 }
 
 #[test]
 fn soft_and_stiff() {
-    for (name, modulus, nu, force) in [("5 MPa rubber", 5e6, 0.49, 2.0), ("1e13 Pa", 1e13, 0.2, 1500.0)] {
-        let material = format!("[ball]\nyoungs_modulus = {modulus}\npoisson_ratio = {nu}\n[race]\nyoungs_modulus = {modulus}\npoisson_ratio = {nu}\n");
+    for (name, modulus, ratio, force) in [("rubber, 5 MPa", 5e6, 0.49, 2.0), ("1e13 Pa", 1e13, 0.2, 1500.0)] {
+        let material = |section| format!("[{section}]\nyoungs_modulus = {modulus}\npoisson_ratio = {ratio}\n");
         let rows = format!("x = {{ force = {force} }}\n");
-        let run = Case::new(name, scene(ANGULAR, &(material + &load(20.0, 600.0, &rows))), limits(100_000, 100, 100, 5.0)).pass();
-        println!("{:?} {} {}", run.last().inner.wrench.force, run.last().cage_slip, run.last().inner.pose.position.x);
+        let scene = scene(ANGULAR, &(material("ball") + &material("race") + &load(20.0, 600.0, &rows)));
+        let run = Case::new(name, scene, limits(2300, 10, 20, 2.0)).pass();
+        let thrust = -run.last().inner.wrench.force.x;
+        assert!((thrust / force - 1.0).abs() < 0.03, "{thrust} N");
     }
 }
 
 #[test]
+fn balls_on_their_groove_centre() {
+    // The largest clearance there is: before it takes load every ball sits exactly where a groove has no normal.
+    let rows = format!("y = {{ force = 100.0 }}\n{FLAT}");
+    let scene = scene(GROOVE, &(groove(762.0, 0.52) + &load(10.0, 0.0, &rows)));
+    let run = Case::new("balls at rest on their groove centres", scene, limits(2000, 20, 20, 4.0)).pass();
+    assert!((run.last().inner.wrench.force.y / -100.0 - 1.0).abs() < 0.05);
+}
+
+#[test]
 fn far_from_the_origin() {
-    let rows = format!("x = {{ force = 1500.0 }}\n{HELD}");
-    let run = |far: Vector3<f64>| {
+    let run = |far: Vector3<f64>| -> Run {
         let importer = move |simulation: &Simulation, point: u32| -> (Inputs, f64) {
             let mut inputs = simulation.scripted_inputs(simulation.time());
             // The script holds these directions at the origin.
@@ -45,18 +61,33 @@ fn far_from_the_origin() {
             inputs.inner.pose.position.z = far.z;
             (inputs, f64::from(point + 1) * 1e-4)
         };
-        let name = format!("bearing {:.0} m from the origin", far.norm());
-        let scene = scene(ANGULAR, &(load(20.0, 6000.0, &rows) + POSE + "\n[outer]\ndrive = \"pose\"\n"));
-        let mut case = Case::new(&name, scene, limits(100_000, 100, 100, 5.0));
+        let name = format!("{:.0} m from the origin", far.norm());
+        let rows = format!("x = {{ force = 1500.0 }}\n{HELD}");
+        let changes = load(20.0, 6000.0, &rows) + POSE + "\n[outer]\ndrive = \"pose\"\n";
+        let mut case = Case::new(&name, scene(ANGULAR, &changes), limits(2300, 5, 5, 3.0));
         case.displaced = far;
         case.importer = Some(&importer);
         case.pass()
     };
     let here = run(Vector3::zeros());
-    for far in [Vector3::new(10.0, -5.0, 2.0), Vector3::new(1000.0, -500.0, 200.0)] {
+    for (far, digits) in [(Vector3::new(10.0, -5.0, 2.0), 1e-8), (Vector3::new(1000.0, -500.0, 200.0), 1e-6)] {
         let there = run(far);
-        for i in [1, 50, 200] {
-            println!("{:?} {:?}", here.history[i].inner.wrench.force, there.history[i].inner.wrench.force);
+        for (a, b) in here.history.iter().zip(&there.history) {
+            let difference = (a.inner.wrench.force - b.inner.wrench.force).norm();
+            assert!(difference < digits * a.inner.wrench.force.norm(), "{difference} N at {} s", a.time);
         }
     }
+}
+
+#[test]
+fn million_revolutions_with_the_cage_at_rest() {
+    // Outer race so fast the other way that the balls turn on the spot: 2000 s at 30,000 rpm.
+    let ratio = 0.5 * (1.0 - 9.525 / 46.0 * 25f64.to_radians().cos());
+    let outer = -30_000.0 * ratio / (1.0 - ratio);
+    let rows = format!("x = {{ force = 500.0 }}\n{HELD}outer_speed = \"{outer} rpm\"\noutput_interval = 2.0\n");
+    let solver = "[solver]\nmax_step = 1e-3\n";
+    let changes = bearing(3, "9.525 mm") + &load(2e6, 30_000.0, &rows) + "[inner]\ndrive = \"fixed\"\n" + solver;
+    let run = Case::new("1e6 revolutions, cage at rest", scene(ANGULAR, &changes), limits(9_000_000, 1000, 1000, 3.0)).pass();
+    let turned = run.last().inner.turned / std::f64::consts::TAU;
+    println!("turned {turned:e} {} {}", run.last().cage_speed, run.last().inner.pose.orientation.norm() - 1.0);
 }

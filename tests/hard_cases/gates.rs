@@ -105,7 +105,7 @@ impl<'a> Case<'a> {
 
         self.print(&run, energy, change);
         assert!(energy < ENERGY, "{}: energy balance open by {energy:.2e}", self.name);
-        assert!(change < CAP, "{}: {what} changes by {change:.2e} with half the step cap", self.name);
+        assert!(change < CAP, "{}: {what}, by {change:.2e}, with half the step cap", self.name);
         self.bounded(&statistics);
         run
     }
@@ -173,14 +173,11 @@ impl<'a> Case<'a> {
         simulated / run.simulation.state().statistics.steps as f64
     }
 
-    /// (c) largest change of a window mean over the size of what it is a mean of, and its name.
-    fn change(&self, one: &[Outputs], other: &[Outputs]) -> (f64, &'static str) {
+    /// (c) over the window.
+    fn change(&self, one: &[Outputs], other: &[Outputs]) -> (f64, String) {
         let index = |share: f64| (share * (one.len() - 1) as f64).round() as usize;
         let [from, to] = self.window.map(index);
-        let lever = 0.5 * self.scene.bearing.pitch_diameter.0;
-        let (a, b) = (means(&one[from..=to], lever), means(&other[from..=to], lever));
-        let change = |i: usize| ((a[i].mean - b[i].mean).abs() / a[i].size, a[i].name);
-        (0..a.len()).map(change).fold((0.0, "nothing"), |x, y| if y.0 > x.0 { y } else { x })
+        change(&one[from..=to], &other[from..=to], 0.5 * self.scene.bearing.pitch_diameter.0)
     }
 
     fn print(&self, run: &Run, energy: f64, change: f64) {
@@ -234,6 +231,16 @@ pub fn energy_residual(history: &[Outputs]) -> f64 {
     let worst = history.iter().map(|o| residual(o).abs()).fold(0.0, f64::max);
     // Below a nanojoule there is nothing but rounding to balance.
     worst / reference.max(1e-9)
+}
+
+/// (c) largest change of a window mean over the size of what it is a mean of, and which; `lever` [m] is that of the
+/// balls.
+pub fn change(one: &[Outputs], other: &[Outputs], lever: f64) -> (f64, String) {
+    let (a, b) = (means(one, lever), means(other, lever));
+    let change = |i: usize| (a[i].mean - b[i].mean).abs() / a[i].size;
+    let largest = (0..a.len()).max_by(|&i, &k| change(i).total_cmp(&change(k))).unwrap();
+    let (name, was, is) = (a[largest].name, a[largest].mean, b[largest].mean);
+    (change(largest), format!("{name} from {was:e} to {is:e}"))
 }
 
 struct Mean {

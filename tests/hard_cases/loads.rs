@@ -66,26 +66,24 @@ fn high_moment() {
     assert!((moment + 60.0).abs() < 0.6, "{moment} N m");
 }
 
-fn interference(name: &str, micrometres: f64, rows: &str, limit: [u64; 3]) -> Run {
-    let rows = format!("y = {{ force = 500.0 }}\n{rows}");
+fn interference<'a>(name: &'a str, micrometres: f64, rest: &str) -> Case<'a> {
+    let rows = format!("y = {{ force = 500.0 }}\nx = {{ force = 100.0 }}\n{rest}");
     let scene = scene(GROOVE, &(groove(-micrometres, 0.52) + &load(20.0, 6000.0, &rows)));
-    let [steps, rejected, failed] = limit;
-    Case::new(name, scene, limits(steps, rejected, failed, 6.5)).pass()
+    Case::new(name, scene, limits(2300, 10, 10, 3.0))
 }
 
 #[test]
 fn preload_by_interference() {
-    let small = interference("interference 20 um", 20.0, "x = { force = 100.0 }\n", [2300, 10, 10]);
-    let large = interference("interference 200 um, tilt held", 200.0, &("x = { force = 100.0 }\n".to_string() + "ry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n"), [2300, 10, 10]);
+    let tilt_held = "ry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";
+    let small = interference("interference 20 um", 20.0, "").pass();
+    let large = interference("interference 200 um, tilt held", 200.0, tilt_held).pass();
     let (small, large) = ((&small, reference(&small)), (&large, reference(&large)));
+    let load = |e: &equilibrium::Equilibrium| e.balls.iter().map(|ball| ball.report.inner_load).sum::<f64>();
     for (run, expected) in [&small, &large] {
-        let sum = |loads: &mut dyn Iterator<Item = f64>| loads.sum::<f64>();
-        let ours = sum(&mut run.last().balls.iter().map(|ball| ball.inner.load));
-        let theirs = sum(&mut expected.balls.iter().map(|ball| ball.report.inner_load));
-        assert!((ours / theirs - 1.0).abs() < 5e-3, "{ours} N, {theirs} N");
+        let ours = run.last().balls.iter().map(|ball| ball.inner.load).sum::<f64>();
+        assert!((ours / load(expected) - 1.0).abs() < 5e-3, "{ours} N, {} N", load(expected));
     }
     // Radial stiffness grows with the third root of the preload.
-    let load = |e: &equilibrium::Equilibrium| e.balls.iter().map(|ball| ball.report.inner_load).sum::<f64>();
     let loads = (load(&large.1) / load(&small.1)).cbrt();
     let stiffness = large.1.stiffness[(1, 1)] / small.1.stiffness[(1, 1)];
     assert!((stiffness / loads - 1.0).abs() < 0.05, "{stiffness} {loads}");
@@ -93,9 +91,15 @@ fn preload_by_interference() {
 
 #[test]
 fn preload_that_flutters() {
-    // With axial motion and tilt free, 100 um of interference and friction 0.08 the race vibrates by itself; a step cap
-    // ten times smaller changes the power it takes by less than 1 %.
-    let run = interference("interference 100 um, all free: flutter", 100.0, "x = { force = 100.0 }\n", [4000, 10, 10]);
+    // With axial motion and tilt free, 100 um of interference and friction 0.08 the race vibrates by itself, at any
+    // step size: the integrator follows, and agrees with itself on what that costs.
+    let mut case =
+        interference("interference 100 um, all free: flutter", 100.0, "output_interval = \"20 us\"");
+    case.scene.load.duration.0 = 0.06;
+    case.points = 3000;
+    case.window = [0.4, 1.0];
+    case.limits = limits(15_000, 10, 10, 6.0);
+    let run = case.pass();
     assert!(run.last().friction_power > 100.0);
 }
 

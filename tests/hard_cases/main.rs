@@ -5,14 +5,16 @@
 #![allow(clippy::unwrap_used)]
 
 mod communication;
+mod contact_loss;
 mod creep_laws;
 mod equilibrium_scenes;
 mod extremes;
 mod free_oscillation;
-mod gates;
-mod random;
-mod scenes;
-mod start_and_stop;
-mod contact_loss;
 mod friction;
+mod gates;
 mod loads;
+mod random;
+mod refusals;
+mod scenes;
+mod shaft;
+mod start_and_stop;
