@@ -28,21 +28,19 @@ fn loose(name: &str, micrometres: f64, conformity: f64, rpm: f64, milliseconds: 
     let input = EquilibriumInput::from_scene(run.simulation.scene(), Gyroscopic::None);
     let expected = equilibrium::solve(run.simulation.model(), &input).unwrap().displacement[1];
     let mean = late.iter().map(|o| o.inner.pose.position.y).sum::<f64>() / late.len() as f64;
-    println!("{name}: mean {mean} expected {expected}");
     assert!((mean - expected).abs() < 5e-6 + 0.1 * micrometres * 1e-6, "{mean} m, {expected} m");
 }
 
 #[test]
 fn unloaded_zone() {
     loose("radial load, clearance 50 um", 50.0, 0.52, 6000.0, 50.0, limits(5700, 10, 10, 4.0));
-    loose("radial load, clearance 1 mm, 1500 rpm", 1000.0, 0.56, 1500.0, 50.0, limits(20_000, 300, 60, 5.0));
 }
 
 #[test]
 #[ignore = "long"]
 fn rattling_in_a_millimetre() {
     // Chaotic: the race falls from ball to ball, so that only long means repeat.
-    loose("radial load, clearance 1 mm, 6000 rpm", 1000.0, 0.56, 6000.0, 1000.0, limits(450_000, 7000, 1000, 5.0));
+    loose("radial load, clearance 1 mm, 6000 rpm", 1000.0, 0.56, 6000.0, 1000.0, limits(900_000, 9000, 1500, 4.0));
 }
 
 #[test]
@@ -98,13 +96,18 @@ fn shock_of_5_kn_on_the_radial_load() {
     let mut case = Case::new("5 kN within 0.1 ms on the radial load", scene, limits(12_000, 90, 90, 7.0));
     case.window = [0.0, 1.0];
     let run = case.pass();
-    // All of the shock's energy in one ball, both contacts in series, bounds the load (Hertz's impact).
-    let model = run.simulation.model();
-    let stiffness = model.contact(0, 0.0).shape.stiffness(1.0 / 0.0183) / 2f64.powf(1.5);
-    let bound = stiffness.powf(0.4) * (1.25 * 2.0 * 0.125f64.powi(2)).powf(0.6);
-    let before = peak(&run.history[..200]);
-    assert!(peak(&run.history) < before + bound, "{} N, {before} + {bound} N", peak(&run.history));
-    println!("peak {} bound {bound} before {before}", peak(&run.history));
+    // Static load, shock and rebound together stay below what the 6.5 kN would give if they stood still.
+    let mut input = EquilibriumInput::from_scene(run.simulation.scene(), Gyroscopic::None);
+    input.conditions[1] = Prescribed::Load(6500.0);
+    let standing = equilibrium::solve(run.simulation.model(), &input).unwrap();
+    let bound = standing.balls.iter().map(|ball| ball.report.outer_load).fold(0.0, f64::max);
+    assert!(peak(&run.history) < bound, "{} N, {bound} N", peak(&run.history));
+    let position = |range: std::ops::Range<usize>| {
+        let part = &run.history[range];
+        part.iter().map(|o| o.inner.pose.position.y).sum::<f64>() / part.len() as f64
+    };
+    let (before, after) = (position(100..190), position(1200..1600));
+    assert!((after - before).abs() < 2e-6, "{after} m, {before} m");
 }
 
 #[test]
