@@ -301,10 +301,8 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
         if approach > MAX_APPROACH * diameter {
             return Err(EquilibriumError::Overload { ball: index + 1, approach, load, limit: MAX_APPROACH });
         }
-        let contacts = [
-            ("inner", b.inner_load, b.inner_contact_angle),
-            ("outer", b.outer_load, b.outer_contact_angle),
-        ];
+        let contacts =
+            [("inner", b.inner_load, b.inner_contact_angle), ("outer", b.outer_load, b.outer_contact_angle)];
         for (race, load, angle) in contacts {
             if load > 0.0 && angle.abs() > FRAC_PI_2 {
                 return Err(EquilibriumError::LeftGroove { ball: index + 1, race, angle });

@@ -20,9 +20,12 @@ fn regular(step: &str, milliseconds: f64) -> Run {
 fn steps_from_1_us_to_10_ms() {
     let reference = regular("100 us", 20.0);
     // Two milliseconds of 1 us steps; there the own steps are shorter too, and the start's ringing is seen.
-    for (step, milliseconds, point, tolerance) in
-        [("10 us", 20.0, 200, 1e-6), ("1 ms", 20.0, 200, 1e-6), ("10 ms", 20.0, 200, 1e-6), ("1 us", 2.0, 20, 1e-3)]
-    {
+    for (step, milliseconds, point, tolerance) in [
+        ("10 us", 20.0, 200, 1e-6),
+        ("1 ms", 20.0, 200, 1e-6),
+        ("10 ms", 20.0, 200, 1e-6),
+        ("1 us", 2.0, 20, 1e-3),
+    ] {
         let run = regular(step, milliseconds);
         let (a, b) = (run.last(), &reference.history[point]);
         assert!((a.time - b.time).abs() < 1e-12);
@@ -48,8 +51,7 @@ fn irregular_steps() {
         (simulation.scripted_inputs(simulation.time()), times[point as usize])
     };
     let scene = scene(ANGULAR, &load(40.0, 6000.0, COMBINED));
-    let mut case =
-        Case::new("irregular communication steps, 1 us to 3 ms", scene, limits(4600, 5, 5, 3.0));
+    let mut case = Case::new("irregular communication steps, 1 us to 3 ms", scene, limits(4600, 5, 5, 3.0));
     case.importer = Some(&importer);
     case.points = times.len() as u32;
     let run = case.pass();

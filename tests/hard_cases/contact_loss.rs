@@ -40,7 +40,14 @@ fn unloaded_zone() {
 #[ignore = "long"]
 fn rattling_in_a_millimetre() {
     // Chaotic: the race falls from ball to ball, so that only long means repeat.
-    loose("radial load, clearance 1 mm, 6000 rpm", 1000.0, 0.56, 6000.0, 1000.0, limits(900_000, 9000, 1500, 4.0));
+    loose(
+        "radial load, clearance 1 mm, 6000 rpm",
+        1000.0,
+        0.56,
+        6000.0,
+        1000.0,
+        limits(900_000, 9000, 1500, 4.0),
+    );
 }
 
 #[test]

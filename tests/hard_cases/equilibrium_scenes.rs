@@ -89,7 +89,13 @@ struct Touch {
     radial: Vector3<f64>,
 }
 
-fn touch(groove: &Groove, diameter: f64, compliance: f64, offset: &Vector3<f64>, axis: &Vector3<f64>) -> Touch {
+fn touch(
+    groove: &Groove,
+    diameter: f64,
+    compliance: f64,
+    offset: &Vector3<f64>,
+    axis: &Vector3<f64>,
+) -> Touch {
     let axial = offset.dot(axis);
     let across = offset - axis * axial;
     let rho = across.norm();
@@ -109,11 +115,11 @@ fn touch(groove: &Groove, diameter: f64, compliance: f64, offset: &Vector3<f64>,
 /// potential integrals (Johnson 1985, eq. 4.24 to 4.28): `I = 2 int w dt / (k^2 cos^2 t + sin^2 t)^p` with k = a/b.
 fn hertz(along: f64, across: f64, compliance: f64, approach: f64) -> f64 {
     const POINTS: usize = 120;
+    let squares: [f64; POINTS] =
+        std::array::from_fn(|i| (FRAC_PI_2 * (i as f64 + 0.5) / POINTS as f64).cos().powi(2));
     let integrals = |k: f64| {
         let (mut j0, mut ja, mut jb) = (0.0, 0.0, 0.0);
-        for i in 0..POINTS {
-            let t = FRAC_PI_2 * (i as f64 + 0.5) / POINTS as f64;
-            let cos2 = t.cos().powi(2);
+        for cos2 in squares {
             let g = k * k * cos2 + 1.0 - cos2;
             let root = g.sqrt();
             j0 += 1.0 / root;
@@ -124,7 +130,7 @@ fn hertz(along: f64, across: f64, compliance: f64, approach: f64) -> f64 {
         (j0 * weight, ja * weight, jb * weight)
     };
     let (mut low, mut high) = (0.02f64.ln(), 50f64.ln());
-    for _ in 0..60 {
+    for _ in 0..52 {
         let middle = 0.5 * (low + high);
         let (_, ja, jb) = integrals(middle.exp());
         // The longer the ellipse along rolling, the smaller the curvature it belongs to.
@@ -163,12 +169,14 @@ fn residual(scene: &Scene, solution: &Equilibrium, input: &EquilibriumInput) -> 
             + o.normal.cross(&tangential) * friction
             + o.radial * (mass * wc * wc * rho);
         let balance = on_ball - tangential * on_ball.dot(&tangential);
-        if balance.norm() > 1e-6 * (i.load + o.load) { println!("   ball off {:e}: {:?} {:?} angles {} {}", balance.norm(), i.load, o.load, ball.report.inner_contact_angle.to_degrees(), ball.report.outer_contact_angle.to_degrees()); println!("   {} {}", ball.report.inner_load, ball.report.outer_load); }
         worst = worst.max(balance.norm());
         // No slip along the orbit at the outer race.
         let surface = tangential * (wc * rho) + ball.angular_velocity.cross(&(o.normal * radius));
         let race = (Vector3::x() * wo).cross(&(ball.position + o.normal * radius));
-        assert!((surface - race).norm() < 1e-9 * (1.0 + (wi.abs() + wo.abs()) * rho), "slip at the outer race");
+        assert!(
+            (surface - race).norm() < 1e-9 * (1.0 + (wi.abs() + wo.abs()) * rho),
+            "slip at the outer race"
+        );
         // Orbital speed of pure rolling (Harris, outer race control).
         let (ci, si) = (-i.normal.dot(&i.radial), -i.normal.dot(&axis));
         let (co, so) = (o.normal.dot(&o.radial), o.normal.x);
@@ -177,7 +185,6 @@ fn residual(scene: &Scene, solution: &Equilibrium, input: &EquilibriumInput) -> 
         force += i.normal * i.load;
         moment += (offset + i.normal * radius).cross(&(i.normal * i.load));
         sum += i.load;
-        worst = worst.max(0.0);
     }
     let (force, moment) = (-(input.outer_orientation * force), -(input.outer_orientation * moment));
     let held = [force.x, force.y, force.z, moment.y, moment.z];
@@ -208,17 +215,19 @@ fn solved_or_refused_never_wrong() {
         match equilibrium::solve(&Model::new(&scene).unwrap(), &input) {
             Ok(solution) => {
                 let residual = residual(&scene, &solution, &input);
-                if residual > TOLERANCE { println!("scene {seed}: residual {residual:e} own {:e}\n{text}", solution.residual); }
+                assert!(residual < TOLERANCE, "scene {seed}: residual {residual:e}\n{text}");
                 worst = worst.max(residual);
                 solved += 1;
             }
             Err(EquilibriumError::Overload { .. }) => overload += 1,
             Err(EquilibriumError::LeftGroove { .. }) => left += 1,
-            Err(why) => {
-                println!("scene {seed}: {}\n{text}", why.to_string().split(", at").next().unwrap());
-                loose += 1;
-            }
+            Err(EquilibriumError::Ball { .. } | EquilibriumError::NoConvergence { .. }) => loose += 1,
         }
     }
-    println!("\n| {SCENES} random scenes | {solved} solved, {overload} beyond elastic contact, {left} beyond the groove, {loose} not in equilibrium | {worst:.0e} |");
+    println!(
+        "\n| {SCENES} random equilibria | {solved} solved | {overload} beyond elastic contact | {left} beyond the \
+         groove | {loose} not found | {worst:.0e} |"
+    );
+    // A solver that finds fewer has become worse.
+    assert!(solved >= 940 && loose <= 50, "{solved} solved, {loose} not found");
 }

@@ -33,7 +33,8 @@ fn ball_counts() {
 #[test]
 fn soft_and_stiff() {
     for (name, modulus, ratio, force) in [("rubber, 5 MPa", 5e6, 0.49, 2.0), ("1e13 Pa", 1e13, 0.2, 1500.0)] {
-        let material = |section| format!("[{section}]\nyoungs_modulus = {modulus}\npoisson_ratio = {ratio}\n");
+        let material =
+            |section| format!("[{section}]\nyoungs_modulus = {modulus}\npoisson_ratio = {ratio}\n");
         let rows = format!("x = {{ force = {force} }}\n");
         let scene = scene(ANGULAR, &(material("ball") + &material("race") + &load(20.0, 600.0, &rows)));
         let run = Case::new(name, scene, limits(2300, 10, 20, 2.0)).pass();
@@ -70,7 +71,8 @@ fn far_from_the_origin() {
         case.pass()
     };
     let here = run(Vector3::zeros());
-    for (far, digits) in [(Vector3::new(10.0, -5.0, 2.0), 1e-8), (Vector3::new(1000.0, -500.0, 200.0), 1e-6)] {
+    for (far, digits) in [(Vector3::new(10.0, -5.0, 2.0), 1e-8), (Vector3::new(1000.0, -500.0, 200.0), 1e-6)]
+    {
         let there = run(far);
         for (a, b) in here.history.iter().zip(&there.history) {
             let difference = (a.inner.wrench.force - b.inner.wrench.force).norm();

@@ -77,7 +77,16 @@ impl<'a> Case<'a> {
     /// A case that the scene's own script runs, means over its second half.
     pub fn new(name: &'a str, scene: Scene, limits: Limits) -> Self {
         let points = (scene.load.duration.0 / scene.load.output_interval.0).round() as u32;
-        Self { name, scene, importer: None, displaced: Vector3::zeros(), points, every: 1, window: [0.5, 1.0], limits }
+        Self {
+            name,
+            scene,
+            importer: None,
+            displaced: Vector3::zeros(),
+            points,
+            every: 1,
+            window: [0.5, 1.0],
+            limits,
+        }
     }
 
     /// Runs the case through all gates.
@@ -329,7 +338,8 @@ fn residual(end: &Simulation, before: &State) -> f64 {
         let force = model.gravity * ball.mass + inner.force + outer.force;
         let moment = inner.ball_moment + outer.ball_moment;
         let linear = now.acceleration * ball.mass - force * share - old.total.force * (1.0 - share);
-        let angular = now.angular_acceleration * ball.inertia - moment * share - old.total.moment * (1.0 - share);
+        let angular =
+            now.angular_acceleration * ball.inertia - moment * share - old.total.moment * (1.0 - share);
         worst = worst.max(linear.amax()).max(angular.amax() / ball.radius);
     }
     for (race, body) in model.bodies.iter().enumerate() {

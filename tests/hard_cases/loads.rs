@@ -31,7 +31,11 @@ fn misaligned_by_half_a_degree() {
     let radial = format!("y = {{ force = 1000.0 }}\n{FLAT}");
     for (name, base, changes) in [
         ("outer race misaligned by 0.5 deg, angular contact", ANGULAR, load(30.0, 6000.0, &thrust)),
-        ("outer race misaligned by 0.5 deg, deep groove", GROOVE, load(30.0, 6000.0, &radial) + &groove(30.0, 0.52)),
+        (
+            "outer race misaligned by 0.5 deg, deep groove",
+            GROOVE,
+            load(30.0, 6000.0, &radial) + &groove(30.0, 0.52),
+        ),
     ] {
         let run = Case::new(name, scene(base, &(changes + MISALIGNED)), limits(4000, 20, 20, 4.5)).pass();
         // The moment that holds the tilt is the quasi-static one but for friction; pure tilt loads twice per turn.

@@ -26,7 +26,11 @@ fn a_step_that_may_not_be_small_enough() {
     let rows = "x = { force = [[0.0, 1500.0], [0.001, 1500.0], [0.00105, 50000.0]] }\n";
     let solver = "[solver]\ninitial_step = \"10 us\"\nmin_step = \"10 us\"\nmax_step = \"10 us\"\n";
     let why = refusal(ANGULAR, &(load(5.0, 6000.0, rows) + solver));
-    refuses("shock, steps held at 10 us", &why, &["at 0.00", "local error", "ball", "inner load", "outer load"]);
+    refuses(
+        "shock, steps held at 10 us",
+        &why,
+        &["at 0.00", "local error", "ball", "inner load", "outer load"],
+    );
 }
 
 #[test]
