@@ -81,8 +81,8 @@ fn far_from_the_origin() {
     }
 }
 
-/// The inner race turns `revolutions` times at 30,000 rpm, the outer one so fast the other way that the cage stands
-/// and the balls turn on the spot.
+/// The inner race turns `revolutions` times at 30,000 rpm, the outer one so fast the other way that the cage hardly
+/// moves.
 fn many_revolutions(revolutions: f64, limit: Limits) {
     let ratio = 0.5 * (1.0 - 9.525 / 46.0 * 25f64.to_radians().cos());
     let outer = -30_000.0 * ratio / (1.0 - ratio);
@@ -93,7 +93,7 @@ fn many_revolutions(revolutions: f64, limit: Limits) {
     let changes = bearing(1, "9.525 mm")
         + &load(revolutions * 2.0, 30_000.0, &rows)
         + "[inner]\ndrive = \"fixed\"\n[solver]\nmax_step = 1e-3\n";
-    let name = format!("{revolutions:e} revolutions at 30,000 rpm, cage at rest");
+    let name = format!("{revolutions:e} revolutions at 30,000 rpm, cage nearly at rest");
     let run = Case::new(&name, scene(ANGULAR, &changes), limit).pass();
     // Nothing has drifted: the races' angles, their orientations' unit length, the load, the rolling of the ball.
     let last = run.last();
@@ -101,16 +101,15 @@ fn many_revolutions(revolutions: f64, limit: Limits) {
     assert!((turned / revolutions - 1.0).abs() < 1e-9, "{turned}");
     assert!((last.inner.pose.orientation.norm() - 1.0).abs() < 1e-15);
     assert!((last.balls[0].inner.load / run.history[10].balls[0].inner.load - 1.0).abs() < 1e-3);
-    println!("cage {}", last.cage_speed);
 }
 
 #[test]
 fn a_thousand_revolutions() {
-    many_revolutions(1e3, limits(1_000_000, 100, 100, 3.0));
+    many_revolutions(1e3, limits(18_000, 10, 10, 3.0));
 }
 
 #[test]
 #[ignore = "long"]
 fn a_million_revolutions() {
-    many_revolutions(1e6, limits(1_000_000_000, 100_000, 100_000, 3.0));
+    many_revolutions(1e6, limits(18_000_000, 10_000, 10_000, 3.0));
 }
