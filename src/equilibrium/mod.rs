@@ -259,15 +259,18 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
             let unknowns = unknowns + step;
             evaluate(&unknowns, &places).ok().map(|trial| (unknowns, trial))
         });
-        // What has to fall is measured with one scale: over its own forces, a race that has to let go of its balls would
-        // seem further from balance the less it carries.
+        // What has to fall is the residual over its own forces or with one scale for both: over its own forces alone, a
+        // race that has to let go of its balls would seem further from balance the less it carries.
         let scale = reference(&here);
         let merit = |trial: &Trial| residual_over(trial, scale, scale).norm();
         let accepted = trial.filter(|(_, trial)| {
             // A race that touches nothing yet moves without its residual falling.
             let touches = |trial: &Trial| trial.inner_load_sum > 1e-9 * reference(trial);
             let untouched = !touches(&here) && !touches(trial);
-            untouched || merit(trial) < merit(&here) * (1.0 - 1e-6)
+            let falls = |now: f64, before: f64| now < before * (1.0 - 1e-6);
+            untouched
+                || falls(residual_of(trial).norm(), residual.norm())
+                || falls(merit(trial), merit(&here))
         });
         match accepted {
             Some((moved, trial)) => {
