@@ -6,8 +6,9 @@ use nalgebra::{SVector, Vector3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::contact::geometry::GrooveContact;
 use crate::dynamics::{Boundary, RaceLoad, StepFailure, Workspace, make_consistent, try_step};
-use crate::equilibrium::EquilibriumError;
+use crate::equilibrium::{EquilibriumError, MAX_APPROACH};
 use crate::inputs::{Inputs, RaceInput};
 use crate::kalker::nonlinear::KalkerError;
 use crate::model::{INNER, Model, OUTER};
@@ -45,6 +46,21 @@ pub enum SimulationError {
         inner_load: f64,
         /// [N] its load on the outer race.
         outer_load: f64,
+    },
+    /// A contact is deeper than Hertz's theory reaches.
+    #[error(
+        "at {time} s ball {ball} is pressed into the {race} race by {approach:.3e} m: more than {MAX_APPROACH} of its \
+         diameter, far beyond elastic Hertzian contact; the load is too large or the imposed motion is"
+    )]
+    Overload {
+        /// [s] time.
+        time: f64,
+        /// Ball, counted from 1.
+        ball: usize,
+        /// Inner or outer.
+        race: &'static str,
+        /// [m] approach.
+        approach: f64,
     },
     /// A step end that is not a time after the present one.
     #[error("cannot advance from {from} s to {to} s")]
@@ -215,7 +231,8 @@ impl Simulation {
     /// Runs its own steps to exactly `end` [s]. The inputs are taken as valid now, at the start.
     ///
     /// # Errors
-    /// See [`SimulationError`]; the state is then that of the last converged step, at [`Simulation::time`].
+    /// See [`SimulationError`]; the state is then that of the last converged step, at [`Simulation::time`]. The depth of
+    /// contacts is looked at where the step ends.
     pub fn advance(&mut self, end: f64) -> Result<(), SimulationError> {
         let begin = self.state.time;
         if !(end > begin && end.is_finite()) {
@@ -223,7 +240,7 @@ impl Simulation {
         }
         self.script_fixed_races(begin);
         self.paths = self.paths.towards(&self.inputs, begin, end - begin);
-        let result = self.step_to(end);
+        let result = self.step_to(end).and_then(|()| self.check_depth());
         self.outputs = Outputs::new(&self.model, &self.state, self.inputs.friction);
         result
     }
@@ -265,6 +282,23 @@ impl Simulation {
                     inner_load: outputs.balls[ball].inner.load,
                     outer_load: outputs.balls[ball].outer.load,
                 });
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses contacts that no material takes.
+    fn check_depth(&self) -> Result<(), SimulationError> {
+        let radius = self.model.bearing.ball.radius;
+        for (race, name) in [(INNER, "inner"), (OUTER, "outer")] {
+            let motion = self.state.races[race].motion();
+            for (index, ball) in self.state.balls.iter().enumerate() {
+                let offset = ball.position - motion.position;
+                let contact = GrooveContact::new(self.model.raceway(race), radius, &offset, &motion.axis);
+                if contact.approach > MAX_APPROACH * 2.0 * radius {
+                    let (time, approach) = (self.state.time, contact.approach);
+                    return Err(SimulationError::Overload { time, ball: index + 1, race: name, approach });
+                }
             }
         }
         Ok(())

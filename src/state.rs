@@ -137,6 +137,8 @@ pub struct Statistics {
     pub rejected_error: u64,
     /// Steps rejected because Newton's method did not converge.
     pub rejected_newton: u64,
+    /// Solves that Newton's method began anew from steady motion, because the first guess led nowhere.
+    pub second_guesses: u64,
     /// Newton corrections and factorisations, of rejected steps too.
     pub newton: NewtonWork,
     /// Evaluations of a ball-race contact for its value.

@@ -5,6 +5,9 @@ use nalgebra::Vector3;
 use crate::bearing::Raceway;
 use crate::scalar::{Scalar, cross, dot, values};
 
+/// [m] distance from the groove centre below which the contact normal fades to zero.
+const DISTANCE_FLOOR: f64 = 1e-15;
+
 /// Ball against raceway, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub struct GrooveContact<S: Scalar> {
@@ -36,7 +39,8 @@ impl<S: Scalar> GrooveContact<S> {
         // From the groove centre of this azimuth to the ball centre.
         let out = radius - S::constant(raceway.groove_circle_radius);
         let along = axial - S::constant(raceway.groove_offset);
-        let distance = (out.square() + along.square()).sqrt();
+        // A ball on the groove centre touches nothing, in no direction: the floor, below rounding, spares a 0/0.
+        let distance = (out.square() + along.square() + S::constant(DISTANCE_FLOOR * DISTANCE_FLOOR)).sqrt();
         let (cos, sin) = (out / distance, along / distance);
         // A torus's second principal curvature: cosine of the normal's angle over the radius of the contact point.
         let contact_radius = radius + cos.scale(ball_radius);

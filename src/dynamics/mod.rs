@@ -99,7 +99,12 @@ pub fn try_step(
     let mut statistics = state.statistics;
     let mut equations = BearingStep::new(model, state, boundary, h, workspace);
     equations.predict(&mut unknowns);
-    let solved = newton::solve(&mut equations, &mut unknowns, &mut buffers, &mut statistics.newton);
+    let mut solved = newton::solve(&mut equations, &mut unknowns, &mut buffers, &mut statistics.newton);
+    if solved.is_err() {
+        statistics.second_guesses += 1;
+        equations.predict_steady(&mut unknowns);
+        solved = newton::solve(&mut equations, &mut unknowns, &mut buffers, &mut statistics.newton);
+    }
     statistics.contact_values += equations.contact_values;
     statistics.contact_tangents += equations.contact_tangents;
     let worst = equations.worst_ball();
@@ -172,6 +177,25 @@ impl<'a> BearingStep<'a> {
                 unknowns.extend(race.rate_derivative.iter().map(|a| a * length));
                 let scales = body.constraints.iter().map(|c| multiplier_scale(c, length));
                 unknowns.extend(race.multipliers.iter().zip(scales).map(|(m, scale)| m / scale));
+            }
+        }
+    }
+
+    /// Second guess, where the first led nowhere: everything keeps its velocity over the step, but for the spin of
+    /// race bodies, which is prescribed.
+    ///
+    /// An acceleration that lasts for less than a step throws contacts far into sliding, where friction hardly depends
+    /// on the velocity and Newton's method finds no way back.
+    fn predict_steady(&self, unknowns: &mut Vec<f64>) {
+        self.predict(unknowns);
+        let back = -(1.0 - self.step.gamma) / self.step.gamma;
+        let (balls, border) = unknowns.split_at_mut(BLOCK * self.start.balls.len());
+        balls.iter_mut().for_each(|a| *a *= back);
+        for (race, offset) in offsets(self.model).into_iter().enumerate() {
+            if let Some(offset) = offset {
+                border[offset..offset + BLOCK].iter_mut().for_each(|a| *a *= back);
+                let gained = self.boundary.loads[race].speed - self.start.races[race].rate.x;
+                border[offset + 3] += gained / self.step.velocity_gain() * self.model.race_length();
             }
         }
     }
@@ -401,18 +425,24 @@ fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep,
     }
     state.energies.add(&state.powers, &powers, step.h);
     state.powers = powers;
-    state.force_tolerance = force_tolerance(workspace.balls.iter().flat_map(|ball| &ball.contacts), model);
+    let contacts = workspace.balls.iter().flat_map(|ball| &ball.contacts);
+    state.force_tolerance = force_tolerance(contacts, reach(model, state));
+}
+
+/// [m] largest coordinate of a ball to expect: its last digit is what contacts cannot resolve.
+fn reach(model: &Model, state: &State) -> f64 {
+    state.races.iter().fold(0.0f64, |far, race| far.max(race.pose.position.amax())) + model.race_length()
 }
 
 /// [N] residual below which nothing but rounding remains: nine digits of the largest load, or a last digit of a
 /// coordinate times the stiffness `dQ/dx` of the stiffest contact.
-fn force_tolerance<'a>(contacts: impl Iterator<Item = &'a BallRaceContact<f64>>, model: &Model) -> f64 {
+fn force_tolerance<'a>(contacts: impl Iterator<Item = &'a BallRaceContact<f64>>, reach: f64) -> f64 {
     let (mut load, mut stiffness) = (0.0f64, 0.0f64);
     for contact in contacts {
         load = load.max(contact.load);
         stiffness = stiffness.max(1.5 * contact.stiffness.powf(2.0 / 3.0) * contact.load.cbrt());
     }
-    let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness * 0.5 * model.bearing.pitch_diameter;
+    let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness * reach;
     FORCE_TOLERANCE.max(RELATIVE_TOLERANCE * load).max(round_off)
 }
 
@@ -478,5 +508,5 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
         };
     }
     state.powers = powers;
-    state.force_tolerance = force_tolerance(all_contacts.iter(), model);
+    state.force_tolerance = force_tolerance(all_contacts.iter(), reach(model, state));
 }

@@ -7,6 +7,8 @@
 mod ball;
 mod report;
 
+use std::f64::consts::FRAC_PI_2;
+
 use nalgebra::{Matrix2, SMatrix, SVector, UnitQuaternion, Vector3};
 use thiserror::Error;
 
@@ -26,7 +28,7 @@ const TOLERANCE: f64 = 1e-11;
 /// Iterations on the displacements; a typical solve takes 5 to 15.
 const MAX_ITERATIONS: u32 = 400;
 /// [-] largest approach over ball diameter of an answer; steel yields at a tenth of that.
-const MAX_APPROACH: f64 = 0.02;
+pub const MAX_APPROACH: f64 = 0.02;
 /// Names of the five directions.
 const DIRECTION_NAMES: [&str; 5] = ["x", "y", "z", "ry", "rz"];
 
@@ -110,6 +112,19 @@ pub enum EquilibriumError {
         load: f64,
         /// [-] largest approach over ball diameter.
         limit: f64,
+    },
+    /// A contact lies where no groove is.
+    #[error(
+        "ball {ball} would touch the {race} race at a contact angle of {angle:.3} rad: beyond a right angle there is no \
+         groove; the displacement or the tilt is too large"
+    )]
+    LeftGroove {
+        /// Ball, counted from 1.
+        ball: usize,
+        /// Inner or outer.
+        race: &'static str,
+        /// [rad] contact angle.
+        angle: f64,
     },
     /// The displacements do not converge.
     #[error(
@@ -207,8 +222,7 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
 
     let mut places: Option<Vec<Place>> = None;
     let reference = |trial: &Trial| applied.max(inertia_force).max(smallest).max(trial.inner_load_sum);
-    let residual_of = |trial: &Trial| {
-        let scale = reference(trial);
+    let residual_over = |trial: &Trial, scale: f64, weight: f64| {
         let mut residual = SharedVector::zeros();
         for i in 0..5 {
             if let Prescribed::Load(load) = input.conditions[i] {
@@ -216,10 +230,13 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
             }
         }
         if speed_scale > 0.0 {
-            residual[5] = trial.cage_excess / (speed_scale * trial.inner_load_sum.max(1e-9 * smallest));
+            residual[5] = trial.cage_excess / (speed_scale * weight);
         }
         residual
     };
+    // What has to vanish: over the forces at work, the cage speed over the load that it is weighted with.
+    let residual_of =
+        |trial: &Trial| residual_over(trial, reference(trial), trial.inner_load_sum.max(1e-9 * smallest));
     let evaluate = |unknowns: &SharedVector, places: &Option<Vec<Place>>| {
         let tolerance = 0.01 * TOLERANCE * applied.max(inertia_force).max(smallest);
         evaluate(model, input, unknowns, places.as_deref(), tolerance)
@@ -242,11 +259,18 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
             let unknowns = unknowns + step;
             evaluate(&unknowns, &places).ok().map(|trial| (unknowns, trial))
         });
+        // What has to fall is the residual over its own forces or with one scale for both: over its own forces alone, a
+        // race that has to let go of its balls would seem further from balance the less it carries.
+        let scale = reference(&here);
+        let merit = |trial: &Trial| residual_over(trial, scale, scale).norm();
         let accepted = trial.filter(|(_, trial)| {
             // A race that touches nothing yet moves without its residual falling.
             let touches = |trial: &Trial| trial.inner_load_sum > 1e-9 * reference(trial);
             let untouched = !touches(&here) && !touches(trial);
-            untouched || residual_of(trial).norm() < residual.norm() * (1.0 - 1e-6)
+            let falls = |now: f64, before: f64| now < before * (1.0 - 1e-6);
+            untouched
+                || falls(residual_of(trial).norm(), residual.norm())
+                || falls(merit(trial), merit(&here))
         });
         match accepted {
             Some((moved, trial)) => {
@@ -279,6 +303,13 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
         let (approach, load) = (b.inner_approach.max(b.outer_approach), b.inner_load.max(b.outer_load));
         if approach > MAX_APPROACH * diameter {
             return Err(EquilibriumError::Overload { ball: index + 1, approach, load, limit: MAX_APPROACH });
+        }
+        let contacts =
+            [("inner", b.inner_load, b.inner_contact_angle), ("outer", b.outer_load, b.outer_contact_angle)];
+        for (race, load, angle) in contacts {
+            if load > 0.0 && angle.abs() > FRAC_PI_2 {
+                return Err(EquilibriumError::LeftGroove { ball: index + 1, race, angle });
+            }
         }
     }
     Ok(solution)

@@ -1,0 +1,365 @@
+//! The gates that every hard case passes, and the row of figures that it prints.
+//!
+//! (a) it finishes; (b) energy balance; (c) half the step cap; (d) nothing impossible, nothing unconverged; (e) replay
+//! to the same bits; (g) bounded rejections. Gate (f), no gain of energy, has cases of its own.
+
+use nalgebra::Vector3;
+use roulement::outputs::{ContactOutput, Outputs};
+use roulement::scene::{CreepLaw, Scene};
+use roulement::simulation::Simulation;
+use roulement::state::{State, Statistics};
+use roulement::variables::Variables;
+
+use roulement::inputs::Inputs;
+
+/// (b) largest residual of the energy balance over work plus friction.
+const ENERGY: f64 = 0.01;
+/// (c) largest change of a window mean when the step cap is halved.
+const CAP: f64 = 0.02;
+
+/// What is set at the start of communication step `i`, and its end [s].
+pub type Importer<'a> = dyn Fn(&Simulation, u32) -> (Inputs, f64) + 'a;
+
+/// (g) what a run may cost: a regression of robustness shows here although the result may still pass.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Steps, accepted.
+    pub steps: u64,
+    /// Steps rejected for their local error.
+    pub rejected: u64,
+    /// Solves in which Newton's method failed.
+    pub failed: u64,
+    /// Newton corrections per accepted step.
+    pub corrections: f64,
+}
+
+/// Limits in the order of the table's columns.
+pub fn limits(steps: u64, rejected: u64, failed: u64, corrections: f64) -> Limits {
+    Limits { steps, rejected, failed, corrections }
+}
+
+/// A case: a scene, who moves it, and in which part of the run its means are taken.
+pub struct Case<'a> {
+    /// As it stands in the table of figures.
+    pub name: &'a str,
+    /// Scene.
+    pub scene: Scene,
+    /// Who sets the inputs; `None` is the scene's own script.
+    pub importer: Option<&'a Importer<'a>>,
+    /// [m] displacement of the whole bearing at the start, for races with given poses.
+    pub displaced: Vector3<f64>,
+    /// Communication steps.
+    pub points: u32,
+    /// Of how many communication points one is looked at.
+    pub every: u32,
+    /// Window of the means, as shares of the points.
+    pub window: [f64; 2],
+    /// (g).
+    pub limits: Limits,
+}
+
+/// A run that went to its end.
+pub struct Run {
+    /// At the end.
+    pub simulation: Simulation,
+    /// Outputs at every communication point, the start included.
+    pub history: Vec<Outputs>,
+}
+
+impl Run {
+    /// Outputs at the end.
+    pub fn last(&self) -> &Outputs {
+        &self.history[self.history.len() - 1]
+    }
+}
+
+impl<'a> Case<'a> {
+    /// A case that the scene's own script runs, means over its second half.
+    pub fn new(name: &'a str, scene: Scene, limits: Limits) -> Self {
+        let points = (scene.load.duration.0 / scene.load.output_interval.0).round() as u32;
+        Self {
+            name,
+            scene,
+            importer: None,
+            displaced: Vector3::zeros(),
+            points,
+            every: 1,
+            window: [0.5, 1.0],
+            limits,
+        }
+    }
+
+    /// Runs the case through all gates.
+    pub fn pass(&self) -> Run {
+        let variables = Variables::with_balls(&self.scene, true);
+        let mut snapshot = None;
+        let run = self.run(&self.scene, |simulation, point| {
+            possible(self.name, simulation, &variables);
+            converged(self.name, simulation);
+            if point == self.replay_from() {
+                snapshot = Some(simulation.snapshot());
+            }
+        });
+        let snapshot = snapshot.expect("a run has a third quarter");
+        self.replay(&run, &snapshot);
+
+        let energy = energy_residual(&run.history);
+        let statistics = run.simulation.state().statistics;
+        let mean_step = self.mean_step(&run);
+        let mut half = self.scene.clone();
+        half.solver.max_step.0 = 0.5 * mean_step.min(half.solver.max_step.0);
+        half.solver.initial_step.0 = half.solver.initial_step.0.min(half.solver.max_step.0);
+        let finer = self.run(&half, |_, _| {});
+        let (change, what) = self.change(&run.history, &finer.history);
+
+        self.print(&run, energy, change);
+        assert!(energy < ENERGY, "{}: energy balance open by {energy:.2e}", self.name);
+        assert!(change < CAP, "{}: {what}, by {change:.2e}, with half the step cap", self.name);
+        self.bounded(&statistics);
+        run
+    }
+
+    fn simulation(&self, scene: &Scene) -> Simulation {
+        let mut simulation = Simulation::new(scene).unwrap_or_else(|why| panic!("{}: {why}", self.name));
+        if self.displaced != Vector3::zeros() {
+            let mut inputs = *simulation.inputs();
+            inputs.inner.pose.position += self.displaced;
+            inputs.outer.pose.position += self.displaced;
+            simulation.set_inputs(inputs);
+            simulation.initialise().unwrap_or_else(|why| panic!("{}: {why}", self.name));
+        }
+        simulation
+    }
+
+    /// (a) the case runs to its end; `look` sees it at every communication point.
+    pub fn run(&self, scene: &Scene, mut look: impl FnMut(&Simulation, u32)) -> Run {
+        let mut simulation = self.simulation(scene);
+        let mut history = vec![simulation.outputs().clone()];
+        look(&simulation, 0);
+        for point in 0..self.points {
+            self.step(&mut simulation, point);
+            if (point + 1) % self.every == 0 {
+                look(&simulation, point + 1);
+                history.push(simulation.outputs().clone());
+            }
+        }
+        Run { simulation, history }
+    }
+
+    fn step(&self, simulation: &mut Simulation, point: u32) {
+        let (inputs, end) = match self.importer {
+            Some(importer) => importer(simulation, point),
+            None => {
+                let end = f64::from(point + 1) * self.scene.load.output_interval.0;
+                (simulation.scripted_inputs(simulation.time()), end)
+            }
+        };
+        simulation.set_inputs(inputs);
+        simulation.advance(end).unwrap_or_else(|why| {
+            let statistics = simulation.state().statistics;
+            panic!("{}: {why}, {statistics:?}", self.name)
+        });
+    }
+
+    /// (e) from a saved state, in an instance that never was there, to the same bits.
+    fn replay(&self, run: &Run, snapshot: &roulement::simulation::Snapshot) {
+        let mut other = Simulation::new(&self.scene).unwrap();
+        assert!(other.restore(snapshot), "{}", self.name);
+        for point in self.replay_from()..self.points {
+            self.step(&mut other, point);
+        }
+        assert!(other.state() == run.simulation.state(), "{}: the replay differs", self.name);
+        assert!(other.outputs() == run.simulation.outputs(), "{}: the replay differs", self.name);
+    }
+
+    /// The point looked at from which the replay starts, at about three quarters.
+    fn replay_from(&self) -> u32 {
+        self.points * 3 / 4 / self.every * self.every
+    }
+
+    fn mean_step(&self, run: &Run) -> f64 {
+        let simulated = run.simulation.time() - run.history[0].time;
+        simulated / run.simulation.state().statistics.steps as f64
+    }
+
+    /// (c) over the window.
+    fn change(&self, one: &[Outputs], other: &[Outputs]) -> (f64, String) {
+        let index = |share: f64| (share * (one.len() - 1) as f64).round() as usize;
+        let [from, to] = self.window.map(index);
+        change(&one[from..=to], &other[from..=to], 0.5 * self.scene.bearing.pitch_diameter.0)
+    }
+
+    fn print(&self, run: &Run, energy: f64, change: f64) {
+        let s = run.simulation.state().statistics;
+        println!(
+            "\n| {} | {} | {} | {:.2} | {} | {} | {:.2} | {energy:.0e} | {change:.0e} |",
+            self.name,
+            number(run.simulation.time() - run.history[0].time),
+            s.steps,
+            self.mean_step(run) * 1e6,
+            s.rejected_error,
+            failed(&s),
+            corrections(&s),
+        );
+    }
+
+    /// (g).
+    fn bounded(&self, s: &Statistics) {
+        let limits = &self.limits;
+        let inside = s.steps <= limits.steps
+            && s.rejected_error <= limits.rejected
+            && failed(s) <= limits.failed
+            && corrections(s) <= limits.corrections;
+        assert!(inside, "{}: {s:?} is beyond {limits:?}", self.name);
+    }
+}
+
+fn number(seconds: f64) -> String {
+    if seconds < 1.0 { format!("{:.4} ms", seconds * 1e3) } else { format!("{seconds:.1} s") }
+}
+
+/// A rejected step has failed twice, from both first guesses.
+fn failed(s: &Statistics) -> u64 {
+    s.second_guesses + s.rejected_newton
+}
+
+fn corrections(s: &Statistics) -> f64 {
+    s.newton.iterations as f64 / s.steps as f64
+}
+
+/// (b) residual of the energy balance at its worst over work plus friction.
+///
+/// Work that goes in and comes back counts each time, so that a reversal is not measured by what remains of it.
+pub fn energy_residual(history: &[Outputs]) -> f64 {
+    let first = &history[0];
+    let residual = |o: &Outputs| {
+        o.work - first.work - (o.dissipated - first.dissipated) - (o.stored_energy - first.stored_energy)
+    };
+    let work: f64 = history.windows(2).map(|pair| (pair[1].work - pair[0].work).abs()).sum();
+    let reference = work + history[history.len() - 1].dissipated - first.dissipated;
+    let worst = history.iter().map(|o| residual(o).abs()).fold(0.0, f64::max);
+    // Below a nanojoule there is nothing but rounding to balance.
+    worst / reference.max(1e-9)
+}
+
+/// (c) largest change of a window mean over the size of what it is a mean of, and which; `lever` [m] is that of the
+/// balls.
+pub fn change(one: &[Outputs], other: &[Outputs], lever: f64) -> (f64, String) {
+    let (a, b) = (means(one, lever), means(other, lever));
+    let change = |i: usize| (a[i].mean - b[i].mean).abs() / a[i].size;
+    let largest = (0..a.len()).max_by(|&i, &k| change(i).total_cmp(&change(k))).unwrap();
+    let (name, was, is) = (a[largest].name, a[largest].mean, b[largest].mean);
+    (change(largest), format!("{name} from {was:e} to {is:e}"))
+}
+
+struct Mean {
+    name: &'static str,
+    mean: f64,
+    size: f64,
+}
+
+/// Means of what a user reads off a run, each with the mean size that a change is compared with.
+fn means(window: &[Outputs], lever: f64) -> Vec<Mean> {
+    let n = window.len() as f64;
+    let mean = |get: &dyn Fn(&Outputs) -> f64| window.iter().map(get).sum::<f64>() / n;
+    let load =
+        |get: fn(&roulement::outputs::BallOutput) -> f64| mean(&|o| o.balls.iter().map(get).sum::<f64>());
+    let force = mean(&|o| o.inner.wrench.force.norm());
+    let inner = load(|ball| ball.inner.load);
+    let outer = load(|ball| ball.outer.load);
+    // Floors: what is smaller than a millionth of a newton, of a rad/s, of a watt is zero.
+    let (force_size, speed_size) = (force.max(1e-6), mean(&|o| o.cage_speed.abs()).max(1e-6));
+    let (first, last) = (&window[0], &window[window.len() - 1]);
+    let lost = (last.dissipated - first.dissipated) / (last.time - first.time);
+    let mut list = vec![
+        Mean { name: "mean inner load", mean: inner, size: inner.max(1e-6) },
+        Mean { name: "mean outer load", mean: outer, size: outer.max(1e-6) },
+        Mean { name: "mean cage speed", mean: mean(&|o| o.cage_speed), size: speed_size },
+        Mean { name: "mean power lost", mean: lost, size: lost.abs().max(1e-6) },
+    ];
+    // A moment is compared with that of the forces at the pitch circle, where the balls are.
+    let moment_size = force_size * lever;
+    for (i, name) in ["mean moment x", "mean moment y", "mean moment z"].into_iter().enumerate() {
+        list.push(Mean { name, mean: mean(&|o| o.inner.wrench.moment[i]), size: moment_size });
+    }
+    for (i, name) in ["mean force x", "mean force y", "mean force z"].into_iter().enumerate() {
+        list.push(Mean { name, mean: mean(&|o| o.inner.wrench.force[i]), size: force_size });
+    }
+    list
+}
+
+/// (d) finite everywhere, no pulling contact, no friction above its limit.
+pub fn possible(name: &str, simulation: &Simulation, variables: &Variables) {
+    let (inputs, outputs) = (simulation.inputs(), simulation.outputs());
+    for (row, value) in variables.rows().iter().zip(variables.values(inputs, outputs)) {
+        assert!(value.is_finite(), "{name}: {} = {value} at {} s", row.name, outputs.time);
+    }
+    let bounded = simulation.model().law != CreepLaw::Linear;
+    let holds = |contact: &ContactOutput| {
+        let force = contact.force_longitudinal.hypot(contact.force_lateral);
+        let limit = inputs.friction * contact.load;
+        contact.load >= 0.0 && (!bounded || force <= limit * (1.0 + 1e-12))
+    };
+    for ball in &outputs.balls {
+        assert!(holds(&ball.inner) && holds(&ball.outer), "{name}: {ball:?} at {} s", outputs.time);
+    }
+}
+
+/// (d) the next step from here satisfies the equations of the HHT scheme, evaluated afresh from its two states.
+pub fn converged(name: &str, simulation: &Simulation) {
+    let mut probe = simulation.clone();
+    let before = probe.state().clone();
+    let end = before.time + before.control.step();
+    if end <= before.time || probe.advance(end).is_err() {
+        return;
+    }
+    if probe.state().statistics.steps != before.statistics.steps + 1 {
+        return; // divided, so that only its last part could be seen
+    }
+    let residual = residual(&probe, &before);
+    let tolerance = before.force_tolerance * (1.0 + 1e-6);
+    assert!(
+        residual <= tolerance,
+        "{name}: a step from {} s leaves {residual:e} of {tolerance:e} N",
+        before.time
+    );
+}
+
+/// [N] largest residual of `m a1 = (1 - alpha_f) g1 + alpha_f g0` with forces evaluated afresh at the end.
+fn residual(end: &Simulation, before: &State) -> f64 {
+    let (model, state) = (end.model(), end.state());
+    let (share, friction) = (1.0 - model.solver.alpha_f, end.inputs().friction);
+    let contacts = [0, 1].map(|race| model.contact(race, friction));
+    let races = [0, 1].map(|race: usize| state.races[race].motion());
+    let ball = &model.bearing.ball;
+    let mut worst = 0.0f64;
+    for (now, old) in state.balls.iter().zip(&before.balls) {
+        let [inner, outer] = [0, 1].map(|race: usize| contacts[race].evaluate(&now.motion(), &races[race]));
+        let force = model.gravity * ball.mass + inner.force + outer.force;
+        let moment = inner.ball_moment + outer.ball_moment;
+        let linear = now.acceleration * ball.mass - force * share - old.total.force * (1.0 - share);
+        let angular =
+            now.angular_acceleration * ball.inertia - moment * share - old.total.moment * (1.0 - share);
+        worst = worst.max(linear.amax()).max(angular.amax() / ball.radius);
+    }
+    for (race, body) in model.bodies.iter().enumerate() {
+        let (now, old) = (&state.races[race], &before.races[race]);
+        if let Some(body) = body {
+            let linear =
+                now.acceleration * body.mass - now.total.force * share - old.total.force * (1.0 - share);
+            let angular = now.rate_derivative.component_mul(&body.inertia)
+                - now.total.moment * share
+                - old.total.moment * (1.0 - share);
+            worst = worst.max(linear.amax()).max(angular.amax() / model.race_length());
+        }
+    }
+    worst
+}
+
+/// (a) a refusal that names every one of `parts`.
+pub fn refuses(name: &str, error: &str, parts: &[&str]) {
+    println!("\n| {name} | refused: {error} |");
+    for part in parts {
+        assert!(error.contains(part), "{name}: `{error}` does not name {part}");
+    }
+}

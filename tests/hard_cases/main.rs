@@ -1,0 +1,20 @@
+//! Hard cases: each tries to break the model; its physics and the gates of `gates.rs` are the assertion.
+//!
+//! `cargo test --release --test hard_cases -- --nocapture --test-threads 1 | grep '^|'` prints the figures of
+//! `docs/stability.md`.
+#![allow(clippy::unwrap_used)]
+
+mod communication;
+mod contact_loss;
+mod creep_laws;
+mod equilibrium_scenes;
+mod extremes;
+mod free_oscillation;
+mod friction;
+mod gates;
+mod loads;
+mod random;
+mod refusals;
+mod scenes;
+mod shaft;
+mod start_and_stop;

@@ -1,0 +1,57 @@
+//! What cannot be simulated is refused with its cause, its time, the ball and its contacts; never a wrong answer.
+
+use roulement::simulation::Simulation;
+
+use crate::gates::refuses;
+use crate::scenes::{ANGULAR, GROOVE, groove, load, scene};
+
+/// Runs a scene to its refusal.
+fn refusal(base: &str, changes: &str) -> String {
+    let scene = scene(base, changes);
+    let mut simulation = match Simulation::new(&scene) {
+        Ok(simulation) => simulation,
+        Err(why) => return why.to_string(),
+    };
+    loop {
+        simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
+        if let Err(why) = simulation.advance(simulation.time() + 1e-4) {
+            return why.to_string();
+        }
+        assert!(simulation.time() < scene.load.duration.0, "it was not refused");
+    }
+}
+
+#[test]
+fn a_step_that_may_not_be_small_enough() {
+    let rows = "x = { force = [[0.0, 1500.0], [0.001, 1500.0], [0.00105, 50000.0]] }\n";
+    let solver = "[solver]\ninitial_step = \"10 us\"\nmin_step = \"10 us\"\nmax_step = \"10 us\"\n";
+    let why = refusal(ANGULAR, &(load(5.0, 6000.0, rows) + solver));
+    refuses(
+        "shock, steps held at 10 us",
+        &why,
+        &["at 0.00", "local error", "ball", "inner load", "outer load"],
+    );
+}
+
+#[test]
+fn a_race_that_nothing_holds() {
+    // One ball takes thrust, but lets the race turn about it.
+    let one = "[bearing]\nballs = 1\nball_diameter = \"9.525 mm\"\npitch_diameter = \"46 mm\"\n\
+               contact_angle = \"25 deg\"\ninner_conformity = 0.52\nouter_conformity = 0.52\n";
+    let why = refusal(ANGULAR, &(load(5.0, 6000.0, "x = { force = 100.0 }\n") + one));
+    refuses("thrust on a single ball", &why, &["no equilibrium to start from", "direction", "displacement"]);
+}
+
+#[test]
+fn interference_beyond_elastic_contact() {
+    let rows = "y = { force = 1000.0 }\nx = { displacement = 0.0 }\n";
+    let why = refusal(GROOVE, &(load(5.0, 6000.0, rows) + &groove(-900.0, 0.52)));
+    refuses("interference 0.9 mm", &why, &["ball", "pressed in", "beyond elastic"]);
+}
+
+#[test]
+fn a_load_that_crushes_while_it_runs() {
+    let rows = "x = { force = [[0.0, 1500.0], [0.001, 1500.0], [0.002, 1e7]] }\n";
+    let why = refusal(ANGULAR, &load(5.0, 6000.0, rows));
+    refuses("thrust of 10 MN", &why, &["at 0.00", "ball", "inner"]);
+}

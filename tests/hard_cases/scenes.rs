@@ -1,0 +1,64 @@
+//! Scenes of the hard cases: two bearings whose sections are written anew where a case differs.
+
+use roulement::scene::Scene;
+
+/// Angular-contact bearing under thrust, inner race a body.
+pub const ANGULAR: &str = include_str!("../../scenes/thrust.toml");
+/// Deep-groove bearing like a 6206, inner race a body.
+pub const GROOVE: &str = include_str!("../../scenes/radial.toml");
+
+/// The same angular-contact bearing with its inner race moved by the importer.
+pub const POSE: &str = "[inner]\ndrive = \"pose\"";
+
+/// Directions in which a bearing cannot hold its inner race by itself are held at 0.
+pub const HELD: &str = "y = { displacement = 0.0 }\nz = { displacement = 0.0 }\n\
+                        ry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";
+
+/// Header and text of every section; what stands before the first header has none.
+fn sections(text: &str) -> Vec<(String, String)> {
+    let mut sections = vec![];
+    for line in text.lines() {
+        if line.starts_with('[') {
+            sections.push((line.to_string(), String::new()));
+        } else if let Some((_, body)) = sections.last_mut() {
+            *body += line;
+            *body += "\n";
+        }
+    }
+    sections
+}
+
+/// A scene of `base` in which every section of `changes` takes the place of the one with its name.
+pub fn scene(base: &str, changes: &str) -> Scene {
+    let mut all = sections(base);
+    for (header, body) in sections(changes) {
+        match all.iter_mut().find(|(name, _)| *name == header) {
+            Some((_, old)) => *old = body,
+            None => all.push((header, body)),
+        }
+    }
+    let text: String = all.iter().map(|(header, body)| format!("{header}\n{body}\n")).collect();
+    Scene::parse(&text).unwrap_or_else(|why| panic!("{why}\n{text}"))
+}
+
+/// Section `[load]` with `rows` after the usual duration [ms] and speed of the inner race [rpm].
+pub fn load(milliseconds: f64, rpm: f64, rows: &str) -> String {
+    format!("[load]\nduration = \"{milliseconds} ms\"\ninner_speed = \"{rpm} rpm\"\n{rows}\n")
+}
+
+/// Section `[load]` as [`load`], the inner race's speed a table.
+pub fn ramp(milliseconds: f64, speed: &str, rows: &str) -> String {
+    format!("[load]\nduration = \"{milliseconds} ms\"\ninner_speed = {speed}\n{rows}\n")
+}
+
+/// Axial motion and tilt held at 0: what a deep-groove bearing under radial load leaves loose.
+pub const FLAT: &str = "x = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";
+
+/// The deep-groove bearing with another diametral clearance [um] and conformity.
+pub fn groove(micrometres: f64, conformity: f64) -> String {
+    format!(
+        "[bearing]\nballs = 9\nball_diameter = \"9.525 mm\"\npitch_diameter = \"46 mm\"\n\
+         diametral_clearance = \"{micrometres} um\"\ninner_conformity = {conformity}\n\
+         outer_conformity = {conformity}\n"
+    )
+}
