@@ -1,5 +1,6 @@
 //! Commands and their options.
 
+mod cost;
 mod run;
 mod summary;
 
@@ -66,6 +67,14 @@ enum Command {
         /// Degree of the traction polynomials of `kalker`, 1 to 7.
         #[arg(long, default_value_t = 5)]
         degree: usize,
+    },
+    /// Measure what accuracy costs in time: every lever, its error and its CPU time.
+    Cost {
+        /// Scene file; the six standard scenes if not given.
+        scene: Option<PathBuf>,
+        /// Directory for table, plots and report; made if missing.
+        #[arg(short, long, default_value = "cost")]
+        output: PathBuf,
     },
     /// Print the model description of a scene's package.
     Describe {
@@ -147,6 +156,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             }
             answers.flush()?;
         }
+        Command::Cost { scene, output } => cost::run(scene.as_deref(), &output)?,
         Command::Describe { scene } => print!("{}", render(&Simulation::new(&Scene::load(&scene)?)?)?.xml),
     }
     Ok(())
