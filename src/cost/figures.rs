@@ -6,14 +6,17 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use strum::VariantArray;
 
-use super::SceneStudy;
 use super::levers::{Lever, ReferenceKind};
-use super::norms::Norm;
+use super::norms::{Errors, Norm};
+use super::{Point, SceneStudy};
 use crate::plots::{COLOURS, PlotError};
 
-const PANEL: (u32, u32) = (560, 380);
+const PANEL: (u32, u32) = (500, 360);
+const LEGEND_WIDTH: u32 = 230;
 /// [-] errors below this are rounding and drawn here.
 const LEAST_ERROR: f64 = 1e-12;
+const FRONT: ShapeStyle = ShapeStyle { color: RGBAColor(0, 0, 0, 1.0), filled: false, stroke_width: 2 };
+const BAR: ShapeStyle = ShapeStyle { color: RGBAColor(90, 90, 90, 1.0), filled: false, stroke_width: 1 };
 
 /// A panel: the errors of one norm, or the largest of all.
 struct Panel<'a> {
@@ -23,21 +26,38 @@ struct Panel<'a> {
     caption: String,
 }
 
+impl Panel<'_> {
+    fn error(&self, errors: &Errors) -> Option<f64> {
+        match self.norm {
+            Some(norm) => errors.get(norm),
+            None => errors.worst(),
+        }
+    }
+
+    /// CPU time and error of a run; none for the reference compared with itself, which has no place on a log axis.
+    fn place(&self, point: &Point) -> Option<(f64, f64)> {
+        let measured = point.result.as_ref().ok()?;
+        let error = self.error(&measured.errors).filter(|&error| error > 0.0)?;
+        Some((measured.cpu, error.max(LEAST_ERROR)))
+    }
+
+    fn places(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.study.points_of(self.kind).filter_map(|point| self.place(point))
+    }
+}
+
 /// Draws all norms of one kind of error of a scene.
 ///
 /// # Errors
 /// If the file cannot be written.
 pub fn write_norms(study: &SceneStudy, kind: ReferenceKind, path: &Path) -> Result<(), PlotError> {
-    let measured = |norm: Norm| {
-        study.points_of(kind).any(|p| p.result.as_ref().is_ok_and(|m| m.errors.get(norm).is_some()))
-    };
     let panels: Vec<_> = Norm::VARIANTS
         .iter()
-        .filter(|&&norm| measured(norm))
         .map(|&norm| Panel { study, kind, norm: Some(norm), caption: norm.name().to_string() })
+        .filter(|panel| panel.places().next().is_some())
         .collect();
     let title = format!("{}: {} against CPU time", study.title(), kind_name(kind));
-    write(path, &title, &panels)
+    write(path, &title, &panels, &[kind])
 }
 
 /// Draws the largest error of a scene: numerical beside model.
@@ -45,13 +65,12 @@ pub fn write_norms(study: &SceneStudy, kind: ReferenceKind, path: &Path) -> Resu
 /// # Errors
 /// If the file cannot be written.
 pub fn write_overview(study: &SceneStudy, path: &Path) -> Result<(), PlotError> {
-    let panels = [ReferenceKind::Numerical, ReferenceKind::Model].map(|kind| Panel {
-        study,
-        kind,
-        norm: None,
-        caption: format!("{}, largest of all quantities", kind_name(kind)),
-    });
-    write(path, &format!("{}: what accuracy costs", study.title()), &panels)
+    let kinds = [ReferenceKind::Numerical, ReferenceKind::Model];
+    let panel = |kind| {
+        let caption = format!("{}, largest of all quantities", kind_name(kind));
+        Panel { study, kind, norm: None, caption }
+    };
+    write(path, &format!("{}: what accuracy costs", study.title()), &kinds.map(panel), &kinds)
 }
 
 fn kind_name(kind: ReferenceKind) -> &'static str {
@@ -61,20 +80,59 @@ fn kind_name(kind: ReferenceKind) -> &'static str {
     }
 }
 
-fn write(path: &Path, title: &str, panels: &[Panel<'_>]) -> Result<(), PlotError> {
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+fn write(path: &Path, title: &str, panels: &[Panel<'_>], kinds: &[ReferenceKind]) -> Result<(), PlotError> {
     let columns = 2;
     let rows = panels.len().div_ceil(columns);
-    let draw_all = || -> Result<(), Box<dyn std::error::Error>> {
-        let size = (PANEL.0 * columns as u32, PANEL.1 * rows as u32 + 40);
-        let root = SVGBackend::new(path, size).into_drawing_area();
+    let width = PANEL.0 * columns as u32;
+    let draw_all = || -> Drawn {
+        let root =
+            SVGBackend::new(path, (width + LEGEND_WIDTH, PANEL.1 * rows as u32 + 40)).into_drawing_area();
         root.fill(&WHITE)?;
-        let body = root.titled(title, ("sans-serif", 20))?;
-        for (panel, area) in panels.iter().zip(body.split_evenly((rows, columns))) {
+        let (grid, key) = root.titled(title, ("sans-serif", 20))?.split_horizontally(width);
+        for (panel, area) in panels.iter().zip(grid.split_evenly((rows, columns))) {
             draw(panel, &area)?;
         }
+        legend(kinds, &key)?;
         Ok(root.present()?)
     };
     draw_all().map_err(|why| PlotError { path: path.display().to_string(), why: why.to_string() })
+}
+
+fn levers_of(kind: ReferenceKind) -> impl Iterator<Item = Lever> {
+    Lever::VARIANTS.iter().copied().filter(move |lever| lever.reference() == kind)
+}
+
+/// A mark whose colour, and fill where colours run out, tells the lever by its place in [`levers_of`].
+fn mark<C>(index: usize, at: C) -> Circle<C, i32> {
+    let colour = colour(index);
+    Circle::new(at, 4, if index < COLOURS.len() { colour.filled() } else { colour.stroke_width(2) })
+}
+
+fn colour(index: usize) -> RGBColor {
+    COLOURS[index % COLOURS.len()]
+}
+
+fn legend(kinds: &[ReferenceKind], area: &Area<'_>) -> Drawn {
+    let text = |words: &str, at| Text::new(words.to_string(), at, ("sans-serif", 13));
+    let mut y = 30;
+    for &kind in kinds {
+        area.draw(&text(kind_name(kind), (4, y)))?;
+        for (index, lever) in levers_of(kind).enumerate() {
+            y += 20;
+            area.draw(&mark(index, (14, y + 6)))?;
+            area.draw(&text(lever.name(), (28, y)))?;
+        }
+        y += 34;
+    }
+    for (words, style) in [("Pareto front", FRONT), ("error bar of the reference", BAR)] {
+        area.draw(&PathElement::new([(4, y + 6), (22, y + 6)], style))?;
+        area.draw(&text(words, (28, y)))?;
+        y += 20;
+    }
+    Ok(())
 }
 
 /// Whole decades around values.
@@ -86,34 +144,13 @@ fn decades(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     10f64.powf((low.log10() - 0.05).floor())..10f64.powf((high.log10() + 0.05).ceil())
 }
 
-fn draw(
-    panel: &Panel<'_>,
-    area: &DrawingArea<SVGBackend<'_>, Shift>,
-) -> Result<(), Box<dyn std::error::Error>> {
+fn draw(panel: &Panel<'_>, area: &Area<'_>) -> Drawn {
     let (study, kind) = (panel.study, panel.kind);
-    let error_of = |errors: &super::norms::Errors| match panel.norm {
-        Some(norm) => errors.get(norm),
-        None => errors.worst(),
-    };
-    let curve = |lever: Lever| -> Vec<(f64, f64)> {
-        let points = study.points_of(kind).filter(|point| point.lever == lever);
-        points
-            .filter_map(|point| point.result.as_ref().ok())
-            .filter_map(|measured| Some((measured.cpu, error_of(&measured.errors)?)))
-            // The reference compared with itself has no error: no place on a logarithmic axis.
-            .filter(|&(_, error)| error > 0.0)
-            .map(|(cpu, error)| (cpu, error.max(LEAST_ERROR)))
-            .collect()
-    };
-    let levers: Vec<_> = Lever::VARIANTS.iter().filter(|lever| lever.reference() == kind).collect();
-    let curves: Vec<_> =
-        levers.iter().map(|&&lever| (lever, curve(lever))).filter(|(_, c)| !c.is_empty()).collect();
-    let all = || curves.iter().flat_map(|(_, curve)| curve.iter().copied());
-    let bar = error_of(study.error_bar(kind)).filter(|&bar| bar > LEAST_ERROR);
-    let x = decades(all().map(|point| point.0));
-    let y = decades(all().map(|point| point.1).chain(bar));
+    let bar = panel.error(study.error_bar(kind)).filter(|&bar| bar > LEAST_ERROR);
+    let x = decades(panel.places().map(|place| place.0));
+    let y = decades(panel.places().map(|place| place.1).chain(bar));
     let mut chart = ChartBuilder::on(area)
-        .margin(12)
+        .margin(10)
         .caption(&panel.caption, ("sans-serif", 15))
         .x_label_area_size(38)
         .y_label_area_size(64)
@@ -126,50 +163,28 @@ fn draw(
         .y_desc("relative error")
         .axis_desc_style(("sans-serif", 13))
         .label_style(("sans-serif", 12))
-        .x_label_formatter(&|value| format!("{value}"))
-        .y_label_formatter(&|value| format!("{value:e}"))
+        .x_label_formatter(&|value| format!("{}", (value * 1e6).round() / 1e6))
+        .y_label_formatter(&|value| format!("{value:.0e}"))
         .draw()?;
-    for (index, (lever, points)) in curves.iter().enumerate() {
-        let colour = COLOURS[index % COLOURS.len()];
-        // Settings that are no scale have no line between them.
-        if !matches!(lever, Lever::Level | Lever::CreepLaw) {
-            chart.draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(1)))?;
+    for (index, lever) in levers_of(kind).enumerate() {
+        let points: Vec<_> = study.points_of(kind).filter(|point| point.lever == lever).collect();
+        let places: Vec<_> = points.iter().filter_map(|point| panel.place(point)).collect();
+        if kind == ReferenceKind::Numerical {
+            chart.draw_series(LineSeries::new(places.iter().copied(), colour(index).stroke_width(1)))?;
+        } else {
+            // Models are no scale: no line joins them, each has its name.
+            let named = points.iter().filter_map(|point| Some((point, panel.place(point)?)));
+            let name = |(point, place): (&&Point, _)| {
+                EmptyElement::at(place) + Text::new(point.label.clone(), (7, -5), ("sans-serif", 12))
+            };
+            chart.draw_series(named.map(name))?;
         }
-        let marks = points.iter().map(|&point| mark(index, point, colour));
-        chart.draw_series(marks)?.label(lever.name()).legend(move |(x, y)| mark(index, (x + 9, y), colour));
+        chart.draw_series(places.into_iter().map(|place| mark(index, place)))?;
     }
-    if kind == ReferenceKind::Model {
-        for point in study.points_of(kind) {
-            let place = point.result.as_ref().ok().and_then(|m| Some((m.cpu, error_of(&m.errors)?)));
-            if let Some(place) = place.filter(|place| place.1 > 0.0) {
-                let label = Text::new(point.label.clone(), (7, -5), ("sans-serif", 12));
-                chart.draw_series([EmptyElement::at(place) + label])?;
-            }
-        }
-    }
-    let front = study.pareto(kind, panel.norm).into_iter().filter(|&(_, _, error)| error > 0.0);
-    let front: Vec<_> = front.map(|(_, cpu, error)| (cpu, error.max(LEAST_ERROR))).collect();
-    chart
-        .draw_series(DashedLineSeries::new(front, 6, 4, BLACK.stroke_width(2)))?
-        .label("Pareto front")
-        .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], BLACK.stroke_width(2)));
+    let front = study.pareto(kind, panel.norm).into_iter().filter_map(|(point, _, _)| panel.place(point));
+    chart.draw_series(DashedLineSeries::new(front.collect::<Vec<_>>(), 6, 4, FRONT))?;
     if let Some(bar) = bar {
-        let grey = RGBColor(90, 90, 90);
-        chart
-            .draw_series(DashedLineSeries::new([(x.start, bar), (x.end, bar)], 2, 3, grey.stroke_width(1)))?
-            .label("error bar of the reference")
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], grey.stroke_width(1)));
+        chart.draw_series(DashedLineSeries::new([(x.start, bar), (x.end, bar)], 2, 3, BAR))?;
     }
-    chart
-        .configure_series_labels()
-        .background_style(WHITE.mix(0.8))
-        .label_font(("sans-serif", 11))
-        .position(SeriesLabelPosition::UpperRight)
-        .draw()?;
     Ok(())
-}
-
-/// A mark whose colour, and fill where colours run out, tells the lever.
-fn mark<C>(index: usize, at: C, colour: RGBColor) -> Circle<C, i32> {
-    Circle::new(at, 4, if index < COLOURS.len() { colour.filled() } else { colour.stroke_width(2) })
 }

@@ -34,8 +34,8 @@ pub const SCENES: [(&str, &str); 6] = [
 
 /// [-] the errors are of the run from this share of its duration on.
 const WINDOW_START: f64 = 0.25;
-/// [-] a scene is smooth if the two finest runs differ by less than this at every quantity and equal times.
-const SMOOTH: f64 = 1e-3;
+/// [-] a scene is smooth if its two finest runs differ by less than this in every quantity at equal times.
+const SMOOTH: f64 = 1e-4;
 
 /// A reference run and how far it can be trusted.
 struct Reference {

@@ -58,9 +58,9 @@ impl Accuracy {
     pub fn solver(self) -> Solver {
         let steps = |max_step, tolerance| Solver { max_step: Time(max_step), tolerance, ..Solver::default() };
         match self {
-            Self::Fast => steps(5e-5, 1e-5),
-            Self::Balanced => steps(1e-5, 1e-6),
-            Self::Reference => steps(1e-6, 1e-8),
+            Self::Fast => steps(2e-4, 1e-5),
+            Self::Balanced => steps(5e-5, 1e-7),
+            Self::Reference => steps(2e-6, 1e-9),
         }
     }
 
