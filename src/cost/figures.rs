@@ -15,6 +15,8 @@ const PANEL: (u32, u32) = (500, 360);
 const LEGEND_WIDTH: u32 = 230;
 /// [-] errors below this are rounding and drawn here.
 const LEAST_ERROR: f64 = 1e-12;
+/// [-] a quantity whose errors are all below this is given, not computed: the displacement of a driven race.
+const WORTH_SHOWING: f64 = 1e-6;
 const FRONT: ShapeStyle = ShapeStyle { color: RGBAColor(0, 0, 0, 1.0), filled: false, stroke_width: 2 };
 const BAR: ShapeStyle = ShapeStyle { color: RGBAColor(90, 90, 90, 1.0), filled: false, stroke_width: 1 };
 
@@ -34,10 +36,11 @@ impl Panel<'_> {
         }
     }
 
-    /// CPU time and error of a run; none for the reference compared with itself, which has no place on a log axis.
+    /// CPU time and error of a run. The reference itself, of no error, is drawn at its error bar.
     fn place(&self, point: &Point) -> Option<(f64, f64)> {
         let measured = point.result.as_ref().ok()?;
-        let error = self.error(&measured.errors).filter(|&error| error > 0.0)?;
+        let error = self.error(&measured.errors)?;
+        let error = if error > 0.0 { error } else { self.error(self.study.error_bar(self.kind))? };
         Some((measured.cpu, error.max(LEAST_ERROR)))
     }
 
@@ -54,7 +57,7 @@ pub fn write_norms(study: &SceneStudy, kind: ReferenceKind, path: &Path) -> Resu
     let panels: Vec<_> = Norm::VARIANTS
         .iter()
         .map(|&norm| Panel { study, kind, norm: Some(norm), caption: norm.name().to_string() })
-        .filter(|panel| panel.places().next().is_some())
+        .filter(|panel| panel.places().any(|(_, error)| error > WORTH_SHOWING))
         .collect();
     let title = format!("{}: {} against CPU time", study.title(), kind_name(kind));
     write(path, &title, &panels, &[kind])

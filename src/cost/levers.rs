@@ -33,13 +33,13 @@ pub enum Lever {
     #[strum(serialize = "matrix reuse")]
     MatrixReuse,
     /// Communication step, inputs as they are at its start.
-    #[strum(serialize = "communication, inputs held")]
+    #[strum(serialize = "communication (held)")]
     CommunicationHeld,
     /// Communication step, inputs at its start with their derivatives.
-    #[strum(serialize = "communication, derivatives")]
+    #[strum(serialize = "communication (derivatives)")]
     CommunicationDerivatives,
     /// Communication step, inputs that lead to where the importer is at its end.
-    #[strum(serialize = "communication, inputs ahead")]
+    #[strum(serialize = "communication (ahead)")]
     CommunicationAhead,
 }
 
