@@ -160,7 +160,8 @@ fn draw(panel: &Panel<'_>, area: &Area<'_>) -> Drawn {
         .build_cartesian_2d(x.clone().log_scale(), y.log_scale())?;
     chart
         .configure_mesh()
-        .light_line_style(RGBColor(242, 242, 242))
+        // Decades are enough, and lines between them would be most of the file.
+        .max_light_lines(0)
         .bold_line_style(RGBColor(215, 215, 215))
         .x_desc("CPU seconds per simulated second")
         .y_desc("relative error")

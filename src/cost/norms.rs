@@ -166,7 +166,7 @@ mod tests {
     fn closed_form_errors_of_an_offset_and_of_a_ripple() {
         let reference = run(100, 0.0, 0.0);
         let near = |error: Option<f64>, expected: f64| {
-            assert!((error.unwrap() - expected).abs() < 1e-3, "{error:?}")
+            assert!((error.unwrap() - expected).abs() < 1e-3, "{error:?}");
         };
         for how in [Comparison::Pointwise, Comparison::WindowMeans] {
             let offset = errors(&run(100, 0.0, 0.02), &reference, how, 0.25);
