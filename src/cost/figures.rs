@@ -178,8 +178,10 @@ fn draw(panel: &Panel<'_>, area: &Area<'_>) -> Drawn {
         } else {
             // Models are no scale: no line joins them, each has its name.
             let named = points.iter().filter_map(|point| Some((point, panel.place(point)?)));
+            // The richest law is also the dynamic level: names of the levers one above the other.
+            let above = if lever == Lever::Level { -16 } else { -5 };
             let name = |(point, place): (&&Point, _)| {
-                EmptyElement::at(place) + Text::new(point.label.clone(), (7, -5), ("sans-serif", 12))
+                EmptyElement::at(place) + Text::new(point.label.clone(), (7, above), ("sans-serif", 12))
             };
             chart.draw_series(named.map(name))?;
         }

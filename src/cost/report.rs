@@ -216,19 +216,21 @@ fn points(study: &SceneStudy, kind: ReferenceKind) -> Block {
     let row = |point: &Point| {
         let star = if front.iter().any(|(other, _, _)| std::ptr::eq(*other, point)) { " *" } else { "" };
         let mut row = vec![point.lever.name().to_string(), format!("{}{star}", point.label)];
-        if let Ok(measured) = &point.result {
-            let work = &measured.work;
-            row.extend(errors(&measured.errors));
-            row.push(format!("{:.3}", measured.cpu));
-            if instructions {
-                row.push(number(measured.instructions));
-            }
-            let contacts = work.contact_values + work.contact_tangents;
-            let rejected = work.rejected_error + work.rejected_newton;
-            let counts = [work.steps, rejected, work.newton.iterations, work.newton.factorisations, contacts];
-            row.extend(counts.map(|count| count.to_string()));
+        let Ok(measured) = &point.result else {
+            row.push("failed".into());
+            row.resize(header.len(), String::new());
+            return row;
+        };
+        row.extend(errors(&measured.errors));
+        row.push(format!("{:.3}", measured.cpu));
+        if instructions {
+            row.push(number(measured.instructions));
         }
-        row.resize(header.len(), "failed".into());
+        let work = &measured.work;
+        let contacts = work.contact_values + work.contact_tangents;
+        let rejected = work.rejected_error + work.rejected_newton;
+        let counts = [work.steps, rejected, work.newton.iterations, work.newton.factorisations, contacts];
+        row.extend(counts.map(|count| count.to_string()));
         row
     };
     let rows = std::iter::once(bar).chain(study.points_of(kind).map(row)).collect();
