@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// Largest number of residual evaluations of one solve; a well-behaved step takes two or three.
 const MAX_EVALUATIONS: u32 = 25;
-/// [-] a correction that leaves more than this share of the residual asks for a new tangent.
-const REFACTOR_CONTRACTION: f64 = 0.3;
+/// [-] a correction that leaves more than this share of the residual asks for a new tangent, by default.
+pub const REFACTOR_CONTRACTION: f64 = 0.3;
 /// Halvings of one line search.
 const MAX_HALVINGS: u32 = 6;
 
@@ -18,6 +18,11 @@ pub trait Equations {
 
     /// Writes the Newton correction of the last residual with the last tangent; false if that is singular.
     fn correction(&mut self, correction: &mut [f64]) -> bool;
+
+    /// [-] a correction that leaves more than this share of the residual asks for a new tangent.
+    fn refactor_contraction(&self) -> f64 {
+        REFACTOR_CONTRACTION
+    }
 }
 
 /// Work of one or many solves.
@@ -107,7 +112,7 @@ pub fn solve(
         if norm > 1.0 && evaluations >= MAX_EVALUATIONS {
             return Err(NewtonFailure::NoConvergence);
         }
-        if norm > 1.0 && contraction > REFACTOR_CONTRACTION {
+        if norm > 1.0 && contraction > equations.refactor_contraction() {
             norm = equations.residual(unknowns, true);
             work.factorisations += 1;
             evaluations += 1;

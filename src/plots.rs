@@ -14,13 +14,20 @@ use crate::scene::Scene;
 #[derive(Debug, Error)]
 #[error("cannot draw {path}: {why}")]
 pub struct PlotError {
-    path: String,
-    why: String,
+    pub(crate) path: String,
+    pub(crate) why: String,
 }
 
 /// Colour-blind safe colours (Okabe and Ito).
-const COLOURS: [RGBColor; 4] =
-    [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
+pub const COLOURS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(120, 120, 120),
+];
 const PANEL: (u32, u32) = (520, 270);
 
 /// A curve: its name and points.

@@ -115,6 +115,39 @@ fn run_writes_table_plots_and_summary() {
 }
 
 #[test]
+fn cost_writes_table_plots_and_report() {
+    let scratch = Scratch::new("cost");
+    let text = std::fs::read_to_string(scene("cost/thrust")).unwrap().replace("\"40 ms\"", "\"1 ms\"");
+    std::fs::write(scratch.path("short.toml"), text).unwrap();
+    let output = roulement(&["cost", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+
+    let table = std::fs::read_to_string(scratch.path("out/cost.csv")).unwrap();
+    let mut lines = table.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|h| *h == name).unwrap_or_else(|| panic!("{name}"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let of = |reference: &str| rows.iter().filter(|r| r[column("reference")] == reference).count();
+    assert!(of("numerical") > 30 && of("model") > 5 && of("numerical") + of("model") == rows.len());
+    for row in &rows {
+        assert_eq!((row.len(), row[column("status")]), (header.len(), "ok"), "{row:?}");
+        let is_bar = row[column("lever")] == "reference";
+        assert_eq!(row[column("cpu [s/s]")].parse::<f64>().is_ok_and(|cpu| cpu > 0.0), !is_bar, "{row:?}");
+        assert!(row[column("worst [-]")].parse::<f64>().unwrap() >= 0.0);
+    }
+    for name in ["overview", "numerical", "model"] {
+        let picture = std::fs::read_to_string(scratch.path(&format!("out/short-{name}.svg"))).unwrap();
+        assert!(picture.trim_end().ends_with("</svg>") && !picture.contains("NaN"));
+        assert!(picture.contains("CPU seconds per simulated second") && picture.contains("Pareto front"));
+    }
+    let report = std::fs::read_to_string(scratch.path("out/report.md")).unwrap();
+    let page = std::fs::read_to_string(scratch.path("out/report.html")).unwrap();
+    for part in ["Thrust", "fixed step", "creep law", "balanced", "short-overview.svg"] {
+        assert!(report.contains(part) && page.contains(part), "{part}");
+    }
+}
+
+#[test]
 fn wrong_scenes_are_refused_with_key_value_and_range() {
     let scratch = Scratch::new("wrong");
     let text = std::fs::read_to_string(scene("thrust")).unwrap();

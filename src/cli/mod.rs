@@ -1,5 +1,6 @@
 //! Commands and their options.
 
+mod cost;
 mod identify;
 mod run;
 mod summary;
@@ -73,6 +74,14 @@ enum Command {
     },
     /// Identify the spin coupling of the regularised creep law against Kalker's nonlinear theory.
     Identify(identify::Options),
+    /// Measure what accuracy costs in time: every lever, its error and its CPU time.
+    Cost {
+        /// Scene file; the six standard scenes if not given.
+        scene: Option<PathBuf>,
+        /// Directory for table, plots and report; made if missing.
+        #[arg(short, long, default_value = "cost")]
+        output: PathBuf,
+    },
     /// Print the model description of a scene's package.
     Describe {
         /// Scene file.
@@ -161,6 +170,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             answers.flush()?;
         }
         Command::Identify(options) => identify::run(&options)?,
+        Command::Cost { scene, output } => cost::run(scene.as_deref(), &output)?,
         Command::Describe { scene } => print!("{}", render(&Simulation::new(&Scene::load(&scene)?)?)?.xml),
     }
     Ok(())

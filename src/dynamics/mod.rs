@@ -354,6 +354,10 @@ impl Equations for BearingStep<'_> {
         border.copy_from_slice(workspace.border_correction.as_slice());
         solved
     }
+
+    fn refactor_contraction(&self) -> f64 {
+        self.model.solver.matrix_reuse
+    }
 }
 
 impl BearingStep<'_> {

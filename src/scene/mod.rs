@@ -3,6 +3,7 @@
 //! A scene is TOML; every number is SI or text with a unit ([`crate::units`]). Unknown keys, missing keys and values
 //! out of range are errors that name the key, the value and the allowed range.
 
+mod accuracy;
 mod schedule;
 mod sections;
 mod validate;
@@ -12,6 +13,7 @@ use std::path::Path;
 use serde::Deserialize;
 use thiserror::Error;
 
+pub use accuracy::{Accuracy, Solver};
 pub use schedule::Schedule;
 pub use sections::*;
 

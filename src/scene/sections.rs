@@ -1,6 +1,7 @@
 //! The sections of a scene file, one struct each; defaults stand beside their fields.
 
 use serde::Deserialize;
+use strum::{IntoStaticStr, VariantArray};
 
 use super::schedule::{self, Schedule};
 use crate::contact::regularised::Parameters;
@@ -66,9 +67,10 @@ impl Default for Friction {
     }
 }
 
-/// Creep law of the ball-race contacts (see [`crate::contact::creep`]).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+/// Creep law of the ball-race contacts (see [`crate::contact::creep`]), from the poorest to the richest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, IntoStaticStr, VariantArray)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum CreepLaw {
     /// No tangential force.
     Frictionless,
@@ -166,34 +168,6 @@ pub struct Misalignment {
 impl Default for Misalignment {
     fn default() -> Self {
         Self { ry: Angle(0.0), rz: Angle(0.0) }
-    }
-}
-
-/// Time integration.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Solver {
-    /// [-] HHT damping, in (0, 1/3]; 0.05 is the paper's.
-    pub alpha_f: f64,
-    /// [-] local error of a step over the ball diameter.
-    pub tolerance: f64,
-    /// [s] first step.
-    pub initial_step: Time,
-    /// [s] largest step.
-    pub max_step: Time,
-    /// [s] smallest step; needing a smaller one is an error.
-    pub min_step: Time,
-}
-
-impl Default for Solver {
-    fn default() -> Self {
-        Self {
-            alpha_f: 0.05,
-            tolerance: 1e-6,
-            initial_step: Time(1e-6),
-            max_step: Time(1e-5),
-            min_step: Time(1e-10),
-        }
     }
 }
 

@@ -81,6 +81,7 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
     closed(1e-14, 1e-2, "s").check("solver.max_step", solver.max_step.0)?;
     closed(1e-15, solver.max_step.0, "s").check("solver.min_step", solver.min_step.0)?;
     closed(solver.min_step.0, solver.max_step.0, "s").check("solver.initial_step", solver.initial_step.0)?;
+    closed(0.0, 1.0, "").check("solver.matrix_reuse", solver.matrix_reuse)?;
     load(scene)
 }
 

@@ -1,0 +1,179 @@
+//! Time integration: by its knobs, or by the goal that the scene states.
+//!
+//! What a goal stands for was chosen by measurement: `roulement cost`, written up in `docs/accuracy-cost.md`.
+
+use serde::Deserialize;
+use strum::{IntoStaticStr, VariantArray};
+
+use crate::newton::REFACTOR_CONTRACTION;
+use crate::units::{Quantity, Time};
+
+/// Time integration.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "SolverKeys")]
+pub struct Solver {
+    /// [-] HHT damping, in (0, 1/3]; 0.05 is the paper's.
+    pub alpha_f: f64,
+    /// [-] local error of a step over the ball diameter.
+    pub tolerance: f64,
+    /// [s] first step.
+    pub initial_step: Time,
+    /// [s] largest step.
+    pub max_step: Time,
+    /// [s] smallest step; needing a smaller one is an error.
+    pub min_step: Time,
+    /// [-] a correction that leaves more than this share of the residual asks for a new matrix: 0 is a matrix for every
+    /// correction, 1 keeps one until it leads nowhere.
+    pub matrix_reuse: f64,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            alpha_f: 0.05,
+            tolerance: 1e-6,
+            initial_step: Time(1e-6),
+            max_step: Time(1e-5),
+            min_step: Time(1e-10),
+            matrix_reuse: REFACTOR_CONTRACTION,
+        }
+    }
+}
+
+/// What the scene wants from the time integration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, IntoStaticStr, VariantArray)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum Accuracy {
+    /// Loads, torque and power of smooth runs, many of them.
+    Fast,
+    /// For most work, and the least for impacts.
+    Balanced,
+    /// To judge others by.
+    Reference,
+}
+
+impl Accuracy {
+    /// Settings of a goal.
+    pub fn solver(self) -> Solver {
+        let steps = |max_step, tolerance| Solver { max_step: Time(max_step), tolerance, ..Solver::default() };
+        match self {
+            Self::Fast => steps(2e-4, 1e-5),
+            Self::Balanced => steps(5e-5, 1e-7),
+            Self::Reference => steps(2e-6, 1e-9),
+        }
+    }
+
+    /// [-] largest numerical error of the wrench measured with these settings on the smooth scenes of the study, rounded
+    /// up.
+    pub fn wrench_error(self) -> f64 {
+        match self {
+            Self::Fast => 2e-4,
+            Self::Balanced => 1e-4,
+            Self::Reference => 2e-5,
+        }
+    }
+
+    /// The cheapest goal whose measured error of the wrench is at most `error`.
+    fn for_wrench_error(error: f64) -> Option<Self> {
+        Self::VARIANTS.iter().copied().find(|goal| goal.wrench_error() <= error)
+    }
+}
+
+/// The section as written; what is left out comes from the goal.
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct SolverKeys {
+    accuracy: Option<Accuracy>,
+    wrench_error: Option<f64>,
+    alpha_f: Option<f64>,
+    tolerance: Option<f64>,
+    initial_step: Option<Time>,
+    max_step: Option<Time>,
+    min_step: Option<Time>,
+    matrix_reuse: Option<f64>,
+}
+
+impl TryFrom<SolverKeys> for Solver {
+    type Error = String;
+
+    fn try_from(keys: SolverKeys) -> Result<Self, String> {
+        let goal = match (keys.accuracy, keys.wrench_error) {
+            (Some(_), Some(_)) => return Err("give at most one of accuracy and wrench_error".into()),
+            (accuracy, None) => accuracy.map_or_else(Self::default, Accuracy::solver),
+            (None, Some(error)) => Accuracy::for_wrench_error(error)
+                .ok_or_else(|| {
+                    let least = Accuracy::Reference.wrench_error();
+                    format!(
+                        "wrench_error = {error} is out of range: the smallest that was measured is {least}"
+                    )
+                })?
+                .solver(),
+        };
+        let max_step = keys.max_step.unwrap_or(goal.max_step);
+        Ok(Self {
+            alpha_f: keys.alpha_f.unwrap_or(goal.alpha_f),
+            tolerance: keys.tolerance.unwrap_or(goal.tolerance),
+            // A goal's first step gives way to a smaller largest step.
+            initial_step: keys.initial_step.unwrap_or(Time(goal.initial_step.si().min(max_step.si()))),
+            max_step,
+            min_step: keys.min_step.unwrap_or(Time(goal.min_step.si().min(max_step.si()))),
+            matrix_reuse: keys.matrix_reuse.unwrap_or(goal.matrix_reuse),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Solver, String> {
+        toml::from_str(text).map_err(|why: toml::de::Error| why.to_string())
+    }
+
+    #[test]
+    fn a_goal_sets_what_is_left_out_and_explicit_settings_win() {
+        assert_eq!(parse(""), Ok(Solver::default()));
+        for goal in Accuracy::VARIANTS {
+            let name: &str = goal.into();
+            assert_eq!(parse(&format!("accuracy = \"{name}\"")), Ok(goal.solver()));
+            let mixed = parse(&format!("accuracy = \"{name}\"\nmax_step = \"3 us\"\nalpha_f = 0.2")).unwrap();
+            let expected = Solver {
+                max_step: Time(3e-6),
+                alpha_f: 0.2,
+                initial_step: Time(goal.solver().initial_step.0.min(3e-6)),
+                ..goal.solver()
+            };
+            assert_eq!(mixed, expected);
+        }
+        // A largest step below the goal's first step is no conflict, one below an explicit first step is kept for the
+        // range check.
+        assert_eq!(parse("max_step = 1e-7").unwrap().initial_step, Time(1e-7));
+        assert_eq!(parse("max_step = 1e-7\ninitial_step = 1e-6").unwrap().initial_step, Time(1e-6));
+    }
+
+    #[test]
+    fn goals_are_ordered_from_cheap_to_exact() {
+        for pair in Accuracy::VARIANTS.windows(2) {
+            assert!(pair[0].wrench_error() > pair[1].wrench_error());
+            assert!(pair[0].solver().max_step.0 >= pair[1].solver().max_step.0);
+        }
+    }
+
+    #[test]
+    fn a_wrench_error_finds_the_cheapest_goal_that_was_measured_to_reach_it() {
+        for goal in Accuracy::VARIANTS {
+            assert_eq!(parse(&format!("wrench_error = {:e}", goal.wrench_error())), Ok(goal.solver()));
+        }
+        assert_eq!(parse("wrench_error = 0.5"), Ok(Accuracy::Fast.solver()));
+        let message = parse("wrench_error = 1e-15").unwrap_err();
+        assert!(
+            message.contains("wrench_error = 0.000000000000001") && message.contains("smallest"),
+            "{message}"
+        );
+        assert!(parse("wrench_error = nan").unwrap_err().contains("NaN"));
+        assert!(parse("accuracy = \"fast\"\nwrench_error = 1e-3").unwrap_err().contains("at most one"));
+        let message = parse("accuracy = \"quick\"").unwrap_err();
+        assert!(message.contains("quick") && message.contains("balanced"), "{message}");
+    }
+}
