@@ -414,19 +414,21 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     })
 }
 
-/// Not offered yet; the model description says so.
+/// Changes of outputs for a change of inputs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     component: *mut c_void,
-    _unknowns: *const u32,
-    _n_unknowns: usize,
-    _knowns: *const u32,
-    _n_knowns: usize,
-    _known_changes: *const f64,
-    _unknown_changes: *mut f64,
+    unknowns: *const u32,
+    n_unknowns: usize,
+    knowns: *const u32,
+    n_knowns: usize,
+    known_changes: *const f64,
+    unknown_changes: *mut f64,
 ) -> Status {
-    guard(component, Call::GetDirectionalDerivative, |_| {
-        refuse("directional derivatives are not offered (providesDirectionalDerivative is false)")
+    guard(component, Call::GetDirectionalDerivative, |instance| {
+        let (unknowns, knowns) = (list(unknowns, n_unknowns)?, list(knowns, n_knowns)?);
+        let (changes, results) = (list(known_changes, n_knowns)?, list_mut(unknown_changes, n_unknowns)?);
+        instance.directional_derivative(unknowns, knowns, changes, results)
     })
 }
 

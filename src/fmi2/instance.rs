@@ -19,12 +19,13 @@ pub const SCENE_FILE: &str = "scene.toml";
 /// [-] relative disagreement of importer and instance about the time that is still rounding.
 const TIME_TOLERANCE: f64 = 1e-9;
 /// First bytes of a serialised state: what it is, and the version of its form.
-const MAGIC: &[u8; 8] = b"rlmtFMU1";
+const MAGIC: &[u8; 8] = b"rlmtFMU2";
 
 /// A refusal or failure: its status and why.
 pub type Outcome<T = ()> = Result<T, (Status, String)>;
 
-fn error<T>(why: impl Into<String>) -> Outcome<T> {
+/// A refusal with fmi2Error.
+pub(super) fn error<T>(why: impl Into<String>) -> Outcome<T> {
     Err((Status::Error, why.into()))
 }
 
@@ -37,6 +38,7 @@ pub struct FmuState {
     previous_outputs: Vec<f64>,
     last_step: f64,
     changed: bool,
+    before: Option<Snapshot>,
     snapshot: Snapshot,
 }
 
@@ -45,11 +47,15 @@ pub struct Instance {
     /// Messages to the importer.
     pub log: Log,
     guid: String,
-    phase: Phase,
-    variables: Variables,
+    pub(super) phase: Phase,
+    pub(super) variables: Variables,
     /// Start of everything, for `fmi2Reset`.
     fresh: Box<Simulation>,
-    simulation: Simulation,
+    pub(super) simulation: Simulation,
+    /// The communication point before the last; none before the first step.
+    pub(super) before: Option<Snapshot>,
+    /// Derivatives of outputs by inputs at this point, if they were asked for.
+    pub(super) columns: Option<Vec<Vec<f64>>>,
     /// Inputs as set, by value reference; entries of outputs are not used.
     values: Vec<f64>,
     /// First derivatives of the inputs.
@@ -119,6 +125,8 @@ impl Instance {
             variables,
             fresh: Box::new(simulation.clone()),
             simulation,
+            before: None,
+            columns: None,
             last_step: 0.0,
             changed: false,
         })
@@ -180,13 +188,17 @@ impl Instance {
     }
 
     /// Starts from inputs that were set in initialization mode; without any, the start is the scene's own.
-    fn refresh(&mut self) -> Outcome {
+    ///
+    /// # Errors
+    /// If the inputs allow no start.
+    pub(super) fn refresh(&mut self) -> Outcome {
         if self.changed {
             let inputs = self.read_inputs()?;
             let mut simulation = self.simulation.clone();
             simulation.set_inputs(inputs);
             simulation.initialise().map_err(|why| (Status::Error, why.to_string()))?;
             self.simulation = simulation;
+            self.columns = None;
             self.changed = false;
         }
         Ok(())
@@ -209,12 +221,18 @@ impl Instance {
         self.values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         self.previous_outputs.clone_from(&self.values);
         self.rates.fill(0.0);
+        self.before = None;
+        self.columns = None;
         self.last_step = 0.0;
         self.changed = false;
         self.phase = Phase::Instantiated;
     }
 
-    fn row(&self, reference: u32, kind: Kind) -> Outcome<usize> {
+    /// Row of a value reference of one type.
+    ///
+    /// # Errors
+    /// If there is no such variable.
+    pub(super) fn row(&self, reference: u32, kind: Kind) -> Outcome<usize> {
         let index = reference as usize;
         match self.variables.rows().get(index) {
             Some(row) if row.kind == kind => Ok(index),
@@ -331,7 +349,8 @@ impl Instance {
         }
         let inputs = self.read_inputs()?;
         self.previous_outputs = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
-        let before = self.simulation.clone();
+        let before = self.before.insert(self.simulation.snapshot());
+        self.columns = None;
         self.simulation.set_inputs(inputs);
         let advanced = self.simulation.advance(time + step);
         // A derivative belongs to the communication point that it was set for.
@@ -340,7 +359,8 @@ impl Instance {
         self.last_step = reached - now;
         let values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         if !values.iter().all(|value| value.is_finite()) {
-            self.simulation = before;
+            let restored = self.simulation.restore(before);
+            debug_assert!(restored, "a snapshot of this very simulation fits it");
             self.last_step = 0.0;
             return Err((Status::Discard, format!("a result is not a number after {now} s")));
         }
@@ -361,6 +381,7 @@ impl Instance {
             previous_outputs: self.previous_outputs.clone(),
             last_step: self.last_step,
             changed: self.changed,
+            before: self.before.clone(),
             snapshot: self.simulation.snapshot(),
         }
     }
@@ -390,6 +411,8 @@ impl Instance {
         self.values.clone_from(&state.values);
         self.rates.clone_from(&state.rates);
         self.previous_outputs.clone_from(&state.previous_outputs);
+        self.before.clone_from(&state.before);
+        self.columns = None;
         self.last_step = state.last_step;
         self.changed = state.changed;
         Ok(())

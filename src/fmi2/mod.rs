@@ -4,9 +4,11 @@
 //! exports.rs        the 34 C functions: pointers in, statuses out, nothing else; the only unsafe code
 //! state_machine.rs  which call is allowed when, as data
 //! instance.rs       what the calls do, safe
+//! directional.rs    derivatives of the outputs by the inputs
 //! log.rs            messages to the importer
 //! ```
 
+mod directional;
 mod exports;
 mod instance;
 mod log;

@@ -209,6 +209,25 @@ impl Variables {
         self.rows.iter().map(|row| self.value(row, inputs, outputs)).collect()
     }
 
+    /// Rates of all rows that inputs were given with: those of a twist.
+    pub fn rates(&self, inputs: &Inputs) -> Vec<f64> {
+        let rate = |row: &Variable| match row.source {
+            Source::Race(race, quantity) if row.causality == Causality::Input => {
+                let rate = match race {
+                    Race::Inner => &inputs.inner.twist_rate,
+                    Race::Outer => &inputs.outer.twist_rate,
+                };
+                match quantity {
+                    RaceQuantity::Velocity(i) => rate.velocity[i],
+                    RaceQuantity::AngularVelocity(i) => rate.angular_velocity[i],
+                    _ => 0.0,
+                }
+            }
+            _ => 0.0,
+        };
+        self.rows.iter().map(rate).collect()
+    }
+
     /// Turns the values of all rows (those of outputs are ignored) and their rates into inputs, on top of `base`.
     ///
     /// # Errors
