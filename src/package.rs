@@ -8,11 +8,11 @@ use thiserror::Error;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
+use crate::documentation;
 use crate::fmi2::SCENE_FILE;
 use crate::model_description::{MODEL_IDENTIFIER, render};
-use crate::scene::{Drive, Scene};
+use crate::scene::Scene;
 use crate::simulation::{Simulation, SimulationError};
-use crate::variables::{Causality, Variables};
 
 /// Why a package was not written.
 #[derive(Debug, Error)]
@@ -91,52 +91,12 @@ pub fn write_fmu(scene: &Scene, library: &Path, output: &Path) -> Result<(), Pac
     let (folder, ending) = PLATFORM;
     add(&format!("binaries/{folder}/{MODEL_IDENTIFIER}.{ending}"), &binary)?;
     add(&format!("resources/{SCENE_FILE}"), scene.source.as_bytes())?;
-    add("documentation/index.html", documentation(&simulation).as_bytes())?;
+    add("model.png", include_bytes!("../assets/model.png"))?;
+    add("documentation/licenses/licenses.txt", include_bytes!("../assets/licenses.txt"))?;
+    add("documentation/index.html", documentation::page(scene).as_bytes())?;
     let bytes = zip.finish()?.into_inner();
 
     let partial = output.with_extension("fmu.part");
     fs::write(&partial, bytes).map_err(file_error("cannot write", &partial))?;
     fs::rename(&partial, output).map_err(file_error("cannot write", output))
-}
-
-/// The page that an importer shows for the package.
-fn documentation(simulation: &Simulation) -> String {
-    let escape = |text: &str| quick_xml::escape::escape(text).into_owned();
-    let scene = simulation.scene();
-    let title = if scene.title.is_empty() { "Ball bearing" } else { &scene.title };
-    let drive = |drive: Drive| match drive {
-        Drive::Pose => "pose and twist are inputs, the bearing's wrench is an output",
-        Drive::Wrench => "a rigid body: applied wrench and spin speed are inputs, pose and twist are outputs",
-        Drive::Fixed => "rests in its frame",
-    };
-    let mut rows = String::new();
-    for row in Variables::new(scene).rows() {
-        let causality = if row.causality == Causality::Input { "input" } else { "output" };
-        rows += &format!(
-            "<tr><td><code>{}</code></td><td>{}</td><td>{causality}</td><td>{}</td></tr>\n",
-            escape(&row.name),
-            escape(row.unit.name),
-            escape(&row.description)
-        );
-    }
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
-         <style>body{{font:16px sans-serif;max-width:60em;margin:2em auto}}td,th{{text-align:left;padding:.2em .6em}}\
-         </style></head><body>\n<h1>{title}</h1>\n\
-         <p>A ball bearing in three dimensions (Bovet, Linares, Zamponi, Mermoz 2013), FMI 2.0 co-simulation.</p>\n\
-         <h2>Frames</h2>\n<p>Right-handed, x is the bearing axis; the origin is the bearing centre. Wrenches are what \
-         the bearing exerts on a race, in world axes, about the race frame's origin. The pose inputs are those at the \
-         start of a step; the motion within it is a cubic without jumps.</p>\n\
-         <p>Inner race: {}. Outer race: {}.</p>\n\
-         <h2>Effects</h2>\n<p>Creep law {:?}, contact damping {} s/m, {} balls.</p>\n\
-         <h2>Interface</h2>\n<table><tr><th>name</th><th>unit</th><th>causality</th><th>meaning</th></tr>\n{rows}\
-         </table>\n<h2>Scene</h2>\n<pre>{}</pre>\n</body></html>\n",
-        drive(scene.inner.drive),
-        drive(scene.outer.drive),
-        scene.effects.creep,
-        scene.effects.damping.0,
-        scene.bearing.balls,
-        escape(&scene.source),
-        title = escape(title),
-    )
 }

@@ -138,6 +138,12 @@ impl Simulation {
         Ok(())
     }
 
+    /// Goes on with a scene that differs in tunable parameters alone.
+    pub fn tune(&mut self, scene: &Scene) {
+        Arc::make_mut(&mut self.model).tune(scene);
+        self.scene = Arc::new(scene.clone());
+    }
+
     /// Sets the time of a simulation that has not moved yet [s].
     pub fn set_start_time(&mut self, time: f64) {
         self.state.time = time;

@@ -38,9 +38,15 @@ impl Changes {
             Source::Race(_, Q::Angle(_)) => self.displacement / self.length,
             Source::Race(_, Q::Velocity(_)) => self.velocity,
             Source::Race(_, Q::AngularVelocity(_) | Q::Speed) => self.velocity / self.length,
-            Source::Race(_, Q::Force(_) | Q::AppliedForce(_)) => self.force,
-            Source::Race(_, Q::Moment(_) | Q::AppliedMoment(_) | Q::DriveTorque) => self.force * self.length,
-            Source::Friction | Source::Bearing(_) | Source::Ball(..) | Source::Contact(..) => self.friction,
+            Source::Race(_, Q::AppliedForce(_)) => self.force,
+            Source::Race(_, Q::AppliedMoment(_)) => self.force * self.length,
+            Source::Friction => self.friction,
+            // Neither outputs nor parameters are knowns.
+            Source::Race(_, Q::Force(_) | Q::Moment(_) | Q::DriveTorque)
+            | Source::Bearing(_)
+            | Source::Ball(..)
+            | Source::Contact(..)
+            | Source::Parameter(..) => f64::NAN,
         }
     }
 }

@@ -9,10 +9,12 @@ use sha2::{Digest, Sha256};
 use super::log::Log;
 use super::state_machine::{Call, Phase, allowed};
 use super::types::{CallbackFunctions, Status};
+use crate::inputs::Inputs;
 use crate::model_description::render;
 use crate::scene::Scene;
+use crate::scene::parameters::Variability;
 use crate::simulation::{Simulation, Snapshot};
-use crate::variables::{Causality, Kind, Variables};
+use crate::variables::{Causality, Kind, Source, Variables};
 
 /// Name of the scene inside a package's resources folder.
 pub const SCENE_FILE: &str = "scene.toml";
@@ -38,6 +40,8 @@ pub struct FmuState {
     previous_outputs: Vec<f64>,
     last_step: f64,
     changed: bool,
+    given: Vec<bool>,
+    applied: Vec<f64>,
     before: Option<Snapshot>,
     snapshot: Snapshot,
 }
@@ -56,14 +60,18 @@ pub struct Instance {
     pub(super) before: Option<Snapshot>,
     /// Derivatives of outputs by inputs at this point, if they were asked for.
     pub(super) columns: Option<Vec<Vec<f64>>>,
-    /// Inputs as set, by value reference; entries of outputs are not used.
+    /// Inputs and parameters as set, by value reference; entries of outputs are not used.
     values: Vec<f64>,
+    /// Inputs that the importer set before the start; the others start where the parameters put them.
+    given: Vec<bool>,
+    /// Parameters, by value reference, that the simulation runs with.
+    applied: Vec<f64>,
     /// First derivatives of the inputs.
     rates: Vec<f64>,
     /// Outputs at the communication point before the last.
     previous_outputs: Vec<f64>,
     last_step: f64,
-    /// Were inputs set since the outputs were computed, in initialization mode?
+    /// Were inputs (before the start) or parameters set that the simulation does not know of yet?
     changed: bool,
 }
 
@@ -121,6 +129,8 @@ impl Instance {
             phase: Phase::Instantiated,
             rates: vec![0.0; values.len()],
             previous_outputs: values.clone(),
+            given: vec![false; values.len()],
+            applied: values.clone(),
             values,
             variables,
             fresh: Box::new(simulation.clone()),
@@ -187,27 +197,53 @@ impl Instance {
         Ok(())
     }
 
-    /// Starts from inputs that were set in initialization mode; without any, the start is the scene's own.
+    /// Starts from inputs and parameters that were set before the start; without any, the start is the scene's own.
     ///
     /// # Errors
-    /// If the inputs allow no start.
+    /// If they allow no start.
     pub(super) fn refresh(&mut self) -> Outcome {
-        if self.changed {
-            let inputs = self.read_inputs()?;
-            let mut simulation = self.simulation.clone();
-            simulation.set_inputs(inputs);
-            simulation.initialise().map_err(|why| (Status::Error, why.to_string()))?;
-            self.simulation = simulation;
-            self.columns = None;
-            self.changed = false;
+        if !self.changed {
+            return Ok(());
         }
+        let mut simulation = self.simulation.clone();
+        let mut values = self.values.clone();
+        if self.variables.parameters_differ(&self.values, &self.applied) {
+            simulation = self.with_parameters(&self.values)?;
+            simulation.set_start_time(self.simulation.time());
+            let start = self.variables.values(simulation.inputs(), simulation.outputs());
+            for (index, row) in self.variables.rows().iter().enumerate() {
+                if row.causality == Causality::Input && !self.given[index] {
+                    values[index] = start[index];
+                }
+            }
+        }
+        if self.given.contains(&true) {
+            simulation.set_inputs(self.read_inputs(&values, simulation.inputs())?);
+            simulation.initialise().map_err(|why| (Status::Error, why.to_string()))?;
+        }
+        self.simulation = simulation;
+        self.applied.clone_from(&values);
+        self.values = values;
+        self.columns = None;
+        self.changed = false;
         Ok(())
     }
 
-    fn read_inputs(&self) -> Outcome<crate::inputs::Inputs> {
-        self.variables
-            .inputs(&self.values, &self.rates, self.simulation.inputs())
-            .map_err(|why| (Status::Error, why.to_string()))
+    /// A simulation of the scene with the parameters among these values.
+    fn with_parameters(&self, values: &[f64]) -> Outcome<Simulation> {
+        Simulation::new(&self.scene_with(values)?).map_err(|why| (Status::Error, why.to_string()))
+    }
+
+    /// The scene with the parameters among these values.
+    fn scene_with(&self, values: &[f64]) -> Outcome<Scene> {
+        let mut scene = self.fresh.scene().clone();
+        self.variables.set_parameters(&mut scene, values);
+        scene.check().map_err(|why| (Status::Error, why.to_string()))?;
+        Ok(scene)
+    }
+
+    fn read_inputs(&self, values: &[f64], base: &Inputs) -> Outcome<Inputs> {
+        self.variables.inputs(values, &self.rates, base).map_err(|why| (Status::Error, why.to_string()))
     }
 
     /// `fmi2Terminate`.
@@ -220,6 +256,8 @@ impl Instance {
         self.simulation = (*self.fresh).clone();
         self.values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         self.previous_outputs.clone_from(&self.values);
+        self.applied.clone_from(&self.values);
+        self.given.fill(false);
         self.rates.fill(0.0);
         self.before = None;
         self.columns = None;
@@ -253,7 +291,7 @@ impl Instance {
             let index = self.row(*reference, kind)?;
             let row = &self.variables.rows()[index];
             *value = match row.causality {
-                Causality::Input => self.values[index],
+                Causality::Input | Causality::Parameter => self.values[index],
                 Causality::Output => {
                     self.variables.value(row, self.simulation.inputs(), self.simulation.outputs())
                 }
@@ -269,17 +307,29 @@ impl Instance {
     pub fn set(&mut self, references: &[u32], kind: Kind, values: &[f64]) -> Outcome {
         for (reference, value) in references.iter().zip(values) {
             let row = &self.variables.rows()[self.row(*reference, kind)?];
-            if row.causality != Causality::Input {
+            if row.causality == Causality::Output {
                 return error(format!("{} is an output and cannot be set", row.name));
             }
             if !value.is_finite() {
                 return error(format!("{} = {value} is not a finite number", row.name));
             }
+            if let Source::Parameter(parameter, _) = row.source {
+                if self.phase == Phase::StepComplete && parameter.variability == Variability::Fixed {
+                    return error(format!("{} is fixed: it can be set before the start only", row.name));
+                }
+                parameter.range.check(parameter.key, *value).or_else(|why| error(why.to_string()))?;
+            }
         }
+        let started = self.phase == Phase::StepComplete;
         for (reference, value) in references.iter().zip(values) {
-            let here = &mut self.values[*reference as usize];
-            self.changed |= *here != *value;
-            *here = *value;
+            let index = *reference as usize;
+            let input = self.variables.rows()[index].causality == Causality::Input;
+            // Inputs of a running simulation are read by the next step anyway.
+            if !(started && input) {
+                self.changed |= self.values[index] != *value;
+            }
+            self.given[index] |= input && !started;
+            self.values[index] = *value;
         }
         Ok(())
     }
@@ -292,7 +342,7 @@ impl Instance {
         for ((reference, order), value) in references.iter().zip(orders).zip(values) {
             let row = &self.variables.rows()[self.row(*reference, Kind::Real)?];
             if row.causality != Causality::Input {
-                return error(format!("{} is an output: it takes no input derivative", row.name));
+                return error(format!("{} is no input: it takes no input derivative", row.name));
             }
             if *order != 1 {
                 return error(format!("input derivatives of order {order} are not offered, only of order 1"));
@@ -316,7 +366,7 @@ impl Instance {
             let index = self.row(*reference, Kind::Real)?;
             let row = &self.variables.rows()[index];
             if row.causality != Causality::Output {
-                return error(format!("{} is an input: it has no output derivative", row.name));
+                return error(format!("{} is no output: it has no output derivative", row.name));
             }
             if *order != 1 {
                 return error(format!(
@@ -347,7 +397,12 @@ impl Instance {
         if time + step <= now {
             return error(format!("the communication step {step} s is lost in rounding at {now} s"));
         }
-        let inputs = self.read_inputs()?;
+        let inputs = self.read_inputs(&self.values, self.simulation.inputs())?;
+        if self.changed {
+            self.simulation.tune(&self.scene_with(&self.values)?);
+            self.applied.clone_from(&self.values);
+            self.changed = false;
+        }
         self.previous_outputs = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         let before = self.before.insert(self.simulation.snapshot());
         self.columns = None;
@@ -381,6 +436,8 @@ impl Instance {
             previous_outputs: self.previous_outputs.clone(),
             last_step: self.last_step,
             changed: self.changed,
+            given: self.given.clone(),
+            applied: self.applied.clone(),
             before: self.before.clone(),
             snapshot: self.simulation.snapshot(),
         }
@@ -399,14 +456,26 @@ impl Instance {
             Phase::Terminated,
             Phase::Error,
         ];
-        let sizes = [&state.values, &state.rates, &state.previous_outputs];
+        let sizes = [&state.values, &state.rates, &state.previous_outputs, &state.applied];
         let phase = phases.into_iter().find(|phase| *phase as u8 == state.phase);
-        let (Some(phase), true) = (phase, sizes.iter().all(|list| list.len() == self.values.len())) else {
+        let fits = sizes.iter().all(|list| list.len() == self.values.len())
+            && state.given.len() == self.values.len();
+        let (Some(phase), true) = (phase, fits) else {
             return error("the FMU state is of another scene");
         };
-        if !self.simulation.restore(&state.snapshot) {
+        let mut rebuilt = None;
+        if self.variables.parameters_differ(&state.applied, &self.applied) {
+            rebuilt = Some(self.with_parameters(&state.applied)?);
+        }
+        let simulation = rebuilt.as_mut().unwrap_or(&mut self.simulation);
+        if !simulation.restore(&state.snapshot) {
             return error("the FMU state is of another scene");
         }
+        if let Some(rebuilt) = rebuilt {
+            self.simulation = rebuilt;
+        }
+        self.given.clone_from(&state.given);
+        self.applied.clone_from(&state.applied);
         self.phase = phase;
         self.values.clone_from(&state.values);
         self.rates.clone_from(&state.rates);

@@ -3,6 +3,7 @@
 //! A scene is TOML; every number is SI or text with a unit ([`crate::units`]). Unknown keys, missing keys and values
 //! out of range are errors that name the key, the value and the allowed range.
 
+pub mod parameters;
 mod schedule;
 mod sections;
 mod validate;
@@ -99,8 +100,16 @@ impl Scene {
     pub fn parse(text: &str) -> Result<Self, SceneError> {
         let mut scene: Self = toml::from_str(text)?;
         scene.source = text.to_string();
-        validate::validate(&scene)?;
+        scene.check()?;
         Ok(scene)
+    }
+
+    /// Checks every value against its range, and the keys against one another.
+    ///
+    /// # Errors
+    /// See [`SceneError`].
+    pub fn check(&self) -> Result<(), SceneError> {
+        validate::validate(self)
     }
 
     /// Reads a scene file.
