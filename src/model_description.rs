@@ -6,6 +6,7 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
 
+use crate::scene::Scene;
 use crate::scene::parameters::Variability;
 use crate::simulation::Simulation;
 use crate::variables::units::{self, Unit};
@@ -41,19 +42,26 @@ type Xml = Writer<Vec<u8>>;
 pub fn render(simulation: &Simulation) -> std::io::Result<ModelDescription> {
     let scene = simulation.scene();
     let variables = Variables::new(scene);
-    // The identifier is a digest of everything else that the document and the scene say.
-    let draft = document(simulation, &variables, "")?;
+    let guid = guid(scene, &variables);
+    let xml = document(simulation, &variables, &guid)?;
+    Ok(ModelDescription { xml, guid })
+}
+
+/// Identifier of a scene's package: a digest of the scene and of what the variables are, but not of the start values that
+/// were computed, whose last bits may differ between platforms.
+pub fn guid(scene: &Scene, variables: &Variables) -> String {
     let mut digest = Sha256::new();
-    digest.update(draft.as_bytes());
-    digest.update(scene.source.as_bytes());
+    digest.update(env!("CARGO_PKG_VERSION"));
+    for row in variables.rows() {
+        let what = (&row.name, row.unit.name, row.kind, row.causality, row.limits, &row.description);
+        digest.update(format!("{what:?}"));
+    }
+    digest.update(&scene.source);
     let hex = digest.finalize().iter().take(16).fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text
     });
-    let guid =
-        format!("{{{}-{}-{}-{}-{}}}", &hex[0..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..32]);
-    let xml = document(simulation, &variables, &guid)?;
-    Ok(ModelDescription { xml, guid })
+    format!("{{{}-{}-{}-{}-{}}}", &hex[0..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..32])
 }
 
 fn document(simulation: &Simulation, variables: &Variables, guid: &str) -> std::io::Result<String> {

@@ -10,7 +10,7 @@ use super::log::Log;
 use super::state_machine::{Call, Phase, allowed};
 use super::types::{CallbackFunctions, Status};
 use crate::inputs::Inputs;
-use crate::model_description::render;
+use crate::model_description;
 use crate::scene::Scene;
 use crate::scene::parameters::Variability;
 use crate::simulation::{Simulation, Snapshot};
@@ -112,20 +112,18 @@ impl Instance {
         let path = resource_path(location)?.join(SCENE_FILE);
         let failed = |why: String| (Status::Error, why);
         let scene = Scene::load(&path).map_err(|why| failed(why.to_string()))?;
-        let simulation = Simulation::new(&scene).map_err(|why| failed(why.to_string()))?;
-        let description = render(&simulation).map_err(|why| failed(why.to_string()))?;
-        if guid != description.guid {
+        let variables = Variables::new(&scene);
+        let own = model_description::guid(&scene, &variables);
+        if guid != own {
             return error(format!(
-                "the guid {guid} is not that of this package, {}: model description and library do not belong \
-                 together",
-                description.guid
+                "the guid {guid} is not that of this package, {own}: model description and library do not belong together"
             ));
         }
-        let variables = Variables::new(&scene);
+        let simulation = Simulation::new(&scene).map_err(|why| failed(why.to_string()))?;
         let values = variables.values(simulation.inputs(), simulation.outputs());
         Ok(Self {
             log: Log::new(callbacks, name, logging),
-            guid: description.guid,
+            guid: own,
             phase: Phase::Instantiated,
             rates: vec![0.0; values.len()],
             previous_outputs: values.clone(),
@@ -487,7 +485,7 @@ impl Instance {
         Ok(())
     }
 
-    /// A state as bytes: magic, guid, checksum, content.
+    /// A state as bytes: magic, guid, length of the content, checksum, content.
     ///
     /// # Errors
     /// If the content cannot be written, which would be a fault of this library.
@@ -495,6 +493,7 @@ impl Instance {
         let content = postcard::to_allocvec(state).map_err(|why| (Status::Error, why.to_string()))?;
         let mut bytes = MAGIC.to_vec();
         bytes.extend(self.guid.as_bytes());
+        bytes.extend((content.len() as u64).to_le_bytes());
         bytes.extend(Sha256::digest(&content));
         bytes.extend(content);
         Ok(bytes)
@@ -512,9 +511,14 @@ impl Instance {
         let Some(rest) = rest.strip_prefix(self.guid.as_bytes()) else {
             return refuse("it is of another package");
         };
-        let Some((checksum, content)) = rest.split_at_checked(32) else {
+        let (Some((length, rest)), true) = (rest.split_first_chunk::<8>(), rest.len() >= 8 + 32) else {
             return refuse("it is cut off");
         };
+        let (checksum, content) = rest.split_at(32);
+        // Before the content is looked at: the importer's size may be wrong.
+        if content.len() as u64 != u64::from_le_bytes(*length) {
+            return refuse("its length is wrong");
+        }
         if Sha256::digest(content).as_slice() != checksum {
             return refuse("its checksum is wrong");
         }
