@@ -41,36 +41,41 @@ pub enum PackageError {
         "the shared library {0} is missing: build it with `cargo build --release`, or name it with --library"
     )]
     NoLibrary(String),
+    /// A library of no platform that packages know.
+    #[error(
+        "the shared library {0} ends neither in .so nor in .dll nor in .dylib: its platform is not known"
+    )]
+    Platform(String),
 }
 
-/// Folder and file ending of this platform's library in a package (FMI 2.0.4, section 2.3).
-const PLATFORM: (&str, &str) = if cfg!(windows) {
-    ("win64", "dll")
-} else if cfg!(target_os = "macos") {
-    ("darwin64", "dylib")
-} else {
-    ("linux64", "so")
-};
+/// Folder in a package (FMI 2.0.4, section 2.3) and ending of the library, per platform; all are 64-bit x86.
+const PLATFORMS: [(&str, &str); 3] = [("linux64", "so"), ("win64", "dll"), ("darwin64", "dylib")];
+
+/// Folder and ending of a library.
+fn platform(library: &Path) -> Result<(&'static str, &'static str), PackageError> {
+    let ending = library.extension().unwrap_or_default();
+    let found = PLATFORMS.into_iter().find(|(_, known)| ending == *known);
+    found.ok_or_else(|| PackageError::Platform(library.display().to_string()))
+}
 
 /// Path of the shared library that was built together with this executable.
 ///
 /// # Errors
 /// If it is not there.
 pub fn library_beside_executable() -> Result<PathBuf, PackageError> {
-    let name =
-        if cfg!(windows) { "roulement.dll".into() } else { format!("lib{MODEL_IDENTIFIER}.{}", PLATFORM.1) };
+    let name = format!("{}{MODEL_IDENTIFIER}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     let executable = std::env::current_exe()?;
     let path = executable.with_file_name(name);
     if path.is_file() { Ok(path) } else { Err(PackageError::NoLibrary(path.display().to_string())) }
 }
 
-/// Writes the package of a scene to `output`; an existing file is replaced only by a complete one.
+/// Writes the package of a scene, with one library per platform, to `output`; an existing file is replaced only by a complete one.
 ///
 /// # Errors
 /// See [`PackageError`].
-pub fn write_fmu(scene: &Scene, library: &Path, output: &Path) -> Result<(), PackageError> {
-    if !library.is_file() {
-        return Err(PackageError::NoLibrary(library.display().to_string()));
+pub fn write_fmu(scene: &Scene, libraries: &[PathBuf], output: &Path) -> Result<(), PackageError> {
+    if let Some(missing) = libraries.iter().find(|library| !library.is_file()) {
+        return Err(PackageError::NoLibrary(missing.display().to_string()));
     }
     let file_error = |what: &'static str, path: &Path| {
         let path = path.display().to_string();
@@ -78,7 +83,6 @@ pub fn write_fmu(scene: &Scene, library: &Path, output: &Path) -> Result<(), Pac
     };
     let simulation = Simulation::new(scene)?;
     let description = render(&simulation)?;
-    let binary = fs::read(library).map_err(file_error("cannot read", library))?;
 
     // Without time stamps: the same scene and library give the same bytes.
     let options = SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
@@ -88,8 +92,11 @@ pub fn write_fmu(scene: &Scene, library: &Path, output: &Path) -> Result<(), Pac
         Ok(zip.write_all(content)?)
     };
     add("modelDescription.xml", description.xml.as_bytes())?;
-    let (folder, ending) = PLATFORM;
-    add(&format!("binaries/{folder}/{MODEL_IDENTIFIER}.{ending}"), &binary)?;
+    for library in libraries {
+        let (folder, ending) = platform(library)?;
+        let binary = fs::read(library).map_err(file_error("cannot read", library))?;
+        add(&format!("binaries/{folder}/{MODEL_IDENTIFIER}.{ending}"), &binary)?;
+    }
     add(&format!("resources/{SCENE_FILE}"), scene.source.as_bytes())?;
     add("model.png", include_bytes!("../assets/model.png"))?;
     add("documentation/licenses/licenses.txt", include_bytes!("../assets/licenses.txt"))?;
