@@ -57,18 +57,20 @@ fn check_list(is_null: bool, n: usize) -> Outcome<bool> {
 
 /// A slice of `n` elements.
 fn list<'a, T>(pointer: *const T, n: usize) -> Outcome<&'a [T]> {
+    if !check_list(pointer.is_null(), n)? {
+        return Ok(&[]);
+    }
     // SAFETY: not null and not empty, and valid for n elements by the importer's contract.
-    Ok(if check_list(pointer.is_null(), n)? { unsafe { slice::from_raw_parts(pointer, n) } } else { &[] })
+    Ok(unsafe { slice::from_raw_parts(pointer, n) })
 }
 
 /// A writable slice of `n` elements.
 fn list_mut<'a, T>(pointer: *mut T, n: usize) -> Outcome<&'a mut [T]> {
+    if !check_list(pointer.is_null(), n)? {
+        return Ok(&mut []);
+    }
     // SAFETY: not null and not empty, and valid for n elements by the importer's contract.
-    Ok(if check_list(pointer.is_null(), n)? {
-        unsafe { slice::from_raw_parts_mut(pointer, n) }
-    } else {
-        &mut []
-    })
+    Ok(unsafe { slice::from_raw_parts_mut(pointer, n) })
 }
 
 fn text(pointer: *const c_char) -> Option<String> {
