@@ -4,6 +4,7 @@ pub mod arrowhead;
 pub mod bearing;
 pub mod contact;
 pub mod cost;
+pub mod documentation;
 pub mod dynamics;
 pub mod equilibrium;
 #[allow(non_snake_case)]

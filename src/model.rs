@@ -129,6 +129,13 @@ impl Model {
         })
     }
 
+    /// Takes over the numbers of a scene that each step reads.
+    pub fn tune(&mut self, scene: &Scene) {
+        self.damping = scene.effects.damping.0;
+        self.gravity = Vector3::from(scene.effects.gravity.map(|component| component.0));
+        self.solver = scene.solver;
+    }
+
     /// Raceway of a race.
     pub fn raceway(&self, race: usize) -> &Raceway {
         if race == INNER { &self.bearing.inner } else { &self.bearing.outer }

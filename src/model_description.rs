@@ -7,9 +7,10 @@ use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
 
 use crate::scene::Scene;
+use crate::scene::parameters::Variability;
 use crate::simulation::Simulation;
 use crate::variables::units::{self, Unit};
-use crate::variables::{Causality, Kind, Variable, Variables};
+use crate::variables::{Causality, Kind, Source, Variable, Variables};
 
 /// Model identifier: the name of the shared library in a package.
 pub const MODEL_IDENTIFIER: &str = "roulement";
@@ -41,19 +42,26 @@ type Xml = Writer<Vec<u8>>;
 pub fn render(simulation: &Simulation) -> std::io::Result<ModelDescription> {
     let scene = simulation.scene();
     let variables = Variables::new(scene);
-    // The identifier is a digest of everything else that the document and the scene say.
-    let draft = document(simulation, &variables, "")?;
+    let guid = guid(scene, &variables);
+    let xml = document(simulation, &variables, &guid)?;
+    Ok(ModelDescription { xml, guid })
+}
+
+/// Identifier of a scene's package: a digest of the scene and of what the variables are, but not of the start values that
+/// were computed, whose last bits may differ between platforms.
+pub fn guid(scene: &Scene, variables: &Variables) -> String {
     let mut digest = Sha256::new();
-    digest.update(draft.as_bytes());
-    digest.update(scene.source.as_bytes());
+    digest.update(env!("CARGO_PKG_VERSION"));
+    for row in variables.rows() {
+        let what = (&row.name, row.unit.name, row.kind, row.causality, row.limits, &row.description);
+        digest.update(format!("{what:?}"));
+    }
+    digest.update(&scene.source);
     let hex = digest.finalize().iter().take(16).fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text
     });
-    let guid =
-        format!("{{{}-{}-{}-{}-{}}}", &hex[0..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..32]);
-    let xml = document(simulation, &variables, &guid)?;
-    Ok(ModelDescription { xml, guid })
+    format!("{{{}-{}-{}-{}-{}}}", &hex[0..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..32])
 }
 
 fn document(simulation: &Simulation, variables: &Variables, guid: &str) -> std::io::Result<String> {
@@ -76,6 +84,7 @@ fn document(simulation: &Simulation, variables: &Variables, guid: &str) -> std::
         .write_inner_content(|xml| {
             co_simulation(xml)?;
             unit_definitions(xml)?;
+            type_definitions(xml)?;
             xml.create_element("LogCategories").write_inner_content(|xml| {
                 for (name, description) in LOG_CATEGORIES {
                     let attributes = [("name", name), ("description", description)];
@@ -83,7 +92,7 @@ fn document(simulation: &Simulation, variables: &Variables, guid: &str) -> std::
                 }
                 Ok(())
             })?;
-            default_experiment(xml, scene)?;
+            default_experiment(xml, simulation)?;
             let inputs = simulation.inputs();
             let starts = variables.values(inputs, simulation.outputs());
             xml.create_element("ModelVariables").write_inner_content(|xml| {
@@ -108,7 +117,7 @@ fn co_simulation(xml: &mut Xml) -> std::io::Result<()> {
             ("maxOutputDerivativeOrder", "1"),
             ("canGetAndSetFMUstate", "true"),
             ("canSerializeFMUstate", "true"),
-            ("providesDirectionalDerivative", "false"),
+            ("providesDirectionalDerivative", "true"),
         ])
         .write_empty()?;
     Ok(())
@@ -116,8 +125,11 @@ fn co_simulation(xml: &mut Xml) -> std::io::Result<()> {
 
 fn unit_definitions(xml: &mut Xml) -> std::io::Result<()> {
     xml.create_element("UnitDefinitions").write_inner_content(|xml| {
-        for unit in units::ALL {
-            unit_definition(xml, &unit)?;
+        for (index, unit) in units::ALL.iter().enumerate() {
+            // Quantities may share a unit and differ in how it is displayed.
+            if units::ALL[..index].iter().all(|before| before.name != unit.name) {
+                unit_definition(xml, unit)?;
+            }
         }
         Ok(())
     })?;
@@ -133,7 +145,9 @@ fn unit_definition(xml: &mut Xml, unit: &Unit) -> std::io::Result<()> {
             }
         }
         base.write_empty()?;
-        if let Some((name, factor)) = unit.display {
+        for (name, factor) in
+            units::ALL.iter().filter(|other| other.name == unit.name).filter_map(|u| u.display)
+        {
             let factor = factor.to_string();
             let attributes = [("name", name), ("factor", factor.as_str())];
             xml.create_element("DisplayUnit").with_attributes(attributes).write_empty()?;
@@ -143,19 +157,69 @@ fn unit_definition(xml: &mut Xml, unit: &Unit) -> std::io::Result<()> {
     Ok(())
 }
 
-fn default_experiment(xml: &mut Xml, scene: &Scene) -> std::io::Result<()> {
-    let (stop, step) = (scene.load.duration.0.to_string(), scene.load.output_interval.0.to_string());
+fn type_definitions(xml: &mut Xml) -> std::io::Result<()> {
+    xml.create_element("TypeDefinitions").write_inner_content(|xml| {
+        for unit in units::ALL {
+            let element = xml.create_element("SimpleType").with_attribute(("name", unit.quantity));
+            element.write_inner_content(|xml| {
+                let attributes = [("quantity", unit.quantity), ("unit", unit.name)];
+                let mut real = xml.create_element("Real").with_attributes(attributes);
+                if let Some((display, _)) = unit.display {
+                    real = real.with_attribute(("displayUnit", display));
+                }
+                real.write_empty()?;
+                Ok(())
+            })?;
+        }
+        Ok(())
+    })?;
+    Ok(())
+}
+
+/// The recommended communication step resolves the passing of the balls with twenty points, and is not longer than the
+/// scene's own output interval.
+fn default_experiment(xml: &mut Xml, simulation: &Simulation) -> std::io::Result<()> {
+    const POINTS_PER_PASSAGE: f64 = 20.0;
+    let (scene, outputs) = (simulation.scene(), simulation.outputs());
+    let balls = scene.bearing.balls as f64;
+    // Balls pass a point of a race at their speed relative to it.
+    let speeds = [outputs.inner.twist.angular_velocity.x, outputs.outer.twist.angular_velocity.x];
+    let passing = speeds.map(|speed| balls * (speed - outputs.cage_speed).abs() / std::f64::consts::TAU);
+    let frequency = passing[0].max(passing[1]);
+    let interval = scene.load.output_interval.0;
+    let step = if frequency > 0.0 {
+        round_down(1.0 / (POINTS_PER_PASSAGE * frequency)).min(interval)
+    } else {
+        interval
+    };
+    let (stop, step) = (scene.load.duration.0.to_string(), step.to_string());
     let attributes = [("startTime", "0"), ("stopTime", stop.as_str()), ("stepSize", step.as_str())];
     xml.create_element("DefaultExperiment").with_attributes(attributes).write_empty()?;
     Ok(())
 }
 
+/// The next number below of 1, 2, 5, 10 and so on.
+fn round_down(x: f64) -> f64 {
+    let exponent = x.log10().floor() as i32;
+    let mantissa = x / 10f64.powi(exponent);
+    let digit = if mantissa >= 5.0 {
+        5.0
+    } else if mantissa >= 2.0 {
+        2.0
+    } else {
+        1.0
+    };
+    // Written in decimals and read again, so that it is the number nearest to what it says.
+    format!("{digit}e{exponent}").parse().unwrap_or(x)
+}
+
 fn scalar_variable(xml: &mut Xml, reference: usize, row: &Variable, start: f64) -> std::io::Result<()> {
     let reference = reference.to_string();
-    let (causality, variability) = match (row.causality, row.kind) {
-        (Causality::Input, _) => ("input", "continuous"),
-        (Causality::Output, Kind::Real) => ("output", "continuous"),
-        (Causality::Output, Kind::Integer) => ("output", "discrete"),
+    let (causality, variability, initial) = match (row.causality, row.kind) {
+        (Causality::Input, _) => ("input", "continuous", None),
+        (Causality::Output, Kind::Real) => ("output", "continuous", Some("calculated")),
+        (Causality::Output, Kind::Integer) => ("output", "discrete", Some("calculated")),
+        (Causality::Parameter, _) => ("parameter", variability(row), Some("exact")),
     };
     let mut element = xml.create_element("ScalarVariable").with_attributes([
         ("name", row.name.as_str()),
@@ -164,46 +228,72 @@ fn scalar_variable(xml: &mut Xml, reference: usize, row: &Variable, start: f64) 
         ("causality", causality),
         ("variability", variability),
     ]);
-    if row.causality == Causality::Output {
-        element = element.with_attribute(("initial", "calculated"));
+    if let Some(initial) = initial {
+        element = element.with_attribute(("initial", initial));
     }
     element.write_inner_content(|xml| {
-        match row.kind {
-            Kind::Integer => xml.create_element("Integer").write_empty()?,
-            Kind::Real => {
-                let (nominal, start) = (row.nominal.to_string(), format!("{start:?}"));
-                let mut real = xml
-                    .create_element("Real")
-                    .with_attributes([("unit", row.unit.name), ("nominal", nominal.as_str())]);
-                if let Some((display, _)) = row.unit.display {
-                    real = real.with_attribute(("displayUnit", display));
-                }
-                if row.causality == Causality::Input {
-                    real = real.with_attribute(("start", start.as_str()));
-                }
-                real.write_empty()?
-            }
-        };
+        let mut attributes = vec![];
+        if row.kind == Kind::Real {
+            attributes.extend([
+                ("declaredType", row.unit.quantity.to_string()),
+                ("unit", row.unit.name.to_string()),
+            ]);
+            attributes.extend(row.unit.display.map(|(display, _)| ("displayUnit", display.to_string())));
+        }
+        for (name, limit) in ["min", "max"].into_iter().zip(row.limits) {
+            attributes.extend(limit.map(|limit| (name, limit.to_string())));
+        }
+        if row.kind == Kind::Real {
+            attributes.push(("nominal", row.nominal.to_string()));
+        }
+        if row.causality != Causality::Output {
+            attributes.push(("start", format!("{start:?}")));
+        }
+        let kind = if row.kind == Kind::Real { "Real" } else { "Integer" };
+        let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
+        xml.create_element(kind).with_attributes(attributes).write_empty()?;
         Ok(())
     })?;
     Ok(())
 }
 
+fn variability(row: &Variable) -> &'static str {
+    match row.source {
+        Source::Parameter(parameter, _) if parameter.variability == Variability::Tunable => "tunable",
+        _ => "fixed",
+    }
+}
+
+/// Outputs depend on all inputs: the bearing is one mechanism. At the start they depend on the parameters too, except
+/// those of the time integration, and what is counted from the start depends on nothing.
 fn model_structure(xml: &mut Xml, variables: &Variables) -> std::io::Result<()> {
-    // Indices count from 1. Every output depends on every input: the bearing is one mechanism.
-    let outputs = || {
-        variables
-            .rows()
-            .iter()
-            .enumerate()
-            .filter(|(_, row)| row.causality == Causality::Output)
-            .map(|(index, _)| (index + 1).to_string())
+    // Indices count from 1.
+    let indices = |wanted: &dyn Fn(&Variable) -> bool| {
+        let rows = variables.rows().iter().enumerate();
+        rows.filter(|(_, row)| wanted(row)).map(|(index, _)| index + 1).collect::<Vec<_>>()
+    };
+    let list = |indices: &[usize]| indices.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
+    let outputs = indices(&|row| row.causality == Causality::Output);
+    let inputs = list(&indices(&|row| row.causality == Causality::Input));
+    let known = list(&indices(&|row| match row.causality {
+        Causality::Input => true,
+        Causality::Parameter => !row.name.starts_with("solver."),
+        Causality::Output => false,
+    }));
+    let from_start = |index: usize| {
+        let row = &variables.rows()[index - 1];
+        row.kind == Kind::Integer || ["energy.work", "energy.dissipated"].contains(&row.name.as_str())
     };
     xml.create_element("ModelStructure").write_inner_content(|xml| {
-        for list in ["Outputs", "InitialUnknowns"] {
-            xml.create_element(list).write_inner_content(|xml| {
-                for index in outputs() {
-                    xml.create_element("Unknown").with_attribute(("index", index.as_str())).write_empty()?;
+        for (name, dependencies) in [("Outputs", &inputs), ("InitialUnknowns", &known)] {
+            xml.create_element(name).write_inner_content(|xml| {
+                for index in &outputs {
+                    let none = name == "InitialUnknowns" && from_start(*index);
+                    let dependencies = if none { "" } else { dependencies.as_str() };
+                    let attributes =
+                        [("index", index.to_string()), ("dependencies", dependencies.to_string())];
+                    let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
+                    xml.create_element("Unknown").with_attributes(attributes).write_empty()?;
                 }
                 Ok(())
             })?;

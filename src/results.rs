@@ -33,7 +33,7 @@ impl ResultsWriter {
     pub fn create(path: &Path, scene: &Scene) -> Result<Self, ResultsError> {
         let name = path.display().to_string();
         let failed = |source| ResultsError { path: name.clone(), source };
-        let variables = Variables::with_balls(scene, true);
+        let variables = Variables::moving(scene, true);
         let mut writer = csv::Writer::from_path(path).map_err(failed)?;
         let mut header = vec!["time [s]".to_string()];
         header.extend(variables.rows().iter().map(|row| format!("{} [{}]", row.name, row.unit.name)));

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::contact::geometry::GrooveContact;
-use crate::dynamics::{Boundary, RaceLoad, StepFailure, Workspace, make_consistent, try_step};
+use crate::dynamics::{Boundary, RaceLoad, StepFailure, Workspace, follow, make_consistent, try_step};
 use crate::equilibrium::{EquilibriumError, MAX_APPROACH};
 use crate::inputs::{Inputs, RaceInput};
 use crate::kalker::nonlinear::KalkerError;
@@ -62,6 +62,9 @@ pub enum SimulationError {
         /// [m] approach.
         approach: f64,
     },
+    /// The Newton matrix of a step that neighbours were to follow is singular.
+    #[error("at {0} s the Newton matrix is singular")]
+    Singular(f64),
     /// A step end that is not a time after the present one.
     #[error("cannot advance from {from} s to {to} s")]
     Backwards {
@@ -80,12 +83,26 @@ struct InputPaths {
     loads: [Ramp; 2],
 }
 
+/// A simulation beside the running one, under slightly different inputs.
+struct Neighbour {
+    state: State,
+    paths: InputPaths,
+    friction: f64,
+}
+
 /// All that changes in a simulation: enough to go on from here to the same bits, in any instance of the same scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     inputs: Inputs,
     state: State,
     paths: InputPaths,
+}
+
+impl Snapshot {
+    /// [s] time.
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
 }
 
 /// A bearing in motion. Cloning it saves everything; the clone goes on to the same bits.
@@ -135,6 +152,12 @@ impl Simulation {
         self.paths = InputPaths::steady(&self.inputs, &self.state);
         self.settle();
         Ok(())
+    }
+
+    /// Goes on with a scene that differs in tunable parameters alone.
+    pub fn tune(&mut self, scene: &Scene) {
+        Arc::make_mut(&mut self.model).tune(scene);
+        self.scene = Arc::new(scene.clone());
     }
 
     /// Sets the time of a simulation that has not moved yet [s].
@@ -234,15 +257,43 @@ impl Simulation {
     /// See [`SimulationError`]; the state is then that of the last converged step, at [`Simulation::time`]. The depth of
     /// contacts is looked at where the step ends.
     pub fn advance(&mut self, end: f64) -> Result<(), SimulationError> {
+        self.advance_with_neighbours(end, &[]).map(drop)
+    }
+
+    /// Like [`Simulation::advance`]; also gives the outputs that neighbouring inputs would have led to, in the same
+    /// steps. They are exact to first order: take differences between neighbours on opposite sides.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`], and if the Newton matrix of a step is singular.
+    pub fn advance_with_neighbours(
+        &mut self,
+        end: f64,
+        inputs: &[Inputs],
+    ) -> Result<Vec<Outputs>, SimulationError> {
         let begin = self.state.time;
         if !(end > begin && end.is_finite()) {
             return Err(SimulationError::Backwards { from: begin, to: end });
         }
         self.script_fixed_races(begin);
+        let mut neighbours: Vec<Neighbour> = inputs
+            .iter()
+            .map(|inputs| {
+                let mut inputs = *inputs;
+                if self.scene.outer.drive == Drive::Fixed {
+                    inputs.outer = self.inputs.outer;
+                }
+                if self.scene.inner.drive == Drive::Fixed {
+                    inputs.inner = self.inputs.inner;
+                }
+                let paths = self.paths.towards(&inputs, begin, end - begin);
+                Neighbour { state: self.state.clone(), paths, friction: inputs.friction }
+            })
+            .collect();
         self.paths = self.paths.towards(&self.inputs, begin, end - begin);
-        let result = self.step_to(end).and_then(|()| self.check_depth());
+        let result = self.step_to(end, &mut neighbours).and_then(|()| self.check_depth());
         self.outputs = Outputs::new(&self.model, &self.state, self.inputs.friction);
-        result
+        result?;
+        Ok(neighbours.iter().map(|n| Outputs::new(&self.model, &n.state, n.friction)).collect())
     }
 
     /// A race that is fixed in its frame has no inputs: the scene's script says how it spins.
@@ -259,16 +310,28 @@ impl Simulation {
         }
     }
 
-    fn step_to(&mut self, end: f64) -> Result<(), SimulationError> {
+    fn step_to(&mut self, end: f64, neighbours: &mut [Neighbour]) -> Result<(), SimulationError> {
         while self.state.time < end {
             let remaining = end - self.state.time;
             let h = self.state.control.step_within(remaining);
             // The last step ends at the communication point to the bit.
             let last = h >= remaining * (1.0 - 1e-9);
             let boundary = self.boundary(if last { end } else { self.state.time + h });
+            let start = (!neighbours.is_empty()).then(|| self.state.clone());
             let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
             let (cause, ball) = match tried {
-                Ok(()) => continue,
+                Ok(()) => {
+                    if let Some(start) = start {
+                        let neighbours = neighbours.iter_mut().map(|n| {
+                            let boundary = n.paths.boundary(boundary.time, n.friction);
+                            (&mut n.state, boundary)
+                        });
+                        if !follow(&self.model, &start, &boundary, h, neighbours, &mut self.workspace) {
+                            return Err(SimulationError::Singular(start.time));
+                        }
+                    }
+                    continue;
+                }
                 Err(StepFailure::Newton(_, ball)) => ("Newton's method does not converge", ball),
                 Err(StepFailure::Error(ball)) => ("the local error stays above solver.tolerance", ball),
             };
@@ -305,21 +368,26 @@ impl Simulation {
     }
 
     fn boundary(&self, time: f64) -> Boundary {
+        self.paths.boundary(time, self.inputs.friction)
+    }
+}
+
+impl InputPaths {
+    /// What they impose at a time [s].
+    fn boundary(&self, time: f64, friction: f64) -> Boundary {
         let load = |race: usize| {
-            let [fx, fy, fz, mx, my, mz, speed] = self.paths.loads[race].at(time).into();
+            let [fx, fy, fz, mx, my, mz, speed] = self.loads[race].at(time).into();
             let applied = Wrench { force: Vector3::new(fx, fy, fz), moment: Vector3::new(mx, my, mz) };
             RaceLoad { applied, speed }
         };
         Boundary {
             time,
-            motion: [INNER, OUTER].map(|race| self.paths.races[race].at(time)),
+            motion: [INNER, OUTER].map(|race| self.races[race].at(time)),
             loads: [INNER, OUTER].map(load),
-            friction: self.inputs.friction,
+            friction,
         }
     }
-}
 
-impl InputPaths {
     /// Paths of a state that goes on as it is.
     fn steady(inputs: &Inputs, state: &State) -> Self {
         let races = [INNER, OUTER]

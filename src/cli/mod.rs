@@ -53,9 +53,9 @@ enum Command {
         /// Package to write.
         #[arg(short, long)]
         output: PathBuf,
-        /// Shared library to pack; the one built beside this program if not given.
+        /// Shared library to pack, once per platform; the one built beside this program if not given.
         #[arg(long)]
-        library: Option<PathBuf>,
+        library: Vec<PathBuf>,
     },
     /// Evaluate single rolling contacts of a CSV table; prints CSV.
     Contact {
@@ -146,8 +146,8 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             }
         }
         Command::Fmu { scene, output, library } => {
-            let library = library.map_or_else(library_beside_executable, Ok)?;
-            write_fmu(&Scene::load(&scene)?, &library, &output)?;
+            let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
+            write_fmu(&Scene::load(&scene)?, &libraries, &output)?;
             println!("{}", output.display());
         }
         Command::Contact { cases, law, degree, grid } => {

@@ -1,6 +1,7 @@
 //! One implicit step of the whole bearing: Newton's equations of balls and race bodies under the HHT scheme.
 
 mod ball;
+mod neighbour;
 mod race;
 
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
@@ -14,6 +15,7 @@ use crate::newton::{self, Equations, NewtonBuffers, NewtonFailure};
 use crate::scalar::constant_vector;
 use crate::state::{BallState, Powers, RaceState, State, race_motion};
 use ball::{BallTrial, RaceReaction, RaceSeen};
+pub use neighbour::follow;
 pub use race::RaceLoad;
 use race::{RaceScales, RaceTrial};
 

@@ -9,7 +9,8 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
-use super::instance::{FmuState, Instance, Outcome};
+use super::handles;
+use super::instance::{FmuState, Instance, Outcome, error};
 use super::log::Log;
 use super::state_machine::Call;
 use super::types::{Boolean, CallbackFunctions, Status};
@@ -17,8 +18,7 @@ use crate::variables::Kind;
 
 /// Runs a call on an instance: null check, phase check, panic guard, log, status.
 fn guard(component: *mut c_void, call: Call, work: impl FnOnce(&mut Instance) -> Outcome) -> Status {
-    // SAFETY: an importer passes what fmi2Instantiate returned, or null.
-    let Some(instance) = (unsafe { component.cast::<Instance>().as_mut() }) else {
+    let Some(instance) = handles::borrow::<Instance>(component) else {
         return Status::Error;
     };
     let outcome = catch_unwind(AssertUnwindSafe(|| {
@@ -42,33 +42,40 @@ fn guard(component: *mut c_void, call: Call, work: impl FnOnce(&mut Instance) ->
     status
 }
 
+/// Longest list that an importer may pass; every sensible one is far shorter, and a count gone wild is longer.
+const LONGEST_LIST: usize = 1 << 24;
+
+/// Checks pointer and length of a list; false if it is empty.
+fn check_list(is_null: bool, n: usize) -> Outcome<bool> {
+    match (is_null, n) {
+        (_, 0) => Ok(false),
+        (true, _) => error("a list is a null pointer"),
+        (false, n) if n > LONGEST_LIST => error(format!("a list of {n} elements is too long")),
+        (false, _) => Ok(true),
+    }
+}
+
 /// A slice of `n` elements.
 fn list<'a, T>(pointer: *const T, n: usize) -> Outcome<&'a [T]> {
-    match (pointer.is_null(), n) {
-        (_, 0) => Ok(&[]),
-        (true, _) => Err((Status::Error, "a list of values is a null pointer".into())),
-        // SAFETY: not null, and valid for n elements by the importer's contract.
-        (false, n) => Ok(unsafe { slice::from_raw_parts(pointer, n) }),
+    if !check_list(pointer.is_null(), n)? {
+        return Ok(&[]);
     }
+    // SAFETY: not null and not empty, and valid for n elements by the importer's contract.
+    Ok(unsafe { slice::from_raw_parts(pointer, n) })
 }
 
 /// A writable slice of `n` elements.
 fn list_mut<'a, T>(pointer: *mut T, n: usize) -> Outcome<&'a mut [T]> {
-    match (pointer.is_null(), n) {
-        (_, 0) => Ok(&mut []),
-        (true, _) => Err((Status::Error, "a list of results is a null pointer".into())),
-        // SAFETY: not null, and valid for n elements by the importer's contract.
-        (false, n) => Ok(unsafe { slice::from_raw_parts_mut(pointer, n) }),
+    if !check_list(pointer.is_null(), n)? {
+        return Ok(&mut []);
     }
+    // SAFETY: not null and not empty, and valid for n elements by the importer's contract.
+    Ok(unsafe { slice::from_raw_parts_mut(pointer, n) })
 }
 
 fn text(pointer: *const c_char) -> Option<String> {
     // SAFETY: not null, and a C string by the importer's contract.
     (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned())
-}
-
-fn refuse(why: &str) -> Outcome {
-    Err((Status::Error, why.into()))
 }
 
 /// `"default"`.
@@ -115,7 +122,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     match made {
         Ok(Ok(instance)) => {
             instance.log.write(Status::Ok, "instantiated");
-            Box::into_raw(Box::new(instance)).cast()
+            handles::give(instance)
         }
         Ok(Err((status, why))) => {
             log.write(status, &why);
@@ -128,15 +135,11 @@ pub unsafe extern "C" fn fmi2Instantiate(
     }
 }
 
-/// Ends an instance; null is ignored.
+/// Ends an instance; null is ignored, and so is one that has ended already.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeInstance(component: *mut c_void) {
-    if !component.is_null() {
-        // SAFETY: made by fmi2Instantiate and freed once by the importer's contract.
-        let instance = unsafe { Box::from_raw(component.cast::<Instance>()) };
-        // A panic in a destructor must not cross either.
-        let _ = catch_unwind(AssertUnwindSafe(|| drop(instance)));
-    }
+pub extern "C" fn fmi2FreeInstance(component: *mut c_void) {
+    // A panic in a destructor must not cross either.
+    let _ = catch_unwind(AssertUnwindSafe(|| drop(handles::take::<Instance>(component))));
 }
 
 /// Switches the log.
@@ -152,7 +155,7 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
         let known =
             |name: &String| crate::model_description::LOG_CATEGORIES.iter().any(|(known, _)| known == name);
         if let Some(unknown) = names.iter().find(|name| !known(name)) {
-            return refuse(&format!("there is no log category {unknown}"));
+            return error(format!("there is no log category {unknown}"));
         }
         instance.log.set(logging_on != 0, names);
         Ok(())
@@ -263,7 +266,7 @@ pub unsafe extern "C" fn fmi2GetString(
 }
 
 fn none_of_type(n: usize, kind: &str) -> Outcome {
-    if n == 0 { Ok(()) } else { refuse(&format!("there are no {kind} variables that this could mean")) }
+    if n == 0 { Ok(()) } else { error(format!("there are no {kind} variables that this could mean")) }
 }
 
 /// Sets real inputs.
@@ -285,7 +288,10 @@ pub unsafe extern "C" fn fmi2SetInteger(
     n: usize,
     _values: *const c_int,
 ) -> Status {
-    guard(component, Call::Set, |instance| instance.set(list(references, n)?, Kind::Integer, &vec![0.0; n]))
+    guard(component, Call::Set, |instance| {
+        let references = list(references, n)?;
+        instance.set(references, Kind::Integer, &vec![0.0; references.len()])
+    })
 }
 
 /// There are no boolean variables.
@@ -310,18 +316,28 @@ pub unsafe extern "C" fn fmi2SetString(
     guard(component, Call::Set, |_| none_of_type(n, "string"))
 }
 
+fn refuse_state<T>() -> Outcome<T> {
+    error("the FMU state is a null pointer, freed already, or none of ours")
+}
+
+/// A place for a result.
+fn place<'a, T>(pointer: *mut T, what: &str) -> Outcome<&'a mut T> {
+    // SAFETY: null or a valid place by the importer's contract.
+    match unsafe { pointer.as_mut() } {
+        Some(place) => Ok(place),
+        None => error(format!("the place for {what} is a null pointer")),
+    }
+}
+
 /// Copies the state; a state passed in is overwritten.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(component: *mut c_void, state: *mut *mut c_void) -> Status {
     guard(component, Call::FmuState, |instance| {
-        // SAFETY: null or a valid place for a pointer by the importer's contract.
-        let Some(place) = (unsafe { state.as_mut() }) else {
-            return refuse("the place for the FMU state is a null pointer");
-        };
-        // SAFETY: a pointer that is not null was made here by the importer's contract.
-        match unsafe { place.cast::<FmuState>().as_mut() } {
-            Some(existing) => *existing = instance.state(),
-            None => *place = Box::into_raw(Box::new(instance.state())).cast(),
+        let place = place(state, "the FMU state")?;
+        if place.is_null() {
+            *place = handles::give(instance.state());
+        } else {
+            *handles::borrow::<FmuState>(*place).map_or_else(refuse_state, Ok)? = instance.state();
         }
         Ok(())
     })
@@ -331,11 +347,7 @@ pub unsafe extern "C" fn fmi2GetFMUstate(component: *mut c_void, state: *mut *mu
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetFMUstate(component: *mut c_void, state: *mut c_void) -> Status {
     guard(component, Call::FmuState, |instance| {
-        // SAFETY: null or made by fmi2GetFMUstate or fmi2DeSerializeFMUstate by the importer's contract.
-        match unsafe { state.cast::<FmuState>().as_ref() } {
-            Some(state) => instance.set_state(state),
-            None => refuse("the FMU state is a null pointer"),
-        }
+        instance.set_state(handles::borrow::<FmuState>(state).map_or_else(refuse_state, Ok)?)
     })
 }
 
@@ -343,12 +355,12 @@ pub unsafe extern "C" fn fmi2SetFMUstate(component: *mut c_void, state: *mut c_v
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeFMUstate(component: *mut c_void, state: *mut *mut c_void) -> Status {
     guard(component, Call::FmuState, |_| {
-        // SAFETY: null or a valid place for a pointer by the importer's contract.
-        if let Some(place) = unsafe { state.as_mut() }
-            && !place.is_null()
-        {
-            // SAFETY: made here and freed once by the importer's contract.
-            drop(unsafe { Box::from_raw(place.cast::<FmuState>()) });
+        // SAFETY: null or a valid place by the importer's contract.
+        let Some(place) = (unsafe { state.as_mut() }) else {
+            return Ok(());
+        };
+        if !place.is_null() {
+            drop(handles::take::<FmuState>(*place).map_or_else(refuse_state, Ok)?);
             *place = std::ptr::null_mut();
         }
         Ok(())
@@ -363,12 +375,8 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     size: *mut usize,
 ) -> Status {
     guard(component, Call::FmuState, |instance| {
-        // SAFETY: null or made here, and null or a valid place, by the importer's contract.
-        let (state, place) = unsafe { (state.cast::<FmuState>().as_ref(), size.as_mut()) };
-        let (Some(state), Some(place)) = (state, place) else {
-            return refuse("the FMU state or the place for its size is a null pointer");
-        };
-        *place = instance.serialise(state)?.len();
+        let state = handles::borrow::<FmuState>(state).map_or_else(refuse_state, Ok)?;
+        *place(size, "the size of the FMU state")? = instance.serialise(state)?.len();
         Ok(())
     })
 }
@@ -382,15 +390,12 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
     size: usize,
 ) -> Status {
     guard(component, Call::FmuState, |instance| {
-        // SAFETY: null or made here by the importer's contract.
-        let Some(state) = (unsafe { state.cast::<FmuState>().as_ref() }) else {
-            return refuse("the FMU state is a null pointer");
-        };
-        let content = instance.serialise(state)?;
+        let content =
+            instance.serialise(handles::borrow::<FmuState>(state).map_or_else(refuse_state, Ok)?)?;
         if size < content.len() {
-            return refuse(&format!("the FMU state takes {} bytes, not {size}", content.len()));
+            return error(format!("the FMU state takes {} bytes, not {size}", content.len()));
         }
-        list_mut(bytes, size)?[..content.len()].copy_from_slice(&content);
+        list_mut(bytes, content.len())?.copy_from_slice(&content);
         Ok(())
     })
 }
@@ -404,29 +409,27 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     state: *mut *mut c_void,
 ) -> Status {
     guard(component, Call::FmuState, |instance| {
-        let content = instance.deserialise(list(bytes, size)?)?;
-        // SAFETY: null or a valid place for a pointer by the importer's contract.
-        let Some(place) = (unsafe { state.as_mut() }) else {
-            return refuse("the place for the FMU state is a null pointer");
-        };
-        *place = Box::into_raw(Box::new(content)).cast();
+        let place = place(state, "the FMU state")?;
+        *place = handles::give(instance.deserialise(list(bytes, size)?)?);
         Ok(())
     })
 }
 
-/// Not offered yet; the model description says so.
+/// Changes of outputs for a change of inputs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     component: *mut c_void,
-    _unknowns: *const u32,
-    _n_unknowns: usize,
-    _knowns: *const u32,
-    _n_knowns: usize,
-    _known_changes: *const f64,
-    _unknown_changes: *mut f64,
+    unknowns: *const u32,
+    n_unknowns: usize,
+    knowns: *const u32,
+    n_knowns: usize,
+    known_changes: *const f64,
+    unknown_changes: *mut f64,
 ) -> Status {
-    guard(component, Call::GetDirectionalDerivative, |_| {
-        refuse("directional derivatives are not offered (providesDirectionalDerivative is false)")
+    guard(component, Call::GetDirectionalDerivative, |instance| {
+        let (unknowns, knowns) = (list(unknowns, n_unknowns)?, list(knowns, n_knowns)?);
+        let (changes, results) = (list(known_changes, n_knowns)?, list_mut(unknown_changes, n_unknowns)?);
+        instance.directional_derivative(unknowns, knowns, changes, results)
     })
 }
 
@@ -486,15 +489,12 @@ pub unsafe extern "C" fn fmi2GetStatus(component: *mut c_void, _kind: c_int, _va
 pub unsafe extern "C" fn fmi2GetRealStatus(component: *mut c_void, kind: c_int, value: *mut f64) -> Status {
     const LAST_SUCCESSFUL_TIME: c_int = 2;
     guard(component, Call::GetStatus, |instance| {
-        // SAFETY: null or a valid place by the importer's contract.
-        match unsafe { value.as_mut() } {
-            Some(value) if kind == LAST_SUCCESSFUL_TIME => {
-                *value = instance.time();
-                Ok(())
-            }
-            Some(_) => discard_status(),
-            None => refuse("the place for the status is a null pointer"),
+        let value = place(value, "the status")?;
+        if kind != LAST_SUCCESSFUL_TIME {
+            return discard_status();
         }
+        *value = instance.time();
+        Ok(())
     })
 }
 
@@ -517,15 +517,12 @@ pub unsafe extern "C" fn fmi2GetBooleanStatus(
 ) -> Status {
     const TERMINATED: c_int = 3;
     guard(component, Call::GetStatus, |_| {
-        // SAFETY: null or a valid place by the importer's contract.
-        match unsafe { value.as_mut() } {
-            Some(value) if kind == TERMINATED => {
-                *value = 0;
-                Ok(())
-            }
-            Some(_) => discard_status(),
-            None => refuse("the place for the status is a null pointer"),
+        let value = place(value, "the status")?;
+        if kind != TERMINATED {
+            return discard_status();
         }
+        *value = 0;
+        Ok(())
     })
 }
 

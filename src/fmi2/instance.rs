@@ -9,22 +9,25 @@ use sha2::{Digest, Sha256};
 use super::log::Log;
 use super::state_machine::{Call, Phase, allowed};
 use super::types::{CallbackFunctions, Status};
-use crate::model_description::render;
+use crate::inputs::Inputs;
+use crate::model_description;
 use crate::scene::Scene;
+use crate::scene::parameters::Variability;
 use crate::simulation::{Simulation, Snapshot};
-use crate::variables::{Causality, Kind, Variables};
+use crate::variables::{Causality, Kind, Source, Variables};
 
 /// Name of the scene inside a package's resources folder.
 pub const SCENE_FILE: &str = "scene.toml";
 /// [-] relative disagreement of importer and instance about the time that is still rounding.
 const TIME_TOLERANCE: f64 = 1e-9;
 /// First bytes of a serialised state: what it is, and the version of its form.
-const MAGIC: &[u8; 8] = b"rlmtFMU1";
+const MAGIC: &[u8; 8] = b"rlmtFMU2";
 
 /// A refusal or failure: its status and why.
 pub type Outcome<T = ()> = Result<T, (Status, String)>;
 
-fn error<T>(why: impl Into<String>) -> Outcome<T> {
+/// A refusal with fmi2Error.
+pub(super) fn error<T>(why: impl Into<String>) -> Outcome<T> {
     Err((Status::Error, why.into()))
 }
 
@@ -37,6 +40,9 @@ pub struct FmuState {
     previous_outputs: Vec<f64>,
     last_step: f64,
     changed: bool,
+    given: Vec<bool>,
+    applied: Vec<f64>,
+    before: Option<Snapshot>,
     snapshot: Snapshot,
 }
 
@@ -45,19 +51,27 @@ pub struct Instance {
     /// Messages to the importer.
     pub log: Log,
     guid: String,
-    phase: Phase,
-    variables: Variables,
+    pub(super) phase: Phase,
+    pub(super) variables: Variables,
     /// Start of everything, for `fmi2Reset`.
     fresh: Box<Simulation>,
-    simulation: Simulation,
-    /// Inputs as set, by value reference; entries of outputs are not used.
+    pub(super) simulation: Simulation,
+    /// The communication point before the last; none before the first step.
+    pub(super) before: Option<Snapshot>,
+    /// Derivatives of outputs by inputs at this point, if they were asked for.
+    pub(super) columns: Option<Vec<Vec<f64>>>,
+    /// Inputs and parameters as set, by value reference; entries of outputs are not used.
     values: Vec<f64>,
+    /// Inputs that the importer set before the start; the others start where the parameters put them.
+    given: Vec<bool>,
+    /// Parameters, by value reference, that the simulation runs with.
+    applied: Vec<f64>,
     /// First derivatives of the inputs.
     rates: Vec<f64>,
     /// Outputs at the communication point before the last.
     previous_outputs: Vec<f64>,
     last_step: f64,
-    /// Were inputs set since the outputs were computed, in initialization mode?
+    /// Were inputs (before the start) or parameters set that the simulation does not know of yet?
     changed: bool,
 }
 
@@ -98,27 +112,29 @@ impl Instance {
         let path = resource_path(location)?.join(SCENE_FILE);
         let failed = |why: String| (Status::Error, why);
         let scene = Scene::load(&path).map_err(|why| failed(why.to_string()))?;
-        let simulation = Simulation::new(&scene).map_err(|why| failed(why.to_string()))?;
-        let description = render(&simulation).map_err(|why| failed(why.to_string()))?;
-        if guid != description.guid {
+        let variables = Variables::new(&scene);
+        let own = model_description::guid(&scene, &variables);
+        if guid != own {
             return error(format!(
-                "the guid {guid} is not that of this package, {}: model description and library do not belong \
-                 together",
-                description.guid
+                "the guid {guid} is not that of this package, {own}: model description and library do not belong together"
             ));
         }
-        let variables = Variables::new(&scene);
+        let simulation = Simulation::new(&scene).map_err(|why| failed(why.to_string()))?;
         let values = variables.values(simulation.inputs(), simulation.outputs());
         Ok(Self {
             log: Log::new(callbacks, name, logging),
-            guid: description.guid,
+            guid: own,
             phase: Phase::Instantiated,
             rates: vec![0.0; values.len()],
             previous_outputs: values.clone(),
+            given: vec![false; values.len()],
+            applied: values.clone(),
             values,
             variables,
             fresh: Box::new(simulation.clone()),
             simulation,
+            before: None,
+            columns: None,
             last_step: 0.0,
             changed: false,
         })
@@ -179,23 +195,53 @@ impl Instance {
         Ok(())
     }
 
-    /// Starts from inputs that were set in initialization mode; without any, the start is the scene's own.
-    fn refresh(&mut self) -> Outcome {
-        if self.changed {
-            let inputs = self.read_inputs()?;
-            let mut simulation = self.simulation.clone();
-            simulation.set_inputs(inputs);
-            simulation.initialise().map_err(|why| (Status::Error, why.to_string()))?;
-            self.simulation = simulation;
-            self.changed = false;
+    /// Starts from inputs and parameters that were set before the start; without any, the start is the scene's own.
+    ///
+    /// # Errors
+    /// If they allow no start.
+    pub(super) fn refresh(&mut self) -> Outcome {
+        if !self.changed {
+            return Ok(());
         }
+        let mut simulation = self.simulation.clone();
+        let mut values = self.values.clone();
+        if self.variables.parameters_differ(&self.values, &self.applied) {
+            simulation = self.with_parameters(&self.values)?;
+            simulation.set_start_time(self.simulation.time());
+            let start = self.variables.values(simulation.inputs(), simulation.outputs());
+            for (index, row) in self.variables.rows().iter().enumerate() {
+                if row.causality == Causality::Input && !self.given[index] {
+                    values[index] = start[index];
+                }
+            }
+        }
+        if self.given.contains(&true) {
+            simulation.set_inputs(self.read_inputs(&values, simulation.inputs())?);
+            simulation.initialise().map_err(|why| (Status::Error, why.to_string()))?;
+        }
+        self.simulation = simulation;
+        self.applied.clone_from(&values);
+        self.values = values;
+        self.columns = None;
+        self.changed = false;
         Ok(())
     }
 
-    fn read_inputs(&self) -> Outcome<crate::inputs::Inputs> {
-        self.variables
-            .inputs(&self.values, &self.rates, self.simulation.inputs())
-            .map_err(|why| (Status::Error, why.to_string()))
+    /// A simulation of the scene with the parameters among these values.
+    fn with_parameters(&self, values: &[f64]) -> Outcome<Simulation> {
+        Simulation::new(&self.scene_with(values)?).map_err(|why| (Status::Error, why.to_string()))
+    }
+
+    /// The scene with the parameters among these values.
+    fn scene_with(&self, values: &[f64]) -> Outcome<Scene> {
+        let mut scene = self.fresh.scene().clone();
+        self.variables.set_parameters(&mut scene, values);
+        scene.check().map_err(|why| (Status::Error, why.to_string()))?;
+        Ok(scene)
+    }
+
+    fn read_inputs(&self, values: &[f64], base: &Inputs) -> Outcome<Inputs> {
+        self.variables.inputs(values, &self.rates, base).map_err(|why| (Status::Error, why.to_string()))
     }
 
     /// `fmi2Terminate`.
@@ -208,13 +254,21 @@ impl Instance {
         self.simulation = (*self.fresh).clone();
         self.values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         self.previous_outputs.clone_from(&self.values);
+        self.applied.clone_from(&self.values);
+        self.given.fill(false);
         self.rates.fill(0.0);
+        self.before = None;
+        self.columns = None;
         self.last_step = 0.0;
         self.changed = false;
         self.phase = Phase::Instantiated;
     }
 
-    fn row(&self, reference: u32, kind: Kind) -> Outcome<usize> {
+    /// Row of a value reference of one type.
+    ///
+    /// # Errors
+    /// If there is no such variable.
+    pub(super) fn row(&self, reference: u32, kind: Kind) -> Outcome<usize> {
         let index = reference as usize;
         match self.variables.rows().get(index) {
             Some(row) if row.kind == kind => Ok(index),
@@ -235,7 +289,7 @@ impl Instance {
             let index = self.row(*reference, kind)?;
             let row = &self.variables.rows()[index];
             *value = match row.causality {
-                Causality::Input => self.values[index],
+                Causality::Input | Causality::Parameter => self.values[index],
                 Causality::Output => {
                     self.variables.value(row, self.simulation.inputs(), self.simulation.outputs())
                 }
@@ -251,17 +305,29 @@ impl Instance {
     pub fn set(&mut self, references: &[u32], kind: Kind, values: &[f64]) -> Outcome {
         for (reference, value) in references.iter().zip(values) {
             let row = &self.variables.rows()[self.row(*reference, kind)?];
-            if row.causality != Causality::Input {
+            if row.causality == Causality::Output {
                 return error(format!("{} is an output and cannot be set", row.name));
             }
             if !value.is_finite() {
                 return error(format!("{} = {value} is not a finite number", row.name));
             }
+            if let Source::Parameter(parameter, _) = row.source {
+                if self.phase == Phase::StepComplete && parameter.variability == Variability::Fixed {
+                    return error(format!("{} is fixed: it can be set before the start only", row.name));
+                }
+                parameter.range.check(parameter.key, *value).or_else(|why| error(why.to_string()))?;
+            }
         }
+        let started = self.phase == Phase::StepComplete;
         for (reference, value) in references.iter().zip(values) {
-            let here = &mut self.values[*reference as usize];
-            self.changed |= *here != *value;
-            *here = *value;
+            let index = *reference as usize;
+            let input = self.variables.rows()[index].causality == Causality::Input;
+            // Inputs of a running simulation are read by the next step anyway.
+            if !(started && input) {
+                self.changed |= self.values[index] != *value;
+            }
+            self.given[index] |= input && !started;
+            self.values[index] = *value;
         }
         Ok(())
     }
@@ -274,7 +340,7 @@ impl Instance {
         for ((reference, order), value) in references.iter().zip(orders).zip(values) {
             let row = &self.variables.rows()[self.row(*reference, Kind::Real)?];
             if row.causality != Causality::Input {
-                return error(format!("{} is an output: it takes no input derivative", row.name));
+                return error(format!("{} is no input: it takes no input derivative", row.name));
             }
             if *order != 1 {
                 return error(format!("input derivatives of order {order} are not offered, only of order 1"));
@@ -298,7 +364,7 @@ impl Instance {
             let index = self.row(*reference, Kind::Real)?;
             let row = &self.variables.rows()[index];
             if row.causality != Causality::Output {
-                return error(format!("{} is an input: it has no output derivative", row.name));
+                return error(format!("{} is no output: it has no output derivative", row.name));
             }
             if *order != 1 {
                 return error(format!(
@@ -329,9 +395,15 @@ impl Instance {
         if time + step <= now {
             return error(format!("the communication step {step} s is lost in rounding at {now} s"));
         }
-        let inputs = self.read_inputs()?;
+        let inputs = self.read_inputs(&self.values, self.simulation.inputs())?;
+        if self.changed {
+            self.simulation.tune(&self.scene_with(&self.values)?);
+            self.applied.clone_from(&self.values);
+            self.changed = false;
+        }
         self.previous_outputs = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
-        let before = self.simulation.clone();
+        let before = self.before.insert(self.simulation.snapshot());
+        self.columns = None;
         self.simulation.set_inputs(inputs);
         let advanced = self.simulation.advance(time + step);
         // A derivative belongs to the communication point that it was set for.
@@ -340,7 +412,8 @@ impl Instance {
         self.last_step = reached - now;
         let values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         if !values.iter().all(|value| value.is_finite()) {
-            self.simulation = before;
+            let restored = self.simulation.restore(before);
+            debug_assert!(restored, "a snapshot of this very simulation fits it");
             self.last_step = 0.0;
             return Err((Status::Discard, format!("a result is not a number after {now} s")));
         }
@@ -361,6 +434,9 @@ impl Instance {
             previous_outputs: self.previous_outputs.clone(),
             last_step: self.last_step,
             changed: self.changed,
+            given: self.given.clone(),
+            applied: self.applied.clone(),
+            before: self.before.clone(),
             snapshot: self.simulation.snapshot(),
         }
     }
@@ -378,24 +454,38 @@ impl Instance {
             Phase::Terminated,
             Phase::Error,
         ];
-        let sizes = [&state.values, &state.rates, &state.previous_outputs];
+        let sizes = [&state.values, &state.rates, &state.previous_outputs, &state.applied];
         let phase = phases.into_iter().find(|phase| *phase as u8 == state.phase);
-        let (Some(phase), true) = (phase, sizes.iter().all(|list| list.len() == self.values.len())) else {
+        let fits = sizes.iter().all(|list| list.len() == self.values.len())
+            && state.given.len() == self.values.len();
+        let (Some(phase), true) = (phase, fits) else {
             return error("the FMU state is of another scene");
         };
-        if !self.simulation.restore(&state.snapshot) {
+        let mut rebuilt = None;
+        if self.variables.parameters_differ(&state.applied, &self.applied) {
+            rebuilt = Some(self.with_parameters(&state.applied)?);
+        }
+        let simulation = rebuilt.as_mut().unwrap_or(&mut self.simulation);
+        if !simulation.restore(&state.snapshot) {
             return error("the FMU state is of another scene");
         }
+        if let Some(rebuilt) = rebuilt {
+            self.simulation = rebuilt;
+        }
+        self.given.clone_from(&state.given);
+        self.applied.clone_from(&state.applied);
         self.phase = phase;
         self.values.clone_from(&state.values);
         self.rates.clone_from(&state.rates);
         self.previous_outputs.clone_from(&state.previous_outputs);
+        self.before.clone_from(&state.before);
+        self.columns = None;
         self.last_step = state.last_step;
         self.changed = state.changed;
         Ok(())
     }
 
-    /// A state as bytes: magic, guid, checksum, content.
+    /// A state as bytes: magic, guid, length of the content, checksum, content.
     ///
     /// # Errors
     /// If the content cannot be written, which would be a fault of this library.
@@ -403,6 +493,7 @@ impl Instance {
         let content = postcard::to_allocvec(state).map_err(|why| (Status::Error, why.to_string()))?;
         let mut bytes = MAGIC.to_vec();
         bytes.extend(self.guid.as_bytes());
+        bytes.extend((content.len() as u64).to_le_bytes());
         bytes.extend(Sha256::digest(&content));
         bytes.extend(content);
         Ok(bytes)
@@ -420,9 +511,14 @@ impl Instance {
         let Some(rest) = rest.strip_prefix(self.guid.as_bytes()) else {
             return refuse("it is of another package");
         };
-        let Some((checksum, content)) = rest.split_at_checked(32) else {
+        let (Some((length, rest)), true) = (rest.split_first_chunk::<8>(), rest.len() >= 8 + 32) else {
             return refuse("it is cut off");
         };
+        let (checksum, content) = rest.split_at(32);
+        // Before the content is looked at: the importer's size may be wrong.
+        if content.len() as u64 != u64::from_le_bytes(*length) {
+            return refuse("its length is wrong");
+        }
         if Sha256::digest(content).as_slice() != checksum {
             return refuse("its checksum is wrong");
         }

@@ -4,6 +4,7 @@
 //! out of range are errors that name the key, the value and the allowed range.
 
 mod accuracy;
+pub mod parameters;
 mod schedule;
 mod sections;
 mod validate;
@@ -104,8 +105,16 @@ impl Scene {
     pub fn parse(text: &str) -> Result<Self, SceneError> {
         let mut scene: Self = toml::from_str(text)?;
         scene.source = text.to_string();
-        validate::validate(&scene)?;
+        scene.check()?;
         Ok(scene)
+    }
+
+    /// Checks every value against its range, and the keys against one another.
+    ///
+    /// # Errors
+    /// See [`SceneError`].
+    pub fn check(&self) -> Result<(), SceneError> {
+        validate::validate(self)
     }
 
     /// Reads a scene file.

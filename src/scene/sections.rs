@@ -81,10 +81,10 @@ pub enum CreepLaw {
     /// Linear theory, saturated as a vector.
     #[default]
     Saturated,
-    /// Kalker's nonlinear theory as a smooth table.
-    KalkerTable,
     /// Kalker's nonlinear theory in polynomials of degree `kalker_degree`: slow.
     Kalker,
+    /// Kalker's nonlinear theory as a smooth table.
+    KalkerTable,
 }
 
 /// Effects, each off unless asked for; one that is off has no state and costs nothing.

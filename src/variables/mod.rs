@@ -11,6 +11,7 @@ use thiserror::Error;
 use crate::inputs::{Inputs, RaceInput};
 use crate::motion::{Pose, Twist, Wrench};
 use crate::outputs::{BallOutput, ContactOutput, Outputs, RaceOutput};
+use crate::scene::parameters::Parameter;
 use crate::scene::{Orientation, Scene};
 use units::Unit;
 
@@ -21,6 +22,8 @@ pub enum Causality {
     Input,
     /// Read by the importer.
     Output,
+    /// A number of the scene, set by the importer before the start or, if tunable, between steps.
+    Parameter,
 }
 
 /// FMI type.
@@ -95,6 +98,8 @@ pub enum Source {
     Ball(usize, FromBall),
     /// A ball's contact with a race.
     Contact(usize, Race, FromContact),
+    /// A number of the scene, and its value there.
+    Parameter(&'static Parameter, f64),
 }
 
 /// One variable.
@@ -110,6 +115,8 @@ pub struct Variable {
     pub causality: Causality,
     /// [unit] typical size.
     pub nominal: f64,
+    /// [unit] smallest and largest value, where there are some.
+    pub limits: [Option<f64>; 2],
     /// One sentence.
     pub description: String,
     /// Where the value comes from.
@@ -142,6 +149,8 @@ pub enum InputError {
 
 /// [-] deviation of a quaternion's norm from 1 that is corrected; more is refused.
 const NORM_TOLERANCE: f64 = 1e-3;
+/// [-] largest friction coefficient that an importer may give.
+const MAX_FRICTION: f64 = 2.0;
 
 /// The table of a scene.
 #[derive(Clone, Debug)]
@@ -153,11 +162,13 @@ pub struct Variables {
 impl Variables {
     /// The variables of a scene's package.
     pub fn new(scene: &Scene) -> Self {
-        Self::with_balls(scene, scene.effects.per_ball_outputs)
+        let mut table = Self::moving(scene, scene.effects.per_ball_outputs);
+        table.add_parameters(scene);
+        table
     }
 
-    /// The variables of a scene, with or without those of every ball.
-    pub fn with_balls(scene: &Scene, per_ball: bool) -> Self {
+    /// What can change in a run, with or without every ball.
+    pub fn moving(scene: &Scene, per_ball: bool) -> Self {
         let cardan = scene.interface.orientation == Orientation::Cardan;
         let mut table = Self { rows: vec![], cardan };
         table.add_race(Race::Inner, scene.inner.drive);
@@ -180,6 +191,7 @@ impl Variables {
     pub fn value(&self, row: &Variable, inputs: &Inputs, outputs: &Outputs) -> f64 {
         match row.source {
             Source::Friction => inputs.friction,
+            Source::Parameter(_, value) => value,
             Source::Bearing(get) => get(outputs),
             Source::Ball(ball, get) => outputs.balls.get(ball).map_or(0.0, get),
             Source::Contact(ball, race, get) => outputs
@@ -195,7 +207,7 @@ impl Variables {
                     Causality::Input => {
                         race_value(quantity, &input.pose, &input.twist, &input.applied, input, output, 0.0)
                     }
-                    Causality::Output => {
+                    Causality::Output | Causality::Parameter => {
                         let (pose, twist) = (&output.pose, &output.twist);
                         race_value(quantity, pose, twist, &output.wrench, input, output, output.turned)
                     }
@@ -207,6 +219,42 @@ impl Variables {
     /// Start values of all rows.
     pub fn values(&self, inputs: &Inputs, outputs: &Outputs) -> Vec<f64> {
         self.rows.iter().map(|row| self.value(row, inputs, outputs)).collect()
+    }
+
+    /// Writes the parameters among the values of all rows into a scene.
+    pub fn set_parameters(&self, scene: &mut Scene, values: &[f64]) {
+        for (row, value) in self.rows.iter().zip(values) {
+            if let Source::Parameter(parameter, _) = row.source {
+                parameter.set(scene, *value);
+            }
+        }
+    }
+
+    /// Is a parameter among the values of all rows different?
+    pub fn parameters_differ(&self, one: &[f64], other: &[f64]) -> bool {
+        let differs = |((row, one), other): ((&Variable, &f64), &f64)| {
+            row.causality == Causality::Parameter && one != other
+        };
+        self.rows.iter().zip(one).zip(other).any(differs)
+    }
+
+    /// Rates of all rows that inputs were given with: those of a twist.
+    pub fn rates(&self, inputs: &Inputs) -> Vec<f64> {
+        let rate = |row: &Variable| match row.source {
+            Source::Race(race, quantity) if row.causality == Causality::Input => {
+                let rate = match race {
+                    Race::Inner => &inputs.inner.twist_rate,
+                    Race::Outer => &inputs.outer.twist_rate,
+                };
+                match quantity {
+                    RaceQuantity::Velocity(i) => rate.velocity[i],
+                    RaceQuantity::AngularVelocity(i) => rate.angular_velocity[i],
+                    _ => 0.0,
+                }
+            }
+            _ => 0.0,
+        };
+        self.rows.iter().map(rate).collect()
     }
 
     /// Turns the values of all rows (those of outputs are ignored) and their rates into inputs, on top of `base`.
@@ -226,7 +274,7 @@ impl Variables {
                 }
             }
             match row.source {
-                Source::Friction if (0.0..=2.0).contains(&value) => inputs.friction = value,
+                Source::Friction if (0.0..=MAX_FRICTION).contains(&value) => inputs.friction = value,
                 Source::Friction => return Err(InputError::Friction(value)),
                 Source::Race(race, quantity) => {
                     let (input, index) = match race {
@@ -240,7 +288,7 @@ impl Variables {
                         other => set_race_value(other, value, rate, input),
                     }
                 }
-                Source::Bearing(_) | Source::Ball(..) | Source::Contact(..) => {}
+                Source::Bearing(_) | Source::Ball(..) | Source::Contact(..) | Source::Parameter(..) => {}
             }
         }
         for (index, name) in [(0, "inner"), (1, "outer")] {

@@ -2,9 +2,11 @@
 
 use super::units::{self, Unit};
 use super::{
-    Causality, FromBall, FromContact, FromOutputs, Kind, Race, RaceQuantity, Source, Variable, Variables,
+    Causality, FromBall, FromContact, FromOutputs, Kind, MAX_FRICTION, NORM_TOLERANCE, Race, RaceQuantity,
+    Source, Variable, Variables,
 };
-use crate::scene::Drive;
+use crate::scene::parameters::PARAMETERS;
+use crate::scene::{Drive, Scene};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -14,6 +16,19 @@ struct Kin {
     unit: Unit,
     causality: Causality,
     nominal: f64,
+}
+
+/// Smallest and largest value that a variable can have.
+fn limits(source: &Source) -> [Option<f64>; 2] {
+    match source {
+        // What is a little longer than a unit quaternion is normalised.
+        Source::Race(_, RaceQuantity::Orientation(_)) => {
+            [Some(-1.0 - NORM_TOLERANCE), Some(1.0 + NORM_TOLERANCE)]
+        }
+        Source::Friction => [Some(0.0), Some(MAX_FRICTION)],
+        Source::Parameter(parameter, _) => [Some(parameter.range.low), Some(parameter.range.high)],
+        Source::Race(..) | Source::Bearing(_) | Source::Ball(..) | Source::Contact(..) => [None; 2],
+    }
 }
 
 impl Variables {
@@ -26,7 +41,30 @@ impl Variables {
         description: String,
         source: Source,
     ) {
-        self.rows.push(Variable { name, unit, kind: Kind::Real, causality, nominal, description, source });
+        let limits = limits(&source);
+        self.rows.push(Variable {
+            name,
+            unit,
+            kind: Kind::Real,
+            causality,
+            nominal,
+            limits,
+            description,
+            source,
+        });
+    }
+
+    /// Adds the parameters that a scene makes use of.
+    pub(super) fn add_parameters(&mut self, scene: &Scene) {
+        for parameter in &PARAMETERS {
+            if let Some(start) = parameter.value(scene) {
+                let unit = units::of_parameter(parameter.range.unit);
+                let nominal = if start == 0.0 { 1.0 } else { start.abs() };
+                let source = Source::Parameter(parameter, start);
+                let description = parameter.description.to_string();
+                self.add(parameter.key.into(), unit, Causality::Parameter, nominal, description, source);
+            }
+        }
     }
 
     /// Adds the three world components of a vector of a race; `what` ends before "<prefix> race".
@@ -138,6 +176,7 @@ impl Variables {
                 kind: Kind::Integer,
                 causality: Causality::Output,
                 nominal: 1.0,
+                limits: [Some(0.0), None],
                 description: description.into(),
                 source: Source::Bearing(get),
             });

@@ -5,50 +5,71 @@
 pub struct Unit {
     /// Name as written in the model description.
     pub name: &'static str,
+    /// What is measured in it: the name of the FMI type.
+    pub quantity: &'static str,
     /// Exponents of kg, m, s, rad.
     pub exponents: [i8; 4],
     /// Display unit and how many of it make one unit, where another one is customary.
     pub display: Option<(&'static str, f64)>,
 }
 
-const fn unit(name: &'static str, exponents: [i8; 4]) -> Unit {
-    Unit { name, exponents, display: None }
+const fn unit(name: &'static str, quantity: &'static str, exponents: [i8; 4]) -> Unit {
+    Unit { name, quantity, exponents, display: None }
 }
 
-const fn shown(name: &'static str, exponents: [i8; 4], display: &'static str, factor: f64) -> Unit {
-    Unit { name, exponents, display: Some((display, factor)) }
+impl Unit {
+    /// The same with a display unit, of which `factor` make one.
+    const fn shown(mut self, display: &'static str, factor: f64) -> Self {
+        self.display = Some((display, factor));
+        self
+    }
 }
 
 const DEGREE: f64 = 180.0 / std::f64::consts::PI;
 /// Pure number.
-pub const ONE: Unit = unit("1", [0, 0, 0, 0]);
+pub const ONE: Unit = unit("1", "Ratio", [0, 0, 0, 0]);
 /// Position.
-pub const METRE: Unit = shown("m", [0, 1, 0, 0], "um", 1e6);
+pub const METRE: Unit = unit("m", "Position", [0, 1, 0, 0]).shown("um", 1e6);
+/// Dimension of a part.
+pub const DIMENSION: Unit = unit("m", "Length", [0, 1, 0, 0]).shown("mm", 1e3);
 /// Velocity.
-pub const METRE_PER_SECOND: Unit = unit("m/s", [0, 1, -1, 0]);
+pub const METRE_PER_SECOND: Unit = unit("m/s", "Velocity", [0, 1, -1, 0]);
+/// Acceleration.
+pub const METRE_PER_SECOND_SQUARED: Unit = unit("m/s2", "Acceleration", [0, 1, -2, 0]);
 /// Angle.
-pub const RADIAN: Unit = shown("rad", [0, 0, 0, 1], "deg", DEGREE);
+pub const RADIAN: Unit = unit("rad", "Angle", [0, 0, 0, 1]).shown("deg", DEGREE);
 /// Angular velocity.
-pub const RADIAN_PER_SECOND: Unit = shown("rad/s", [0, 0, -1, 1], "rev/min", 30.0 / std::f64::consts::PI);
+pub const RADIAN_PER_SECOND: Unit =
+    unit("rad/s", "AngularVelocity", [0, 0, -1, 1]).shown("rev/min", 30.0 / std::f64::consts::PI);
 /// Force.
-pub const NEWTON: Unit = unit("N", [1, 1, -2, 0]);
+pub const NEWTON: Unit = unit("N", "Force", [1, 1, -2, 0]);
 /// Moment.
-pub const NEWTON_METRE: Unit = unit("N.m", [1, 2, -2, 0]);
+pub const NEWTON_METRE: Unit = unit("N.m", "Torque", [1, 2, -2, 0]);
 /// Power.
-pub const WATT: Unit = unit("W", [1, 2, -3, 0]);
+pub const WATT: Unit = unit("W", "Power", [1, 2, -3, 0]);
 /// Energy.
-pub const JOULE: Unit = unit("J", [1, 2, -2, 0]);
+pub const JOULE: Unit = unit("J", "Energy", [1, 2, -2, 0]);
 /// Pressure.
-pub const PASCAL: Unit = shown("Pa", [1, -1, -2, 0], "MPa", 1e-6);
+pub const PASCAL: Unit = unit("Pa", "Pressure", [1, -1, -2, 0]).shown("MPa", 1e-6);
 /// Spin creepage.
-pub const PER_METRE: Unit = unit("1/m", [0, -1, 0, 0]);
+pub const PER_METRE: Unit = unit("1/m", "SpinCreepage", [0, -1, 0, 0]);
 /// Time.
-pub const SECOND: Unit = unit("s", [0, 0, 1, 0]);
+pub const SECOND: Unit = unit("s", "Time", [0, 0, 1, 0]).shown("us", 1e6);
+/// Mass.
+pub const KILOGRAM: Unit = unit("kg", "Mass", [1, 0, 0, 0]);
+/// Moment of inertia.
+pub const KILOGRAM_METRE_SQUARED: Unit = unit("kg.m2", "MomentOfInertia", [1, 2, 0, 0]);
+/// Density.
+pub const KILOGRAM_PER_CUBIC_METRE: Unit = unit("kg/m3", "Density", [1, -3, 0, 0]);
+/// Dissipation factor of a contact.
+pub const SECOND_PER_METRE: Unit = unit("s/m", "DissipationFactor", [0, -1, 1, 0]);
 /// Every unit, in the order of the model description.
-pub const ALL: [Unit; 12] = [
+pub const ALL: [Unit; 18] = [
     ONE,
     METRE,
+    DIMENSION,
     METRE_PER_SECOND,
+    METRE_PER_SECOND_SQUARED,
     RADIAN,
     RADIAN_PER_SECOND,
     NEWTON,
@@ -58,4 +79,17 @@ pub const ALL: [Unit; 12] = [
     PASCAL,
     PER_METRE,
     SECOND,
+    KILOGRAM,
+    KILOGRAM_METRE_SQUARED,
+    KILOGRAM_PER_CUBIC_METRE,
+    SECOND_PER_METRE,
 ];
+
+/// Unit of a parameter of a scene, whose ranges name units as scene files write them.
+pub fn of_parameter(name: &str) -> Unit {
+    match name {
+        "m" => DIMENSION,
+        "kg m2" => KILOGRAM_METRE_SQUARED,
+        other => ALL.into_iter().find(|unit| unit.name == other).unwrap_or(ONE),
+    }
+}

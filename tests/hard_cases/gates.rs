@@ -91,7 +91,7 @@ impl<'a> Case<'a> {
 
     /// Runs the case through all gates.
     pub fn pass(&self) -> Run {
-        let variables = Variables::with_balls(&self.scene, true);
+        let variables = Variables::moving(&self.scene, true);
         let mut snapshot = None;
         let run = self.run(&self.scene, |simulation, point| {
             possible(self.name, simulation, &variables);
@@ -294,7 +294,7 @@ pub fn possible(name: &str, simulation: &Simulation, variables: &Variables) {
     for (row, value) in variables.rows().iter().zip(variables.values(inputs, outputs)) {
         assert!(value.is_finite(), "{name}: {} = {value} at {} s", row.name, outputs.time);
     }
-    let bounded = simulation.model().law != CreepLaw::Linear;
+    let bounded = simulation.scene().effects.creep != CreepLaw::Linear;
     let holds = |contact: &ContactOutput| {
         let force = contact.force_longitudinal.hypot(contact.force_lateral);
         let limit = inputs.friction * contact.load;

@@ -12,6 +12,9 @@ mod extremes;
 mod free_oscillation;
 mod friction;
 mod gates;
+#[allow(dead_code)]
+#[path = "../common/laws.rs"]
+mod laws;
 mod loads;
 mod random;
 mod refusals;

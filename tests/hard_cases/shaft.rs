@@ -110,7 +110,7 @@ impl Shaft {
 fn two_bearings_share_the_load_of_a_shaft() {
     const STEPS: u32 = 3000;
     let mut shaft = Shaft::new(1e-5);
-    let variables = Variables::with_balls(shaft.bearings[0].scene(), true);
+    let variables = Variables::moving(shaft.bearings[0].scene(), true);
     let mut saved: Option<([Snapshot; 2], Motion)> = None;
     let history = shaft.run(0..STEPS, |shaft, n| {
         for bearing in &shaft.bearings {

@@ -1,0 +1,99 @@
+//! The page that a package brings along: interface, frames, effects, limits, parameters.
+
+use crate::scene::parameters::Variability;
+use crate::scene::{Drive, Scene};
+use crate::variables::{Causality, Source, Variable, Variables};
+
+const STYLE: &str = "body{font:16px sans-serif;max-width:64em;margin:2em auto;padding:0 1em}\
+    td,th{text-align:left;padding:.2em .6em;vertical-align:top}tr:nth-child(even){background:#f3f5f7}\
+    pre{background:#f3f5f7;padding:1em;overflow:auto}";
+
+fn escape(text: &str) -> String {
+    quick_xml::escape::escape(text).into_owned()
+}
+
+fn drive(drive: Drive) -> &'static str {
+    match drive {
+        Drive::Pose => "pose and twist are inputs, the bearing's wrench is an output",
+        Drive::Wrench => "a rigid body: applied wrench and spin speed are inputs, pose and twist are outputs",
+        Drive::Fixed => "rests in its frame",
+    }
+}
+
+/// The page of a scene's package.
+pub fn page(scene: &Scene) -> String {
+    let title = if scene.title.is_empty() { "Ball bearing" } else { &scene.title };
+    let variables = Variables::new(scene);
+    let rows = |wanted: &dyn Fn(&Variable) -> bool, column: &dyn Fn(&Variable) -> String| {
+        let cells = |row: &Variable| {
+            let (name, unit, meaning) = (escape(&row.name), escape(row.unit.name), escape(&row.description));
+            let column = escape(&column(row));
+            format!(
+                "<tr><td><code>{name}</code></td><td>{unit}</td><td>{column}</td><td>{meaning}</td></tr>\n"
+            )
+        };
+        variables.rows().iter().filter(|row| wanted(row)).map(cells).collect::<String>()
+    };
+    let interface = rows(&|row| row.causality != Causality::Parameter, &|row| {
+        if row.causality == Causality::Input { "input".into() } else { "output".into() }
+    });
+    let parameters = rows(&|row| row.causality == Causality::Parameter, &|row| {
+        let Source::Parameter(parameter, start) = row.source else {
+            return String::new();
+        };
+        let when = match parameter.variability {
+            Variability::Fixed => "before the start",
+            Variability::Tunable => "between steps too",
+        };
+        format!("{start} ({} to {}), {when}", parameter.range.low, parameter.range.high)
+    });
+    let effects = &scene.effects;
+    let off_or = |off: bool, text: String| if off { "off".to_string() } else { text };
+    let damping = off_or(effects.damping.0 == 0.0, format!("{} s/m", effects.damping.0));
+    let gravity = effects.gravity.map(|component| component.0);
+    let gravity = off_or(gravity == [0.0; 3], format!("{gravity:?} m/s2"));
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
+         <style>{STYLE}</style></head><body>\n<h1>{title}</h1>\n\
+         <p>A ball bearing in three dimensions (Bovet, Linares, Zamponi, Mermoz 2013): {balls} balls as rigid bodies \
+         between two races, Hertz contact, rolling contact with creep and spin, implicit time integration. FMI 2.0 \
+         co-simulation, made by roulement {version}.</p>\n\
+         <h2>Frames</h2>\n<p>Right-handed, x is the bearing axis, the origin is the bearing centre; all components are in \
+         these world axes. Azimuths count from +y towards +z. A force or moment of a race is what the bearing exerts on \
+         it, about the origin of the race's frame. Orientations are unit quaternions w, x, y, z (or Cardan angles, \
+         intrinsic x-y-z) from race to world axes.</p>\n\
+         <p>Inner race: {inner}. Outer race: {outer}.</p>\n\
+         <h2>Steps</h2>\n<p>Inputs are those at the start of a communication step; outputs those at its end. A race whose \
+         pose is given moves, without a jump, along a cubic from where it is to where the given pose leads with the given \
+         twist (and its derivative, if given by fmi2SetRealInputDerivatives) by the end of the step. Applied wrenches and \
+         speeds move linearly to the given values within the step. Steps may vary; they are divided internally by error \
+         control. A step that cannot be finished ends with fmi2Discard at the last time reached. The FMU state holds \
+         everything: a replay gives the same bits. fmi2GetDirectionalDerivative gives the derivatives of all real outputs \
+         by all inputs over the last step.</p>\n\
+         <h2>Effects</h2>\n<table>\
+         <tr><td>creep law of the contacts</td><td>{creep:?}</td></tr>\n\
+         <tr><td>contact damping</td><td>{damping}</td></tr>\n\
+         <tr><td>gravity</td><td>{gravity}</td></tr></table>\n\
+         <h2>Limits</h2>\n<ul><li>Rigid rings: the raceways do not bend; no thermal growth, no lubricant film.</li>\n\
+         <li>A wrench held over a communication step makes a stiff coupling unstable unless the step is far below the \
+         period of the shaft on the bearing (about 1 us for a shaft of 1 kg); save and restore the state, or use the \
+         directional derivatives, for steps hundreds of times longer.</li>\n\
+         <li>A unit quaternion may be off by 0.001 in norm; more is refused. So is anything that is not finite.</li>\n\
+         <li>The number of balls, the drives and the effects are fixed by the scene; everything under Parameters can be \
+         changed.</li></ul>\n\
+         <h2>Interface</h2>\n<table><tr><th>name</th><th>unit</th><th>causality</th><th>meaning</th></tr>\n{interface}\
+         </table>\n\
+         <h2>Parameters</h2>\n<table><tr><th>name</th><th>unit</th><th>start (range), may be set</th><th>meaning</th></tr>\n\
+         {parameters}</table>\n\
+         <h2>Scene</h2>\n<pre>{scene}</pre>\n\
+         <p>Licences of what this package is linked from: <a href=\"licenses/licenses.txt\">licenses/licenses.txt</a>.</p>\n\
+         </body></html>\n",
+        balls = scene.bearing.balls,
+        version = env!("CARGO_PKG_VERSION"),
+        inner = drive(scene.inner.drive),
+        outer = drive(scene.outer.drive),
+        creep = effects.creep,
+        scene = escape(&scene.source),
+        title = escape(title),
+    )
+}

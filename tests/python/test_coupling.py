@@ -1,0 +1,48 @@
+"""The coupling example at a few steps: which scheme stands what, and how accurate they are."""
+
+import sys
+
+import pytest
+from conftest import ROOT, build
+
+sys.path.insert(0, str(ROOT / "examples" / "coupling"))
+import coupling  # noqa: E402
+
+TABLE = (ROOT / "docs" / "coupling.md").read_text()
+
+
+@pytest.fixture(scope="module")
+def bearing(tmp_path_factory):
+    text = (ROOT / "examples" / "coupling" / "bearing.toml").read_text()
+    bearing = coupling.Bearing(str(build(text, tmp_path_factory.mktemp("coupling"), "bearing")))
+    yield bearing
+    bearing.close()
+
+
+@pytest.mark.parametrize(
+    "scheme, stands, fails",
+    [("held", 2e-6, 2e-5), ("extrapolated", 4e-5, 3.2e-4), ("rollback", 1.6e-4, 6.4e-4), ("implicit", 1.28e-3, None)],
+)
+def test_stable_steps_of_a_shaft_of_20_kg(bearing, scheme, stands, fails):
+    scheme = getattr(coupling, scheme)
+    assert coupling.stable(bearing, scheme, 20.0, stands)
+    assert fails is None or not coupling.stable(bearing, scheme, 20.0, fails)
+
+
+def test_the_implicit_scheme_stands_640_us_with_the_lightest_shaft(bearing):
+    assert coupling.stable(bearing, coupling.implicit, 1.0, 6.4e-4)
+
+
+def test_the_implicit_scheme_is_accurate_where_the_held_wrench_is(bearing):
+    reference = coupling.simulate(bearing, coupling.rollback, 1.0, 2e-6, coupling.ERROR_DURATION)
+    errors = {
+        scheme: coupling.error(bearing, scheme, 1.0, 4e-6, reference, 2e-6)
+        for scheme in (coupling.held, coupling.implicit)
+    }
+    assert errors[coupling.implicit] < 3e-3 < errors[coupling.held] < 0.2
+
+
+def test_the_document_has_the_tables():
+    for name in ("stability", "accuracy"):
+        rows = TABLE.split(f"<!-- {name} -->\n")[1].split("<!-- end -->")[0].splitlines()
+        assert len(rows) == 2 + (len(coupling.MASSES) if name == "stability" else 10)

@@ -1,0 +1,136 @@
+"""The package in other masters: libcosimpy (DNV's libcosim) and ecospy (Ecos), against the native run.
+
+Both are required: a missing one fails. ecospy needs oneTBB, which the `tbb` wheel brings.
+"""
+
+import csv
+import ctypes
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import ROULEMENT, build, pose_drive, roulement
+from fmpy import read_model_description
+
+ROOT = Path(__file__).resolve().parents[2]
+STEP = 2.0**-13  # sums of steps are exact
+STEPS = 80
+NAMES = ["inner.force.x", "inner.force.y", "inner.position.x", "inner.drive_torque", "cage.speed", "energy.dissipated"]
+
+
+@pytest.fixture(scope="module")
+def thrust(tmp_path_factory, thrust_text):
+    """Package of the thrust case, value references, and the rows of its native run."""
+    directory = tmp_path_factory.mktemp("masters")
+    text = thrust_text.replace('"50 ms"', str(STEPS * STEP)).replace('"100 us"', str(STEP))
+    package = build(text, directory, "thrust")
+    roulement("run", directory / "thrust.toml", "-o", directory)
+    with open(directory / "results.csv") as table:
+        rows = [{name.split(" [")[0]: float(v) for name, v in row.items()} for row in csv.DictReader(table)]
+    references = {v.name: v.valueReference for v in read_model_description(package).modelVariables}
+    return package, references, [[row[name] for name in NAMES] for row in rows]
+
+
+def test_libcosimpy_gives_the_native_run(thrust):
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    package, references, rows = thrust
+    # libcosim counts time in nanoseconds.
+    execution = CosimExecution.from_step_size(round(STEP * 1e9))
+    slave = execution.add_local_slave(CosimLocalSlave(fmu_path=str(package), instance_name="bearing"))
+    observer = CosimObserver.create_last_value()
+    assert execution.add_observer(observer)
+    wanted = [references[name] for name in NAMES]
+    for row in rows[1:]:
+        assert execution.step()
+        got = observer.last_real_values(slave, wanted)
+        assert all(math.isclose(a, b, rel_tol=1e-6, abs_tol=1e-6 * max(map(abs, row))) for a, b in zip(got, row)), (got, row)
+    assert execution.stop() is not False
+
+
+def test_libcosimpy_sets_inputs(thrust):
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimManipulator import CosimManipulator
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    package, references, _ = thrust
+    execution = CosimExecution.from_step_size(round(STEP * 1e9))
+    slave = execution.add_local_slave(CosimLocalSlave(fmu_path=str(package), instance_name="bearing"))
+    observer, manipulator = CosimObserver.create_last_value(), CosimManipulator.create_override()
+    execution.add_observer(observer)
+    execution.add_manipulator(manipulator)
+    manipulator.slave_real_values(slave, [references["inner.applied_force.x"]], [1000.0])
+    assert execution.step(200)
+    (force,) = observer.last_real_values(slave, [references["inner.force.x"]])
+    assert math.isclose(force, -1000, rel_tol=0.01)
+
+
+ECOS = """
+import ctypes, sys
+from pathlib import Path
+
+tbb = Path(sys.prefix) / "lib" / "libtbb.so.12"
+ctypes.CDLL(str(tbb), mode=ctypes.RTLD_GLOBAL)
+from ecospy import EcosSimulation, EcosSimulationStructure
+
+package, step, steps, names = sys.argv[1], float(sys.argv[2]), int(sys.argv[3]), sys.argv[4:]
+with EcosSimulationStructure() as structure:
+    structure.add_model("bearing", package)
+    with EcosSimulation(structure=structure, step_size=step) as simulation:
+        simulation.init()
+        for _ in range(steps):
+            simulation.step()
+            print(*[repr(simulation.get_real("bearing::" + name)) for name in names], flush=True)
+        simulation.set_real("bearing::inner.applied_force.x", 1000.0)
+        for _ in range(200):
+            simulation.step()
+        print(repr(simulation.get_real("bearing::inner.force.x")), flush=True)
+        simulation.terminate()
+"""
+
+
+def test_ecospy_gives_the_native_run_and_sets_inputs(thrust):
+    package, _, rows = thrust
+    # In a process of its own: it loads its thread pool into whoever imports it.
+    run = subprocess.run(
+        [sys.executable, "-c", ECOS, str(package), repr(STEP), str(STEPS), *NAMES], capture_output=True, text=True
+    )
+    assert run.returncode == 0, run.stdout + run.stderr
+    lines = [
+        [float(number) for number in line.split()] for line in run.stdout.splitlines() if line and line[0] in "-0123456789"
+    ]
+    assert len(lines) == STEPS + 1
+    for got, row in zip(lines, rows[1:]):
+        assert got == row
+    assert math.isclose(lines[-1][0], -1000, rel_tol=0.01)
+
+
+def test_the_fmi_crate_runs_the_package():
+    """Runs the tests of tests/fmi_crate, which needs the libclang of the `libclang` wheel to be built."""
+    import clang
+
+    libraries = Path(clang.__file__).parent / "native"
+    assert any(libraries.glob("libclang*")), "the libclang wheel has no library"
+    # The wheel has no headers of its own: the C compiler's serve.
+    headers = subprocess.run(["cc", "-print-file-name=include"], check=True, capture_output=True, text=True).stdout.strip()
+    environment = os.environ | {
+        "LIBCLANG_PATH": str(libraries),
+        "BINDGEN_EXTRA_CLANG_ARGS": f"-isystem {headers}",
+        "ROULEMENT_BIN": str(ROULEMENT),
+        "CARGO_TARGET_DIR": str(Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).absolute() / "fmi_crate"),
+    }
+    run = subprocess.run(
+        ["cargo", "test", "--quiet", "--locked"],
+        cwd=ROOT / "tests" / "fmi_crate",
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert "2 passed" in run.stdout
