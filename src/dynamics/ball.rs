@@ -2,10 +2,13 @@
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
+use super::cage::CageTrial;
 use crate::arrowhead::BallBlock;
+use crate::cage::CageModel;
+use crate::contact::body::BodyContact;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::hht::HhtStep;
-use crate::model::Model;
+use crate::model::{CAGE, Model};
 use crate::motion::Wrench;
 use crate::scalar::{Dual, Scalar, constant_vector};
 use crate::state::{BallState, stack};
@@ -38,6 +41,14 @@ impl RaceSeen {
             Self::Prescribed(value) | Self::Body { value, .. } => value,
         }
     }
+
+    /// Motion with derivatives by the rotation, all zero where it is prescribed.
+    pub fn with_derivatives(&self) -> RaceMotion<Dual<DIRECTIONS>> {
+        match self {
+            Self::Prescribed(motion) => constant_race(motion),
+            Self::Body { motion, .. } => *motion,
+        }
+    }
 }
 
 /// Force and moment (world axes) of one contact on a race, with derivatives.
@@ -66,6 +77,8 @@ pub struct BallTrial {
     pub block: BallBlock,
     /// Reactions on race bodies with their derivatives.
     pub reactions: [Option<RaceReaction>; 2],
+    /// Contact with the cage's pocket at the end of the step, where they touch, and its reaction on the cage.
+    pub pocket: Option<(BodyContact<f64>, RaceReaction)>,
 }
 
 impl BallTrial {
@@ -80,6 +93,7 @@ impl BallTrial {
             residual: Vector6::zeros(),
             block: BallBlock::default(),
             reactions: [None; 2],
+            pocket: None,
         }
     }
 
@@ -91,6 +105,7 @@ impl BallTrial {
         step: &HhtStep,
         start: &BallState,
         races: &[RaceSeen; 2],
+        pocket: Option<PocketSeen<'_>>,
         with_tangent: bool,
     ) {
         let ball = &model.bearing.ball;
@@ -134,6 +149,9 @@ impl BallTrial {
             self.total.moment += contact.ball_moment;
             self.contacts[race] = contact;
         }
+        if let Some(pocket) = pocket {
+            self.evaluate_pocket(&pocket, step, ball.radius, with_tangent.then_some(&mut tangent));
+        }
         let blended = start.total.blend(&self.total, share);
         self.residual = stack(
             &(acceleration * ball.mass - blended.force),
@@ -146,6 +164,49 @@ impl BallTrial {
                 Matrix6::from_diagonal(&inertia) - scale_moments(tangent, ball.radius) * share;
         }
     }
+}
+
+impl BallTrial {
+    /// Adds the contact with the cage, and its derivatives if there is a tangent.
+    fn evaluate_pocket(
+        &mut self,
+        seen: &PocketSeen<'_>,
+        step: &HhtStep,
+        radius: f64,
+        tangent: Option<&mut Matrix6<f64>>,
+    ) {
+        let touching = seen.model.pocket_contact(seen.index, &self.motion, &seen.cage.value);
+        if tangent.is_some() {
+            self.block.right[CAGE].fill(0.0);
+            self.block.left[CAGE].fill(0.0);
+        }
+        self.pocket = touching.map(|contact| {
+            self.total.force += contact.force;
+            self.total.moment += contact.moment;
+            let mut reaction = RaceReaction::opposite(&contact);
+            if let Some(tangent) = tangent {
+                let seeded = seed::<DIRECTIONS>(&self.motion, step, radius);
+                if let Some(contact) = seen.model.pocket_contact(seen.index, &seeded, &seen.cage.motion) {
+                    *tangent += by_ball(&contact.force, &contact.moment);
+                    let by_cage = scale_moments(by_race(&contact.force, &contact.moment), radius);
+                    self.block.right[CAGE] = by_cage * -(1.0 - step.alpha_f);
+                    reaction = RaceReaction { force: -contact.force, moment: contact.other_moment };
+                }
+            }
+            (contact, reaction)
+        });
+    }
+}
+
+/// A ball's pocket in a trial step.
+#[derive(Clone, Copy, Debug)]
+pub struct PocketSeen<'a> {
+    /// The cage's constants.
+    pub model: &'a CageModel,
+    /// The cage's motion.
+    pub cage: &'a CageTrial,
+    /// Which pocket.
+    pub index: usize,
 }
 
 /// A ball's motion as a function of its own unknowns.
