@@ -98,7 +98,7 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
     // The equilibrium's frame does not spin with the outer race.
     let axis = outer.pose.orientation * Vector3::x();
     let frame = UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default();
-    let balls = solution
+    let balls: Vec<BallState> = solution
         .balls
         .iter()
         .map(|ball| BallState {
