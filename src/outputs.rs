@@ -267,8 +267,8 @@ impl CageOutput {
             land_force: lands.iter().flatten().map(|contact| contact.force).sum(),
             land_loads: lands.map(|contact| contact.map_or(0.0, |contact| contact.load)),
             land_approach: f64::NEG_INFINITY,
-            pocket_power: pockets().map(|pocket| pocket.power).sum(),
-            land_power: lands.iter().flatten().map(|contact| contact.friction_power).sum(),
+            pocket_power: pockets().fold(0.0, |sum, pocket| sum + pocket.power),
+            land_power: lands.iter().flatten().fold(0.0, |sum, contact| sum + contact.friction_power),
         }
     }
 }

@@ -51,6 +51,13 @@ fn inner_guided() -> String {
     CAGE.replace("\"outer\"", "\"inner\"").replace("\"52 mm\"", "\"40 mm\"")
 }
 
+/// Without the radial load.
+fn pure_thrust(text: &str) -> String {
+    let line = "z = { force = \"-300 N\" }";
+    assert!(text.contains(line));
+    text.replace(line, "")
+}
+
 /// The inner race braked from 6000 to 3000 rpm between two times [s], so that the cage runs into slower balls.
 fn braked(text: &str, from: f64, to: f64) -> String {
     let line = "inner_speed = \"6000 rpm\"";
@@ -276,7 +283,6 @@ fn closed_form_friction_is_bounded_and_nothing_acts_across_a_gap() {
 #[test]
 fn invariant_pocket_and_land_forces_accelerate_the_cage() {
     for text in [CAGE.to_string(), inner_guided(), ball_guided()] {
-        let text = text.replace("cage = true", "cage = true\ngravity = [0, 0, \"-9.81 m/s^2\"]");
         let (mut simulation, _) = run(&braked(&text, 1e-3, 8e-3), 50);
         let (mass, alpha_f) = (0.02, 0.05);
         let weight = Vector3::z() * (-9.81 * mass);
@@ -304,7 +310,7 @@ fn invariant_pocket_and_land_forces_accelerate_the_cage() {
 #[test]
 fn closed_form_cage_runs_at_the_epicyclic_speed_under_thrust() {
     for text in [CAGE.to_string(), inner_guided(), ball_guided()] {
-        let (_, history) = run(&text, 300);
+        let (_, history) = run(&pure_thrust(&text), 300);
         for outputs in &history[100..] {
             assert!(outputs.cage_slip.abs() < 1e-2, "{} at {} s", outputs.cage_slip, outputs.time);
         }
@@ -320,14 +326,31 @@ fn closed_form_cage_runs_at_the_epicyclic_speed_under_thrust() {
 #[test]
 fn invariant_energy_balance_with_every_guidance() {
     for text in [CAGE.to_string(), inner_guided(), ball_guided()] {
-        let (_, history) = run(&text, 300);
+        let lands = !text.contains("\"balls\"");
+        let (_, history) = run(&braked(&text, 10e-3, 20e-3), 300);
         // Asked for: 1 % of work plus friction.
         assert!(imbalance(&history) < 1e-3, "{}", imbalance(&history));
-        let last = &history[300];
-        let of_contacts: f64 = last.balls.iter().map(|b| b.inner.power + b.outer.power).sum();
-        let parts = of_contacts + cage(last).pocket_power + cage(last).land_power;
-        assert!((parts / last.friction_power - 1.0).abs() < 1e-9);
+        for outputs in &history {
+            let of_contacts: f64 = outputs.balls.iter().map(|b| b.inner.power + b.outer.power).sum();
+            let parts = of_contacts + cage(outputs).pocket_power + cage(outputs).land_power;
+            assert!((parts / outputs.friction_power - 1.0).abs() < 1e-9);
+        }
+        assert!(history.iter().any(|o| cage(o).pocket_power > 0.1), "the pockets never rubbed");
+        assert_eq!(history.iter().any(|o| cage(o).land_power > 0.1), lands);
     }
+}
+
+#[test]
+fn start_from_rest_takes_the_cage_along() {
+    let line = "inner_speed = \"6000 rpm\"";
+    let text = CAGE.replace(line, "inner_speed = [[0.0, 0.0], [0.02, \"6000 rpm\"]]");
+    let (_, history) = run(&text, 300);
+    assert_eq!(history[0].cage_speed, 0.0);
+    let last = &history[300];
+    assert!(last.cage_slip.abs() < 0.02, "{}", last.cage_slip);
+    assert!(history.windows(2).all(|pair| pair[1].dissipated >= pair[0].dissipated));
+    assert!(deepest_pocket(&history) < 5e-6 && cage(last).turned > 1.0);
+    assert!(imbalance(&history) < 1e-2, "{}", imbalance(&history));
 }
 
 #[test]
@@ -350,11 +373,8 @@ fn invariant_balls_that_jump_in_their_pockets_stay_in_them() {
 
 #[test]
 fn invariant_whirl_is_bounded_by_the_land_clearance() {
-    // A cage of steel under its weight and the friction of the land, in a bearing with radial load.
-    let text = CAGE
-        .replace("cage = true", "cage = true\ngravity = [0, 0, \"-9.81 m/s^2\"]")
-        .replace("x = {", "z = { force = \"-300 N\" }\nx = {");
-    for text in [text.clone(), text.replace("\"outer\"", "\"inner\"").replace("\"52 mm\"", "\"40 mm\"")] {
+    // A cage under its weight and the friction of the land, in a bearing with radial load.
+    for text in [CAGE.to_string(), inner_guided()] {
         let (_, history) = run(&text, 500);
         let mut touched = 0;
         for outputs in &history {
