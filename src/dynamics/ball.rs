@@ -100,14 +100,13 @@ impl BallTrial {
     /// Evaluates a ball at the end of a step, with its tangent if asked for.
     pub fn evaluate(
         &mut self,
-        model: &Model,
-        contacts: &[ContactModel<'_>; 2],
+        index: usize,
+        around: &Surroundings<'_>,
         step: &HhtStep,
         start: &BallState,
-        races: &[RaceSeen; 2],
-        pocket: Option<PocketSeen<'_>>,
         with_tangent: bool,
     ) {
+        let Surroundings { model, contacts, races, cage } = *around;
         let ball = &model.bearing.ball;
         let acceleration: Vector3<f64> = self.unknowns.fixed_rows::<3>(0).into_owned();
         let angular_acceleration = self.unknowns.fixed_rows::<3>(3) / ball.radius;
@@ -149,7 +148,8 @@ impl BallTrial {
             self.total.moment += contact.ball_moment;
             self.contacts[race] = contact;
         }
-        if let Some(pocket) = pocket {
+        if let Some((model, cage)) = cage {
+            let pocket = Pocket { model, cage, index };
             self.evaluate_pocket(&pocket, step, ball.radius, with_tangent.then_some(&mut tangent));
         }
         let blended = start.total.blend(&self.total, share);
@@ -170,7 +170,7 @@ impl BallTrial {
     /// Adds the contact with the cage, and its derivatives if there is a tangent.
     fn evaluate_pocket(
         &mut self,
-        seen: &PocketSeen<'_>,
+        seen: &Pocket<'_>,
         step: &HhtStep,
         radius: f64,
         tangent: Option<&mut Matrix6<f64>>,
@@ -200,13 +200,23 @@ impl BallTrial {
 
 /// A ball's pocket in a trial step.
 #[derive(Clone, Copy, Debug)]
-pub struct PocketSeen<'a> {
-    /// The cage's constants.
-    pub model: &'a CageModel,
-    /// The cage's motion.
-    pub cage: &'a CageTrial,
-    /// Which pocket.
-    pub index: usize,
+struct Pocket<'a> {
+    model: &'a CageModel,
+    cage: &'a CageTrial,
+    index: usize,
+}
+
+/// What a ball may touch in a trial step.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Contact with each race.
+    pub contacts: &'a [ContactModel<'a>; 2],
+    /// Motion of each race.
+    pub races: &'a [RaceSeen; 2],
+    /// Constants and motion of the cage.
+    pub cage: Option<(&'a CageModel, &'a CageTrial)>,
 }
 
 /// A ball's motion as a function of its own unknowns.

@@ -15,7 +15,7 @@ use crate::motion::{Pose, Twist, Wrench};
 use crate::newton::{self, Equations, NewtonBuffers, NewtonFailure};
 use crate::scalar::constant_vector;
 use crate::state::{BallState, Powers, RaceState, State, race_motion};
-use ball::{BallTrial, PocketSeen, RaceReaction, RaceSeen};
+use ball::{BallTrial, RaceReaction, RaceSeen, Surroundings};
 use cage::CageTrial;
 pub use race::RaceLoad;
 use race::{RaceScales, RaceTrial};
@@ -263,23 +263,19 @@ impl Equations for BearingStep<'_> {
 
         // balls; under prescribed races one whose unknowns did not change keeps its last evaluation
         let independent = offsets == [None; BODIES];
+        let around = Surroundings {
+            model: self.model,
+            contacts: &self.contacts,
+            races: &self.seen,
+            cage: self.model.cage.as_ref().zip(self.workspace.cage.as_ref()),
+        };
         let mut norm = 0.0f64;
         for (j, trial) in self.workspace.balls.iter_mut().enumerate() {
             let unknown = Vector6::from_row_slice(&unknowns[BLOCK * j..BLOCK * (j + 1)]);
             if with_tangent || self.fresh || !independent || unknown != trial.unknowns {
                 trial.unknowns = unknown;
                 let start = &self.start.balls[j];
-                let cage = self.model.cage.as_ref().zip(self.workspace.cage.as_ref());
-                let pocket = cage.map(|(model, cage)| PocketSeen { model, cage, index: j });
-                trial.evaluate(
-                    self.model,
-                    &self.contacts,
-                    &self.step,
-                    start,
-                    &self.seen,
-                    pocket,
-                    with_tangent,
-                );
+                trial.evaluate(j, &around, &self.step, start, with_tangent);
                 if with_tangent {
                     self.contact_tangents += 2;
                 } else {
