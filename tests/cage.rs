@@ -389,6 +389,53 @@ fn invariant_whirl_is_bounded_by_the_land_clearance() {
 }
 
 #[test]
+fn invariant_refined_steps_give_the_same_statistics() {
+    let fine = CAGE.replace("max_step = \"10 us\"", "max_step = \"2.5 us\"");
+    let statistics = [CAGE, &fine].map(|text| {
+        let (simulation, history) = run(text, 400);
+        // Exact tangents: few corrections a step, and no step given up.
+        let s = &simulation.state().statistics;
+        assert!(s.newton.iterations as f64 <= 3.0 * s.steps as f64 && s.rejected_newton == 0, "{s:?}");
+        let mean = |get: fn(&Outputs) -> f64| history[200..].iter().map(get).sum::<f64>() / 201.0;
+        [
+            mean(|o| o.cage_speed),
+            mean(|o| cage(o).pocket_power),
+            mean(|o| cage(o).land_power),
+            mean(|o| cage(o).eccentricity.yz().norm()),
+        ]
+    });
+    for (coarse, fine) in statistics[0].into_iter().zip(statistics[1]) {
+        assert!((coarse / fine - 1.0).abs() < 1e-2, "{statistics:?}");
+    }
+}
+
+#[test]
+fn invariant_hard_cases_run_through_within_the_clearances() {
+    let speed = "inner_speed = \"6000 rpm\"";
+    let reversed = "inner_speed = [[0, \"6000 rpm\"], [0.02, \"-6000 rpm\"]]";
+    let cases: [&[(&str, &str)]; 6] = [
+        &[("damping = \"0.5 s/m\"", "damping = 0")],
+        &[("ball_cage = 0.05", "ball_cage = 0.3"), ("cage_race = 0.05", "cage_race = 0.3")],
+        &[("z = { force = \"-300 N\" }", "ry = { rotation = \"0.5 deg\" }")],
+        &[("20 g", "1 g"), ("1.1e-5", "5.5e-7"), ("6e-6", "3e-7")],
+        &[("\"1500 N\"", "\"20 N\""), ("\"-300 N\"", "\"-3000 N\"")],
+        &[(speed, reversed)],
+    ];
+    for case in cases {
+        let text = case.iter().fold(CAGE.to_string(), |text, (from, to)| {
+            assert!(text.contains(from), "{from}");
+            text.replace(from, to)
+        });
+        let (_, history) = run(&text, 300);
+        let pocket = deepest_pocket(&history) / HALF_CLEARANCE;
+        let land = history.iter().map(|o| cage(o).land_approach).fold(f64::NEG_INFINITY, f64::max);
+        assert!(pocket < 0.1 && land < 0.1 * HALF_CLEARANCE, "{case:?}: {pocket} {land}");
+        assert!(imbalance(&history) < 1e-2, "{case:?}: {}", imbalance(&history));
+        assert!(history[300].cage_slip.abs() < 0.05, "{case:?}: {}", history[300].cage_slip);
+    }
+}
+
+#[test]
 fn invariant_misaligned_inner_race_keeps_excursions_within_the_pockets() {
     let text = CAGE.replace("x = {", "ry = { rotation = \"0.1 deg\" }\nx = {");
     let (_, history) = run(&text, 400);
