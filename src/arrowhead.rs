@@ -14,21 +14,24 @@ use nalgebra::{Const, DMatrix, DVector, Dyn, LU, Matrix6, Vector6};
 /// Rows and columns of one ball or one free body in the matrix.
 pub const BLOCK: usize = 6;
 
+/// Bodies in the border: inner race, outer race, cage.
+pub const BODIES: usize = 3;
+
 /// One ball's part of the matrix. `right[r]` and `left[r]` couple it to the 6 motion unknowns of body r.
 #[derive(Clone, Debug)]
 pub struct BallBlock {
     /// Ball rows, ball columns.
     pub diagonal: Matrix6<f64>,
     /// Ball rows, body columns.
-    pub right: [Matrix6<f64>; 2],
+    pub right: [Matrix6<f64>; BODIES],
     /// Body rows, ball columns.
-    pub left: [Matrix6<f64>; 2],
+    pub left: [Matrix6<f64>; BODIES],
 }
 
 impl Default for BallBlock {
     fn default() -> Self {
         let zero = Matrix6::zeros();
-        Self { diagonal: zero, right: [zero; 2], left: [zero; 2] }
+        Self { diagonal: zero, right: [zero; BODIES], left: [zero; BODIES] }
     }
 }
 
@@ -37,8 +40,8 @@ impl Default for BallBlock {
 struct Factor {
     diagonal: LU<f64, Const<BLOCK>, Const<BLOCK>>,
     /// `A^-1 R` per body.
-    right: [Matrix6<f64>; 2],
-    left: [Matrix6<f64>; 2],
+    right: [Matrix6<f64>; BODIES],
+    left: [Matrix6<f64>; BODIES],
 }
 
 /// The factorised matrix.
@@ -50,7 +53,12 @@ pub struct Arrowhead {
 
 impl Arrowhead {
     /// Factorises. `offsets[r]` is the first border row of body r, `None` where r has no unknowns.
-    pub fn factorise(&mut self, balls: &[&BallBlock], border: &DMatrix<f64>, offsets: [Option<usize>; 2]) {
+    pub fn factorise(
+        &mut self,
+        balls: &[&BallBlock],
+        border: &DMatrix<f64>,
+        offsets: [Option<usize>; BODIES],
+    ) {
         self.balls.clear();
         let mut schur = border.clone();
         for block in balls {
@@ -80,7 +88,7 @@ impl Arrowhead {
         &self,
         balls: &mut [Vector6<f64>],
         border: &mut DVector<f64>,
-        offsets: [Option<usize>; 2],
+        offsets: [Option<usize>; BODIES],
     ) -> bool {
         for (factor, x) in self.balls.iter().zip(&mut *balls) {
             if !factor.diagonal.solve_mut(x) {
@@ -125,7 +133,7 @@ mod tests {
     #[test]
     fn closed_form_agrees_with_the_dense_solution() {
         let mut random = numbers();
-        let (n_balls, n_border, offsets) = (5, 13, [Some(0), Some(7)]);
+        let (n_balls, n_border, offsets) = (5, 19, [Some(0), Some(7), Some(13)]);
         let size = BLOCK * n_balls + n_border;
         let mut dense = DMatrix::<f64>::zeros(size, size);
         let mut blocks = vec![BallBlock::default(); n_balls];
@@ -133,7 +141,7 @@ mod tests {
         for (j, block) in blocks.iter_mut().enumerate() {
             block.diagonal = Matrix6::from_fn(|i, k| random() + if i == k { 3.0 } else { 0.0 });
             dense.fixed_view_mut::<BLOCK, BLOCK>(BLOCK * j, BLOCK * j).copy_from(&block.diagonal);
-            for (body, offset) in [(0, 0), (1, 7)] {
+            for (body, offset) in [(0, 0), (1, 7), (2, 13)] {
                 block.right[body] = Matrix6::from_fn(|_, _| random());
                 block.left[body] = Matrix6::from_fn(|_, _| random());
                 let at = border_start + offset;
@@ -161,7 +169,7 @@ mod tests {
     #[test]
     fn a_singular_matrix_is_refused() {
         let mut arrowhead = Arrowhead::default();
-        arrowhead.factorise(&[&BallBlock::default()], &DMatrix::zeros(0, 0), [None; 2]);
-        assert!(!arrowhead.solve(&mut [Vector6::repeat(1.0)], &mut DVector::zeros(0), [None; 2]));
+        arrowhead.factorise(&[&BallBlock::default()], &DMatrix::zeros(0, 0), [None; BODIES]);
+        assert!(!arrowhead.solve(&mut [Vector6::repeat(1.0)], &mut DVector::zeros(0), [None; BODIES]));
     }
 }

@@ -30,6 +30,30 @@ pub struct Ball {
     pub inertia: f64,
 }
 
+/// Elastic constants of a pair of materials.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair {
+    /// [1/Pa] `(1 - nu1^2)/E1 + (1 - nu2^2)/E2`.
+    pub compliance: f64,
+    /// [Pa] combined shear modulus.
+    pub shear_modulus: f64,
+    /// [-] combined Poisson's ratio.
+    pub poisson_ratio: f64,
+}
+
+impl Pair {
+    /// Two materials, each by Young's modulus [Pa] and Poisson's ratio (combined as in Kalker 1967).
+    pub fn new(materials: [(f64, f64); 2]) -> Self {
+        let shear = materials.map(|(youngs, nu)| youngs / (2.0 * (1.0 + nu)));
+        let shear_modulus = 2.0 / (1.0 / shear[0] + 1.0 / shear[1]);
+        Self {
+            compliance: materials.iter().map(|(youngs, nu)| (1.0 - nu * nu) / youngs).sum(),
+            shear_modulus,
+            poisson_ratio: shear_modulus * (materials[0].1 / shear[0] + materials[1].1 / shear[1]) / 2.0,
+        }
+    }
+}
+
 /// A ball bearing: everything that does not change while it runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bearing {
@@ -79,8 +103,7 @@ impl Bearing {
         let radius = diameter / 2.0;
         let mass = scene.ball.density.0 * 4.0 / 3.0 * PI * radius.powi(3);
         let materials = [&scene.ball, &scene.race].map(|m| (m.youngs_modulus.0, m.poisson_ratio));
-        let shear = materials.map(|(youngs, nu)| youngs / (2.0 * (1.0 + nu)));
-        let shear_modulus = 2.0 / (1.0 / shear[0] + 1.0 / shear[1]);
+        let pair = Pair::new(materials);
         Self {
             n_balls: section.balls,
             ball: Ball { radius, mass, inertia: 0.4 * mass * radius * radius },
@@ -97,9 +120,9 @@ impl Bearing {
                 groove_circle_radius: outer_circle,
                 groove_offset: outer_offset,
             },
-            contact_compliance: materials.iter().map(|(youngs, nu)| (1.0 - nu * nu) / youngs).sum(),
-            shear_modulus,
-            poisson_ratio: shear_modulus * (materials[0].1 / shear[0] + materials[1].1 / shear[1]) / 2.0,
+            contact_compliance: pair.compliance,
+            shear_modulus: pair.shear_modulus,
+            poisson_ratio: pair.poisson_ratio,
         }
     }
 

@@ -2,6 +2,7 @@
 
 pub mod arrowhead;
 pub mod bearing;
+pub mod cage;
 pub mod contact;
 pub mod cost;
 pub mod documentation;

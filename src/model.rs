@@ -2,7 +2,9 @@
 
 use nalgebra::Vector3;
 
+use crate::arrowhead::{BLOCK, BODIES};
 use crate::bearing::{Bearing, Raceway};
+use crate::cage::CageModel;
 use crate::contact::ContactModel;
 use crate::contact::creep::Law;
 use crate::contact::identification::identify_by_table;
@@ -17,6 +19,8 @@ use crate::scene::{Condition, CreepLaw, Drive, RaceSection, Scene, Schedule, Sol
 pub const INNER: usize = 0;
 /// Index of the outer race wherever races come in pairs.
 pub const OUTER: usize = 1;
+/// Index of the cage wherever it comes after the races.
+pub const CAGE: usize = 2;
 
 /// A constraint on a race that is a body (paper eq. 1, 2, 24).
 #[derive(Clone, Debug, PartialEq)]
@@ -99,6 +103,8 @@ pub struct Model {
     pub gravity: Vector3<f64>,
     /// Inner and outer race where they are bodies; the others have prescribed motion.
     pub bodies: [Option<RaceBody>; 2],
+    /// The cage, where it is simulated.
+    pub cage: Option<CageModel>,
     /// Time integration.
     pub solver: Solver,
 }
@@ -118,6 +124,7 @@ impl Model {
         let groove_bends = [&bearing.inner, &bearing.outer]
             .map(|raceway| scene.effects.heathcote_slip.then(|| bend(raceway)));
         Ok(Self {
+            cage: scene.cage.as_ref().map(|section| CageModel::new(section, scene, &bearing)).transpose()?,
             bearing,
             laws,
             groove_bends,
@@ -157,6 +164,17 @@ impl Model {
     /// Border rows of a race body: 6 of motion and one per constraint.
     pub fn border_rows(&self, race: usize) -> usize {
         self.bodies[race].as_ref().map_or(0, |body| 6 + body.constraints.len())
+    }
+
+    /// First border row of inner race, outer race and cage, where they are bodies.
+    pub fn border_offsets(&self) -> [Option<usize>; BODIES] {
+        let (inner, outer) = (self.border_rows(INNER), self.border_rows(OUTER));
+        [(inner > 0).then_some(0), (outer > 0).then_some(inner), self.cage.as_ref().map(|_| inner + outer)]
+    }
+
+    /// Border rows of all bodies.
+    pub fn border_size(&self) -> usize {
+        self.border_rows(INNER) + self.border_rows(OUTER) + self.cage.as_ref().map_or(0, |_| BLOCK)
     }
 
     /// [m] length that turns moments of a race into forces of the size of the others.

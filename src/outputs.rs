@@ -1,8 +1,9 @@
 //! What a bearing shows of its state at a communication point.
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::contact::BallRaceContact;
+use crate::contact::body::BodyContact;
 use crate::model::{INNER, Model, OUTER};
 use crate::motion::{Pose, Twist, Wrench};
 use crate::state::{RaceState, State, Statistics};
@@ -51,6 +52,45 @@ pub struct ContactOutput {
     pub peak_pressure: f64,
 }
 
+/// A ball's contact with its cage pocket.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PocketOutput {
+    /// [N] normal load; 0 while they do not touch.
+    pub load: f64,
+    /// [N] force of the pocket on the ball, world axes.
+    pub force: Vector3<f64>,
+    /// [m] approach; negative is a gap.
+    pub approach: f64,
+    /// [W] power lost to friction.
+    pub power: f64,
+}
+
+/// The cage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CageOutput {
+    /// Pose.
+    pub pose: Pose,
+    /// Twist.
+    pub twist: Twist,
+    /// [m] centre relative to the race that guides the cage (the outer race if the balls do), along that race's axis
+    /// (x) and across it (y, z of the frame that tilts with the race but does not spin).
+    pub eccentricity: Vector3<f64>,
+    /// [rad] turned about the own axis since the start, without limit.
+    pub turned: f64,
+    /// [N] force of all pockets on the cage, world axes.
+    pub pocket_force: Vector3<f64>,
+    /// [N] force of the lands on the cage, world axes.
+    pub land_force: Vector3<f64>,
+    /// [N] normal load on the lands at the cage's -x and +x side.
+    pub land_loads: [f64; 2],
+    /// [m] deepest approach on the lands; negative is a gap. Minus infinity where the balls guide.
+    pub land_approach: f64,
+    /// [W] power lost to friction in the pockets.
+    pub pocket_power: f64,
+    /// [W] power lost to friction on the lands.
+    pub land_power: f64,
+}
+
 /// A ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallOutput {
@@ -66,6 +106,8 @@ pub struct BallOutput {
     pub inner: ContactOutput,
     /// Contact with the outer race.
     pub outer: ContactOutput,
+    /// Contact with the cage, where there is one.
+    pub pocket: Option<PocketOutput>,
 }
 
 /// Everything that is reported of a state.
@@ -79,7 +121,9 @@ pub struct Outputs {
     pub outer: RaceOutput,
     /// Balls.
     pub balls: Vec<BallOutput>,
-    /// [rad/s] cage speed; without a cage, mean orbital speed of the balls.
+    /// The cage, where it is simulated.
+    pub cage: Option<CageOutput>,
+    /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
     pub cage_speed: f64,
     /// [-] 1 - cage speed over its epicyclic value; 0 where that is 0.
     pub cage_slip: f64,
@@ -109,8 +153,10 @@ impl Outputs {
         let ball_model = &model.bearing.ball;
         let mut stored_energy = 0.0;
         let mut balls = Vec::with_capacity(state.balls.len());
+        let cage = model.cage.as_ref().zip(state.cage.as_ref());
+        let cage_motion = state.cage.as_ref().map(RaceState::body_motion);
         let (mut cosine, mut loaded) = (0.0, 0.0);
-        for ball in &state.balls {
+        for (index, ball) in state.balls.iter().enumerate() {
             let [inner_contact, outer_contact] =
                 [INNER, OUTER].map(|race| contacts[race].evaluate(&ball.motion(), &races[race]));
             stored_energy += 0.5 * ball_model.mass * ball.velocity.norm_squared()
@@ -123,6 +169,20 @@ impl Outputs {
                 cosine += contact.load * contact.geometry.normal.dot(&contact.geometry.radial).abs();
                 loaded += contact.load;
             }
+            let pocket = cage.zip(cage_motion.as_ref()).map(|((cage, _), motion)| {
+                let contact = cage.pocket_contact(index, &ball.motion(), motion);
+                if let Some(contact) = &contact {
+                    friction_power += contact.friction_power;
+                    damping_power += contact.damping_power;
+                    stored_energy += cage.pocket.elastic_energy(contact.approach);
+                }
+                PocketOutput {
+                    load: contact.map_or(0.0, |contact| contact.load),
+                    force: contact.map_or(Vector3::zeros(), |contact| contact.force),
+                    approach: cage.pocket_approach(index, &ball.motion(), motion),
+                    power: contact.map_or(0.0, |contact| contact.friction_power),
+                }
+            });
             let frame = state.races[OUTER].pose.orientation.inverse();
             let offset = frame * (ball.position - outer.position);
             let relative = frame * (ball.velocity - outer.velocity);
@@ -136,15 +196,33 @@ impl Outputs {
                 angular_velocity: ball.angular_velocity,
                 inner: contact_output(&inner_contact, &races[INNER].axis),
                 outer: contact_output(&outer_contact, &races[OUTER].axis),
+                pocket,
             });
         }
-        for (race, body) in state.races.iter().zip(&model.bodies) {
+        let bodies = state.races.iter().zip(model.bodies.iter().map(Option::as_ref));
+        for (body_state, body) in bodies.chain(cage.map(|(cage, state)| (state, Some(&cage.body)))) {
             if let Some(body) = body {
-                stored_energy += 0.5 * body.mass * race.velocity.norm_squared()
-                    + 0.5 * race.rate.component_mul(&body.inertia).dot(&race.rate);
+                stored_energy += 0.5 * body.mass * body_state.velocity.norm_squared()
+                    + 0.5 * body_state.rate.component_mul(&body.inertia).dot(&body_state.rate);
             }
         }
-        let cage_speed = balls.iter().map(|ball| ball.orbital_speed).sum::<f64>() / balls.len() as f64;
+        let mut cage_output = None;
+        if let (Some((cage, state_of_cage)), Some(motion)) = (cage, &cage_motion) {
+            let lands = cage.land_contacts(motion, races.each_ref());
+            for contact in lands.iter().flatten() {
+                friction_power += contact.friction_power;
+                damping_power += contact.damping_power;
+                stored_energy += cage.land.map_or(0.0, |land| land.elastic_energy(contact.approach));
+            }
+            let guide = cage.land.map_or(OUTER, |land| land.race);
+            let output = CageOutput::new(state_of_cage, &state.races[guide], &balls, &lands);
+            let approach =
+                cage.land.map(|land| land.positions.map(|x| land.approach(motion, &races[guide], x)));
+            let land_approach = approach.map_or(f64::NEG_INFINITY, |[a, b]| a.max(b));
+            cage_output = Some(CageOutput { land_approach, ..output });
+        }
+        let mean_orbit = balls.iter().map(|ball| ball.orbital_speed).sum::<f64>() / balls.len() as f64;
+        let cage_speed = cage.map_or(mean_orbit, |(_, state)| state.rate.x);
         let contact_angle = if loaded > 0.0 {
             (cosine / loaded).clamp(-1.0, 1.0).acos()
         } else {
@@ -159,6 +237,7 @@ impl Outputs {
             inner,
             outer,
             balls,
+            cage: cage_output,
             cage_speed,
             cage_slip: if epicyclic == 0.0 { 0.0 } else { 1.0 - cage_speed / epicyclic },
             friction_power,
@@ -171,15 +250,42 @@ impl Outputs {
     }
 }
 
+impl CageOutput {
+    fn new(
+        cage: &RaceState,
+        guide: &RaceState,
+        balls: &[BallOutput],
+        lands: &[Option<BodyContact<f64>>; 2],
+    ) -> Self {
+        let pockets = || balls.iter().filter_map(|ball| ball.pocket);
+        Self {
+            pose: cage.pose,
+            twist: cage.twist(),
+            eccentricity: spin_free_frame(guide).inverse() * (cage.pose.position - guide.pose.position),
+            turned: cage.turned,
+            pocket_force: -pockets().map(|pocket| pocket.force).sum::<Vector3<f64>>(),
+            land_force: lands.iter().flatten().map(|contact| contact.force).sum(),
+            land_loads: lands.map(|contact| contact.map_or(0.0, |contact| contact.load)),
+            land_approach: f64::NEG_INFINITY,
+            pocket_power: pockets().fold(0.0, |sum, pocket| sum + pocket.power),
+            land_power: lands.iter().flatten().fold(0.0, |sum, contact| sum + contact.friction_power),
+        }
+    }
+}
+
 fn sign(x: f64) -> f64 {
     if x < 0.0 { -1.0 } else { 1.0 }
 }
 
+/// Frame that tilts with a race but does not spin.
+fn spin_free_frame(race: &RaceState) -> UnitQuaternion<f64> {
+    let axis = race.pose.orientation * Vector3::x();
+    UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default()
+}
+
 /// Azimuth of an offset about the race axis, in the frame that tilts with the race but does not spin.
 fn spin_free_azimuth(race: &RaceState, offset: &Vector3<f64>) -> f64 {
-    let axis = race.pose.orientation * Vector3::x();
-    let tilt = nalgebra::UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default();
-    let seen = tilt.inverse() * offset;
+    let seen = spin_free_frame(race).inverse() * offset;
     seen.z.atan2(seen.y)
 }
 

@@ -215,6 +215,7 @@ impl Simulation {
     pub fn restore(&mut self, snapshot: &Snapshot) -> bool {
         let constraints = |state: &State| state.races.each_ref().map(|race| race.multipliers.len());
         let same = snapshot.state.balls.len() == self.state.balls.len()
+            && snapshot.state.cage.is_some() == self.state.cage.is_some()
             && constraints(&snapshot.state) == constraints(&self.state);
         if same {
             self.inputs = snapshot.inputs;

@@ -98,7 +98,7 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
     // The equilibrium's frame does not spin with the outer race.
     let axis = outer.pose.orientation * Vector3::x();
     let frame = UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default();
-    let balls = solution
+    let balls: Vec<BallState> = solution
         .balls
         .iter()
         .map(|ball| BallState {
@@ -117,6 +117,7 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
     let solver = &scene.solver;
     State {
         time: 0.0,
+        cage: model.cage.as_ref().map(|_| centred_cage(&balls, outer, &frame, solution.cage_speed)),
         balls,
         races,
         control: StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0),
@@ -125,6 +126,23 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
         energies: Energies::default(),
         statistics: Statistics::default(),
     }
+}
+
+/// The cage at the start: centred among the balls and turning with them at the speed of the equilibrium (the mean of
+/// the epicyclic speeds of all balls, weighted by their loads); it touches nothing.
+fn centred_cage(
+    balls: &[BallState],
+    outer: &RaceInput,
+    frame: &UnitQuaternion<f64>,
+    speed: f64,
+) -> RaceState {
+    let axis = frame * Vector3::x();
+    let origin = outer.pose.position;
+    let axial =
+        balls.iter().map(|ball| axis.dot(&(ball.position - origin))).sum::<f64>() / balls.len() as f64;
+    let pose = Pose { position: origin + axis * axial, orientation: *frame };
+    let twist = Twist { velocity: outer.twist.velocity, angular_velocity: axis * speed };
+    RaceState::new(pose, &twist, 0)
 }
 
 /// Sets the pose and twist of a race from the scene's script at a time [s]. `now` is where the race is: its angle

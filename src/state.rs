@@ -4,6 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::motion::{Pose, Twist, Wrench};
 use crate::newton::NewtonWork;
@@ -85,6 +86,17 @@ impl RaceState {
     pub fn motion(&self) -> RaceMotion<f64> {
         race_motion(&self.pose, &self.twist())
     }
+
+    /// The motion with all axes that contacts of the cage depend on.
+    pub fn body_motion(&self) -> BodyMotion<f64> {
+        let orientation = self.pose.orientation;
+        BodyMotion {
+            position: self.pose.position,
+            axes: [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| orientation * axis),
+            velocity: self.velocity,
+            angular_velocity: orientation * self.rate,
+        }
+    }
 }
 
 /// The motion of a race that contacts depend on.
@@ -156,6 +168,8 @@ pub struct State {
     pub balls: Vec<BallState>,
     /// Inner and outer race.
     pub races: [RaceState; 2],
+    /// The cage, a body like a race; none where it is not simulated.
+    pub cage: Option<RaceState>,
     /// Step size.
     pub control: StepControl,
     /// [N] residual that counts as converged in the next step.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::time::Duration;
 
-use roulement::outputs::Outputs;
+use roulement::outputs::{CageOutput, Outputs};
 use roulement::simulation::Simulation;
 
 /// Summary of a finished run; means are over the second half.
@@ -62,6 +62,30 @@ fn write_summary(
     let inner = mean(|o| o.balls.iter().map(|b| b.inner.power).sum::<f64>() / o.balls.len() as f64);
     let outer = mean(|o| o.balls.iter().map(|b| b.outer.power).sum::<f64>() / o.balls.len() as f64);
     writeln!(out, "per ball         inner {:.4} mW, outer {:.4} mW", inner * 1e3, outer * 1e3)?;
+    if let Some(cage) = &now.cage {
+        let mean = |get: fn(&CageOutput) -> f64| {
+            half.iter().filter_map(|o| o.cage.as_ref()).map(get).sum::<f64>() / half.len() as f64
+        };
+        let largest = |get: fn(&Outputs) -> f64| half.iter().map(get).fold(0.0, f64::max);
+        let radius = |o: &Outputs| o.cage.map_or(0.0, |cage| cage.eccentricity.yz().norm());
+        writeln!(
+            out,
+            "cage centre      off axis {:.3} um, at most {:.3} um",
+            cage.eccentricity.yz().norm() * 1e6,
+            largest(radius) * 1e6
+        )?;
+        let pocket = |o: &Outputs| {
+            o.balls.iter().filter_map(|b| b.pocket).map(|pocket| pocket.load).fold(0.0, f64::max)
+        };
+        let land = |o: &Outputs| o.cage.map_or(0.0, |cage| cage.land_loads[0].max(cage.land_loads[1]));
+        writeln!(out, "largest load     pocket {:.3} N, land {:.3} N", largest(pocket), largest(land))?;
+        writeln!(
+            out,
+            "cage friction    pockets {:.4} W, lands {:.4} W",
+            mean(|c| c.pocket_power),
+            mean(|c| c.land_power)
+        )?;
+    }
     writeln!(out, "friction torque  {:.5} N m", mean(|o| o.friction_torque))?;
     let balance = now.work - now.dissipated - (now.stored_energy - history[0].stored_energy);
     writeln!(

@@ -1,10 +1,13 @@
 //! Contact between a ball and a raceway: geometry, Hertz, creepage, creep laws.
 
+pub mod body;
 pub mod creep;
 pub mod geometry;
 pub mod heathcote;
 pub mod hertz;
 pub mod identification;
+pub mod land;
+pub mod pocket;
 pub mod regularised;
 pub mod shape;
 

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use crate::bearing::{Bearing, Raceway};
 use crate::contact::hertz::{HertzContact, complete_elliptic_integrals};
 use crate::kalker::Patch;
-use crate::kalker::linear::creep_matrix;
+use crate::kalker::linear::{LinearError, creep_matrix};
 use crate::scalar::Scalar;
 
 /// Nodes per polynomial. The interval of curvatures is short, so that they converge at about two digits a node:
@@ -87,6 +87,40 @@ pub struct ShapeAt<S> {
     pub spin_arm: S,
 }
 
+impl ShapeAt<f64> {
+    /// Contact of relative curvatures [1/m] along and transverse to rolling, of materials with a `compliance`
+    /// `(1 - nu1^2)/E1 + (1 - nu2^2)/E2` [1/Pa], a combined `shear` modulus [Pa] and Poisson's ratio.
+    ///
+    /// # Errors
+    /// If Kalker's linear theory has no answer for the axis ratio.
+    pub fn new(
+        curvature_rolling: f64,
+        curvature_transverse: f64,
+        compliance: f64,
+        shear: f64,
+        poisson_ratio: f64,
+    ) -> Result<Self, LinearError> {
+        let hertz = HertzContact::new(curvature_rolling, curvature_transverse, compliance);
+        let (along, across) = (hertz.semi_axis_rolling, hertz.semi_axis_transverse);
+        let creep = creep_matrix(&Patch { axis_ratio: along / across, poisson_ratio, rolling_angle: 0.0 })?;
+        let area = along * across;
+        let (long, short) = (along.max(across), along.min(across));
+        let (_, second) = complete_elliptic_integrals(1.0 - (short / long).powi(2));
+        Ok(Self {
+            stiffness: hertz.stiffness,
+            longitudinal: shear * area * creep[(0, 0)],
+            lateral: shear * area * creep[(1, 1)],
+            coupling: shear * area.powf(1.5) * creep[(1, 2)],
+            spin: shear * area.powi(2) * creep[(2, 2)],
+            semi_axis_rolling: along,
+            semi_axis_transverse: across,
+            mean_semi_axis: area.sqrt(),
+            // Hertzian pressure times distance from the centre, integrated: 3/8 of the long axis times E(m).
+            spin_arm: 0.375 * long * second,
+        })
+    }
+}
+
 /// Shape of all contacts of one raceway.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactShape {
@@ -112,7 +146,7 @@ impl ContactShape {
     ///
     /// # Errors
     /// If Kalker's linear theory has no answer for an axis ratio that occurs.
-    pub fn new(bearing: &Bearing, raceway: &Raceway) -> Result<Self, crate::kalker::linear::LinearError> {
+    pub fn new(bearing: &Bearing, raceway: &Raceway) -> Result<Self, LinearError> {
         let radius = bearing.ball.radius;
         // Curvature at contact angle 0; beyond a right angle the contact has left any real groove.
         let contact_radius = if raceway.groove_circle_radius > bearing.pitch_diameter / 2.0 {
@@ -124,36 +158,26 @@ impl ContactShape {
         let (middle, half_width) = (0.475 * extreme, 0.525 * extreme.abs());
         let ball_curvature = 1.0 / radius;
         let transverse_curvature = ball_curvature - 1.0 / raceway.groove_radius;
-        let shear = bearing.shear_modulus;
         let mut columns = [[0.0; NODES]; 9];
         for j in 0..NODES {
             let curvature = middle + half_width * node(j);
-            let hertz = HertzContact::new(
+            let at = ShapeAt::new(
                 ball_curvature + curvature,
                 transverse_curvature,
                 bearing.contact_compliance,
-            );
-            let (along, across) = (hertz.semi_axis_rolling, hertz.semi_axis_transverse);
-            let patch = Patch {
-                axis_ratio: along / across,
-                poisson_ratio: bearing.poisson_ratio,
-                rolling_angle: 0.0,
-            };
-            let creep = creep_matrix(&patch)?;
-            let area = along * across;
-            let (long, short) = (along.max(across), along.min(across));
-            let (_, second) = complete_elliptic_integrals(1.0 - (short / long).powi(2));
+                bearing.shear_modulus,
+                bearing.poisson_ratio,
+            )?;
             let row = [
-                hertz.stiffness,
-                shear * area * creep[(0, 0)],
-                shear * area * creep[(1, 1)],
-                shear * area.powf(1.5) * creep[(1, 2)],
-                shear * area.powi(2) * creep[(2, 2)],
-                along,
-                across,
-                area.sqrt(),
-                // Hertzian pressure times distance from the centre, integrated: 3/8 of the long axis times E(m).
-                0.375 * long * second,
+                at.stiffness,
+                at.longitudinal,
+                at.lateral,
+                at.coupling,
+                at.spin,
+                at.semi_axis_rolling,
+                at.semi_axis_transverse,
+                at.mean_semi_axis,
+                at.spin_arm,
             ];
             for (column, value) in columns.iter_mut().zip(row) {
                 column[j] = value;

@@ -2,10 +2,13 @@
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
+use super::cage::CageTrial;
 use crate::arrowhead::BallBlock;
+use crate::cage::CageModel;
+use crate::contact::body::BodyContact;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::hht::HhtStep;
-use crate::model::Model;
+use crate::model::{CAGE, Model};
 use crate::motion::Wrench;
 use crate::scalar::{Dual, Scalar, constant_vector};
 use crate::state::{BallState, stack};
@@ -38,6 +41,14 @@ impl RaceSeen {
             Self::Prescribed(value) | Self::Body { value, .. } => value,
         }
     }
+
+    /// Motion with derivatives by the rotation, all zero where it is prescribed.
+    pub fn with_derivatives(&self) -> RaceMotion<Dual<DIRECTIONS>> {
+        match self {
+            Self::Prescribed(motion) => constant_race(motion),
+            Self::Body { motion, .. } => *motion,
+        }
+    }
 }
 
 /// Force and moment (world axes) of one contact on a race, with derivatives.
@@ -66,6 +77,8 @@ pub struct BallTrial {
     pub block: BallBlock,
     /// Reactions on race bodies with their derivatives.
     pub reactions: [Option<RaceReaction>; 2],
+    /// Contact with the cage's pocket at the end of the step, where they touch, and its reaction on the cage.
+    pub pocket: Option<(BodyContact<f64>, RaceReaction)>,
 }
 
 impl BallTrial {
@@ -80,19 +93,20 @@ impl BallTrial {
             residual: Vector6::zeros(),
             block: BallBlock::default(),
             reactions: [None; 2],
+            pocket: None,
         }
     }
 
     /// Evaluates a ball at the end of a step, with its tangent if asked for.
     pub fn evaluate(
         &mut self,
-        model: &Model,
-        contacts: &[ContactModel<'_>; 2],
+        index: usize,
+        around: &Surroundings<'_>,
         step: &HhtStep,
         start: &BallState,
-        races: &[RaceSeen; 2],
         with_tangent: bool,
     ) {
+        let Surroundings { model, contacts, races, cage } = *around;
         let ball = &model.bearing.ball;
         let acceleration: Vector3<f64> = self.unknowns.fixed_rows::<3>(0).into_owned();
         let angular_acceleration = self.unknowns.fixed_rows::<3>(3) / ball.radius;
@@ -134,6 +148,10 @@ impl BallTrial {
             self.total.moment += contact.ball_moment;
             self.contacts[race] = contact;
         }
+        if let Some((model, cage)) = cage {
+            let pocket = Pocket { model, cage, index };
+            self.evaluate_pocket(&pocket, step, ball.radius, with_tangent.then_some(&mut tangent));
+        }
         let blended = start.total.blend(&self.total, share);
         self.residual = stack(
             &(acceleration * ball.mass - blended.force),
@@ -146,6 +164,59 @@ impl BallTrial {
                 Matrix6::from_diagonal(&inertia) - scale_moments(tangent, ball.radius) * share;
         }
     }
+}
+
+impl BallTrial {
+    /// Adds the contact with the cage, and its derivatives if there is a tangent.
+    fn evaluate_pocket(
+        &mut self,
+        seen: &Pocket<'_>,
+        step: &HhtStep,
+        radius: f64,
+        tangent: Option<&mut Matrix6<f64>>,
+    ) {
+        let touching = seen.model.pocket_contact(seen.index, &self.motion, &seen.cage.value);
+        if tangent.is_some() {
+            self.block.right[CAGE].fill(0.0);
+            self.block.left[CAGE].fill(0.0);
+        }
+        self.pocket = touching.map(|contact| {
+            self.total.force += contact.force;
+            self.total.moment += contact.moment;
+            let mut reaction = RaceReaction::opposite(&contact);
+            if let Some(tangent) = tangent {
+                let seeded = seed::<DIRECTIONS>(&self.motion, step, radius);
+                if let Some(contact) = seen.model.pocket_contact(seen.index, &seeded, &seen.cage.motion) {
+                    *tangent += by_ball(&contact.force, &contact.moment);
+                    let by_cage = scale_moments(by_race(&contact.force, &contact.moment), radius);
+                    self.block.right[CAGE] = by_cage * -(1.0 - step.alpha_f);
+                    reaction = RaceReaction { force: -contact.force, moment: contact.other_moment };
+                }
+            }
+            (contact, reaction)
+        });
+    }
+}
+
+/// A ball's pocket in a trial step.
+#[derive(Clone, Copy, Debug)]
+struct Pocket<'a> {
+    model: &'a CageModel,
+    cage: &'a CageTrial,
+    index: usize,
+}
+
+/// What a ball may touch in a trial step.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Contact with each race.
+    pub contacts: &'a [ContactModel<'a>; 2],
+    /// Motion of each race.
+    pub races: &'a [RaceSeen; 2],
+    /// Constants and motion of the cage.
+    pub cage: Option<(&'a CageModel, &'a CageTrial)>,
 }
 
 /// A ball's motion as a function of its own unknowns.

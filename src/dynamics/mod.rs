@@ -1,20 +1,23 @@
 //! One implicit step of the whole bearing: Newton's equations of balls and race bodies under the HHT scheme.
 
 mod ball;
+mod cage;
 mod neighbour;
 mod race;
 
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 
-use crate::arrowhead::{Arrowhead, BLOCK, BallBlock};
+use crate::arrowhead::{Arrowhead, BLOCK, BODIES, BallBlock};
+use crate::contact::body::BodyContact;
 use crate::contact::{BallRaceContact, ContactModel};
 use crate::hht::HhtStep;
-use crate::model::{Constraint, Model, RaceBody};
+use crate::model::{CAGE, Constraint, Model, RaceBody};
 use crate::motion::{Pose, Twist, Wrench};
 use crate::newton::{self, Equations, NewtonBuffers, NewtonFailure};
 use crate::scalar::constant_vector;
 use crate::state::{BallState, Powers, RaceState, State, race_motion};
-use ball::{BallTrial, RaceReaction, RaceSeen};
+use ball::{BallTrial, RaceReaction, RaceSeen, Surroundings};
+use cage::CageTrial;
 pub use neighbour::follow;
 pub use race::RaceLoad;
 use race::{RaceScales, RaceTrial};
@@ -46,6 +49,7 @@ pub struct Boundary {
 pub struct Workspace {
     balls: Vec<BallTrial>,
     races: [Option<RaceTrial>; 2],
+    cage: Option<CageTrial>,
     arrowhead: Arrowhead,
     border: DMatrix<f64>,
     ball_corrections: Vec<Vector6<f64>>,
@@ -76,12 +80,6 @@ pub enum StepFailure {
     Newton(NewtonFailure, usize),
     /// The local error is too large; the ball with the largest share is named.
     Error(usize),
-}
-
-/// First border row of each race body.
-fn offsets(model: &Model) -> [Option<usize>; 2] {
-    let inner = model.border_rows(0);
-    [(inner > 0).then_some(0), (model.border_rows(1) > 0).then_some(inner)]
 }
 
 /// Tries one step of `h` [s]. On success the state is the new one; otherwise only its statistics and step control
@@ -150,6 +148,8 @@ impl<'a> BearingStep<'a> {
             workspace.races[race] =
                 model.bodies[race].as_ref().map(|body| RaceTrial::new(body, &start.races[race]));
         }
+        let cage = model.cage.as_ref().zip(start.cage.as_ref());
+        workspace.cage = cage.map(|(cage, state)| CageTrial::new(cage, state));
         Self {
             model,
             contacts,
@@ -173,12 +173,15 @@ impl<'a> BearingStep<'a> {
             unknowns.extend(ball.angular_acceleration.iter().map(|a| a * self.model.bearing.ball.radius));
         }
         let length = self.model.race_length();
-        for (race, body) in self.start.races.iter().zip(&self.model.bodies) {
+        let races = self.start.races.iter().zip(self.model.bodies.iter().map(Option::as_ref));
+        let cage =
+            self.start.cage.iter().zip(std::iter::once(self.model.cage.as_ref().map(|cage| &cage.body)));
+        for (state, body) in races.chain(cage) {
             if let Some(body) = body {
-                unknowns.extend(race.acceleration.iter());
-                unknowns.extend(race.rate_derivative.iter().map(|a| a * length));
+                unknowns.extend(state.acceleration.iter());
+                unknowns.extend(state.rate_derivative.iter().map(|a| a * length));
                 let scales = body.constraints.iter().map(|c| multiplier_scale(c, length));
-                unknowns.extend(race.multipliers.iter().zip(scales).map(|(m, scale)| m / scale));
+                unknowns.extend(state.multipliers.iter().zip(scales).map(|(m, scale)| m / scale));
             }
         }
     }
@@ -193,11 +196,13 @@ impl<'a> BearingStep<'a> {
         let back = -(1.0 - self.step.gamma) / self.step.gamma;
         let (balls, border) = unknowns.split_at_mut(BLOCK * self.start.balls.len());
         balls.iter_mut().for_each(|a| *a *= back);
-        for (race, offset) in offsets(self.model).into_iter().enumerate() {
+        for (body, offset) in self.model.border_offsets().into_iter().enumerate() {
             if let Some(offset) = offset {
                 border[offset..offset + BLOCK].iter_mut().for_each(|a| *a *= back);
-                let gained = self.boundary.loads[race].speed - self.start.races[race].rate.x;
-                border[offset + 3] += gained / self.step.velocity_gain() * self.model.race_length();
+                if body != CAGE {
+                    let gained = self.boundary.loads[body].speed - self.start.races[body].rate.x;
+                    border[offset + 3] += gained / self.step.velocity_gain() * self.model.race_length();
+                }
             }
         }
     }
@@ -235,7 +240,9 @@ impl<'a> BearingStep<'a> {
             count += 6.0;
         }
         let length = self.model.race_length();
-        for (start, trial) in self.start.races.iter().zip(&self.workspace.races) {
+        let races = self.start.races.iter().zip(self.workspace.races.iter().map(Option::as_ref));
+        let cage = self.workspace.cage.as_ref().map(|cage| &cage.body);
+        for (start, trial) in races.chain(self.start.cage.iter().zip(std::iter::once(cage))) {
             if let Some(trial) = trial {
                 let translation = self.step.local_error(&start.acceleration, &trial.end.acceleration);
                 let angular = trial.end.rate_derivative * length;
@@ -248,6 +255,11 @@ impl<'a> BearingStep<'a> {
     }
 }
 
+/// The larger of two norms; `max` would drop a NaN.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}
+
 /// A multiplier's unknown is a force: moments are divided by the race length.
 fn multiplier_scale(constraint: &Constraint, length: f64) -> f64 {
     if matches!(constraint, Constraint::Position(..)) { 1.0 } else { length }
@@ -256,9 +268,10 @@ fn multiplier_scale(constraint: &Constraint, length: f64) -> f64 {
 impl Equations for BearingStep<'_> {
     fn residual(&mut self, unknowns: &[f64], with_tangent: bool) -> f64 {
         let length = self.model.race_length();
-        let offsets = offsets(self.model);
+        let offsets = self.model.border_offsets();
         let border_start = BLOCK * self.start.balls.len();
         let mut bearing = [RaceReaction::zero(); 2];
+        let mut pockets = RaceReaction::zero();
 
         // race bodies first: the balls see them move
         for race in 0..2 {
@@ -269,25 +282,35 @@ impl Equations for BearingStep<'_> {
                 self.seen[race] = trial.seen;
             }
         }
+        if let (Some(cage), Some(offset)) = (&mut self.workspace.cage, offsets[CAGE]) {
+            let (from, start) = (border_start + offset, self.start.cage.as_ref());
+            if let Some(start) = start {
+                cage.move_to(&unknowns[from..from + BLOCK], start, &self.step, length);
+            }
+        }
 
         // balls; under prescribed races one whose unknowns did not change keeps its last evaluation
-        let independent = offsets == [None; 2];
+        let independent = offsets == [None; BODIES];
+        let around = Surroundings {
+            model: self.model,
+            contacts: &self.contacts,
+            races: &self.seen,
+            cage: self.model.cage.as_ref().zip(self.workspace.cage.as_ref()),
+        };
         let mut norm = 0.0f64;
         for (j, trial) in self.workspace.balls.iter_mut().enumerate() {
             let unknown = Vector6::from_row_slice(&unknowns[BLOCK * j..BLOCK * (j + 1)]);
             if with_tangent || self.fresh || !independent || unknown != trial.unknowns {
                 trial.unknowns = unknown;
                 let start = &self.start.balls[j];
-                trial.evaluate(self.model, &self.contacts, &self.step, start, &self.seen, with_tangent);
+                trial.evaluate(j, &around, &self.step, start, with_tangent);
                 if with_tangent {
                     self.contact_tangents += 2;
                 } else {
                     self.contact_values += 2;
                 }
             }
-            // `max` would drop a NaN.
-            let size = trial.residual.amax() / self.force_tolerance;
-            norm = if size.is_nan() || norm.is_nan() { f64::NAN } else { norm.max(size) };
+            norm = worse(norm, trial.residual.amax() / self.force_tolerance);
             for race in 0..2 {
                 if let Some(race_trial) = &self.workspace.races[race] {
                     let reaction = match &trial.reactions[race] {
@@ -300,8 +323,33 @@ impl Equations for BearingStep<'_> {
                     }
                 }
             }
+            if let (Some((_, reaction)), Some(cage)) = (&trial.pocket, &self.workspace.cage) {
+                pockets.add(reaction);
+                if with_tangent {
+                    trial.block.left[CAGE] = cage.body.coupling(reaction, &self.step, length);
+                }
+            }
         }
         self.fresh = false;
+
+        // cage
+        if let (Some(model), Some(cage), Some(start)) =
+            (&self.model.cage, &mut self.workspace.cage, &self.start.cage)
+        {
+            let lands = cage.touch_lands(model, &self.seen, &self.step, with_tangent);
+            for (race, on_race, on_cage) in lands.into_iter().flatten() {
+                bearing[race].add(&on_race);
+                pockets.add(&on_cage);
+                if let (true, Some(race)) = (with_tangent, &self.workspace.races[race]) {
+                    cage.race_by_cage += race.coupling(&on_race, &self.step, length);
+                    cage.cage_by_race += cage.body.coupling(&on_cage, &self.step, length);
+                }
+            }
+            let load = weighted(&RaceLoad::default(), &model.body, &self.model.gravity);
+            let scales = RaceScales { length, length_tolerance: f64::INFINITY, time: self.boundary.time };
+            cage.body.assemble(&model.body, start, &load, &pockets, &self.step, &scales);
+            norm = worse(norm, cage.body.residual.amax() / self.force_tolerance);
+        }
 
         // race bodies
         let scales = RaceScales {
@@ -314,9 +362,8 @@ impl Equations for BearingStep<'_> {
                 let load = weighted(&self.boundary.loads[race], body, &self.model.gravity);
                 let start = &self.start.races[race];
                 trial.assemble(body, start, &load, &bearing[race], &self.step, &scales);
-                let size = trial.residual.rows(0, 6).amax() / self.force_tolerance;
-                let size = if size.is_nan() { f64::NAN } else { size.max(trial.violation) };
-                norm = if size.is_nan() || norm.is_nan() { f64::NAN } else { norm.max(size) };
+                norm = worse(norm, trial.residual.rows(0, 6).amax() / self.force_tolerance);
+                norm = worse(norm, trial.violation);
             }
         }
 
@@ -327,8 +374,8 @@ impl Equations for BearingStep<'_> {
     }
 
     fn correction(&mut self, correction: &mut [f64]) -> bool {
-        let offsets = offsets(self.model);
-        let independent = offsets == [None; 2];
+        let offsets = self.model.border_offsets();
+        let independent = offsets == [None; BODIES];
         let workspace = &mut *self.workspace;
         workspace.ball_corrections.clear();
         for trial in &workspace.balls {
@@ -336,13 +383,16 @@ impl Equations for BearingStep<'_> {
             let done = independent && trial.residual.amax() <= self.force_tolerance;
             workspace.ball_corrections.push(if done { Vector6::zeros() } else { -trial.residual });
         }
-        let rows = self.model.border_rows(0) + self.model.border_rows(1);
+        let rows = self.model.border_size();
         workspace.border_correction.resize_vertically_mut(rows, 0.0);
         for race in 0..2 {
             if let (Some(trial), Some(offset)) = (&workspace.races[race], offsets[race]) {
                 let rows = trial.residual.len();
                 workspace.border_correction.rows_mut(offset, rows).copy_from(&-&trial.residual);
             }
+        }
+        if let (Some(cage), Some(offset)) = (&workspace.cage, offsets[CAGE]) {
+            workspace.border_correction.rows_mut(offset, BLOCK).copy_from(&-&cage.body.residual);
         }
         let solved = workspace.arrowhead.solve(
             &mut workspace.ball_corrections,
@@ -364,8 +414,8 @@ impl Equations for BearingStep<'_> {
 
 impl BearingStep<'_> {
     fn factorise(&mut self) {
-        let offsets = offsets(self.model);
-        let rows = self.model.border_rows(0) + self.model.border_rows(1);
+        let offsets = self.model.border_offsets();
+        let rows = self.model.border_size();
         let workspace = &mut *self.workspace;
         workspace.border.resize_mut(rows, rows, 0.0);
         workspace.border.fill(0.0);
@@ -373,6 +423,15 @@ impl BearingStep<'_> {
             if let (Some(trial), Some(offset)) = (&workspace.races[race], offsets[race]) {
                 let rows = trial.residual.len();
                 workspace.border.view_mut((offset, offset), (rows, rows)).copy_from(&trial.block);
+            }
+        }
+        if let (Some(cage), Some(offset)) = (&workspace.cage, offsets[CAGE]) {
+            let size = (BLOCK, BLOCK);
+            workspace.border.view_mut((offset, offset), size).copy_from(&cage.body.block);
+            let guide = self.model.cage.as_ref().and_then(|cage| cage.land).map(|land| offsets[land.race]);
+            if let Some(Some(race)) = guide {
+                workspace.border.view_mut((race, offset), size).copy_from(&cage.race_by_cage);
+                workspace.border.view_mut((offset, race), size).copy_from(&cage.cage_by_race);
             }
         }
         let blocks: Vec<&BallBlock> = workspace.balls.iter().map(|trial| &trial.block).collect();
@@ -391,6 +450,7 @@ fn weighted(load: &RaceLoad, body: &RaceBody, gravity: &Vector3<f64>) -> RaceLoa
 fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep, workspace: &Workspace) {
     state.time = boundary.time;
     state.statistics.steps += 1;
+    let land = model.cage.as_ref().and_then(|cage| cage.land);
     for (ball, trial) in state.balls.iter_mut().zip(&workspace.balls) {
         *ball = BallState {
             position: trial.motion.position,
@@ -408,7 +468,12 @@ fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep,
             Some(trial) => state.races[race].clone_from(&trial.end),
             None => {
                 let (pose, twist) = &boundary.motion[race];
-                let wrench = bearing_wrench(workspace.balls.iter().map(|ball| &ball.contacts[race]));
+                let mut wrench = bearing_wrench(workspace.balls.iter().map(|ball| &ball.contacts[race]));
+                if let (Some(land), Some(cage)) = (land, &workspace.cage)
+                    && land.race == race
+                {
+                    wrench = add_reaction(&wrench, cage.lands.iter().flatten());
+                }
                 state.races[race] = RaceState::new(*pose, twist, 0);
                 state.races[race].bearing_wrench = wrench;
             }
@@ -416,11 +481,19 @@ fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep,
         state.races[race].turned = turned + 0.5 * step.h * (spin + state.races[race].rate.x);
     }
     let mut powers = Powers::default();
+    if let (Some(cage), Some(trial)) = (&mut state.cage, &workspace.cage) {
+        let (turned, spin) = (cage.turned, cage.rate.x);
+        cage.clone_from(&trial.body.end);
+        cage.turned = turned + 0.5 * step.h * (spin + cage.rate.x);
+        powers.input += trial.body.input_power;
+        trial.lands.iter().flatten().for_each(|contact| powers.add(contact));
+    }
     for ball in &workspace.balls {
         for contact in &ball.contacts {
             powers.friction += contact.friction_power;
             powers.damping += contact.damping_power;
         }
+        ball.pocket.iter().for_each(|(contact, _)| powers.add(contact));
         powers.input += model.bearing.ball.mass * model.gravity.dot(&ball.motion.velocity);
     }
     for (trial, race) in workspace.races.iter().zip(&state.races) {
@@ -460,7 +533,32 @@ pub fn bearing_wrench<'a>(contacts: impl Iterator<Item = &'a BallRaceContact<f64
     })
 }
 
+/// Adds what contacts exert on their second body.
+fn add_reaction<'a>(wrench: &Wrench, contacts: impl Iterator<Item = &'a BodyContact<f64>>) -> Wrench {
+    contacts.fold(*wrench, |sum, contact| Wrench {
+        force: sum.force - contact.force,
+        moment: sum.moment + contact.other_moment,
+    })
+}
+
+impl Powers {
+    fn add(&mut self, contact: &BodyContact<f64>) {
+        self.friction += contact.friction_power;
+        self.damping += contact.damping_power;
+    }
+}
+
 impl RaceReaction {
+    /// What a contact exerts on its second body, without derivatives.
+    fn opposite(contact: &BodyContact<f64>) -> Self {
+        Self { force: constant_vector(&-contact.force), moment: constant_vector(&contact.other_moment) }
+    }
+
+    /// What a contact exerts on its first body, without derivatives.
+    fn direct(contact: &BodyContact<f64>) -> Self {
+        Self { force: constant_vector(&contact.force), moment: constant_vector(&contact.moment) }
+    }
+
     fn zero() -> Self {
         let zero = constant_vector(&Vector3::zeros());
         Self { force: zero, moment: zero }
@@ -486,7 +584,19 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     let mut powers = Powers::default();
     let mut wrenches = [Wrench::default(); 2];
     let mut all_contacts = Vec::with_capacity(2 * state.balls.len());
-    for ball in &mut state.balls {
+    let cage = model.cage.as_ref().zip(state.cage.as_ref().map(RaceState::body_motion));
+    let mut on_cage = Wrench::default();
+    if let Some((cage_model, motion)) = &cage
+        && let Some(land) = &cage_model.land
+    {
+        for contact in cage_model.land_contacts(motion, races.each_ref()).iter().flatten() {
+            on_cage.force += contact.force;
+            on_cage.moment += contact.moment;
+            wrenches[land.race] = add_reaction(&wrenches[land.race], std::iter::once(contact));
+            powers.add(contact);
+        }
+    }
+    for (index, ball) in state.balls.iter_mut().enumerate() {
         ball.total = Wrench { force: model.gravity * ball_model.mass, moment: Vector3::zeros() };
         powers.input += ball_model.mass * model.gravity.dot(&ball.velocity);
         for race in 0..2 {
@@ -499,8 +609,21 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
             wrenches[race].moment += contact.race_moment;
             all_contacts.push(contact);
         }
+        let pocket =
+            cage.as_ref().and_then(|(cage, motion)| cage.pocket_contact(index, &ball.motion(), motion));
+        if let Some(contact) = &pocket {
+            ball.total.force += contact.force;
+            ball.total.moment += contact.moment;
+            on_cage = add_reaction(&on_cage, std::iter::once(contact));
+            powers.add(contact);
+        }
         ball.acceleration = ball.total.force / ball_model.mass;
         ball.angular_acceleration = ball.total.moment / ball_model.inertia;
+    }
+    if let (Some(cage), Some(state)) = (&model.cage, &mut state.cage) {
+        state.bearing_wrench = on_cage;
+        let load = weighted(&RaceLoad::default(), &cage.body, &model.gravity);
+        powers.input += race::make_consistent(state, &cage.body, &load);
     }
     for race in 0..2 {
         let state = &mut state.races[race];

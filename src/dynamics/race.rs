@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector, Matrix6, UnitQuaternion, Vector3};
 
 use super::ball::{DIRECTIONS, RACE_ROTATION, RaceReaction, RaceSeen, by_ball, by_race_unknown};
 use crate::contact::RaceMotion;
+use crate::contact::body::BodyMotion;
 use crate::hht::HhtStep;
 use crate::model::{Constraint, RaceBody};
 use crate::motion::{Pose, Wrench};
@@ -223,6 +224,20 @@ impl RaceTrial {
                 self.block[(i, k)] = inertia - share * by_race_unknown(&force[i], k);
                 self.block[(3 + i, k)] = by_race_unknown(&rotation, k) / length;
             }
+        }
+    }
+
+    /// Motion with all axes, with derivatives by the rotation, as the balls in a cage see it.
+    pub fn body_motion(&self) -> BodyMotion<D> {
+        let axis = |axis: Vector3<f64>| {
+            turn(&self.start_orientation, &rotate(&self.rotation, &constant_vector(&axis)))
+        };
+        let axes = [axis(Vector3::x()), axis(Vector3::y()), axis(Vector3::z())];
+        BodyMotion {
+            position: constant_vector(&self.end.pose.position),
+            axes,
+            velocity: constant_vector(&self.end.velocity),
+            angular_velocity: turn(&self.start_orientation, &rotate(&self.rotation, &self.rate)),
         }
     }
 

@@ -44,6 +44,7 @@ impl Changes {
             // Neither outputs nor parameters are knowns.
             Source::Race(_, Q::Force(_) | Q::Moment(_) | Q::DriveTorque)
             | Source::Bearing(_)
+            | Source::Cage(_)
             | Source::Ball(..)
             | Source::Contact(..)
             | Source::Parameter(..) => f64::NAN,

@@ -78,6 +78,8 @@ pub struct Scene {
     /// Parameters of the regularised creep law.
     #[serde(default)]
     pub regularised: Regularised,
+    /// The cage; exactly with `effects.cage`.
+    pub cage: Option<CageSection>,
     /// Inner race.
     #[serde(default)]
     pub inner: RaceSection,
@@ -139,6 +141,7 @@ mod tests {
         let scene = Scene::parse(THRUST).unwrap();
         assert_eq!(scene.load.conditions()[0], Condition::Load(Schedule::Constant(1500.0)));
         Scene::parse(include_str!("../../scenes/radial.toml")).unwrap();
+        Scene::parse(include_str!("../../scenes/cage.toml")).unwrap();
     }
 
     #[test]

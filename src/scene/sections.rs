@@ -58,12 +58,16 @@ impl Default for Material {
 pub struct Friction {
     /// [-] ball on race.
     pub ball_race: f64,
+    /// [-] ball on cage; that of `ball_race` if not given.
+    pub ball_cage: Option<f64>,
+    /// [-] cage on the race that guides it; that of `ball_race` if not given.
+    pub cage_race: Option<f64>,
 }
 
 impl Default for Friction {
     fn default() -> Self {
         // The paper's dry estimate (section 5).
-        Self { ball_race: 0.08 }
+        Self { ball_race: 0.08, ball_cage: None, cage_race: None }
     }
 }
 
@@ -99,6 +103,8 @@ pub struct Effects {
     pub heathcote_slip: bool,
     /// [s/m] Hunt-Crossley dissipation factor of the ball-race contacts; 0 is off.
     pub damping: DissipationFactor,
+    /// A cage: a rigid body with pockets, described in the section `cage`.
+    pub cage: bool,
     /// [m/s2] acceleration of gravity, components along x, y, z.
     pub gravity: [Acceleration; 3],
     /// Report every ball in the FMU (`ball[j].*`).
@@ -112,6 +118,7 @@ impl Default for Effects {
             kalker_degree: 3,
             heathcote_slip: false,
             damping: DissipationFactor(0.0),
+            cage: false,
             gravity: [Acceleration(0.0); 3],
             per_ball_outputs: false,
         }
@@ -126,6 +133,44 @@ pub struct Regularised {
     pub inner: Option<Parameters>,
     /// On the outer raceway.
     pub outer: Option<Parameters>,
+}
+
+/// What guides the cage radially.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Guidance {
+    /// Lands of the inner race, inside the cage.
+    Inner,
+    /// Lands of the outer race, around the cage.
+    Outer,
+    /// The balls, by their pockets.
+    Balls,
+}
+
+/// The cage: only with `effects.cage`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CageSection {
+    /// [kg] mass.
+    pub mass: Mass,
+    /// [kg m2] moments of inertia about the cage's x (bearing axis), y and z axes.
+    pub inertia: [Inertia; 3],
+    /// [m] diametral clearance of a ball in its pocket.
+    pub pocket_clearance: Length,
+    /// What guides the cage.
+    pub guided_by: Guidance,
+    /// [m] diametral clearance of the cage on the lands of the race that guides it.
+    pub guidance_clearance: Option<Length>,
+    /// [m] diameter of those lands.
+    pub land_diameter: Option<Length>,
+    /// [m] width of each of the two lands, which begin beside the pockets.
+    pub land_width: Option<Length>,
+    /// [Pa] Young's modulus in the pockets; that of the races if not given.
+    pub youngs_modulus: Option<Pressure>,
+    /// [-] Poisson's ratio in the pockets; that of the races if not given.
+    pub poisson_ratio: Option<f64>,
+    /// [s/m] Hunt-Crossley dissipation factor of the cage's contacts; `effects.damping` if not given.
+    pub damping: Option<DissipationFactor>,
 }
 
 /// How a race gets its motion.

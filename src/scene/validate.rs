@@ -1,8 +1,11 @@
 //! Ranges of all scene values, in one place.
 
 use super::parameters::{PARAMETERS, Range};
-use super::{Condition, CreepLaw, Drive, Scene, SceneError, Schedule};
+use super::{CageSection, Condition, CreepLaw, Drive, Guidance, Scene, SceneError, Schedule};
 use crate::contact::regularised::Parameters;
+
+/// [-] smallest diametral clearance of a pocket over the ball diameter.
+const SMALLEST_POCKET_CLEARANCE: f64 = 0.005;
 
 fn check_all(range: &Range, key: &str, schedule: &Schedule) -> Result<(), SceneError> {
     schedule.values().into_iter().try_for_each(|value| range.check(key, value))
@@ -28,6 +31,7 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
     Range::closed(min, max, "s").check("solver.initial_step", initial)?;
     Range::closed(0.0, 1.0, "").check("solver.matrix_reuse", scene.solver.matrix_reuse)?;
     creep(scene)?;
+    cage(scene)?;
     load(scene)
 }
 
@@ -82,6 +86,85 @@ fn bearing(scene: &Scene) -> Result<(), SceneError> {
             bearing.balls
         );
         return Err(conflict("bearing.balls", &why));
+    }
+    Ok(())
+}
+
+fn cage(scene: &Scene) -> Result<(), SceneError> {
+    let cage = match (scene.effects.cage, &scene.cage) {
+        (true, Some(cage)) => cage,
+        (true, None) => {
+            return Err(conflict("effects.cage", "give the cage's mass, inertia and clearances in [cage]"));
+        }
+        (false, Some(_)) => return Err(conflict("cage", "allowed with effects.cage = true only")),
+        (false, None) => {
+            let friction = &scene.friction;
+            for (key, given) in [("ball_cage", friction.ball_cage), ("cage_race", friction.cage_race)] {
+                if given.is_some() {
+                    let why = "allowed with effects.cage = true only";
+                    return Err(conflict(&format!("friction.{key}"), why));
+                }
+            }
+            return Ok(());
+        }
+    };
+    let (ball, pitch) = (scene.bearing.ball_diameter.0, scene.bearing.pitch_diameter.0);
+    Range::above(0.0, 1e4, "kg").check("cage.mass", cage.mass.0)?;
+    for moment in cage.inertia {
+        Range::above(0.0, 1e4, "kg m2").check("cage.inertia", moment.0)?;
+    }
+    // Below, the contact ellipse is too slender for Kalker's linear theory.
+    Range::closed(SMALLEST_POCKET_CLEARANCE * ball, 0.5 * ball, "m")
+        .check("cage.pocket_clearance", cage.pocket_clearance.0)?;
+    let spacing = pitch * (std::f64::consts::PI / scene.bearing.balls as f64).sin();
+    if scene.bearing.balls > 1 && spacing <= ball + cage.pocket_clearance.0 {
+        let why = format!("pockets overlap: balls are {spacing} m apart and pockets wider");
+        return Err(conflict("cage.pocket_clearance", &why));
+    }
+    if let Some(modulus) = cage.youngs_modulus {
+        Range::closed(1e6, 1e13, "Pa").check("cage.youngs_modulus", modulus.0)?;
+    }
+    if let Some(ratio) = cage.poisson_ratio {
+        Range::closed(0.0, 0.5, "").check("cage.poisson_ratio", ratio)?;
+    }
+    if let Some(damping) = cage.damping {
+        Range::closed(0.0, 10.0, "s/m").check("cage.damping", damping.0)?;
+    }
+    let friction = &scene.friction;
+    for (key, given) in [("ball_cage", friction.ball_cage), ("cage_race", friction.cage_race)] {
+        Range::closed(0.0, 2.0, "").check(&format!("friction.{key}"), given.unwrap_or(0.0))?;
+    }
+    lands(cage, friction.cage_race.is_some(), ball, pitch)
+}
+
+/// Lands that guide have all their dimensions; without lands there are none.
+fn lands(cage: &CageSection, friction: bool, ball: f64, pitch: f64) -> Result<(), SceneError> {
+    let given = [
+        ("cage.guidance_clearance", cage.guidance_clearance.map(|length| length.0)),
+        ("cage.land_diameter", cage.land_diameter.map(|length| length.0)),
+        ("cage.land_width", cage.land_width.map(|length| length.0)),
+    ];
+    let diameters = match cage.guided_by {
+        Guidance::Inner => Range::closed((pitch - 2.0 * ball).max(0.0), pitch, "m"),
+        Guidance::Outer => Range::closed(pitch, pitch + 2.0 * ball, "m"),
+        Guidance::Balls => {
+            let keys = given.iter().filter(|(_, value)| value.is_some()).map(|(key, _)| *key);
+            let keys = keys.chain(friction.then_some("friction.cage_race"));
+            return keys.into_iter().next().map_or(Ok(()), |key| {
+                Err(conflict(key, "allowed with cage.guided_by = \"inner\" or \"outer\" only"))
+            });
+        }
+    };
+    for ((key, value), range) in
+        given.into_iter().zip([Range::above(0.0, ball, "m"), diameters, Range::above(0.0, 2.0 * ball, "m")])
+    {
+        let Some(value) = value else {
+            return Err(conflict(
+                key,
+                "needed where lands guide the cage: guided_by = \"inner\" or \"outer\"",
+            ));
+        };
+        range.check(key, value)?;
     }
     Ok(())
 }

@@ -10,7 +10,7 @@ use thiserror::Error;
 
 use crate::inputs::{Inputs, RaceInput};
 use crate::motion::{Pose, Twist, Wrench};
-use crate::outputs::{BallOutput, ContactOutput, Outputs, RaceOutput};
+use crate::outputs::{BallOutput, CageOutput, ContactOutput, Outputs, RaceOutput};
 use crate::scene::parameters::Parameter;
 use crate::scene::{Orientation, Scene};
 use units::Unit;
@@ -82,6 +82,7 @@ pub enum RaceQuantity {
 }
 
 type FromOutputs = fn(&Outputs) -> f64;
+type FromCage = fn(&CageOutput) -> f64;
 type FromBall = fn(&BallOutput) -> f64;
 type FromContact = fn(&ContactOutput) -> f64;
 
@@ -94,6 +95,8 @@ pub enum Source {
     Friction,
     /// The bearing as a whole.
     Bearing(FromOutputs),
+    /// The cage.
+    Cage(FromCage),
     /// A ball.
     Ball(usize, FromBall),
     /// A ball's contact with a race.
@@ -174,9 +177,12 @@ impl Variables {
         table.add_race(Race::Inner, scene.inner.drive);
         table.add_race(Race::Outer, scene.outer.drive);
         table.add_bearing();
+        if let Some(cage) = &scene.cage {
+            table.add_cage(cage.guided_by);
+        }
         if per_ball {
             for ball in 0..scene.bearing.balls {
-                table.add_ball(ball);
+                table.add_ball(ball, scene.effects.cage);
             }
         }
         table
@@ -193,6 +199,7 @@ impl Variables {
             Source::Friction => inputs.friction,
             Source::Parameter(_, value) => value,
             Source::Bearing(get) => get(outputs),
+            Source::Cage(get) => outputs.cage.as_ref().map_or(0.0, get),
             Source::Ball(ball, get) => outputs.balls.get(ball).map_or(0.0, get),
             Source::Contact(ball, race, get) => outputs
                 .balls
@@ -288,7 +295,11 @@ impl Variables {
                         other => set_race_value(other, value, rate, input),
                     }
                 }
-                Source::Bearing(_) | Source::Ball(..) | Source::Contact(..) | Source::Parameter(..) => {}
+                Source::Bearing(_)
+                | Source::Cage(_)
+                | Source::Ball(..)
+                | Source::Contact(..)
+                | Source::Parameter(..) => {}
             }
         }
         for (index, name) in [(0, "inner"), (1, "outer")] {

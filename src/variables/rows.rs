@@ -2,11 +2,11 @@
 
 use super::units::{self, Unit};
 use super::{
-    Causality, FromBall, FromContact, FromOutputs, Kind, MAX_FRICTION, NORM_TOLERANCE, Race, RaceQuantity,
-    Source, Variable, Variables,
+    Causality, FromBall, FromCage, FromContact, FromOutputs, Kind, MAX_FRICTION, NORM_TOLERANCE, Race,
+    RaceQuantity, Source, Variable, Variables,
 };
 use crate::scene::parameters::PARAMETERS;
-use crate::scene::{Drive, Scene};
+use crate::scene::{Drive, Guidance, Scene};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -27,7 +27,9 @@ fn limits(source: &Source) -> [Option<f64>; 2] {
         }
         Source::Friction => [Some(0.0), Some(MAX_FRICTION)],
         Source::Parameter(parameter, _) => [Some(parameter.range.low), Some(parameter.range.high)],
-        Source::Race(..) | Source::Bearing(_) | Source::Ball(..) | Source::Contact(..) => [None; 2],
+        Source::Race(..) | Source::Bearing(_) | Source::Cage(_) | Source::Ball(..) | Source::Contact(..) => {
+            [None; 2]
+        }
     }
 }
 
@@ -190,7 +192,102 @@ impl Variables {
         });
     }
 
-    pub(super) fn add_ball(&mut self, index: usize) {
+    pub(super) fn add_cage(&mut self, guided_by: Guidance) {
+        use units::{METRE, METRE_PER_SECOND, NEWTON, ONE, RADIAN, RADIAN_PER_SECOND, WATT};
+        let guide = match guided_by {
+            Guidance::Inner => "inner",
+            Guidance::Outer | Guidance::Balls => "outer",
+        };
+        let centre = format!("cage centre relative to the {guide} race");
+        let mut rows: Vec<(&str, Unit, f64, String, FromCage)> = vec![
+            ("orientation.w", ONE, 1.0, "orientation of the cage, quaternion component w".into(), |c| {
+                c.pose.orientation.w
+            }),
+            ("turned", RADIAN, 100.0, "turns of the cage about its axis since the start".into(), |c| {
+                c.turned
+            }),
+            ("eccentricity.axial", METRE, 1e-4, format!("{centre}, along its axis"), |c| c.eccentricity.x),
+            ("eccentricity.radius", METRE, 1e-4, format!("{centre}, distance from its axis"), |c| {
+                c.eccentricity.yz().norm()
+            }),
+            ("eccentricity.angle", RADIAN, 1.0, format!("{centre}, angle from +y towards +z"), |c| {
+                c.eccentricity.z.atan2(c.eccentricity.y)
+            }),
+            ("pocket_power", WATT, 1.0, "power lost to friction in all pockets".into(), |c| c.pocket_power),
+        ];
+        let vectors: [(&str, Unit, f64, &str, [FromCage; 3]); 6] = [
+            (
+                "position",
+                METRE,
+                1e-4,
+                "position of the cage's centre",
+                [|c| c.pose.position.x, |c| c.pose.position.y, |c| c.pose.position.z],
+            ),
+            (
+                "orientation",
+                ONE,
+                1.0,
+                "orientation of the cage, imaginary part of the quaternion",
+                [|c| c.pose.orientation.i, |c| c.pose.orientation.j, |c| c.pose.orientation.k],
+            ),
+            (
+                "velocity",
+                METRE_PER_SECOND,
+                1e-2,
+                "velocity of the cage's centre",
+                [|c| c.twist.velocity.x, |c| c.twist.velocity.y, |c| c.twist.velocity.z],
+            ),
+            (
+                "angular_velocity",
+                RADIAN_PER_SECOND,
+                100.0,
+                "angular velocity of the cage",
+                [
+                    |c| c.twist.angular_velocity.x,
+                    |c| c.twist.angular_velocity.y,
+                    |c| c.twist.angular_velocity.z,
+                ],
+            ),
+            (
+                "pocket_force",
+                NEWTON,
+                10.0,
+                "force of all pockets on the cage",
+                [|c| c.pocket_force.x, |c| c.pocket_force.y, |c| c.pocket_force.z],
+            ),
+            (
+                "land_force",
+                NEWTON,
+                10.0,
+                "force of the lands on the cage",
+                [|c| c.land_force.x, |c| c.land_force.y, |c| c.land_force.z],
+            ),
+        ];
+        if guided_by != Guidance::Balls {
+            let (left, right) = ("normal load on the land at the cage's -x side", "at the cage's +x side");
+            rows.push(("land_load.left", NEWTON, 10.0, left.into(), |c| c.land_loads[0]));
+            let right = format!("normal load on the land {right}");
+            rows.push(("land_load.right", NEWTON, 10.0, right, |c| c.land_loads[1]));
+            let power = "power lost to friction on the lands".to_string();
+            rows.push(("land_power", WATT, 1.0, power, |c| c.land_power));
+        }
+        for (name, unit, nominal, description, get) in rows {
+            let name = format!("cage.{name}");
+            self.add(name, unit, Causality::Output, nominal, description, Source::Cage(get));
+        }
+        for (name, unit, nominal, what, components) in vectors {
+            if name == "land_force" && guided_by == Guidance::Balls {
+                continue;
+            }
+            for (axis, get) in AXES.iter().zip(components) {
+                let (name, description) =
+                    (format!("cage.{name}.{axis}"), format!("{what}, {axis} component"));
+                self.add(name, unit, Causality::Output, nominal, description, Source::Cage(get));
+            }
+        }
+    }
+
+    pub(super) fn add_ball(&mut self, index: usize, cage: bool) {
         let number = index + 1;
         let mut output = |name: &str, unit, nominal, what: &str, get: FromBall| {
             let (name, description) = (format!("ball[{number}].{name}"), format!("{what} of ball {number}"));
@@ -198,6 +295,29 @@ impl Variables {
         };
         output("azimuth", units::RADIAN, 1.0, "azimuth from +y towards +z", |b| b.azimuth);
         output("orbital_speed", units::RADIAN_PER_SECOND, 100.0, "orbital speed", |b| b.orbital_speed);
+        if cage {
+            let pocket: [(&str, Unit, f64, &str, FromBall); 6] = [
+                ("load", units::NEWTON, 10.0, "normal load", |b| b.pocket.map_or(0.0, |p| p.load)),
+                ("force.x", units::NEWTON, 10.0, "force on the ball, x component, world axes,", |b| {
+                    b.pocket.map_or(0.0, |p| p.force.x)
+                }),
+                ("force.y", units::NEWTON, 10.0, "force on the ball, y component, world axes,", |b| {
+                    b.pocket.map_or(0.0, |p| p.force.y)
+                }),
+                ("force.z", units::NEWTON, 10.0, "force on the ball, z component, world axes,", |b| {
+                    b.pocket.map_or(0.0, |p| p.force.z)
+                }),
+                ("approach", units::METRE, 1e-4, "approach (negative is a gap)", |b| {
+                    b.pocket.map_or(0.0, |p| p.approach)
+                }),
+                ("power", units::WATT, 0.1, "power lost to friction", |b| b.pocket.map_or(0.0, |p| p.power)),
+            ];
+            for (quantity, unit, nominal, what, get) in pocket {
+                let description = format!("{what} of ball {number} and its cage pocket");
+                let name = format!("ball[{number}].pocket.{quantity}");
+                self.add(name, unit, Causality::Output, nominal, description, Source::Ball(index, get));
+            }
+        }
         for (race, name) in [(Race::Inner, "inner"), (Race::Outer, "outer")] {
             let mut output = |quantity: &str, unit, nominal, what: &str, get: FromContact| {
                 let description = format!("{what} of ball {number} and the {name} race");

@@ -18,7 +18,7 @@ pub fn theory() -> LinearTheory<f64> {
     let patch = Patch { axis_ratio: RATIO, poisson_ratio: 0.3, rolling_angle: 0.0 };
     let scales = Scales::new(&patch).unwrap();
     let (load, pressure, shear, friction) = (300.0, 1.6e9, 79e9, 0.08);
-    let c = (1.5 * load / (PI * pressure) as f64).sqrt();
+    let c = f64::sqrt(1.5 * load / (PI * pressure));
     let stiffness = shear * c * c * 2.0 * PI / 3.0;
     LinearTheory {
         longitudinal: stiffness * scales.c11,

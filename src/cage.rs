@@ -1,0 +1,111 @@
+//! The cage as a model: a rigid body with a pocket for each ball and, where a race guides it, two lands.
+//!
+//! Its frame has x along its own axis and its origin in the plane of the pockets.
+
+use nalgebra::Vector3;
+
+use crate::bearing::{Bearing, Pair};
+use crate::contact::body::{BodyContact, BodyMotion};
+use crate::contact::land::{LandModel, Lands};
+use crate::contact::pocket::PocketModel;
+use crate::contact::{BallMotion, RaceMotion};
+use crate::kalker::linear::LinearError;
+use crate::model::{INNER, OUTER, RaceBody};
+use crate::scalar::Scalar;
+use crate::scene::{CageSection, Guidance, Scene};
+
+/// A cage.
+#[derive(Clone, Debug)]
+pub struct CageModel {
+    /// Mass and inertia; it has no constraints.
+    pub body: RaceBody,
+    /// Contact of a ball and its pocket.
+    pub pocket: PocketModel,
+    /// Contact with the lands of a race.
+    pub land: Option<LandModel>,
+    /// Components [y, z] of each pocket's axis in the cage.
+    directions: Vec<[f64; 2]>,
+}
+
+impl CageModel {
+    /// Builds the cage of a scene.
+    ///
+    /// # Errors
+    /// If the pocket's contact is too slender for Kalker's linear theory.
+    pub fn new(section: &CageSection, scene: &Scene, bearing: &Bearing) -> Result<Self, LinearError> {
+        let youngs = section.youngs_modulus.unwrap_or(scene.race.youngs_modulus).0;
+        let poisson = section.poisson_ratio.unwrap_or(scene.race.poisson_ratio);
+        let materials = [(scene.ball.youngs_modulus.0, scene.ball.poisson_ratio), (youngs, poisson)];
+        let friction = |given: Option<f64>| given.unwrap_or(scene.friction.ball_race);
+        let damping = section.damping.unwrap_or(scene.effects.damping).0;
+        let clearance = section.pocket_clearance.0;
+        let pocket = PocketModel::new(
+            bearing.ball.radius,
+            clearance,
+            &Pair::new(materials),
+            friction(scene.friction.ball_cage),
+            damping,
+        )?;
+        let race = match section.guided_by {
+            Guidance::Inner => Some(INNER),
+            Guidance::Outer => Some(OUTER),
+            Guidance::Balls => None,
+        };
+        let dimensions = (race, section.guidance_clearance, section.land_diameter, section.land_width);
+        let land = match dimensions {
+            (Some(race), Some(guidance), Some(diameter), Some(width)) => {
+                let lands = Lands {
+                    race,
+                    clearance: guidance.0,
+                    diameter: diameter.0,
+                    width: width.0,
+                    edge: bearing.ball.radius + 0.5 * clearance,
+                };
+                Some(LandModel::new(&lands, friction(scene.friction.cage_race), damping))
+            }
+            _ => None,
+        };
+        let direction = |index: usize| {
+            let (sin, cos) = bearing.ball_azimuth(index).sin_cos();
+            [cos, sin]
+        };
+        Ok(Self {
+            body: RaceBody {
+                mass: section.mass.0,
+                inertia: Vector3::from(section.inertia.map(|moment| moment.0)),
+                constraints: vec![],
+            },
+            pocket,
+            land,
+            directions: (0..bearing.n_balls).map(direction).collect(),
+        })
+    }
+
+    /// Forces between a ball (first, 0 is the first) and the cage; `None` where they do not touch.
+    #[inline(always)]
+    pub fn pocket_contact<S: Scalar>(
+        &self,
+        index: usize,
+        ball: &BallMotion<S>,
+        cage: &BodyMotion<S>,
+    ) -> Option<BodyContact<S>> {
+        self.pocket.evaluate(ball, cage, self.directions[index])
+    }
+
+    /// [m] approach of a ball and its pocket; negative is a gap.
+    pub fn pocket_approach(&self, index: usize, ball: &BallMotion<f64>, cage: &BodyMotion<f64>) -> f64 {
+        self.pocket.approach(ball, cage, self.directions[index])
+    }
+
+    /// Forces between cage (first) and the race that guides it on both lands.
+    pub fn land_contacts(
+        &self,
+        cage: &BodyMotion<f64>,
+        races: [&RaceMotion<f64>; 2],
+    ) -> [Option<BodyContact<f64>>; 2] {
+        match &self.land {
+            Some(land) => land.positions.map(|position| land.evaluate(cage, races[land.race], position)),
+            None => [None; 2],
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Contact of a ball with its cage pocket: a cylinder about the radial direction, slightly wider than the ball.
+//!
+//! The pocket leaves the ball free along its axis and holds it all around it, so that balls carry the cage along the
+//! bearing axis and, all together, radially. Hertz contact of constant curvatures; Kalker's linear coefficients are
+//! computed once for rolling along the pocket's axis (where the ball's own spin drags the surface) and saturated
+//! as a vector at mu Q (design of the law `saturated`).
+
+use nalgebra::Vector3;
+
+use super::REGULARISATION_SPEED;
+use super::body::{BodyContact, BodyMotion, damped};
+use super::creep::{Creepage, Law, LinearTheory};
+use super::shape::ShapeAt;
+use crate::bearing::Pair;
+use crate::contact::BallMotion;
+use crate::kalker::linear::LinearError;
+use crate::scalar::{Scalar, cross, dot};
+
+/// What does not change in a ball-pocket contact.
+#[derive(Clone, Copy, Debug)]
+pub struct PocketModel {
+    /// [m] half the diametral clearance: how far a ball moves from the pocket's axis before it touches.
+    pub half_clearance: f64,
+    /// [m] ball radius.
+    ball_radius: f64,
+    shape: ShapeAt<f64>,
+    /// [-] friction coefficient.
+    friction: f64,
+    /// [s/m] Hunt-Crossley dissipation factor.
+    damping: f64,
+}
+
+impl PocketModel {
+    /// A pocket of a diametral clearance [m].
+    ///
+    /// # Errors
+    /// If the contact ellipse is too slender for Kalker's linear theory: the clearance is too small.
+    pub fn new(
+        ball_radius: f64,
+        clearance: f64,
+        materials: &Pair,
+        friction: f64,
+        damping: f64,
+    ) -> Result<Self, LinearError> {
+        let half_clearance = 0.5 * clearance;
+        let around = 1.0 / ball_radius - 1.0 / (ball_radius + half_clearance);
+        let shape = ShapeAt::new(
+            1.0 / ball_radius,
+            around,
+            materials.compliance,
+            materials.shear_modulus,
+            materials.poisson_ratio,
+        )?;
+        Ok(Self { half_clearance, ball_radius, shape, friction, damping })
+    }
+
+    /// [J] elastic energy at an approach [m].
+    pub fn elastic_energy(&self, approach: f64) -> f64 {
+        0.4 * self.shape.stiffness * approach.max(0.0).powf(2.5)
+    }
+
+    /// [m] approach of a ball and a pocket whose axis has these components [y, z] along the cage's axes; negative is a
+    /// gap.
+    pub fn approach(&self, ball: &BallMotion<f64>, cage: &BodyMotion<f64>, direction: [f64; 2]) -> f64 {
+        let axis = pocket_axis(cage, direction);
+        let offset = ball.position - cage.position;
+        (offset - axis * axis.dot(&offset)).norm() - self.half_clearance
+    }
+
+    /// Forces between ball (first) and cage (second); `None` where they do not touch.
+    #[inline(always)]
+    pub fn evaluate<S: Scalar>(
+        &self,
+        ball: &BallMotion<S>,
+        cage: &BodyMotion<S>,
+        direction: [f64; 2],
+    ) -> Option<BodyContact<S>> {
+        // geometry: the pocket's axis, and where the ball is off it
+        let x = pocket_axis(cage, direction);
+        let offset = ball.position - cage.position;
+        let off_axis = offset - x * dot(&x, &offset);
+        let distance = dot(&off_axis, &off_axis).sqrt();
+        let approach = distance - S::constant(self.half_clearance);
+        if approach.value() <= 0.0 {
+            return None;
+        }
+        let normal = off_axis.map(|component| component / distance);
+
+        // velocities of both surfaces at the contact point, and of the contact point itself
+        let arm = normal.map(|component| component.scale(self.ball_radius));
+        let cage_arm = offset + arm;
+        let ball_surface = ball.velocity + cross(&ball.angular_velocity, &arm);
+        let cage_surface = cage.velocity + cross(&cage.angular_velocity, &cage_arm);
+        let slip = ball_surface - cage_surface;
+        let approach_rate = dot(&normal, &slip);
+        let seen = ball.velocity - cage.velocity - cross(&cage.angular_velocity, &offset);
+        let around = seen - x * dot(&x, &seen) - normal * dot(&normal, &seen);
+        let normal_rate =
+            around.map(|component| component / distance) + cross(&cage.angular_velocity, &normal);
+        let contact_point = ball.velocity + normal_rate.map(|component| component.scale(self.ball_radius));
+
+        // normal load
+        let root = approach.sqrt();
+        let shape = &self.shape;
+        let elastic = (approach * root).scale(shape.stiffness);
+        let load = damped(elastic, approach_rate, self.damping);
+
+        // creepage in the frame x along the pocket, z from the cage into the ball
+        let y = cross(&x, &normal);
+        let rolling = contact_point - (ball_surface + cage_surface).map(|c| c.scale(0.5));
+        let (rolling_x, rolling_y) = (dot(&rolling, &x), dot(&rolling, &y));
+        let floor = S::constant(REGULARISATION_SPEED * REGULARISATION_SPEED);
+        let rolling_speed = (rolling_x.square() + rolling_y.square() + floor).sqrt();
+        let per_speed = S::one() / rolling_speed;
+        let (slip_x, slip_y) = (dot(&slip, &x), dot(&slip, &y));
+        let spin = dot(&(cage.angular_velocity - ball.angular_velocity), &normal);
+        let creepage = Creepage {
+            longitudinal: slip_x * per_speed,
+            lateral: slip_y * per_speed,
+            spin: spin * per_speed,
+            curvature: None,
+        };
+        let friction_limit = load.scale(self.friction);
+        let theory = LinearTheory {
+            longitudinal: approach.scale(shape.longitudinal),
+            lateral: approach.scale(shape.lateral),
+            coupling: (approach * root).scale(shape.coupling) * rolling_x * per_speed,
+            spin: approach.square().scale(shape.spin),
+            friction_limit,
+            moment_limit: friction_limit * root.scale(shape.spin_arm),
+            mean_semi_axis: root.scale(shape.mean_semi_axis),
+            half_width: root.scale(shape.semi_axis_transverse),
+        };
+        let creep = theory.forces(Law::Saturated, &creepage);
+
+        // wrenches
+        let tangential = x * creep.longitudinal + y * creep.lateral;
+        let force = -(normal * load + tangential);
+        let contact_moment = normal * creep.spin_moment;
+        Some(BodyContact {
+            approach,
+            load,
+            force,
+            moment: contact_moment - cross(&arm, &tangential),
+            other_moment: -cross(&cage_arm, &force) - contact_moment,
+            friction_power: creep.longitudinal * slip_x + creep.lateral * slip_y + creep.spin_moment * spin,
+            damping_power: (load - elastic) * approach_rate,
+        })
+    }
+}
+
+/// World direction of the axis of a pocket.
+#[inline(always)]
+fn pocket_axis<S: Scalar>(cage: &BodyMotion<S>, [y, z]: [f64; 2]) -> Vector3<S> {
+    cage.axes[1].map(|component| component.scale(y)) + cage.axes[2].map(|component| component.scale(z))
+}

@@ -1,0 +1,545 @@
+//! The cage: contacts of pockets and lands, motion, energy, cost, and scenes that are refused.
+#![allow(clippy::unwrap_used)]
+
+use std::time::Instant;
+
+use nalgebra::{UnitQuaternion, Vector3};
+use roulement::bearing::Pair;
+use roulement::contact::body::{BodyContact, BodyMotion};
+use roulement::contact::land::{LandModel, Lands};
+use roulement::contact::pocket::PocketModel;
+use roulement::contact::{BallMotion, RaceMotion};
+use roulement::outputs::{CageOutput, Outputs, PocketOutput};
+use roulement::scalar::{Dual, Scalar, constant_vector};
+use roulement::scene::Scene;
+use roulement::simulation::Simulation;
+use roulement::variables::Variables;
+
+const THRUST: &str = include_str!("../scenes/thrust.toml");
+const CAGE: &str = include_str!("../scenes/cage.toml");
+/// Half the diametral clearance of pockets and lands of the scene [m].
+const HALF_CLEARANCE: f64 = 0.1e-3;
+
+/// Goes on by the scene's own script for some communication steps; outputs at every one, the present first.
+fn go_on(simulation: &mut Simulation, points: u32) -> Vec<Outputs> {
+    let interval = simulation.scene().load.output_interval.0;
+    let mut history = vec![simulation.outputs().clone()];
+    let begin = simulation.time();
+    for point in 1..=points {
+        simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
+        simulation.advance(begin + f64::from(point) * interval).unwrap();
+        history.push(simulation.outputs().clone());
+    }
+    history
+}
+
+fn run(text: &str, points: u32) -> (Simulation, Vec<Outputs>) {
+    let mut simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+    let history = go_on(&mut simulation, points);
+    (simulation, history)
+}
+
+/// The cage carried by the balls instead of the outer race.
+fn ball_guided() -> String {
+    let keep = |line: &&str| !["guidance", "land_", "cage_race"].iter().any(|key| line.starts_with(key));
+    let lines: Vec<&str> = CAGE.lines().filter(keep).collect();
+    lines.join("\n").replace("\"outer\"", "\"balls\"")
+}
+
+/// The cage on lands of the inner race, which is a body.
+fn inner_guided() -> String {
+    CAGE.replace("\"outer\"", "\"inner\"").replace("\"52 mm\"", "\"40 mm\"")
+}
+
+/// Without the radial load.
+fn pure_thrust(text: &str) -> String {
+    let line = "z = { force = \"-300 N\" }";
+    assert!(text.contains(line));
+    text.replace(line, "")
+}
+
+/// The inner race braked from 6000 to 3000 rpm between two times [s], so that the cage runs into slower balls.
+fn braked(text: &str, from: f64, to: f64) -> String {
+    let line = "inner_speed = \"6000 rpm\"";
+    assert!(text.contains(line));
+    let ramp = format!("[[0.0, \"6000 rpm\"], [{from}, \"6000 rpm\"], [{to}, \"3000 rpm\"]]");
+    text.replace(line, &format!("inner_speed = {ramp}"))
+}
+
+fn cage(outputs: &Outputs) -> CageOutput {
+    outputs.cage.unwrap()
+}
+
+fn pockets(outputs: &Outputs) -> impl Iterator<Item = PocketOutput> + '_ {
+    outputs.balls.iter().map(|ball| ball.pocket.unwrap())
+}
+
+fn deepest_pocket(history: &[Outputs]) -> f64 {
+    history.iter().flat_map(pockets).map(|pocket| pocket.approach).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Energy put in that is neither stored nor lost, over all that was put in or lost.
+fn imbalance(history: &[Outputs]) -> f64 {
+    let (first, last) = (&history[0], &history[history.len() - 1]);
+    let balance = last.work - last.dissipated - (last.stored_energy - first.stored_energy);
+    balance.abs() / (last.work.abs() + last.dissipated)
+}
+
+// contact kernels
+
+fn pocket() -> PocketModel {
+    let pair = Pair::new([(206e9, 0.3), (105e9, 0.35)]);
+    PocketModel::new(4.7625e-3, 0.2e-3, &pair, 0.05, 0.5).unwrap()
+}
+
+fn lands(race: usize) -> LandModel {
+    let lands = Lands { race, clearance: 0.2e-3, diameter: 52e-3, width: 2e-3, edge: 4.9e-3 };
+    LandModel::new(&lands, 0.05, 0.5)
+}
+
+/// Number k of a fixed table of values in [-1, 1].
+fn number(k: usize) -> f64 {
+    (12.9898 * (k as f64 + 1.0)).sin()
+}
+
+fn vector(k: usize) -> Vector3<f64> {
+    Vector3::new(number(3 * k), number(3 * k + 1), number(3 * k + 2))
+}
+
+/// A rigid body somewhere in general motion.
+fn body(k: usize) -> BodyMotion<f64> {
+    let orientation = UnitQuaternion::new(vector(k) * 2e-3 + Vector3::x() * 0.7);
+    BodyMotion {
+        position: vector(k + 1) * 5e-6,
+        axes: [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| orientation * axis),
+        velocity: vector(k + 2) * 0.05,
+        angular_velocity: Vector3::x() * 250.0 + vector(k + 3) * 5.0,
+    }
+}
+
+const DIRECTION: [f64; 2] = [0.6, 0.8];
+
+/// A ball pressed into the pocket of `body(k)`.
+fn pressed_ball(k: usize) -> BallMotion<f64> {
+    let cage = body(k);
+    let axis = cage.axes[1] * DIRECTION[0] + cage.axes[2] * DIRECTION[1];
+    let sideways = (vector(k + 4) - axis * axis.dot(&vector(k + 4))).normalize();
+    let position = cage.position + axis * 23e-3 + sideways * (HALF_CLEARANCE + 0.4e-6);
+    BallMotion {
+        position,
+        velocity: cage.velocity
+            + cage.angular_velocity.cross(&(position - cage.position))
+            + vector(k + 5) * 0.1,
+        angular_velocity: Vector3::new(-1200.0, 100.0, 300.0) + vector(k + 6) * 50.0,
+    }
+}
+
+/// A race pressed against the lands of `body(k)`.
+fn pressed_race(k: usize) -> RaceMotion<f64> {
+    let cage = body(k);
+    let across = Vector3::new(0.0, number(k), number(k + 9)).normalize();
+    RaceMotion {
+        position: cage.position - across * (HALF_CLEARANCE + 20e-6),
+        axis: (Vector3::x() + vector(k + 7) * 1e-3).normalize(),
+        velocity: vector(k + 8) * 0.1,
+        angular_velocity: Vector3::x() * 600.0 + vector(k + 9),
+    }
+}
+
+#[test]
+fn invariant_forces_take_the_power_that_is_lost_or_stored() {
+    // Power of the forces on both bodies is minus friction, damping and the growth of elastic energy.
+    let h = 1e-9;
+    let check = |contact: BodyContact<f64>, power: f64, growth: f64| {
+        let lost = contact.friction_power + contact.damping_power;
+        assert!(contact.load > 0.0 && contact.friction_power > 0.0);
+        assert!((power + lost + growth).abs() < 1e-5 * (power.abs() + lost.abs()), "{power} {lost} {growth}");
+    };
+    for k in 0..8 {
+        let (cage, ball, model) = (body(k), pressed_ball(k), pocket());
+        let contact = model.evaluate(&ball, &cage, DIRECTION).unwrap();
+        let power = contact.force.dot(&(ball.velocity - cage.velocity))
+            + contact.moment.dot(&ball.angular_velocity)
+            + contact.other_moment.dot(&cage.angular_velocity);
+        let moved = |h: f64| {
+            let turn = UnitQuaternion::new(cage.angular_velocity * h);
+            let later = BodyMotion {
+                position: cage.position + cage.velocity * h,
+                axes: cage.axes.map(|axis| turn * axis),
+                ..cage
+            };
+            let ball = BallMotion { position: ball.position + ball.velocity * h, ..ball };
+            model.elastic_energy(model.approach(&ball, &later, DIRECTION))
+        };
+        check(contact, power, (moved(h) - moved(-h)) / (2.0 * h));
+
+        for side in [0, 1] {
+            let (race, model) = (pressed_race(k), lands(side));
+            let contact = model.evaluate(&cage, &race, model.positions[0]).unwrap();
+            let power = contact.force.dot(&(cage.velocity - race.velocity))
+                + contact.moment.dot(&cage.angular_velocity)
+                + contact.other_moment.dot(&race.angular_velocity);
+            let moved = |h: f64| {
+                let turn = |w: &Vector3<f64>| UnitQuaternion::new(w * h);
+                let later = BodyMotion {
+                    position: cage.position + cage.velocity * h,
+                    axes: cage.axes.map(|axis| turn(&cage.angular_velocity) * axis),
+                    ..cage
+                };
+                let race = RaceMotion {
+                    position: race.position + race.velocity * h,
+                    axis: turn(&race.angular_velocity) * race.axis,
+                    ..race
+                };
+                model.elastic_energy(model.approach(&later, &race, model.positions[0]))
+            };
+            check(contact, power, (moved(h) - moved(-h)) / (2.0 * h));
+        }
+    }
+}
+
+#[test]
+fn identity_derivatives_of_both_contacts_agree_with_differences() {
+    // along a general change of ball position, velocity and spin; of cage position, velocity and spin
+    fn lift<S: Scalar>(motion: &BodyMotion<f64>, t: S, [a, b, c]: [Vector3<f64>; 3]) -> BodyMotion<S> {
+        let line = |x: &Vector3<f64>, d: &Vector3<f64>| constant_vector::<S>(x) + d.map(|d| t.scale(d));
+        BodyMotion {
+            position: line(&motion.position, &a),
+            axes: motion.axes.each_ref().map(constant_vector),
+            velocity: line(&motion.velocity, &b),
+            angular_velocity: line(&motion.angular_velocity, &c),
+        }
+    }
+    let change = |k: usize| [vector(k) * 1e-3, vector(k + 1) * 10.0, vector(k + 2) * 100.0];
+    let compare = |exact: BodyContact<Dual<1>>, [after, before]: [BodyContact<f64>; 2], h: f64| {
+        for (exact, after, before) in [
+            (exact.force, after.force, before.force),
+            (exact.moment, after.moment, before.moment),
+            (exact.other_moment, after.other_moment, before.other_moment),
+        ] {
+            let (slope, difference) = (exact.map(|x| x.derivatives[0]), (after - before) / (2.0 * h));
+            assert!((slope - difference).norm() < 2e-5 * slope.norm(), "{slope} {difference}");
+        }
+    };
+    let h = 1e-7;
+    for k in 0..8 {
+        let (cage, ball, pocket) = (body(k), pressed_ball(k), pocket());
+        let still = [Vector3::zeros(); 3];
+        let as_body = BodyMotion {
+            position: ball.position,
+            axes: cage.axes,
+            velocity: ball.velocity,
+            angular_velocity: ball.angular_velocity,
+        };
+        fn ball_of<S: Scalar>(body: &BodyMotion<S>) -> BallMotion<S> {
+            BallMotion {
+                position: body.position,
+                velocity: body.velocity,
+                angular_velocity: body.angular_velocity,
+            }
+        }
+        let at = |t: f64| {
+            let ball = ball_of(&lift(&as_body, t, change(k + 10)));
+            pocket.evaluate(&ball, &lift(&cage, t, change(k + 20)), DIRECTION).unwrap()
+        };
+        let t = Dual::<1>::variable(0.0, 0, 1.0);
+        let seeded = ball_of(&lift(&as_body, t, change(k + 10)));
+        let exact = pocket.evaluate(&seeded, &lift(&cage, t, change(k + 20)), DIRECTION).unwrap();
+        compare(exact, [at(h), at(-h)], h);
+
+        let (land, race) = (lands(1), pressed_race(k));
+        let fixed = |race: &RaceMotion<f64>| RaceMotion {
+            position: constant_vector::<Dual<1>>(&race.position),
+            axis: constant_vector(&race.axis),
+            velocity: constant_vector(&race.velocity),
+            angular_velocity: constant_vector(&race.angular_velocity),
+        };
+        let at = |t: f64| land.evaluate(&lift(&cage, t, change(k + 20)), &race, land.positions[1]).unwrap();
+        let exact = land.evaluate(&lift(&cage, t, change(k + 20)), &fixed(&race), land.positions[1]).unwrap();
+        compare(exact, [at(h), at(-h)], h);
+        assert!(pocket.evaluate(&ball, &lift(&cage, 0.0, still), DIRECTION).is_some());
+    }
+}
+
+#[test]
+fn closed_form_friction_is_bounded_and_nothing_acts_across_a_gap() {
+    for k in 0..8 {
+        let (cage, ball, pocket) = (body(k), pressed_ball(k), pocket());
+        let contact = pocket.evaluate(&ball, &cage, DIRECTION).unwrap();
+        let tangential = (contact.force.norm_squared() - contact.load.powi(2)).sqrt();
+        assert!(tangential <= 0.05 * contact.load * (1.0 + 1e-9), "{tangential} {}", contact.load);
+        // A ball that spins at 1200 rad/s in its pocket slides: nearly all of mu Q acts.
+        assert!(tangential > 0.9 * 0.05 * contact.load);
+        let axis = cage.axes[1] * DIRECTION[0] + cage.axes[2] * DIRECTION[1];
+        let centred = BallMotion { position: cage.position + axis * 23e-3, ..ball };
+        assert!(pocket.evaluate(&centred, &cage, DIRECTION).is_none());
+        let race = RaceMotion { position: cage.position, ..pressed_race(k) };
+        assert!(lands(1).evaluate(&cage, &race, 0.0).is_none());
+    }
+}
+
+// whole bearings
+
+#[test]
+fn invariant_pocket_and_land_forces_accelerate_the_cage() {
+    for text in [CAGE.to_string(), inner_guided(), ball_guided()] {
+        let (mut simulation, _) = run(&braked(&text, 1e-3, 8e-3), 50);
+        let (mass, alpha_f) = (0.02, 0.05);
+        let weight = Vector3::z() * (-9.81 * mass);
+        let total = |o: &Outputs| cage(o).pocket_force + cage(o).land_force + weight;
+        let (mut loaded, mut compared) = (0, 0);
+        for _ in 0..400 {
+            let (before, steps) = (simulation.outputs().clone(), simulation.state().statistics.steps);
+            simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
+            simulation.advance(simulation.time() + 1e-6).unwrap();
+            // one step of the scheme: m a1 = (1 - alpha_f) g1 + alpha_f g0
+            if simulation.state().statistics.steps == steps + 1 {
+                let (force, last) = (total(simulation.outputs()), total(&before));
+                let expected = force * (1.0 - alpha_f) + last * alpha_f;
+                let inertial = simulation.state().cage.as_ref().unwrap().acceleration * mass;
+                let scale = 1e-5 + 1e-7 * pockets(simulation.outputs()).map(|p| p.load).sum::<f64>();
+                assert!((inertial - expected).norm() < scale, "{inertial} {expected}");
+                compared += 1;
+                loaded += u32::from(pockets(simulation.outputs()).any(|pocket| pocket.load > 0.0));
+            }
+        }
+        assert!(compared > 100 && loaded > 10, "{compared} steps compared, {loaded} with a loaded pocket");
+    }
+}
+
+#[test]
+fn closed_form_cage_runs_at_the_epicyclic_speed_under_thrust() {
+    for text in [CAGE.to_string(), inner_guided(), ball_guided()] {
+        let (_, history) = run(&pure_thrust(&text), 300);
+        for outputs in &history[100..] {
+            assert!(outputs.cage_slip.abs() < 1e-2, "{} at {} s", outputs.cage_slip, outputs.time);
+        }
+        // Balls stay in their pockets, so that on the mean the cage goes with them.
+        let mean = |get: &dyn Fn(&Outputs) -> f64| history[100..].iter().map(get).sum::<f64>() / 201.0;
+        let balls = mean(&|o| o.balls.iter().map(|b| b.orbital_speed).sum::<f64>() / o.balls.len() as f64);
+        let turned = mean(&|o| o.cage_speed);
+        assert!((turned / balls - 1.0).abs() < 5e-3, "{turned} {balls}");
+        assert!(deepest_pocket(&history) < 2e-6, "{}", deepest_pocket(&history));
+    }
+}
+
+#[test]
+fn invariant_energy_balance_with_every_guidance() {
+    for text in [CAGE.to_string(), inner_guided(), ball_guided()] {
+        let lands = !text.contains("\"balls\"");
+        let (_, history) = run(&braked(&text, 10e-3, 20e-3), 300);
+        // Asked for: 1 % of work plus friction.
+        assert!(imbalance(&history) < 1e-3, "{}", imbalance(&history));
+        for outputs in &history {
+            let of_contacts: f64 = outputs.balls.iter().map(|b| b.inner.power + b.outer.power).sum();
+            let parts = of_contacts + cage(outputs).pocket_power + cage(outputs).land_power;
+            assert!((parts / outputs.friction_power - 1.0).abs() < 1e-9);
+        }
+        assert!(history.iter().any(|o| cage(o).pocket_power > 0.1), "the pockets never rubbed");
+        assert_eq!(history.iter().any(|o| cage(o).land_power > 0.1), lands);
+    }
+}
+
+#[test]
+fn start_from_rest_takes_the_cage_along() {
+    let line = "inner_speed = \"6000 rpm\"";
+    let text = CAGE.replace(line, "inner_speed = [[0.0, 0.0], [0.02, \"6000 rpm\"]]");
+    let (_, history) = run(&text, 300);
+    assert_eq!(history[0].cage_speed, 0.0);
+    let last = &history[300];
+    assert!(last.cage_slip.abs() < 0.02, "{}", last.cage_slip);
+    assert!(history.windows(2).all(|pair| pair[1].dissipated >= pair[0].dissipated));
+    assert!(deepest_pocket(&history) < 5e-6 && cage(last).turned > 1.0);
+    assert!(imbalance(&history) < 1e-2, "{}", imbalance(&history));
+}
+
+#[test]
+fn invariant_balls_that_jump_in_their_pockets_stay_in_them() {
+    let text = braked(CAGE, 1e-3, 3e-3);
+    let (simulation, history) = run(&text, 150);
+    let touched = |o: &Outputs, j: usize| o.balls[j].pocket.unwrap().load > 0.0;
+    let changes: usize =
+        (0..10).map(|j| history.windows(2).filter(|w| touched(&w[0], j) != touched(&w[1], j)).count()).sum();
+    assert!(changes >= 20, "{changes} changes of contact");
+    // No deeper than if all balls' change of speed met the whole cage at one pocket without damping.
+    let speed = 0.5 * 0.5 * 628.0 * 23e-3;
+    let model = simulation.model().cage.as_ref().unwrap();
+    let energy = model.pocket.elastic_energy(deepest_pocket(&history));
+    assert!(energy < 0.5 * 0.02 * speed * speed, "{energy} J at {} m", deepest_pocket(&history));
+    assert!(deepest_pocket(&history) > 0.0 && deepest_pocket(&history) < 0.1 * HALF_CLEARANCE);
+    assert!(history[150].cage_slip.abs() < 0.03, "{}", history[150].cage_slip);
+    assert!(imbalance(&history) < 1e-2, "{}", imbalance(&history));
+}
+
+#[test]
+fn invariant_whirl_is_bounded_by_the_land_clearance() {
+    // A cage under its weight and the friction of the land, in a bearing with radial load.
+    for text in [CAGE.to_string(), inner_guided()] {
+        let (_, history) = run(&text, 500);
+        let mut touched = 0;
+        for outputs in &history {
+            let cage = cage(outputs);
+            assert!(cage.land_approach < 3e-6, "{} at {}", cage.land_approach, outputs.time);
+            assert!(cage.eccentricity.yz().norm() < HALF_CLEARANCE + 3e-6);
+            touched += u32::from(cage.land_loads.iter().any(|load| *load > 0.0));
+        }
+        assert!(touched > 5, "the land was touched at {touched} points");
+        assert!(imbalance(&history) < 1e-2, "{}", imbalance(&history));
+    }
+}
+
+#[test]
+fn invariant_refined_steps_give_the_same_statistics() {
+    let fine = CAGE.replace("max_step = \"10 us\"", "max_step = \"2.5 us\"");
+    let statistics = [CAGE, &fine].map(|text| {
+        let (simulation, history) = run(text, 400);
+        // Exact tangents: few corrections a step, and no step given up.
+        let s = &simulation.state().statistics;
+        assert!(s.newton.iterations as f64 <= 3.0 * s.steps as f64 && s.rejected_newton == 0, "{s:?}");
+        let mean = |get: fn(&Outputs) -> f64| history[200..].iter().map(get).sum::<f64>() / 201.0;
+        [
+            mean(|o| o.cage_speed),
+            mean(|o| cage(o).pocket_power),
+            mean(|o| cage(o).land_power),
+            mean(|o| cage(o).eccentricity.yz().norm()),
+        ]
+    });
+    for (coarse, fine) in statistics[0].into_iter().zip(statistics[1]) {
+        assert!((coarse / fine - 1.0).abs() < 1e-2, "{statistics:?}");
+    }
+}
+
+#[test]
+fn invariant_hard_cases_run_through_within_the_clearances() {
+    let speed = "inner_speed = \"6000 rpm\"";
+    let reversed = "inner_speed = [[0, \"6000 rpm\"], [0.02, \"-6000 rpm\"]]";
+    let cases: [&[(&str, &str)]; 6] = [
+        &[("damping = \"0.5 s/m\"", "damping = 0")],
+        &[("ball_cage = 0.05", "ball_cage = 0.3"), ("cage_race = 0.05", "cage_race = 0.3")],
+        &[("z = { force = \"-300 N\" }", "ry = { rotation = \"0.5 deg\" }")],
+        &[("20 g", "1 g"), ("1.1e-5", "5.5e-7"), ("6e-6", "3e-7")],
+        &[("\"1500 N\"", "\"20 N\""), ("\"-300 N\"", "\"-3000 N\"")],
+        &[(speed, reversed)],
+    ];
+    for case in cases {
+        let text = case.iter().fold(CAGE.to_string(), |text, (from, to)| {
+            assert!(text.contains(from), "{from}");
+            text.replace(from, to)
+        });
+        let (_, history) = run(&text, 300);
+        let pocket = deepest_pocket(&history) / HALF_CLEARANCE;
+        let land = history.iter().map(|o| cage(o).land_approach).fold(f64::NEG_INFINITY, f64::max);
+        assert!(pocket < 0.1 && land < 0.1 * HALF_CLEARANCE, "{case:?}: {pocket} {land}");
+        assert!(imbalance(&history) < 1e-2, "{case:?}: {}", imbalance(&history));
+        assert!(history[300].cage_slip.abs() < 0.05, "{case:?}: {}", history[300].cage_slip);
+    }
+}
+
+#[test]
+fn invariant_misaligned_inner_race_keeps_excursions_within_the_pockets() {
+    let text = CAGE.replace("x = {", "ry = { rotation = \"0.1 deg\" }\nx = {");
+    let (_, history) = run(&text, 400);
+    // Balls run ahead and behind once per orbit: they use up the clearance and push the cage.
+    let last = &history[200..];
+    let largest = last.iter().flat_map(pockets).map(|pocket| pocket.load).fold(0.0, f64::max);
+    assert!(largest > 0.0 && deepest_pocket(last) > 0.0);
+    assert!(deepest_pocket(&history) < 0.05 * HALF_CLEARANCE, "{}", deepest_pocket(&history));
+    let speeds: Vec<f64> = history[400].balls.iter().map(|ball| ball.orbital_speed).collect();
+    let spread = speeds.iter().fold(0.0f64, |s, v| s.max((v - speeds[0]).abs()));
+    assert!(spread > 0.1, "{speeds:?}");
+    assert!(imbalance(&history) < 1e-2, "{}", imbalance(&history));
+}
+
+#[test]
+fn invariant_without_the_effect_there_is_no_cage() {
+    let scene = Scene::parse(THRUST).unwrap();
+    let simulation = Simulation::new(&scene).unwrap();
+    assert!(simulation.state().cage.is_none() && simulation.outputs().cage.is_none());
+    assert!(simulation.model().cage.is_none() && simulation.model().border_size() == 7);
+    let names = |scene: &Scene| -> Vec<String> {
+        Variables::moving(scene, true).rows().iter().map(|row| row.name.clone()).collect()
+    };
+    let (without, with) = (names(&scene), names(&Scene::parse(CAGE).unwrap()));
+    let of_cage = |name: &&String| name.starts_with("cage.") || name.contains(".pocket.");
+    assert_eq!(without.iter().filter(of_cage).count(), 2);
+    for name in ["cage.eccentricity.radius", "cage.land_force.y", "ball[10].pocket.load", "cage.position.z"] {
+        assert!(with.iter().any(|given| given == name), "{name}");
+    }
+    assert_eq!(with.len() - without.len(), with.iter().filter(of_cage).count() - 2);
+}
+
+#[test]
+fn invariant_a_snapshot_in_mid_contact_goes_on_to_the_same_bits() {
+    let text = braked(CAGE, 1e-3, 12e-3);
+    let (mut simulation, _) = run(&text, 60);
+    let snapshot = simulation.snapshot();
+    let first = go_on(&mut simulation, 40);
+    let mut other = Simulation::new(&Scene::parse(&text).unwrap()).unwrap();
+    assert!(other.restore(&snapshot));
+    let second = go_on(&mut other, 40);
+    assert!(first == second && simulation.snapshot() == other.snapshot());
+    assert!(first.iter().flat_map(pockets).any(|pocket| pocket.load > 0.0));
+    // A state without a cage is of another bearing.
+    assert!(!Simulation::new(&Scene::parse(THRUST).unwrap()).unwrap().restore(&snapshot));
+}
+
+#[test]
+fn invariant_cost_of_a_step_is_linear_in_the_number_of_balls() {
+    // A ring of balls on a pitch circle that grows with their number; best of several short runs of single steps.
+    let per_ball = |balls: u32| {
+        let text = CAGE
+            .replace("balls = 10", &format!("balls = {balls}"))
+            .replace("\"46 mm\"", &format!("\"{} mm\"", 5 * balls))
+            .replace("\"52 mm\"", &format!("\"{} mm\"", 5 * balls + 6))
+            .replace("\"1500 N\"", &format!("\"{} N\"", 150 * balls))
+            .replace("output_interval = \"100 us\"", "output_interval = \"5 us\"");
+        let (mut simulation, _) = run(&text, 20);
+        let mut best = f64::INFINITY;
+        for _ in 0..60 {
+            let before = simulation.state().statistics;
+            let begin = Instant::now();
+            go_on(&mut simulation, 2);
+            let seconds = begin.elapsed().as_secs_f64();
+            let after = simulation.state().statistics;
+            let work = after.newton.iterations + after.newton.factorisations
+                - before.newton.iterations
+                - before.newton.factorisations;
+            best = best.min(seconds / work as f64 / f64::from(balls));
+        }
+        best
+    };
+    let costs = [8, 16, 32, 64].map(per_ball);
+    println!("seconds per Newton evaluation and ball for 8, 16, 32, 64 balls: {costs:?}");
+    assert!(costs[3] < 1.6 * costs[0], "{costs:?}");
+}
+
+#[test]
+fn wrong_sections_are_refused_by_name() {
+    let cases = [
+        ("cage = true", "", &["cage", "effects.cage = true"][..]),
+        ("mass = \"20 g\"", "", &["missing field", "mass"]),
+        ("mass = \"20 g\"", "mass = 0", &["cage.mass = 0", "(0, 10000]"]),
+        ("mass = \"20 g\"", "mass = \"20 mm\"", &["20 mm", "incompatible"]),
+        ("inertia = [\"1.1e-5 kg m^2\",", "inertia = [-1.0,", &["cage.inertia = -1"]),
+        ("pocket_clearance = \"0.2 mm\"", "pocket_clearance = 0", &["cage.pocket_clearance = 0"]),
+        ("pocket_clearance = \"0.2 mm\"", "pocket_clearance = \"4.75 mm\"", &["pockets overlap"]),
+        ("guided_by = \"outer\"", "guided_by = \"left\"", &["left", "inner"]),
+        ("guided_by = \"outer\"", "guided_by = \"balls\"", &["cage.guidance_clearance", "guided_by"]),
+        ("guidance_clearance = \"0.2 mm\"", "", &["cage.guidance_clearance", "needed"]),
+        ("land_width = \"2 mm\"", "", &["cage.land_width", "needed"]),
+        ("land_diameter = \"52 mm\"", "land_diameter = \"20 mm\"", &["cage.land_diameter = 0.02"]),
+        ("ball_cage = 0.05", "ball_cage = -1", &["friction.ball_cage = -1", "[0, 2]"]),
+        ("[cage]", "[cage]\ncolour = 1", &["colour", "unknown field"]),
+    ];
+    for (from, to, parts) in cases {
+        assert!(CAGE.contains(from), "{from}");
+        let message = Scene::parse(&CAGE.replacen(from, to, 1)).unwrap_err().to_string();
+        for part in parts {
+            assert!(message.contains(part), "{message}\nshould name {part}");
+        }
+    }
+    let text = THRUST.replace("[effects]", "[effects]\ncage = true");
+    assert!(Scene::parse(&text).unwrap_err().to_string().contains("effects.cage"));
+    let text = THRUST.replace("ball_race = 0.08", "ball_race = 0.08\nball_cage = 0.1");
+    assert!(Scene::parse(&text).unwrap_err().to_string().contains("friction.ball_cage"));
+}
