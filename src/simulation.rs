@@ -228,13 +228,13 @@ impl Simulation {
         result
     }
 
-    /// A race that is fixed in its frame has no inputs: the scene's script says how it spins.
+    /// A race that is fixed in its frame or hinged to it has no inputs: the scene's script says how it moves.
     fn script_fixed_races(&mut self, time: f64) {
         let load = &self.scene.load;
         for (race, section, speed) in
             [(INNER, &self.scene.inner, &load.inner_speed), (OUTER, &self.scene.outer, &load.outer_speed)]
         {
-            if section.drive == Drive::Fixed {
+            if matches!(section.drive, Drive::Fixed | Drive::Hinge) {
                 let input = if race == INNER { &mut self.inputs.inner } else { &mut self.inputs.outer };
                 input.speed = speed.at(time);
                 start::script_motion(&self.scene, race, time, &self.paths.races[race].at(time).0, input);

@@ -75,6 +75,7 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
         closed(-1e6, 1e6, "m/s2").check("effects.gravity", component.0)?;
     }
     races(scene)?;
+    start(scene)?;
     let solver = &scene.solver;
     above(0.0, 1.0 / 3.0, "").check("solver.alpha_f", solver.alpha_f)?;
     closed(1e-14, 1e-2, "").check("solver.tolerance", solver.tolerance)?;
@@ -118,8 +119,8 @@ fn bearing(scene: &Scene) -> Result<(), SceneError> {
 
 fn races(scene: &Scene) -> Result<(), SceneError> {
     for (section, race) in [("inner", &scene.inner), ("outer", &scene.outer)] {
-        for (key, angle) in [("ry", race.misalignment.ry.0), ("rz", race.misalignment.rz.0)] {
-            closed(-0.2, 0.2, "rad").check(&format!("{section}.misalignment.{key}"), angle)?;
+        for (key, angle) in [("ry", &race.misalignment.ry), ("rz", &race.misalignment.rz)] {
+            closed(-0.2, 0.2, "rad").check_all(&format!("{section}.misalignment.{key}"), angle)?;
         }
         if let Some(mass) = race.mass {
             above(0.0, 1e5, "kg").check(&format!("{section}.mass"), mass.0)?;
@@ -127,16 +128,38 @@ fn races(scene: &Scene) -> Result<(), SceneError> {
         for moment in race.inertia.into_iter().flatten() {
             above(0.0, 1e5, "kg m2").check(&format!("{section}.inertia"), moment.0)?;
         }
-        if race.drive == Drive::Wrench && (race.mass.is_none() || race.inertia.is_none()) {
-            let why = "a race driven by a wrench is a rigid body: give its mass and its inertia [Ix, Iy, Iz]";
+        let is_body = matches!(race.drive, Drive::Wrench | Drive::Hinge);
+        if is_body && (race.mass.is_none() || race.inertia.is_none()) {
+            let why = "a race driven by a wrench or on a hinge is a rigid body: give its mass and its inertia [Ix, Iy, \
+                       Iz]";
             return Err(conflict(section, why));
         }
     }
     if scene.outer.drive == Drive::Wrench {
-        return Err(conflict(
-            "outer.drive",
-            "wrench drive is offered for the inner race; allowed: fixed, pose",
-        ));
+        let why = "wrench drive is offered for the inner race; allowed: fixed, pose, hinge";
+        return Err(conflict("outer.drive", why));
+    }
+    if scene.inner.drive == Drive::Hinge {
+        let why = "a hinge is offered for the outer race; hold the inner race by displacements and rotations in \
+                   [load] under drive = \"wrench\"";
+        return Err(conflict("inner.drive", why));
+    }
+    Ok(())
+}
+
+fn start(scene: &Scene) -> Result<(), SceneError> {
+    let start = &scene.start;
+    if let Some(speed) = start.orbital_speed {
+        closed(-1e5, 1e5, "rad/s").check("start.orbital_speed", speed.0)?;
+    }
+    for component in start.ball_angular_velocity.into_iter().flatten() {
+        closed(-1e6, 1e6, "rad/s").check("start.ball_angular_velocity", component.0)?;
+    }
+    for component in start.inner_velocity.into_iter().flatten() {
+        closed(-1e4, 1e4, "m/s").check("start.inner_velocity", component.0)?;
+    }
+    if start.inner_velocity.is_some() && scene.inner.drive != Drive::Wrench {
+        return Err(conflict("start.inner_velocity", "needs inner.drive = \"wrench\""));
     }
     Ok(())
 }
