@@ -60,9 +60,9 @@ pub fn identify<E: From<LinearError>>(
         let forces = theory(&ScaledCreepage { y, ..Default::default() })?;
         by_lateral.push((y * scales.c23 / scales.moment, -forces.mz / scales.moment));
     }
-    let (eta, first) = fit([0.2, 0.5, 5.0], &by_spin, |p, x| lateral_by_spin(p, x));
-    let (beta, second) = fit([0.8, 1.0], &own, |p, x| moment_by_spin(p, x));
-    let (alpha, third) = fit([0.8, 5.0, 5.0], &by_lateral, |p, x| moment_by_lateral(p, x));
+    let (eta, first) = fit([0.2, 0.5, 5.0], &by_spin, lateral_by_spin);
+    let (beta, second) = fit([0.8, 1.0], &own, moment_by_spin);
+    let (alpha, third) = fit([0.8, 5.0, 5.0], &by_lateral, moment_by_lateral);
     Ok(Identification { parameters: Parameters { eta, beta, alpha }, samples: [first, second, third] })
 }
 
