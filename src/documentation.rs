@@ -17,6 +17,9 @@ fn drive(drive: Drive) -> &'static str {
         Drive::Pose => "pose and twist are inputs, the bearing's wrench is an output",
         Drive::Wrench => "a rigid body: applied wrench and spin speed are inputs, pose and twist are outputs",
         Drive::Fixed => "rests in its frame",
+        Drive::Hinge => {
+            "a rigid body on a hinge to its frame: pose, twist and the reaction of the hinge are outputs"
+        }
     }
 }
 

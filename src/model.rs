@@ -13,6 +13,7 @@ use crate::contact::shape::ContactShape;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
+use crate::scalar::Scalar;
 use crate::scene::{Condition, CreepLaw, Drive, RaceSection, Scene, Schedule, Solver};
 
 /// Index of the inner race wherever races come in pairs.
@@ -42,6 +43,34 @@ pub struct RaceBody {
     pub inertia: Vector3<f64>,
     /// Constraints, in the order of their multipliers.
     pub constraints: Vec<Constraint>,
+}
+
+impl RaceBody {
+    /// [-] components along world z and y of the race axis held at a time [s], with the sign of their tilts about y and
+    /// z: the axis of the rotation vector [0, ry, rz] of all scripted tilts.
+    pub fn tilt_target(&self, axis: usize, time: f64) -> f64 {
+        let mut tilt = [0.0; 2];
+        for constraint in &self.constraints {
+            if let Constraint::Tilt(axis, schedule) = constraint {
+                tilt[axis - 1] = schedule.smooth_at(time).0;
+            }
+        }
+        let angle = f64::hypot(tilt[0], tilt[1]);
+        if angle == 0.0 { 0.0 } else { tilt[axis - 1] * (angle.sin() / angle) }
+    }
+}
+
+/// World direction of the moment that holds the tilt of a race's axis about world y (1) or z (2): tilting about y moves
+/// the axis towards -z, about z towards +y.
+pub fn tilt_direction<S: Scalar>(about: usize, axis: &Vector3<S>) -> Vector3<S> {
+    let (other, sign) = tilt_component(about);
+    let toward = Vector3::from_fn(|i, _| S::constant(if i == other { sign } else { 0.0 }));
+    axis.cross(&toward)
+}
+
+/// Component of a race's axis that shows its tilt about world y (1) or z (2), and its sign.
+pub fn tilt_component(about: usize) -> (usize, f64) {
+    if about == 1 { (2, -1.0) } else { (1, 1.0) }
 }
 
 /// Creep law of a raceway with what it needs.
@@ -131,7 +160,7 @@ impl Model {
             shapes,
             damping: scene.effects.damping.0,
             gravity: Vector3::from(scene.effects.gravity.map(|component| component.0)),
-            bodies: [body(&scene.inner, scene), None],
+            bodies: [wrench_body(&scene.inner, scene), hinged_body(&scene.outer)],
             solver: scene.solver,
         })
     }
@@ -183,10 +212,8 @@ impl Model {
     }
 }
 
-fn body(section: &RaceSection, scene: &Scene) -> Option<RaceBody> {
-    let (Drive::Wrench, Some(mass), Some(inertia)) = (section.drive, section.mass, section.inertia) else {
-        return None;
-    };
+/// The inner race under a wrench, held where the scene's load gives motions.
+fn wrench_body(section: &RaceSection, scene: &Scene) -> Option<RaceBody> {
     let locks =
         scene.load.conditions().into_iter().enumerate().filter_map(
             |(direction, condition)| match condition {
@@ -197,9 +224,21 @@ fn body(section: &RaceSection, scene: &Scene) -> Option<RaceBody> {
                 Condition::Motion(schedule) => Some(Constraint::Tilt(direction - 2, schedule)),
             },
         );
-    Some(RaceBody {
-        mass: mass.0,
-        inertia: Vector3::from(inertia.map(|moment| moment.0)),
-        constraints: locks.chain([Constraint::Spin]).collect(),
-    })
+    body(section, Drive::Wrench, locks.chain([Constraint::Spin]).collect())
+}
+
+/// A race on a hinge to its frame (paper section 2: the outer race).
+fn hinged_body(section: &RaceSection) -> Option<RaceBody> {
+    let place = (0..3).map(|axis| Constraint::Position(axis, Schedule::default()));
+    let tilt = [&section.misalignment.ry, &section.misalignment.rz];
+    let tilts = tilt.into_iter().enumerate().map(|(i, angle)| Constraint::Tilt(i + 1, angle.clone()));
+    body(section, Drive::Hinge, place.chain(tilts).chain([Constraint::Spin]).collect())
+}
+
+/// The body of a race, if that is how it is driven.
+fn body(section: &RaceSection, drive: Drive, constraints: Vec<Constraint>) -> Option<RaceBody> {
+    let (true, Some(mass), Some(inertia)) = (section.drive == drive, section.mass, section.inertia) else {
+        return None;
+    };
+    Some(RaceBody { mass: mass.0, inertia: Vector3::from(inertia.map(|moment| moment.0)), constraints })
 }

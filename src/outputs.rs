@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::contact::BallRaceContact;
 use crate::contact::body::BodyContact;
-use crate::model::{INNER, Model, OUTER};
+use crate::model::{Constraint, INNER, Model, OUTER, RaceBody, tilt_direction};
 use crate::motion::{Pose, Twist, Wrench};
 use crate::state::{RaceState, State, Statistics};
 
@@ -19,6 +19,9 @@ pub struct RaceOutput {
     pub wrench: Wrench,
     /// [N m] torque that keeps a race body at its prescribed speed; for other races, that balances the bearing's.
     pub drive_torque: f64,
+    /// What the constraints of a race body exert on it, about its origin, world axes: reactions of held directions and
+    /// the drive torque. Zero for other races.
+    pub reaction: Wrench,
     /// [rad] turned about the own axis since the start, without limit.
     pub turned: f64,
 }
@@ -293,13 +296,29 @@ fn race_output(race: &RaceState, model: &Model, index: usize) -> RaceOutput {
     let twist = race.twist();
     let axis = race.pose.orientation * Vector3::x();
     let spin = model.bodies[index].as_ref().and_then(|body| {
-        body.constraints.iter().position(|constraint| matches!(constraint, crate::model::Constraint::Spin))
+        body.constraints.iter().position(|constraint| matches!(constraint, Constraint::Spin))
     });
     let drive_torque = match spin {
         Some(index) => race.multipliers[index],
         None => -race.bearing_wrench.moment.dot(&axis),
     };
-    RaceOutput { pose: race.pose, twist, wrench: race.bearing_wrench, drive_torque, turned: race.turned }
+    let reaction =
+        model.bodies[index].as_ref().map_or_else(Wrench::default, |body| reaction(race, body, &axis));
+    let wrench = race.bearing_wrench;
+    RaceOutput { pose: race.pose, twist, wrench, drive_torque, reaction, turned: race.turned }
+}
+
+/// Sum of the multipliers of a race body along their directions.
+fn reaction(race: &RaceState, body: &RaceBody, axis: &Vector3<f64>) -> Wrench {
+    let mut sum = Wrench::default();
+    for (constraint, multiplier) in body.constraints.iter().zip(&race.multipliers) {
+        match constraint {
+            Constraint::Position(direction, _) => sum.force[*direction] += multiplier,
+            Constraint::Tilt(about, _) => sum.moment += tilt_direction(*about, axis) * *multiplier,
+            Constraint::Spin => sum.moment += axis * *multiplier,
+        }
+    }
+    sum
 }
 
 fn contact_output(contact: &BallRaceContact<f64>, axis: &Vector3<f64>) -> ContactOutput {

@@ -280,7 +280,7 @@ impl Simulation {
             .iter()
             .map(|inputs| {
                 let mut inputs = *inputs;
-                if self.scene.outer.drive == Drive::Fixed {
+                if matches!(self.scene.outer.drive, Drive::Fixed | Drive::Hinge) {
                     inputs.outer = self.inputs.outer;
                 }
                 if self.scene.inner.drive == Drive::Fixed {
@@ -297,13 +297,13 @@ impl Simulation {
         Ok(neighbours.iter().map(|n| Outputs::new(&self.model, &n.state, n.friction)).collect())
     }
 
-    /// A race that is fixed in its frame has no inputs: the scene's script says how it spins.
+    /// A race that is fixed in its frame or hinged to it has no inputs: the scene's script says how it moves.
     fn script_fixed_races(&mut self, time: f64) {
         let load = &self.scene.load;
         for (race, section, speed) in
             [(INNER, &self.scene.inner, &load.inner_speed), (OUTER, &self.scene.outer, &load.outer_speed)]
         {
-            if section.drive == Drive::Fixed {
+            if matches!(section.drive, Drive::Fixed | Drive::Hinge) {
                 let input = if race == INNER { &mut self.inputs.inner } else { &mut self.inputs.outer };
                 input.speed = speed.at(time);
                 start::script_motion(&self.scene, race, time, &self.paths.races[race].at(time).0, input);

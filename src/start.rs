@@ -2,11 +2,12 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::equilibrium::{self, EquilibriumError, EquilibriumInput, Gyroscopic, Prescribed};
+use crate::bearing::azimuth_directions;
+use crate::equilibrium::{self, BallEquilibrium, EquilibriumError, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::inputs::{Inputs, RaceInput};
-use crate::model::{INNER, Model};
+use crate::model::{INNER, Model, OUTER};
 use crate::motion::{Pose, Twist, Wrench};
-use crate::scene::{Condition, Drive, Scene};
+use crate::scene::{Condition, Drive, Scene, Schedule};
 use crate::state::{BallState, Energies, Powers, RaceState, State, Statistics};
 use crate::step_control::StepControl;
 
@@ -31,11 +32,14 @@ pub fn from_equilibrium(scene: &Scene, model: &Model) -> Result<(Inputs, State),
         force: Vector3::new(load(0), load(1), load(2)),
         moment: Vector3::new(0.0, load(3), load(4)),
     };
-    let inputs = Inputs {
+    let mut inputs = Inputs {
         inner: spinning(inner_pose, problem.inner_speed, applied),
         outer: spinning(outer_pose, problem.outer_speed, Wrench::default()),
         friction: scene.friction.ball_race,
     };
+    if let Some(velocity) = scene.start.inner_velocity {
+        inputs.inner.twist.velocity = Vector3::from(velocity.map(|component| component.0));
+    }
     let state = state(scene, model, &inputs, &solution);
     Ok((inputs, state))
 }
@@ -101,13 +105,16 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
     let balls: Vec<BallState> = solution
         .balls
         .iter()
-        .map(|ball| BallState {
-            position: outer.pose.position + frame * ball.position,
-            velocity: outer.twist.velocity + frame * ball.velocity,
-            angular_velocity: frame * ball.angular_velocity,
-            acceleration: Vector3::zeros(),
-            angular_acceleration: Vector3::zeros(),
-            total: Wrench::default(),
+        .map(|ball| {
+            let (velocity, angular_velocity) = given_velocities(scene, ball);
+            BallState {
+                position: outer.pose.position + frame * ball.position,
+                velocity: outer.twist.velocity + frame * velocity,
+                angular_velocity: frame * angular_velocity,
+                acceleration: Vector3::zeros(),
+                angular_acceleration: Vector3::zeros(),
+                total: Wrench::default(),
+            }
         })
         .collect();
     let races = [(0, &inputs.inner), (1, outer)].map(|(race, input): (usize, _)| {
@@ -145,6 +152,19 @@ fn centred_cage(
     RaceState::new(pose, &twist, 0)
 }
 
+/// Velocity of a ball's centre and its angular velocity in the outer race's frame: the scene's, or those of rolling.
+fn given_velocities(scene: &Scene, ball: &BallEquilibrium) -> (Vector3<f64>, Vector3<f64>) {
+    let (radial, tangential) = azimuth_directions(ball.azimuth);
+    let velocity = scene
+        .start
+        .orbital_speed
+        .map_or(ball.velocity, |speed| tangential * (speed.0 * ball.position.dot(&radial)));
+    let angular_velocity = scene.start.ball_angular_velocity.map_or(ball.angular_velocity, |given| {
+        Vector3::x() * given[0].0 + radial * given[1].0 + tangential * given[2].0
+    });
+    (velocity, angular_velocity)
+}
+
 /// Sets the pose and twist of a race from the scene's script at a time [s]. `now` is where the race is: its angle
 /// about its own axis goes on from there, as a script does not prescribe it.
 pub fn script_motion(scene: &Scene, race: usize, time: f64, now: &Pose, input: &mut RaceInput) {
@@ -153,6 +173,13 @@ pub fn script_motion(scene: &Scene, race: usize, time: f64, now: &Pose, input: &
     let (mut position, mut rates) = (input.pose.position, [0.0; 3]);
     let mut tilt = tilt_of(&input.pose);
     let mut tilt_rate = Vector3::zeros();
+    if race == OUTER && section.drive == Drive::Fixed {
+        for (axis, schedule) in [(1, &section.misalignment.ry), (2, &section.misalignment.rz)] {
+            if let Schedule::Table(_) = schedule {
+                (tilt[axis], tilt_rate[axis]) = schedule.smooth_at(time);
+            }
+        }
+    }
     if race == INNER && section.drive == Drive::Pose {
         for (direction, condition) in scene.load.conditions().iter().enumerate() {
             if let Condition::Motion(schedule) = condition {

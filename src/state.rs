@@ -59,6 +59,8 @@ pub struct RaceState {
     pub bearing_wrench: Wrench,
     /// [rad] turned about the own axis since the start, without limit.
     pub turned: f64,
+    /// [rad] what the last sum left out of `turned`: millions of rounded additions would drift.
+    pub turned_rest: f64,
 }
 
 impl RaceState {
@@ -74,7 +76,15 @@ impl RaceState {
             multipliers: vec![0.0; n_constraints],
             bearing_wrench: Wrench::default(),
             turned: 0.0,
+            turned_rest: 0.0,
         }
+    }
+
+    /// Goes on counting the turn from before a step in which the race turned by `angle` [rad] (Kahan's summation).
+    pub fn count_turn(&mut self, (turned, rest): (f64, f64), angle: f64) {
+        let added = angle + rest;
+        self.turned = turned + added;
+        self.turned_rest = added - (self.turned - turned);
     }
 
     /// Twist in world axes.

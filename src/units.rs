@@ -118,6 +118,8 @@ quantities! {
     Moment = "N m";
     /// [rad/s]
     AngularVelocity = "rad/s";
+    /// [m/s]
+    Velocity = "m/s";
     /// [m/s2]
     Acceleration = "m/s^2";
     /// [s/m]

@@ -7,33 +7,10 @@ use roulement::model::Model;
 use roulement::scene::Scene;
 use serde_json::Value;
 
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
-}
+#[path = "common/reference.rs"]
+mod reference;
 
-/// Scene text of a reference case, as a user would write it.
-fn scene_text(case: &Value) -> String {
-    let bearing = &case["bearing"];
-    let mut text = String::from("[bearing]\n");
-    for (key, value) in bearing.as_object().unwrap() {
-        if !value.is_object() {
-            text += &format!("{key} = {value}\n");
-        }
-    }
-    for section in ["ball", "race"] {
-        text += &format!("[{section}]\n");
-        for (key, value) in bearing[section].as_object().unwrap() {
-            text += &format!("{key} = {value}\n");
-        }
-    }
-    text +=
-        &format!("[load]\ninner_speed = {}\nouter_speed = {}\n", case["inner_speed"], case["outer_speed"]);
-    for (key, condition) in case["conditions"].as_object().unwrap() {
-        let (kind, value) = condition.as_object().unwrap().iter().next().unwrap();
-        text += &format!("{key} = {{ {kind} = {value} }}\n");
-    }
-    text
-}
+use reference::{cases, number, scene_text};
 
 fn solve(text: &str, gyroscopic: Gyroscopic) -> Equilibrium {
     let scene = Scene::parse(text).unwrap();
@@ -83,10 +60,7 @@ fn difference(ours: &Equilibrium, reference: &Value) -> Difference {
 
 #[test]
 fn independent_data_twenty_cases_under_both_hypotheses() {
-    let data: Value = serde_json::from_str(include_str!("data/bearing/equilibrium.json")).unwrap();
-    let cases = data["cases"].as_array().unwrap();
-    assert_eq!(cases.len(), 20);
-    for case in cases {
+    for case in &cases() {
         for (key, gyroscopic) in
             [("outer_race_control", Gyroscopic::OuterRaceControl), ("no_gyro", Gyroscopic::None)]
         {

@@ -463,7 +463,7 @@ fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep,
     }
     for race in 0..2 {
         let before = &state.races[race];
-        let (turned, spin) = (before.turned, before.rate.x);
+        let (turned, spin) = ((before.turned, before.turned_rest), before.rate.x);
         match &workspace.races[race] {
             Some(trial) => state.races[race].clone_from(&trial.end),
             None => {
@@ -478,7 +478,8 @@ fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep,
                 state.races[race].bearing_wrench = wrench;
             }
         }
-        state.races[race].turned = turned + 0.5 * step.h * (spin + state.races[race].rate.x);
+        let angle = 0.5 * step.h * (spin + state.races[race].rate.x);
+        state.races[race].count_turn(turned, angle);
     }
     let mut powers = Powers::default();
     if let (Some(cage), Some(trial)) = (&mut state.cage, &workspace.cage) {

@@ -6,7 +6,7 @@ use super::ball::{DIRECTIONS, RACE_ROTATION, RaceReaction, RaceSeen, by_ball, by
 use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
 use crate::hht::HhtStep;
-use crate::model::{Constraint, RaceBody};
+use crate::model::{Constraint, RaceBody, tilt_component, tilt_direction};
 use crate::motion::{Pose, Wrench};
 use crate::rotation::{from_rotation_vector, rotate, to_quaternion};
 use crate::scalar::{Dual, Scalar, constant_vector, values};
@@ -158,13 +158,11 @@ impl RaceTrial {
                     let value = position - D::constant(target);
                     (value, step.position_gain(), 1.0, body.mass, Reaction::Force(direction))
                 }
-                Constraint::Tilt(axis, schedule) => {
-                    // About y the axis goes towards -z, about z towards +y.
-                    let (other, sign) = if *axis == 1 { (2, -1.0) } else { (1, 1.0) };
-                    let target = schedule.smooth_at(scales.time).0.sin();
+                Constraint::Tilt(axis, _) => {
+                    let (other, sign) = tilt_component(*axis);
+                    let target = body.tilt_target(*axis, scales.time);
                     let value = motion.axis[other].scale(sign) - D::constant(target);
-                    let toward = Vector3::from_fn(|i, _| D::constant(if i == other { sign } else { 0.0 }));
-                    let direction = motion.axis.cross(&toward);
+                    let direction = tilt_direction(*axis, &motion.axis);
                     (value, step.position_gain(), length, body.inertia[*axis], Reaction::Moment(direction))
                 }
                 Constraint::Spin => {
@@ -271,8 +269,9 @@ pub fn make_consistent(state: &mut RaceState, body: &RaceBody, load: &RaceLoad) 
                 force[*axis] = 0.0;
             }
             Constraint::Tilt(axis, _) => {
-                let direction = to_material * Vector3::from_fn(|i, _| if i == *axis { 1.0 } else { 0.0 });
-                *multiplier = -moment.dot(&direction);
+                let race_axis = state.pose.orientation * Vector3::x();
+                let direction = to_material * tilt_direction(*axis, &race_axis);
+                *multiplier = -moment.dot(&direction) / direction.norm_squared();
                 power += *multiplier * state.rate.dot(&direction);
                 moment += direction * *multiplier;
             }

@@ -80,7 +80,11 @@ impl EquilibriumInput {
             }),
             inner_speed: scene.load.inner_speed.at(0.0),
             outer_speed: scene.load.outer_speed.at(0.0),
-            outer_orientation: UnitQuaternion::new(Vector3::new(0.0, misalignment.ry.0, misalignment.rz.0)),
+            outer_orientation: UnitQuaternion::new(Vector3::new(
+                0.0,
+                misalignment.ry.at(0.0),
+                misalignment.rz.at(0.0),
+            )),
             gyroscopic,
             friction: scene.friction.ball_race,
         }

@@ -42,7 +42,10 @@ impl Changes {
             Source::Race(_, Q::AppliedMoment(_)) => self.force * self.length,
             Source::Friction => self.friction,
             // Neither outputs nor parameters are knowns.
-            Source::Race(_, Q::Force(_) | Q::Moment(_) | Q::DriveTorque)
+            Source::Race(
+                _,
+                Q::Force(_) | Q::Moment(_) | Q::ReactionForce(_) | Q::ReactionMoment(_) | Q::DriveTorque,
+            )
             | Source::Bearing(_)
             | Source::Cage(_)
             | Source::Ball(..)

@@ -86,6 +86,9 @@ pub struct Scene {
     /// Outer race.
     #[serde(default)]
     pub outer: RaceSection,
+    /// Velocities at the start.
+    #[serde(default)]
+    pub start: Start,
     /// Time integration.
     #[serde(default)]
     pub solver: Solver,

@@ -57,6 +57,14 @@ impl Schedule {
         (value, rate / duration)
     }
 
+    /// The value, to be changed, of a schedule that is the same at all times.
+    pub fn constant_mut(&mut self) -> Option<&mut f64> {
+        match self {
+            Self::Constant(value) => Some(value),
+            Self::Table(_) => None,
+        }
+    }
+
     /// All values the schedule passes through, for range checks.
     pub fn values(&self) -> Vec<f64> {
         match self {

@@ -184,6 +184,9 @@ pub enum Drive {
     Pose,
     /// A rigid body under an applied wrench, with prescribed spin speed.
     Wrench,
+    /// A rigid body on a hinge: its axis is held in a frame that is misaligned constantly or by a script, and it spins
+    /// at the prescribed speed.
+    Hinge,
 }
 
 /// One race.
@@ -196,24 +199,32 @@ pub struct RaceSection {
     pub mass: Option<Mass>,
     /// [kg m2] moments of inertia about the race's x, y and z axes; needed when the race is a body.
     pub inertia: Option<[Inertia; 3]>,
-    /// Constant misalignment of a fixed race.
+    /// Misalignment of the frame of a fixed or hinged race.
     pub misalignment: Misalignment,
 }
 
-/// Rotation vector [0, ry, rz] of a race's frame.
-#[derive(Clone, Copy, Debug, Deserialize)]
+/// Rotation vector [0, ry, rz] of a race's frame, constant or a scripted motion.
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Misalignment {
     /// [rad] about y.
-    pub ry: Angle,
+    #[serde(deserialize_with = "schedule::deserialize::<Angle, _>")]
+    pub ry: Schedule,
     /// [rad] about z.
-    pub rz: Angle,
+    #[serde(deserialize_with = "schedule::deserialize::<Angle, _>")]
+    pub rz: Schedule,
 }
 
-impl Default for Misalignment {
-    fn default() -> Self {
-        Self { ry: Angle(0.0), rz: Angle(0.0) }
-    }
+/// Where the balls start; what is left out is that of rolling in the quasi-static equilibrium.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Start {
+    /// [rad/s] speed at which the balls orbit about the outer race's axis.
+    pub orbital_speed: Option<AngularVelocity>,
+    /// [rad/s] angular velocity of the balls: components axial, radial, and along the orbit.
+    pub ball_angular_velocity: Option<[AngularVelocity; 3]>,
+    /// [m/s] velocity of the inner race's origin, where that is a body.
+    pub inner_velocity: Option<[Velocity; 3]>,
 }
 
 /// One translational direction of the inner race: a force or a displacement.

@@ -26,6 +26,7 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
     Range::closed(1.0, 1e5, "kg/m3").check("race.density", scene.race.density.0)?;
     Range::closed(0.0, 2.0, "").check("friction.ball_race", scene.friction.ball_race)?;
     races(scene)?;
+    start(scene)?;
     let (min, initial, max) = (scene.solver.min_step.0, scene.solver.initial_step.0, scene.solver.max_step.0);
     Range::closed(1e-15, max, "s").check("solver.min_step", min)?;
     Range::closed(min, max, "s").check("solver.initial_step", initial)?;
@@ -171,8 +172,8 @@ fn lands(cage: &CageSection, friction: bool, ball: f64, pitch: f64) -> Result<()
 
 fn races(scene: &Scene) -> Result<(), SceneError> {
     for (section, race) in [("inner", &scene.inner), ("outer", &scene.outer)] {
-        for (key, angle) in [("ry", race.misalignment.ry.0), ("rz", race.misalignment.rz.0)] {
-            Range::closed(-0.2, 0.2, "rad").check(&format!("{section}.misalignment.{key}"), angle)?;
+        for (key, angle) in [("ry", &race.misalignment.ry), ("rz", &race.misalignment.rz)] {
+            check_all(&Range::closed(-0.2, 0.2, "rad"), &format!("{section}.misalignment.{key}"), angle)?;
         }
         if let Some(mass) = race.mass {
             Range::above(0.0, 1e5, "kg").check(&format!("{section}.mass"), mass.0)?;
@@ -180,16 +181,38 @@ fn races(scene: &Scene) -> Result<(), SceneError> {
         for moment in race.inertia.into_iter().flatten() {
             Range::above(0.0, 1e5, "kg m2").check(&format!("{section}.inertia"), moment.0)?;
         }
-        if race.drive == Drive::Wrench && (race.mass.is_none() || race.inertia.is_none()) {
-            let why = "a race driven by a wrench is a rigid body: give its mass and its inertia [Ix, Iy, Iz]";
+        let is_body = matches!(race.drive, Drive::Wrench | Drive::Hinge);
+        if is_body && (race.mass.is_none() || race.inertia.is_none()) {
+            let why = "a race driven by a wrench or on a hinge is a rigid body: give its mass and its inertia [Ix, Iy, \
+                       Iz]";
             return Err(conflict(section, why));
         }
     }
     if scene.outer.drive == Drive::Wrench {
-        return Err(conflict(
-            "outer.drive",
-            "wrench drive is offered for the inner race; allowed: fixed, pose",
-        ));
+        let why = "wrench drive is offered for the inner race; allowed: fixed, pose, hinge";
+        return Err(conflict("outer.drive", why));
+    }
+    if scene.inner.drive == Drive::Hinge {
+        let why = "a hinge is offered for the outer race; hold the inner race by displacements and rotations in \
+                   [load] under drive = \"wrench\"";
+        return Err(conflict("inner.drive", why));
+    }
+    Ok(())
+}
+
+fn start(scene: &Scene) -> Result<(), SceneError> {
+    let start = &scene.start;
+    if let Some(speed) = start.orbital_speed {
+        Range::closed(-1e5, 1e5, "rad/s").check("start.orbital_speed", speed.0)?;
+    }
+    for component in start.ball_angular_velocity.into_iter().flatten() {
+        Range::closed(-1e6, 1e6, "rad/s").check("start.ball_angular_velocity", component.0)?;
+    }
+    for component in start.inner_velocity.into_iter().flatten() {
+        Range::closed(-1e4, 1e4, "m/s").check("start.inner_velocity", component.0)?;
+    }
+    if start.inner_velocity.is_some() && scene.inner.drive != Drive::Wrench {
+        return Err(conflict("start.inner_velocity", "needs inner.drive = \"wrench\""));
     }
     Ok(())
 }

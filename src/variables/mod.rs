@@ -79,6 +79,10 @@ pub enum RaceQuantity {
     Speed,
     /// Torque that keeps it.
     DriveTorque,
+    /// Force of the hinge on the race.
+    ReactionForce(usize),
+    /// Moment of the hinge on the race.
+    ReactionMoment(usize),
 }
 
 type FromOutputs = fn(&Outputs) -> f64;
@@ -357,6 +361,8 @@ fn race_value(
         RaceQuantity::Moment(i) | RaceQuantity::AppliedMoment(i) => wrench.moment[i],
         RaceQuantity::Speed => input.speed,
         RaceQuantity::DriveTorque => output.drive_torque,
+        RaceQuantity::ReactionForce(i) => output.reaction.force[i],
+        RaceQuantity::ReactionMoment(i) => output.reaction.moment[i],
     }
 }
 
@@ -380,6 +386,8 @@ fn set_race_value(quantity: RaceQuantity, value: f64, rate: f64, input: &mut Rac
         | RaceQuantity::Angle(_)
         | RaceQuantity::Force(_)
         | RaceQuantity::Moment(_)
-        | RaceQuantity::DriveTorque => {}
+        | RaceQuantity::DriveTorque
+        | RaceQuantity::ReactionForce(_)
+        | RaceQuantity::ReactionMoment(_) => {}
     }
 }

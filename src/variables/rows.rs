@@ -98,7 +98,7 @@ impl Variables {
         let of = |unit, causality, nominal| Kin { unit, causality, nominal };
         let motion = match drive {
             Drive::Pose => Some(Causality::Input),
-            Drive::Wrench => Some(Causality::Output),
+            Drive::Wrench | Drive::Hinge => Some(Causality::Output),
             Drive::Fixed => None,
         };
         if let Some(causality) = motion {
@@ -115,16 +115,23 @@ impl Variables {
         self.add_vector(race, Q::Force, force, of(NEWTON, output, 1e3));
         let moment = ("moment", "moment that the bearing exerts about the origin of");
         self.add_vector(race, Q::Moment, moment, of(NEWTON_METRE, output, 1.0));
-        if drive == Drive::Wrench {
+        let prefix = race.prefix();
+        let torque = format!("torque that keeps the {prefix} race at its prescribed speed");
+        if drive == Drive::Hinge {
+            let force = ("reaction_force", "force of the hinge on");
+            self.add_vector(race, Q::ReactionForce, force, of(NEWTON, output, 1e3));
+            let moment = ("reaction_moment", "moment of the hinge and its drive about the origin of");
+            self.add_vector(race, Q::ReactionMoment, moment, of(NEWTON_METRE, output, 1.0));
+            let source = Source::Race(race, Q::DriveTorque);
+            self.add(format!("{prefix}.drive_torque"), NEWTON_METRE, output, 0.1, torque, source);
+        } else if drive == Drive::Wrench {
             let force = ("applied_force", "external force on");
             self.add_vector(race, Q::AppliedForce, force, of(NEWTON, input, 1e3));
             let moment = ("applied_moment", "external moment about the origin of");
             self.add_vector(race, Q::AppliedMoment, moment, of(NEWTON_METRE, input, 1.0));
-            let prefix = race.prefix();
             let speed = format!("prescribed spin of the {prefix} race about its own axis");
             let source = Source::Race(race, Q::Speed);
             self.add(format!("{prefix}.speed"), RADIAN_PER_SECOND, input, 100.0, speed, source);
-            let torque = format!("torque that keeps the {prefix} race at its prescribed speed");
             let source = Source::Race(race, Q::DriveTorque);
             self.add(format!("{prefix}.drive_torque"), NEWTON_METRE, output, 0.1, torque, source);
         }
