@@ -42,6 +42,7 @@ impl CageModel {
         let pocket = PocketModel::new(
             bearing.ball.radius,
             clearance,
+            (section.guided_by == Guidance::Balls).then_some(0.5 * bearing.pitch_diameter),
             &Pair::new(materials),
             friction(scene.friction.ball_cage),
             damping,

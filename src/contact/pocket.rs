@@ -1,9 +1,11 @@
-//! Contact of a ball with its cage pocket: a cylinder about the radial direction, slightly wider than the ball.
+//! Contact of a ball with its cage pocket, slightly wider than the ball.
 //!
-//! The pocket leaves the ball free along its axis and holds it all around it, so that balls carry the cage along the
-//! bearing axis and, all together, radially. Hertz contact of constant curvatures; Kalker's linear coefficients are
-//! computed once for rolling along the pocket's axis (where the ball's own spin drags the surface) and saturated
-//! as a vector at mu Q (design of the law `saturated`).
+//! Where lands guide the cage, a pocket is a cylinder about the radial direction: the ball is free along it. Where the
+//! balls guide, it is a sphere, which holds the cage radially too (cylinders would not: balls that bunch together let the
+//! cage go off centre without any force). Hertz contact of constant curvatures; Kalker's linear coefficients are
+//! computed once, for rolling along a cylinder's axis (where the ball's own spin drags the surface), and saturated as a
+//! vector at mu Q (design of the law `saturated`). In a sphere the patch is round and has no such direction:
+//! longitudinal and lateral coefficient are both their mean, and spin does not couple.
 
 use nalgebra::Vector3;
 
@@ -23,6 +25,8 @@ pub struct PocketModel {
     pub half_clearance: f64,
     /// [m] ball radius.
     ball_radius: f64,
+    /// [m] radius of the circle of pocket centres, where pockets are spheres.
+    sphere_circle: Option<f64>,
     shape: ShapeAt<f64>,
     /// [-] friction coefficient.
     friction: f64,
@@ -31,27 +35,28 @@ pub struct PocketModel {
 }
 
 impl PocketModel {
-    /// A pocket of a diametral clearance [m].
+    /// A pocket of a diametral clearance [m]: a cylinder, or a sphere whose centre is at a radius [m] of the cage.
     ///
     /// # Errors
     /// If the contact ellipse is too slender for Kalker's linear theory: the clearance is too small.
     pub fn new(
         ball_radius: f64,
         clearance: f64,
+        sphere_circle: Option<f64>,
         materials: &Pair,
         friction: f64,
         damping: f64,
     ) -> Result<Self, LinearError> {
         let half_clearance = 0.5 * clearance;
         let around = 1.0 / ball_radius - 1.0 / (ball_radius + half_clearance);
-        let shape = ShapeAt::new(
-            1.0 / ball_radius,
-            around,
-            materials.compliance,
-            materials.shear_modulus,
-            materials.poisson_ratio,
-        )?;
-        Ok(Self { half_clearance, ball_radius, shape, friction, damping })
+        let along = if sphere_circle.is_some() { around } else { 1.0 / ball_radius };
+        let Pair { compliance, shear_modulus, poisson_ratio } = *materials;
+        let mut shape = ShapeAt::new(along, around, compliance, shear_modulus, poisson_ratio)?;
+        if sphere_circle.is_some() {
+            let mean = 0.5 * (shape.longitudinal + shape.lateral);
+            (shape.longitudinal, shape.lateral, shape.coupling) = (mean, mean, 0.0);
+        }
+        Ok(Self { half_clearance, ball_radius, sphere_circle, shape, friction, damping })
     }
 
     /// [J] elastic energy at an approach [m].
@@ -64,7 +69,14 @@ impl PocketModel {
     pub fn approach(&self, ball: &BallMotion<f64>, cage: &BodyMotion<f64>, direction: [f64; 2]) -> f64 {
         let axis = pocket_axis(cage, direction);
         let offset = ball.position - cage.position;
-        (offset - axis * axis.dot(&offset)).norm() - self.half_clearance
+        self.off_centre(&offset, &axis).norm() - self.half_clearance
+    }
+
+    /// Where a ball is off the pocket's axis or centre.
+    #[inline(always)]
+    fn off_centre<S: Scalar>(&self, offset: &Vector3<S>, axis: &Vector3<S>) -> Vector3<S> {
+        let along = self.sphere_circle.map_or_else(|| dot(axis, offset), S::constant);
+        offset - axis * along
     }
 
     /// Forces between ball (first) and cage (second); `None` where they do not touch.
@@ -76,15 +88,15 @@ impl PocketModel {
         direction: [f64; 2],
     ) -> Option<BodyContact<S>> {
         // geometry: the pocket's axis, and where the ball is off it
-        let x = pocket_axis(cage, direction);
+        let axis = pocket_axis(cage, direction);
         let offset = ball.position - cage.position;
-        let off_axis = offset - x * dot(&x, &offset);
-        let distance = dot(&off_axis, &off_axis).sqrt();
+        let off_centre = self.off_centre(&offset, &axis);
+        let distance = dot(&off_centre, &off_centre).sqrt();
         let approach = distance - S::constant(self.half_clearance);
         if approach.value() <= 0.0 {
             return None;
         }
-        let normal = off_axis.map(|component| component / distance);
+        let normal = off_centre.map(|component| component / distance);
 
         // velocities of both surfaces at the contact point, and of the contact point itself
         let arm = normal.map(|component| component.scale(self.ball_radius));
@@ -94,7 +106,10 @@ impl PocketModel {
         let slip = ball_surface - cage_surface;
         let approach_rate = dot(&normal, &slip);
         let seen = ball.velocity - cage.velocity - cross(&cage.angular_velocity, &offset);
-        let around = seen - x * dot(&x, &seen) - normal * dot(&normal, &seen);
+        let mut around = seen - normal * dot(&normal, &seen);
+        if self.sphere_circle.is_none() {
+            around -= axis * dot(&axis, &seen);
+        }
         let normal_rate =
             around.map(|component| component / distance) + cross(&cage.angular_velocity, &normal);
         let contact_point = ball.velocity + normal_rate.map(|component| component.scale(self.ball_radius));
@@ -106,6 +121,7 @@ impl PocketModel {
         let load = damped(elastic, approach_rate, self.damping);
 
         // creepage in the frame x along the pocket, z from the cage into the ball
+        let x = if self.sphere_circle.is_some() { across(&normal, &axis, &cage.axes[0]) } else { axis };
         let y = cross(&x, &normal);
         let rolling = contact_point - (ball_surface + cage_surface).map(|c| c.scale(0.5));
         let (rolling_x, rolling_y) = (dot(&rolling, &x), dot(&rolling, &y));
@@ -153,4 +169,13 @@ impl PocketModel {
 #[inline(always)]
 fn pocket_axis<S: Scalar>(cage: &BodyMotion<S>, [y, z]: [f64; 2]) -> Vector3<S> {
     cage.axes[1].map(|component| component.scale(y)) + cage.axes[2].map(|component| component.scale(z))
+}
+
+/// A unit vector across a normal, in the plane of the normal and the axis, or of the other axis near the first.
+#[inline(always)]
+fn across<S: Scalar>(normal: &Vector3<S>, axis: &Vector3<S>, other: &Vector3<S>) -> Vector3<S> {
+    let axis = if dot(normal, axis).value().abs() < 0.8 { axis } else { other };
+    let across = axis - normal * dot(normal, axis);
+    let length = dot(&across, &across).sqrt();
+    across.map(|component| component / length)
 }
