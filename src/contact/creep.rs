@@ -94,10 +94,7 @@ impl<S: Scalar> LinearTheory<S> {
     pub fn forces(&self, law: Law<'_>, creepage: &Creepage<S>) -> CreepForces<S> {
         let flat = match law {
             Law::Frictionless => [S::zero(); 3],
-            Law::Linear => {
-                let q = self.over_limits(creepage);
-                return self.dimensional(q, S::zero());
-            }
+            Law::Linear => return self.linear(creepage),
             Law::Regularised(parameters) => self.regularised(parameters, creepage),
             Law::Saturated => self.saturated(creepage),
             Law::Table(table) => {
@@ -131,15 +128,15 @@ impl<S: Scalar> LinearTheory<S> {
         (per_force, S::one() / (self.moment_limit + S::constant(MOMENT_FLOOR)))
     }
 
-    /// Linear theory (paper eq. 14) over the limits of force and moment: unbounded.
+    /// Linear theory (paper eq. 14): unbounded.
     #[inline(always)]
-    fn over_limits(&self, creepage: &Creepage<S>) -> [S; 3] {
-        let (per_force, per_moment) = self.per_limits();
-        [
-            self.longitudinal * creepage.longitudinal * per_force,
-            (self.lateral * creepage.lateral + self.coupling * creepage.spin) * per_force,
-            (self.spin * creepage.spin - self.coupling * creepage.lateral) * per_moment,
-        ]
+    fn linear(&self, creepage: &Creepage<S>) -> CreepForces<S> {
+        CreepForces {
+            longitudinal: self.longitudinal * creepage.longitudinal,
+            lateral: self.lateral * creepage.lateral + self.coupling * creepage.spin,
+            spin_moment: self.spin * creepage.spin - self.coupling * creepage.lateral,
+            second_moment: S::zero(),
+        }
     }
 
     /// Linear theory without its coupling over the limits, for a contact that rolls along +x: rolling against the x
@@ -199,7 +196,10 @@ impl<S: Scalar> LinearTheory<S> {
     /// part of the norm because large spin must take the lateral force away, not saturate it.
     #[inline(always)]
     fn saturated(&self, creepage: &Creepage<S>) -> [S; 3] {
-        let [x, y, z] = self.over_limits(creepage);
+        let linear = self.linear(creepage);
+        let (per_force, per_moment) = self.per_limits();
+        let (x, y) = (linear.longitudinal * per_force, linear.lateral * per_force);
+        let z = linear.spin_moment * per_moment;
         let factor = saturation((x.square() + y.square() + z.square()).sqrt());
         [x * factor, y * factor, z * factor]
     }
