@@ -23,6 +23,12 @@ const BALL_RADIUS: f64 = 6.35e-3;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), Box<dyn Error>>;
+type OfLaw = fn(&RollingForces) -> f64;
+type OfCase = fn(&Case) -> f64;
+/// Label of an axis, a case's place on it, and how a contact is put there.
+type Axis = (&'static str, OfCase, fn(&mut RollingContact, f64));
+/// Name of a force, and what a law and the data say of it.
+type Quantity = (&'static str, OfLaw, OfCase);
 
 /// A case of the independent data.
 #[derive(Clone)]
@@ -158,8 +164,8 @@ fn adhesion_map(case: &Case, area: &Area<'_>) -> Drawn {
 fn compare(
     title: &str,
     cases: &[Case],
-    x: (&'static str, fn(&Case) -> f64, fn(&mut RollingContact, f64)),
-    quantities: &[(&str, fn(&RollingForces) -> f64, fn(&Case) -> f64)],
+    x: Axis,
+    quantities: &[Quantity],
     laws: &[(&str, Law)],
 ) -> Result<Panel, Box<dyn Error>> {
     let (label, place, set) = x;
@@ -231,18 +237,17 @@ fn main() -> Drawn {
     let regularised = ("regularised", Law::Simulated(CreepLaw::Regularised));
     let table_law = ("table", Law::Simulated(CreepLaw::KalkerTable));
     let saturated = ("saturated", Law::Simulated(CreepLaw::Saturated));
-    type Quantity = (&'static str, fn(&RollingForces) -> f64, fn(&Case) -> f64);
     let fx: Quantity = ("F_x", |f| f.fx, |case| case.result.fx);
     let fy: Quantity = ("F_y", |f| f.fy, |case| case.result.fy);
     let mz: Quantity = ("M_z/c", |f| f.mz, |case| case.result.mz);
-    let by_x: (_, fn(&Case) -> f64, fn(&mut RollingContact, f64)) =
+    let by_x: Axis =
         ("longitudinal creepage c_x", |case| case.contact.creep_x, |contact, x| contact.creep_x = x);
-    let by_y: (_, fn(&Case) -> f64, fn(&mut RollingContact, f64)) = (
+    let by_y: Axis = (
         "lateral creepage c_y, with c_x = 5e-4",
         |case| case.contact.creep_y,
         |contact, x| contact.creep_y = x,
     );
-    let by_spin: (_, fn(&Case) -> f64, fn(&mut RollingContact, f64)) = (
+    let by_spin: Axis = (
         "spin [1/m], with c_x = 5e-4 and c_y = 2e-4",
         |case| case.contact.spin,
         |contact, x| contact.spin = x,
