@@ -9,6 +9,8 @@ use roulement::kalker::linear::Scales;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::kalker::table::CreepTable;
 use roulement::kalker::{Patch, ScaledCreepage};
+use roulement::scene::Scene;
+use roulement::simulation::Simulation;
 
 /// Ball of 6.35 mm radius in an inner groove of conformity 0.52 (tests/data/contact/heathcote.csv): [m], [Pa].
 const A: f64 = 0.13119e-3;
@@ -160,4 +162,27 @@ fn closed_form_free_rolling_in_complete_sliding() {
     // Slip changes its sign between two strips: the place is known to half their distance.
     assert!((line - 0.347296).abs() < 0.5 * PI / 24.0, "{line}");
     assert!((power / 0.161142 - 1.0).abs() < 0.015, "{power}");
+}
+
+/// A radially loaded deep-groove bearing after 10 ms: friction torque [N m], and energy balance over what was lost.
+fn radial(effects: &str) -> (f64, f64) {
+    let text = include_str!("../scenes/radial.toml").replace("creep = \"saturated\"", effects);
+    let scene = Scene::parse(&text).unwrap();
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let start = simulation.outputs().clone();
+    simulation.advance(10e-3).unwrap();
+    let end = simulation.outputs();
+    let balance = end.work - end.dissipated - (end.stored_energy - start.stored_energy);
+    (end.friction_torque, balance / end.dissipated)
+}
+
+#[test]
+fn invariant_energy_and_torque_of_a_radial_bearing() {
+    for law in ["saturated", "kalker_table"] {
+        let (flat, _) = radial(&format!("creep = \"{law}\""));
+        let (bent, balance) = radial(&format!("creep = \"{law}\"\nheathcote_slip = true"));
+        println!("{law}: friction torque {flat:.2e} N m flat, {bent:.4} N m bent, balance {balance:.1e}");
+        assert!(bent > 5e-3 && flat.abs() < 0.2 * bent, "{law}: {flat} {bent}");
+        assert!(balance.abs() < 1e-2, "{law}: {balance}");
+    }
 }
