@@ -14,7 +14,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, MatrixView};
 use thiserror::Error;
 
 use super::linear::{LinearError, adhesion_tractions, leading_edge, resultants};
@@ -27,8 +27,10 @@ const SLIP_WEIGHT: f64 = 2.0;
 const EDGE_WEIGHT: f64 = 8.0;
 /// Iterations of one solve; 6 to 10 are usual.
 const MAX_ITERATIONS: u32 = 200;
-/// [-] relative decrease of the objective that ends the iteration.
+/// [-] relative decrease of the objective, promised or reached by Newton's step, that ends the iteration with it.
 const DECREASE: f64 = 1e-11;
+/// [-] objective over the square of creepages (up to sliding) at which Coulomb's law holds to twelve digits of traction.
+const NEGLIGIBLE: f64 = 1e-24;
 /// [-] relative decrease that is enough after `PATIENCE` iterations.
 const IDLE_DECREASE: f64 = 1e-7;
 const PATIENCE: u32 = 30;
@@ -71,10 +73,14 @@ pub struct Kalker {
     pub(super) points: Vec<Point>,
     /// Traction polynomials at the points: one row a point, one column a monomial.
     pub(super) values: DMatrix<f64>,
+    /// The same, one column a point.
+    monomial_values: DMatrix<f64>,
     /// Slip at the points by all coefficients: rows x of each point, then y.
     pub(super) slips: DMatrix<f64>,
     /// Arguments of the projection at the points by all coefficients: one column each of x and y.
     arguments: DMatrix<f64>,
+    /// Leading-edge rows, and their square.
+    edge: DMatrix<f64>,
     edge_square: DMatrix<f64>,
     /// Linear solutions of unit creepages.
     adhesion: DMatrix<f64>,
@@ -140,8 +146,36 @@ struct Expansion {
     gauss_newton: DMatrix<f64>,
     /// What the bend of the projection adds to it.
     bend: DMatrix<f64>,
-    /// Derivative of the gradient by the creepages.
-    by_creepage: DMatrix<f64>,
+    /// Derivatives of the weighted residuals, one column each of x and y at every point.
+    jacobian: DMatrix<f64>,
+    /// Slope of the projection at every point.
+    slopes: Vec<[f64; 3]>,
+    /// Points that slide, and the weighted bend of the projection there.
+    sliding: Vec<(usize, [f64; 3])>,
+}
+
+/// The transpose, without a copy.
+fn transposed(matrix: &DMatrix<f64>) -> MatrixView<'_, f64, Dyn, Dyn, Dyn, Dyn> {
+    let (rows, columns) = matrix.shape();
+    MatrixView::from_slice_with_strides_generic(matrix.as_slice(), Dyn(columns), Dyn(rows), Dyn(rows), Dyn(1))
+}
+
+/// A column as a slice.
+fn column(matrix: &DMatrix<f64>, index: usize) -> &[f64] {
+    &matrix.as_slice()[index * matrix.nrows()..(index + 1) * matrix.nrows()]
+}
+
+/// A column as a slice.
+fn column_mut(matrix: &mut DMatrix<f64>, index: usize) -> &mut [f64] {
+    let rows = matrix.nrows();
+    &mut matrix.as_mut_slice()[index * rows..(index + 1) * rows]
+}
+
+/// `result = by_a a + by_b b`.
+fn combine(result: &mut [f64], by_a: f64, a: &[f64], by_b: f64, b: &[f64]) {
+    for ((entry, a), b) in result.iter_mut().zip(a).zip(b) {
+        *entry = by_a * a + by_b * b;
+    }
 }
 
 /// Second derivative of `w P(v)` with the projection P on the disc of radius `bound` (symmetric: xx, xy, yy).
@@ -188,7 +222,7 @@ impl Kalker {
         adhesion.rows_mut(0, n).copy_from(&tractions.rows(0, n));
         adhesion.rows_mut(n, n).copy_from(&tractions.rows(start_basis.len(), n));
         let stiffness = load_displacement(&patch, &basis);
-        let (radial, angular) = (degree + 3, 4 * degree + 8);
+        let (radial, angular) = (degree + 2, 3 * degree + 8);
         let mut points = Vec::with_capacity(radial * angular);
         for (square, share) in gauss_legendre(radial) {
             for k in 0..angular {
@@ -234,10 +268,12 @@ impl Kalker {
         Ok(Self {
             patch,
             points,
+            monomial_values: values.transpose(),
             values,
             slips,
             arguments,
-            edge_square: edge.transpose() * edge,
+            edge_square: edge.transpose() * &edge,
+            edge,
             adhesion,
             resultants: resultants(&patch, &basis) * (1.5 / PI),
             monomials: n,
@@ -267,12 +303,32 @@ impl Kalker {
             .collect()
     }
 
+    /// Traction and argument of the projection at every point: components x, y, in turn.
+    fn arguments_at(&self, z: &DVector<f64>, h: &ScaledCreepage) -> (DVector<f64>, DVector<f64>) {
+        let (n, rows) = (self.monomials, self.points.len());
+        let mut tractions = DVector::zeros(2 * rows);
+        for (k, start) in [(0, 0), (1, n)] {
+            let component = self.monomial_values.tr_mul(&z.rows(start, n));
+            for (i, value) in component.iter().enumerate() {
+                tractions[2 * i + k] = *value;
+            }
+        }
+        let mut arguments = self.arguments.tr_mul(z);
+        for (i, point) in self.points.iter().enumerate() {
+            let rigid = self.rigid(h, point);
+            arguments[2 * i] += SLIP_WEIGHT * rigid[0];
+            arguments[2 * i + 1] += SLIP_WEIGHT * rigid[1];
+        }
+        (tractions, arguments)
+    }
+
     /// The objective at z.
     fn objective(&self, z: &DVector<f64>, h: &ScaledCreepage) -> f64 {
-        let mut sum = (&self.edge_square * z).dot(z);
-        for (point, (f, s)) in self.points.iter().zip(self.fields(z, h)) {
-            let (p, _) = project([f[0] + SLIP_WEIGHT * s[0], f[1] + SLIP_WEIGHT * s[1]], point.bound);
-            sum += point.weight * ((f[0] - p[0]).powi(2) + (f[1] - p[1]).powi(2));
+        let (f, v) = self.arguments_at(z, h);
+        let mut sum = (&self.edge * z).norm_squared();
+        for (i, point) in self.points.iter().enumerate() {
+            let (p, _) = project([v[2 * i], v[2 * i + 1]], point.bound);
+            sum += point.weight * ((f[2 * i] - p[0]).powi(2) + (f[2 * i + 1] - p[1]).powi(2));
         }
         sum
     }
@@ -280,52 +336,82 @@ impl Kalker {
     /// Derivatives of the objective at z.
     fn expand(&self, z: &DVector<f64>, h: &ScaledCreepage) -> Expansion {
         let (n, rows) = (self.monomials, self.points.len());
+        let (f, v) = self.arguments_at(z, h);
         let mut jacobian = DMatrix::zeros(2 * n, 2 * rows);
-        let mut bent = DMatrix::zeros(2 * n, 2 * rows);
         let mut residual = DVector::zeros(2 * rows);
-        let mut by_creepage = DMatrix::zeros(2 * rows, 4);
-        let mut bent_by_creepage = DMatrix::zeros(2 * rows, 4);
-        let (a, b) = (self.patch.axis_ratio.sqrt(), 1.0 / self.patch.axis_ratio.sqrt());
-        for (i, (point, (f, s))) in self.points.iter().zip(self.fields(z, h)).enumerate() {
-            let k = SLIP_WEIGHT;
-            let argument = [f[0] + k * s[0], f[1] + k * s[1]];
-            let (p, [xx, xy, yy]) = project(argument, point.bound);
+        let mut slopes = Vec::with_capacity(rows);
+        let mut sliding = Vec::with_capacity(rows);
+        for (i, point) in self.points.iter().enumerate() {
+            let argument = [v[2 * i], v[2 * i + 1]];
+            let (p, slope) = project(argument, point.bound);
+            let [xx, xy, yy] = slope;
+            slopes.push(slope);
             let root = point.weight.sqrt();
-            let r = [f[0] - p[0], f[1] - p[1]];
-            (residual[2 * i], residual[2 * i + 1]) = (root * r[0], root * r[1]);
-            let (ax, ay) = (self.arguments.column(2 * i), self.arguments.column(2 * i + 1));
-            let mut row = jacobian.column_mut(2 * i);
-            row.axpy(-root * xx, &ax, 0.0);
-            row.axpy(-root * xy, &ay, 1.0);
-            row.rows_mut(0, n).axpy(root, &self.values.row(i).transpose(), 1.0);
-            let mut row = jacobian.column_mut(2 * i + 1);
-            row.axpy(-root * xy, &ax, 0.0);
-            row.axpy(-root * yy, &ay, 1.0);
-            row.rows_mut(n, n).axpy(root, &self.values.row(i).transpose(), 1.0);
-            // second derivative of -r P(argument)
-            let [hxx, hxy, hyy] = projection_bend(argument, point.bound, r).map(|h| -point.weight * h);
-            if hxx != 0.0 || hyy != 0.0 {
-                let mut row = bent.column_mut(2 * i);
-                row.axpy(hxx, &ax, 0.0);
-                row.axpy(hxy, &ay, 1.0);
-                let mut row = bent.column_mut(2 * i + 1);
-                row.axpy(hxy, &ax, 0.0);
-                row.axpy(hyy, &ay, 1.0);
+            let r = [f[2 * i] - p[0], f[2 * i + 1] - p[1]];
+            let values = column(&self.monomial_values, i);
+            let (ax, ay) = (column(&self.arguments, 2 * i), column(&self.arguments, 2 * i + 1));
+            for (k, [by_x, by_y]) in [[xx, xy], [xy, yy]].into_iter().enumerate() {
+                residual[2 * i + k] = root * r[k];
+                let column = column_mut(&mut jacobian, 2 * i + k);
+                combine(column, -root * by_x, ax, -root * by_y, ay);
+                for (entry, value) in column[k * n..(k + 1) * n].iter_mut().zip(values) {
+                    *entry += root * value;
+                }
             }
-            let (x, y) = (a * point.x, b * point.y);
-            for (column, slip) in [[1.0, 0.0], [0.0, 1.0], [-y, x], [-y * y, 0.0]].into_iter().enumerate() {
-                by_creepage[(2 * i, column)] = -root * k * (xx * slip[0] + xy * slip[1]);
-                by_creepage[(2 * i + 1, column)] = -root * k * (xy * slip[0] + yy * slip[1]);
-                (bent_by_creepage[(2 * i, column)], bent_by_creepage[(2 * i + 1, column)]) =
-                    (k * slip[0], k * slip[1]);
+            if argument[0].hypot(argument[1]) > point.bound {
+                // second derivative of -r P(argument)
+                sliding.push((i, projection_bend(argument, point.bound, r).map(|bend| -point.weight * bend)));
             }
         }
+        let mut bent = DMatrix::zeros(2 * n, 2 * sliding.len());
+        let mut straight = DMatrix::zeros(2 * n, 2 * sliding.len());
+        for (to, (i, [xx, xy, yy])) in sliding.iter().enumerate() {
+            let (ax, ay) = (column(&self.arguments, 2 * i), column(&self.arguments, 2 * i + 1));
+            for (k, (by_x, by_y, own)) in [(xx, xy, ax), (xy, yy, ay)].into_iter().enumerate() {
+                column_mut(&mut straight, 2 * to + k).copy_from_slice(own);
+                combine(column_mut(&mut bent, 2 * to + k), *by_x, ax, *by_y, ay);
+            }
+        }
+        let mut gauss_newton = self.edge_square.clone();
+        gauss_newton.gemm(1.0, &jacobian, &transposed(&jacobian), 1.0);
+        let mut bend = DMatrix::zeros(2 * n, 2 * n);
+        bend.gemm(1.0, &straight, &transposed(&bent), 0.0);
         Expansion {
             gradient: &jacobian * &residual + &self.edge_square * z,
-            gauss_newton: &jacobian * jacobian.transpose() + &self.edge_square,
-            by_creepage: jacobian * by_creepage + &bent * bent_by_creepage,
-            bend: &self.arguments * bent.transpose(),
+            gauss_newton,
+            bend,
+            jacobian,
+            slopes,
+            sliding,
         }
+    }
+
+    /// Derivatives of the objective's gradient by the creepages.
+    fn by_creepage(&self, expansion: &Expansion) -> DMatrix<f64> {
+        let rows = self.points.len();
+        let (a, b) = (self.patch.axis_ratio.sqrt(), 1.0 / self.patch.axis_ratio.sqrt());
+        let slips = |point: &Point| {
+            let (x, y) = (a * point.x, b * point.y);
+            [[1.0, 0.0], [0.0, 1.0], [-y, x], [-y * y, 0.0]]
+                .map(|slip| slip.map(|component| SLIP_WEIGHT * component))
+        };
+        let mut by_residual = DMatrix::zeros(2 * rows, 4);
+        for (i, (point, [xx, xy, yy])) in self.points.iter().zip(&expansion.slopes).enumerate() {
+            let root = point.weight.sqrt();
+            for (column, slip) in slips(point).into_iter().enumerate() {
+                by_residual[(2 * i, column)] = -root * (xx * slip[0] + xy * slip[1]);
+                by_residual[(2 * i + 1, column)] = -root * (xy * slip[0] + yy * slip[1]);
+            }
+        }
+        let mut result = &expansion.jacobian * by_residual;
+        for (i, [xx, xy, yy]) in &expansion.sliding {
+            for (column, slip) in slips(&self.points[*i]).into_iter().enumerate() {
+                let mut column = result.column_mut(column);
+                column.axpy(xx * slip[0] + xy * slip[1], &self.arguments.column(2 * i), 1.0);
+                column.axpy(xy * slip[0] + yy * slip[1], &self.arguments.column(2 * i + 1), 1.0);
+            }
+        }
+        result
     }
 
     /// Solves for creepages, from the linear solution or from the coefficients of neighbouring creepages.
@@ -358,17 +444,24 @@ impl Kalker {
         while iterations < MAX_ITERATIONS {
             let Expansion { gradient, gauss_newton, bend, .. } = self.expand(&z, &h);
             let before = objective;
+            let enough = DECREASE * before + NEGLIGIBLE * size.min(1.0).powi(2);
             iterations += 1;
             // Newton's own step where the objective is convex: it ends the iteration at the minimum to rounding, so
             // that results are a smooth function of the creepages.
             let step = (&gauss_newton + bend).cholesky().map(|factor| factor.solve(&gradient));
             if let Some(step) = step {
+                // What the step still promises; below this, rounding decides whether the objective falls.
+                let last = 0.5 * gradient.dot(&step) <= enough;
                 let trial = &z - step;
                 let reached = self.objective(&trial, &h);
+                if last {
+                    let better = reached <= objective + enough;
+                    return Ok(self.finish(if better { trial } else { z }, &h, iterations));
+                }
                 if reached < objective {
                     (z, objective) = (trial, reached);
                     damping = (damping * 0.1).max(1e-12);
-                    if before - objective <= DECREASE * before {
+                    if before - objective <= enough {
                         return Ok(self.finish(z, &h, iterations));
                     }
                     continue;
@@ -431,8 +524,9 @@ impl Kalker {
     /// By implicit differentiation of the minimum: where its gradient stays zero, the coefficients follow.
     /// None where the minimum is not isolated.
     pub fn derivatives(&self, solution: &Solution, creepage: &ScaledCreepage) -> Option<[[f64; 4]; 4]> {
-        let Expansion { gauss_newton, bend, by_creepage, .. } = self.expand(&solution.coefficients, creepage);
-        let follow = (gauss_newton + bend).lu().solve(&-by_creepage)?;
+        let expansion = self.expand(&solution.coefficients, creepage);
+        let by_creepage = self.by_creepage(&expansion);
+        let follow = (expansion.gauss_newton + expansion.bend).lu().solve(&-by_creepage)?;
         let net = &self.resultants * follow;
         Some(std::array::from_fn(|i| std::array::from_fn(|k| net[(i, k)])))
     }
