@@ -461,6 +461,9 @@ impl Instance {
         let (Some(phase), true) = (phase, fits) else {
             return error("the FMU state is of another scene");
         };
+        if !sizes.into_iter().flatten().chain([&state.last_step]).all(|value| value.is_finite()) {
+            return error("the FMU state holds a value that is not a number");
+        }
         let mut rebuilt = None;
         if self.variables.parameters_differ(&state.applied, &self.applied) {
             rebuilt = Some(self.with_parameters(&state.applied)?);
