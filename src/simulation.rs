@@ -226,7 +226,8 @@ impl Simulation {
         let same = snapshot.state.balls.len() == self.state.balls.len()
             && snapshot.state.cage.is_some() == self.state.cage.is_some()
             && constraints(&snapshot.state) == constraints(&self.state)
-            && snapshot.state.control.fits(&self.state.control);
+            && snapshot.state.control.fits(&self.state.control)
+            && snapshot.state.statistics.plausible();
         if same {
             self.inputs = snapshot.inputs;
             self.state.clone_from(&snapshot.state);

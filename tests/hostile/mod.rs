@@ -1,5 +1,4 @@
 //! Scene files and serialised states that nobody should write: how they are altered, and what they may and may not do.
-//! The fuzz targets in `fuzz/` use the same checks.
 #![allow(dead_code, clippy::unwrap_used, unsafe_code)]
 #![allow(clippy::undocumented_unsafe_blocks)] // every pointer in here lives through its call
 
@@ -157,6 +156,7 @@ pub struct StateReader {
     package: Package,
     component: Component,
     outputs: Vec<u32>,
+    input: u32,
     blob: Vec<u8>,
     next: Vec<u8>,
 }
@@ -170,8 +170,9 @@ impl StateReader {
             assert_eq!(unsafe { fmi2DoStep(component, f64::from(k) * STEP, STEP, 0) }, Status::Ok);
         }
         let outputs = package.references(Causality::Output);
+        let input = package.references(Causality::Input)[0];
         let blob = state_bytes(component);
-        let mut reader = Self { package, component, outputs, blob, next: vec![] };
+        let mut reader = Self { package, component, outputs, input, blob, next: vec![] };
         assert_eq!(reader.read(&reader.blob), Status::Ok);
         reader.next = state_bytes(component);
         reader
@@ -241,6 +242,7 @@ impl StateReader {
             }
             for status in [
                 fmi2GetRealOutputDerivatives(c, r, n, orders.as_ptr(), values.as_mut_ptr()),
+                fmi2GetDirectionalDerivative(c, r, 3, &self.input, 1, &1.0, values.as_mut_ptr()),
                 fmi2GetRealStatus(c, LAST_SUCCESSFUL_TIME, &mut time),
                 fmi2DoStep(c, time, STEP, 0),
                 fmi2GetReal(c, r, n, values.as_mut_ptr()),
