@@ -1,5 +1,6 @@
 //! A running bearing: model, state, inputs, and the one function that advances it.
 
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 use nalgebra::{SVector, Vector3};
@@ -65,6 +66,14 @@ pub enum SimulationError {
     /// The Newton matrix of a step that neighbours were to follow is singular.
     #[error("at {0} s the Newton matrix is singular")]
     Singular(f64),
+    /// So late that a step no longer changes the time.
+    #[error("at {time} s a step of {step} s is lost in rounding: begin nearer to time 0")]
+    LostInRounding {
+        /// [s] time reached.
+        time: f64,
+        /// [s] step.
+        step: f64,
+    },
     /// A step end that is not a time after the present one.
     #[error("cannot advance from {from} s to {to} s")]
     Backwards {
@@ -216,7 +225,9 @@ impl Simulation {
         let constraints = |state: &State| state.races.each_ref().map(|race| race.multipliers.len());
         let same = snapshot.state.balls.len() == self.state.balls.len()
             && snapshot.state.cage.is_some() == self.state.cage.is_some()
-            && constraints(&snapshot.state) == constraints(&self.state);
+            && constraints(&snapshot.state) == constraints(&self.state)
+            && snapshot.state.control.fits(&self.state.control)
+            && snapshot.state.statistics.plausible();
         if same {
             self.inputs = snapshot.inputs;
             self.state.clone_from(&snapshot.state);
@@ -317,7 +328,11 @@ impl Simulation {
             let h = self.state.control.step_within(remaining);
             // The last step ends at the communication point to the bit.
             let last = h >= remaining * (1.0 - 1e-9);
-            let boundary = self.boundary(if last { end } else { self.state.time + h });
+            let next = if last { end } else { self.state.time + h };
+            if next.partial_cmp(&self.state.time) != Some(Ordering::Greater) {
+                return Err(SimulationError::LostInRounding { time: self.state.time, step: h });
+            }
+            let boundary = self.boundary(next);
             let start = (!neighbours.is_empty()).then(|| self.state.clone());
             let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
             let (cause, ball) = match tried {

@@ -181,6 +181,28 @@ pub struct Statistics {
     pub polynomial_failures: u64,
 }
 
+impl Statistics {
+    /// Have these been counted, and can they be counted on? For states that come from outside.
+    pub fn plausible(&self) -> bool {
+        // Results show them as exact floating-point numbers.
+        const MOST: u64 = 1 << f64::MANTISSA_DIGITS;
+        let Self {
+            steps,
+            rejected_error,
+            rejected_newton,
+            second_guesses,
+            newton,
+            contact_values,
+            contact_tangents,
+        } = *self;
+        let work = [newton.iterations, newton.factorisations, contact_values, contact_tangents];
+        [steps, rejected_error, rejected_newton, second_guesses]
+            .iter()
+            .chain(&work)
+            .all(|count| *count < MOST)
+    }
+}
+
 /// Everything that changes while the bearing runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {

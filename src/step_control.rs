@@ -74,6 +74,18 @@ impl StepControl {
         self.growth_blocked = STEPS_WITHOUT_GROWTH;
     }
 
+    /// Can a run with these settings be at this point? For states that come from outside.
+    pub fn fits(&self, settings: &Self) -> bool {
+        // No range of steps that a scene may give is wider.
+        const MAX_NOTCHES: i32 = 1000;
+        self.max_step == settings.max_step
+            && self.min_step == settings.min_step
+            && (-MAX_NOTCHES..=0).contains(&self.notch)
+            && self.last_error.is_finite()
+            && self.last_error > 0.0
+            && self.growth_blocked <= STEPS_WITHOUT_GROWTH
+    }
+
     /// Is the present step still allowed?
     pub fn above_minimum(&self) -> bool {
         self.step() >= self.min_step

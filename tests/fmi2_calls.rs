@@ -3,37 +3,15 @@
 #![allow(clippy::undocumented_unsafe_blocks)] // every pointer in here lives through its call
 
 mod fmi2_abi;
+mod random;
 
 use std::ffi::{CStr, c_char, c_int};
 use std::ptr;
 
 use fmi2_abi::*;
+use random::Random;
 use roulement::fmi2::Status;
 use roulement::variables::Causality;
-
-/// Numbers that differ from run to run of a sequence but not from run to run of the test (xorshift, Marsaglia 2003).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
-    }
-    fn pick<T: Copy>(&mut self, list: &[T]) -> T {
-        list[self.below(list.len())]
-    }
-    /// Mostly sensible, sometimes wild.
-    fn number(&mut self, sensible: f64) -> f64 {
-        let wild = [0.0, -1.0, 1e300, -1e300, 1e-300, f64::NAN, f64::INFINITY, 1e9];
-        let factor = 1.0 + 1e-3 * (self.below(2001) as f64 - 1000.0) / 1000.0;
-        if self.below(6) == 0 { self.pick(&wild) } else { sensible * factor }
-    }
-}
 
 /// One importer that knows no manners.
 struct Hooligan<'a> {
@@ -301,7 +279,7 @@ fn sequences(package: &Package, seeds: std::ops::Range<u64>) -> ([u32; 34], [u32
     let nonsense = ptr::without_provenance_mut(0xdead_beef);
     let mut hooligan = Hooligan {
         package,
-        random: Random(1),
+        random: Random::new(0),
         components: vec![ptr::null_mut(), nonsense, package.instantiate()],
         states: vec![],
         blobs: vec![],
@@ -310,7 +288,7 @@ fn sequences(package: &Package, seeds: std::ops::Range<u64>) -> ([u32; 34], [u32
         statuses: [0; 6],
     };
     for seed in seeds {
-        hooligan.random = Random(0x9e37_79b9_7f4a_7c15 ^ (seed + 1).wrapping_mul(0xbf58_476d_1ce4_e5b9));
+        hooligan.random = Random::new(seed);
         hooligan.states = vec![ptr::null_mut(), nonsense, ptr::null_mut(), ptr::null_mut()];
         hooligan.blobs = vec![vec![], vec![0; 100]];
         hooligan.time = 0.0;

@@ -461,13 +461,24 @@ impl Instance {
         let (Some(phase), true) = (phase, fits) else {
             return error("the FMU state is of another scene");
         };
+        let no_number = "the FMU state holds a value that is not a number";
+        if !sizes.into_iter().flatten().chain([&state.last_step]).all(|value| value.is_finite()) {
+            return error(no_number);
+        }
         let mut rebuilt = None;
         if self.variables.parameters_differ(&state.applied, &self.applied) {
             rebuilt = Some(self.with_parameters(&state.applied)?);
         }
         let simulation = rebuilt.as_mut().unwrap_or(&mut self.simulation);
+        let here = simulation.snapshot();
         if !simulation.restore(&state.snapshot) {
             return error("the FMU state is of another scene");
+        }
+        let values = self.variables.values(simulation.inputs(), simulation.outputs());
+        if !values.iter().all(|value| value.is_finite()) {
+            let restored = simulation.restore(&here);
+            debug_assert!(restored, "a snapshot of this very simulation fits it");
+            return error(no_number);
         }
         if let Some(rebuilt) = rebuilt {
             self.simulation = rebuilt;

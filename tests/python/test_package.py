@@ -2,6 +2,9 @@
 
 import csv
 import math
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -265,3 +268,41 @@ def test_outer_race_by_its_pose(thrust_text, tmp_path):
     assert math.isclose(outer, 1e-3 * 99 * STEP, rel_tol=1e-12)
     assert 20e-6 < inner - outer < 25e-6
     assert math.isclose(force, 1500, rel_tol=0.02)
+
+
+# What an importer does, in a process of its own: a run, refused calls, a state there and back.
+HOST = """
+import sys
+from conftest import Slave
+slave = Slave(sys.argv[1], sys.argv[2]).start()
+for k in range(20):
+    slave.fmu.doStep(currentCommunicationPoint=k * 1e-4, communicationStepSize=1e-4)
+state = slave.fmu.getFMUState()
+for refused in [slave.fmu.enterInitializationMode, lambda: slave.fmu.doStep(0.5, -1.0), lambda: slave.fmu.getReal([10**6])]:
+    try:
+        refused()
+    except Exception:
+        continue
+    sys.exit("not refused")
+slave.fmu.reset()
+slave.fmu.setFMUState(state)
+slave.fmu.freeFMUState(state)
+print(slave.get("inner.force.x")[0], len(slave.messages), file=sys.stderr)
+slave.close()
+"""
+
+
+@pytest.mark.parametrize("drive", ["wrench", "pose"])
+def test_nothing_is_written_to_the_hosts_output(packages, tmp_path, drive):
+    process = subprocess.run(
+        [sys.executable, "-c", HOST, packages[drive], tmp_path / "unpacked"],
+        cwd=Path(__file__).parent,
+        capture_output=True,
+        text=True,
+    )
+    assert process.returncode == 0, process.stderr
+    # Through the descriptor, hence also what C's or Rust's library would print.
+    assert process.stdout == ""
+    # The library was at work, and its messages went to the logger.
+    force, messages = process.stderr.split()
+    assert float(force) < -1000 and int(messages) >= 3
