@@ -241,3 +241,52 @@ fn two_hundred_random_scenes() {
 fn thousand_random_scenes() {
     solved_or_refused_never_wrong(1000, 30);
 }
+
+#[test]
+#[ignore = "diagnostic"]
+fn zz_which() {
+    for seed in 0..1000 {
+        let text = scene(seed);
+        let scene = Scene::parse(&text).unwrap();
+        let input = EquilibriumInput::from_scene(&scene, Gyroscopic::OuterRaceControl);
+        let model = Model::new(&scene).unwrap();
+        let of = |g| match equilibrium::solve(&model, &EquilibriumInput { gyroscopic: g, ..input.clone() }) {
+            Ok(s) => format!("ok {} it", s.iterations),
+            Err(e) => format!("{e}"),
+        };
+        let first = of(Gyroscopic::OuterRaceControl);
+        if !first.starts_with("ok") {
+            println!(
+                "@@ {seed}: {first}\n     none: {}\n     friction: {}",
+                of(Gyroscopic::None),
+                of(Gyroscopic::Friction)
+            );
+            let l = &scene.load;
+            println!(
+                "     Z {} wi {:.0} wo {:.0} {:?}",
+                scene.bearing.balls, input.inner_speed, input.outer_speed, input.conditions
+            );
+            let _ = l;
+        }
+    }
+}
+
+#[test]
+#[ignore = "diagnostic"]
+fn zz_slow() {
+    for speed in [0.0, 1e-3, 0.01, 0.1, 1.0, 10.0] {
+        for f in [1.0, 100.0, 1500.0] {
+            for base in [crate::scenes::ANGULAR, crate::scenes::GROOVE] {
+                let text = crate::scenes::load(1.0, speed * 30.0 / PI, &format!("x = {{ force = {f} }}\n"));
+                let scene = crate::scenes::scene(base, &text);
+                let model = Model::new(&scene).unwrap();
+                for g in [Gyroscopic::None, Gyroscopic::OuterRaceControl, Gyroscopic::Friction] {
+                    match equilibrium::solve(&model, &EquilibriumInput::from_scene(&scene, g)) {
+                        Ok(s) => println!("@@ {speed} {f} {g:?}: ok {}", s.iterations),
+                        Err(e) => println!("@@ {speed} {f} {g:?}: {e}"),
+                    }
+                }
+            }
+        }
+    }
+}
