@@ -132,6 +132,22 @@ pub enum EquilibriumError {
         /// [rad] contact angle.
         angle: f64,
     },
+    /// Outer race control asks for more friction than there can be.
+    #[error(
+        "no equilibrium was found under outer race control, and there is one without gyroscopic moments: that of ball \
+         {ball}, {moment:.3e} N m at an outer load of {load:.3e} N, would need a friction coefficient of {friction:.2} at \
+         the outer race"
+    )]
+    OuterRaceControl {
+        /// Ball with the largest need, counted from 1.
+        ball: usize,
+        /// [N m] its gyroscopic moment.
+        moment: f64,
+        /// [N] its load on the outer race.
+        load: f64,
+        /// [-] friction coefficient that would hold it.
+        friction: f64,
+    },
     /// The displacements do not converge.
     #[error(
         "the equilibrium does not converge: residual {residual:.3e} of the load in direction {direction} after \
@@ -228,7 +244,25 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
         .search(problem.centred(), None, Progress::Residual)
         .or_else(|_| problem.search(problem.centred(), None, Progress::Work))
         .or_else(|_| through_speeds(model, input))
+        .or_else(|why| Err(beyond_outer_race_control(model, input).unwrap_or(why)))
         .and_then(checked)
+}
+
+/// Why there is no solution, if that is Jones's hypothesis: that the outer race carries the gyroscopic moment, whatever it
+/// takes.
+fn beyond_outer_race_control(model: &Model, input: &EquilibriumInput) -> Option<EquilibriumError> {
+    if input.gyroscopic != Gyroscopic::OuterRaceControl {
+        return None;
+    }
+    let without = EquilibriumInput { gyroscopic: Gyroscopic::None, ..input.clone() };
+    let solution = solve(model, &without).ok()?;
+    let need = |ball: &BallReport| {
+        ball.gyroscopic_moment.abs() / (model.bearing.ball.radius * ball.outer_load.max(f64::MIN_POSITIVE))
+    };
+    let reports = solution.balls.iter().map(|ball| need(&ball.report)).enumerate();
+    let (index, friction) = reports.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let BallReport { gyroscopic_moment: moment, outer_load: load, .. } = solution.balls[index].report;
+    Some(EquilibriumError::OuterRaceControl { ball: index + 1, moment, load, friction })
 }
 
 /// Follows the equilibrium from the bearing at rest to its speeds.

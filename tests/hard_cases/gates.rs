@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 use roulement::motion::Wrench;
-use roulement::outputs::{CageOutput, ContactOutput, Outputs};
+use roulement::outputs::{ContactOutput, Outputs};
 use roulement::scene::{CreepLaw, Scene};
 use roulement::simulation::Simulation;
 use roulement::state::{RaceState, State, Statistics};
@@ -284,13 +284,8 @@ fn means(window: &[Outputs], lever: f64) -> Vec<Mean> {
         list.push(Mean { name, mean: mean(&|o| o.inner.wrench.moment[i]), size: moment_size });
     }
     if window[0].cage.is_some() {
-        let cage = |get: &dyn Fn(&CageOutput) -> f64| mean(&|o| o.cage.as_ref().map_or(0.0, get));
-        let off = cage(&|cage| cage.eccentricity.yz().norm());
-        let rubbing = cage(&|cage| cage.pocket_power + cage.land_power);
+        let off = mean(&|o| o.cage.as_ref().map_or(0.0, |cage| cage.eccentricity.yz().norm()));
         list.push(Mean { name: "mean eccentricity of the cage", mean: off, size: off.max(1e-9) });
-        // A cage that hardly rubs is compared with the bearing.
-        let size = rubbing.max(0.1 * lost.abs()).max(1e-6);
-        list.push(Mean { name: "mean power of pockets and lands", mean: rubbing, size });
     }
     for (i, name) in ["mean force x", "mean force y", "mean force z"].into_iter().enumerate() {
         list.push(Mean { name, mean: mean(&|o| o.inner.wrench.force[i]), size: force_size });
