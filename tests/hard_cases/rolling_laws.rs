@@ -50,7 +50,7 @@ fn loss_of_lubrication() {
         let name = format!("friction from 0.01 to 0.15 at once, {name}");
         let low = "[friction]\nball_race = 0.01\n";
         let scene = scene(ANGULAR, &(load(10.0, 6000.0, COMBINED) + low + &effects(law)));
-        let mut case = Case::new(&name, scene, limits(1200, 10, 10, 4.0));
+        let mut case = Case::new(&name, scene, limits(1200, 10, 10, 6.0));
         case.importer = Some(&importer);
         let run = case.pass();
         let (before, after) = (&run.history[50], &run.history[51]);
