@@ -394,8 +394,9 @@ impl<'a> Problem<'a> {
         &self,
         start: SharedVector,
         places: Option<Vec<Place>>,
-        progress: Progress,
+        mut progress: Progress,
     ) -> Result<Found, EquilibriumError> {
+        let downhill = progress == Progress::Work;
         let mut unknowns = start;
         let mut here = self.evaluate(&unknowns, places.as_deref())?;
         let mut residual = self.residual(&here);
@@ -427,10 +428,14 @@ impl<'a> Problem<'a> {
             if stalled && residual.amax() < 100.0 * TOLERANCE {
                 break;
             }
-            if stalled || iterations == MAX_ITERATIONS {
+            if stalled && progress == Progress::Work {
+                // The bottom of a potential with kinks: the residual may know the rest of the way.
+                progress = Progress::Residual;
+                shift = 0.0;
+            } else if stalled || iterations == MAX_ITERATIONS {
                 let found = Found { unknowns, trial: here, residual: residual.amax(), iterations };
                 // Downhill all the way to where no bearing is: that is the reason.
-                if progress == Progress::Work {
+                if downhill {
                     self.check(self.finish(&found))?;
                 }
                 return Err(EquilibriumError::NoConvergence {

@@ -35,11 +35,6 @@ const SHARP: &str = "[solver]\ninitial_step = \"1 us\"\nmax_step = \"10 us\"\nto
 
 const WEIGHTLESS: &str = "[effects]\ncreep = \"saturated\"\ndamping = \"0.02 s/m\"\ncage = true\n";
 
-#[allow(dead_code)]
-fn friction(ball_cage: f64, cage_race: f64) -> String {
-    format!("[friction]\nball_race = 0.08\nball_cage = {ball_cage}\ncage_race = {cage_race}\n")
-}
-
 fn cage(outputs: &Outputs) -> &CageOutput {
     outputs.cage.as_ref().unwrap()
 }
@@ -95,7 +90,7 @@ fn balls_strike_their_pockets() {
         // Nothing acts about the axis from outside: angular momentum stays what it was.
         let first = momentum(run, &run.history[0]);
         for o in &run.history {
-            assert!((momentum(run, o) / first - 1.0).abs() < 1e-6, "{} at {} s", momentum(run, o), o.time);
+            assert!((momentum(run, o) / first - 1.0).abs() < 1e-5, "{} at {} s", momentum(run, o), o.time);
         }
         // One ball takes at most the energy that all of them bring.
         let model = run.simulation.model();
@@ -113,13 +108,6 @@ fn balls_strike_their_pockets() {
         let o = run.last();
         o.balls.iter().map(|b| (b.orbital_speed - o.cage_speed).abs()).fold(0.0, f64::max)
     };
-    println!(
-        "spread {} {} energies {:e} {:e}",
-        spread(&damped),
-        spread(&undamped),
-        begin,
-        energy(undamped.last()) - begin
-    );
     assert!(spread(&damped) < 0.2 * spread(&undamped), "{} {}", spread(&damped), spread(&undamped));
 }
 
@@ -183,29 +171,29 @@ fn whirl() {
 #[test]
 fn clearances() {
     for (name, pocket, land, damping, limit) in [
-        ("cage with clearances of 48 um and 10 um", 0.048, 0.01, 0.5, limits(4500, 60, 60, 5.0)),
-        ("cage with clearances of 4.5 mm and 2 mm", 4.5, 2.0, 5.0, limits(4500, 60, 60, 4.0)),
+        ("cage with clearances of 48 um and 10 um", 0.048, 0.01, 0.5, limits(4500, 10, 10, 3.0)),
+        ("cage with clearances of 4.5 mm and 2 mm", 4.5, 2.0, 10.0, limits(4500, 10, 10, 3.0)),
     ] {
-        let changes = load(40.0, 6000.0, COMBINED) + &on_lands(pocket, land, damping);
-        let mut case = Case::new(name, scene(CAGE, &changes), limit);
+        let sections = load(40.0, 6000.0, COMBINED) + &on_lands(pocket, land, damping);
+        let mut case = Case::new(name, scene(CAGE, &sections), limit);
         case.window = [0.0, 1.0];
         let run = case.pass();
         // It stays within its play.
         let (in_pocket, on_land) = (deepest_pocket(&run), deepest_land(&run));
-        println!(
-            "{name}: land {on_land} pocket {in_pocket} slip {} changes {}",
-            run.last().cage_slip,
-            changes_of(&run)
-        );
         assert!(in_pocket < 3e-6 && on_land < 3e-6, "{name}: {in_pocket} m, {on_land} m");
         if pocket < 0.1 {
             // Without play the cage turns as fast as the balls on the mean.
             assert!(run.last().cage_slip.abs() < 0.01, "{name}: {}", run.last().cage_slip);
+            assert!(changes(&run) > 20, "{name}: {} changes of contact", changes(&run));
+        } else {
+            // It falls freely until it lands.
+            for o in run.history.iter().filter(|o| o.time < 0.014) {
+                let fallen = cage(o).eccentricity.z + 0.5 * 9.81 * o.time * o.time;
+                assert!(fallen.abs() < 1e-9, "{name}: {fallen} m at {} s", o.time);
+            }
+            assert!(on_land > 0.0);
         }
     }
-}
-fn changes_of(run: &Run) -> usize {
-    changes(run)
 }
 
 #[test]
@@ -215,32 +203,31 @@ fn from_rest() {
         ("cage on outer lands from rest in 20 ms", on_lands(0.2, 0.2, 0.5)),
         ("cage on the balls from rest in 20 ms", section(0.2, 0.5, "guided_by = \"balls\"")),
     ] {
-        let friction =
-            if name.contains("balls") { "[friction]\nball_race = 0.08\nball_cage = 0.05\n" } else { "" };
+        // Without lands there is no friction on them.
+        let friction = if section.contains("land") { "" } else { "[friction]\nball_cage = 0.05\n" };
         let scene = scene(CAGE, &(ramp(30.0, speed, COMBINED) + &section + friction));
         let run = Case::new(name, scene, limits(4000, 40, 40, 4.0)).pass();
         assert_eq!(run.history[0].cage_speed, 0.0);
         assert!(run.last().cage_slip.abs() < 0.02, "{}", run.last().cage_slip);
         assert!(run.history.windows(2).all(|pair| pair[1].dissipated >= pair[0].dissipated));
-        println!(
-            "{name}: land {} pocket {} slip {} changes {}",
-            deepest_land(&run),
-            deepest_pocket(&run),
-            run.last().cage_slip,
-            changes(&run)
-        );
+        // The balls take it along, one pushing after the other.
+        assert!(cage(run.last()).turned > 1.0 && changes(&run) > 20, "{name}");
+        assert!(deepest_pocket(&run) < 3e-6, "{name}: {} m", deepest_pocket(&run));
     }
 }
 
 #[test]
 fn standstill() {
-    // The cage falls by its play and comes to rest.
-    let scene = scene(CAGE, &load(60.0, 0.0, COMBINED));
-    let mut case = Case::new("cage dropped at standstill", scene, limits(9000, 60, 60, 4.0));
+    // The cage falls by its play onto the lands and comes to rest.
+    let scene = scene(CAGE, &(load(60.0, 0.0, COMBINED) + &on_lands(0.2, 0.2, 10.0)));
+    let mut case = Case::new("cage dropped at standstill", scene, limits(6600, 10, 60, 4.0));
     case.window = [0.0, 1.0];
     let run = case.pass();
+    let late = &run.history[400..];
+    let carried = |o: &Outputs| (cage(o).pocket_force + cage(o).land_force).z;
+    let mean = late.iter().map(carried).sum::<f64>() / late.len() as f64;
     let weight = 0.02 * 9.81;
-    let last = cage(run.last());
-    let carried: Vector3<f64> = last.pocket_force + last.land_force;
-    println!("cage at rest: {last:?} {carried:?} {weight}");
+    assert!((mean / weight - 1.0).abs() < 0.05, "{mean} N, {weight} N");
+    let speed = cage(run.last()).twist.velocity.norm();
+    assert!(speed < 5e-3, "{speed} m/s");
 }

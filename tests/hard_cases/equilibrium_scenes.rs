@@ -239,42 +239,13 @@ fn solved_or_refused_never_wrong(scenes: u64, most: u64) {
 
 #[test]
 fn two_hundred_random_scenes() {
-    solved_or_refused_never_wrong(200, 7);
+    solved_or_refused_never_wrong(200, 0);
 }
 
 #[test]
 #[ignore = "long"]
 fn thousand_random_scenes() {
-    solved_or_refused_never_wrong(1000, 30);
-}
-
-#[test]
-#[ignore = "diagnostic"]
-fn zz_which() {
-    for seed in 0..1000 {
-        let text = scene(seed);
-        let scene = Scene::parse(&text).unwrap();
-        let input = EquilibriumInput::from_scene(&scene, Gyroscopic::OuterRaceControl);
-        let model = Model::new(&scene).unwrap();
-        let of = |g| match equilibrium::solve(&model, &EquilibriumInput { gyroscopic: g, ..input.clone() }) {
-            Ok(s) => format!("ok {} it", s.iterations),
-            Err(e) => format!("{e}"),
-        };
-        let first = of(Gyroscopic::OuterRaceControl);
-        if !first.starts_with("ok") {
-            println!(
-                "@@ {seed}: {first}\n     none: {}\n     friction: {}",
-                of(Gyroscopic::None),
-                of(Gyroscopic::Friction)
-            );
-            let l = &scene.load;
-            println!(
-                "     Z {} wi {:.0} wo {:.0} {:?}",
-                scene.bearing.balls, input.inner_speed, input.outer_speed, input.conditions
-            );
-            let _ = l;
-        }
-    }
+    solved_or_refused_never_wrong(1000, 1);
 }
 
 /// Residual of the quasi-static solution of a scene; its reason if there is none.
