@@ -244,7 +244,7 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
         .search(problem.centred(), None, Progress::Residual)
         .or_else(|_| problem.search(problem.centred(), None, Progress::Work))
         .or_else(|_| through_speeds(model, input))
-        .or_else(|why| Err(beyond_outer_race_control(model, input).unwrap_or(why)))
+        .map_err(|why| beyond_outer_race_control(model, input).unwrap_or(why))
         .and_then(checked)
 }
 
@@ -283,7 +283,7 @@ fn through_speeds(model: &Model, input: &EquilibriumInput) -> Result<Found, Equi
         let problem = Problem::new(model, &slower);
         let mut start = found.unknowns;
         start[5] = if share > 0.0 { start[5] * next / share } else { problem.centred()[5] };
-        match problem.search(start, Some(found.trial.places.clone()), Progress::Residual) {
+        match problem.search(start, Some(&found.trial.places), Progress::Residual) {
             Ok(further) => {
                 found = further;
                 share = next;
@@ -393,12 +393,12 @@ impl<'a> Problem<'a> {
     fn search(
         &self,
         start: SharedVector,
-        places: Option<Vec<Place>>,
+        places: Option<&[Place]>,
         mut progress: Progress,
     ) -> Result<Found, EquilibriumError> {
         let downhill = progress == Progress::Work;
         let mut unknowns = start;
-        let mut here = self.evaluate(&unknowns, places.as_deref())?;
+        let mut here = self.evaluate(&unknowns, places)?;
         let mut residual = self.residual(&here);
         let mut shift = 0.0;
         let mut iterations = 0;

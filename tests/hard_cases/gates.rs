@@ -269,7 +269,10 @@ fn means(window: &[Outputs], lever: f64) -> Vec<Mean> {
     let inner = load(|ball| ball.inner.load);
     let outer = load(|ball| ball.outer.load);
     // Floors: what is smaller than a millionth of a newton, of a rad/s, of a watt is zero.
-    let (force_size, speed_size) = (force.max(1e-6), mean(&|o| o.cage_speed.abs()).max(1e-6));
+    // The turning of a cage is compared with all its motion: one that falls at standstill hardly turns.
+    let falling = mean(&|o| o.cage.as_ref().map_or(0.0, |cage| cage.twist.velocity.norm())) / lever;
+    let speed_size = (mean(&|o| o.cage_speed.abs()) + falling).max(1e-6);
+    let force_size = force.max(1e-6);
     let (first, last) = (&window[0], &window[window.len() - 1]);
     let lost = (last.dissipated - first.dissipated) / (last.time - first.time);
     let mut list = vec![
