@@ -248,8 +248,8 @@ pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, Equ
         .and_then(checked)
 }
 
-/// Why there is no solution, if that is Jones's hypothesis: that the outer race carries the gyroscopic moment, whatever it
-/// takes.
+/// Why there is no solution, if that is Jones's hypothesis: that friction at the outer race carries the gyroscopic moment,
+/// where more is needed than there is.
 fn beyond_outer_race_control(model: &Model, input: &EquilibriumInput) -> Option<EquilibriumError> {
     if input.gyroscopic != Gyroscopic::OuterRaceControl {
         return None;
@@ -261,6 +261,9 @@ fn beyond_outer_race_control(model: &Model, input: &EquilibriumInput) -> Option<
     };
     let reports = solution.balls.iter().map(|ball| need(&ball.report)).enumerate();
     let (index, friction) = reports.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    if friction <= input.friction {
+        return None;
+    }
     let BallReport { gyroscopic_moment: moment, outer_load: load, .. } = solution.balls[index].report;
     Some(EquilibriumError::OuterRaceControl { ball: index + 1, moment, load, friction })
 }

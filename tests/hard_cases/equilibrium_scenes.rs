@@ -222,8 +222,7 @@ fn solved_or_refused_never_wrong(scenes: u64, most: u64) {
             Err(EquilibriumError::Overload { .. }) => overload += 1,
             Err(EquilibriumError::LeftGroove { .. }) => left += 1,
             Err(EquilibriumError::OuterRaceControl { friction, .. }) => {
-                // Dry steel has 0.8 at most.
-                assert!(friction > 0.8, "scene {seed}: friction {friction}");
+                assert!(friction > scene.friction.ball_race, "scene {seed}: friction {friction}");
                 control += 1;
             }
             Err(EquilibriumError::Ball { .. } | EquilibriumError::NoConvergence { .. }) => loose += 1,
