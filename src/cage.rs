@@ -31,7 +31,7 @@ impl CageModel {
     /// Builds the cage of a scene.
     ///
     /// # Errors
-    /// If the pocket's contact is too slender for Kalker's linear theory.
+    /// If Kalker's linear theory has no answer for the materials of the pocket.
     pub fn new(section: &CageSection, scene: &Scene, bearing: &Bearing) -> Result<Self, LinearError> {
         let youngs = section.youngs_modulus.unwrap_or(scene.race.youngs_modulus).0;
         let poisson = section.poisson_ratio.unwrap_or(scene.race.poisson_ratio);

@@ -12,6 +12,10 @@ const NOTCHES_PER_OCTAVE: f64 = 4.0;
 /// Largest growth and shrinkage of one step, in notches.
 const MAX_GROWTH: i32 = 4;
 const MAX_SHRINKAGE: i32 = 12;
+/// [-] an accepted step with an error below this keeps its size or grows. When a contact closes the error jumps from next
+/// to nothing, which the proportional part takes for the beginning of worse. A step cut in the middle of a blow breaks the
+/// symmetry between its two halves: a bearing with bouncing balls gained 2.7 % of energy in 1e5 steps.
+const KEPT_BELOW: f64 = 0.3;
 /// A step whose Newton iteration failed is tried again this many notches smaller (a factor of 4).
 const FAILURE_NOTCHES: i32 = 8;
 /// Steps without growth after a rejection.
@@ -58,7 +62,8 @@ impl StepControl {
         let factor = SAFETY * error.powf(-INTEGRAL) * self.last_error.powf(PROPORTIONAL);
         let change = (NOTCHES_PER_OCTAVE * factor.log2()).floor() as i32;
         let ceiling = if self.growth_blocked > 0 { 0 } else { MAX_GROWTH };
-        self.notch = (self.notch + change.clamp(-MAX_SHRINKAGE, ceiling)).min(0);
+        let floor = if error < KEPT_BELOW { 0 } else { -MAX_SHRINKAGE };
+        self.notch = (self.notch + change.clamp(floor, ceiling)).min(0);
         self.growth_blocked = self.growth_blocked.saturating_sub(1);
         self.last_error = error;
         true
@@ -113,6 +118,16 @@ mod tests {
             assert!(step <= 1e-5 * (1.0 + 1e-8) && step > 0.4e-5);
             remaining -= step;
         }
+    }
+
+    #[test]
+    fn a_step_well_inside_its_tolerance_is_not_cut() {
+        let mut control = StepControl::new(1e-5, 1e-10, 1e-5);
+        assert!(control.judge(1e-10));
+        for error in [0.01, 0.1, 0.29, 1e-10, 0.29] {
+            assert!(control.judge(error) && control.step() == 1e-5, "{error}");
+        }
+        assert!(control.judge(0.9) && control.step() < 1e-5);
     }
 
     #[test]

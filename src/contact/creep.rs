@@ -81,6 +81,12 @@ const FORCE_FLOOR: f64 = 1e-9;
 /// [N m] the same for the spin moment: the force floor on a patch of a micrometre.
 const MOMENT_FLOOR: f64 = 1e-15;
 
+/// [m] the same for spin stiffness over moment limit, a ten thousandth of a micrometre: nothing where there is load.
+const ARM_FLOOR: f64 = 1e-10;
+/// [-] cosine of the rolling direction below which the table's two directions are mixed: a third of the circle, and a
+/// rolling speed of half a millimetre a second.
+const MIXED_BELOW: f64 = 0.5;
+
 /// Saturated over linear force at a linear force of `q` times its limit: the cubic of Vermeulen and Johnson (1964).
 #[inline(always)]
 pub fn saturation<S: Scalar>(q: S) -> S {
@@ -99,11 +105,7 @@ impl<S: Scalar> LinearTheory<S> {
             Law::Linear => return self.linear(creepage),
             Law::Regularised(parameters) => self.regularised(parameters, creepage),
             Law::Saturated => self.saturated(creepage),
-            Law::Table(table) | Law::Frozen(table, _) => {
-                let (turned, q) = self.uncoupled(creepage);
-                let [x, y, z] = S::map_smooth_many(q, |q| table.evaluate(q));
-                [turned * x, turned * y, z]
-            }
+            Law::Table(table) | Law::Frozen(table, _) => self.tabulated(table, creepage),
             Law::Kalker(kalker) => return self.polynomials(kalker, creepage),
         };
         let forces = match creepage.curvature {
@@ -111,7 +113,7 @@ impl<S: Scalar> LinearTheory<S> {
             Some(curvature) => self.bent(flat, creepage, curvature),
         };
         match law {
-            Law::Frozen(_, difference) => self.corrected(&forces, difference),
+            Law::Frozen(table, difference) => self.corrected(&forces, self.direction(table), difference),
             _ => forces,
         }
     }
@@ -157,6 +159,44 @@ impl<S: Scalar> LinearTheory<S> {
             self.spin * creepage.spin * per_moment,
         ];
         (turned, q)
+    }
+
+    /// Kalker's nonlinear theory from its table.
+    ///
+    /// The table rolls one way along x. The coupling of spin and lateral creepage changes its sign with the direction, at
+    /// full size: a jump, at which a step of a bearing at rest has no solution. Where a contact hardly rolls along x both
+    /// directions are mixed, so that the coupling goes through zero there as in the other laws.
+    #[inline(always)]
+    fn tabulated(&self, table: &CreepTable, creepage: &Creepage<S>) -> [S; 3] {
+        let (per_force, per_moment) = self.per_limits();
+        let x = self.longitudinal * creepage.longitudinal * per_force;
+        let y = self.lateral * creepage.lateral * per_force;
+        let z = self.spin * per_moment * creepage.spin;
+        let rolling = |sign: f64| {
+            let q = [x.scale(sign), y.scale(sign), z];
+            let [x, y, z] = S::map_smooth_many(q, |q| table.evaluate(q));
+            [x.scale(sign), y.scale(sign), z]
+        };
+        let direction = self.direction(table);
+        if direction.value().abs() >= 1.0 {
+            return rolling(direction.value());
+        }
+        let share = (direction + S::one()).scale(0.5);
+        let (forwards, backwards) = (rolling(1.0), rolling(-1.0));
+        std::array::from_fn(|i| backwards[i] + (forwards[i] - backwards[i]) * share)
+    }
+
+    /// 1 where the contact rolls along +x, -1 against it, between where it hardly rolls along x: smooth.
+    #[inline(always)]
+    fn direction(&self, table: &CreepTable) -> S {
+        let (per_force, per_moment) = self.per_limits();
+        // Cosine of the rolling direction, which the coupling carries, over the one below which directions are mixed.
+        let uncoupled = (self.spin * per_moment).scale(MIXED_BELOW * table.spin_coupling());
+        let cosine = self.coupling * per_force / (uncoupled + S::constant(ARM_FLOOR));
+        if cosine.value().abs() >= 1.0 {
+            return S::constant(cosine.value().signum());
+        }
+        (cosine * (S::constant(3.0) - cosine.square())).scale(0.5)
     }
 
     /// Linear force over mu Q of the slips `phi b` and `kappa b^2` at the side of the contact.
@@ -205,18 +245,17 @@ impl<S: Scalar> LinearTheory<S> {
         self.friction_limit * self.half_width.square()
     }
 
-    /// Forces with what the polynomials add, kept within their limits.
+    /// Forces with what the polynomials add for rolling along +x, kept within their limits.
     #[inline(always)]
-    fn corrected(&self, forces: &CreepForces<S>, difference: &[f64; 4]) -> CreepForces<S> {
+    fn corrected(&self, forces: &CreepForces<S>, direction: S, difference: &[f64; 4]) -> CreepForces<S> {
         let (per_force, per_moment) = self.per_limits();
-        let turned = S::one().where_positive(self.coupling, -S::one());
         let [x, y, z, second] = difference.map(S::constant);
         let [x, y] = within_limit(
-            forces.longitudinal * per_force + turned * x,
-            forces.lateral * per_force + turned * y,
+            forces.longitudinal * per_force + direction * x,
+            forces.lateral * per_force + direction * y,
         );
         let z = (forces.spin_moment * per_moment + z).clamp_to(-1.0, 1.0);
-        let second = forces.second_moment + turned * second * self.second_moment_scale();
+        let second = forces.second_moment + direction * second * self.second_moment_scale();
         self.dimensional([x, y, z], second)
     }
 

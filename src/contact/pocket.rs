@@ -12,11 +12,16 @@ use nalgebra::Vector3;
 use super::REGULARISATION_SPEED;
 use super::body::{BodyContact, BodyMotion, damped};
 use super::creep::{Creepage, Law, LinearTheory};
+use super::hertz::HertzContact;
 use super::shape::ShapeAt;
 use crate::bearing::Pair;
 use crate::contact::BallMotion;
 use crate::kalker::linear::LinearError;
 use crate::scalar::{Scalar, cross, dot};
+
+/// [-] axis ratio of the most slender patch with creep coefficients. A tighter cylinder (clearance below 0.8 % of the ball)
+/// takes those of this patch: the ball spins in its pocket and slides completely, where they hardly matter.
+const MOST_SLENDER: f64 = 0.05;
 
 /// What does not change in a ball-pocket contact.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +43,7 @@ impl PocketModel {
     /// A pocket of a diametral clearance [m]: a cylinder, or a sphere whose centre is at a radius [m] of the cage.
     ///
     /// # Errors
-    /// If the contact ellipse is too slender for Kalker's linear theory: the clearance is too small.
+    /// If Kalker's linear theory has no answer for the materials.
     pub fn new(
         ball_radius: f64,
         clearance: f64,
@@ -51,7 +56,9 @@ impl PocketModel {
         let around = 1.0 / ball_radius - 1.0 / (ball_radius + half_clearance);
         let along = if sphere_circle.is_some() { around } else { 1.0 / ball_radius };
         let Pair { compliance, shear_modulus, poisson_ratio } = *materials;
-        let mut shape = ShapeAt::new(along, around, compliance, shear_modulus, poisson_ratio)?;
+        let hertz = HertzContact::new(along, around, compliance);
+        let axis_ratio = (hertz.semi_axis_rolling / hertz.semi_axis_transverse).max(MOST_SLENDER);
+        let mut shape = ShapeAt::with_creep_of(axis_ratio, &hertz, shear_modulus, poisson_ratio)?;
         if sphere_circle.is_some() {
             let mean = 0.5 * (shape.longitudinal + shape.lateral);
             (shape.longitudinal, shape.lateral, shape.coupling) = (mean, mean, 0.0);

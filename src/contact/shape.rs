@@ -101,8 +101,22 @@ impl ShapeAt<f64> {
         poisson_ratio: f64,
     ) -> Result<Self, LinearError> {
         let hertz = HertzContact::new(curvature_rolling, curvature_transverse, compliance);
+        let axis_ratio = hertz.semi_axis_rolling / hertz.semi_axis_transverse;
+        Self::with_creep_of(axis_ratio, &hertz, shear, poisson_ratio)
+    }
+
+    /// The same of a Hertz contact, with the creep coefficients of a patch of another axis ratio.
+    ///
+    /// # Errors
+    /// As [`ShapeAt::new`].
+    pub fn with_creep_of(
+        axis_ratio: f64,
+        hertz: &HertzContact,
+        shear: f64,
+        poisson_ratio: f64,
+    ) -> Result<Self, LinearError> {
         let (along, across) = (hertz.semi_axis_rolling, hertz.semi_axis_transverse);
-        let creep = creep_matrix(&Patch { axis_ratio: along / across, poisson_ratio, rolling_angle: 0.0 })?;
+        let creep = creep_matrix(&Patch { axis_ratio, poisson_ratio, rolling_angle: 0.0 })?;
         let area = along * across;
         let (long, short) = (along.max(across), along.min(across));
         let (_, second) = complete_elliptic_integrals(1.0 - (short / long).powi(2));

@@ -186,6 +186,20 @@ pub fn middle_of_gap(model: &Model, shared: &Shared, azimuth: f64) -> Place {
     Vector2::new(angle * l_o, l_o + 0.5 * (length - l_i - l_o))
 }
 
+/// Place of a ball that the centrifugal force alone holds on the outer race: no gyroscopic moment acts there, so that it is
+/// in balance at any speeds, where another place may be out of reach of Newton's method or be none.
+pub fn bottom_of_outer_groove(
+    model: &Model,
+    input: &EquilibriumInput,
+    shared: &Shared,
+    azimuth: f64,
+) -> Place {
+    let touching = Vector2::new(0.0, arc_radius(model));
+    let there = balance(model, input, shared, azimuth, &touching);
+    let depth = (there.centrifugal_force.value / there.stiffness[OUTER].value).powf(2.0 / 3.0);
+    touching + Vector2::new(0.0, depth)
+}
+
 /// Finds the place where the ball is in balance, starting from `place`; returns the balance there.
 ///
 /// Newton's method with a Levenberg shift: the forces derive (nearly) from a potential that is convex but flat where

@@ -266,6 +266,11 @@ impl CreepTable {
         Self { nodes: padded, coupling, stretch }
     }
 
+    /// [-] lateral force over mu Q of a spin whose moment without coupling is M_max, in linear theory.
+    pub fn spin_coupling(&self) -> f64 {
+        self.coupling[0]
+    }
+
     /// Forces over mu Q, mu Q and M_max at `q`, and their derivatives by q: row by force, column by q.
     pub fn evaluate(&self, q: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
         let size = q[0].hypot(q[1]).hypot(q[2]);

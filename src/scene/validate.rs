@@ -115,7 +115,7 @@ fn cage(scene: &Scene) -> Result<(), SceneError> {
     for moment in cage.inertia {
         Range::above(0.0, 1e4, "kg m2").check("cage.inertia", moment.0)?;
     }
-    // Below, the contact ellipse is too slender for Kalker's linear theory.
+    // Below, ball and pocket fit so closely that they are no half-spaces any more, which Hertz takes them for.
     Range::closed(SMALLEST_POCKET_CLEARANCE * ball, 0.5 * ball, "m")
         .check("cage.pocket_clearance", cage.pocket_clearance.0)?;
     let spacing = pitch * (std::f64::consts::PI / scene.bearing.balls as f64).sin();

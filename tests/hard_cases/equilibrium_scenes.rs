@@ -8,6 +8,7 @@ use roulement::model::Model;
 use roulement::scene::Scene;
 
 use crate::random::Random;
+use crate::scenes::{ANGULAR, GROOVE, load};
 
 /// Largest residual over the sum of the loads.
 const TOLERANCE: f64 = 1e-8;
@@ -29,7 +30,7 @@ fn scene(seed: u64) -> String {
     let inner_speed = random.symmetric() * 20_000.0 * PI / 30.0;
     let outer_speed = if random.unit() < 0.3 { random.symmetric() * 5_000.0 * PI / 30.0 } else { 0.0 };
     let force = 300.0 * balls * (diameter / 0.01).powi(2);
-    let mut load = format!("inner_speed = {inner_speed}\nouter_speed = {outer_speed}\n");
+    let mut rows = format!("inner_speed = {inner_speed}\nouter_speed = {outer_speed}\n");
     for direction in ["x", "y", "z", "ry", "rz"] {
         let tilt = direction.starts_with('r');
         let value = if random.unit() < 0.5 {
@@ -41,13 +42,13 @@ fn scene(seed: u64) -> String {
             let kind = if tilt { "rotation" } else { "displacement" };
             format!("{kind} = {:e}", size * random.symmetric())
         };
-        load += &format!("{direction} = {{ {value} }}\n");
+        rows += &format!("{direction} = {{ {value} }}\n");
     }
     let misalignment = [0, 1].map(|_| 0.2f64.to_radians() * random.symmetric());
     format!(
         "[bearing]\nballs = {balls}\nball_diameter = {diameter}\npitch_diameter = {pitch}\n{play}\n\
          inner_conformity = {}\nouter_conformity = {}\n\
-         [outer]\nmisalignment = {{ ry = {}, rz = {} }}\n[load]\n{load}",
+         [outer]\nmisalignment = {{ ry = {}, rz = {} }}\n[load]\n{rows}",
         conformity[0], conformity[1], misalignment[0], misalignment[1]
     )
 }
@@ -206,7 +207,7 @@ fn residual(scene: &Scene, solution: &Equilibrium, input: &EquilibriumInput) -> 
 
 /// Solves the scenes of the seeds 0 to `scenes`; at most `most` may be left without an answer.
 fn solved_or_refused_never_wrong(scenes: u64, most: u64) {
-    let (mut solved, mut overload, mut left, mut loose, mut worst) = (0, 0, 0, 0, 0.0f64);
+    let (mut solved, mut overload, mut left, mut control, mut loose, mut worst) = (0, 0, 0, 0, 0, 0.0f64);
     for seed in 0..scenes {
         let text = scene(seed);
         let scene = Scene::parse(&text).unwrap_or_else(|why| panic!("{why}\n{text}"));
@@ -220,12 +221,16 @@ fn solved_or_refused_never_wrong(scenes: u64, most: u64) {
             }
             Err(EquilibriumError::Overload { .. }) => overload += 1,
             Err(EquilibriumError::LeftGroove { .. }) => left += 1,
+            Err(EquilibriumError::OuterRaceControl { friction, .. }) => {
+                assert!(friction > scene.friction.ball_race, "scene {seed}: friction {friction}");
+                control += 1;
+            }
             Err(EquilibriumError::Ball { .. } | EquilibriumError::NoConvergence { .. }) => loose += 1,
         }
     }
     println!(
         "\n| {scenes} random equilibria | {solved} solved | {overload} beyond elastic contact | {left} beyond the \
-         groove | {loose} not found | {worst:.0e} |"
+         groove, {control} beyond outer race control | {loose} not found | {worst:.0e} |"
     );
     // A solver that finds fewer has become worse.
     assert!(loose <= most, "{solved} solved, {loose} not found");
@@ -233,11 +238,43 @@ fn solved_or_refused_never_wrong(scenes: u64, most: u64) {
 
 #[test]
 fn two_hundred_random_scenes() {
-    solved_or_refused_never_wrong(200, 7);
+    solved_or_refused_never_wrong(200, 0);
 }
 
 #[test]
 #[ignore = "long"]
 fn thousand_random_scenes() {
-    solved_or_refused_never_wrong(1000, 30);
+    solved_or_refused_never_wrong(1000, 1);
+}
+
+/// Residual of the quasi-static solution of a scene; its reason if there is none.
+fn solved(scene: &Scene) -> Result<f64, EquilibriumError> {
+    let input = EquilibriumInput::from_scene(scene, Gyroscopic::OuterRaceControl);
+    let solution = equilibrium::solve(&Model::new(scene).unwrap(), &input)?;
+    Ok(residual(scene, &solution, &input))
+}
+
+#[test]
+fn from_rest_to_creeping_speeds() {
+    // Where centrifugal force is next to nothing the balls hardly know where to lie.
+    let mut worst = 0.0f64;
+    for base in [ANGULAR, GROOVE] {
+        for speed in [0.0, 1e-3, 0.01, 0.1, 1.0, 10.0, 100.0] {
+            for force in [1.0, 100.0, 1500.0] {
+                let rows = format!("x = {{ force = {force} }}\n");
+                let scene = crate::scenes::scene(base, &load(1.0, speed * 30.0 / PI, &rows));
+                let residual = solved(&scene).unwrap_or_else(|why| panic!("{speed} rad/s, {force} N: {why}"));
+                assert!(residual < TOLERANCE, "{speed} rad/s, {force} N: {residual:e}");
+                worst = worst.max(residual);
+                for gyroscopic in [Gyroscopic::None, Gyroscopic::Friction] {
+                    let input = EquilibriumInput::from_scene(&scene, gyroscopic);
+                    let solution = equilibrium::solve(&Model::new(&scene).unwrap(), &input).unwrap();
+                    assert!((solution.load[0] / force - 1.0).abs() < 1e-9);
+                }
+            }
+        }
+    }
+    println!(
+        "\n| 42 equilibria from rest to 100 rad/s, thrust of 1 to 1500 N | all solved; largest residual {worst:.0e} |"
+    );
 }

@@ -4,10 +4,11 @@
 //! to the same bits; (g) bounded rejections. Gate (f), no gain of energy, has cases of its own.
 
 use nalgebra::Vector3;
+use roulement::motion::Wrench;
 use roulement::outputs::{ContactOutput, Outputs};
 use roulement::scene::{CreepLaw, Scene};
 use roulement::simulation::Simulation;
-use roulement::state::{State, Statistics};
+use roulement::state::{RaceState, State, Statistics};
 use roulement::variables::Variables;
 
 use roulement::inputs::Inputs;
@@ -268,7 +269,10 @@ fn means(window: &[Outputs], lever: f64) -> Vec<Mean> {
     let inner = load(|ball| ball.inner.load);
     let outer = load(|ball| ball.outer.load);
     // Floors: what is smaller than a millionth of a newton, of a rad/s, of a watt is zero.
-    let (force_size, speed_size) = (force.max(1e-6), mean(&|o| o.cage_speed.abs()).max(1e-6));
+    // The turning of a cage is compared with all its motion: one that falls at standstill hardly turns.
+    let falling = mean(&|o| o.cage.as_ref().map_or(0.0, |cage| cage.twist.velocity.norm())) / lever;
+    let speed_size = (mean(&|o| o.cage_speed.abs()) + falling).max(1e-6);
+    let force_size = force.max(1e-6);
     let (first, last) = (&window[0], &window[window.len() - 1]);
     let lost = (last.dissipated - first.dissipated) / (last.time - first.time);
     let mut list = vec![
@@ -281,6 +285,10 @@ fn means(window: &[Outputs], lever: f64) -> Vec<Mean> {
     let moment_size = force_size * lever;
     for (i, name) in ["mean moment x", "mean moment y", "mean moment z"].into_iter().enumerate() {
         list.push(Mean { name, mean: mean(&|o| o.inner.wrench.moment[i]), size: moment_size });
+    }
+    if window[0].cage.is_some() {
+        let off = mean(&|o| o.cage.as_ref().map_or(0.0, |cage| cage.eccentricity.yz().norm()));
+        list.push(Mean { name: "mean eccentricity of the cage", mean: off, size: off.max(1e-9) });
     }
     for (i, name) in ["mean force x", "mean force y", "mean force z"].into_iter().enumerate() {
         list.push(Mean { name, mean: mean(&|o| o.inner.wrench.force[i]), size: force_size });
@@ -302,6 +310,21 @@ pub fn possible(name: &str, simulation: &Simulation, variables: &Variables) {
     };
     for ball in &outputs.balls {
         assert!(holds(&ball.inner) && holds(&ball.outer), "{name}: {ball:?} at {} s", outputs.time);
+    }
+    let friction = &simulation.scene().friction;
+    let pushes = |force: &Vector3<f64>, load: f64, friction: Option<f64>| {
+        let limit = load * friction.unwrap_or(inputs.friction).hypot(1.0);
+        load >= 0.0 && force.norm() <= limit * (1.0 + 1e-12)
+    };
+    for pocket in outputs.balls.iter().filter_map(|ball| ball.pocket) {
+        let pushes = pushes(&pocket.force, pocket.load, friction.ball_cage);
+        assert!(pushes, "{name}: {pocket:?} at {} s", outputs.time);
+    }
+    if let Some(cage) = &outputs.cage {
+        // Loads on both lands need not have one direction.
+        let [one, other] = cage.land_loads;
+        let pushes = one >= 0.0 && pushes(&cage.land_force, one + other, friction.cage_race);
+        assert!(pushes && other >= 0.0, "{name}: {cage:?} at {} s", outputs.time);
     }
 }
 
@@ -333,10 +356,22 @@ fn residual(end: &Simulation, before: &State) -> f64 {
     let races = [0, 1].map(|race: usize| state.races[race].motion());
     let ball = &model.bearing.ball;
     let mut worst = 0.0f64;
-    for (now, old) in state.balls.iter().zip(&before.balls) {
+    let cage = model.cage.as_ref().zip(state.cage.as_ref());
+    let cage_motion = state.cage.as_ref().map(RaceState::body_motion);
+    let mut on_cage = Wrench::default();
+    for (index, (now, old)) in state.balls.iter().zip(&before.balls).enumerate() {
         let [inner, outer] = [0, 1].map(|race: usize| contacts[race].evaluate(&now.motion(), &races[race]));
-        let force = model.gravity * ball.mass + inner.force + outer.force;
-        let moment = inner.ball_moment + outer.ball_moment;
+        let mut force = model.gravity * ball.mass + inner.force + outer.force;
+        let mut moment = inner.ball_moment + outer.ball_moment;
+        let touching = cage
+            .zip(cage_motion.as_ref())
+            .and_then(|((cage, _), motion)| cage.pocket_contact(index, &now.motion(), motion));
+        if let Some(pocket) = touching {
+            force += pocket.force;
+            moment += pocket.moment;
+            on_cage.force -= pocket.force;
+            on_cage.moment += pocket.other_moment;
+        }
         let linear = now.acceleration * ball.mass - force * share - old.total.force * (1.0 - share);
         let angular =
             now.angular_acceleration * ball.inertia - moment * share - old.total.moment * (1.0 - share);
@@ -352,6 +387,21 @@ fn residual(end: &Simulation, before: &State) -> f64 {
                 - old.total.moment * (1.0 - share);
             worst = worst.max(linear.amax()).max(angular.amax() / model.race_length());
         }
+    }
+    if let (Some((cage, now)), Some(motion), Some(old)) = (cage, &cage_motion, &before.cage) {
+        for land in cage.land_contacts(motion, races.each_ref()).iter().flatten() {
+            on_cage.force += land.force;
+            on_cage.moment += land.moment;
+        }
+        let body = &cage.body;
+        let force = on_cage.force + model.gravity * body.mass;
+        let momentum = now.rate.component_mul(&body.inertia);
+        let moment = now.pose.orientation.inverse() * on_cage.moment - now.rate.cross(&momentum);
+        let linear = now.acceleration * body.mass - force * share - old.total.force * (1.0 - share);
+        let angular = now.rate_derivative.component_mul(&body.inertia)
+            - moment * share
+            - old.total.moment * (1.0 - share);
+        worst = worst.max(linear.amax()).max(angular.amax() / model.race_length());
     }
     worst
 }

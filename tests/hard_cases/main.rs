@@ -4,6 +4,7 @@
 //! `docs/stability.md`.
 #![allow(clippy::unwrap_used)]
 
+mod cage;
 mod communication;
 mod contact_loss;
 mod creep_laws;
@@ -18,6 +19,7 @@ mod laws;
 mod loads;
 mod random;
 mod refusals;
+mod rolling_laws;
 mod scenes;
 mod shaft;
 mod start_and_stop;

@@ -7,6 +7,9 @@ pub const ANGULAR: &str = include_str!("../../scenes/thrust.toml");
 /// Deep-groove bearing like a 6206, inner race a body.
 pub const GROOVE: &str = include_str!("../../scenes/radial.toml");
 
+/// The angular-contact bearing with a brass cage on lands of the outer race.
+pub const CAGE: &str = include_str!("../../scenes/cage.toml");
+
 /// The same angular-contact bearing with its inner race moved by the importer.
 pub const POSE: &str = "[inner]\ndrive = \"pose\"";
 
