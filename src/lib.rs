@@ -3,6 +3,7 @@
 pub mod arrowhead;
 pub mod bearing;
 pub mod cage;
+pub mod condensed;
 pub mod contact;
 pub mod cost;
 pub mod documentation;

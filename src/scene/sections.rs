@@ -109,6 +109,8 @@ pub struct Effects {
     pub gravity: [Acceleration; 3],
     /// Report every ball in the FMU (`ball[j].*`).
     pub per_ball_outputs: bool,
+    /// Report stiffness and damping of the running bearing, balls condensed out (`stiffness.*`, `damping.*`).
+    pub stiffness_outputs: bool,
 }
 
 impl Default for Effects {
@@ -121,6 +123,7 @@ impl Default for Effects {
             cage: false,
             gravity: [Acceleration(0.0); 3],
             per_ball_outputs: false,
+            stiffness_outputs: false,
         }
     }
 }
