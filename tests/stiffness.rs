@@ -1,0 +1,225 @@
+//! Stiffness and damping of the running bearing, balls condensed out.
+#![allow(clippy::unwrap_used)]
+
+use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
+use roulement::condensed::Condensed;
+use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
+use roulement::model::Model;
+use roulement::motion::Twist;
+use roulement::scene::Scene;
+use roulement::simulation::Simulation;
+use roulement::variables::Variables;
+use serde_json::Value;
+
+#[path = "common/reference.rs"]
+mod reference;
+
+use reference::{cases, number, scene_text};
+
+const THRUST: &str = include_str!("../scenes/thrust.toml");
+/// Rows and columns x, y, z, ry, rz of six.
+const FIVE: [usize; 5] = [0, 1, 2, 4, 5];
+
+/// A reference case at a share of its speeds, starting in its quasi-static equilibrium.
+fn start(case: &Value, speed: f64, effects: &str) -> Simulation {
+    let mut case = case.clone();
+    for key in ["inner_speed", "outer_speed"] {
+        case[key] = Value::from(number(&case[key]) * speed);
+    }
+    let text = format!(
+        "[inner]\ndrive = \"wrench\"\nmass = 0.05\ninertia = [2e-5, 1e-5, 1e-5]\n[effects]\nstiffness_outputs = true\n{effects}\n"
+    ) + &scene_text(&case);
+    Simulation::new(&Scene::parse(&text).unwrap()).unwrap()
+}
+
+/// Largest difference of two stiffnesses, each component over the root of its diagonal ones.
+fn difference(ours: &Matrix6<f64>, theirs: &SMatrix<f64, 5, 5>) -> f64 {
+    let scale = |i: usize, k: usize| (theirs[(i, i)] * theirs[(k, k)]).abs().sqrt();
+    let mut worst = 0.0f64;
+    for (i, row) in FIVE.into_iter().enumerate() {
+        for (k, column) in FIVE.into_iter().enumerate() {
+            worst = worst.max((ours[(row, column)] - theirs[(i, k)]).abs() / scale(i, k));
+        }
+    }
+    worst
+}
+
+#[test]
+fn closed_form_central_differences_of_the_equilibrium_of_a_slow_frictionless_bearing() {
+    for case in cases() {
+        let simulation = start(&case, 1e-3, "creep = \"frictionless\"");
+        let ours = simulation.outputs().condensed.unwrap().stiffness;
+        let model = Model::new(simulation.scene()).unwrap();
+        let input = EquilibriumInput::from_scene(simulation.scene(), Gyroscopic::None);
+        let here = equilibrium::solve(&model, &input).unwrap();
+        let load = |k: usize, change: f64| {
+            let mut displaced = here.displacement;
+            displaced[k] += change;
+            let conditions = displaced.map(Prescribed::Motion);
+            let input = EquilibriumInput { conditions, ..input.clone() };
+            equilibrium::solve(&model, &input).unwrap().load
+        };
+        let mut differences = SMatrix::<f64, 5, 5>::zeros();
+        for k in 0..5 {
+            let change = if k < 3 { 2e-9 } else { 1e-7 };
+            let (plus, minus) = (load(k, change), load(k, -change));
+            for i in 0..5 {
+                differences[(i, k)] = (plus[i] - minus[i]) / (2.0 * change);
+            }
+        }
+        let d = difference(&ours, &differences);
+        println!("{} {d:.1e}", case["id"]);
+        assert!(d < 1e-3, "{}: {d:e}", case["id"]);
+    }
+}
+
+#[test]
+fn independent_data_stiffness_of_the_reference_cases() {
+    // Frictionless, where no gyroscopic moment is carried. At rest it is the same matrix. At speed each ball keeps its
+    // own orbital speed here, which the data let follow a common cage speed.
+    for case in cases() {
+        let simulation = start(&case, 1.0, "creep = \"frictionless\"");
+        let ours = simulation.outputs().condensed.unwrap().stiffness;
+        let reference = SMatrix::<f64, 5, 5>::from_fn(|i, k| number(&case["no_gyro"]["stiffness"][i][k]));
+        let d = difference(&ours, &reference);
+        println!("{} {} {d:.1e}", case["id"], number(&case["inner_speed"]));
+        let bound = if number(&case["inner_speed"]) == 0.0 { 1e-3 } else { 0.05 };
+        assert!(d < bound, "{}: {d:e}", case["id"]);
+    }
+}
+
+/// Largest asymmetry of a matrix over the root of its diagonal components, the rotations' own taken out: turning the
+/// race by two rotations in either order differs by the moment that holds it.
+fn asymmetry(stiffness: &Matrix6<f64>, moment: &Vector3<f64>) -> f64 {
+    let mut rest = stiffness - stiffness.transpose();
+    let mut rotations = rest.fixed_view_mut::<3, 3>(3, 3);
+    rotations -= moment.cross_matrix();
+    let scale = |i: usize| if i == 3 { stiffness[(4, 4)] } else { stiffness[(i, i)] }.abs();
+    Matrix6::from_fn(|i, k| rest[(i, k)].abs() / (scale(i) * scale(k)).sqrt()).amax()
+}
+
+#[test]
+fn invariant_stiffness_is_symmetric_without_friction_and_damping_never_drives() {
+    for case in cases() {
+        let still = start(&case, 0.0, "creep = \"frictionless\"\ndamping = 0.02");
+        let outputs = still.outputs();
+        let Condensed { stiffness, damping } = outputs.condensed.unwrap();
+        let a = asymmetry(&stiffness, &-outputs.inner.wrench.moment);
+        let eigenvalues = |damping: &Matrix6<f64>| {
+            // Rotations as displacements at the pitch circle.
+            let length = still.model().race_length();
+            let scale = |i: usize| if i < 3 { 1.0 } else { 1.0 / length };
+            let scaled =
+                Matrix6::from_fn(|i, k| 0.5 * (damping[(i, k)] + damping[(k, i)]) * scale(i) * scale(k));
+            let eigen = scaled.symmetric_eigenvalues();
+            (eigen.min(), eigen.max())
+        };
+        let (low, high) = eigenvalues(&damping);
+        let rolling = start(&case, 1.0, "damping = 0.02").outputs().condensed.unwrap();
+        let (low_rolling, high_rolling) = eigenvalues(&rolling.damping);
+        println!(
+            "{} asymmetry {a:.1e}, damping {low:.1e} to {high:.1e}, rolling {low_rolling:.1e} to {high_rolling:.1e}",
+            case["id"]
+        );
+        assert!(a < 1e-6, "{}: {a:e}", case["id"]);
+        assert!(low > -1e-9 * high && high > 0.0, "{}: {low:e} {high:e}", case["id"]);
+        assert!(low_rolling > -1e-3 * high_rolling, "{}: {low_rolling:e} {high_rolling:e}", case["id"]);
+    }
+}
+
+/// The thrust case with the inner race's motion given, after 20 ms.
+fn running() -> Simulation {
+    let text = THRUST
+        .replace("[effects]", "[effects]\nstiffness_outputs = true")
+        .replace("drive = \"wrench\"\nmass = \"0.2 kg\"                 # chosen\n", "drive = \"pose\"\n")
+        .replace("inertia =", "# inertia =")
+        .replace("x = { force = \"1500 N\" }", "x = { displacement = \"25 um\" }\ny = { displacement = 0.0 }\nz = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }");
+    let mut simulation = Simulation::new(&Scene::parse(&text).unwrap()).unwrap();
+    simulation.advance(20e-3).unwrap();
+    simulation
+}
+
+/// Force and moment on the inner race after it was moved slowly in a direction by `velocity` [m/s] for a time [s] and,
+/// if it is to come `back`, for as long the other way.
+fn wrench_after(
+    simulation: &Simulation,
+    direction: usize,
+    velocity: f64,
+    time: f64,
+    back: bool,
+) -> [Vector3<f64>; 2] {
+    let mut simulation = simulation.clone();
+    let unit = Vector3::ith(direction, 1.0);
+    let mut go = |velocity: f64| {
+        for _ in 0..20 {
+            let mut inputs = *simulation.inputs();
+            inputs.inner.pose = simulation.outputs().inner.pose;
+            inputs.inner.twist = Twist {
+                velocity: unit * velocity,
+                angular_velocity: simulation.outputs().inner.twist.angular_velocity,
+            };
+            inputs.inner.pose.position += unit * (velocity * time / 20.0);
+            let spin = inputs.inner.twist.angular_velocity * (time / 20.0);
+            inputs.inner.pose.orientation =
+                nalgebra::UnitQuaternion::new(spin) * inputs.inner.pose.orientation;
+            simulation.set_inputs(inputs);
+            simulation.advance(simulation.time() + time / 20.0).unwrap();
+        }
+    };
+    go(velocity);
+    if back {
+        go(-velocity);
+    }
+    let wrench = simulation.outputs().inner.wrench;
+    [wrench.force, wrench.moment]
+}
+
+#[test]
+fn closed_form_slow_motions_of_the_running_bearing() {
+    let simulation = running();
+    let Condensed { stiffness, damping } = simulation.outputs().condensed.unwrap();
+    let (velocity, time) = (2e-5, 10e-3);
+    for direction in [0, 1] {
+        // There and back again ends where it began: what differs is the damping.
+        let there = |velocity: f64, back: bool| {
+            wrench_after(&simulation, direction, velocity, time, back)[0][direction]
+        };
+        let seen_damping = (there(velocity, true) - there(-velocity, true)) / (2.0 * velocity);
+        let force = there(-velocity, false) - there(velocity, false);
+        let seen_stiffness = force / (2.0 * velocity * time) - damping[(direction, direction)] / time;
+        println!(
+            "direction {direction}: stiffness {:.4e} seen {seen_stiffness:.4e}, damping {:.4e} seen {seen_damping:.4e}",
+            stiffness[(direction, direction)],
+            damping[(direction, direction)]
+        );
+        assert!((seen_stiffness / stiffness[(direction, direction)] - 1.0).abs() < 0.02);
+        assert!((seen_damping / damping[(direction, direction)] - 1.0).abs() < 0.1);
+    }
+}
+
+#[test]
+fn only_scenes_that_ask_for_it_have_it() {
+    let plain = Scene::parse(THRUST).unwrap();
+    let asked = Scene::parse(&THRUST.replace("[effects]", "[effects]\nstiffness_outputs = true")).unwrap();
+    let names = |scene: &Scene| -> Vec<String> {
+        Variables::new(scene).rows().iter().map(|row| format!("{} {}", row.name, row.unit.name)).collect()
+    };
+    assert!(Simulation::new(&plain).unwrap().outputs().condensed.is_none());
+    assert!(!names(&plain).iter().any(|name| name.starts_with("stiffness") || name.starts_with("damping.")));
+    let names = names(&asked);
+    for name in
+        ["stiffness.x.y N/m", "stiffness.x.ry N/rad", "stiffness.rz.y N.m/m", "damping.ry.rz N.m.s/rad"]
+    {
+        assert!(names.iter().any(|one| one == name), "{name}");
+    }
+    let simulation = Simulation::new(&asked).unwrap();
+    let table = Variables::new(&asked);
+    let row = table.rows().iter().find(|row| row.name == "stiffness.y.rz").unwrap();
+    let value = table.value(row, simulation.inputs(), simulation.outputs());
+    assert_eq!(value, simulation.outputs().condensed.unwrap().stiffness[(1, 5)]);
+    // An axis of symmetry: what turns about it meets no stiffness, and y is like z.
+    let k = simulation.outputs().condensed.unwrap().stiffness;
+    let turned =
+        Matrix3::new(k[(0, 0)], k[(1, 1)] - k[(2, 2)], k[(3, 3)], k[(0, 1)], 0.0, 0.0, 0.0, 0.0, 0.0);
+    assert!(turned.iter().skip(1).all(|c| c.abs() < 1e-6 * turned[0]), "{turned}");
+}
