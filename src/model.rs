@@ -81,7 +81,7 @@ enum RacewayLaw {
     Regularised(Parameters),
     Saturated,
     Table(CreepTable),
-    Kalker(Box<ScaledKalker>),
+    Kalker(CreepTable, Box<ScaledKalker>),
 }
 
 impl RacewayLaw {
@@ -98,7 +98,8 @@ impl RacewayLaw {
             CreepLaw::Saturated => Self::Saturated,
             CreepLaw::KalkerTable => Self::Table(CreepTable::new(&patch)?),
             CreepLaw::Kalker => {
-                Self::Kalker(Box::new(ScaledKalker::new(&patch, scene.effects.kalker_degree)?))
+                let kalker = ScaledKalker::new(&patch, scene.effects.kalker_degree)?;
+                Self::Kalker(CreepTable::new(&patch)?, Box::new(kalker))
             }
         })
     }
@@ -109,8 +110,7 @@ impl RacewayLaw {
             Self::Linear => Law::Linear,
             Self::Regularised(parameters) => Law::Regularised(parameters),
             Self::Saturated => Law::Saturated,
-            Self::Table(table) => Law::Table(table),
-            Self::Kalker(kalker) => Law::Kalker(kalker),
+            Self::Table(table) | Self::Kalker(table, _) => Law::Table(table),
         }
     }
 }
@@ -126,6 +126,8 @@ pub struct Model {
     laws: [RacewayLaw; 2],
     /// [1/m] mean transverse curvature of ball and groove over 2, where its slip is simulated.
     groove_bends: [Option<f64>; 2],
+    /// [-] change of creepages over sliding ones after which Kalker's polynomials are solved anew.
+    pub epsilon_switch: f64,
     /// [s/m] Hunt-Crossley dissipation factor.
     pub damping: f64,
     /// [m/s2] gravity.
@@ -160,6 +162,7 @@ impl Model {
             laws,
             groove_bends,
             shapes,
+            epsilon_switch: scene.effects.epsilon_switch,
             damping: scene.effects.damping.0,
             gravity: Vector3::from(scene.effects.gravity.map(|component| component.0)),
             bodies: [wrench_body(&scene.inner, scene), hinged_body(&scene.outer)],
@@ -180,7 +183,8 @@ impl Model {
         if race == INNER { &self.bearing.inner } else { &self.bearing.outer }
     }
 
-    /// Contact model of the balls with a race at a friction coefficient.
+    /// Contact model of the balls with a race at a friction coefficient; Kalker's polynomials give its table, to which
+    /// each ball's difference is added ([`ContactModel::of_ball`]).
     pub fn contact(&self, race: usize, friction: f64) -> ContactModel<'_> {
         ContactModel {
             raceway: self.raceway(race),
@@ -190,6 +194,14 @@ impl Model {
             groove_bend: self.groove_bends[race],
             friction,
             damping: self.damping,
+        }
+    }
+
+    /// Kalker's polynomials on a race, where they are simulated.
+    pub fn polynomials(&self, race: usize) -> Option<&ScaledKalker> {
+        match &self.laws[race] {
+            RacewayLaw::Kalker(_, kalker) => Some(kalker),
+            _ => None,
         }
     }
 

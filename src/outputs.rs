@@ -163,8 +163,10 @@ impl Outputs {
         let cage_motion = state.cage.as_ref().map(RaceState::body_motion);
         let (mut cosine, mut loaded) = (0.0, 0.0);
         for (index, ball) in state.balls.iter().enumerate() {
-            let [inner_contact, outer_contact] =
-                [INNER, OUTER].map(|race| contacts[race].evaluate(&ball.motion(), &races[race]));
+            let [inner_contact, outer_contact] = [INNER, OUTER].map(|race| {
+                let contact = contacts[race].of_ball(state.difference(index, race));
+                contact.evaluate(&ball.motion(), &races[race])
+            });
             stored_energy += 0.5 * ball_model.mass * ball.velocity.norm_squared()
                 + 0.5 * ball_model.inertia * ball.angular_velocity.norm_squared();
             for contact in [&inner_contact, &outer_contact] {

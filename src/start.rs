@@ -125,6 +125,11 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
     State {
         time: 0.0,
         cage: model.cage.as_ref().map(|_| centred_cage(&balls, outer, &frame, solution.cage_speed)),
+        differences: if model.polynomials(INNER).is_some() {
+            vec![Default::default(); balls.len()]
+        } else {
+            vec![]
+        },
         balls,
         races,
         control: StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0),

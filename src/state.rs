@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
+use crate::kalker::scaled_law::Difference;
 use crate::motion::{Pose, Twist, Wrench};
 use crate::newton::NewtonWork;
 use crate::step_control::StepControl;
@@ -25,6 +26,13 @@ pub struct BallState {
     pub angular_acceleration: Vector3<f64>,
     /// Total force and moment about the centre, the `g` of the HHT scheme.
     pub total: Wrench,
+}
+
+impl State {
+    /// What Kalker's polynomials add to the table at a ball's contact with a race, where they are simulated.
+    pub fn difference(&self, ball: usize, race: usize) -> Option<&Difference> {
+        self.differences.get(ball).map(|differences| &differences[race])
+    }
 }
 
 impl BallState {
@@ -167,6 +175,10 @@ pub struct Statistics {
     pub contact_values: u64,
     /// Evaluations of a ball-race contact with exact derivatives.
     pub contact_tangents: u64,
+    /// Solutions of Kalker's polynomials.
+    pub polynomials: u64,
+    /// Solutions of Kalker's polynomials that did not converge; what they add to the table then stayed what it was.
+    pub polynomial_failures: u64,
 }
 
 /// Everything that changes while the bearing runs.
@@ -178,6 +190,9 @@ pub struct State {
     pub balls: Vec<BallState>,
     /// Inner and outer race.
     pub races: [RaceState; 2],
+    /// What Kalker's polynomials add to the table at each ball's contact with inner and outer race; empty where they are
+    /// not simulated.
+    pub differences: Vec<[Difference; 2]>,
     /// The cage, a body like a race; none where it is not simulated.
     pub cage: Option<RaceState>,
     /// Step size.

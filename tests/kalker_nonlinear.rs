@@ -141,8 +141,10 @@ fn invariant_warm_start_finds_the_cold_solution() {
     let kalker = kalker(0.2, 5);
     let near = kalker.solve(&ScaledCreepage { x: 0.2, y: 0.1, spin: 0.8, curvature: 0.0 }, None).unwrap();
     let creepage = ScaledCreepage { x: 0.203, y: 0.099, spin: 0.805, curvature: 0.0 };
-    let (warm, cold) =
-        (kalker.solve(&creepage, Some(&near)).unwrap(), kalker.solve(&creepage, None).unwrap());
+    let (warm, cold) = (
+        kalker.solve(&creepage, Some(near.coefficients.as_slice())).unwrap(),
+        kalker.solve(&creepage, None).unwrap(),
+    );
     assert!((warm.forces.fx - cold.forces.fx).abs() < 2e-3);
     assert!((warm.forces.fy - cold.forces.fy).abs() < 2e-3);
     assert!(warm.iterations < cold.iterations);

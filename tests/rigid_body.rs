@@ -34,6 +34,7 @@ impl Flight {
         model.solver.tolerance = f64::INFINITY;
         let outer = Pose::default();
         let mut state = State {
+            differences: vec![],
             cage: None,
             time: 0.0,
             balls,

@@ -108,6 +108,13 @@ fn write_summary(
         s.newton.factorisations
     )?;
     writeln!(out, "contacts         {} values, {} with derivatives", s.contact_values, s.contact_tangents)?;
+    if s.polynomials > 0 {
+        writeln!(
+            out,
+            "polynomials      {} solutions, {} without convergence",
+            s.polynomials, s.polynomial_failures
+        )?;
+    }
     let seconds = wall.as_secs_f64();
     let simulated = now.time - history[0].time;
     writeln!(out, "wall time        {seconds:.3} s, {:.2} s per simulated second", seconds / simulated)

@@ -25,6 +25,8 @@ pub enum Law<'a> {
     Table(&'a CreepTable),
     /// Kalker's nonlinear theory in polynomials.
     Kalker(&'a ScaledKalker),
+    /// The same in simulations: the table and what the polynomials add to it, frozen.
+    Frozen(&'a CreepTable, &'a [f64; 4]),
 }
 
 /// Creepages of a contact.
@@ -97,16 +99,20 @@ impl<S: Scalar> LinearTheory<S> {
             Law::Linear => return self.linear(creepage),
             Law::Regularised(parameters) => self.regularised(parameters, creepage),
             Law::Saturated => self.saturated(creepage),
-            Law::Table(table) => {
+            Law::Table(table) | Law::Frozen(table, _) => {
                 let (turned, q) = self.uncoupled(creepage);
                 let [x, y, z] = S::map_smooth_many(q, |q| table.evaluate(q));
                 [turned * x, turned * y, z]
             }
             Law::Kalker(kalker) => return self.polynomials(kalker, creepage),
         };
-        match creepage.curvature {
+        let forces = match creepage.curvature {
             None => self.dimensional(flat, S::zero()),
             Some(curvature) => self.bent(flat, creepage, curvature),
+        };
+        match law {
+            Law::Frozen(_, difference) => self.corrected(&forces, difference),
+            _ => forces,
         }
     }
 
@@ -174,17 +180,44 @@ impl<S: Scalar> LinearTheory<S> {
         let [dx, dy, dz, second] = S::map_smooth_many(q, curvature_effect);
         let [x, y] = within_limit(x + dx, y + dy);
         let z = (z + dz * self.friction_limit * self.half_width * per_moment).clamp_to(-1.0, 1.0);
-        self.dimensional([x, y, z], second * self.friction_limit * self.half_width.square())
+        self.dimensional([x, y, z], second * self.second_moment_scale())
+    }
+
+    /// Arguments of the nonlinear theory in polynomials; the first factor turns x, y and the second moment back.
+    #[inline(always)]
+    fn polynomial_arguments(&self, creepage: &Creepage<S>) -> (S, [S; 4]) {
+        let (turned, [x, y, z]) = self.uncoupled(creepage);
+        let (_, side) = self.side_slips(creepage.spin, creepage.curvature.unwrap_or_else(S::zero));
+        (turned, [x, y, z, turned * side])
     }
 
     /// Kalker's nonlinear theory in polynomials, the curvature of the groove included.
     #[inline(always)]
     fn polynomials(&self, kalker: &ScaledKalker, creepage: &Creepage<S>) -> CreepForces<S> {
-        let (turned, [x, y, z]) = self.uncoupled(creepage);
-        let (_, side) = self.side_slips(creepage.spin, creepage.curvature.unwrap_or_else(S::zero));
-        let [x, y, z, second] = S::map_smooth_many([x, y, z, turned * side], |q| kalker.evaluate(q));
-        let arm = self.friction_limit * self.half_width.square();
-        self.dimensional([turned * x, turned * y, z], turned * second * arm)
+        let (turned, q) = self.polynomial_arguments(creepage);
+        let [x, y, z, second] = S::map_smooth_many(q, |q| kalker.evaluate(q));
+        self.dimensional([turned * x, turned * y, z], turned * second * self.second_moment_scale())
+    }
+
+    /// [N m2] mu Q times the square of the half width.
+    #[inline(always)]
+    fn second_moment_scale(&self) -> S {
+        self.friction_limit * self.half_width.square()
+    }
+
+    /// Forces with what the polynomials add, kept within their limits.
+    #[inline(always)]
+    fn corrected(&self, forces: &CreepForces<S>, difference: &[f64; 4]) -> CreepForces<S> {
+        let (per_force, per_moment) = self.per_limits();
+        let turned = S::one().where_positive(self.coupling, -S::one());
+        let [x, y, z, second] = difference.map(S::constant);
+        let [x, y] = within_limit(
+            forces.longitudinal * per_force + turned * x,
+            forces.lateral * per_force + turned * y,
+        );
+        let z = (forces.spin_moment * per_moment + z).clamp_to(-1.0, 1.0);
+        let second = forces.second_moment + turned * second * self.second_moment_scale();
+        self.dimensional([x, y, z], second)
     }
 
     /// Linear theory saturated as one vector of force and moment.
@@ -202,6 +235,23 @@ impl<S: Scalar> LinearTheory<S> {
         let z = linear.spin_moment * per_moment;
         let factor = saturation((x.square() + y.square() + z.square()).sqrt());
         [x * factor, y * factor, z * factor]
+    }
+}
+
+impl LinearTheory<f64> {
+    /// Arguments of the polynomials, and the table's results in the same scale.
+    pub fn polynomial_scale(&self, table: &CreepTable, creepage: &Creepage<f64>) -> ([f64; 4], [f64; 4]) {
+        let (turned, q) = self.polynomial_arguments(creepage);
+        let forces = self.forces(Law::Table(table), creepage);
+        let (per_force, per_moment) = self.per_limits();
+        let per_second = 1.0 / (self.second_moment_scale() + f64::MIN_POSITIVE);
+        let results = [
+            turned * forces.longitudinal * per_force,
+            turned * forces.lateral * per_force,
+            forces.spin_moment * per_moment,
+            turned * forces.second_moment * per_second,
+        ];
+        (q, results)
     }
 }
 

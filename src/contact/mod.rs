@@ -14,10 +14,12 @@ pub mod shape;
 use nalgebra::Vector3;
 
 use crate::bearing::Raceway;
+use crate::kalker::nonlinear::KalkerError;
+use crate::kalker::scaled_law::{Difference, ScaledKalker};
 use crate::scalar::{Scalar, cross, dot, values};
 use creep::{CreepForces, Creepage, Law, LinearTheory};
 use geometry::GrooveContact;
-use shape::ContactShape;
+use shape::{ContactShape, ShapeAt};
 
 /// [m/s] rolling speed below which creepages are held finite: `V -> sqrt(V^2 + v^2)`. Forces stay linear in the slip
 /// speed at rest; at 1 m/s it changes creepages by 5e-7.
@@ -178,18 +180,7 @@ impl ContactModel<'_> {
         };
 
         // creep forces of the ball on the race
-        let friction_limit = load.scale(self.friction);
-        let theory = LinearTheory {
-            longitudinal: shape.longitudinal * depth,
-            lateral: shape.lateral * depth,
-            coupling: shape.coupling * depth * root * rolling_cosine,
-            spin: shape.spin * depth.square(),
-            friction_limit,
-            moment_limit: friction_limit * shape.spin_arm * root,
-            mean_semi_axis: shape.mean_semi_axis * root,
-            half_width: shape.semi_axis_transverse * root,
-        };
-        let creep = theory.forces(self.law, &creepage);
+        let creep = self.linear_theory(&shape, depth, root, load, rolling_cosine).forces(self.law, &creepage);
 
         // wrenches
         let tangential = x * creep.longitudinal + y * creep.lateral;
@@ -215,6 +206,74 @@ impl ContactModel<'_> {
                 + rolling_moment * relative_rolling,
             damping_power: (load - elastic) * approach_rate,
         }
+    }
+}
+
+impl ContactModel<'_> {
+    /// Kalker's linear theory of a contact of depth [m], its root, and load [N] that rolls along or against the circumference.
+    #[inline(always)]
+    fn linear_theory<S: Scalar>(
+        &self,
+        shape: &ShapeAt<S>,
+        depth: S,
+        root: S,
+        load: S,
+        rolling_cosine: S,
+    ) -> LinearTheory<S> {
+        let friction_limit = load.scale(self.friction);
+        LinearTheory {
+            longitudinal: shape.longitudinal * depth,
+            lateral: shape.lateral * depth,
+            coupling: shape.coupling * depth * root * rolling_cosine,
+            spin: shape.spin * depth.square(),
+            friction_limit,
+            moment_limit: friction_limit * shape.spin_arm * root,
+            mean_semi_axis: shape.mean_semi_axis * root,
+            half_width: shape.semi_axis_transverse * root,
+        }
+    }
+
+    /// The contact of one ball: with what Kalker's polynomials add there, if they do.
+    pub fn of_ball<'b>(&self, difference: Option<&'b Difference>) -> ContactModel<'b>
+    where
+        Self: 'b,
+    {
+        ContactModel {
+            law: match (self.law, difference) {
+                (Law::Table(table), Some(difference)) => Law::Frozen(table, &difference.value),
+                (law, _) => law,
+            },
+            ..*self
+        }
+    }
+
+    /// Renews what Kalker's polynomials add to the table at an evaluated contact, where its creepages have moved by more
+    /// than a share of `1 + |q|` since the last time. Says whether that was so.
+    ///
+    /// # Errors
+    /// If the nonlinear problem does not converge; the difference then stays what it was.
+    pub fn renew(
+        &self,
+        kalker: &ScaledKalker,
+        contact: &BallRaceContact<f64>,
+        share: f64,
+        difference: &mut Difference,
+    ) -> Result<bool, KalkerError> {
+        let Law::Table(table) = self.law else {
+            return Ok(false);
+        };
+        if contact.load <= 0.0 {
+            return Ok(false);
+        }
+        let shape = self.shape.at(contact.geometry.circumferential_curvature);
+        let depth = contact.geometry.approach;
+        let theory = self.linear_theory(&shape, depth, depth.sqrt(), contact.load, contact.rolling_cosine);
+        let (q, results) = theory.polynomial_scale(table, &contact.creepage);
+        let old = difference.age(&q) > share;
+        if old {
+            kalker.renew(difference, q, results)?;
+        }
+        Ok(old)
     }
 }
 

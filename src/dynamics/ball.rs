@@ -8,6 +8,7 @@ use crate::cage::CageModel;
 use crate::contact::body::BodyContact;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::hht::HhtStep;
+use crate::kalker::scaled_law::Difference;
 use crate::model::{CAGE, Model};
 use crate::motion::Wrench;
 use crate::scalar::{Dual, Scalar, constant_vector};
@@ -106,7 +107,7 @@ impl BallTrial {
         start: &BallState,
         with_tangent: bool,
     ) {
-        let Surroundings { model, contacts, races, cage } = *around;
+        let Surroundings { model, contacts, differences, races, cage } = *around;
         let ball = &model.bearing.ball;
         let acceleration: Vector3<f64> = self.unknowns.fixed_rows::<3>(0).into_owned();
         let angular_acceleration = self.unknowns.fixed_rows::<3>(3) / ball.radius;
@@ -124,18 +125,19 @@ impl BallTrial {
         self.total = Wrench { force: model.gravity * ball.mass, moment: Vector3::zeros() };
         for race in 0..2 {
             self.reactions[race] = None;
+            let contact_model = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));
             let contact = match (&races[race], with_tangent) {
-                (seen, false) => contacts[race].evaluate(&self.motion, seen.value()),
+                (seen, false) => contact_model.evaluate(&self.motion, seen.value()),
                 (RaceSeen::Prescribed(motion), true) => {
                     let seeded = seed::<6>(&self.motion, step, ball.radius);
                     let motion = constant_race(motion);
-                    let contact = contacts[race].evaluate(&seeded, &motion);
+                    let contact = contact_model.evaluate(&seeded, &motion);
                     tangent += by_ball(&contact.force, &contact.ball_moment);
                     contact.values()
                 }
                 (RaceSeen::Body { motion, .. }, true) => {
                     let seeded = seed::<DIRECTIONS>(&self.motion, step, ball.radius);
-                    let contact = contacts[race].evaluate(&seeded, motion);
+                    let contact = contact_model.evaluate(&seeded, motion);
                     tangent += by_ball(&contact.force, &contact.ball_moment);
                     let by_race = by_race(&contact.force, &contact.ball_moment);
                     self.block.right[race] = scale_moments(by_race, ball.radius) * -share;
@@ -213,6 +215,8 @@ pub struct Surroundings<'a> {
     pub model: &'a Model,
     /// Contact with each race.
     pub contacts: &'a [ContactModel<'a>; 2],
+    /// What Kalker's polynomials add at each ball.
+    pub differences: &'a [[Difference; 2]],
     /// Motion of each race.
     pub races: &'a [RaceSeen; 2],
     /// Constants and motion of the cage.

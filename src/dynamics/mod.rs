@@ -125,6 +125,8 @@ pub fn try_step(
         return Err(StepFailure::Error(erring));
     }
     accept(model, state, boundary, &step, workspace);
+    let contacts = workspace.balls.iter().map(|ball| &ball.contacts);
+    renew_polynomials(model, state, boundary.friction, contacts);
     Ok(())
 }
 
@@ -296,6 +298,7 @@ impl Equations for BearingStep<'_> {
         let around = Surroundings {
             model: self.model,
             contacts: &self.contacts,
+            differences: &self.start.differences,
             races: &self.seen,
             cage: self.model.cage.as_ref().zip(self.workspace.cage.as_ref()),
         };
@@ -528,6 +531,28 @@ fn force_tolerance<'a>(contacts: impl Iterator<Item = &'a BallRaceContact<f64>>,
     FORCE_TOLERANCE.max(RELATIVE_TOLERANCE * load).max(round_off)
 }
 
+/// Solves Kalker's polynomials anew where the creepages of a contact have moved.
+fn renew_polynomials<'a>(
+    model: &Model,
+    state: &mut State,
+    friction: f64,
+    contacts: impl Iterator<Item = &'a [BallRaceContact<f64>; 2]>,
+) {
+    let contact_models = [0, 1].map(|race| model.contact(race, friction));
+    for (differences, contacts) in state.differences.iter_mut().zip(contacts) {
+        for race in 0..2 {
+            let Some(kalker) = model.polynomials(race) else {
+                continue;
+            };
+            let difference = &mut differences[race];
+            match contact_models[race].renew(kalker, &contacts[race], model.epsilon_switch, difference) {
+                Ok(solved) => state.statistics.polynomials += u64::from(solved),
+                Err(_) => state.statistics.polynomial_failures += 1,
+            }
+        }
+    }
+}
+
 /// Sum of the contacts' effect on a race.
 pub fn bearing_wrench<'a>(contacts: impl Iterator<Item = &'a BallRaceContact<f64>>) -> Wrench {
     contacts.fold(Wrench::default(), |sum, contact| Wrench {
@@ -583,6 +608,13 @@ impl RaceReaction {
 pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     let contacts = [0, 1].map(|race| model.contact(race, boundary.friction));
     let races = [0, 1].map(|race: usize| state.races[race].motion());
+    if !state.differences.is_empty() {
+        let of_ball = |ball: &BallState| {
+            [0, 1].map(|race: usize| contacts[race].evaluate(&ball.motion(), &races[race]))
+        };
+        let ball_contacts: Vec<_> = state.balls.iter().map(of_ball).collect();
+        renew_polynomials(model, state, boundary.friction, ball_contacts.iter());
+    }
     let ball_model = &model.bearing.ball;
     let mut powers = Powers::default();
     let mut wrenches = [Wrench::default(); 2];
@@ -603,7 +635,9 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
         ball.total = Wrench { force: model.gravity * ball_model.mass, moment: Vector3::zeros() };
         powers.input += ball_model.mass * model.gravity.dot(&ball.velocity);
         for race in 0..2 {
-            let contact = contacts[race].evaluate(&ball.motion(), &races[race]);
+            let contact = contacts[race]
+                .of_ball(state.differences.get(index).map(|of_ball| &of_ball[race]))
+                .evaluate(&ball.motion(), &races[race]);
             ball.total.force += contact.force;
             ball.total.moment += contact.ball_moment;
             powers.friction += contact.friction_power;

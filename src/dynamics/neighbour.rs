@@ -26,6 +26,8 @@ pub fn follow<'a>(
     BearingStep::new(model, start, boundary, h, workspace).residual(&solution, true);
     let mut regular = true;
     for (state, boundary) in neighbours {
+        // frozen in a step, for its neighbours too
+        state.differences.clone_from(&start.differences);
         let mut equations = BearingStep::new(model, state, &boundary, h, workspace);
         // No residual is small enough to be left alone: only its change counts.
         equations.force_tolerance = 0.0;

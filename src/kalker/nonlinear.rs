@@ -328,15 +328,11 @@ impl Kalker {
         }
     }
 
-    /// Solves for creepages, from the linear solution or from that of neighbouring creepages.
+    /// Solves for creepages, from the linear solution or from the coefficients of neighbouring creepages.
     ///
     /// # Errors
     /// See [`KalkerError`]; for every finite creepage there is a result or an error, never a NaN.
-    pub fn solve(
-        &self,
-        creepage: &ScaledCreepage,
-        start: Option<&Solution>,
-    ) -> Result<Solution, KalkerError> {
+    pub fn solve(&self, creepage: &ScaledCreepage, start: Option<&[f64]>) -> Result<Solution, KalkerError> {
         let components = [creepage.x, creepage.y, creepage.spin, creepage.curvature];
         if !components.iter().all(|component| component.is_finite()) {
             return Err(KalkerError::NotFinite(*creepage));
@@ -346,7 +342,7 @@ impl Kalker {
         let [x, y, spin, curvature] = components.map(|component| component * shrink);
         let h = ScaledCreepage { x, y, spin, curvature };
         let mut z = match start {
-            Some(start) => start.coefficients.clone(),
+            Some(start) => DVector::from_column_slice(start),
             None => {
                 // The linear solution, brought down where it is far above the bound.
                 // The curvature slip at its mean over the pressure: y^2 = b^2/5.

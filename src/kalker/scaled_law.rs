@@ -1,8 +1,39 @@
-//! Kalker's nonlinear theory in polynomials as a creep law of simulations, in the same variables as the table.
+//! Kalker's nonlinear theory in polynomials as a creep law, in the same variables as the table.
+//!
+//! Its minimum jumps where points of the grid change between sticking and sliding, so that an implicit step may have no
+//! solution. In simulations it is therefore frozen for each step as a [`Difference`] from the smooth table.
+
+use serde::{Deserialize, Serialize};
 
 use super::linear::Scales;
-use super::nonlinear::{Kalker, KalkerError};
+use super::nonlinear::{Kalker, KalkerError, Solution};
 use super::{Patch, ScaledCreepage};
+
+/// Change of q over `1 + |q|` beyond which the last solution is no neighbour.
+const NEAR: f64 = 0.5;
+
+/// What the polynomials add to the table at one contact, frozen between renewals.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Difference {
+    /// Arguments q of [`ScaledKalker::evaluate`] at the last renewal.
+    pub place: [f64; 4],
+    /// Results there less those of the table.
+    pub value: [f64; 4],
+    /// Coefficients of the traction polynomials there; none before the first renewal.
+    pub coefficients: Vec<f64>,
+}
+
+impl Difference {
+    /// [-] largest change of q since the last renewal, over `1 + |q|`; infinite before the first.
+    pub fn age(&self, q: &[f64; 4]) -> f64 {
+        if self.coefficients.is_empty() {
+            return f64::INFINITY;
+        }
+        let size = q.iter().fold(0.0f64, |size, q| size.max(q.abs()));
+        let moved = q.iter().zip(&self.place).fold(0.0f64, |moved, (q, place)| moved.max((q - place).abs()));
+        moved / (1.0 + size)
+    }
+}
 
 /// The nonlinear theory of one patch that rolls along the x axis of its ellipse.
 #[derive(Clone, Debug)]
@@ -24,17 +55,33 @@ impl ScaledKalker {
         Ok(Self { kalker: Kalker::new(aligned, degree)?, scales, width_square: 1.0 / patch.axis_ratio })
     }
 
+    /// Scaled creepages by q, and results by forces.
+    fn factors(&self) -> ([f64; 4], [f64; 4]) {
+        let Scales { c11, c22, c33, moment, .. } = self.scales;
+        let by_q = [1.0 / c11, 1.0 / c22, moment / c33, 1.0 / (c11 * self.width_square)];
+        (by_q, [1.0, 1.0, 1.0 / moment, 1.0 / self.width_square])
+    }
+
+    fn creepage(&self, q: &[f64; 4]) -> ScaledCreepage {
+        let (by_q, _) = self.factors();
+        let [x, y, spin, curvature] = std::array::from_fn(|k| q[k] * by_q[k]);
+        ScaledCreepage { x, y, spin, curvature }
+    }
+
+    fn results(&self, solution: &Solution) -> [f64; 4] {
+        let (_, by_force) = self.factors();
+        let f = solution.forces;
+        let forces = [f.fx, f.fy, f.mz, f.second_moment];
+        std::array::from_fn(|m| forces[m] * by_force[m])
+    }
+
     /// `(F_x/(mu Q), F_y/(mu Q), M_z/M_max)` and the second moment over mu Q b^2, with their derivatives.
     ///
     /// Arguments are linear theory's forces without coupling over the same limits, and the linear force over mu Q of
     /// the slip `kappa b^2`. Where the nonlinear problem does not converge the values are NaN, which no step accepts.
     pub fn evaluate(&self, q: [f64; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
-        let Scales { c11, c22, c33, moment, .. } = self.scales;
-        // scaled creepages by q, results by forces
-        let by_q = [1.0 / c11, 1.0 / c22, moment / c33, 1.0 / (c11 * self.width_square)];
-        let by_force = [1.0, 1.0, 1.0 / moment, 1.0 / self.width_square];
-        let h: [f64; 4] = std::array::from_fn(|k| q[k] * by_q[k]);
-        let creepage = ScaledCreepage { x: h[0], y: h[1], spin: h[2], curvature: h[3] };
+        let (by_q, by_force) = self.factors();
+        let creepage = self.creepage(&q);
         let nothing = ([f64::NAN; 4], [[f64::NAN; 4]; 4]);
         let Ok(solution) = self.kalker.solve(&creepage, None) else {
             return nothing;
@@ -42,11 +89,29 @@ impl ScaledKalker {
         let Some(derivatives) = self.kalker.derivatives(&solution, &creepage) else {
             return nothing;
         };
-        let f = solution.forces;
-        let forces = [f.fx, f.fy, f.mz, f.second_moment];
-        (
-            std::array::from_fn(|m| forces[m] * by_force[m]),
-            std::array::from_fn(|m| std::array::from_fn(|n| derivatives[m][n] * by_force[m] * by_q[n])),
-        )
+        let slopes =
+            std::array::from_fn(|m| std::array::from_fn(|n| derivatives[m][n] * by_force[m] * by_q[n]));
+        (self.results(&solution), slopes)
+    }
+
+    /// Renews a difference at q, where the table gives `table`, from the last solution if that is near.
+    ///
+    /// # Errors
+    /// See [`KalkerError`]; the difference then stays what it was.
+    pub fn renew(
+        &self,
+        difference: &mut Difference,
+        q: [f64; 4],
+        table: [f64; 4],
+    ) -> Result<(), KalkerError> {
+        let start = (difference.age(&q) < NEAR).then_some(difference.coefficients.as_slice());
+        let solution = self.kalker.solve(&self.creepage(&q), start)?;
+        let results = self.results(&solution);
+        *difference = Difference {
+            place: q,
+            value: std::array::from_fn(|m| results[m] - table[m]),
+            coefficients: solution.coefficients.as_slice().to_vec(),
+        };
+        Ok(())
     }
 }

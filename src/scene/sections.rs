@@ -97,8 +97,11 @@ pub enum CreepLaw {
 pub struct Effects {
     /// Creep law of the ball-race contacts.
     pub creep: CreepLaw,
-    /// [-] degree of the traction polynomials of the law `kalker`, 1 to 5.
+    /// [-] degree of the traction polynomials of the law `kalker`, 1 to 7.
     pub kalker_degree: usize,
+    /// [-] change of a contact's creepages, over those of sliding, after which the law `kalker` solves its polynomials
+    /// anew; between, what they add to the table is frozen.
+    pub epsilon_switch: f64,
     /// Slip of grooves that bend across rolling (Heathcote), with the laws that saturate.
     pub heathcote_slip: bool,
     /// [s/m] Hunt-Crossley dissipation factor of the ball-race contacts; 0 is off.
@@ -118,6 +121,7 @@ impl Default for Effects {
         Self {
             creep: CreepLaw::default(),
             kalker_degree: 3,
+            epsilon_switch: 0.01,
             heathcote_slip: false,
             damping: DissipationFactor(0.0),
             cage: false,

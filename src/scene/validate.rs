@@ -38,7 +38,8 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
 
 /// Creep law of the ball-race contacts and what it needs.
 fn creep(scene: &Scene) -> Result<(), SceneError> {
-    Range::closed(1.0, 5.0, "").check("effects.kalker_degree", scene.effects.kalker_degree as f64)?;
+    Range::closed(1.0, 7.0, "").check("effects.kalker_degree", scene.effects.kalker_degree as f64)?;
+    Range::closed(0.0, 1.0, "").check("effects.epsilon_switch", scene.effects.epsilon_switch)?;
     if scene.effects.heathcote_slip
         && matches!(scene.effects.creep, CreepLaw::Frictionless | CreepLaw::Linear)
     {
