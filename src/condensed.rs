@@ -46,12 +46,14 @@ impl Condensed {
         let contacts = [INNER, OUTER].map(|race| model.contact(race, friction));
         let races = [INNER, OUTER].map(|race| state.races[race].motion());
         let zero = Self { stiffness: Matrix6::zeros(), damping: Matrix6::zeros() };
-        state.balls.iter().fold(zero, |sum, ball| match of_ball(model, &contacts, &races, ball) {
-            Some(one) => {
-                Self { stiffness: sum.stiffness + one.stiffness, damping: sum.damping + one.damping }
-            }
-            None => sum,
-        })
+        let add = |sum: Self, (index, ball): (usize, &BallState)| {
+            let contacts = [INNER, OUTER].map(|race| contacts[race].of_ball(state.difference(index, race)));
+            share(model, &contacts, &races, ball).map_or(sum, |one| Self {
+                stiffness: sum.stiffness + one.stiffness,
+                damping: sum.damping + one.damping,
+            })
+        };
+        state.balls.iter().enumerate().fold(zero, add)
     }
 }
 
@@ -64,7 +66,7 @@ struct Derivatives {
 }
 
 /// Derivatives of the forces in one contact.
-struct Linear {
+pub(crate) struct Linear {
     /// Of force and moment on the ball by places; a ball has no orientation.
     ball_by_place: Derivatives,
     /// Of force and moment on the ball by velocities.
@@ -76,7 +78,13 @@ struct Linear {
 }
 
 impl Linear {
-    fn new(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<f64>) -> Self {
+    /// Of force and moment on the ball (rows) by its velocity and angular velocity (columns).
+    pub(crate) fn ball_by_rate(&self) -> Matrix6<f64> {
+        self.ball_by_rate.by_ball
+    }
+
+    /// Of a contact in motion.
+    pub(crate) fn new(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<f64>) -> Self {
         let fixed = |v: &Vector3<f64>| constant_vector::<D>(v);
         let variable =
             |v: &Vector3<f64>, first: usize| Vector3::from_fn(|i, _| D::variable(v[i], first + i, 1.0));
@@ -135,7 +143,7 @@ fn derivatives(force: &Vector3<D>, moment: &Vector3<D>) -> Derivatives {
 }
 
 /// The share of one ball; none if it does not touch both races.
-fn of_ball(
+fn share(
     model: &Model,
     contacts: &[ContactModel<'_>; 2],
     races: &[RaceMotion<f64>; 2],
@@ -149,7 +157,7 @@ fn of_ball(
     let [inner, outer] = [INNER, OUTER].map(|race| Linear::new(&contacts[race], &motion, &races[race]));
     let ball_by_place = inner.ball_by_place.by_ball + outer.ball_by_place.by_ball;
     let ball_by_rate = inner.ball_by_rate.by_ball + outer.ball_by_rate.by_ball;
-    let orbit = Orbit::new(state, &races[OUTER]);
+    let orbit = Orbit::new(&motion, &races[OUTER]);
 
     // derivatives by s: places along the axis and radially, velocities along the orbit and angular
     let by_s = |by_place: &Matrix6<f64>, by_rate: &Matrix6<f64>| {
@@ -163,7 +171,7 @@ fn of_ball(
     let by_plane_rate = |by_rate: &Matrix6<f64>| -> Matrix6x2<f64> {
         (by_rate.fixed_columns::<3>(0) * in_plane).fixed_columns::<2>(0).into_owned()
     };
-    let mut g_s = by_s(&ball_by_place, &ball_by_rate) + orbit.inertia(model, state);
+    let mut g_s = by_s(&ball_by_place, &ball_by_rate) + orbit.inertia(model, &motion);
     let (g_r, g_rate) = (inner.ball_by_place.by_race, inner.ball_by_rate.by_race);
     let w_s = by_s(&inner.race_by_place.by_ball, &inner.race_by_rate.by_ball);
     let (w_r, w_rate) = (inner.race_by_place.by_race, inner.race_by_rate.by_race);
@@ -185,47 +193,60 @@ fn of_ball(
 }
 
 /// A ball's way about the outer race's axis.
-struct Orbit {
+pub(crate) struct Orbit {
     axis: Vector3<f64>,
     radial: Vector3<f64>,
-    tangential: Vector3<f64>,
+    /// [-] direction of growing azimuth.
+    pub(crate) tangential: Vector3<f64>,
     /// [m] distance from the axis.
     radius: f64,
-    /// [m/s] velocity along the orbit.
+    /// [rad/s] orbital speed.
     speed: f64,
 }
 
 impl Orbit {
-    fn new(ball: &BallState, outer: &RaceMotion<f64>) -> Self {
+    /// Of a ball about the outer race.
+    pub(crate) fn new(ball: &BallMotion<f64>, outer: &RaceMotion<f64>) -> Self {
         let offset = ball.position - outer.position;
         let across = offset - outer.axis * offset.dot(&outer.axis);
         let radius = across.norm();
         let radial = across / radius;
         let tangential = outer.axis.cross(&radial);
-        let speed = (ball.velocity - outer.velocity).dot(&tangential);
+        let speed = (ball.velocity - outer.velocity).dot(&tangential) / radius;
         Self { axis: outer.axis, radial, tangential, radius, speed }
+    }
+
+    /// [N m] gyroscopic moment: what turning the ball's spin with its orbit costs, as a moment on it.
+    pub(crate) fn gyroscopic_moment(&self, model: &Model, ball: &BallMotion<f64>) -> Vector3<f64> {
+        self.axis.cross(&ball.angular_velocity) * (-model.bearing.ball.inertia * self.speed)
+    }
+
+    /// Derivatives of force and moment of inertia on the ball (rows; the force is the centrifugal one) by its velocity
+    /// along the orbit and its angular velocity (columns 2 to 5).
+    pub(crate) fn inertia_by_rate(&self, model: &Model, ball: &BallMotion<f64>) -> Matrix6<f64> {
+        let (mass, inertia) = (model.bearing.ball.mass, model.bearing.ball.inertia);
+        let mut by_rate = Matrix6::zeros();
+        let mut column = by_rate.column_mut(2);
+        column.fixed_rows_mut::<3>(0).copy_from(&(self.radial * (2.0 * mass * self.speed)));
+        let turned = self.axis.cross(&ball.angular_velocity);
+        column.fixed_rows_mut::<3>(3).copy_from(&(turned * (-inertia / self.radius)));
+        let spin = self.axis.cross_matrix() * (-inertia * self.speed);
+        by_rate.fixed_view_mut::<3, 3>(3, 3).copy_from(&spin);
+        by_rate
     }
 
     /// Derivatives by s of centrifugal force and gyroscopic moment, and the inertia that friction has to overcome in
     /// the following time.
-    fn inertia(&self, model: &Model, state: &BallState) -> Matrix6<f64> {
+    fn inertia(&self, model: &Model, ball: &BallMotion<f64>) -> Matrix6<f64> {
         let (mass, inertia) = (model.bearing.ball.mass, model.bearing.ball.inertia);
-        let turn = self.speed / self.radius;
-        let mut by_s = Matrix6::zeros();
-        let mut force = |column: usize, value: Vector3<f64>| {
-            by_s.fixed_view_mut::<3, 1>(0, column).copy_from(&value);
-        };
-        force(1, self.radial * (-mass * turn * turn));
-        force(2, self.radial * (2.0 * mass * turn) - self.tangential * (mass / FOLLOWING_TIME));
-        let gyroscopic = self.axis.cross(&state.angular_velocity) * -inertia;
-        let mut moment = |column: usize, value: Vector3<f64>| {
-            by_s.fixed_view_mut::<3, 1>(3, column).copy_from(&value);
-        };
-        moment(1, gyroscopic * (-turn / self.radius));
-        moment(2, gyroscopic / self.radius);
-        for k in 0..3 {
-            let unit = Vector3::ith(k, 1.0);
-            moment(3 + k, self.axis.cross(&unit) * (-inertia * turn) - unit * (inertia / FOLLOWING_TIME));
+        let mut by_s = self.inertia_by_rate(model, ball);
+        let mut outwards = by_s.column_mut(1);
+        outwards.fixed_rows_mut::<3>(0).copy_from(&(self.radial * (-mass * self.speed * self.speed)));
+        let gyroscopic = self.gyroscopic_moment(model, ball) / -self.radius;
+        outwards.fixed_rows_mut::<3>(3).copy_from(&gyroscopic);
+        for i in 0..3 {
+            by_s[(i, 2)] -= self.tangential[i] * (mass / FOLLOWING_TIME);
+            by_s[(3 + i, 3 + i)] -= inertia / FOLLOWING_TIME;
         }
         by_s
     }

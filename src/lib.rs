@@ -28,6 +28,7 @@ pub mod rotation;
 pub mod scalar;
 pub mod scene;
 pub mod simulation;
+pub mod spin_balance;
 pub mod start;
 pub mod state;
 pub mod step_control;

@@ -45,7 +45,9 @@ pub fn to_blame(
         if change.is_nan() { f64::INFINITY } else { change }
     };
     let of_race = |race: usize| {
-        let before = model.contact(race, boundary.friction).evaluate(&start, &state.races[race].motion());
+        let contact = model.contact(race, boundary.friction);
+        let contact = contact.of_ball(state.difference(ball, race));
+        let before = contact.evaluate(&start, &state.races[race].motion());
         let after = &trial.contacts[race];
         change(wrench(before.force, before.ball_moment), wrench(after.force, after.ball_moment))
     };

@@ -230,6 +230,9 @@ pub struct Start {
     pub orbital_speed: Option<AngularVelocity>,
     /// [rad/s] angular velocity of the balls: components axial, radial, and along the orbit.
     pub ball_angular_velocity: Option<[AngularVelocity; 3]>,
+    /// Balls start at the velocities at which the moments of friction on each are in balance, spin moments among them,
+    /// instead of those of rolling with all spin on the inner race.
+    pub spin_balance: bool,
     /// [m/s] velocity of the inner race's origin, where that is a body.
     pub inner_velocity: Option<[Velocity; 3]>,
 }
