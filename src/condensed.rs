@@ -1,21 +1,24 @@
-//! Stiffness and damping of the running bearing against slow motions of the inner race, balls condensed out.
+//! Stiffness and damping of the running bearing, balls condensed out.
 //!
 //! Of each ball follow its place in its azimuthal plane `q` (along the axis, radial) and its velocities `u` (along the
-//! orbit, and angular); its azimuth does not. With the forces and moments on the ball `g`, its inertia included, and the
-//! wrench on the inner race `w`, a pose `r` of that race that moves slowly asks for
+//! orbit, and angular). Its azimuth is held, and the orbital
+//! speed of its centrifugal force. Stiffness is that of the
+//! normal contacts: with the wrench `w` on the inner race at pose `r`, and the forces `f` on the ball in its plane,
 //!
-//! `0 = g_q q + g_q' q' + g_u u + g_r r + g_r' r'`,   `w = w_q q + w_q' q' + w_u u + w_r r + w_r' r'`.
+//! `K = -(w_r + w_q Q)`,   `f_q Q = -f_r`   (the ball stays in balance).
 //!
-//! With `s = (q, u)` and `s = S r + T r' + ...`, orders 0 and 1 in the rate of change give
+//! Damping is that of the normal contacts and of creep while the places follow as `Q r'`: velocities are those at
+//! which force along the orbit and moments `g` do not change, and what the velocities change in the plane shifts the ball,
 //!
-//! `g_s S = -g_r`,   `g_s T = -(g_r' + g_q' Q)`,   Q the rows of q in S,
-//! `K = -(w_r + w_s S)`,   `C = -(w_r' + w_q' Q + w_s T)`.
+//! `C = -(w_r' + w_q' Q + w_u U + w_q S)`,   `(g_u - M/tau) U = -(g_r' + g_q' Q)`,   `f_q S = -(f_r' + f_q' Q + f_u U)`.
 //!
-//! All derivatives are exact. The masses of balls enter by their centrifugal force and gyroscopic moment; what
-//! resonates with them is much faster than these motions.
+//! K is symmetric where no centrifugal force acts (but for the moment that turns with the race), and C never drives.
+//! What friction adds to the stiffness is left out: it takes its time, and is not that of a spring. All derivatives are
+//! exact.
 
-use nalgebra::{Matrix3, Matrix6, Matrix6x2, Vector3};
+use nalgebra::{Matrix2, Matrix2x6, Matrix4, Matrix4x6, Matrix6, Matrix6x2, Matrix6x4, Vector3, Vector4};
 
+use crate::contact::creep::Law;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::model::{INNER, Model, OUTER};
 use crate::scalar::{Dual, constant_vector};
@@ -149,47 +152,49 @@ fn share(
     races: &[RaceMotion<f64>; 2],
     state: &BallState,
 ) -> Option<Condensed> {
-    let motion = state.motion();
+    let (ball, motion) = (&model.bearing.ball, state.motion());
     let touches = |race: usize| contacts[race].evaluate(&motion, &races[race]).load > 0.0;
     if !(touches(INNER) && touches(OUTER)) {
         return None;
     }
-    let [inner, outer] = [INNER, OUTER].map(|race| Linear::new(&contacts[race], &motion, &races[race]));
-    let ball_by_place = inner.ball_by_place.by_ball + outer.ball_by_place.by_ball;
-    let ball_by_rate = inner.ball_by_rate.by_ball + outer.ball_by_rate.by_ball;
+    let linear = |model: &ContactModel<'_>, race: usize| Linear::new(model, &motion, &races[race]);
+    let [inner, outer] = [INNER, OUTER].map(|race| linear(&contacts[race], race));
+    let smooth =
+        |race: usize| linear(&ContactModel { law: Law::Frictionless, damping: 0.0, ..contacts[race] }, race);
+    let [smooth_inner, smooth_outer] = [smooth(INNER), smooth(OUTER)];
     let orbit = Orbit::new(&motion, &races[OUTER]);
 
-    // derivatives by s: places along the axis and radially, velocities along the orbit and angular
-    let by_s = |by_place: &Matrix6<f64>, by_rate: &Matrix6<f64>| {
-        let mut by_s = *by_rate;
-        by_s.set_column(0, &(by_place.fixed_columns::<3>(0) * orbit.axis));
-        by_s.set_column(1, &(by_place.fixed_columns::<3>(0) * orbit.radial));
-        by_s.set_column(2, &(by_rate.fixed_columns::<3>(0) * orbit.tangential));
-        by_s
-    };
-    let in_plane = Matrix3::from_columns(&[orbit.axis, orbit.radial, Vector3::zeros()]);
-    let by_plane_rate = |by_rate: &Matrix6<f64>| -> Matrix6x2<f64> {
-        (by_rate.fixed_columns::<3>(0) * in_plane).fixed_columns::<2>(0).into_owned()
-    };
-    let mut g_s = by_s(&ball_by_place, &ball_by_rate) + orbit.inertia(model, &motion);
-    let (g_r, g_rate) = (inner.ball_by_place.by_race, inner.ball_by_rate.by_race);
-    let w_s = by_s(&inner.race_by_place.by_ball, &inner.race_by_rate.by_ball);
-    let (w_r, w_rate) = (inner.race_by_place.by_race, inner.race_by_rate.by_race);
+    // The directions of q and u among translation and rotation of a ball, and of f and g among force and moment on it.
+    let mut plane = Matrix6x2::zeros();
+    plane.fixed_view_mut::<3, 1>(0, 0).copy_from(&orbit.axis);
+    plane.fixed_view_mut::<3, 1>(0, 1).copy_from(&orbit.radial);
+    let mut rolling = Matrix6x4::zeros();
+    rolling.fixed_view_mut::<3, 1>(0, 0).copy_from(&orbit.tangential);
+    // Angular velocities times the radius and moments over it, so that rows and columns compare.
+    rolling.fixed_view_mut::<3, 3>(3, 1).fill_with_identity();
+    rolling.fixed_view_mut::<3, 3>(3, 1).scale_mut(1.0 / ball.radius);
 
-    // Moments over the ball radius, so that rows compare.
-    let scaled = |mut rows: Matrix6<f64>| {
-        rows.fixed_rows_mut::<3>(3).scale_mut(1.0 / model.bearing.ball.radius);
-        rows
-    };
-    g_s = scaled(g_s);
-    let g_s = g_s.lu();
-    let follow = g_s.solve(&scaled(-g_r))?;
-    let plane = follow.fixed_rows::<2>(0);
-    let lag = g_s.solve(&scaled(-(g_rate + by_plane_rate(&ball_by_rate) * plane)))?;
-    Some(Condensed {
-        stiffness: -(w_r + w_s * follow),
-        damping: -(w_rate + by_plane_rate(&inner.race_by_rate.by_ball) * plane + w_s * lag),
-    })
+    // stiffness
+    let by_place = smooth_inner.ball_by_place.by_ball + smooth_outer.ball_by_place.by_ball;
+    let mut f_q: Matrix2<f64> = plane.transpose() * by_place * plane;
+    f_q[(1, 1)] += ball.mass * orbit.speed * orbit.speed;
+    let f_q = f_q.lu();
+    let w_q = smooth_inner.race_by_place.by_ball * plane;
+    let follow: Matrix2x6<f64> = f_q.solve(&-(plane.transpose() * smooth_inner.ball_by_place.by_race))?;
+    let stiffness = -(smooth_inner.race_by_place.by_race + w_q * follow);
+
+    // damping
+    let by_rate = inner.ball_by_rate.by_ball + outer.ball_by_rate.by_ball;
+    let (g, f) = (rolling.transpose(), plane.transpose());
+    let rotational = ball.inertia / (ball.radius * ball.radius);
+    let inertia = Vector4::new(ball.mass, rotational, rotational, rotational) / FOLLOWING_TIME;
+    let g_u = g * by_rate * rolling - Matrix4::from_diagonal(&inertia);
+    let by_race = inner.ball_by_rate.by_race + by_rate * plane * follow;
+    let rates: Matrix4x6<f64> = g_u.lu().solve(&-(g * by_race))?;
+    let shift = f_q.solve(&-(f * (by_race + by_rate * rolling * rates)))?;
+    let w_rate = inner.race_by_rate.by_ball;
+    let damping = -(inner.race_by_rate.by_race + w_rate * (plane * follow + rolling * rates) + w_q * shift);
+    Some(Condensed { stiffness, damping })
 }
 
 /// A ball's way about the outer race's axis.
@@ -233,21 +238,5 @@ impl Orbit {
         let spin = self.axis.cross_matrix() * (-inertia * self.speed);
         by_rate.fixed_view_mut::<3, 3>(3, 3).copy_from(&spin);
         by_rate
-    }
-
-    /// Derivatives by s of centrifugal force and gyroscopic moment, and the inertia that friction has to overcome in
-    /// the following time.
-    fn inertia(&self, model: &Model, ball: &BallMotion<f64>) -> Matrix6<f64> {
-        let (mass, inertia) = (model.bearing.ball.mass, model.bearing.ball.inertia);
-        let mut by_s = self.inertia_by_rate(model, ball);
-        let mut outwards = by_s.column_mut(1);
-        outwards.fixed_rows_mut::<3>(0).copy_from(&(self.radial * (-mass * self.speed * self.speed)));
-        let gyroscopic = self.gyroscopic_moment(model, ball) / -self.radius;
-        outwards.fixed_rows_mut::<3>(3).copy_from(&gyroscopic);
-        for i in 0..3 {
-            by_s[(i, 2)] -= self.tangential[i] * (mass / FOLLOWING_TIME);
-            by_s[(3 + i, 3 + i)] -= inertia / FOLLOWING_TIME;
-        }
-        by_s
     }
 }

@@ -12,7 +12,8 @@ const THRUST: &str = include_str!("../scenes/thrust.toml");
 
 /// The thrust case with a radial load as well, and additions to its sections.
 fn combined(start: &str) -> Simulation {
-    let text = THRUST.replace("[solver]", &format!("[start]\n{start}\n[solver]")) + "y = { force = \"300 N\" }\n";
+    let text =
+        THRUST.replace("[solver]", &format!("[start]\n{start}\n[solver]")) + "y = { force = \"300 N\" }\n";
     Simulation::new(&Scene::parse(&text).unwrap()).unwrap()
 }
 
@@ -21,7 +22,9 @@ fn unbalanced(simulation: &Simulation, index: usize) -> (Vector3<f64>, f64) {
     let (model, state) = (simulation.model(), simulation.state());
     let ball = &state.balls[index];
     let contacts = [0, 1].map(|race: usize| {
-        model.contact(race, simulation.inputs().friction).evaluate(&ball.motion(), &state.races[race].motion())
+        model
+            .contact(race, simulation.inputs().friction)
+            .evaluate(&ball.motion(), &state.races[race].motion())
     });
     let orbit = Vector3::x() * simulation.outputs().balls[index].orbital_speed;
     let gyroscopic = orbit.cross(&ball.angular_velocity) * model.bearing.ball.inertia;
@@ -44,7 +47,9 @@ fn closed_form_accelerations_and_multipliers_are_consistent_at_the_start() {
             let force = inner.force + outer.force;
             assert!((ball.acceleration * model.bearing.ball.mass - force).norm() < 1e-9 * inner.load);
             let moment = inner.ball_moment + outer.ball_moment;
-            assert!((ball.angular_acceleration * model.bearing.ball.inertia - moment).norm() < 1e-12 * inner.load);
+            assert!(
+                (ball.angular_acceleration * model.bearing.ball.inertia - moment).norm() < 1e-12 * inner.load
+            );
             on_race -= inner.force;
             about_axis += inner.race_moment.dot(&races[0].axis);
         }

@@ -151,21 +151,41 @@ fn percent_from_statics(simulation: &Simulation, friction_share: f64, least: f64
 }
 
 #[test]
-fn independent_data_the_twenty_cases() {
-    for case in cases() {
-        print!("{}", case["id"]);
-        for (friction, held) in [(0.01, true), (0.08, true), (0.08, false), (0.01, false)] {
-            let simulation = reference_run(&case, friction, held);
-            print!(
-                " | {friction} {held}: {:.2} {:.2} {:.2} {:.2}",
-                distance_in_bands(&simulation),
-                percent_from_statics(&simulation, 0.0, 0.0),
-                percent_from_statics(&simulation, 1.0, 0.0),
-                percent_from_statics(&simulation, 1.0, 0.02)
-            );
-        }
-        println!();
+fn independent_data_rest_thrust_and_radial_cases_lie_in_the_band() {
+    // Under their loads, friction 0.08. The other eight do not: the next two tests say why.
+    let steady =
+        ["P-01", "P-02", "P-03", "P-05", "P-06", "P-09", "P-10", "P-12", "P-13", "P-16", "P-17", "P-18"];
+    for case in cases().iter().filter(|case| steady.contains(&case["id"].as_str().unwrap())) {
+        let own = distance_in_bands(&reference_run(case, 0.08, false));
+        assert!(own <= 1.0, "{}: {own}", case["id"]);
     }
+}
+
+#[test]
+fn independent_data_all_but_one_lie_in_the_band_at_the_pose_of_the_data_under_light_friction() {
+    // Under a load the race follows all balls, which do not stay evenly spaced without a cage; held where the data say,
+    // it leaves each ball to itself. P-04 is 26 % outside at 0.01, by its most lightly loaded balls.
+    for case in cases() {
+        let own = distance_in_bands(&reference_run(&case, 0.01, true));
+        let edge = if case["id"] == "P-04" { 1.5 } else { 1.0 };
+        assert!(own <= edge, "{}: {own}", case["id"]);
+    }
+}
+
+#[test]
+fn closed_form_loads_are_those_of_statics_with_the_lateral_friction_of_the_run() {
+    // What neither hypothesis has is friction across rolling, up to 7 % of the load at a friction coefficient of 0.08. With
+    // it statics give the loads; balls that carry less than 2 % of the largest load are thrown about and left out.
+    // P-04 and P-15: 1.5 and 1.1 %, from balls that enter the load.
+    let mut without_friction = 0.0f64;
+    for case in cases() {
+        let simulation = reference_run(&case, 0.08, true);
+        let percent = percent_from_statics(&simulation, 1.0, 0.02);
+        let edge = if ["P-04", "P-15"].contains(&case["id"].as_str().unwrap()) { 2.0 } else { 1.0 };
+        assert!(percent <= edge, "{}: {percent} %", case["id"]);
+        without_friction = without_friction.max(percent_from_statics(&simulation, 0.0, 0.02));
+    }
+    assert!(without_friction > 20.0, "{without_friction} %");
 }
 
 #[test]
