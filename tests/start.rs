@@ -100,7 +100,7 @@ fn a_step_that_cannot_be_finished_names_ball_and_contact() {
         let text = format!(
             "[bearing]\nballs = 8\nball_diameter = 0.0095\npitch_diameter = 0.046\ndiametral_clearance = 1e-5\n\
              inner_conformity = 0.52\nouter_conformity = 0.52\nfirst_ball_azimuth = {azimuth}\n\
-             [inner]\n{inner}\n[outer]\n{outer}\n\
+             [effects]\ncreep = \"frictionless\"\n[inner]\n{inner}\n[outer]\n{outer}\n\
              [solver]\ninitial_step = 1e-6\nmin_step = 1e-6\nmax_step = 1e-6\ntolerance = 1e-9\n\
              [load]\nx = {{ displacement = 0.0 }}\nz = {{ displacement = 0.0 }}\nry = {{ rotation = 0.0 }}\nrz = {{ rotation = 0.0 }}\n{rest}"
         );
