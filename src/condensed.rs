@@ -10,7 +10,7 @@
 //! Damping is that of the normal contacts and of creep while the places follow as `Q r'`: velocities are those at
 //! which force along the orbit and moments `g` do not change, and what the velocities change in the plane shifts the ball,
 //!
-//! `C = -(w_r' + w_q' Q + w_u U + w_q S)`,   `(g_u - M/tau) U = -(g_r' + g_q' Q)`,   `f_q S = -(f_r' + f_q' Q + f_u U)`.
+//! `C = -(w_r' + w_q' Q + w_u U + Q^T (f_r' + f_q' Q + f_u U))`,   `(g_u - M/tau) U = -(g_r' + g_q' Q)`.
 //!
 //! K is symmetric where no centrifugal force acts (but for the moment that turns with the race), and C never drives.
 //! What friction adds to the stiffness is left out: it takes its time, and is not that of a spring. All derivatives are
@@ -191,9 +191,10 @@ fn share(
     let g_u = g * by_rate * rolling - Matrix4::from_diagonal(&inertia);
     let by_race = inner.ball_by_rate.by_race + by_rate * plane * follow;
     let rates: Matrix4x6<f64> = g_u.lu().solve(&-(g * by_race))?;
-    let shift = f_q.solve(&-(f * (by_race + by_rate * rolling * rates)))?;
+    // In a potential w_q f_q^-1 is the transpose of -Q: written so, C is a sum of squares.
+    let shift = follow.transpose() * (f * (by_race + by_rate * rolling * rates));
     let w_rate = inner.race_by_rate.by_ball;
-    let damping = -(inner.race_by_rate.by_race + w_rate * (plane * follow + rolling * rates) + w_q * shift);
+    let damping = -(inner.race_by_rate.by_race + w_rate * (plane * follow + rolling * rates) + shift);
     Some(Condensed { stiffness, damping })
 }
 
