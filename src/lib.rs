@@ -3,6 +3,7 @@
 pub mod arrowhead;
 pub mod bearing;
 pub mod cage;
+pub mod condensed;
 pub mod contact;
 pub mod cost;
 pub mod documentation;
@@ -27,6 +28,7 @@ pub mod rotation;
 pub mod scalar;
 pub mod scene;
 pub mod simulation;
+pub mod spin_balance;
 pub mod start;
 pub mod state;
 pub mod step_control;

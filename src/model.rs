@@ -136,6 +136,8 @@ pub struct Model {
     pub bodies: [Option<RaceBody>; 2],
     /// The cage, where it is simulated.
     pub cage: Option<CageModel>,
+    /// Are condensed stiffness and damping reported?
+    pub stiffness_outputs: bool,
     /// Time integration.
     pub solver: Solver,
 }
@@ -164,6 +166,7 @@ impl Model {
             damping: scene.effects.damping.0,
             gravity: Vector3::from(scene.effects.gravity.map(|component| component.0)),
             bodies: [wrench_body(&scene.inner, scene), hinged_body(&scene.outer)],
+            stiffness_outputs: scene.effects.stiffness_outputs,
             solver: scene.solver,
         })
     }

@@ -2,6 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::condensed::Condensed;
 use crate::contact::BallRaceContact;
 use crate::contact::body::BodyContact;
 use crate::model::{Constraint, INNER, Model, OUTER, RaceBody, tilt_direction};
@@ -126,6 +127,8 @@ pub struct Outputs {
     pub balls: Vec<BallOutput>,
     /// The cage, where it is simulated.
     pub cage: Option<CageOutput>,
+    /// Stiffness and damping of the running bearing, where they are asked for.
+    pub condensed: Option<Condensed>,
     /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
     pub cage_speed: f64,
     /// [-] 1 - cage speed over its epicyclic value; 0 where that is 0.
@@ -243,6 +246,7 @@ impl Outputs {
             outer,
             balls,
             cage: cage_output,
+            condensed: model.stiffness_outputs.then(|| Condensed::new(model, state, friction)),
             cage_speed,
             cage_slip: if epicyclic == 0.0 { 0.0 } else { 1.0 - cage_speed / epicyclic },
             friction_power,

@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::contact::geometry::GrooveContact;
-use crate::dynamics::{Boundary, RaceLoad, StepFailure, Workspace, follow, make_consistent, try_step};
+use crate::dynamics::{
+    Boundary, Partner, RaceLoad, StepFailure, Workspace, follow, make_consistent, to_blame, try_step,
+};
 use crate::equilibrium::{EquilibriumError, MAX_APPROACH};
 use crate::inputs::{Inputs, RaceInput};
 use crate::kalker::nonlinear::KalkerError;
@@ -31,8 +33,8 @@ pub enum SimulationError {
     Start(#[from] EquilibriumError),
     /// The step size fell below its minimum.
     #[error(
-        "at {time} s the step fell below solver.min_step = {min_step} s: {cause}, worst at ball {ball} \
-         (inner load {inner_load} N, outer load {outer_load} N)"
+        "at {time} s the step fell below solver.min_step = {min_step} s: {cause}, worst at ball {ball} on \
+         the {contact} (inner load {inner_load} N, outer load {outer_load} N)"
     )]
     StepTooSmall {
         /// [s] time reached.
@@ -43,6 +45,8 @@ pub enum SimulationError {
         cause: &'static str,
         /// Ball with the largest share, counted from 1.
         ball: usize,
+        /// Contact of that ball whose force changed most in that step.
+        contact: Partner,
         /// [N] its load on the inner race.
         inner_load: f64,
         /// [N] its load on the outer race.
@@ -358,6 +362,7 @@ impl Simulation {
                     min_step: self.model.solver.min_step.0,
                     cause,
                     ball: ball + 1,
+                    contact: to_blame(&self.model, &self.state, &boundary, ball, &self.workspace),
                     inner_load: outputs.balls[ball].inner.load,
                     outer_load: outputs.balls[ball].outer.load,
                 });

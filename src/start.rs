@@ -8,6 +8,7 @@ use crate::inputs::{Inputs, RaceInput};
 use crate::model::{INNER, Model, OUTER};
 use crate::motion::{Pose, Twist, Wrench};
 use crate::scene::{Condition, Drive, Scene, Schedule};
+use crate::spin_balance::balanced;
 use crate::state::{BallState, Energies, Powers, RaceState, State, Statistics};
 use crate::step_control::StepControl;
 
@@ -102,7 +103,11 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
     // The equilibrium's frame does not spin with the outer race.
     let axis = outer.pose.orientation * Vector3::x();
     let frame = UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default();
-    let balls: Vec<BallState> = solution
+    let races = [(0, &inputs.inner), (1, outer)].map(|(race, input): (usize, _)| {
+        let n_constraints = model.bodies[race].as_ref().map_or(0, |body| body.constraints.len());
+        RaceState::new(input.pose, &input.twist, n_constraints)
+    });
+    let mut balls: Vec<BallState> = solution
         .balls
         .iter()
         .map(|ball| {
@@ -117,10 +122,16 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
             }
         })
         .collect();
-    let races = [(0, &inputs.inner), (1, outer)].map(|(race, input): (usize, _)| {
-        let n_constraints = model.bodies[race].as_ref().map_or(0, |body| body.constraints.len());
-        RaceState::new(input.pose, &input.twist, n_constraints)
-    });
+    if scene.start.spin_balance {
+        let contacts = [INNER, OUTER].map(|race| model.contact(race, inputs.friction));
+        let motions = races.each_ref().map(RaceState::motion);
+        for ball in &mut balls {
+            // A ball that is not held by both races, or without friction, keeps the velocities of rolling.
+            if let Some(motion) = balanced(model, &contacts, &motions, &ball.motion()) {
+                (ball.velocity, ball.angular_velocity) = (motion.velocity, motion.angular_velocity);
+            }
+        }
+    }
     let solver = &scene.solver;
     State {
         time: 0.0,

@@ -1,6 +1,7 @@
 //! One implicit step of the whole bearing: Newton's equations of balls and race bodies under the HHT scheme.
 
 mod ball;
+mod blame;
 mod cage;
 mod neighbour;
 mod race;
@@ -17,6 +18,7 @@ use crate::newton::{self, Equations, NewtonBuffers, NewtonFailure};
 use crate::scalar::constant_vector;
 use crate::state::{BallState, Powers, RaceState, State, race_motion};
 use ball::{BallTrial, RaceReaction, RaceSeen, Surroundings};
+pub use blame::{Partner, to_blame};
 use cage::CageTrial;
 pub use neighbour::follow;
 pub use race::RaceLoad;

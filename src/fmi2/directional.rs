@@ -47,6 +47,7 @@ impl Changes {
                 Q::Force(_) | Q::Moment(_) | Q::ReactionForce(_) | Q::ReactionMoment(_) | Q::DriveTorque,
             )
             | Source::Bearing(_)
+            | Source::Condensed(_)
             | Source::Cage(_)
             | Source::Ball(..)
             | Source::Contact(..)

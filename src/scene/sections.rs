@@ -112,6 +112,8 @@ pub struct Effects {
     pub gravity: [Acceleration; 3],
     /// Report every ball in the FMU (`ball[j].*`).
     pub per_ball_outputs: bool,
+    /// Report stiffness and damping of the running bearing, balls condensed out (`stiffness.*`, `damping.*`).
+    pub stiffness_outputs: bool,
 }
 
 impl Default for Effects {
@@ -125,6 +127,7 @@ impl Default for Effects {
             cage: false,
             gravity: [Acceleration(0.0); 3],
             per_ball_outputs: false,
+            stiffness_outputs: false,
         }
     }
 }
@@ -227,6 +230,9 @@ pub struct Start {
     pub orbital_speed: Option<AngularVelocity>,
     /// [rad/s] angular velocity of the balls: components axial, radial, and along the orbit.
     pub ball_angular_velocity: Option<[AngularVelocity; 3]>,
+    /// Balls start at the velocities at which the moments of friction on each are in balance, spin moments among them,
+    /// instead of those of rolling with all spin on the inner race.
+    pub spin_balance: bool,
     /// [m/s] velocity of the inner race's origin, where that is a body.
     pub inner_velocity: Option<[Velocity; 3]>,
 }

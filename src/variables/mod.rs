@@ -85,6 +85,16 @@ pub enum RaceQuantity {
     ReactionMoment(usize),
 }
 
+/// A component of the condensed stiffness or damping: row of the load, column of the displacement or velocity; force
+/// or translation x, y, z first, then moment or rotation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coefficient {
+    /// Load by displacement.
+    Stiffness(usize, usize),
+    /// Load by velocity.
+    Damping(usize, usize),
+}
+
 type FromOutputs = fn(&Outputs) -> f64;
 type FromCage = fn(&CageOutput) -> f64;
 type FromBall = fn(&BallOutput) -> f64;
@@ -99,6 +109,8 @@ pub enum Source {
     Friction,
     /// The bearing as a whole.
     Bearing(FromOutputs),
+    /// Stiffness or damping of the running bearing.
+    Condensed(Coefficient),
     /// The cage.
     Cage(FromCage),
     /// A ball.
@@ -181,6 +193,9 @@ impl Variables {
         table.add_race(Race::Inner, scene.inner.drive);
         table.add_race(Race::Outer, scene.outer.drive);
         table.add_bearing();
+        if scene.effects.stiffness_outputs {
+            table.add_condensed();
+        }
         if let Some(cage) = &scene.cage {
             table.add_cage(cage.guided_by);
         }
@@ -203,6 +218,10 @@ impl Variables {
             Source::Friction => inputs.friction,
             Source::Parameter(_, value) => value,
             Source::Bearing(get) => get(outputs),
+            Source::Condensed(coefficient) => outputs.condensed.as_ref().map_or(0.0, |c| match coefficient {
+                Coefficient::Stiffness(i, k) => c.stiffness[(i, k)],
+                Coefficient::Damping(i, k) => c.damping[(i, k)],
+            }),
             Source::Cage(get) => outputs.cage.as_ref().map_or(0.0, get),
             Source::Ball(ball, get) => outputs.balls.get(ball).map_or(0.0, get),
             Source::Contact(ball, race, get) => outputs
@@ -300,6 +319,7 @@ impl Variables {
                     }
                 }
                 Source::Bearing(_)
+                | Source::Condensed(_)
                 | Source::Cage(_)
                 | Source::Ball(..)
                 | Source::Contact(..)

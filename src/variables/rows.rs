@@ -2,8 +2,8 @@
 
 use super::units::{self, Unit};
 use super::{
-    Causality, FromBall, FromCage, FromContact, FromOutputs, Kind, MAX_FRICTION, NORM_TOLERANCE, Race,
-    RaceQuantity, Source, Variable, Variables,
+    Causality, Coefficient, FromBall, FromCage, FromContact, FromOutputs, Kind, MAX_FRICTION, NORM_TOLERANCE,
+    Race, RaceQuantity, Source, Variable, Variables,
 };
 use crate::scene::parameters::PARAMETERS;
 use crate::scene::{Drive, Guidance, Scene};
@@ -27,9 +27,12 @@ fn limits(source: &Source) -> [Option<f64>; 2] {
         }
         Source::Friction => [Some(0.0), Some(MAX_FRICTION)],
         Source::Parameter(parameter, _) => [Some(parameter.range.low), Some(parameter.range.high)],
-        Source::Race(..) | Source::Bearing(_) | Source::Cage(_) | Source::Ball(..) | Source::Contact(..) => {
-            [None; 2]
-        }
+        Source::Race(..)
+        | Source::Bearing(_)
+        | Source::Condensed(_)
+        | Source::Cage(_)
+        | Source::Ball(..)
+        | Source::Contact(..) => [None; 2],
     }
 }
 
@@ -197,6 +200,50 @@ impl Variables {
         count("integrator.newton_iterations", "Newton iterations since the start", |o| {
             o.statistics.newton.iterations as f64
         });
+    }
+
+    /// Adds stiffness and damping of the running bearing, one variable per component.
+    pub(super) fn add_condensed(&mut self) {
+        const DIRECTIONS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+        let stiffness = |i: usize, k: usize| match (i < 3, k < 3) {
+            (true, true) => (units::NEWTON_PER_METRE, 1e8),
+            (true, false) => (units::NEWTON_PER_RADIAN, 1e6),
+            (false, true) => (units::NEWTON_METRE_PER_METRE, 1e6),
+            (false, false) => (units::NEWTON_METRE_PER_RADIAN, 1e4),
+        };
+        let damping = |i: usize, k: usize| match (i < 3, k < 3) {
+            (true, true) => (units::NEWTON_SECOND_PER_METRE, 1e4),
+            (true, false) => (units::NEWTON_SECOND_PER_RADIAN, 1e2),
+            (false, true) => (units::NEWTON_METRE_SECOND_PER_METRE, 1e2),
+            (false, false) => (units::NEWTON_METRE_SECOND_PER_RADIAN, 1.0),
+        };
+        let load = |i: usize| format!("{} {}", if i < 3 { "force" } else { "moment" }, AXES[i % 3]);
+        for (i, row) in DIRECTIONS.iter().enumerate() {
+            for (k, column) in DIRECTIONS.iter().enumerate() {
+                let (unit, nominal) = stiffness(i, k);
+                let by = if k < 3 { "translation" } else { "rotation" };
+                let what = format!(
+                    "external {} that holds the inner race by its {by} {} relative to the outer race",
+                    load(i),
+                    AXES[k % 3]
+                );
+                let source = Source::Condensed(Coefficient::Stiffness(i, k));
+                self.add(format!("stiffness.{row}.{column}"), unit, Causality::Output, nominal, what, source);
+            }
+        }
+        for (i, row) in DIRECTIONS.iter().enumerate() {
+            for (k, column) in DIRECTIONS.iter().enumerate() {
+                let (unit, nominal) = damping(i, k);
+                let by = if k < 3 { "velocity" } else { "angular velocity" };
+                let what = format!(
+                    "external {} that moves the inner race by its {by} {} relative to the outer race",
+                    load(i),
+                    AXES[k % 3]
+                );
+                let source = Source::Condensed(Coefficient::Damping(i, k));
+                self.add(format!("damping.{row}.{column}"), unit, Causality::Output, nominal, what, source);
+            }
+        }
     }
 
     pub(super) fn add_cage(&mut self, guided_by: Guidance) {

@@ -63,8 +63,24 @@ pub const KILOGRAM_METRE_SQUARED: Unit = unit("kg.m2", "MomentOfInertia", [1, 2,
 pub const KILOGRAM_PER_CUBIC_METRE: Unit = unit("kg/m3", "Density", [1, -3, 0, 0]);
 /// Dissipation factor of a contact.
 pub const SECOND_PER_METRE: Unit = unit("s/m", "DissipationFactor", [0, -1, 1, 0]);
+/// Stiffness, force by translation.
+pub const NEWTON_PER_METRE: Unit = unit("N/m", "TranslationalStiffness", [1, 0, -2, 0]);
+/// Stiffness, force by rotation.
+pub const NEWTON_PER_RADIAN: Unit = unit("N/rad", "ForceByRotation", [1, 1, -2, -1]);
+/// Stiffness, moment by translation.
+pub const NEWTON_METRE_PER_METRE: Unit = unit("N.m/m", "MomentByTranslation", [1, 1, -2, 0]);
+/// Stiffness, moment by rotation.
+pub const NEWTON_METRE_PER_RADIAN: Unit = unit("N.m/rad", "RotationalStiffness", [1, 2, -2, -1]);
+/// Damping, force by velocity.
+pub const NEWTON_SECOND_PER_METRE: Unit = unit("N.s/m", "TranslationalDamping", [1, 0, -1, 0]);
+/// Damping, force by angular velocity.
+pub const NEWTON_SECOND_PER_RADIAN: Unit = unit("N.s/rad", "ForceByAngularVelocity", [1, 1, -1, -1]);
+/// Damping, moment by velocity.
+pub const NEWTON_METRE_SECOND_PER_METRE: Unit = unit("N.m.s/m", "MomentByVelocity", [1, 1, -1, 0]);
+/// Damping, moment by angular velocity.
+pub const NEWTON_METRE_SECOND_PER_RADIAN: Unit = unit("N.m.s/rad", "RotationalDamping", [1, 2, -1, -1]);
 /// Every unit, in the order of the model description.
-pub const ALL: [Unit; 18] = [
+pub const ALL: [Unit; 26] = [
     ONE,
     METRE,
     DIMENSION,
@@ -83,6 +99,14 @@ pub const ALL: [Unit; 18] = [
     KILOGRAM_METRE_SQUARED,
     KILOGRAM_PER_CUBIC_METRE,
     SECOND_PER_METRE,
+    NEWTON_PER_METRE,
+    NEWTON_PER_RADIAN,
+    NEWTON_METRE_PER_METRE,
+    NEWTON_METRE_PER_RADIAN,
+    NEWTON_SECOND_PER_METRE,
+    NEWTON_SECOND_PER_RADIAN,
+    NEWTON_METRE_SECOND_PER_METRE,
+    NEWTON_METRE_SECOND_PER_RADIAN,
 ];
 
 /// Unit of a parameter of a scene, whose ranges name units as scene files write them.

@@ -1,0 +1,243 @@
+//! Stiffness and damping of the running bearing, balls condensed out.
+//!
+//! Of each ball follow its place in its azimuthal plane `q` (along the axis, radial) and its velocities `u` (along the
+//! orbit, and angular). Its azimuth is held, and the orbital
+//! speed of its centrifugal force. Stiffness is that of the
+//! normal contacts: with the wrench `w` on the inner race at pose `r`, and the forces `f` on the ball in its plane,
+//!
+//! `K = -(w_r + w_q Q)`,   `f_q Q = -f_r`   (the ball stays in balance).
+//!
+//! Damping is that of the normal contacts and of creep while the places follow as `Q r'`: velocities are those at
+//! which force along the orbit and moments `g` do not change, and what the velocities change in the plane shifts the ball,
+//!
+//! `C = -(w_r' + w_q' Q + w_u U + Q^T (f_r' + f_q' Q + f_u U))`,   `(g_u - M/tau) U = -(g_r' + g_q' Q)`.
+//!
+//! K is symmetric where no centrifugal force acts (but for the moment that turns with the race), and C never drives.
+//! What friction adds to the stiffness is left out: it takes its time, and is not that of a spring. All derivatives are
+//! exact.
+
+use nalgebra::{Matrix2, Matrix2x6, Matrix4, Matrix4x6, Matrix6, Matrix6x2, Matrix6x4, Vector3, Vector4};
+
+use crate::contact::creep::Law;
+use crate::contact::{BallMotion, ContactModel, RaceMotion};
+use crate::model::{INNER, Model, OUTER};
+use crate::scalar::{Dual, constant_vector};
+use crate::state::{BallState, State};
+
+/// [s] time in which friction has to be able to change the velocities of a ball so that they follow. Rolling takes
+/// microseconds; a ball that slides freely, or pivots against hardly any friction, does not follow.
+const FOLLOWING_TIME: f64 = 1e-3;
+/// Directions of differentiation, as in steps.
+const DIRECTIONS: usize = 9;
+type D = Dual<DIRECTIONS>;
+
+/// What an external load on the inner race has to overcome, by components: rows force x, y, z and moment x, y, z,
+/// columns translation x, y, z and rotation x, y, z of the inner race relative to the outer one; world axes, about the
+/// inner race's origin. The race's own rotation turns with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Condensed {
+    /// [N/m, N/rad; N m/m, N m/rad] load by displacement.
+    pub stiffness: Matrix6<f64>,
+    /// [N s/m, N s/rad; N m s/m, N m s/rad] load by velocity.
+    pub damping: Matrix6<f64>,
+}
+
+impl Condensed {
+    /// Of a state, at a friction coefficient. Contacts of a cage are left out; so is a ball that does not touch both
+    /// races.
+    pub fn new(model: &Model, state: &State, friction: f64) -> Self {
+        let contacts = [INNER, OUTER].map(|race| model.contact(race, friction));
+        let races = [INNER, OUTER].map(|race| state.races[race].motion());
+        let zero = Self { stiffness: Matrix6::zeros(), damping: Matrix6::zeros() };
+        let add = |sum: Self, (index, ball): (usize, &BallState)| {
+            let contacts = [INNER, OUTER].map(|race| contacts[race].of_ball(state.difference(index, race)));
+            share(model, &contacts, &races, ball).map_or(sum, |one| Self {
+                stiffness: sum.stiffness + one.stiffness,
+                damping: sum.damping + one.damping,
+            })
+        };
+        state.balls.iter().enumerate().fold(zero, add)
+    }
+}
+
+/// Derivatives of force and moment (rows) by translation and rotation, or their rates (columns), of ball and race.
+struct Derivatives {
+    /// Of the ball's.
+    by_ball: Matrix6<f64>,
+    /// Of the race's.
+    by_race: Matrix6<f64>,
+}
+
+/// Derivatives of the forces in one contact.
+pub(crate) struct Linear {
+    /// Of force and moment on the ball by places; a ball has no orientation.
+    ball_by_place: Derivatives,
+    /// Of force and moment on the ball by velocities.
+    ball_by_rate: Derivatives,
+    /// Of force and moment on the race by places.
+    race_by_place: Derivatives,
+    /// Of force and moment on the race by velocities.
+    race_by_rate: Derivatives,
+}
+
+impl Linear {
+    /// Of force and moment on the ball (rows) by its velocity and angular velocity (columns).
+    pub(crate) fn ball_by_rate(&self) -> Matrix6<f64> {
+        self.ball_by_rate.by_ball
+    }
+
+    /// Of a contact in motion.
+    pub(crate) fn new(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<f64>) -> Self {
+        let fixed = |v: &Vector3<f64>| constant_vector::<D>(v);
+        let variable =
+            |v: &Vector3<f64>, first: usize| Vector3::from_fn(|i, _| D::variable(v[i], first + i, 1.0));
+        // A vector that turns with the race.
+        let turning = |v: &Vector3<f64>| {
+            let mut turned = fixed(v);
+            for k in 0..3 {
+                let rate = Vector3::ith(k, 1.0).cross(v);
+                turned.iter_mut().zip(&rate).for_each(|(c, rate)| c.derivatives[6 + k] = *rate);
+            }
+            turned
+        };
+        // Contacts depend on the relative translation alone: directions 0 to 2 serve ball and race.
+        let places = model.evaluate(
+            &BallMotion {
+                position: variable(&ball.position, 0),
+                velocity: fixed(&ball.velocity),
+                angular_velocity: fixed(&ball.angular_velocity),
+            },
+            &RaceMotion {
+                position: fixed(&race.position),
+                axis: turning(&race.axis),
+                velocity: fixed(&race.velocity),
+                angular_velocity: turning(&race.angular_velocity),
+            },
+        );
+        let rates = model.evaluate(
+            &BallMotion {
+                position: fixed(&ball.position),
+                velocity: variable(&ball.velocity, 0),
+                angular_velocity: variable(&ball.angular_velocity, 3),
+            },
+            &RaceMotion {
+                position: fixed(&race.position),
+                axis: fixed(&race.axis),
+                velocity: fixed(&race.velocity),
+                angular_velocity: variable(&race.angular_velocity, 6),
+            },
+        );
+        let opposite = |force: &Vector3<D>| -force;
+        Self {
+            ball_by_place: derivatives(&places.force, &places.ball_moment),
+            ball_by_rate: derivatives(&rates.force, &rates.ball_moment),
+            race_by_place: derivatives(&opposite(&places.force), &places.race_moment),
+            race_by_rate: derivatives(&opposite(&rates.force), &rates.race_moment),
+        }
+    }
+}
+
+fn derivatives(force: &Vector3<D>, moment: &Vector3<D>) -> Derivatives {
+    let row = |i: usize| if i < 3 { &force[i].derivatives } else { &moment[i - 3].derivatives };
+    Derivatives {
+        by_ball: Matrix6::from_fn(|i, k| row(i)[k]),
+        by_race: Matrix6::from_fn(|i, k| if k < 3 { -row(i)[k] } else { row(i)[3 + k] }),
+    }
+}
+
+/// The share of one ball; none if it does not touch both races.
+fn share(
+    model: &Model,
+    contacts: &[ContactModel<'_>; 2],
+    races: &[RaceMotion<f64>; 2],
+    state: &BallState,
+) -> Option<Condensed> {
+    let (ball, motion) = (&model.bearing.ball, state.motion());
+    let touches = |race: usize| contacts[race].evaluate(&motion, &races[race]).load > 0.0;
+    if !(touches(INNER) && touches(OUTER)) {
+        return None;
+    }
+    let linear = |model: &ContactModel<'_>, race: usize| Linear::new(model, &motion, &races[race]);
+    let [inner, outer] = [INNER, OUTER].map(|race| linear(&contacts[race], race));
+    let smooth =
+        |race: usize| linear(&ContactModel { law: Law::Frictionless, damping: 0.0, ..contacts[race] }, race);
+    let [smooth_inner, smooth_outer] = [smooth(INNER), smooth(OUTER)];
+    let orbit = Orbit::new(&motion, &races[OUTER]);
+
+    // The directions of q and u among translation and rotation of a ball, and of f and g among force and moment on it.
+    let mut plane = Matrix6x2::zeros();
+    plane.fixed_view_mut::<3, 1>(0, 0).copy_from(&orbit.axis);
+    plane.fixed_view_mut::<3, 1>(0, 1).copy_from(&orbit.radial);
+    let mut rolling = Matrix6x4::zeros();
+    rolling.fixed_view_mut::<3, 1>(0, 0).copy_from(&orbit.tangential);
+    // Angular velocities times the radius and moments over it, so that rows and columns compare.
+    rolling.fixed_view_mut::<3, 3>(3, 1).fill_with_identity();
+    rolling.fixed_view_mut::<3, 3>(3, 1).scale_mut(1.0 / ball.radius);
+
+    // stiffness
+    let by_place = smooth_inner.ball_by_place.by_ball + smooth_outer.ball_by_place.by_ball;
+    let mut f_q: Matrix2<f64> = plane.transpose() * by_place * plane;
+    f_q[(1, 1)] += ball.mass * orbit.speed * orbit.speed;
+    let f_q = f_q.lu();
+    let w_q = smooth_inner.race_by_place.by_ball * plane;
+    let follow: Matrix2x6<f64> = f_q.solve(&-(plane.transpose() * smooth_inner.ball_by_place.by_race))?;
+    let stiffness = -(smooth_inner.race_by_place.by_race + w_q * follow);
+
+    // damping
+    let by_rate = inner.ball_by_rate.by_ball + outer.ball_by_rate.by_ball;
+    let (g, f) = (rolling.transpose(), plane.transpose());
+    let rotational = ball.inertia / (ball.radius * ball.radius);
+    let inertia = Vector4::new(ball.mass, rotational, rotational, rotational) / FOLLOWING_TIME;
+    let g_u = g * by_rate * rolling - Matrix4::from_diagonal(&inertia);
+    let by_race = inner.ball_by_rate.by_race + by_rate * plane * follow;
+    let rates: Matrix4x6<f64> = g_u.lu().solve(&-(g * by_race))?;
+    // In a potential w_q f_q^-1 is the transpose of -Q: written so, C is a sum of squares.
+    let shift = follow.transpose() * (f * (by_race + by_rate * rolling * rates));
+    let w_rate = inner.race_by_rate.by_ball;
+    let damping = -(inner.race_by_rate.by_race + w_rate * (plane * follow + rolling * rates) + shift);
+    Some(Condensed { stiffness, damping })
+}
+
+/// A ball's way about the outer race's axis.
+pub(crate) struct Orbit {
+    axis: Vector3<f64>,
+    radial: Vector3<f64>,
+    /// [-] direction of growing azimuth.
+    pub(crate) tangential: Vector3<f64>,
+    /// [m] distance from the axis.
+    radius: f64,
+    /// [rad/s] orbital speed.
+    speed: f64,
+}
+
+impl Orbit {
+    /// Of a ball about the outer race.
+    pub(crate) fn new(ball: &BallMotion<f64>, outer: &RaceMotion<f64>) -> Self {
+        let offset = ball.position - outer.position;
+        let across = offset - outer.axis * offset.dot(&outer.axis);
+        let radius = across.norm();
+        let radial = across / radius;
+        let tangential = outer.axis.cross(&radial);
+        let speed = (ball.velocity - outer.velocity).dot(&tangential) / radius;
+        Self { axis: outer.axis, radial, tangential, radius, speed }
+    }
+
+    /// [N m] gyroscopic moment: what turning the ball's spin with its orbit costs, as a moment on it.
+    pub(crate) fn gyroscopic_moment(&self, model: &Model, ball: &BallMotion<f64>) -> Vector3<f64> {
+        self.axis.cross(&ball.angular_velocity) * (-model.bearing.ball.inertia * self.speed)
+    }
+
+    /// Derivatives of force and moment of inertia on the ball (rows; the force is the centrifugal one) by its velocity
+    /// along the orbit and its angular velocity (columns 2 to 5).
+    pub(crate) fn inertia_by_rate(&self, model: &Model, ball: &BallMotion<f64>) -> Matrix6<f64> {
+        let (mass, inertia) = (model.bearing.ball.mass, model.bearing.ball.inertia);
+        let mut by_rate = Matrix6::zeros();
+        let mut column = by_rate.column_mut(2);
+        column.fixed_rows_mut::<3>(0).copy_from(&(self.radial * (2.0 * mass * self.speed)));
+        let turned = self.axis.cross(&ball.angular_velocity);
+        column.fixed_rows_mut::<3>(3).copy_from(&(turned * (-inertia / self.radius)));
+        let spin = self.axis.cross_matrix() * (-inertia * self.speed);
+        by_rate.fixed_view_mut::<3, 3>(3, 3).copy_from(&spin);
+        by_rate
+    }
+}

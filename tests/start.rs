@@ -1,0 +1,128 @@
+//! Where a simulation starts, and what a step that cannot be finished says.
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+use roulement::dynamics::Partner;
+use roulement::scene::Scene;
+use roulement::simulation::{Simulation, SimulationError};
+
+const THRUST: &str = include_str!("../scenes/thrust.toml");
+
+/// The thrust case with a radial load as well, and additions to its sections.
+fn combined(start: &str) -> Simulation {
+    let text =
+        THRUST.replace("[solver]", &format!("[start]\n{start}\n[solver]")) + "y = { force = \"300 N\" }\n";
+    Simulation::new(&Scene::parse(&text).unwrap()).unwrap()
+}
+
+/// Moment of all friction on a ball that its gyroscopic moment does not ask for [N m], and friction's limit there.
+fn unbalanced(simulation: &Simulation, index: usize) -> (Vector3<f64>, f64) {
+    let (model, state) = (simulation.model(), simulation.state());
+    let ball = &state.balls[index];
+    let contacts = [0, 1].map(|race: usize| {
+        model
+            .contact(race, simulation.inputs().friction)
+            .evaluate(&ball.motion(), &state.races[race].motion())
+    });
+    let orbit = Vector3::x() * simulation.outputs().balls[index].orbital_speed;
+    let gyroscopic = orbit.cross(&ball.angular_velocity) * model.bearing.ball.inertia;
+    let moment = contacts[0].ball_moment + contacts[1].ball_moment - gyroscopic;
+    (moment, simulation.inputs().friction * contacts[0].load * model.bearing.ball.radius)
+}
+
+#[test]
+fn closed_form_accelerations_and_multipliers_are_consistent_at_the_start() {
+    for start in ["", "spin_balance = true"] {
+        let simulation = combined(start);
+        let (model, state) = (simulation.model(), simulation.state());
+        let mut on_race = Vector3::zeros();
+        let mut about_axis = 0.0;
+        for ball in &state.balls {
+            let races = [0, 1].map(|race: usize| state.races[race].motion());
+            let [inner, outer] = [0, 1].map(|race: usize| {
+                model.contact(race, simulation.inputs().friction).evaluate(&ball.motion(), &races[race])
+            });
+            let force = inner.force + outer.force;
+            assert!((ball.acceleration * model.bearing.ball.mass - force).norm() < 1e-9 * inner.load);
+            let moment = inner.ball_moment + outer.ball_moment;
+            assert!(
+                (ball.angular_acceleration * model.bearing.ball.inertia - moment).norm() < 1e-12 * inner.load
+            );
+            on_race -= inner.force;
+            about_axis += inner.race_moment.dot(&races[0].axis);
+        }
+        let race = &state.races[0];
+        let applied = simulation.inputs().inner.applied.force;
+        let mass = model.bodies[0].as_ref().unwrap().mass;
+        assert!((race.acceleration * mass - applied - on_race).norm() < 1e-6);
+        // The drive torque carries all friction about the axis, so that the spin goes on as it is.
+        assert!((simulation.outputs().inner.drive_torque + about_axis).abs() < 1e-9);
+        assert!(race.rate_derivative.x.abs() < 1e-6);
+    }
+}
+
+#[test]
+fn closed_form_moments_are_in_balance_at_a_start_that_asks_for_it() {
+    let share = |simulation: &Simulation| {
+        let of_ball = |j| {
+            let (moment, limit) = unbalanced(simulation, j);
+            moment.norm() / limit
+        };
+        (0..simulation.outputs().balls.len()).map(of_ball).fold(0.0, f64::max)
+    };
+    let (rolling, balanced) = (share(&combined("")), share(&combined("spin_balance = true")));
+    println!("unbalanced moment over friction's limit: rolling {rolling:.2e}, balanced {balanced:.2e}");
+    assert!(balanced < 1e-8 && rolling > 1e-3, "{balanced:e} {rolling:e}");
+    // What is in balance stays as it is: friction power after 20 ms against that at the start, pure thrust.
+    let drift = |start: &str| {
+        let text = THRUST.replace("[solver]", &format!("[start]\n{start}\n[solver]"));
+        let mut simulation = Simulation::new(&Scene::parse(&text).unwrap()).unwrap();
+        let power = |s: &Simulation| [s.outputs().balls[0].inner.power, s.outputs().balls[0].outer.power];
+        let before = power(&simulation);
+        simulation.advance(20e-3).unwrap();
+        let after = power(&simulation);
+        println!("{start}: {before:?} W at the start, {after:?} W after 20 ms");
+        (after[0] / before[0] - 1.0).abs()
+    };
+    let (rolling, balanced) = (drift(""), drift("spin_balance = true"));
+    assert!(balanced < 0.02 && balanced < 0.3 * rolling, "{balanced} {rolling}");
+    let text = THRUST.replace("[solver]", "[start]\nspin_balance = true\norbital_speed = 100.0\n[solver]");
+    assert!(Scene::parse(&text).unwrap_err().to_string().contains("start.spin_balance"));
+}
+
+#[test]
+fn a_step_that_cannot_be_finished_names_ball_and_contact() {
+    // A shock towards one ball of a deep-groove bearing, through the inner race or through the outer one.
+    let scene = |ball: f64, inner: &str, outer: &str, rest: &str| {
+        let azimuth = -TAU * (ball - 1.0) / 8.0;
+        let text = format!(
+            "[bearing]\nballs = 8\nball_diameter = 0.0095\npitch_diameter = 0.046\ndiametral_clearance = 1e-5\n\
+             inner_conformity = 0.52\nouter_conformity = 0.52\nfirst_ball_azimuth = {azimuth}\n\
+             [effects]\ncreep = \"frictionless\"\n[inner]\n{inner}\n[outer]\n{outer}\n\
+             [solver]\ninitial_step = 1e-6\nmin_step = 1e-6\nmax_step = 1e-6\ntolerance = 1e-9\n\
+             [load]\nx = {{ displacement = 0.0 }}\nz = {{ displacement = 0.0 }}\nry = {{ rotation = 0.0 }}\nrz = {{ rotation = 0.0 }}\n{rest}"
+        );
+        Simulation::new(&Scene::parse(&text).unwrap()).unwrap()
+    };
+    let body = "drive = \"wrench\"\nmass = 0.05\ninertia = [2e-5, 1e-5, 1e-5]";
+    for ball in [2.0, 5.0] {
+        let mut shaken = scene(ball, body, "", "y = { force = 300.0 }");
+        let mut inputs = *shaken.inputs();
+        inputs.inner.applied.force.y = 3e3;
+        shaken.set_inputs(inputs);
+        let mut struck = scene(ball, "drive = \"pose\"", "drive = \"pose\"", "y = { displacement = 1e-5 }");
+        let mut inputs = *struck.inputs();
+        inputs.outer.pose.position.y -= 20e-6;
+        struck.set_inputs(inputs);
+        for (simulation, expected) in [(&mut shaken, Partner::Inner), (&mut struck, Partner::Outer)] {
+            let why = simulation.advance(20e-6).unwrap_err();
+            println!("{why}");
+            let SimulationError::StepTooSmall { ball: named, contact, .. } = why else { panic!("{why}") };
+            assert_eq!((named as f64, contact), (ball, expected));
+            let message = why.to_string();
+            assert!(message.contains(&format!("ball {named} on the {contact}")), "{message}");
+        }
+    }
+}
