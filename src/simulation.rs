@@ -231,6 +231,10 @@ impl Simulation {
             && snapshot.state.cage.is_some() == self.state.cage.is_some()
             && constraints(&snapshot.state) == constraints(&self.state)
             && snapshot.state.control.fits(&self.state.control)
+            && snapshot.state.differences.len() == self.state.differences.len()
+            && snapshot.state.differences.iter().all(|of_ball| {
+                [INNER, OUTER].into_iter().all(|race| of_ball[race].fits(self.model.polynomials(race)))
+            })
             && snapshot.state.statistics.plausible();
         if same {
             self.inputs = snapshot.inputs;

@@ -194,9 +194,11 @@ impl Statistics {
             newton,
             contact_values,
             contact_tangents,
+            polynomials,
+            polynomial_failures,
         } = *self;
         let work = [newton.iterations, newton.factorisations, contact_values, contact_tangents];
-        [steps, rejected_error, rejected_newton, second_guesses]
+        [steps, rejected_error, rejected_newton, second_guesses, polynomials, polynomial_failures]
             .iter()
             .chain(&work)
             .all(|count| *count < MOST)

@@ -280,6 +280,11 @@ impl Kalker {
         })
     }
 
+    /// Number of coefficients of a solution.
+    pub fn coefficients(&self) -> usize {
+        2 * self.monomials
+    }
+
     /// Rigid slip at a point.
     fn rigid(&self, h: &ScaledCreepage, point: &Point) -> [f64; 2] {
         let (a, b) = (self.patch.axis_ratio.sqrt(), 1.0 / self.patch.axis_ratio.sqrt());

@@ -24,6 +24,13 @@ pub struct Difference {
 }
 
 impl Difference {
+    /// Could this have come from these polynomials? For states that come from outside.
+    pub fn fits(&self, kalker: Option<&ScaledKalker>) -> bool {
+        let number = kalker.map_or(0, |kalker| kalker.kalker.coefficients());
+        (self.coefficients.is_empty() || self.coefficients.len() == number)
+            && self.place.iter().chain(&self.value).chain(&self.coefficients).all(|x| x.is_finite())
+    }
+
     /// [-] largest change of q since the last renewal, over `1 + |q|`; infinite before the first.
     pub fn age(&self, q: &[f64; 4]) -> f64 {
         if self.coefficients.is_empty() {
