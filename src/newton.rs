@@ -16,6 +16,11 @@ pub trait Equations {
     /// Returns the residual's norm in units of its tolerance: 1 or less is converged. Not finite is a failure.
     fn residual(&mut self, unknowns: &[f64], with_tangent: bool) -> f64;
 
+    /// Is there a tangent of an earlier solve to begin with?
+    fn has_tangent(&self) -> bool {
+        false
+    }
+
     /// Writes the Newton correction of the last residual with the last tangent; false if that is singular.
     fn correction(&mut self, correction: &mut [f64]) -> bool;
 
@@ -67,10 +72,10 @@ pub fn solve(
     correction.resize(unknowns.len(), 0.0);
     trial.resize(unknowns.len(), 0.0);
 
-    let mut norm = equations.residual(unknowns, true);
-    work.factorisations += 1;
+    let mut tangent_is_here = !equations.has_tangent();
+    let mut norm = equations.residual(unknowns, tangent_is_here);
+    work.factorisations += u64::from(tangent_is_here);
     let mut evaluations = 1;
-    let mut tangent_is_here = true;
     if !norm.is_finite() {
         return Err(NewtonFailure::NotFinite);
     }
@@ -93,7 +98,8 @@ pub fn solve(
             if trial_norm <= 1.0 || descends {
                 break Some(trial_norm);
             }
-            if halvings == MAX_HALVINGS || evaluations >= MAX_EVALUATIONS {
+            // No descent along an old tangent's direction says little: no use in going less far.
+            if halvings == MAX_HALVINGS || evaluations >= MAX_EVALUATIONS || !tangent_is_here {
                 break None;
             }
             halvings += 1;
@@ -105,7 +111,6 @@ pub fn solve(
                 tangent_is_here = false;
                 trial_norm / std::mem::replace(&mut norm, trial_norm)
             }
-            // No descent along an old tangent's direction says little: try with a new one before giving up.
             None if !tangent_is_here && evaluations < MAX_EVALUATIONS => f64::INFINITY,
             None => return Err(NewtonFailure::NoConvergence),
         };
