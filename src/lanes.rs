@@ -68,8 +68,14 @@ impl Scalar for Lanes {
         mut function: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
     ) -> [Self; M] {
         let mut results = [Self([0.0; WIDTH]); M];
+        let (mut last, mut values) = ([f64::NAN; K], [0.0; M]);
         for lane in 0..WIDTH {
-            let (values, _) = function(x.map(|component| component.0[lane]));
+            let arguments = x.map(|component| component.0[lane]);
+            // Lanes without a ball of their own repeat another.
+            if arguments != last {
+                (values, _) = function(arguments);
+                last = arguments;
+            }
             for (result, value) in results.iter_mut().zip(values) {
                 result.0[lane] = value;
             }

@@ -136,6 +136,8 @@ mod tests {
         target: f64,
         residual: f64,
         slope: f64,
+        /// Is the slope one of earlier?
+        old: bool,
     }
 
     impl Equations for Cube {
@@ -145,6 +147,9 @@ mod tests {
                 self.slope = 3.0 * x[0] * x[0];
             }
             self.residual.abs() / 1e-12
+        }
+        fn has_tangent(&self) -> bool {
+            self.old
         }
         fn correction(&mut self, correction: &mut [f64]) -> bool {
             correction[0] = -self.residual / self.slope;
@@ -157,7 +162,7 @@ mod tests {
         let run = |target: f64, start: f64| {
             let mut x = [start];
             let mut work = NewtonWork::default();
-            let mut equations = Cube { target, residual: 0.0, slope: 0.0 };
+            let mut equations = Cube { target, residual: 0.0, slope: 0.0, old: false };
             (solve(&mut equations, &mut x, &mut NewtonBuffers::default(), &mut work), x[0], work)
         };
         let (result, root, work) = run(8.0, 1.5);
@@ -167,5 +172,23 @@ mod tests {
         assert_eq!(run(8.0, f64::NAN).0, Err(NewtonFailure::NotFinite));
         // A residual that cannot reach its tolerance (its round-off is larger) is never accepted.
         assert_eq!(run(1e9 + 0.1, 1.0).0, Err(NewtonFailure::NoConvergence));
+    }
+    #[test]
+    fn closed_form_root_by_an_old_tangent_as_long_as_it_leads_there() {
+        let run = |slope: f64| {
+            let mut x = [1.9];
+            let mut work = NewtonWork::default();
+            let mut equations = Cube { target: 8.0, residual: 0.0, slope, old: true };
+            let result = solve(&mut equations, &mut x, &mut NewtonBuffers::default(), &mut work);
+            (result, (x[0] - 2.0).abs() < 1e-12, work.factorisations)
+        };
+        // 12 is the slope at the root: each correction leaves some percent.
+        assert_eq!(run(12.0), (Ok(()), true, 0));
+        // Too steep converges too slowly, too flat and backwards lead away: a new one then, of which one or two do.
+        for useless in [120.0, 1.0, -12.0] {
+            let (result, solved, factorisations) = run(useless);
+            assert_eq!((result, solved), (Ok(()), true));
+            assert!((1..=2).contains(&factorisations), "{useless}: {factorisations}");
+        }
     }
 }

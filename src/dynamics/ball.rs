@@ -1,5 +1,6 @@
 //! One ball in one trial step: motion from its unknown accelerations, contacts, residual and tangent blocks.
 
+use multiversion::multiversion;
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::cage::CageTrial;
@@ -8,7 +9,7 @@ use crate::arrowhead::BallBlock;
 use crate::cage::CageModel;
 use crate::contact::body::BodyContact;
 use crate::contact::many::ContactEffect;
-use crate::contact::{BallMotion, ContactModel, RaceMotion};
+use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::hht::HhtStep;
 use crate::model::{CAGE, Model};
 use crate::motion::Wrench;
@@ -120,19 +121,19 @@ impl BallTrial {
             self.reactions[race] = None;
             self.contacts[race] = match &races[race] {
                 RaceSeen::Prescribed(motion) => {
-                    let seeded = seed::<6>(&self.motion, step, radius);
-                    let contact = contacts[race].evaluate(&seeded, &constant_race(motion));
-                    tangent += by_ball(&contact.force, &contact.ball_moment);
-                    ContactEffect::from(&contact.values())
+                    let seeded = seed(&self.motion, step, radius);
+                    let (effect, by_ball) = by_ball_alone(&contacts[race], &seeded, motion);
+                    tangent += by_ball;
+                    effect
                 }
                 RaceSeen::Body { motion, .. } => {
-                    let seeded = seed::<DIRECTIONS>(&self.motion, step, radius);
-                    let contact = contacts[race].evaluate(&seeded, motion);
+                    let seeded = seed(&self.motion, step, radius);
+                    let contact = by_ball_and_race(&contacts[race], &seeded, motion);
                     tangent += by_ball(&contact.force, &contact.ball_moment);
                     let by_race = by_race(&contact.force, &contact.ball_moment);
                     self.block.right[race] = scale_moments(by_race, radius) * -(1.0 - step.alpha_f);
-                    self.reactions[race] =
-                        Some(RaceReaction { force: -contact.force, moment: contact.race_moment });
+                    let reaction = RaceReaction { force: -contact.force, moment: contact.race_moment };
+                    self.reactions[race] = Some(reaction);
                     ContactEffect::from(&contact.values())
                 }
             };
@@ -237,6 +238,27 @@ pub struct Surroundings<'a> {
     pub cage: Option<(&'a CageModel, &'a CageTrial)>,
 }
 
+/// A contact with a race of given motion, and derivatives of force and moment on the ball by the ball's unknowns.
+#[multiversion(targets("x86_64+avx2"))]
+fn by_ball_alone(
+    contact: &ContactModel<'_>,
+    ball: &BallMotion<Dual<6>>,
+    race: &RaceMotion<f64>,
+) -> (ContactEffect, Matrix6<f64>) {
+    let contact = contact.evaluate(ball, &constant_race(race));
+    (ContactEffect::from(&contact.values()), by_ball(&contact.force, &contact.ball_moment))
+}
+
+/// A contact with a race body, with derivatives by the unknowns of both.
+#[multiversion(targets("x86_64+avx2"))]
+fn by_ball_and_race(
+    contact: &ContactModel<'_>,
+    ball: &BallMotion<Dual<DIRECTIONS>>,
+    race: &RaceMotion<Dual<DIRECTIONS>>,
+) -> BallRaceContact<Dual<DIRECTIONS>> {
+    contact.evaluate(ball, race)
+}
+
 /// A ball's motion as a function of its own unknowns.
 fn seed<const N: usize>(motion: &BallMotion<f64>, step: &HhtStep, radius: f64) -> BallMotion<Dual<N>> {
     let variable = |v: &Vector3<f64>, first: usize, gain: f64| {
@@ -250,6 +272,7 @@ fn seed<const N: usize>(motion: &BallMotion<f64>, step: &HhtStep, radius: f64) -
 }
 
 /// A race's motion without derivatives, as numbers that could have some.
+#[inline(always)]
 fn constant_race<S: Scalar>(motion: &RaceMotion<f64>) -> RaceMotion<S> {
     RaceMotion {
         position: constant_vector(&motion.position),
@@ -260,6 +283,7 @@ fn constant_race<S: Scalar>(motion: &RaceMotion<f64>) -> RaceMotion<S> {
 }
 
 /// Derivatives of force (rows 0 to 2) and moment (rows 3 to 5) by the ball's unknowns.
+#[inline(always)]
 pub fn by_ball<const N: usize>(force: &Vector3<Dual<N>>, moment: &Vector3<Dual<N>>) -> Matrix6<f64> {
     Matrix6::from_fn(|i, k| {
         let row = if i < 3 { &force[i] } else { &moment[i - 3] };

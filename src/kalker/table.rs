@@ -18,6 +18,8 @@ use std::sync::OnceLock;
 use super::half_space::{HalfSpace, HalfSpaceError, Tractions, limit};
 use super::linear::{LinearError, Scales};
 use super::{Patch, ScaledCreepage};
+use crate::lanes::Lanes;
+use crate::scalar::Scalar;
 
 /// Intervals from rest to sliding, from the x axis to the plane of y and spin, and of half a turn in that plane.
 pub const SHAPE: [usize; 3] = [12, 10, 16];
@@ -144,7 +146,8 @@ pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
 /// The table of one contact: one axis ratio, padded so that every stencil lies inside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CreepTable {
-    nodes: Vec<[f64; 3]>,
+    /// Three stored functions and a zero, in the lanes of one vector.
+    nodes: Vec<Lanes>,
     coupling: [f64; 2],
     stretch: Stretch,
 }
@@ -263,12 +266,16 @@ impl CreepTable {
                 }
             }
         }
-        Self { nodes: padded, coupling, stretch }
+        let nodes = padded.into_iter().map(|[x, y, z]: [f64; 3]| Lanes([x, y, z, 0.0])).collect();
+        Self { nodes, coupling, stretch }
     }
 
     /// Forces over mu Q, mu Q and M_max at `q`, and their derivatives by q: row by force, column by q.
+    // Inlined so that who wants values alone does not compute derivatives.
+    #[inline(always)]
     pub fn evaluate(&self, q: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
-        let size = q[0].hypot(q[1]).hypot(q[2]);
+        let norm = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
+        let size = norm(q);
         if size < 1e-12 || !size.is_finite() {
             let [yz, zy] = self.coupling;
             let tangent = [[1.0, 0.0, 0.0], [0.0, 1.0, yz], [0.0, zy, 1.0]];
@@ -279,11 +286,11 @@ impl CreepTable {
         let sign_yz = if q[2] < 0.0 || (q[2] == 0.0 && q[1] < 0.0) { -1.0 } else { 1.0 };
         let [response_y, response_z] = self.stretch.response;
         let scaled = [sign_x * q[0], sign_yz * q[1] * response_y, sign_yz * q[2] * response_z];
-        let size = scaled[0].hypot(scaled[1]).hypot(scaled[2]);
+        let size = norm(scaled);
         let [stretch_x, stretch_z] = self.stretch.direction;
         let (x, y, z) = (scaled[0] * stretch_x, scaled[1], scaled[2] * stretch_z);
-        let across = y.hypot(z);
-        let length = x.hypot(across);
+        let across = (y * y + z * z).sqrt();
+        let length = norm([x, y, z]);
         let (cos_theta, sin_theta) = (x / length, across / length);
         let (cos_phi, sin_phi) = if across > 0.0 { (y / across, z / across) } else { (1.0, 0.0) };
         let t = size / (MIDDLE + size);
@@ -298,28 +305,29 @@ impl CreepTable {
         // smooth across the x axis, where all phi meet.
         let step = PI / SHAPE[2] as f64;
         let (even, odd) = (weights(w, 1.0), weights(w, step / step.sin()));
-        let (ww, dw) = ([even.0, odd.0, odd.0], [even.1, odd.1, odd.1]);
+        let each = |even: [f64; 4], odd: [f64; 4]| -> [Lanes; 4] {
+            std::array::from_fn(|c| Lanes([even[c], odd[c], odd[c], 0.0]))
+        };
+        let (ww, dw) = (each(even.0, odd.0), each(even.1, odd.1));
 
         // value and slopes of the three stored functions
-        let (mut value, mut by_t, mut by_theta, mut by_phi) = ([0.0; 3], [0.0; 3], [0.0; 3], [0.0; 3]);
+        let zero = Lanes::constant(0.0);
+        let (mut value, mut by_t, mut by_theta, mut by_phi) = (zero, zero, zero, zero);
         for a in 0..4 {
             for b in 0..4 {
                 let row = ((i + a) * PADDED[1] + j + b) * PADDED[2] + k;
-                let (mut line, mut slope) = ([0.0; 3], [0.0; 3]);
+                let (mut line, mut slope) = (zero, zero);
                 for (c, node) in self.nodes[row..row + 4].iter().enumerate() {
-                    for m in 0..3 {
-                        line[m] += ww[m][c] * node[m];
-                        slope[m] += dw[m][c] * node[m];
-                    }
+                    line += ww[c] * *node;
+                    slope += dw[c] * *node;
                 }
-                for m in 0..3 {
-                    value[m] += wt[a] * wv[b] * line[m];
-                    by_t[m] += dt[a] * wv[b] * line[m];
-                    by_theta[m] += wt[a] * dv[b] * line[m];
-                    by_phi[m] += wt[a] * wv[b] * slope[m];
-                }
+                value += line.scale(wt[a] * wv[b]);
+                by_t += line.scale(dt[a] * wv[b]);
+                by_theta += line.scale(wt[a] * dv[b]);
+                by_phi += slope.scale(wt[a] * wv[b]);
             }
         }
+        let (Lanes(value), Lanes(by_t), Lanes(by_theta), Lanes(by_phi)) = (value, by_t, by_theta, by_phi);
 
         // forces and gradient: by t, theta and phi, and these by q
         let factor = [cos_theta, sin_theta, sin_theta];
@@ -354,8 +362,9 @@ impl CreepTable {
 }
 
 /// Keeps the tangential force within the friction limit and the moment within its own, with the gradient.
+#[inline(always)]
 fn within_limits(forces: &mut [f64; 3], gradient: &mut [[f64; 3]; 3]) {
-    let size = forces[0].hypot(forces[1]);
+    let size = (forces[0] * forces[0] + forces[1] * forces[1]).sqrt();
     if size > 1.0 {
         let direction = [forces[0] / size, forces[1] / size];
         for n in 0..3 {
