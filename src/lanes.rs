@@ -67,20 +67,15 @@ impl Scalar for Lanes {
         x: [Self; K],
         mut function: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
     ) -> [Self; M] {
-        let mut results = [Self([0.0; WIDTH]); M];
-        let (mut last, mut values) = ([f64::NAN; K], [0.0; M]);
-        for lane in 0..WIDTH {
-            let arguments = x.map(|component| component.0[lane]);
-            // Lanes without a ball of their own repeat another.
-            if arguments != last {
-                (values, _) = function(arguments);
-                last = arguments;
-            }
-            for (result, value) in results.iter_mut().zip(values) {
-                result.0[lane] = value;
-            }
-        }
-        results
+        lane_by_lane(x, |x| function(x).0)
+    }
+    #[inline(always)]
+    fn map_smooth_apart<const K: usize, const M: usize>(
+        x: [Self; K],
+        values: impl FnMut([f64; K]) -> [f64; M],
+        _with_gradients: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
+    ) -> [Self; M] {
+        lane_by_lane(x, values)
     }
     #[inline(always)]
     fn polynomial<const K: usize>(self, coefficients: &[f64; K]) -> Self {
@@ -96,6 +91,28 @@ impl Scalar for Lanes {
         let select = |condition: f64, this: f64, other: f64| if condition > 0.0 { this } else { other };
         Self([select(i, a, p), select(j, b, q), select(k, c, r), select(l, d, s)])
     }
+}
+
+/// Functions of several numbers that are no formula.
+#[inline(always)]
+fn lane_by_lane<const K: usize, const M: usize>(
+    x: [Lanes; K],
+    mut function: impl FnMut([f64; K]) -> [f64; M],
+) -> [Lanes; M] {
+    let mut results = [Lanes([0.0; WIDTH]); M];
+    let (mut last, mut values) = ([f64::NAN; K], [0.0; M]);
+    for lane in 0..WIDTH {
+        let arguments = x.map(|component| component.0[lane]);
+        // Lanes without a ball of their own repeat another.
+        if arguments != last {
+            values = function(arguments);
+            last = arguments;
+        }
+        for (result, value) in results.iter_mut().zip(values) {
+            result.0[lane] = value;
+        }
+    }
+    results
 }
 
 impl num_traits::Zero for Lanes {
@@ -123,7 +140,7 @@ impl Neg for Lanes {
     }
 }
 
-macro_rules! lane_by_lane {
+macro_rules! operators {
     ($($trait:ident $method:ident $assign:ident $assign_method:ident $operator:tt),*) => {$(
         impl $trait for Lanes {
             type Output = Self;
@@ -140,7 +157,7 @@ macro_rules! lane_by_lane {
         }
     )*};
 }
-lane_by_lane!(
+operators!(
     Add add AddAssign add_assign +, Sub sub SubAssign sub_assign -,
     Mul mul MulAssign mul_assign *, Div div DivAssign div_assign /
 );

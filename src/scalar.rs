@@ -41,6 +41,16 @@ pub trait Scalar:
         function: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
     ) -> [Self; M];
 
+    /// The same of functions whose values alone are cheaper than with their gradients.
+    #[inline(always)]
+    fn map_smooth_apart<const K: usize, const M: usize>(
+        x: [Self; K],
+        _values: impl FnMut([f64; K]) -> [f64; M],
+        with_gradients: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
+    ) -> [Self; M] {
+        Self::map_smooth_many(x, with_gradients)
+    }
+
     /// A polynomial of this number, coefficients by ascending powers.
     fn polynomial<const K: usize>(self, coefficients: &[f64; K]) -> Self;
 
@@ -106,6 +116,14 @@ impl Scalar for f64 {
         mut function: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
     ) -> [Self; M] {
         function(x).0
+    }
+    #[inline(always)]
+    fn map_smooth_apart<const K: usize, const M: usize>(
+        x: [Self; K],
+        mut values: impl FnMut([f64; K]) -> [f64; M],
+        _with_gradients: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
+    ) -> [Self; M] {
+        values(x)
     }
     #[inline(always)]
     fn polynomial<const K: usize>(self, coefficients: &[f64; K]) -> Self {

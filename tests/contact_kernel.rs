@@ -186,7 +186,11 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
                 x[0] += if race == INNER { -inwards } else { inwards };
                 x[5] += slip;
                 x[6] += spin;
-                BallMotion { position: vector(&x, 0), velocity: vector(&x, 3), angular_velocity: vector(&x, 6) }
+                BallMotion {
+                    position: vector(&x, 0),
+                    velocity: vector(&x, 3),
+                    angular_velocity: vector(&x, 6),
+                }
             });
             let axis = Vector3::new(1.0, x[13], -x[12]).normalize();
             let (position, velocity) = (vector(&x, 9), Vector3::repeat(x[14]));

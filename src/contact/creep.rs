@@ -99,7 +99,7 @@ impl<S: Scalar> LinearTheory<S> {
             Law::Saturated => self.saturated(creepage),
             Law::Table(table) => {
                 let (turned, q) = self.uncoupled(creepage);
-                let [x, y, z] = S::map_smooth_many(q, |q| table.evaluate(q));
+                let [x, y, z] = S::map_smooth_apart(q, |q| table.values(q), |q| table.evaluate(q));
                 [turned * x, turned * y, z]
             }
             Law::Kalker(kalker) => return self.polynomials(kalker, creepage),
