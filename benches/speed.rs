@@ -1,10 +1,20 @@
 //! What things cost. `cargo bench` prints wall times; for counts that do not depend on the machine's load run the
 //! same work under `valgrind --tool=callgrind`.
-#![allow(missing_docs, clippy::unwrap_used)]
+#![allow(missing_docs, clippy::unwrap_used, unsafe_code)]
+
+#[path = "../tests/fmi2_abi/mod.rs"]
+mod fmi2_abi;
 
 use divan::{Bencher, counter::ItemsCount};
+use nalgebra::Vector3;
+use roulement::contact::many::{ContactEffect, evaluate_group};
+use roulement::contact::{BallMotion, RaceMotion};
+use roulement::dynamics::{Boundary, make_consistent};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
+use roulement::fmi2::Status;
+use roulement::lanes::WIDTH;
 use roulement::model::{INNER, Model};
+use roulement::scalar::Dual;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 
@@ -18,14 +28,99 @@ fn prescribed() -> String {
     THRUST.replace("drive = \"wrench\"", "drive = \"pose\"")
 }
 
+const LAWS: [&str; 5] = ["frictionless", "linear", "regularised", "saturated", "kalker_table"];
+
+/// The thrust case with a creep law, at its start.
+fn simulation(law: &str) -> Simulation {
+    let text = prescribed().replace("\"saturated\"", &format!("\"{law}\""));
+    Simulation::new(&Scene::parse(&text).unwrap()).unwrap()
+}
+
 /// One contact, value only.
-#[divan::bench(args = ["frictionless", "linear", "regularised", "saturated", "kalker_table"])]
+#[divan::bench(args = LAWS)]
 fn contact_value(bencher: Bencher, law: &str) {
-    let scene = Scene::parse(&THRUST.replace("\"saturated\"", &format!("\"{law}\""))).unwrap();
-    let simulation = Simulation::new(&scene).unwrap();
+    let simulation = simulation(law);
     let contact = simulation.model().contact(INNER, 0.08);
     let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().races[INNER].motion());
     bencher.bench_local(|| contact.evaluate(divan::black_box(&ball), divan::black_box(&race)));
+}
+
+/// Four contacts in the lanes of one vector, values only.
+#[divan::bench(args = LAWS)]
+fn contact_values_together(bencher: Bencher, law: &str) {
+    let simulation = simulation(law);
+    let contact = simulation.model().contact(INNER, 0.08);
+    let race = simulation.state().races[INNER].motion();
+    let balls: [_; WIDTH] = std::array::from_fn(|lane| simulation.state().balls[lane].motion());
+    let mut effects = [ContactEffect::default(); WIDTH];
+    bencher.counter(ItemsCount::new(WIDTH)).bench_local(|| {
+        evaluate_group(&contact, divan::black_box(&race), divan::black_box(&balls), &mut effects);
+        effects[0].load
+    });
+}
+
+/// One contact with derivatives by the nine unknowns of ball and race body that a step has.
+#[divan::bench(args = LAWS)]
+fn contact_with_derivatives(bencher: Bencher, law: &str) {
+    let simulation = simulation(law);
+    let contact = simulation.model().contact(INNER, 0.08);
+    let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().races[INNER].motion());
+    type D = Dual<9>;
+    let seed = |v: &Vector3<f64>, first: usize| -> Vector3<D> {
+        Vector3::from_fn(|k, _| Dual::variable(v[k], first + k, 1.0))
+    };
+    let constant = |v: &Vector3<f64>| v.map(|value| D { value, derivatives: [0.0; 9] });
+    let ball = BallMotion {
+        position: seed(&ball.position, 0),
+        velocity: seed(&ball.velocity, 3),
+        angular_velocity: seed(&ball.angular_velocity, 6),
+    };
+    let race = RaceMotion {
+        position: constant(&race.position),
+        axis: constant(&race.axis),
+        velocity: constant(&race.velocity),
+        angular_velocity: constant(&race.angular_velocity),
+    };
+    bencher.bench_local(|| contact.evaluate(divan::black_box(&ball), divan::black_box(&race)).force);
+}
+
+/// All forces and accelerations of the thrust case, once.
+#[divan::bench]
+fn force_assembly(bencher: Bencher) {
+    let simulation = simulation("saturated");
+    let motion = simulation.state().races.each_ref().map(|race| (race.pose, race.twist()));
+    let boundary = Boundary { time: 0.0, motion, loads: Default::default(), friction: 0.08 };
+    bencher.with_inputs(|| simulation.state().clone()).bench_local_values(|mut state| {
+        make_consistent(simulation.model(), &mut state, &boundary);
+        state
+    });
+}
+
+/// One accepted step of 1e-5 s with the communication around it, its own matrix and outputs.
+#[divan::bench(args = LAWS)]
+fn accepted_step(bencher: Bencher, law: &str) {
+    let mut start = simulation(law);
+    start.advance(5e-3).unwrap();
+    bencher.with_inputs(|| start.clone()).bench_local_values(|mut simulation| {
+        simulation.advance(5e-3 + 1e-5).unwrap();
+        simulation.state().statistics.steps
+    });
+}
+
+/// A communication step of 100 us through the C interface, of ten own steps; time goes on.
+#[divan::bench]
+fn fmu_step(bencher: Bencher) {
+    let package = fmi2_abi::Package::new("speed", &prescribed());
+    let component = package.start();
+    let mut point = 0u32;
+    bencher.bench_local(|| {
+        // SAFETY: a live instance.
+        let status = unsafe { fmi2_abi::fmi2DoStep(component, f64::from(point) * 1e-4, 1e-4, 0) };
+        point += 1;
+        assert_eq!(status, Status::Ok);
+    });
+    // SAFETY: a live instance, not used any more.
+    unsafe { fmi2_abi::fmi2FreeInstance(component) };
 }
 
 /// The quasi-static equilibrium of the thrust case.

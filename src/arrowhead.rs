@@ -6,10 +6,10 @@
 //! |          ...  ... | | ... |   | ... |
 //! | L_1  L_2 ...  D   | | y   |   | c   |      (D - sum L_j A_j^-1 R_j) y = c - sum L_j A_j^-1 b_j
 //! ```
-//! The matrix is not symmetric (friction), so every block is solved by LU with pivoting. Cost grows linearly with the
+//! The matrix is not symmetric (friction), so every block is inverted by LU with pivoting. Cost grows linearly with the
 //! number of balls.
 
-use nalgebra::{Const, DMatrix, DVector, Dyn, LU, Matrix6, Vector6};
+use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix6, Vector6};
 
 /// Rows and columns of one ball or one free body in the matrix.
 pub const BLOCK: usize = 6;
@@ -35,10 +35,11 @@ impl Default for BallBlock {
     }
 }
 
-/// A factorised ball block.
+/// A ball block, solved.
 #[derive(Clone, Debug)]
 struct Factor {
-    diagonal: LU<f64, Const<BLOCK>, Const<BLOCK>>,
+    /// `A^-1`: it serves many steps, and a product costs a quarter of two triangular solves.
+    inverse: Matrix6<f64>,
     /// `A^-1 R` per body.
     right: [Matrix6<f64>; BODIES],
     left: [Matrix6<f64>; BODIES],
@@ -62,12 +63,12 @@ impl Arrowhead {
         self.balls.clear();
         let mut schur = border.clone();
         for block in balls {
-            let diagonal = block.diagonal.lu();
+            // A singular block shows in `solve`.
+            let inverse = block.diagonal.lu().try_inverse().unwrap_or(Matrix6::repeat(f64::NAN));
             let mut right = block.right;
             for (body, offset) in offsets.into_iter().enumerate() {
-                if offset.is_some() && !diagonal.solve_mut(&mut right[body]) {
-                    // A singular block shows again, with its consequence, in `solve`.
-                    right[body].fill(f64::NAN);
+                if offset.is_some() {
+                    right[body] = inverse * block.right[body];
                 }
             }
             for (row_body, row) in offsets.into_iter().enumerate() {
@@ -78,7 +79,7 @@ impl Arrowhead {
                     }
                 }
             }
-            self.balls.push(Factor { diagonal, right, left: block.left });
+            self.balls.push(Factor { inverse, right, left: block.left });
         }
         self.border = if border.is_empty() { None } else { Some(schur.lu()) };
     }
@@ -91,9 +92,7 @@ impl Arrowhead {
         offsets: [Option<usize>; BODIES],
     ) -> bool {
         for (factor, x) in self.balls.iter().zip(&mut *balls) {
-            if !factor.diagonal.solve_mut(x) {
-                return false;
-            }
+            *x = factor.inverse * *x;
             for (body, offset) in offsets.into_iter().enumerate() {
                 if let Some(offset) = offset {
                     let mut rows = border.fixed_rows_mut::<BLOCK>(offset);

@@ -11,7 +11,7 @@ use crate::contact::pocket::PocketModel;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::kalker::linear::LinearError;
 use crate::model::{INNER, OUTER, RaceBody};
-use crate::scalar::Scalar;
+use crate::scalar::Single;
 use crate::scene::{CageSection, Guidance, Scene};
 
 /// A cage.
@@ -84,7 +84,7 @@ impl CageModel {
 
     /// Forces between a ball (first, 0 is the first) and the cage; `None` where they do not touch.
     #[inline(always)]
-    pub fn pocket_contact<S: Scalar>(
+    pub fn pocket_contact<S: Single>(
         &self,
         index: usize,
         ball: &BallMotion<S>,

@@ -14,6 +14,7 @@ pub mod fmi2;
 pub mod hht;
 pub mod inputs;
 pub mod kalker;
+pub mod lanes;
 pub mod model;
 pub mod model_description;
 pub mod motion;

@@ -16,6 +16,11 @@ pub trait Equations {
     /// Returns the residual's norm in units of its tolerance: 1 or less is converged. Not finite is a failure.
     fn residual(&mut self, unknowns: &[f64], with_tangent: bool) -> f64;
 
+    /// Is there a tangent of an earlier solve to begin with?
+    fn has_tangent(&self) -> bool {
+        false
+    }
+
     /// Writes the Newton correction of the last residual with the last tangent; false if that is singular.
     fn correction(&mut self, correction: &mut [f64]) -> bool;
 
@@ -67,10 +72,10 @@ pub fn solve(
     correction.resize(unknowns.len(), 0.0);
     trial.resize(unknowns.len(), 0.0);
 
-    let mut norm = equations.residual(unknowns, true);
-    work.factorisations += 1;
+    let mut tangent_is_here = !equations.has_tangent();
+    let mut norm = equations.residual(unknowns, tangent_is_here);
+    work.factorisations += u64::from(tangent_is_here);
     let mut evaluations = 1;
-    let mut tangent_is_here = true;
     if !norm.is_finite() {
         return Err(NewtonFailure::NotFinite);
     }
@@ -93,7 +98,8 @@ pub fn solve(
             if trial_norm <= 1.0 || descends {
                 break Some(trial_norm);
             }
-            if halvings == MAX_HALVINGS || evaluations >= MAX_EVALUATIONS {
+            // No descent along an old tangent's direction says little: no use in going less far.
+            if halvings == MAX_HALVINGS || evaluations >= MAX_EVALUATIONS || !tangent_is_here {
                 break None;
             }
             halvings += 1;
@@ -105,7 +111,6 @@ pub fn solve(
                 tangent_is_here = false;
                 trial_norm / std::mem::replace(&mut norm, trial_norm)
             }
-            // No descent along an old tangent's direction says little: try with a new one before giving up.
             None if !tangent_is_here && evaluations < MAX_EVALUATIONS => f64::INFINITY,
             None => return Err(NewtonFailure::NoConvergence),
         };
@@ -131,6 +136,8 @@ mod tests {
         target: f64,
         residual: f64,
         slope: f64,
+        /// Is the slope one of earlier?
+        old: bool,
     }
 
     impl Equations for Cube {
@@ -140,6 +147,9 @@ mod tests {
                 self.slope = 3.0 * x[0] * x[0];
             }
             self.residual.abs() / 1e-12
+        }
+        fn has_tangent(&self) -> bool {
+            self.old
         }
         fn correction(&mut self, correction: &mut [f64]) -> bool {
             correction[0] = -self.residual / self.slope;
@@ -152,7 +162,7 @@ mod tests {
         let run = |target: f64, start: f64| {
             let mut x = [start];
             let mut work = NewtonWork::default();
-            let mut equations = Cube { target, residual: 0.0, slope: 0.0 };
+            let mut equations = Cube { target, residual: 0.0, slope: 0.0, old: false };
             (solve(&mut equations, &mut x, &mut NewtonBuffers::default(), &mut work), x[0], work)
         };
         let (result, root, work) = run(8.0, 1.5);
@@ -162,5 +172,23 @@ mod tests {
         assert_eq!(run(8.0, f64::NAN).0, Err(NewtonFailure::NotFinite));
         // A residual that cannot reach its tolerance (its round-off is larger) is never accepted.
         assert_eq!(run(1e9 + 0.1, 1.0).0, Err(NewtonFailure::NoConvergence));
+    }
+    #[test]
+    fn closed_form_root_by_an_old_tangent_as_long_as_it_leads_there() {
+        let run = |slope: f64| {
+            let mut x = [1.9];
+            let mut work = NewtonWork::default();
+            let mut equations = Cube { target: 8.0, residual: 0.0, slope, old: true };
+            let result = solve(&mut equations, &mut x, &mut NewtonBuffers::default(), &mut work);
+            (result, (x[0] - 2.0).abs() < 1e-12, work.factorisations)
+        };
+        // 12 is the slope at the root: each correction leaves some percent.
+        assert_eq!(run(12.0), (Ok(()), true, 0));
+        // Too steep converges too slowly, too flat and backwards lead away: a new one then, of which one or two do.
+        for useless in [120.0, 1.0, -12.0] {
+            let (result, solved, factorisations) = run(useless);
+            assert_eq!((result, solved), (Ok(()), true));
+            assert!((1..=2).contains(&factorisations), "{useless}: {factorisations}");
+        }
     }
 }

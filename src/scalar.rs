@@ -26,9 +26,6 @@ pub trait Scalar:
     /// A constant: all derivatives are zero.
     fn constant(value: f64) -> Self;
 
-    /// The value without derivatives.
-    fn value(self) -> f64;
-
     /// Multiplies by a constant.
     fn scale(self, factor: f64) -> Self;
 
@@ -41,8 +38,21 @@ pub trait Scalar:
     /// Smooth functions of several numbers, given as values and gradients.
     fn map_smooth_many<const K: usize, const M: usize>(
         x: [Self; K],
-        function: impl FnOnce([f64; K]) -> ([f64; M], [[f64; K]; M]),
+        function: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
     ) -> [Self; M];
+
+    /// The same of functions whose values alone are cheaper than with their gradients.
+    #[inline(always)]
+    fn map_smooth_apart<const K: usize, const M: usize>(
+        x: [Self; K],
+        _values: impl FnMut([f64; K]) -> [f64; M],
+        with_gradients: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
+    ) -> [Self; M] {
+        Self::map_smooth_many(x, with_gradients)
+    }
+
+    /// A polynomial of this number, coefficients by ascending powers.
+    fn polynomial<const K: usize>(self, coefficients: &[f64; K]) -> Self;
 
     /// `self` where `condition > 0`, `other` elsewhere.
     fn where_positive(self, condition: Self, other: Self) -> Self;
@@ -70,14 +80,23 @@ pub trait Scalar:
     }
 }
 
+/// A number that stands for one quantity, so that a program can go by its value.
+pub trait Single: Scalar {
+    /// The value without derivatives.
+    fn value(self) -> f64;
+}
+
+impl Single for f64 {
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self
+    }
+}
+
 impl Scalar for f64 {
     #[inline(always)]
     fn constant(value: f64) -> Self {
         value
-    }
-    #[inline(always)]
-    fn value(self) -> f64 {
-        self
     }
     #[inline(always)]
     fn scale(self, factor: f64) -> Self {
@@ -94,9 +113,21 @@ impl Scalar for f64 {
     #[inline(always)]
     fn map_smooth_many<const K: usize, const M: usize>(
         x: [Self; K],
-        function: impl FnOnce([f64; K]) -> ([f64; M], [[f64; K]; M]),
+        mut function: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
     ) -> [Self; M] {
         function(x).0
+    }
+    #[inline(always)]
+    fn map_smooth_apart<const K: usize, const M: usize>(
+        x: [Self; K],
+        mut values: impl FnMut([f64; K]) -> [f64; M],
+        _with_gradients: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
+    ) -> [Self; M] {
+        values(x)
+    }
+    #[inline(always)]
+    fn polynomial<const K: usize>(self, coefficients: &[f64; K]) -> Self {
+        coefficients.iter().rev().fold(0.0, |value, coefficient| value * self + coefficient)
     }
     #[inline(always)]
     fn where_positive(self, condition: Self, other: Self) -> Self {
@@ -142,14 +173,17 @@ impl<const N: usize> Dual<N> {
     }
 }
 
+impl<const N: usize> Single for Dual<N> {
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self.value
+    }
+}
+
 impl<const N: usize> Scalar for Dual<N> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self { value, derivatives: [0.0; N] }
-    }
-    #[inline(always)]
-    fn value(self) -> f64 {
-        self.value
     }
     #[inline(always)]
     fn scale(self, factor: f64) -> Self {
@@ -168,7 +202,7 @@ impl<const N: usize> Scalar for Dual<N> {
     #[inline(always)]
     fn map_smooth_many<const K: usize, const M: usize>(
         x: [Self; K],
-        function: impl FnOnce([f64; K]) -> ([f64; M], [[f64; K]; M]),
+        mut function: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
     ) -> [Self; M] {
         let (values, gradient) = function(x.map(|component| component.value));
         std::array::from_fn(|m| {
@@ -180,6 +214,15 @@ impl<const N: usize> Scalar for Dual<N> {
             }
             Self { value: values[m], derivatives }
         })
+    }
+    #[inline(always)]
+    fn polynomial<const K: usize>(self, coefficients: &[f64; K]) -> Self {
+        let (mut value, mut slope) = (0.0, 0.0);
+        for coefficient in coefficients.iter().rev() {
+            slope = slope * self.value + value;
+            value = value * self.value + coefficient;
+        }
+        self.chain(value, slope)
     }
     #[inline(always)]
     fn where_positive(self, condition: Self, other: Self) -> Self {
@@ -284,7 +327,7 @@ pub fn constant_vector<S: Scalar>(v: &Vector3<f64>) -> Vector3<S> {
 
 /// Values of a vector, without derivatives.
 #[inline(always)]
-pub fn values<S: Scalar>(v: &Vector3<S>) -> Vector3<f64> {
+pub fn values<S: Single>(v: &Vector3<S>) -> Vector3<f64> {
     v.map(S::value)
 }
 

@@ -294,6 +294,8 @@ impl Simulation {
         if !(end > begin && end.is_finite()) {
             return Err(SimulationError::Backwards { from: begin, to: end });
         }
+        // What follows depends on the state alone.
+        self.workspace.forget();
         self.script_fixed_races(begin);
         let mut neighbours: Vec<Neighbour> = inputs
             .iter()
@@ -331,6 +333,8 @@ impl Simulation {
     }
 
     fn step_to(&mut self, end: f64, neighbours: &mut [Neighbour]) -> Result<(), SimulationError> {
+        // The running simulation must not notice that it is followed.
+        let mut aside = Workspace::default();
         while self.state.time < end {
             let remaining = end - self.state.time;
             let h = self.state.control.step_within(remaining);
@@ -350,7 +354,8 @@ impl Simulation {
                             let boundary = n.paths.boundary(boundary.time, n.friction);
                             (&mut n.state, boundary)
                         });
-                        if !follow(&self.model, &start, &boundary, h, neighbours, &mut self.workspace) {
+                        let accepted = &self.workspace;
+                        if !follow(&self.model, &start, &boundary, h, neighbours, accepted, &mut aside) {
                             return Err(SimulationError::Singular(start.time));
                         }
                     }

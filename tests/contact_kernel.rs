@@ -7,10 +7,12 @@ mod laws;
 use laws::Laws;
 use nalgebra::Vector3;
 use roulement::contact::creep::Law;
+use roulement::contact::many::{ContactEffect, evaluate_group};
 use roulement::contact::{BallMotion, BallRaceContact, RaceMotion};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
+use roulement::lanes::{Lanes, WIDTH};
 use roulement::model::{INNER, Model, OUTER};
-use roulement::scalar::{Dual, Scalar};
+use roulement::scalar::{Dual, Scalar, constant_vector};
 use roulement::scene::Scene;
 
 fn model() -> Model {
@@ -163,6 +165,63 @@ fn an_open_contact_has_neither_force_nor_slope() {
         for row in rows(&contact) {
             assert_eq!(row.value, 0.0);
             assert!(row.derivatives.iter().all(|d| *d == 0.0), "{name} {row:?}");
+        }
+    }
+}
+
+#[test]
+fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
+    let model = model();
+    let laws = Laws::new();
+    for (name, law, bend) in all(&laws) {
+        for race in [INNER, OUTER] {
+            let mut contact = model.contact(race, 0.08);
+            (contact.law, contact.groove_bend) = (law, bend);
+            // One ball as it is, one that slides, one that spins, one that touches nothing.
+            let changes = [(0.0, 0.0, 0.0), (0.0, 0.4, 0.0), (1e-6, 0.0, 300.0), (-3e-5, 0.1, -5.0)];
+            let vector = |x: &[f64; 18], i: usize| Vector3::new(x[i], x[i + 1], x[i + 2]);
+            let x = motion(race);
+            let motions = changes.map(|(inwards, slip, spin)| {
+                let mut x = x;
+                x[0] += if race == INNER { -inwards } else { inwards };
+                x[5] += slip;
+                x[6] += spin;
+                BallMotion {
+                    position: vector(&x, 0),
+                    velocity: vector(&x, 3),
+                    angular_velocity: vector(&x, 6),
+                }
+            });
+            let axis = Vector3::new(1.0, x[13], -x[12]).normalize();
+            let (position, velocity) = (vector(&x, 9), Vector3::repeat(x[14]));
+            let race_motion = RaceMotion { position, axis, velocity, angular_velocity: vector(&x, 15) };
+            let alone = motions.each_ref().map(|m| ContactEffect::from(&contact.evaluate(m, &race_motion)));
+            assert!(alone[0].load > 50.0 && alone[3].load == 0.0);
+
+            // With the vectors that this processor has.
+            for count in 1..=WIDTH {
+                let mut together = [ContactEffect::default(); WIDTH];
+                evaluate_group(&contact, &race_motion, &motions[..count], &mut together[..count]);
+                assert_eq!(together[..count], alone[..count], "{name}");
+            }
+            // With those that every processor has.
+            if !matches!(law, Law::Kalker(_)) {
+                let ball = BallMotion {
+                    position: Lanes::vector(|lane| motions[lane].position),
+                    velocity: Lanes::vector(|lane| motions[lane].velocity),
+                    angular_velocity: Lanes::vector(|lane| motions[lane].angular_velocity),
+                };
+                let race = RaceMotion {
+                    position: constant_vector(&race_motion.position),
+                    axis: constant_vector(&race_motion.axis),
+                    velocity: constant_vector(&race_motion.velocity),
+                    angular_velocity: constant_vector(&race_motion.angular_velocity),
+                };
+                let contacts = contact.evaluate(&ball, &race);
+                assert_eq!(contacts.load, Lanes::from_fn(|lane| alone[lane].load), "{name}");
+                assert_eq!(contacts.force, Lanes::vector(|lane| alone[lane].force), "{name}");
+                assert_eq!(contacts.ball_moment, Lanes::vector(|lane| alone[lane].ball_moment), "{name}");
+            }
         }
     }
 }

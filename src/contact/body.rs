@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::scalar::{Scalar, values};
+use crate::scalar::{Scalar, Single, values};
 
 /// Motion of a rigid body, in world axes.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +36,7 @@ pub struct BodyContact<S: Scalar> {
     pub damping_power: S,
 }
 
-impl<S: Scalar> BodyContact<S> {
+impl<S: Single> BodyContact<S> {
     /// The same without derivatives.
     pub fn values(&self) -> BodyContact<f64> {
         BodyContact {

@@ -169,21 +169,13 @@ impl<S: Scalar> LinearTheory<S> {
     #[inline(always)]
     fn tabulated(&self, table: &CreepTable, creepage: &Creepage<S>) -> [S; 3] {
         let (per_force, per_moment) = self.per_limits();
-        let x = self.longitudinal * creepage.longitudinal * per_force;
-        let y = self.lateral * creepage.lateral * per_force;
-        let z = self.spin * per_moment * creepage.spin;
-        let rolling = |sign: f64| {
-            let q = [x.scale(sign), y.scale(sign), z];
-            let [x, y, z] = S::map_smooth_many(q, |q| table.evaluate(q));
-            [x.scale(sign), y.scale(sign), z]
-        };
-        let direction = self.direction(table);
-        if direction.value().abs() >= 1.0 {
-            return rolling(direction.value());
-        }
-        let share = (direction + S::one()).scale(0.5);
-        let (forwards, backwards) = (rolling(1.0), rolling(-1.0));
-        std::array::from_fn(|i| backwards[i] + (forwards[i] - backwards[i]) * share)
+        let q = [
+            self.longitudinal * creepage.longitudinal * per_force,
+            self.lateral * creepage.lateral * per_force,
+            self.spin * per_moment * creepage.spin,
+            self.direction(table),
+        ];
+        S::map_smooth_apart(q, |q| table.mixed_values(q), |q| table.mixed(q))
     }
 
     /// 1 where the contact rolls along +x, -1 against it, between where it hardly rolls along x: smooth.
@@ -193,10 +185,10 @@ impl<S: Scalar> LinearTheory<S> {
         // Cosine of the rolling direction, which the coupling carries, over the one below which directions are mixed.
         let uncoupled = (self.spin * per_moment).scale(MIXED_BELOW * table.spin_coupling());
         let cosine = self.coupling * per_force / (uncoupled + S::constant(ARM_FLOOR));
-        if cosine.value().abs() >= 1.0 {
-            return S::constant(cosine.value().signum());
-        }
-        (cosine * (S::constant(3.0) - cosine.square())).scale(0.5)
+        cosine.map_smooth(|c| match c.abs() >= 1.0 {
+            true => (c.signum(), 0.0),
+            false => (0.5 * c * (3.0 - c * c), 1.5 * (1.0 - c * c)),
+        })
     }
 
     /// Linear force over mu Q of the slips `phi b` and `kappa b^2` at the side of the contact.

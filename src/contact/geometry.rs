@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::bearing::Raceway;
-use crate::scalar::{Scalar, cross, dot, values};
+use crate::scalar::{Scalar, Single, cross, dot, values};
 
 /// [m] distance from the groove centre below which the contact normal fades to zero.
 const DISTANCE_FLOOR: f64 = 1e-15;
@@ -56,7 +56,7 @@ impl<S: Scalar> GrooveContact<S> {
     }
 }
 
-impl<S: Scalar> GrooveContact<S> {
+impl<S: Single> GrooveContact<S> {
     /// The same without derivatives.
     pub fn values(&self) -> GrooveContact<f64> {
         GrooveContact {

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::body::{BodyContact, BodyMotion, damped};
 use crate::contact::RaceMotion;
-use crate::scalar::{Scalar, cross, dot};
+use crate::scalar::{Scalar, Single, cross, dot};
 
 /// [m/s] sliding speed below which friction fades: `v/sqrt(v^2 + this^2)`. A cage slides on its land at metres per
 /// second.
@@ -77,7 +77,7 @@ impl LandModel {
     /// Forces between cage (first) and race (second) on the land at an axial position [m] of the cage; `None` where
     /// they do not touch.
     #[inline(always)]
-    pub fn evaluate<S: Scalar>(
+    pub fn evaluate<S: Single>(
         &self,
         cage: &BodyMotion<S>,
         race: &RaceMotion<S>,

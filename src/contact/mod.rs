@@ -7,6 +7,7 @@ pub mod heathcote;
 pub mod hertz;
 pub mod identification;
 pub mod land;
+pub mod many;
 pub mod pocket;
 pub mod regularised;
 pub mod shape;
@@ -16,7 +17,7 @@ use nalgebra::Vector3;
 use crate::bearing::Raceway;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::{Difference, ScaledKalker};
-use crate::scalar::{Scalar, cross, dot, values};
+use crate::scalar::{Scalar, Single, cross, dot, values};
 use creep::{CreepForces, Creepage, Law, LinearTheory};
 use geometry::GrooveContact;
 use shape::{ContactShape, ShapeAt};
@@ -34,6 +35,13 @@ pub struct BallMotion<S: Scalar> {
     pub velocity: Vector3<S>,
     /// [rad/s] angular velocity.
     pub angular_velocity: Vector3<S>,
+}
+
+impl BallMotion<f64> {
+    /// A ball at the origin that does not move.
+    pub fn at_rest() -> Self {
+        Self { position: Vector3::zeros(), velocity: Vector3::zeros(), angular_velocity: Vector3::zeros() }
+    }
 }
 
 /// Motion of a race, in world axes.
@@ -99,7 +107,7 @@ pub struct BallRaceContact<S: Scalar> {
     pub damping_power: S,
 }
 
-impl<S: Scalar> BallRaceContact<S> {
+impl<S: Single> BallRaceContact<S> {
     /// The same without derivatives.
     #[inline(always)]
     pub fn values(&self) -> BallRaceContact<f64> {

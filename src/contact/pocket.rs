@@ -17,7 +17,7 @@ use super::shape::ShapeAt;
 use crate::bearing::Pair;
 use crate::contact::BallMotion;
 use crate::kalker::linear::LinearError;
-use crate::scalar::{Scalar, cross, dot};
+use crate::scalar::{Scalar, Single, cross, dot};
 
 /// [-] axis ratio of the most slender patch with creep coefficients. A tighter cylinder (clearance below 0.8 % of the ball)
 /// takes those of this patch: the ball spins in its pocket and slides completely, where they hardly matter.
@@ -88,7 +88,7 @@ impl PocketModel {
 
     /// Forces between ball (first) and cage (second); `None` where they do not touch.
     #[inline(always)]
-    pub fn evaluate<S: Scalar>(
+    pub fn evaluate<S: Single>(
         &self,
         ball: &BallMotion<S>,
         cage: &BodyMotion<S>,
@@ -180,7 +180,7 @@ fn pocket_axis<S: Scalar>(cage: &BodyMotion<S>, [y, z]: [f64; 2]) -> Vector3<S> 
 
 /// A unit vector across a normal, in the plane of the normal and the axis, or of the other axis near the first.
 #[inline(always)]
-fn across<S: Scalar>(normal: &Vector3<S>, axis: &Vector3<S>, other: &Vector3<S>) -> Vector3<S> {
+fn across<S: Single>(normal: &Vector3<S>, axis: &Vector3<S>, other: &Vector3<S>) -> Vector3<S> {
     let axis = if dot(normal, axis).value().abs() < 0.8 { axis } else { other };
     let across = axis - normal * dot(normal, axis);
     let length = dot(&across, &across).sqrt();

@@ -46,17 +46,6 @@ impl Polynomial {
         }
         Self(powers)
     }
-
-    /// Value and slope.
-    #[inline(always)]
-    fn at(&self, x: f64) -> (f64, f64) {
-        let (mut value, mut slope) = (0.0, 0.0);
-        for coefficient in self.0.iter().rev() {
-            slope = slope * x + value;
-            value = value * x + coefficient;
-        }
-        (value, slope)
-    }
 }
 
 /// Position of Chebyshev node j in [-1, 1].
@@ -242,7 +231,7 @@ impl ContactShape {
     /// [N/m^1.5] Hertz stiffness at a circumferential curvature of the raceway [1/m].
     #[inline(always)]
     pub fn stiffness<S: Scalar>(&self, curvature: S) -> S {
-        self.scaled(curvature).map_smooth(|x| self.stiffness.at(x))
+        self.scaled(curvature).polynomial(&self.stiffness.0)
     }
 
     /// All properties at a circumferential curvature of the raceway [1/m].
@@ -250,15 +239,15 @@ impl ContactShape {
     pub fn at<S: Scalar>(&self, curvature: S) -> ShapeAt<S> {
         let x = self.scaled(curvature);
         ShapeAt {
-            stiffness: x.map_smooth(|x| self.stiffness.at(x)),
-            longitudinal: x.map_smooth(|x| self.longitudinal.at(x)),
-            lateral: x.map_smooth(|x| self.lateral.at(x)),
-            coupling: x.map_smooth(|x| self.coupling.at(x)),
-            spin: x.map_smooth(|x| self.spin.at(x)),
-            semi_axis_rolling: x.map_smooth(|x| self.semi_axis_rolling.at(x)),
-            semi_axis_transverse: x.map_smooth(|x| self.semi_axis_transverse.at(x)),
-            mean_semi_axis: x.map_smooth(|x| self.mean_semi_axis.at(x)),
-            spin_arm: x.map_smooth(|x| self.spin_arm.at(x)),
+            stiffness: x.polynomial(&self.stiffness.0),
+            longitudinal: x.polynomial(&self.longitudinal.0),
+            lateral: x.polynomial(&self.lateral.0),
+            coupling: x.polynomial(&self.coupling.0),
+            spin: x.polynomial(&self.spin.0),
+            semi_axis_rolling: x.polynomial(&self.semi_axis_rolling.0),
+            semi_axis_transverse: x.polynomial(&self.semi_axis_transverse.0),
+            mean_semi_axis: x.polynomial(&self.mean_semi_axis.0),
+            spin_arm: x.polynomial(&self.spin_arm.0),
         }
     }
 

@@ -1,11 +1,14 @@
 //! One ball in one trial step: motion from its unknown accelerations, contacts, residual and tangent blocks.
 
+use multiversion::multiversion;
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::cage::CageTrial;
+use super::reaction::RaceReaction;
 use crate::arrowhead::BallBlock;
 use crate::cage::CageModel;
 use crate::contact::body::BodyContact;
+use crate::contact::many::ContactEffect;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::hht::HhtStep;
 use crate::kalker::scaled_law::Difference;
@@ -52,15 +55,6 @@ impl RaceSeen {
     }
 }
 
-/// Force and moment (world axes) of one contact on a race, with derivatives.
-#[derive(Clone, Copy, Debug)]
-pub struct RaceReaction {
-    /// [N] force.
-    pub force: Vector3<Dual<DIRECTIONS>>,
-    /// [N m] moment about the race origin.
-    pub moment: Vector3<Dual<DIRECTIONS>>,
-}
-
 /// One ball in a trial step.
 #[derive(Clone, Debug)]
 pub struct BallTrial {
@@ -69,7 +63,9 @@ pub struct BallTrial {
     /// Motion at the end of the step.
     pub motion: BallMotion<f64>,
     /// Contacts at the end of the step.
-    pub contacts: [BallRaceContact<f64>; 2],
+    pub contacts: [ContactEffect; 2],
+    /// [m] where the ball was when its tangent was computed.
+    pub tangent_position: Vector3<f64>,
     /// Total force and moment at the end of the step.
     pub total: Wrench,
     /// [N] residual; moments over the ball radius.
@@ -89,7 +85,9 @@ impl BallTrial {
         Self {
             unknowns: Vector6::zeros(),
             motion,
-            contacts: [0, 1].map(|race: usize| contacts[race].evaluate(&motion, races[race])),
+            contacts: [0, 1]
+                .map(|race: usize| ContactEffect::from(&contacts[race].evaluate(&motion, races[race]))),
+            tangent_position: motion.position,
             total: ball.total,
             residual: Vector6::zeros(),
             block: BallBlock::default(),
@@ -98,19 +96,11 @@ impl BallTrial {
         }
     }
 
-    /// Evaluates a ball at the end of a step, with its tangent if asked for.
-    pub fn evaluate(
-        &mut self,
-        index: usize,
-        around: &Surroundings<'_>,
-        step: &HhtStep,
-        start: &BallState,
-        with_tangent: bool,
-    ) {
-        let Surroundings { model, contacts, differences, races, cage } = *around;
-        let ball = &model.bearing.ball;
-        let acceleration: Vector3<f64> = self.unknowns.fixed_rows::<3>(0).into_owned();
-        let angular_acceleration = self.unknowns.fixed_rows::<3>(3) / ball.radius;
+    /// Moves the ball to the end of a step.
+    pub fn move_to(&mut self, unknowns: Vector6<f64>, radius: f64, step: &HhtStep, start: &BallState) {
+        self.unknowns = unknowns;
+        let acceleration = Vector3::new(unknowns[0], unknowns[1], unknowns[2]);
+        let angular_acceleration = Vector3::new(unknowns[3], unknowns[4], unknowns[5]) / radius;
         self.motion = BallMotion {
             position: start.position + step.displacement(&start.velocity, &start.acceleration, &acceleration),
             velocity: step.velocity(&start.velocity, &start.acceleration, &acceleration),
@@ -120,46 +110,80 @@ impl BallTrial {
                 &angular_acceleration,
             ),
         };
-        let share = 1.0 - step.alpha_f;
-        let mut tangent: Matrix6<f64> = Matrix6::zeros();
-        self.total = Wrench { force: model.gravity * ball.mass, moment: Vector3::zeros() };
+    }
+
+    /// Evaluates the contacts with the races and returns their derivatives.
+    pub fn contacts_with_tangent(
+        &mut self,
+        index: usize,
+        around: &Surroundings<'_>,
+        step: &HhtStep,
+    ) -> Matrix6<f64> {
+        let Surroundings { model, contacts, differences, races, .. } = *around;
+        let radius = model.bearing.ball.radius;
+        let mut tangent = Matrix6::zeros();
+        self.tangent_position = self.motion.position;
         for race in 0..2 {
             self.reactions[race] = None;
             let contact_model = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));
-            let contact = match (&races[race], with_tangent) {
-                (seen, false) => contact_model.evaluate(&self.motion, seen.value()),
-                (RaceSeen::Prescribed(motion), true) => {
-                    let seeded = seed::<6>(&self.motion, step, ball.radius);
-                    let motion = constant_race(motion);
-                    let contact = contact_model.evaluate(&seeded, &motion);
-                    tangent += by_ball(&contact.force, &contact.ball_moment);
-                    contact.values()
+            self.contacts[race] = match &races[race] {
+                RaceSeen::Prescribed(motion) => {
+                    let seeded = seed(&self.motion, step, radius);
+                    let (effect, by_ball) = by_ball_alone(&contact_model, &seeded, motion);
+                    tangent += by_ball;
+                    effect
                 }
-                (RaceSeen::Body { motion, .. }, true) => {
-                    let seeded = seed::<DIRECTIONS>(&self.motion, step, ball.radius);
-                    let contact = contact_model.evaluate(&seeded, motion);
+                RaceSeen::Body { motion, .. } => {
+                    let seeded = seed(&self.motion, step, radius);
+                    let contact = by_ball_and_race(&contact_model, &seeded, motion);
                     tangent += by_ball(&contact.force, &contact.ball_moment);
                     let by_race = by_race(&contact.force, &contact.ball_moment);
-                    self.block.right[race] = scale_moments(by_race, ball.radius) * -share;
-                    self.reactions[race] =
-                        Some(RaceReaction { force: -contact.force, moment: contact.race_moment });
-                    contact.values()
+                    self.block.right[race] = scale_moments(by_race, radius) * -(1.0 - step.alpha_f);
+                    let reaction = RaceReaction { force: -contact.force, moment: contact.race_moment };
+                    self.reactions[race] = Some(reaction);
+                    ContactEffect::from(&contact.values())
                 }
             };
+        }
+        tangent
+    }
+
+    /// Takes over contacts with the races that were evaluated without derivatives.
+    pub fn take_contacts(&mut self, contacts: [ContactEffect; 2]) {
+        self.contacts = contacts;
+        self.reactions = [None; 2];
+    }
+
+    /// Residual of the ball whose contacts with the races are evaluated, and its tangent if their derivatives are given.
+    pub fn assemble(
+        &mut self,
+        index: usize,
+        around: &Surroundings<'_>,
+        step: &HhtStep,
+        start: &BallState,
+        mut tangent: Option<Matrix6<f64>>,
+    ) {
+        let Surroundings { model, cage, .. } = *around;
+        let ball = &model.bearing.ball;
+        let share = 1.0 - step.alpha_f;
+        self.total = Wrench { force: model.gravity * ball.mass, moment: Vector3::zeros() };
+        for contact in &self.contacts {
             self.total.force += contact.force;
             self.total.moment += contact.ball_moment;
-            self.contacts[race] = contact;
         }
         if let Some((model, cage)) = cage {
             let pocket = Pocket { model, cage, index };
-            self.evaluate_pocket(&pocket, step, ball.radius, with_tangent.then_some(&mut tangent));
+            self.evaluate_pocket(&pocket, step, ball.radius, tangent.as_mut());
         }
         let blended = start.total.blend(&self.total, share);
+        let acceleration = Vector3::new(self.unknowns[0], self.unknowns[1], self.unknowns[2]);
+        let angular_acceleration =
+            Vector3::new(self.unknowns[3], self.unknowns[4], self.unknowns[5]) / ball.radius;
         self.residual = stack(
             &(acceleration * ball.mass - blended.force),
             &((angular_acceleration * ball.inertia - blended.moment) / ball.radius),
         );
-        if with_tangent {
+        if let Some(tangent) = tangent {
             let rotational = ball.inertia / (ball.radius * ball.radius);
             let inertia = stack(&Vector3::repeat(ball.mass), &Vector3::repeat(rotational));
             self.block.diagonal =
@@ -223,6 +247,27 @@ pub struct Surroundings<'a> {
     pub cage: Option<(&'a CageModel, &'a CageTrial)>,
 }
 
+/// A contact with a race of given motion, and derivatives of force and moment on the ball by the ball's unknowns.
+#[multiversion(targets("x86_64+avx2"))]
+fn by_ball_alone(
+    contact: &ContactModel<'_>,
+    ball: &BallMotion<Dual<6>>,
+    race: &RaceMotion<f64>,
+) -> (ContactEffect, Matrix6<f64>) {
+    let contact = contact.evaluate(ball, &constant_race(race));
+    (ContactEffect::from(&contact.values()), by_ball(&contact.force, &contact.ball_moment))
+}
+
+/// A contact with a race body, with derivatives by the unknowns of both.
+#[multiversion(targets("x86_64+avx2"))]
+fn by_ball_and_race(
+    contact: &ContactModel<'_>,
+    ball: &BallMotion<Dual<DIRECTIONS>>,
+    race: &RaceMotion<Dual<DIRECTIONS>>,
+) -> BallRaceContact<Dual<DIRECTIONS>> {
+    contact.evaluate(ball, race)
+}
+
 /// A ball's motion as a function of its own unknowns.
 fn seed<const N: usize>(motion: &BallMotion<f64>, step: &HhtStep, radius: f64) -> BallMotion<Dual<N>> {
     let variable = |v: &Vector3<f64>, first: usize, gain: f64| {
@@ -236,6 +281,7 @@ fn seed<const N: usize>(motion: &BallMotion<f64>, step: &HhtStep, radius: f64) -
 }
 
 /// A race's motion without derivatives, as numbers that could have some.
+#[inline(always)]
 fn constant_race<S: Scalar>(motion: &RaceMotion<f64>) -> RaceMotion<S> {
     RaceMotion {
         position: constant_vector(&motion.position),
@@ -246,6 +292,7 @@ fn constant_race<S: Scalar>(motion: &RaceMotion<f64>) -> RaceMotion<S> {
 }
 
 /// Derivatives of force (rows 0 to 2) and moment (rows 3 to 5) by the ball's unknowns.
+#[inline(always)]
 pub fn by_ball<const N: usize>(force: &Vector3<Dual<N>>, moment: &Vector3<Dual<N>>) -> Matrix6<f64> {
     Matrix6::from_fn(|i, k| {
         let row = if i < 3 { &force[i] } else { &moment[i - 3] };

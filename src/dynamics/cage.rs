@@ -2,8 +2,9 @@
 
 use nalgebra::{Matrix6, Vector3};
 
-use super::ball::{DIRECTIONS, RACE_ROTATION, RaceReaction, RaceSeen};
+use super::ball::{DIRECTIONS, RACE_ROTATION, RaceSeen};
 use super::race::RaceTrial;
+use super::reaction::RaceReaction;
 use crate::cage::CageModel;
 use crate::contact::body::{BodyContact, BodyMotion};
 use crate::contact::land::LandModel;

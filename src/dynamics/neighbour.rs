@@ -5,12 +5,14 @@
 //! once for all neighbours by eliminating the balls; `R_p dp` is the residual of the neighbour with the unknowns of the
 //! step itself. What is left is of second order, and even: it cancels between two neighbours on opposite sides.
 
-use super::{BearingStep, Boundary, Workspace, accept};
+use super::accept::accept;
+use super::equations::BearingStep;
+use super::{Boundary, Workspace};
 use crate::model::Model;
 use crate::newton::Equations;
 use crate::state::State;
 
-/// Takes the neighbours along a step of `h` [s] from `start` that was accepted just now with this workspace; false if
+/// Takes the neighbours along a step of `h` [s] from `start` that was `accepted` just now with that workspace; false if
 /// the Newton matrix is singular.
 #[must_use]
 pub fn follow<'a>(
@@ -19,11 +21,12 @@ pub fn follow<'a>(
     boundary: &Boundary,
     h: f64,
     neighbours: impl Iterator<Item = (&'a mut State, Boundary)>,
+    accepted: &Workspace,
     workspace: &mut Workspace,
 ) -> bool {
-    let solution = std::mem::take(&mut workspace.unknowns);
+    let solution = &accepted.unknowns;
     let mut unknowns = vec![0.0; solution.len()];
-    BearingStep::new(model, start, boundary, h, workspace).residual(&solution, true);
+    BearingStep::new(model, start, boundary, h, workspace).residual(solution, true);
     let mut regular = true;
     for (state, boundary) in neighbours {
         // frozen in a step, for its neighbours too
@@ -31,15 +34,14 @@ pub fn follow<'a>(
         let mut equations = BearingStep::new(model, state, &boundary, h, workspace);
         // No residual is small enough to be left alone: only its change counts.
         equations.force_tolerance = 0.0;
-        equations.residual(&solution, false);
+        equations.residual(solution, false);
         regular &= equations.correction(&mut unknowns);
-        for (unknown, solved) in unknowns.iter_mut().zip(&solution) {
+        for (unknown, solved) in unknowns.iter_mut().zip(solution) {
             *unknown += solved;
         }
         equations.residual(&unknowns, false);
         let step = equations.step;
         accept(model, state, &boundary, &step, workspace);
     }
-    workspace.unknowns = solution;
     regular
 }

@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector, Matrix6, UnitQuaternion, Vector3};
 
-use super::ball::{DIRECTIONS, RACE_ROTATION, RaceReaction, RaceSeen, by_ball, by_race_unknown};
+use super::ball::{DIRECTIONS, RACE_ROTATION, RaceSeen, by_ball, by_race_unknown};
+use super::reaction::RaceReaction;
 use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
 use crate::hht::HhtStep;

@@ -14,7 +14,7 @@ use thiserror::Error;
 
 use crate::bearing::azimuth_directions;
 use crate::model::Model;
-use crate::scalar::{Dual, Scalar};
+use crate::scalar::{Dual, Scalar, Single};
 use crate::scene::{Condition, Scene};
 use ball::{BallBalance, N_SHARED, Place, SHARED, Shared, bottom_of_outer_groove, middle_of_gap, settle};
 pub use report::BallReport;

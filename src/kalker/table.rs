@@ -13,11 +13,15 @@
 //! symmetry. Interpolation is by cubic Hermite pieces in all three directions: continuous with its first derivatives.
 
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::sync::OnceLock;
+use std::sync::{LazyLock, OnceLock};
 
-use super::half_space::{HalfSpace, HalfSpaceError, Tractions, limit};
+use multiversion::multiversion;
+
+use super::half_space::{HalfSpace, HalfSpaceError, Tractions, cells, limit};
 use super::linear::{LinearError, Scales};
 use super::{Patch, ScaledCreepage};
+use crate::lanes::{Lanes, WIDTH};
+use crate::scalar::Scalar;
 
 /// Intervals from rest to sliding, from the x axis to the plane of y and spin, and of half a turn in that plane.
 pub const SHAPE: [usize; 3] = [12, 10, 16];
@@ -25,8 +29,9 @@ pub const SHAPE: [usize; 3] = [12, 10, 16];
 pub const RATIOS: usize = 12;
 /// Poisson's ratio of the table.
 pub const POISSON: f64 = 0.3;
-/// Cells along both axes of the ellipse of the coarser grid.
-const CELLS: usize = 16;
+/// Cells of the coarser grid over the geometric mean of the axes: of ellipses wide across rolling, and of those long
+/// along it, whose grids are finer across.
+const CELLS: [usize; 2] = [16, 20];
 /// [-] size |q| in the middle between rest and sliding.
 const MIDDLE: f64 = 1.5;
 /// [rad] distance from an axis or plane of symmetry at which its limits are taken: near enough for an error below
@@ -92,7 +97,9 @@ pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
     let patch = Patch { axis_ratio, poisson_ratio: POISSON, rolling_angle: 0.0 };
     let scales = Scales::new(&patch)?;
     let stretch = Stretch::new(axis_ratio, &scales);
-    let (coarse, fine) = (HalfSpace::new(&patch, CELLS)?, HalfSpace::new(&patch, 2 * CELLS)?);
+    let [along, across] = if axis_ratio > 0.99 { cells(&patch, CELLS[1]) } else { [CELLS[0]; 2] };
+    let coarse = HalfSpace::with_cells(&patch, [along, across])?;
+    let fine = HalfSpace::with_cells(&patch, [2 * along, 2 * across])?;
     let mut nodes = vec![[0.0; 3]; NODES];
     let index = |i: usize, j: usize, k: usize| (i * (SHAPE[1] + 1) + j) * SHAPE[2] + k;
     for j in 0..=SHAPE[1] {
@@ -144,7 +151,8 @@ pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
 /// The table of one contact: one axis ratio, padded so that every stencil lies inside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CreepTable {
-    nodes: Vec<[f64; 3]>,
+    /// Three stored functions and a zero, in the lanes of one vector.
+    nodes: Vec<Lanes>,
     coupling: [f64; 2],
     stretch: Stretch,
 }
@@ -263,7 +271,52 @@ impl CreepTable {
                 }
             }
         }
-        Self { nodes: padded, coupling, stretch }
+        let nodes = padded.into_iter().map(|[x, y, z]: [f64; 3]| Lanes([x, y, z, 0.0])).collect();
+        Self { nodes, coupling, stretch }
+    }
+
+    /// Where `q` lies in the table; `None` at rest, and where there is no number.
+    #[inline(always)]
+    fn place(&self, q: [f64; 3]) -> Option<Place> {
+        let norm = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
+        let size = norm(q);
+        if size < 1e-12 || !size.is_finite() {
+            return None;
+        }
+        // into the quarter that is stored, with responses of size one
+        let sign_x = if q[0] < 0.0 { -1.0 } else { 1.0 };
+        let sign_yz = if q[2] < 0.0 || (q[2] == 0.0 && q[1] < 0.0) { -1.0 } else { 1.0 };
+        let [response_y, response_z] = self.stretch.response;
+        let scaled = [sign_x * q[0], sign_yz * q[1] * response_y, sign_yz * q[2] * response_z];
+        let size = norm(scaled);
+        let [stretch_x, stretch_z] = self.stretch.direction;
+        let (x, y, z) = (scaled[0] * stretch_x, scaled[1], scaled[2] * stretch_z);
+        let across = (y * y + z * z).sqrt();
+        let length = norm([x, y, z]);
+        let (cos_phi, sin_phi) = if across > 0.0 { (y / across, z / across) } else { (1.0, 0.0) };
+        let t = size / (MIDDLE + size);
+        let theta = across.atan2(x);
+        let phi = sin_phi.atan2(cos_phi);
+        let (i, u) = locate(t * DENSITY[0], SHAPE[0]);
+        let (j, v) = locate(theta * DENSITY[1], SHAPE[1]);
+        let (k, w) = locate(phi * DENSITY[2], SHAPE[2]);
+        Some(Place {
+            signs: [sign_x, sign_yz, sign_yz],
+            scaled,
+            size,
+            length,
+            t,
+            theta: [x / length, across / length],
+            phi: [cos_phi, sin_phi],
+            piece: [i, j, k],
+            within: [u, v, w],
+        })
+    }
+
+    /// Linear theory: what remains at rest.
+    fn at_rest(&self, q: [f64; 3]) -> [f64; 3] {
+        let [yz, zy] = self.coupling;
+        [q[0], q[1] + yz * q[2], q[2] + zy * q[1]]
     }
 
     /// [-] lateral force over mu Q of a spin whose moment without coupling is M_max, in linear theory.
@@ -271,81 +324,87 @@ impl CreepTable {
         self.coupling[0]
     }
 
+    /// Forces over mu Q, mu Q and M_max at `[q_x, q_y, q_z, direction]`: the table rolls along +x, where the direction
+    /// is 1. Against it, at -1, all is seen turned by half a turn; between, both are mixed.
+    pub fn mixed_values(&self, [x, y, z, direction]: [f64; 4]) -> [f64; 3] {
+        let rolling = |sign: f64| {
+            let [x, y, z] = self.values([sign * x, sign * y, z]);
+            [sign * x, sign * y, z]
+        };
+        if direction.abs() == 1.0 {
+            return rolling(direction);
+        }
+        let (forwards, backwards) = (rolling(1.0), rolling(-1.0));
+        std::array::from_fn(|m| backwards[m] + (forwards[m] - backwards[m]) * (0.5 * (direction + 1.0)))
+    }
+
+    /// The same with the derivatives by all four: row by force.
+    pub fn mixed(&self, [x, y, z, direction]: [f64; 4]) -> ([f64; 3], [[f64; 4]; 3]) {
+        let rolling = |sign: f64| -> ([f64; 3], [[f64; 3]; 3]) {
+            let (forces, gradient) = self.evaluate([sign * x, sign * y, z]);
+            let signs = [sign, sign, 1.0];
+            let slope = |m: usize, n: usize| signs[m] * signs[n] * gradient[m][n];
+            (
+                std::array::from_fn(|m| signs[m] * forces[m]),
+                std::array::from_fn(|m| std::array::from_fn(|n| slope(m, n))),
+            )
+        };
+        if direction.abs() == 1.0 {
+            let (forces, gradient) = rolling(direction);
+            return (forces, gradient.map(|[a, b, c]| [a, b, c, 0.0]));
+        }
+        let ((forwards, by_forwards), (backwards, by_backwards)) = (rolling(1.0), rolling(-1.0));
+        let share = 0.5 * (direction + 1.0);
+        let mix = |forwards: f64, backwards: f64| backwards + (forwards - backwards) * share;
+        let row = |m: usize| {
+            let [a, b, c] = std::array::from_fn(|n| mix(by_forwards[m][n], by_backwards[m][n]));
+            [a, b, c, 0.5 * (forwards[m] - backwards[m])]
+        };
+        (std::array::from_fn(|m| mix(forwards[m], backwards[m])), std::array::from_fn(row))
+    }
+
+    /// Forces over mu Q, mu Q and M_max at `q`.
+    pub fn values(&self, q: [f64; 3]) -> [f64; 3] {
+        let Some(place) = self.place(q) else {
+            return self.at_rest(q);
+        };
+        let Lanes(stored) = interpolate(&self.nodes, &place);
+        let mut forces = place.forces(&stored);
+        within_limits(&mut forces, None);
+        forces
+    }
+
     /// Forces over mu Q, mu Q and M_max at `q`, and their derivatives by q: row by force, column by q.
     pub fn evaluate(&self, q: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
-        let size = q[0].hypot(q[1]).hypot(q[2]);
-        if size < 1e-12 || !size.is_finite() {
+        let Some(place) = self.place(q) else {
             let [yz, zy] = self.coupling;
-            let tangent = [[1.0, 0.0, 0.0], [0.0, 1.0, yz], [0.0, zy, 1.0]];
-            return ([q[0], q[1] + yz * q[2], q[2] + zy * q[1]], tangent);
-        }
-        // into the quarter that is stored, with responses of size one
-        let sign_x = if q[0] < 0.0 { -1.0 } else { 1.0 };
-        let sign_yz = if q[2] < 0.0 || (q[2] == 0.0 && q[1] < 0.0) { -1.0 } else { 1.0 };
-        let [response_y, response_z] = self.stretch.response;
-        let scaled = [sign_x * q[0], sign_yz * q[1] * response_y, sign_yz * q[2] * response_z];
-        let size = scaled[0].hypot(scaled[1]).hypot(scaled[2]);
-        let [stretch_x, stretch_z] = self.stretch.direction;
-        let (x, y, z) = (scaled[0] * stretch_x, scaled[1], scaled[2] * stretch_z);
-        let across = y.hypot(z);
-        let length = x.hypot(across);
-        let (cos_theta, sin_theta) = (x / length, across / length);
-        let (cos_phi, sin_phi) = if across > 0.0 { (y / across, z / across) } else { (1.0, 0.0) };
-        let t = size / (MIDDLE + size);
-        let theta = across.atan2(x);
-        let phi = sin_phi.atan2(cos_phi);
-        let density = [SHAPE[0] as f64, SHAPE[1] as f64 / FRAC_PI_2, SHAPE[2] as f64 / PI];
-        let (i, u) = locate(t * density[0], SHAPE[0]);
-        let (j, v) = locate(theta * density[1], SHAPE[1]);
-        let (k, w) = locate(phi * density[2], SHAPE[2]);
-        let ((wt, dt), (wv, dv)) = (weights(u, 1.0), weights(v, 1.0));
-        // f_y and m_z go like sines and cosines of phi: with this steepness their slopes are exact, and the force is
-        // smooth across the x axis, where all phi meet.
-        let step = PI / SHAPE[2] as f64;
-        let (even, odd) = (weights(w, 1.0), weights(w, step / step.sin()));
-        let (ww, dw) = ([even.0, odd.0, odd.0], [even.1, odd.1, odd.1]);
+            return (self.at_rest(q), [[1.0, 0.0, 0.0], [0.0, 1.0, yz], [0.0, zy, 1.0]]);
+        };
+        let [Lanes(value), Lanes(by_t), Lanes(by_theta), Lanes(by_phi)] =
+            interpolate_with_slopes(&self.nodes, &place);
 
-        // value and slopes of the three stored functions
-        let (mut value, mut by_t, mut by_theta, mut by_phi) = ([0.0; 3], [0.0; 3], [0.0; 3], [0.0; 3]);
-        for a in 0..4 {
-            for b in 0..4 {
-                let row = ((i + a) * PADDED[1] + j + b) * PADDED[2] + k;
-                let (mut line, mut slope) = ([0.0; 3], [0.0; 3]);
-                for (c, node) in self.nodes[row..row + 4].iter().enumerate() {
-                    for m in 0..3 {
-                        line[m] += ww[m][c] * node[m];
-                        slope[m] += dw[m][c] * node[m];
-                    }
-                }
-                for m in 0..3 {
-                    value[m] += wt[a] * wv[b] * line[m];
-                    by_t[m] += dt[a] * wv[b] * line[m];
-                    by_theta[m] += wt[a] * dv[b] * line[m];
-                    by_phi[m] += wt[a] * wv[b] * slope[m];
-                }
-            }
-        }
-
-        // forces and gradient: by t, theta and phi, and these by q
+        // gradient: by t, theta and phi, and these by q
+        let Place { signs, scaled, size, length, t, .. } = place;
+        let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (place.theta, place.phi);
         let factor = [cos_theta, sin_theta, sin_theta];
         let factor_slope = [-sin_theta, cos_theta, cos_theta];
         let polar = [-sin_theta, cos_theta * cos_phi, cos_theta * sin_phi];
         let azimuthal = [0.0, -sin_phi, cos_phi];
-        let signs = [sign_x, sign_yz, sign_yz];
         let t_slope = (1.0 - t) / (MIDDLE + size);
+        let [stretch_x, stretch_z] = self.stretch.direction;
         let by_direction = [stretch_x, 1.0, stretch_z];
+        let [response_y, response_z] = self.stretch.response;
         let by_response = [1.0, response_y, response_z];
-        let mut forces = [0.0; 3];
+        let mut forces = place.forces(&value);
         let mut gradient = [[0.0; 3]; 3];
         for m in 0..3 {
-            forces[m] = signs[m] * t * factor[m] * value[m];
-            let along = t_slope * factor[m] * (value[m] + t * by_t[m] * density[0]);
-            let down = t / length * (factor_slope[m] * value[m] + factor[m] * by_theta[m] * density[1]);
+            let along = t_slope * factor[m] * (value[m] + t * by_t[m] * DENSITY[0]);
+            let down = t / length * (factor_slope[m] * value[m] + factor[m] * by_theta[m] * DENSITY[1]);
             // f_x does not depend on phi at the pole, the others carry sin(theta) in front
             let around = match m {
                 0 if sin_theta < 1e-9 => 0.0,
-                0 => t / length * cos_theta / sin_theta * by_phi[0] * density[2],
-                _ => t / length * by_phi[m] * density[2],
+                0 => t / length * cos_theta / sin_theta * by_phi[0] * DENSITY[2],
+                _ => t / length * by_phi[m] * DENSITY[2],
             };
             for n in 0..3 {
                 let turn = (down * polar[n] + around * azimuthal[n]) * by_direction[n];
@@ -353,20 +412,121 @@ impl CreepTable {
                 gradient[m][n] = signs[m] * signs[n] * slope * by_response[n];
             }
         }
-        within_limits(&mut forces, &mut gradient);
+        within_limits(&mut forces, Some(&mut gradient));
         (forces, gradient)
     }
 }
 
+/// Pieces per unit of t, theta and phi.
+const DENSITY: [f64; 3] = [SHAPE[0] as f64, SHAPE[1] as f64 / FRAC_PI_2, SHAPE[2] as f64 / PI];
+
+/// A place in the table.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// Signs of x and of y and spin against the quarter that is stored.
+    signs: [f64; 3],
+    /// Creepages in that quarter with responses of size one, and their size.
+    scaled: [f64; 3],
+    size: f64,
+    /// Size after stretching directions.
+    length: f64,
+    t: f64,
+    /// Cosine and sine of theta.
+    theta: [f64; 2],
+    /// Cosine and sine of phi.
+    phi: [f64; 2],
+    /// Piece by t, theta and phi, and where in it.
+    piece: [usize; 3],
+    within: [f64; 3],
+}
+
+impl Place {
+    /// Forces from the stored functions.
+    #[inline(always)]
+    fn forces(&self, value: &[f64; WIDTH]) -> [f64; 3] {
+        let [cos_theta, sin_theta] = self.theta;
+        let factor = [cos_theta, sin_theta, sin_theta];
+        std::array::from_fn(|m| self.signs[m] * self.t * factor[m] * value[m])
+    }
+
+    /// First of the four nodes along phi, at step `a` along t and `b` along theta.
+    #[inline(always)]
+    fn row(&self, a: usize, b: usize) -> usize {
+        let [i, j, k] = self.piece;
+        ((i + a) * PADDED[1] + j + b) * PADDED[2] + k
+    }
+
+    /// Weights along phi of the stored functions, and their slopes.
+    #[inline(always)]
+    fn weights_along_phi(&self) -> ([Lanes; 4], [Lanes; 4]) {
+        // f_y and m_z go like sines and cosines of phi: with this steepness their slopes are exact, and the force is
+        // smooth across the x axis, where all phi meet.
+        static STEEPNESS: LazyLock<f64> = LazyLock::new(|| {
+            let step = PI / SHAPE[2] as f64;
+            step / step.sin()
+        });
+        let w = self.within[2];
+        let (even, odd) = (weights(w, 1.0), weights(w, *STEEPNESS));
+        let each = |even: [f64; 4], odd: [f64; 4]| -> [Lanes; 4] {
+            std::array::from_fn(|c| Lanes([even[c], odd[c], odd[c], 0.0]))
+        };
+        (each(even.0, odd.0), each(even.1, odd.1))
+    }
+}
+
+/// Values of the stored functions.
+#[multiversion(targets("x86_64+avx2"))]
+fn interpolate(nodes: &[Lanes], place: &Place) -> Lanes {
+    let ((wt, _), (wv, _)) = (weights(place.within[0], 1.0), weights(place.within[1], 1.0));
+    let (ww, _) = place.weights_along_phi();
+    let mut value = Lanes::constant(0.0);
+    for a in 0..4 {
+        for b in 0..4 {
+            let row = place.row(a, b);
+            let mut line = Lanes::constant(0.0);
+            for (w, node) in ww.iter().zip(&nodes[row..row + 4]) {
+                line += *w * *node;
+            }
+            value += line.scale(wt[a] * wv[b]);
+        }
+    }
+    value
+}
+
+/// The same with slopes by t, theta and phi, over the piece.
+#[multiversion(targets("x86_64+avx2"))]
+fn interpolate_with_slopes(nodes: &[Lanes], place: &Place) -> [Lanes; 4] {
+    let ((wt, dt), (wv, dv)) = (weights(place.within[0], 1.0), weights(place.within[1], 1.0));
+    let (ww, dw) = place.weights_along_phi();
+    let [mut value, mut by_t, mut by_theta, mut by_phi] = [Lanes::constant(0.0); 4];
+    for a in 0..4 {
+        for b in 0..4 {
+            let row = place.row(a, b);
+            let [mut line, mut slope] = [Lanes::constant(0.0); 2];
+            for (c, node) in nodes[row..row + 4].iter().enumerate() {
+                line += ww[c] * *node;
+                slope += dw[c] * *node;
+            }
+            value += line.scale(wt[a] * wv[b]);
+            by_t += line.scale(dt[a] * wv[b]);
+            by_theta += line.scale(wt[a] * dv[b]);
+            by_phi += slope.scale(wt[a] * wv[b]);
+        }
+    }
+    [value, by_t, by_theta, by_phi]
+}
+
 /// Keeps the tangential force within the friction limit and the moment within its own, with the gradient.
-fn within_limits(forces: &mut [f64; 3], gradient: &mut [[f64; 3]; 3]) {
-    let size = forces[0].hypot(forces[1]);
+fn within_limits(forces: &mut [f64; 3], mut gradient: Option<&mut [[f64; 3]; 3]>) {
+    let size = (forces[0] * forces[0] + forces[1] * forces[1]).sqrt();
     if size > 1.0 {
         let direction = [forces[0] / size, forces[1] / size];
-        for n in 0..3 {
-            let radial = direction[0] * gradient[0][n] + direction[1] * gradient[1][n];
-            for m in 0..2 {
-                gradient[m][n] = (gradient[m][n] - radial * direction[m]) / size;
+        if let Some(gradient) = &mut gradient {
+            for n in 0..3 {
+                let radial = direction[0] * gradient[0][n] + direction[1] * gradient[1][n];
+                for m in 0..2 {
+                    gradient[m][n] = (gradient[m][n] - radial * direction[m]) / size;
+                }
             }
         }
         // One unit of rounding inside.
@@ -374,6 +534,8 @@ fn within_limits(forces: &mut [f64; 3], gradient: &mut [[f64; 3]; 3]) {
     }
     if forces[2].abs() > 1.0 {
         forces[2] = forces[2].signum();
-        gradient[2] = [0.0; 3];
+        if let Some(gradient) = &mut gradient {
+            gradient[2] = [0.0; 3];
+        }
     }
 }

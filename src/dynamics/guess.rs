@@ -1,0 +1,68 @@
+//! First guesses of a step: accelerations and multipliers at its end.
+
+use nalgebra::Vector6;
+
+use super::equations::BearingStep;
+use super::turn::Turn;
+use crate::arrowhead::BLOCK;
+use crate::model::{CAGE, Constraint};
+
+impl BearingStep<'_> {
+    /// First guess: accelerations and multipliers stay as they are, those of a ball going round with it.
+    pub fn guess_steady_orbit(&self, unknowns: &mut Vec<f64>) {
+        self.guess_steady_acceleration(unknowns);
+        for (ball, unknowns) in self.start.balls.iter().zip(unknowns.chunks_exact_mut(BLOCK)) {
+            let ahead = ball.position + ball.velocity * self.step.h;
+            let turn = Turn::between(&ball.position, &ahead);
+            let guess = turn.stacked(&Vector6::from_row_slice(unknowns));
+            unknowns.copy_from_slice(guess.as_slice());
+        }
+    }
+
+    /// Accelerations and multipliers as they are.
+    fn guess_steady_acceleration(&self, unknowns: &mut Vec<f64>) {
+        unknowns.clear();
+        for ball in &self.start.balls {
+            unknowns.extend(ball.acceleration.iter());
+            unknowns.extend(ball.angular_acceleration.iter().map(|a| a * self.model.bearing.ball.radius));
+        }
+        let length = self.model.race_length();
+        let races = self.start.races.iter().zip(self.model.bodies.iter().map(Option::as_ref));
+        let cage =
+            self.start.cage.iter().zip(std::iter::once(self.model.cage.as_ref().map(|cage| &cage.body)));
+        for (state, body) in races.chain(cage) {
+            if let Some(body) = body {
+                unknowns.extend(state.acceleration.iter());
+                unknowns.extend(state.rate_derivative.iter().map(|a| a * length));
+                let scales = body.constraints.iter().map(|c| multiplier_scale(c, length));
+                unknowns.extend(state.multipliers.iter().zip(scales).map(|(m, scale)| m / scale));
+            }
+        }
+    }
+
+    /// Second guess, where the first led nowhere: everything keeps its velocity over the step, but for the spin of
+    /// race bodies, which is prescribed.
+    ///
+    /// An acceleration that lasts for less than a step throws contacts far into sliding, where friction hardly depends
+    /// on the velocity and Newton's method finds no way back.
+    pub fn guess_steady_velocity(&self, unknowns: &mut Vec<f64>) {
+        self.guess_steady_acceleration(unknowns);
+        let back = -(1.0 - self.step.gamma) / self.step.gamma;
+        let (balls, border) = unknowns.split_at_mut(BLOCK * self.start.balls.len());
+        balls.iter_mut().for_each(|a| *a *= back);
+        for (body, offset) in self.model.border_offsets().into_iter().enumerate() {
+            if let Some(offset) = offset {
+                border[offset..offset + BLOCK].iter_mut().for_each(|a| *a *= back);
+                if body != CAGE {
+                    let gained = self.boundary.loads[body].speed - self.start.races[body].rate.x;
+                    border[offset + 3] += gained / self.step.velocity_gain() * self.model.race_length();
+                }
+            }
+        }
+    }
+}
+
+/// A multiplier's unknown is a force: moments are divided by the race length.
+fn multiplier_scale(constraint: &Constraint, length: f64) -> f64 {
+    if matches!(constraint, Constraint::Position(..)) { 1.0 } else { length }
+}

@@ -1,0 +1,58 @@
+//! Turns about the bearing axis: what goes round with a ball.
+
+use nalgebra::{Vector3, Vector6};
+
+/// A rotation about the world's x axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    cos: f64,
+    sin: f64,
+}
+
+impl Turn {
+    /// The turn that takes the azimuth of one point to that of another; none for a point on the axis.
+    #[inline]
+    pub fn between(from: &Vector3<f64>, to: &Vector3<f64>) -> Self {
+        let (cos, sin) = (from.y * to.y + from.z * to.z, from.y * to.z - from.z * to.y);
+        let size = (cos * cos + sin * sin).sqrt();
+        if size > 0.0 { Self { cos: cos / size, sin: sin / size } } else { Self { cos: 1.0, sin: 0.0 } }
+    }
+
+    /// The opposite turn.
+    #[inline]
+    pub fn back(self) -> Self {
+        Self { sin: -self.sin, ..self }
+    }
+
+    /// Turns a vector.
+    #[inline]
+    pub fn vector(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::new(v.x, self.cos * v.y - self.sin * v.z, self.sin * v.y + self.cos * v.z)
+    }
+
+    /// Turns two stacked vectors.
+    #[inline]
+    pub fn stacked(&self, v: &Vector6<f64>) -> Vector6<f64> {
+        let first = self.vector(&Vector3::new(v[0], v[1], v[2]));
+        let second = self.vector(&Vector3::new(v[3], v[4], v[5]));
+        Vector6::new(first.x, first.y, first.z, second.x, second.y, second.z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_form_turn_and_back() {
+        let (from, to) = (Vector3::new(5.0, 2.0, 0.0), Vector3::new(-1.0, 0.0, 3.0));
+        let turn = Turn::between(&from, &to);
+        assert_eq!(turn.vector(&Vector3::new(1.0, 2.0, 3.0)), Vector3::new(1.0, -3.0, 2.0));
+        let v = Vector6::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0);
+        assert_eq!(turn.back().stacked(&turn.stacked(&v)), v);
+        // Exactly nothing between equal points: a new matrix is used as it is.
+        let none = Turn::between(&from, &from);
+        assert_eq!(none.stacked(&v), v);
+        assert_eq!(Turn::between(&Vector3::x(), &to).stacked(&v), v);
+    }
+}

@@ -1,0 +1,163 @@
+//! Several numbers in one: the contact kernel for four balls at a time.
+//!
+//! Every operation is that of `f64`, lane by lane, so that results are those of one ball at a time to the bit, with or
+//! without vector instructions.
+
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use nalgebra::Vector3;
+
+use crate::scalar::Scalar;
+
+/// Numbers in one: what a vector register of 256 bits holds.
+pub const WIDTH: usize = 4;
+
+/// Numbers that are computed with together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(32))]
+pub struct Lanes(pub [f64; WIDTH]);
+
+impl Lanes {
+    /// Number of every lane.
+    #[inline(always)]
+    pub fn from_fn(number: impl FnMut(usize) -> f64) -> Self {
+        Self(std::array::from_fn(number))
+    }
+
+    /// Vectors of several lanes as one; `number` gives that of a lane.
+    #[inline(always)]
+    pub fn vector(number: impl Fn(usize) -> Vector3<f64>) -> Vector3<Self> {
+        let vectors: [Vector3<f64>; WIDTH] = std::array::from_fn(number);
+        let component = |k: usize| Self([vectors[0][k], vectors[1][k], vectors[2][k], vectors[3][k]]);
+        Vector3::new(component(0), component(1), component(2))
+    }
+
+    #[inline(always)]
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        let [a, b, c, d] = self.0;
+        Self([f(a), f(b), f(c), f(d)])
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        let ([a, b, c, d], [p, q, r, s]) = (self.0, other.0);
+        Self([f(a, p), f(b, q), f(c, r), f(d, s)])
+    }
+}
+
+impl Scalar for Lanes {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self([value; WIDTH])
+    }
+    #[inline(always)]
+    fn scale(self, factor: f64) -> Self {
+        self.map(|x| x * factor)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.map(f64::sqrt)
+    }
+    #[inline(always)]
+    fn map_smooth(self, function: impl Fn(f64) -> (f64, f64)) -> Self {
+        self.map(|x| function(x).0)
+    }
+    #[inline(always)]
+    fn map_smooth_many<const K: usize, const M: usize>(
+        x: [Self; K],
+        mut function: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
+    ) -> [Self; M] {
+        lane_by_lane(x, |x| function(x).0)
+    }
+    #[inline(always)]
+    fn map_smooth_apart<const K: usize, const M: usize>(
+        x: [Self; K],
+        values: impl FnMut([f64; K]) -> [f64; M],
+        _with_gradients: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
+    ) -> [Self; M] {
+        lane_by_lane(x, values)
+    }
+    #[inline(always)]
+    fn polynomial<const K: usize>(self, coefficients: &[f64; K]) -> Self {
+        let mut value = Self([0.0; WIDTH]);
+        for coefficient in coefficients.iter().rev() {
+            value = value.zip(self, |value, x| value * x + coefficient);
+        }
+        value
+    }
+    #[inline(always)]
+    fn where_positive(self, condition: Self, other: Self) -> Self {
+        let ([a, b, c, d], [p, q, r, s], [i, j, k, l]) = (self.0, other.0, condition.0);
+        let select = |condition: f64, this: f64, other: f64| if condition > 0.0 { this } else { other };
+        Self([select(i, a, p), select(j, b, q), select(k, c, r), select(l, d, s)])
+    }
+}
+
+/// Functions of several numbers that are no formula.
+#[inline(always)]
+fn lane_by_lane<const K: usize, const M: usize>(
+    x: [Lanes; K],
+    mut function: impl FnMut([f64; K]) -> [f64; M],
+) -> [Lanes; M] {
+    let mut results = [Lanes([0.0; WIDTH]); M];
+    let (mut last, mut values) = ([f64::NAN; K], [0.0; M]);
+    for lane in 0..WIDTH {
+        let arguments = x.map(|component| component.0[lane]);
+        // Lanes without a ball of their own repeat another.
+        if arguments != last {
+            values = function(arguments);
+            last = arguments;
+        }
+        for (result, value) in results.iter_mut().zip(values) {
+            result.0[lane] = value;
+        }
+    }
+    results
+}
+
+impl num_traits::Zero for Lanes {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self([0.0; WIDTH])
+    }
+    fn is_zero(&self) -> bool {
+        self.0 == [0.0; WIDTH]
+    }
+}
+
+impl num_traits::One for Lanes {
+    #[inline(always)]
+    fn one() -> Self {
+        Self([1.0; WIDTH])
+    }
+}
+
+impl Neg for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.map(|x| -x)
+    }
+}
+
+macro_rules! operators {
+    ($($trait:ident $method:ident $assign:ident $assign_method:ident $operator:tt),*) => {$(
+        impl $trait for Lanes {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.zip(other, |a, b| a $operator b)
+            }
+        }
+        impl $assign for Lanes {
+            #[inline(always)]
+            fn $assign_method(&mut self, other: Self) {
+                *self = *self $operator other;
+            }
+        }
+    )*};
+}
+operators!(
+    Add add AddAssign add_assign +, Sub sub SubAssign sub_assign -,
+    Mul mul MulAssign mul_assign *, Div div DivAssign div_assign /
+);
