@@ -9,7 +9,8 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-use roulement::kalker::table::{RATIOS, build, knot};
+use roulement::kalker::table::{RATIOS, knot};
+use roulement::kalker::table_nodes::build;
 
 fn part(file: &str, index: usize) -> PathBuf {
     PathBuf::from(format!("{file}.{index}"))

@@ -65,10 +65,11 @@ fn independent_data_contacts_of_bearings_and_up_to_circles() {
 
 #[test]
 fn independent_data_ellipses_long_along_rolling() {
-    // Where spin and lateral creepage act alike the grids that made the table are too coarse at two cases of 22.
+    // Pure spin saturates the lateral force at a sharp peak between two nodes: off by 0.036 and 0.032 at two of 22 cases,
+    // whose data are known to 0.008 and 0.005.
     let (mean, worst) = errors("general", 1.5..21.0);
-    assert!(mean[0].max(mean[1]) < 0.01 && worst[0].max(worst[1]) < 0.06, "{mean:?} {worst:?}");
-    assert!(mean[2] < 0.01 && worst[2] < 0.065, "{mean:?} {worst:?}");
+    assert!(mean[0].max(mean[1]) < 0.0075 && worst[0].max(worst[1]) < 0.04, "{mean:?} {worst:?}");
+    assert!(mean[2] < 0.01 && worst[2] < 0.05, "{mean:?} {worst:?}");
 }
 
 /// Points all over the space of q, the poles and planes of symmetry among them.
@@ -154,6 +155,34 @@ fn closed_form_small_creepages_are_linear_theory() {
         for i in 0..3 {
             let linear: f64 = (0..3).map(|k| c[(i, k)] * h[k]).sum();
             assert!((ours[i] - linear).abs() < 1e-3 * c.amax() * 4e-6, "{ratio}: {ours:?} {linear}");
+        }
+    }
+}
+
+#[test]
+fn invariant_directions_of_rolling_are_mixed_smoothly() {
+    let table = CreepTable::new(&patch(0.107)).unwrap();
+    for q in [[0.3, -0.2, 0.9], [1.5, 0.4, -3.0], [-0.05, 0.8, 0.1]] {
+        assert_eq!(table.mixed([q[0], q[1], q[2], 1.0]).0, table.evaluate(q).0);
+        let (backwards, _) = table.mixed([q[0], q[1], q[2], -1.0]);
+        let turned = table.evaluate([-q[0], -q[1], q[2]]).0;
+        assert_eq!(backwards, [-turned[0], -turned[1], turned[2]]);
+        for direction in [-0.9, -0.3, 0.0, 0.5, 0.99] {
+            let at = [q[0], q[1], q[2], direction];
+            let (values, gradient) = table.mixed(at);
+            assert_eq!(values, table.mixed_values(at));
+            for n in 0..4 {
+                let shifted = |by: f64| {
+                    let mut q = at;
+                    q[n] += by;
+                    table.mixed(q).0
+                };
+                let (up, down) = (shifted(1e-6), shifted(-1e-6));
+                for m in 0..3 {
+                    let difference = (up[m] - down[m]) / 2e-6;
+                    assert!((difference - gradient[m][n]).abs() < 1e-5, "{at:?} {m} {n}: {difference}");
+                }
+            }
         }
     }
 }

@@ -16,6 +16,7 @@ pub mod nonlinear;
 pub mod printed;
 pub mod scaled_law;
 pub mod table;
+pub mod table_nodes;
 
 /// What a rolling contact patch looks like to Kalker's theory.
 #[derive(Clone, Copy, Debug, PartialEq)]
