@@ -66,8 +66,10 @@ fn invariant_kept_matrices_change_costs_and_not_results() {
         for (ball, other) in last.balls.iter().zip(&expected.balls) {
             assert!((ball.position - other.position).norm() < 1e-10, "{drive}");
         }
+        // Bodies have a matrix of their own in every step.
         let matrices = |run: &Simulation| run.state().statistics.newton.factorisations;
-        assert!(5 * matrices(&kept) < matrices(&new), "{} {}", matrices(&kept), matrices(&new));
+        let fewer = if drive == "pose" { 5 } else { 1 };
+        assert!(fewer * matrices(&kept) < matrices(&new), "{drive}: {} {}", matrices(&kept), matrices(&new));
     }
 }
 
