@@ -1,6 +1,5 @@
 //! Contacts of many balls with a race at once: values alone, several balls in the lanes of one vector.
 
-use multiversion::multiversion;
 use nalgebra::Vector3;
 
 use super::creep::Law;
@@ -60,7 +59,7 @@ pub fn evaluate_group(
 }
 
 /// One version for processors with vectors of four numbers, one for those without; the running one is chosen at run time.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn evaluate_lanes(
     contact: &ContactModel<'_>,
     race: &RaceMotion<f64>,

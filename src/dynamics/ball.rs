@@ -1,6 +1,5 @@
 //! One ball in one trial step: motion from its unknown accelerations, contacts, residual and tangent blocks.
 
-use multiversion::multiversion;
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::cage::CageTrial;
@@ -248,7 +247,7 @@ pub struct Surroundings<'a> {
 }
 
 /// A contact with a race of given motion, and derivatives of force and moment on the ball by the ball's unknowns.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn by_ball_alone(
     contact: &ContactModel<'_>,
     ball: &BallMotion<Dual<6>>,
@@ -259,7 +258,7 @@ fn by_ball_alone(
 }
 
 /// A contact with a race body, with derivatives by the unknowns of both.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn by_ball_and_race(
     contact: &ContactModel<'_>,
     ball: &BallMotion<Dual<DIRECTIONS>>,

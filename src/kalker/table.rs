@@ -15,8 +15,6 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::{LazyLock, OnceLock};
 
-use multiversion::multiversion;
-
 use super::Patch;
 use super::linear::{LinearError, Scales};
 use crate::lanes::{Lanes, WIDTH};
@@ -405,7 +403,7 @@ impl Place {
 }
 
 /// Values of the stored functions.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn interpolate(nodes: &[Lanes], place: &Place) -> Lanes {
     let ((wt, _), (wv, _)) = (weights(place.within[0], 1.0), weights(place.within[1], 1.0));
     let (ww, _) = place.weights_along_phi();
@@ -424,7 +422,7 @@ fn interpolate(nodes: &[Lanes], place: &Place) -> Lanes {
 }
 
 /// The same with slopes by t, theta and phi, over the piece.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn interpolate_with_slopes(nodes: &[Lanes], place: &Place) -> [Lanes; 4] {
     let ((wt, dt), (wv, dv)) = (weights(place.within[0], 1.0), weights(place.within[1], 1.0));
     let (ww, dw) = place.weights_along_phi();
