@@ -205,23 +205,21 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
                 assert_eq!(together[..count], alone[..count], "{name}");
             }
             // With those that every processor has.
-            if !matches!(law, Law::Kalker(_)) {
-                let ball = BallMotion {
-                    position: Lanes::vector(|lane| motions[lane].position),
-                    velocity: Lanes::vector(|lane| motions[lane].velocity),
-                    angular_velocity: Lanes::vector(|lane| motions[lane].angular_velocity),
-                };
-                let race = RaceMotion {
-                    position: constant_vector(&race_motion.position),
-                    axis: constant_vector(&race_motion.axis),
-                    velocity: constant_vector(&race_motion.velocity),
-                    angular_velocity: constant_vector(&race_motion.angular_velocity),
-                };
-                let contacts = contact.evaluate(&ball, &race);
-                assert_eq!(contacts.load, Lanes::from_fn(|lane| alone[lane].load), "{name}");
-                assert_eq!(contacts.force, Lanes::vector(|lane| alone[lane].force), "{name}");
-                assert_eq!(contacts.ball_moment, Lanes::vector(|lane| alone[lane].ball_moment), "{name}");
-            }
+            let ball = BallMotion {
+                position: Lanes::vector(|lane| motions[lane].position),
+                velocity: Lanes::vector(|lane| motions[lane].velocity),
+                angular_velocity: Lanes::vector(|lane| motions[lane].angular_velocity),
+            };
+            let race = RaceMotion {
+                position: constant_vector(&race_motion.position),
+                axis: constant_vector(&race_motion.axis),
+                velocity: constant_vector(&race_motion.velocity),
+                angular_velocity: constant_vector(&race_motion.angular_velocity),
+            };
+            let contacts = contact.evaluate(&ball, &race);
+            assert_eq!(contacts.load, Lanes::from_fn(|lane| alone[lane].load), "{name}");
+            assert_eq!(contacts.force, Lanes::vector(|lane| alone[lane].force), "{name}");
+            assert_eq!(contacts.ball_moment, Lanes::vector(|lane| alone[lane].ball_moment), "{name}");
         }
     }
 }

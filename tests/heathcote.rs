@@ -1,11 +1,14 @@
 //! Slip of grooves that bend across rolling: closed forms of complete sliding, and independent data.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/laws.rs"]
+mod laws;
+
 use std::f64::consts::PI;
 
+use laws::theory_of;
 use roulement::contact::creep::{Creepage, Law, LinearTheory};
 use roulement::kalker::half_space::extrapolated;
-use roulement::kalker::linear::Scales;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::kalker::table::CreepTable;
 use roulement::kalker::{Patch, ScaledCreepage};
@@ -26,20 +29,7 @@ fn patch() -> Patch {
 }
 
 fn theory(friction: f64) -> LinearTheory<f64> {
-    let c = (A * B).sqrt();
-    let load = 2.0 * PI / 3.0 * c * c * PRESSURE;
-    let scales = Scales::new(&patch()).unwrap();
-    let stiffness = SHEAR * c * c * 2.0 * PI / 3.0;
-    LinearTheory {
-        longitudinal: stiffness * scales.c11,
-        lateral: stiffness * scales.c22,
-        coupling: stiffness * c * scales.c23,
-        spin: stiffness * c * c * scales.c33,
-        friction_limit: friction * load,
-        moment_limit: friction * load * c * scales.moment,
-        mean_semi_axis: c,
-        half_width: B,
-    }
+    theory_of(A / B, 2.0 * PI / 3.0 * A * B * PRESSURE, PRESSURE, SHEAR, friction)
 }
 
 /// A row of the data: creepages (curvature included) and fx, fy, mz, power.

@@ -1,7 +1,13 @@
 //! Kalker's polynomials in simulations: frozen for each step as a difference from the table.
 #![allow(clippy::unwrap_used)]
 
+use std::f64::consts::TAU;
+
 use roulement::contact::creep::Law;
+use roulement::kalker::linear::Scales;
+use roulement::kalker::nonlinear::Kalker;
+use roulement::kalker::table::CreepTable;
+use roulement::kalker::{Patch, ScaledCreepage};
 use roulement::model::{INNER, OUTER};
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
@@ -78,4 +84,38 @@ fn invariant_replay_with_polynomials_gives_the_same_bits() {
     again.advance(0.5e-3).unwrap();
     assert!(simulation.state() == again.state());
     assert!(simulation.state().statistics.polynomials > 20);
+}
+
+#[test]
+fn invariant_the_table_is_smooth_where_polynomials_jump() {
+    // Why polynomials are frozen in a step: along a smooth path of creepages their forces jump, the table's do not.
+    let patch = Patch { axis_ratio: 0.15, poisson_ratio: 0.3, rolling_angle: 0.0 };
+    let scales = Scales::new(&patch).unwrap();
+    let (table, kalker) = (CreepTable::new(&patch).unwrap(), Kalker::new(patch, 3).unwrap());
+    let points = 2000;
+    let path = (0..points).map(|i| {
+        let s = TAU * f64::from(i) / f64::from(points);
+        [0.8 * (3.0 * s).sin(), 0.5 * (2.0 * s + 1.0).cos() - 0.2, 1.5 + s.sin()]
+    });
+    let mut start: Option<Vec<f64>> = None;
+    let forces: Vec<[[f64; 3]; 2]> = path
+        .map(|q| {
+            let spin = q[2] * scales.moment / scales.c33;
+            let creepage =
+                ScaledCreepage { x: q[0] / scales.c11, y: q[1] / scales.c22, spin, curvature: 0.0 };
+            let solution = kalker.solve(&creepage, start.as_deref()).unwrap();
+            let f = solution.forces;
+            start = Some(solution.coefficients.as_slice().to_vec());
+            [[f.fx, f.fy, f.mz / scales.moment], table.values(q)]
+        })
+        .collect();
+    let [polynomials, table] = [0, 1].map(|law: usize| {
+        let change = |pair: &[[[f64; 3]; 2]]| {
+            (0..3).map(|m| (pair[1][law][m] - pair[0][law][m]).abs()).fold(0.0, f64::max)
+        };
+        let changes: Vec<f64> = forces.windows(2).map(change).collect();
+        (changes.iter().filter(|change| **change > 0.01).count(), changes.into_iter().fold(0.0, f64::max))
+    });
+    println!("changes above 0.01 of mu Q, and the largest: polynomials {polynomials:?}, table {table:?}");
+    assert!(polynomials.0 > 0 && table.0 == 0, "{polynomials:?} {table:?}");
 }

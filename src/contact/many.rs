@@ -2,7 +2,6 @@
 
 use nalgebra::Vector3;
 
-use super::creep::Law;
 use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::lanes::{Lanes, WIDTH};
 use crate::scalar::constant_vector;
@@ -47,12 +46,7 @@ pub fn evaluate_group(
     balls: &[BallMotion<f64>],
     effects: &mut [ContactEffect],
 ) {
-    // The nonlinear problem is solved ball by ball and takes all the time.
-    if matches!(contact.law, Law::Kalker(_)) {
-        for (ball, effect) in balls.iter().zip(effects) {
-            *effect = ContactEffect::from(&contact.evaluate(ball, race));
-        }
-    } else if let Some(last) = balls.len().checked_sub(1) {
+    if let Some(last) = balls.len().checked_sub(1) {
         // Lanes without a ball repeat the last.
         evaluate_lanes(contact, race, std::array::from_fn(|lane| &balls[lane.min(last)]), effects);
     }

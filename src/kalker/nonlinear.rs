@@ -514,10 +514,10 @@ impl Kalker {
             forces.fy /= size * (1.0 + f64::EPSILON);
         }
         let (mut stick, mut area) = (0.0, 0.0);
-        for (point, (f, s)) in self.points.iter().zip(self.fields(&z, h)) {
-            let argument = [f[0] + SLIP_WEIGHT * s[0], f[1] + SLIP_WEIGHT * s[1]];
+        let (_, v) = self.arguments_at(&z, h);
+        for (i, point) in self.points.iter().enumerate() {
             area += point.weight;
-            if argument[0].hypot(argument[1]) <= point.bound {
+            if v[2 * i].hypot(v[2 * i + 1]) <= point.bound {
                 stick += point.weight;
             }
         }

@@ -1,4 +1,5 @@
-//! A contact of a ball in a groove, and every creep law for it.
+//! A contact of a ball in a groove, and every creep law for it; not every test asks for all.
+#![allow(dead_code)]
 
 use std::f64::consts::PI;
 
@@ -13,11 +14,14 @@ use roulement::kalker::table::CreepTable;
 const RATIO: f64 = 0.107;
 
 /// A contact of a ball in a groove: 300 N on 1.6 GPa, friction 0.08.
-#[allow(dead_code)]
 pub fn theory() -> LinearTheory<f64> {
-    let patch = Patch { axis_ratio: RATIO, poisson_ratio: 0.3, rolling_angle: 0.0 };
+    theory_of(RATIO, 300.0, 1.6e9, 79e9, 0.08)
+}
+
+/// A contact of given axis ratio, load [N], peak pressure and shear modulus [Pa] and friction coefficient.
+pub fn theory_of(ratio: f64, load: f64, pressure: f64, shear: f64, friction: f64) -> LinearTheory<f64> {
+    let patch = Patch { axis_ratio: ratio, poisson_ratio: 0.3, rolling_angle: 0.0 };
     let scales = Scales::new(&patch).unwrap();
-    let (load, pressure, shear, friction) = (300.0, 1.6e9, 79e9, 0.08);
     let c = f64::sqrt(1.5 * load / (PI * pressure));
     let stiffness = shear * c * c * 2.0 * PI / 3.0;
     LinearTheory {
@@ -28,7 +32,7 @@ pub fn theory() -> LinearTheory<f64> {
         friction_limit: friction * load,
         moment_limit: friction * load * c * scales.moment,
         mean_semi_axis: c,
-        half_width: c / RATIO.sqrt(),
+        half_width: c / ratio.sqrt(),
     }
 }
 

@@ -13,7 +13,6 @@ mod extremes;
 mod free_oscillation;
 mod friction;
 mod gates;
-#[allow(dead_code)]
 #[path = "../common/laws.rs"]
 mod laws;
 mod loads;
