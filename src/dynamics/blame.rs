@@ -74,10 +74,12 @@ pub struct Blame {
 
 impl fmt::Display for Blame {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(body) = self.body {
-            write!(f, "the {body} with ")?;
+        let (ball, contact) = (self.ball, self.contact);
+        match self.body {
+            Some(body) if body == contact => write!(f, "the {body}, at its contact with ball {ball}"),
+            Some(body) => write!(f, "the {body}, then at ball {ball} on the {contact}"),
+            None => write!(f, "ball {ball} on the {contact}"),
         }
-        write!(f, "ball {} on the {}", self.ball, self.contact)
     }
 }
 
