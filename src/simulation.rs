@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use crate::contact::geometry::GrooveContact;
 use crate::dynamics::{
-    Boundary, Partner, RaceLoad, StepFailure, Workspace, follow, make_consistent, to_blame, try_step,
+    Blame, Boundary, RaceLoad, StepFailure, Workspace, follow, make_consistent, to_blame, try_step,
 };
 use crate::equilibrium::{EquilibriumError, MAX_APPROACH};
 use crate::inputs::{Inputs, RaceInput};
@@ -33,8 +33,8 @@ pub enum SimulationError {
     Start(#[from] EquilibriumError),
     /// The step size fell below its minimum.
     #[error(
-        "at {time} s the step fell below solver.min_step = {min_step} s: {cause}, worst at ball {ball} on \
-         the {contact} (inner load {inner_load} N, outer load {outer_load} N)"
+        "at {time} s the step fell below solver.min_step = {min_step} s: {cause}, worst at {blame} \
+         (inner load {inner_load} N, outer load {outer_load} N)"
     )]
     StepTooSmall {
         /// [s] time reached.
@@ -43,11 +43,9 @@ pub enum SimulationError {
         min_step: f64,
         /// What made the last step fail.
         cause: &'static str,
-        /// Ball with the largest share, counted from 1.
-        ball: usize,
-        /// Contact of that ball whose force changed most in that step.
-        contact: Partner,
-        /// [N] its load on the inner race.
+        /// Body, ball and contact it is laid to.
+        blame: Blame,
+        /// [N] load of that ball on the inner race.
         inner_load: f64,
         /// [N] its load on the outer race.
         outer_load: f64,
@@ -347,7 +345,7 @@ impl Simulation {
             let boundary = self.boundary(next);
             let start = (!neighbours.is_empty()).then(|| self.state.clone());
             let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
-            let (cause, ball) = match tried {
+            let (cause, worst) = match tried {
                 Ok(()) => {
                     if let Some(start) = start {
                         let neighbours = neighbours.iter_mut().map(|n| {
@@ -361,19 +359,20 @@ impl Simulation {
                     }
                     continue;
                 }
-                Err(StepFailure::Newton(_, ball)) => ("Newton's method does not converge", ball),
-                Err(StepFailure::Error(ball)) => ("the local error stays above solver.tolerance", ball),
+                Err(StepFailure::Newton(_, worst)) => ("Newton's method does not converge", worst),
+                Err(StepFailure::Error(worst)) => ("the local error stays above solver.tolerance", worst),
             };
             if !self.state.control.above_minimum() {
                 let outputs = Outputs::new(&self.model, &self.state, self.inputs.friction);
+                let blame = to_blame(&self.model, &self.state, &boundary, worst, &self.workspace);
+                let ball = &outputs.balls[blame.ball - 1];
                 return Err(SimulationError::StepTooSmall {
                     time: self.state.time,
                     min_step: self.model.solver.min_step.0,
                     cause,
-                    ball: ball + 1,
-                    contact: to_blame(&self.model, &self.state, &boundary, ball, &self.workspace),
-                    inner_load: outputs.balls[ball].inner.load,
-                    outer_load: outputs.balls[ball].outer.load,
+                    blame,
+                    inner_load: ball.inner.load,
+                    outer_load: ball.outer.load,
                 });
             }
         }

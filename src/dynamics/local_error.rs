@@ -1,55 +1,77 @@
-//! Local error of a step, and which ball a failure is laid to.
+//! Local error of a step, and where it or the residual is largest.
 
 use nalgebra::Vector3;
 
+use super::blame::Worst;
 use super::equations::BearingStep;
+use super::race::RaceTrial;
+use crate::model::{CAGE, INNER, OUTER};
+use crate::state::RaceState;
+
+/// A vector at start and end of a step.
+type Ends<'a> = (&'a Vector3<f64>, &'a Vector3<f64>);
 
 impl BearingStep<'_> {
-    /// The ball with the largest residual.
-    pub fn worst_ball(&self) -> usize {
-        let norms = self.workspace.balls.iter().map(|ball| ball.residual.amax());
-        // A residual that is not a number is the worst.
-        let worse = |a: f64, b: f64| if a.is_nan() { true } else { a > b };
-        let mut worst = (0, f64::NEG_INFINITY);
-        for (index, norm) in norms.enumerate() {
-            if worse(norm, worst.1) {
-                worst = (index, norm);
-            }
-        }
-        worst.0
+    /// Bodies with unknowns: index, state at the start, trial.
+    fn bodies(&self) -> impl Iterator<Item = (usize, &RaceState, &RaceTrial)> {
+        let races = [INNER, OUTER]
+            .into_iter()
+            .filter_map(|race| Some((race, &self.start.races[race], self.workspace.races[race].as_ref()?)));
+        let cage = self.start.cage.iter().zip(&self.workspace.cage);
+        races.chain(cage.map(|(start, trial)| (CAGE, start, &trial.body)))
     }
 
-    /// Weighted root mean square of the local error of all positions, over its tolerance; and the ball with the
-    /// largest share. Rotations count as displacements at the ball's surface and at the pitch circle.
-    pub fn local_error(&self) -> (f64, usize) {
-        let ball_radius = self.model.bearing.ball.radius;
-        let scale = self.model.solver.tolerance * 2.0 * ball_radius;
-        let (mut sum, mut count) = (0.0, 0.0);
-        let mut worst = (0, -1.0);
-        for (index, (start, trial)) in self.start.balls.iter().zip(&self.workspace.balls).enumerate() {
+    /// Where the residual is largest.
+    pub fn worst_residual(&self) -> Worst {
+        let tolerance = self.force_tolerance;
+        let balls = self.workspace.balls.iter().map(|ball| ball.residual.amax() / tolerance);
+        // A sum that is not a number wins over any violation.
+        let bodies = self.bodies().map(|(index, _, trial)| {
+            let residual = trial.residual.rows(0, 6).amax() / tolerance;
+            (index, if trial.violation > residual { trial.violation } else { residual })
+        });
+        Worst::of(balls, bodies)
+    }
+
+    /// Weighted root mean square of the local error of all positions, over its tolerance.
+    pub fn local_error(&self) -> f64 {
+        let squares = self.ball_errors().chain(self.body_errors().map(|(_, square)| square));
+        let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 6.0));
+        (sum / count).sqrt()
+    }
+
+    /// Where the local error is largest.
+    pub fn worst_error(&self) -> Worst {
+        Worst::of(self.ball_errors(), self.body_errors())
+    }
+
+    /// Square of the local error of every ball over its tolerance; rotations count as displacements at its surface.
+    fn ball_errors(&self) -> impl Iterator<Item = f64> {
+        let radius = self.model.bearing.ball.radius;
+        self.start.balls.iter().zip(&self.workspace.balls).map(move |(start, trial)| {
             let acceleration = trial.unknowns.fixed_rows::<3>(0).into_owned();
-            let angular: Vector3<f64> = trial.unknowns.fixed_rows::<3>(3).into_owned();
-            let translation = self.step.local_error(&start.acceleration, &acceleration);
-            let rotation = self.step.local_error(&(start.angular_acceleration * ball_radius), &angular);
-            let square = (translation.norm_squared() + rotation.norm_squared()) / (scale * scale);
-            if square > worst.1 {
-                worst = (index, square);
-            }
-            sum += square;
-            count += 6.0;
-        }
+            let angular = trial.unknowns.fixed_rows::<3>(3).into_owned();
+            self.square(
+                (&start.acceleration, &acceleration),
+                (&(start.angular_acceleration * radius), &angular),
+            )
+        })
+    }
+
+    /// The same of every body, with its index; rotations count as displacements at the pitch circle.
+    fn body_errors(&self) -> impl Iterator<Item = (usize, f64)> {
         let length = self.model.race_length();
-        let races = self.start.races.iter().zip(self.workspace.races.iter().map(Option::as_ref));
-        let cage = self.workspace.cage.as_ref().map(|cage| &cage.body);
-        for (start, trial) in races.chain(self.start.cage.iter().zip(std::iter::once(cage))) {
-            if let Some(trial) = trial {
-                let translation = self.step.local_error(&start.acceleration, &trial.end.acceleration);
-                let angular = trial.end.rate_derivative * length;
-                let rotation = self.step.local_error(&(start.rate_derivative * length), &angular);
-                sum += (translation.norm_squared() + rotation.norm_squared()) / (scale * scale);
-                count += 6.0;
-            }
-        }
-        ((sum / count).sqrt(), worst.0)
+        self.bodies().map(move |(index, start, trial)| {
+            let angular = [start, &trial.end].map(|state| state.rate_derivative * length);
+            let linear = (&start.acceleration, &trial.end.acceleration);
+            (index, self.square(linear, (&angular[0], &angular[1])))
+        })
+    }
+
+    /// From linear and angular accelerations [m/s2] at both ends of the step.
+    fn square(&self, linear: Ends<'_>, angular: Ends<'_>) -> f64 {
+        let scale = self.model.solver.tolerance * 2.0 * self.model.bearing.ball.radius;
+        let error = |ends: Ends<'_>| self.step.local_error(ends.0, ends.1).norm_squared();
+        (error(linear) + error(angular)) / (scale * scale)
     }
 }

@@ -22,7 +22,7 @@ use crate::state::State;
 use accept::{accept, renew_polynomials};
 pub use accept::{bearing_wrench, make_consistent};
 use ball::BallTrial;
-pub use blame::{Partner, to_blame};
+pub use blame::{Blame, Partner, Worst, to_blame};
 use cage::CageTrial;
 use equations::BearingStep;
 pub use neighbour::follow;
@@ -74,10 +74,10 @@ impl Workspace {
 /// Why a step was not taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepFailure {
-    /// Newton's method gave up; the ball with the largest residual is named.
-    Newton(NewtonFailure, usize),
-    /// The local error is too large; the ball with the largest share is named.
-    Error(usize),
+    /// Newton's method gave up; and where the residual is largest.
+    Newton(NewtonFailure, Worst),
+    /// The local error is too large; and where it is largest.
+    Error(Worst),
 }
 
 /// Tries one step of `h` [s]. On success the state is the new one; otherwise only its statistics and step control
@@ -107,23 +107,29 @@ pub fn try_step(
     }
     statistics.contact_values += equations.contact_values;
     statistics.contact_tangents += equations.contact_tangents;
-    let worst = equations.worst_ball();
+    let mut control = state.control;
+    let failure = match solved {
+        Err(failure) => {
+            statistics.rejected_newton += 1;
+            control.fail();
+            Some(StepFailure::Newton(failure, equations.worst_residual()))
+        }
+        Ok(()) if !control.judge(equations.local_error()) => {
+            statistics.rejected_error += 1;
+            Some(StepFailure::Error(equations.worst_error()))
+        }
+        Ok(()) => None,
+    };
     let step = equations.step;
-    let (error, erring) = equations.local_error();
     if statistics.newton.iterations - before.iterations > PATIENCE {
         equations.forget_matrix();
     }
     workspace.newton = buffers;
     workspace.unknowns = unknowns;
     state.statistics = statistics;
-    if let Err(failure) = solved {
-        state.statistics.rejected_newton += 1;
-        state.control.fail();
-        return Err(StepFailure::Newton(failure, worst));
-    }
-    if !state.control.judge(error) {
-        state.statistics.rejected_error += 1;
-        return Err(StepFailure::Error(erring));
+    state.control = control;
+    if let Some(failure) = failure {
+        return Err(failure);
     }
     accept(model, state, boundary, &step, workspace);
     renew_polynomials(model, state, boundary.friction);

@@ -220,12 +220,19 @@ fn solved_or_refused_never_wrong(scenes: u64, most: u64) {
                 solved += 1;
             }
             Err(EquilibriumError::Overload { .. }) => overload += 1,
-            Err(EquilibriumError::LeftGroove { .. }) => left += 1,
-            Err(EquilibriumError::OuterRaceControl { friction, .. }) => {
+            Err(why @ EquilibriumError::LeftGroove { .. }) => {
+                println!("scene {seed}: {why}");
+                left += 1
+            }
+            Err(ref why @ EquilibriumError::OuterRaceControl { friction, .. }) => {
+                println!("scene {seed}: {why}");
                 assert!(friction > scene.friction.ball_race, "scene {seed}: friction {friction}");
                 control += 1;
             }
-            Err(EquilibriumError::Ball { .. } | EquilibriumError::NoConvergence { .. }) => loose += 1,
+            Err(why @ (EquilibriumError::Ball { .. } | EquilibriumError::NoConvergence { .. })) => {
+                println!("scene {seed}: {why}");
+                loose += 1;
+            }
         }
     }
     println!(

@@ -3,7 +3,7 @@
 use roulement::simulation::Simulation;
 
 use crate::gates::refuses;
-use crate::scenes::{ANGULAR, GROOVE, groove, load, scene};
+use crate::scenes::{ANGULAR, CAGE, GROOVE, groove, load, scene};
 
 /// Runs a scene to its refusal.
 fn refusal(base: &str, changes: &str) -> String {
@@ -29,7 +29,35 @@ fn a_step_that_may_not_be_small_enough() {
     refuses(
         "shock, steps held at 10 us",
         &why,
-        &["at 0.00", "local error", "ball", "inner load", "outer load"],
+        &["at 0.00", "local error", "ball", "inner race", "inner load", "outer load"],
+    );
+}
+
+/// Steps held at 10 us.
+const HELD_STEPS: &str = "[solver]\ninitial_step = \"10 us\"\nmin_step = \"10 us\"\nmax_step = \"10 us\"\n";
+
+#[test]
+fn a_race_that_steps_cannot_follow() {
+    // A moment that flings a light race about before its balls know.
+    let light = "[inner]\ndrive = \"wrench\"\nmass = 0.02\ninertia = [6e-6, 4e-6, 4e-6]\n";
+    let rows = "x = { force = 300.0 }\nrz = { moment = [[0.0, 0.0], [0.001, 0.0], [0.00101, 50.0]] }\n";
+    let why = refusal(ANGULAR, &(load(5.0, 6000.0, rows) + HELD_STEPS + light));
+    let parts = ["at 0.00", "local error", "worst at the inner race, at its contact with ball"];
+    refuses("moment on a race of 20 g, steps held at 10 us", &why, &parts);
+}
+
+#[test]
+fn a_cage_that_steps_cannot_follow() {
+    // A cage lighter than a ball runs into balls that are slower.
+    let light = "[cage]\nmass = \"0.2 g\"\ninertia = [1.1e-7, 6e-8, 6e-8]\npocket_clearance = \"0.2 mm\"\n\
+                 guided_by = \"balls\"\n";
+    let start = "[start]\norbital_speed = 200.0\n";
+    let rest = "x = { force = 1500.0 }\n[friction]\nball_race = 0.0\nball_cage = 0.0\n";
+    let why = refusal(CAGE, &(load(5.0, 6000.0, rest) + HELD_STEPS + start + light));
+    refuses(
+        "blow on a cage of 0.2 g, steps held at 10 us",
+        &why,
+        &["at 0.000", "worst at the cage, at its contact with ball"],
     );
 }
 

@@ -1,0 +1,275 @@
+//! A quasi-static problem as equations: unknowns, residual, and the search for its root.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::ball::Place;
+use super::trial::{SharedMatrix, SharedVector, Trial, evaluate, finish};
+use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
+use crate::model::Model;
+
+/// [-] accepted residual over the size of the forces at work.
+const TOLERANCE: f64 = 1e-11;
+/// [-] residual below which it is what falls, even where the potential leads.
+const NEAR: f64 = 1e-4;
+/// Iterations on the displacements; a typical solve takes 5 to 15.
+const MAX_ITERATIONS: u32 = 400;
+/// Names of the five directions.
+const DIRECTION_NAMES: [&str; 5] = ["x", "y", "z", "ry", "rz"];
+
+/// What a step of the search has to achieve.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Progress {
+    /// A smaller residual: quick, but a residual can have minima where there is no balance.
+    Residual,
+    /// Work done by the unbalanced loads: the potential falls, which leads out of such minima.
+    Work,
+}
+
+/// Where a search ended.
+pub struct Found {
+    /// Displacements and cage speed.
+    pub unknowns: SharedVector,
+    /// Forces there.
+    pub trial: Trial,
+    /// [-] largest residual over the forces at work.
+    pub residual: f64,
+    /// Iterations spent.
+    pub iterations: u32,
+}
+
+/// A quasi-static problem with the sizes that make its residuals and steps comparable.
+pub struct Problem<'a> {
+    model: &'a Model,
+    input: &'a EquilibriumInput,
+    /// [m] ball diameter.
+    diameter: f64,
+    /// [rad/s] mean orbital speed of unloaded balls.
+    epicyclic: f64,
+    /// [rad/s] larger speed of the races.
+    speed_scale: f64,
+    /// [N] forces that are known beforehand: loads, inertia, and the smallest load worth resolving.
+    known_force: f64,
+    /// [N] the last of these: a ball loaded by an approach of a millionth of its diameter.
+    smallest: f64,
+}
+
+impl<'a> Problem<'a> {
+    /// The problem of a bearing under these conditions.
+    pub fn new(model: &'a Model, input: &'a EquilibriumInput) -> Self {
+        let bearing = &model.bearing;
+        let length = model.race_length();
+        let diameter = 2.0 * bearing.ball.radius;
+        let epicyclic =
+            bearing.epicyclic_speed(bearing.free_contact_angle, input.inner_speed, input.outer_speed);
+        let smallest = model.contact(0, 0.0).shape.stiffness(0.0) * (1e-6 * diameter).powf(1.5);
+        let inertia_force = bearing.ball.mass * epicyclic * epicyclic * length;
+        let mut problem = Self {
+            model,
+            input,
+            diameter,
+            epicyclic,
+            speed_scale: input.inner_speed.abs().max(input.outer_speed.abs()),
+            known_force: inertia_force.max(smallest),
+            smallest,
+        };
+        for i in 0..5 {
+            if let Prescribed::Load(load) = input.conditions[i] {
+                problem.known_force = problem.known_force.max(load.abs() / problem.size(i));
+            }
+        }
+        problem
+    }
+
+    /// [-], [m] what turns a direction's load into a force and its displacement into a length.
+    fn size(&self, direction: usize) -> f64 {
+        if direction < 3 { 1.0 } else { self.model.race_length() }
+    }
+
+    /// The race in the middle but for what is imposed on it.
+    pub fn centred(&self) -> SharedVector {
+        let mut unknowns = SharedVector::zeros();
+        for (i, condition) in self.input.conditions.iter().enumerate() {
+            if let Prescribed::Motion(value) = condition {
+                unknowns[i] = *value;
+            }
+        }
+        unknowns[5] = self.epicyclic;
+        unknowns
+    }
+
+    /// [N] size of the forces at work.
+    fn reference(&self, trial: &Trial) -> f64 {
+        self.known_force.max(trial.inner_load_sum)
+    }
+
+    /// Unbalanced load of every free direction.
+    fn unbalanced(&self, trial: &Trial) -> SharedVector {
+        SharedVector::from_fn(|i, _| match self.input.conditions.get(i) {
+            Some(Prescribed::Load(load)) => load - trial.load[i],
+            _ => 0.0,
+        })
+    }
+
+    /// What has to vanish, over a force [N] and a load [N] that the cage speed is weighted with.
+    fn residual_over(&self, trial: &Trial, scale: f64, weight: f64) -> SharedVector {
+        let mut residual = self.unbalanced(trial);
+        for i in 0..5 {
+            residual[i] /= self.size(i) * scale;
+        }
+        if self.speed_scale > 0.0 {
+            residual[5] = trial.cage_excess / (self.speed_scale * weight);
+        }
+        residual
+    }
+
+    /// The same over the forces at work.
+    fn residual(&self, trial: &Trial) -> SharedVector {
+        self.residual_over(trial, self.reference(trial), trial.inner_load_sum.max(1e-9 * self.smallest))
+    }
+
+    fn evaluate(&self, unknowns: &SharedVector, places: Option<&[Place]>) -> Result<Trial, EquilibriumError> {
+        evaluate(self.model, self.input, unknowns, places, 0.01 * TOLERANCE * self.known_force)
+    }
+
+    /// Newton's method with a shift of the stiffness where a step makes no progress.
+    pub fn search(
+        &self,
+        start: SharedVector,
+        places: Option<&[Place]>,
+        mut progress: Progress,
+    ) -> Result<Found, EquilibriumError> {
+        let downhill = progress == Progress::Work;
+        let mut unknowns = start;
+        let mut here = self.evaluate(&unknowns, places)?;
+        let mut residual = self.residual(&here);
+        let mut shift = 0.0;
+        let mut iterations = 0;
+        while residual.amax() > TOLERANCE {
+            iterations += 1;
+            let trial = self.newton_step(&here, shift).and_then(|mut step| {
+                // At most a hundredth of a ball diameter at a time.
+                let longest = (0..5).map(|i| step[i].abs() * self.size(i)).fold(0.0, f64::max);
+                let limit = 0.01 * self.diameter;
+                if longest > limit {
+                    step *= limit / longest;
+                }
+                let moved = unknowns + step;
+                self.evaluate(&moved, Some(&here.places)).ok().map(|trial| (moved, trial))
+            });
+            match trial.filter(|(moved, trial)| self.accepts(progress, &here, trial, &(moved - unknowns))) {
+                Some((moved, trial)) => {
+                    unknowns = moved;
+                    residual = self.residual(&trial);
+                    here = trial;
+                    shift = if shift < 1e-9 { 0.0 } else { shift * 0.1 };
+                }
+                None => shift = if shift == 0.0 { 1e-9 } else { shift * 5.0 },
+            }
+            // Round-off of the balls' places bounds what can be reached.
+            let stalled = shift > 1e12;
+            if stalled && residual.amax() < 100.0 * TOLERANCE {
+                break;
+            }
+            if stalled && progress == Progress::Work {
+                // The bottom of a potential with kinks: the residual may know the rest of the way.
+                progress = Progress::Residual;
+                shift = 0.0;
+            } else if stalled || iterations == MAX_ITERATIONS {
+                let found = Found { unknowns, trial: here, residual: residual.amax(), iterations };
+                // Downhill all the way to where no bearing is: that is the reason.
+                if downhill {
+                    self.check(self.finish(&found))?;
+                }
+                return Err(EquilibriumError::NoConvergence {
+                    residual: residual.amax(),
+                    direction: DIRECTION_NAMES[residual.rows(0, 5).iamax()],
+                    iterations,
+                    displacement: std::array::from_fn(|i| unknowns[i]),
+                });
+            }
+        }
+        Ok(Found { unknowns, trial: here, residual: residual.amax(), iterations })
+    }
+
+    /// Is a step progress?
+    fn accepts(&self, progress: Progress, here: &Trial, trial: &Trial, step: &SharedVector) -> bool {
+        // A race that touches nothing yet moves without its residual falling.
+        let touches = |trial: &Trial| trial.inner_load_sum > 1e-9 * self.reference(trial);
+        if !touches(here) && !touches(trial) {
+            return true;
+        }
+        // What has to fall is the residual over its own forces or with one scale for both: over its own forces alone, a
+        // race that has to let go of its balls would seem further from balance the less it carries.
+        let scale = self.reference(here);
+        let merit = |trial: &Trial| self.residual_over(trial, scale, scale).norm();
+        let falls = |now: f64, before: f64| now < before * (1.0 - 1e-6);
+        let smaller = falls(self.residual(trial).norm(), self.residual(here).norm())
+            || falls(merit(trial), merit(here));
+        if progress == Progress::Residual || self.residual(here).amax() < NEAR {
+            return smaller;
+        }
+        // Work of the unbalanced loads by the trapezoidal rule; the cage speed takes no part in it.
+        let (before, after) = (self.unbalanced(here), self.unbalanced(trial));
+        let work = 0.5 * (before + after).dot(step);
+        let size = before.component_mul(step).abs().sum();
+        if size == 0.0 { smaller } else { work > 1e-6 * size }
+    }
+
+    /// Newton step of the free directions and the cage speed, shifted by a share of a typical stiffness.
+    fn newton_step(&self, here: &Trial, shift: f64) -> Option<SharedVector> {
+        // [N/m] of a steel bearing's order; only its order matters.
+        const TYPICAL_STIFFNESS: f64 = 1e7;
+        let mut matrix = here.tangent;
+        let mut rhs = self.unbalanced(here);
+        for i in 0..5 {
+            if let Prescribed::Load(_) = self.input.conditions[i] {
+                matrix[(i, i)] += shift * TYPICAL_STIFFNESS * self.size(i) * self.size(i);
+            } else {
+                matrix.row_mut(i).fill(0.0);
+                matrix[(i, i)] = 1.0;
+            }
+        }
+        if self.speed_scale > 0.0 && here.inner_load_sum > 0.0 {
+            rhs[5] = -here.cage_excess;
+        } else {
+            matrix.row_mut(5).fill(0.0);
+            matrix[(5, 5)] = 1.0;
+        }
+        // Rows and columns of comparable size, so that pivoting compares like with like.
+        let speed = self.speed_scale.max(1.0) / self.size(3);
+        let column = SharedVector::from_fn(|i, _| if i < 5 { 1.0 / self.size(i) } else { speed });
+        let scaled = matrix * SharedMatrix::from_diagonal(&column);
+        let row = SharedVector::from_fn(|i, _| 1.0 / scaled.row(i).amax().max(f64::MIN_POSITIVE));
+        let system = SharedMatrix::from_diagonal(&row) * scaled;
+        let solution = system.lu().solve(&row.component_mul(&rhs))?;
+        let step = column.component_mul(&solution);
+        step.iter().all(|c| c.is_finite()).then_some(step)
+    }
+
+    /// The solution as it is reported.
+    pub fn finish(&self, found: &Found) -> Equilibrium {
+        finish(self.model, self.input, &found.unknowns, &found.trial, found.residual, found.iterations)
+    }
+
+    /// Refuses contacts that Hertz's theory does not reach, or that lie where no groove is.
+    pub fn check(&self, solution: Equilibrium) -> Result<Equilibrium, EquilibriumError> {
+        for (index, ball) in solution.balls.iter().enumerate() {
+            let b = &ball.report;
+            let (approach, load) = (b.inner_approach.max(b.outer_approach), b.inner_load.max(b.outer_load));
+            if approach > MAX_APPROACH * self.diameter {
+                let ball = index + 1;
+                return Err(EquilibriumError::Overload { ball, approach, load, limit: MAX_APPROACH });
+            }
+            let contacts = [
+                ("inner", b.inner_load, b.inner_contact_angle),
+                ("outer", b.outer_load, b.outer_contact_angle),
+            ];
+            for (race, load, angle) in contacts {
+                if load > 0.0 && angle.abs() > FRAC_PI_2 {
+                    return Err(EquilibriumError::LeftGroove { ball: index + 1, race, angle });
+                }
+            }
+        }
+        Ok(solution)
+    }
+}

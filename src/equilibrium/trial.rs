@@ -1,0 +1,169 @@
+//! Forces of a bearing at given displacements and cage speed, its balls settled.
+
+use nalgebra::{Matrix2, SMatrix, SVector, UnitQuaternion, Vector3};
+
+use super::ball::{
+    BallBalance, DIRECTIONS, N_SHARED, Place, SHARED, Shared, bottom_of_outer_groove, middle_of_gap, settle,
+};
+use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
+use crate::bearing::azimuth_directions;
+use crate::model::Model;
+use crate::scalar::{Dual, Scalar, Single};
+
+type D = Dual<DIRECTIONS>;
+/// Displacements x, y, z, ry, rz and cage speed.
+pub type SharedVector = SVector<f64, N_SHARED>;
+/// Derivatives by them.
+pub type SharedMatrix = SMatrix<f64, N_SHARED, N_SHARED>;
+
+/// One evaluation at given displacements: all balls settled.
+pub struct Trial {
+    /// [N, N m] external load that holds the inner race.
+    pub load: SVector<f64, 5>,
+    /// [N rad/s] weighted excess of the balls' own orbital speed over the cage speed.
+    pub cage_excess: f64,
+    /// Derivatives of load and cage excess by displacements and cage speed, balls eliminated.
+    pub tangent: SharedMatrix,
+    /// [N] sum of the inner loads.
+    pub inner_load_sum: f64,
+    /// Balance of every ball.
+    pub balances: Vec<BallBalance>,
+    /// Place of every ball.
+    pub places: Vec<Place>,
+}
+
+/// The inner race relative to the outer one, with derivatives.
+fn shared(input: &EquilibriumInput, unknowns: &SharedVector) -> Shared {
+    let variable = |i: usize| D::variable(unknowns[i], SHARED + i, 1.0);
+    let (ry, rz) = (variable(3), variable(4));
+    let square = ry.square() + rz.square();
+    // cos(t) and sin(t)/t as smooth functions of t^2
+    let cosine = square.map_smooth(|s| (s.sqrt().cos(), -0.5 * sinc(s)));
+    let sine = square.map_smooth(|s| (sinc(s), sinc_slope(s)));
+    let axis = Vector3::new(cosine, sine * rz, -(sine * ry));
+    let position = Vector3::new(variable(0), variable(1), variable(2));
+    let seen = |v: &Vector3<D>| turn(&input.outer_orientation.inverse(), v);
+    Shared { position: seen(&position), axis: seen(&axis), cage_speed: variable(5) }
+}
+
+/// `sin(t)/t` with `s = t^2`.
+fn sinc(s: f64) -> f64 {
+    if s < 1e-6 { 1.0 - s / 6.0 + s * s / 120.0 } else { s.sqrt().sin() / s.sqrt() }
+}
+
+/// Derivative of [`sinc`] by s.
+fn sinc_slope(s: f64) -> f64 {
+    if s < 1e-6 { -1.0 / 6.0 + s / 60.0 } else { (s.sqrt().cos() - sinc(s)) / (2.0 * s) }
+}
+
+fn turn(q: &UnitQuaternion<f64>, v: &Vector3<D>) -> Vector3<D> {
+    let m = q.to_rotation_matrix();
+    Vector3::from_fn(|i, _| v[0].scale(m[(i, 0)]) + v[1].scale(m[(i, 1)]) + v[2].scale(m[(i, 2)]))
+}
+
+/// Settles all balls at these displacements; `start` is where they were, `tolerance` [N] what balance leaves of each.
+pub fn evaluate(
+    model: &Model,
+    input: &EquilibriumInput,
+    unknowns: &SharedVector,
+    start: Option<&[Place]>,
+    tolerance: f64,
+) -> Result<Trial, EquilibriumError> {
+    let shared = shared(input, unknowns);
+    let n = model.bearing.n_balls;
+    let mut trial = Trial {
+        load: SVector::zeros(),
+        cage_excess: 0.0,
+        tangent: SharedMatrix::zeros(),
+        inner_load_sum: 0.0,
+        balances: Vec::with_capacity(n),
+        places: Vec::with_capacity(n),
+    };
+    for j in 0..n {
+        let azimuth = model.bearing.ball_azimuth(j);
+        // From where it was, from between the races, or from the bottom of the outer groove.
+        let kept = start.map(|places| places[j]);
+        let fresh: [&dyn Fn() -> Place; 2] = [&|| middle_of_gap(model, &shared, azimuth), &|| {
+            bottom_of_outer_groove(model, input, &shared, azimuth)
+        }];
+        let starts = kept.into_iter().chain(fresh.iter().map(|place| place()));
+        let settled = starts.into_iter().find_map(|mut place| {
+            settle(model, input, &shared, azimuth, &mut place, tolerance).map(|balance| (balance, place))
+        });
+        let Some((balance, place)) = settled else {
+            return Err(EquilibriumError::Ball {
+                ball: j + 1,
+                displacement: std::array::from_fn(|i| unknowns[i]),
+            });
+        };
+        // rows in the bearing frame: external load and cage excess
+        let force = turn(&input.outer_orientation, &balance.inner_force);
+        let moment = turn(&input.outer_orientation, &balance.inner_moment);
+        let excess = balance.inner_load * (balance.own_orbital_speed - shared.cage_speed);
+        let rows = [force.x, force.y, force.z, moment.y, moment.z, excess];
+        // eliminate the ball: place' = -(dr/dplace)^-1 dr/dshared
+        let by_place = Matrix2::from_fn(|i, k| balance.residual[i].derivatives[k]);
+        let by_shared =
+            SMatrix::<f64, 2, N_SHARED>::from_fn(|i, k| balance.residual[i].derivatives[SHARED + k]);
+        let follow = by_place.lu().solve(&-by_shared).unwrap_or_else(SMatrix::zeros);
+        for (i, row) in rows.iter().enumerate() {
+            for k in 0..N_SHARED {
+                trial.tangent[(i, k)] += row.derivatives[SHARED + k]
+                    + row.derivatives[0] * follow[(0, k)]
+                    + row.derivatives[1] * follow[(1, k)];
+            }
+        }
+        for i in 0..5 {
+            trial.load[i] += rows[i].value;
+        }
+        trial.cage_excess += excess.value;
+        trial.inner_load_sum += balance.inner_load.value;
+        trial.balances.push(balance);
+        trial.places.push(place);
+    }
+    Ok(trial)
+}
+
+/// A solution as it is reported.
+pub fn finish(
+    model: &Model,
+    input: &EquilibriumInput,
+    unknowns: &SharedVector,
+    trial: &Trial,
+    residual: f64,
+    iterations: u32,
+) -> Equilibrium {
+    let cage_speed = unknowns[5];
+    let balls = (0..model.bearing.n_balls)
+        .map(|j| {
+            let azimuth = model.bearing.ball_azimuth(j);
+            let (radial, tangential) = azimuth_directions(azimuth);
+            let balance = &trial.balances[j];
+            let [axial, radius] = balance.centre.map(D::value);
+            let spin = balance.angular_velocity.map(D::value);
+            BallEquilibrium {
+                azimuth,
+                position: Vector3::x() * axial + radial * radius,
+                velocity: tangential * (cage_speed * radius),
+                angular_velocity: Vector3::x() * spin[0] + radial * spin[1],
+                report: BallReport::new(balance, &shared(input, unknowns).axis.map(D::value)),
+            }
+        })
+        .collect();
+    // With the cage speed following: eliminate the last unknown.
+    let t = &trial.tangent;
+    let pivot = t[(5, 5)];
+    let stiffness = SMatrix::<f64, 5, 5>::from_fn(|i, k| {
+        let follow = if pivot == 0.0 { 0.0 } else { t[(i, 5)] * t[(5, k)] / pivot };
+        t[(i, k)] - follow
+    });
+    Equilibrium {
+        displacement: std::array::from_fn(|i| unknowns[i]),
+        load: std::array::from_fn(|i| trial.load[i]),
+        stiffness,
+        cage_speed,
+        residual,
+        iterations,
+        balls,
+    }
+}
