@@ -9,7 +9,8 @@
 //! The matrix is not symmetric (friction), so every block is inverted by LU with pivoting. Cost grows linearly with the
 //! number of balls.
 
-use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix6, Vector6};
+use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix6, Vector3, Vector6};
+use serde::{Deserialize, Serialize};
 
 /// Rows and columns of one ball or one free body in the matrix.
 pub const BLOCK: usize = 6;
@@ -33,6 +34,26 @@ impl Default for BallBlock {
         let zero = Matrix6::zeros();
         Self { diagonal: zero, right: [zero; BODIES], left: [zero; BODIES] }
     }
+}
+
+/// The inverted matrix of balls that nothing couples. It is part of the state, as it serves many steps.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct KeptMatrix {
+    /// [s] size of the steps that it serves.
+    pub step: f64,
+    /// Corrections beyond one a step that it has taken.
+    pub extra_corrections: u64,
+    /// By ball; empty while there is none.
+    pub balls: Vec<KeptBlock>,
+}
+
+/// The inverted block of one ball.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KeptBlock {
+    /// `A^-1`.
+    pub inverse: Matrix6<f64>,
+    /// [m] where the ball was, seen from the outer race: the block goes round with its ball.
+    pub offset: Vector3<f64>,
 }
 
 /// A ball block, solved.

@@ -229,6 +229,7 @@ impl Simulation {
             && snapshot.state.cage.is_some() == self.state.cage.is_some()
             && constraints(&snapshot.state) == constraints(&self.state)
             && snapshot.state.control.fits(&self.state.control)
+            && [0, self.state.balls.len()].contains(&snapshot.state.matrix.balls.len())
             && snapshot.state.differences.len() == self.state.differences.len()
             && snapshot.state.differences.iter().all(|of_ball| {
                 [INNER, OUTER].into_iter().all(|race| of_ball[race].fits(self.model.polynomials(race)))
@@ -292,8 +293,6 @@ impl Simulation {
         if !(end > begin && end.is_finite()) {
             return Err(SimulationError::Backwards { from: begin, to: end });
         }
-        // What follows depends on the state alone.
-        self.workspace.forget();
         self.script_fixed_races(begin);
         let mut neighbours: Vec<Neighbour> = inputs
             .iter()

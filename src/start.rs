@@ -2,6 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::arrowhead::KeptMatrix;
 use crate::bearing::azimuth_directions;
 use crate::equilibrium::{self, BallEquilibrium, EquilibriumError, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::inputs::{Inputs, RaceInput};
@@ -145,6 +146,7 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
         races,
         control: StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0),
         force_tolerance: 0.0,
+        matrix: KeptMatrix::default(),
         powers: Powers::default(),
         energies: Energies::default(),
         statistics: Statistics::default(),

@@ -4,6 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use serde::{Deserialize, Serialize};
 
+use crate::arrowhead::KeptMatrix;
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::kalker::scaled_law::Difference;
@@ -223,6 +224,8 @@ pub struct State {
     pub control: StepControl,
     /// [N] residual that counts as converged in the next step.
     pub force_tolerance: f64,
+    /// Newton matrix of the last steps where it is kept: between prescribed races without a cage.
+    pub matrix: KeptMatrix,
     /// Powers now.
     pub powers: Powers,
     /// Energies since the start.

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::cage::CageTrial;
+use super::race::RaceTrial;
 use super::reaction::RaceReaction;
 use crate::arrowhead::BallBlock;
 use crate::cage::CageModel;
@@ -11,7 +12,7 @@ use crate::contact::many::ContactEffect;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::hht::HhtStep;
 use crate::kalker::scaled_law::Difference;
-use crate::model::{CAGE, Model, OUTER};
+use crate::model::{CAGE, Model};
 use crate::motion::Wrench;
 use crate::scalar::{Dual, Scalar, constant_vector};
 use crate::state::{BallState, stack};
@@ -22,35 +23,23 @@ use crate::state::{BallState, stack};
 pub const DIRECTIONS: usize = 9;
 
 /// A race as the balls see it in a trial step.
-// Two of these exist; a box would cost an allocation per step.
-#[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug)]
-pub enum RaceSeen {
-    /// Motion given: no unknowns.
-    Prescribed(RaceMotion<f64>),
-    /// A body: its motion and how that depends on its unknowns.
-    Body {
-        /// Motion with derivatives by the rotation.
-        motion: RaceMotion<Dual<DIRECTIONS>>,
-        /// Value alone.
-        value: RaceMotion<f64>,
-    },
+pub struct RaceSeen<'a> {
+    /// Its motion.
+    pub motion: &'a RaceMotion<f64>,
+    /// The same with derivatives by the rotation, where the race is a body.
+    pub of_body: Option<&'a RaceMotion<Dual<DIRECTIONS>>>,
 }
 
-impl RaceSeen {
-    /// Motion without derivatives.
-    pub fn value(&self) -> &RaceMotion<f64> {
-        match self {
-            Self::Prescribed(value) | Self::Body { value, .. } => value,
-        }
+impl<'a> RaceSeen<'a> {
+    /// Race by index, of motions and of those that are bodies.
+    pub fn new(race: usize, motions: &'a [RaceMotion<f64>; 2], bodies: &'a [Option<RaceTrial>; 2]) -> Self {
+        Self { motion: &motions[race], of_body: bodies[race].as_ref().map(|trial| &trial.motion) }
     }
 
     /// Motion with derivatives by the rotation, all zero where it is prescribed.
     pub fn with_derivatives(&self) -> RaceMotion<Dual<DIRECTIONS>> {
-        match self {
-            Self::Prescribed(motion) => constant_race(motion),
-            Self::Body { motion, .. } => *motion,
-        }
+        self.of_body.copied().unwrap_or_else(|| constant_race(self.motion))
     }
 }
 
@@ -63,8 +52,6 @@ pub struct BallTrial {
     pub motion: BallMotion<f64>,
     /// Contacts at the end of the step.
     pub contacts: [ContactEffect; 2],
-    /// [m] where the ball was, seen from the outer race, when its tangent was computed.
-    pub tangent_offset: Vector3<f64>,
     /// Total force and moment at the end of the step.
     pub total: Wrench,
     /// [N] residual; moments over the ball radius.
@@ -86,7 +73,6 @@ impl BallTrial {
             motion,
             contacts: [0, 1]
                 .map(|race: usize| ContactEffect::from(&contacts[race].evaluate(&motion, races[race]))),
-            tangent_offset: motion.position - races[OUTER].position,
             total: ball.total,
             residual: Vector6::zeros(),
             block: BallBlock::default(),
@@ -121,18 +107,17 @@ impl BallTrial {
         let Surroundings { model, contacts, differences, races, .. } = *around;
         let radius = model.bearing.ball.radius;
         let mut tangent = Matrix6::zeros();
-        self.tangent_offset = self.motion.position - races[OUTER].value().position;
         for race in 0..2 {
             self.reactions[race] = None;
             let contact_model = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));
-            self.contacts[race] = match &races[race] {
-                RaceSeen::Prescribed(motion) => {
+            self.contacts[race] = match races[race].of_body {
+                None => {
                     let seeded = seed(&self.motion, step, radius);
-                    let (effect, by_ball) = by_ball_alone(&contact_model, &seeded, motion);
+                    let (effect, by_ball) = by_ball_alone(&contact_model, &seeded, races[race].motion);
                     tangent += by_ball;
                     effect
                 }
-                RaceSeen::Body { motion, .. } => {
+                Some(motion) => {
                     let seeded = seed(&self.motion, step, radius);
                     let contact = by_ball_and_race(&contact_model, &seeded, motion);
                     tangent += by_ball(&contact.force, &contact.ball_moment);
@@ -241,7 +226,7 @@ pub struct Surroundings<'a> {
     /// What Kalker's polynomials add at each ball.
     pub differences: &'a [[Difference; 2]],
     /// Motion of each race.
-    pub races: &'a [RaceSeen; 2],
+    pub races: [RaceSeen<'a>; 2],
     /// Constants and motion of the cage.
     pub cage: Option<(&'a CageModel, &'a CageTrial)>,
 }
@@ -281,7 +266,7 @@ fn seed<const N: usize>(motion: &BallMotion<f64>, step: &HhtStep, radius: f64) -
 
 /// A race's motion without derivatives, as numbers that could have some.
 #[inline(always)]
-fn constant_race<S: Scalar>(motion: &RaceMotion<f64>) -> RaceMotion<S> {
+pub fn constant_race<S: Scalar>(motion: &RaceMotion<f64>) -> RaceMotion<S> {
     RaceMotion {
         position: constant_vector(&motion.position),
         axis: constant_vector(&motion.axis),

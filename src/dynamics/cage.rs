@@ -67,13 +67,13 @@ impl CageTrial {
     pub fn touch_lands(
         &mut self,
         model: &CageModel,
-        races: &[RaceSeen; 2],
+        races: [RaceSeen<'_>; 2],
         step: &HhtStep,
         with_tangent: bool,
     ) -> [Option<LandReaction>; 2] {
         self.race_by_cage.fill(0.0);
         self.cage_by_race.fill(0.0);
-        self.lands = model.land_contacts(&self.value, [races[0].value(), races[1].value()]);
+        self.lands = model.land_contacts(&self.value, races.map(|race| race.motion));
         let Some(land) = &model.land else {
             return [None; 2];
         };
@@ -94,7 +94,7 @@ impl CageTrial {
         &self,
         land: &LandModel,
         position: f64,
-        race: &RaceSeen,
+        race: &RaceSeen<'_>,
         step: &HhtStep,
     ) -> Option<LandReaction> {
         let translation = |v: &Vector3<f64>, gain: f64| Vector3::from_fn(|i, _| D::variable(v[i], i, gain));

@@ -8,9 +8,9 @@ use super::race::{RaceLoad, RaceScales, RaceTrial};
 use super::reaction::RaceReaction;
 use super::turn::Turn;
 use super::{Boundary, Workspace};
-use crate::arrowhead::{BLOCK, BODIES, BallBlock};
+use crate::arrowhead::{BLOCK, BODIES, BallBlock, KeptBlock, KeptMatrix};
 use crate::contact::many::{ContactEffect, evaluate_group};
-use crate::contact::{BallMotion, ContactModel};
+use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::hht::HhtStep;
 use crate::lanes::WIDTH;
 use crate::model::{CAGE, Model, OUTER, RaceBody};
@@ -27,7 +27,8 @@ pub struct BearingStep<'a> {
     pub start: &'a State,
     pub step: HhtStep,
     pub boundary: &'a Boundary,
-    seen: [RaceSeen; 2],
+    /// Motion of the races at the end of the step.
+    races: [RaceMotion<f64>; 2],
     pub force_tolerance: f64,
     pub workspace: &'a mut Workspace,
     /// Contacts evaluated without and with derivatives.
@@ -48,14 +49,10 @@ impl<'a> BearingStep<'a> {
         workspace: &'a mut Workspace,
     ) -> Self {
         let contacts = [0, 1].map(|race| model.contact(race, boundary.friction));
-        let seen = [0, 1].map(|race: usize| {
-            let (pose, twist) = &boundary.motion[race];
-            RaceSeen::Prescribed(race_motion(pose, twist))
-        });
+        let races = boundary.motion.each_ref().map(|(pose, twist)| race_motion(pose, twist));
         if workspace.balls.len() != start.balls.len() {
-            let seen_values = [seen[0].value(), seen[1].value()];
-            workspace.balls =
-                start.balls.iter().map(|ball| BallTrial::new(ball, &contacts, seen_values)).collect();
+            let trial = |ball| BallTrial::new(ball, &contacts, races.each_ref());
+            workspace.balls = start.balls.iter().map(trial).collect();
         }
         for race in 0..2 {
             let body = model.bodies[race].as_ref();
@@ -74,18 +71,13 @@ impl<'a> BearingStep<'a> {
             start,
             step: HhtStep::new(model.solver.alpha_f, h),
             boundary,
-            seen,
+            races,
             force_tolerance: start.force_tolerance,
             workspace,
             contact_values: 0,
             contact_tangents: 0,
             fresh: true,
         }
-    }
-
-    /// Forgets the Newton matrix at hand.
-    pub fn forget_matrix(&mut self) {
-        self.workspace.forget();
     }
 
     /// Do the balls not feel each other, because no body has unknowns?
@@ -103,7 +95,7 @@ impl<'a> BearingStep<'a> {
             model: self.model,
             contacts: &self.contacts,
             differences: &self.start.differences,
-            races: &self.seen,
+            races: [0, 1].map(|race| RaceSeen::new(race, &self.races, &workspace.races)),
             cage: self.model.cage.as_ref().zip(workspace.cage.as_ref()),
         };
         let radius = self.model.bearing.ball.radius;
@@ -127,7 +119,7 @@ impl<'a> BearingStep<'a> {
             if !with_tangent {
                 for race in 0..2 {
                     let motions = &motions[..trials.len()];
-                    let (contact, seen) = (&self.contacts[race], self.seen[race].value());
+                    let (contact, seen) = (&self.contacts[race], &self.races[race]);
                     match self.start.differences.get(first..first + trials.len()) {
                         None => evaluate_group(contact, seen, motions, &mut effects[race]),
                         Some(differences) => {
@@ -176,7 +168,7 @@ impl Equations for BearingStep<'_> {
                 let rows = self.model.border_rows(race);
                 let from = border_start + offset;
                 trial.move_to(&unknowns[from..from + rows], &self.start.races[race], &self.step, length);
-                self.seen[race] = trial.seen;
+                self.races[race] = trial.motion_value();
             }
         }
         if let (Some(cage), Some(offset)) = (&mut self.workspace.cage, offsets[CAGE]) {
@@ -215,7 +207,8 @@ impl Equations for BearingStep<'_> {
         if let (Some(model), Some(cage), Some(start)) =
             (&self.model.cage, &mut self.workspace.cage, &self.start.cage)
         {
-            let lands = cage.touch_lands(model, &self.seen, &self.step, with_tangent);
+            let seen = [0, 1].map(|race| RaceSeen::new(race, &self.races, &self.workspace.races));
+            let lands = cage.touch_lands(model, seen, &self.step, with_tangent);
             for (race, on_race, on_cage) in lands.into_iter().flatten() {
                 bearing[race].add(&on_race);
                 pockets.add(&on_cage);
@@ -255,28 +248,50 @@ impl Equations for BearingStep<'_> {
     fn has_tangent(&self) -> bool {
         // Step sizes that differ by rounding have the same matrix. Where there are bodies every step has its own: corrections
         // with an old one stop just inside the tolerance, and what they leave adds up in a body that nothing else holds.
-        let same = |step: f64| (step - self.step.h).abs() < 1e-6 * self.step.h;
-        let kept = self.model.solver.matrix_reuse > 0.0 && self.workspace.matrix_step.is_some_and(same);
-        kept && self.balls_are_independent()
+        let kept = &self.workspace.kept;
+        let same = (kept.step - self.step.h).abs() < 1e-6 * self.step.h;
+        let there = kept.balls.len() == self.start.balls.len();
+        there && same && self.model.solver.matrix_reuse > 0.0 && self.balls_are_independent()
     }
 
     fn correction(&mut self, correction: &mut [f64]) -> bool {
+        if self.balls_are_independent() {
+            self.correct_balls(correction)
+        } else {
+            self.correct_all(correction)
+        }
+    }
+
+    fn refactor_contraction(&self) -> f64 {
+        self.model.solver.matrix_reuse
+    }
+}
+
+impl BearingStep<'_> {
+    /// Corrections of balls that feel nothing but races of prescribed motion. A ball's matrix goes round with it; a ball that
+    /// is solved already stays where it is.
+    fn correct_balls(&self, correction: &mut [f64]) -> bool {
+        let Workspace { balls, kept, .. } = &*self.workspace;
+        let mut regular = kept.balls.len() == balls.len();
+        for ((trial, block), x) in balls.iter().zip(&kept.balls).zip(correction.chunks_exact_mut(BLOCK)) {
+            if trial.residual.amax() <= self.force_tolerance {
+                x.fill(0.0);
+                continue;
+            }
+            let turn = Turn::between(&block.offset, &self.offset(trial));
+            let solution = turn.stacked(&(block.inverse * turn.back().stacked(&-trial.residual)));
+            regular &= solution.iter().all(|v| v.is_finite());
+            x.copy_from_slice(solution.as_slice());
+        }
+        regular
+    }
+
+    /// Corrections of balls and bodies at once.
+    fn correct_all(&mut self, correction: &mut [f64]) -> bool {
         let offsets = self.model.border_offsets();
-        let independent = self.balls_are_independent();
         let workspace = &mut *self.workspace;
         workspace.ball_corrections.clear();
-        // A ball's own matrix goes round with it; a ball that is solved already, and that nothing else can disturb, stays
-        // where it is.
-        let centre = self.seen[OUTER].value().position;
-        let turn =
-            |trial: &BallTrial| Turn::between(&(trial.motion.position - centre), &trial.tangent_offset);
-        for trial in &workspace.balls {
-            workspace.ball_corrections.push(match independent {
-                true if trial.residual.amax() <= self.force_tolerance => Vector6::zeros(),
-                true => turn(trial).stacked(&-trial.residual),
-                false => -trial.residual,
-            });
-        }
+        workspace.ball_corrections.extend(workspace.balls.iter().map(|trial| -trial.residual));
         let rows = self.model.border_size();
         workspace.border_correction.resize_vertically_mut(rows, 0.0);
         for race in 0..2 {
@@ -294,22 +309,33 @@ impl Equations for BearingStep<'_> {
             offsets,
         );
         let (balls, border) = correction.split_at_mut(BLOCK * workspace.balls.len());
-        let solutions = workspace.ball_corrections.iter().zip(&workspace.balls);
-        for (chunk, (x, trial)) in balls.chunks_exact_mut(BLOCK).zip(solutions) {
-            let x = if independent { turn(trial).back().stacked(x) } else { *x };
+        for (chunk, x) in balls.chunks_exact_mut(BLOCK).zip(&workspace.ball_corrections) {
             chunk.copy_from_slice(x.as_slice());
         }
         border.copy_from_slice(workspace.border_correction.as_slice());
         solved
     }
 
-    fn refactor_contraction(&self) -> f64 {
-        self.model.solver.matrix_reuse
+    /// [m] a ball's position seen from the outer race.
+    fn offset(&self, trial: &BallTrial) -> Vector3<f64> {
+        trial.motion.position - self.races[OUTER].position
     }
-}
 
-impl BearingStep<'_> {
+    /// Inverts the blocks of balls that feel nothing but races of prescribed motion; leaves none if one is singular.
+    fn invert_balls(&mut self) {
+        let invert = |trial: &BallTrial| {
+            let inverse = trial.block.diagonal.try_inverse()?;
+            let regular = inverse.iter().all(|v| v.is_finite());
+            regular.then(|| KeptBlock { inverse, offset: self.offset(trial) })
+        };
+        let balls = self.workspace.balls.iter().map(invert).collect::<Option<_>>().unwrap_or_default();
+        self.workspace.kept = KeptMatrix { step: self.step.h, extra_corrections: 0, balls };
+    }
+
     fn factorise(&mut self) {
+        if self.balls_are_independent() {
+            return self.invert_balls();
+        }
         let offsets = self.model.border_offsets();
         let rows = self.model.border_size();
         let workspace = &mut *self.workspace;
@@ -332,7 +358,6 @@ impl BearingStep<'_> {
         }
         let blocks: Vec<&BallBlock> = workspace.balls.iter().map(|trial| &trial.block).collect();
         workspace.arrowhead.factorise(&blocks, &workspace.border, offsets);
-        workspace.matrix_step = Some(self.step.h);
     }
 }
 

@@ -14,7 +14,7 @@ mod turn;
 
 use nalgebra::{DMatrix, DVector, Vector6};
 
-use crate::arrowhead::Arrowhead;
+use crate::arrowhead::{Arrowhead, KeptMatrix};
 use crate::model::Model;
 use crate::motion::{Pose, Twist};
 use crate::newton::{self, NewtonBuffers, NewtonFailure};
@@ -29,8 +29,8 @@ pub use neighbour::follow;
 pub use race::RaceLoad;
 use race::RaceTrial;
 
-/// Corrections with the matrix of an earlier step above which the next step computes its own.
-const PATIENCE: u64 = 4;
+/// Corrections beyond one a step that a kept matrix may take: they cost about as much as a new one.
+const PATIENCE: u64 = 12;
 
 /// What is imposed at the end of a step.
 #[derive(Clone, Debug)]
@@ -46,14 +46,11 @@ pub struct Boundary {
 }
 
 /// Buffers of a step, kept between steps.
-///
-/// The Newton matrix is kept too and serves steps of the same size until it leads too slowly to the solution. It is no
-/// state: [`Workspace::forget`] before a run makes the run depend on the state alone.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     balls: Vec<BallTrial>,
-    /// [s] step size of the matrix at hand.
-    matrix_step: Option<f64>,
+    /// The state's matrix during a step.
+    kept: KeptMatrix,
     races: [Option<RaceTrial>; 2],
     cage: Option<CageTrial>,
     arrowhead: Arrowhead,
@@ -62,13 +59,6 @@ pub struct Workspace {
     border_correction: DVector<f64>,
     unknowns: Vec<f64>,
     newton: NewtonBuffers,
-}
-
-impl Workspace {
-    /// Forgets the Newton matrix of earlier steps.
-    pub fn forget(&mut self) {
-        self.matrix_step = None;
-    }
 }
 
 /// Why a step was not taken.
@@ -94,6 +84,7 @@ pub fn try_step(
 ) -> Result<(), StepFailure> {
     let mut buffers = std::mem::take(&mut workspace.newton);
     let mut unknowns = std::mem::take(&mut workspace.unknowns);
+    workspace.kept = std::mem::take(&mut state.matrix);
     let mut statistics = state.statistics;
     let mut equations = BearingStep::new(model, state, boundary, h, workspace);
     equations.guess_steady_orbit(&mut unknowns);
@@ -101,7 +92,7 @@ pub fn try_step(
     let mut solved = newton::solve(&mut equations, &mut unknowns, &mut buffers, &mut statistics.newton);
     if solved.is_err() {
         statistics.second_guesses += 1;
-        equations.forget_matrix();
+        equations.workspace.kept.balls.clear();
         equations.guess_steady_velocity(&mut unknowns);
         solved = newton::solve(&mut equations, &mut unknowns, &mut buffers, &mut statistics.newton);
     }
@@ -121,11 +112,13 @@ pub fn try_step(
         Ok(()) => None,
     };
     let step = equations.step;
-    if statistics.newton.iterations - before.iterations > PATIENCE {
-        equations.forget_matrix();
-    }
     workspace.newton = buffers;
     workspace.unknowns = unknowns;
+    state.matrix = std::mem::take(&mut workspace.kept);
+    state.matrix.extra_corrections += (statistics.newton.iterations - before.iterations).saturating_sub(1);
+    if state.matrix.extra_corrections > PATIENCE {
+        state.matrix.balls.clear();
+    }
     state.statistics = statistics;
     state.control = control;
     if let Some(failure) = failure {

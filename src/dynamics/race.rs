@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix6, UnitQuaternion, Vector3};
 
-use super::ball::{DIRECTIONS, RACE_ROTATION, RaceSeen, by_ball, by_race_unknown};
+use super::ball::{DIRECTIONS, RACE_ROTATION, by_ball, by_race_unknown, constant_race};
 use super::reaction::RaceReaction;
 use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
@@ -53,8 +53,8 @@ pub struct RaceTrial {
     pub input_power: f64,
     /// Tangent of the residual by accelerations (angular ones times `length`) and multipliers (moments over `length`).
     pub block: DMatrix<f64>,
-    /// Motion as the balls see it.
-    pub seen: RaceSeen,
+    /// Motion as the balls see it, with derivatives by the rotation.
+    pub motion: RaceMotion<D>,
     /// Rotation vector of the step, with derivatives.
     rotation: Vector3<D>,
     /// Material angular velocity and acceleration, with derivatives.
@@ -75,7 +75,7 @@ impl RaceTrial {
             violation: 0.0,
             input_power: 0.0,
             block: DMatrix::zeros(rows, rows),
-            seen: RaceSeen::Prescribed(start.motion()),
+            motion: constant_race(&start.motion()),
             rotation: zero,
             rate: zero,
             rate_derivative: zero,
@@ -109,19 +109,22 @@ impl RaceTrial {
         self.end.rate = values(&self.rate);
         self.end.rate_derivative = values(&self.rate_derivative);
         let spatial = |v: &Vector3<D>| turn(&start.pose.orientation, &rotate(&self.rotation, v));
-        let motion = RaceMotion {
+        self.motion = RaceMotion {
             position: constant_vector(&position),
             axis: spatial(&constant_vector(&Vector3::x())),
             velocity: constant_vector(&self.end.velocity),
             angular_velocity: spatial(&self.rate),
         };
-        let value = RaceMotion {
-            position,
-            axis: values(&motion.axis),
+    }
+
+    /// Motion as the balls see it.
+    pub fn motion_value(&self) -> RaceMotion<f64> {
+        RaceMotion {
+            position: self.end.pose.position,
+            axis: values(&self.motion.axis),
             velocity: self.end.velocity,
-            angular_velocity: values(&motion.angular_velocity),
-        };
-        self.seen = RaceSeen::Body { motion, value };
+            angular_velocity: values(&self.motion.angular_velocity),
+        }
     }
 
     /// Residual and tangent for the bearing's force and moment on the race, world axes, summed over the balls.
@@ -135,9 +138,7 @@ impl RaceTrial {
         scales: &RaceScales,
     ) {
         let (share, length) = (1.0 - step.alpha_f, scales.length);
-        let RaceSeen::Body { motion, .. } = &self.seen else {
-            return;
-        };
+        let motion = &self.motion;
         let mut force = bearing.force + constant_vector(&load.applied.force);
         let mut world_moment = bearing.moment + constant_vector(&load.applied.moment);
         let mut material_moment = Vector3::from_element(D::constant(0.0));
