@@ -3,30 +3,31 @@
 use nalgebra::Vector3;
 
 use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
-use crate::lanes::{Lanes, WIDTH};
-use crate::scalar::constant_vector;
+use crate::lanes::Lanes;
+use crate::scalar::{Scalar, constant_vector};
 
 /// What a ball-race contact does, in world axes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ContactEffect {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactEffect<S: Scalar = f64> {
     /// [N] normal load.
-    pub load: f64,
+    pub load: S,
     /// [N/m^1.5] Hertz stiffness.
-    pub stiffness: f64,
+    pub stiffness: S,
     /// [N] force on the ball.
-    pub force: Vector3<f64>,
+    pub force: Vector3<S>,
     /// [N m] moment on the ball about its centre.
-    pub ball_moment: Vector3<f64>,
+    pub ball_moment: Vector3<S>,
     /// [N m] moment on the race about its origin.
-    pub race_moment: Vector3<f64>,
+    pub race_moment: Vector3<S>,
     /// [W] power lost to friction.
-    pub friction_power: f64,
+    pub friction_power: S,
     /// [W] power lost to contact damping.
-    pub damping_power: f64,
+    pub damping_power: S,
 }
 
-impl From<&BallRaceContact<f64>> for ContactEffect {
-    fn from(contact: &BallRaceContact<f64>) -> Self {
+impl<S: Scalar> From<&BallRaceContact<S>> for ContactEffect<S> {
+    #[inline(always)]
+    fn from(contact: &BallRaceContact<S>) -> Self {
         Self {
             load: contact.load,
             stiffness: contact.stiffness,
@@ -39,49 +40,76 @@ impl From<&BallRaceContact<f64>> for ContactEffect {
     }
 }
 
-/// Evaluates the contacts of up to [`WIDTH`] balls with a race, to the same bits as [`ContactModel::evaluate`].
+impl<S: Scalar> ContactEffect<S> {
+    /// That of no contact.
+    pub fn none() -> Self {
+        let (zero, vector) = (S::zero(), constant_vector(&Vector3::zeros()));
+        Self {
+            load: zero,
+            stiffness: zero,
+            force: vector,
+            ball_moment: vector,
+            race_moment: vector,
+            friction_power: zero,
+            damping_power: zero,
+        }
+    }
+}
+
+impl ContactEffect<Lanes> {
+    fn lane(&self, lane: usize) -> ContactEffect {
+        let vector = |v: &Vector3<Lanes>| v.map(|component| component.0[lane]);
+        ContactEffect {
+            load: self.load.0[lane],
+            stiffness: self.stiffness.0[lane],
+            force: vector(&self.force),
+            ball_moment: vector(&self.ball_moment),
+            race_moment: vector(&self.race_moment),
+            friction_power: self.friction_power.0[lane],
+            damping_power: self.damping_power.0[lane],
+        }
+    }
+}
+
+/// Evaluates the contacts of up to [`WIDTH`](crate::lanes::WIDTH) balls with a race, to the same bits as [`ContactModel::evaluate`].
 pub fn evaluate_group(
     contact: &ContactModel<'_>,
     race: &RaceMotion<f64>,
     balls: &[BallMotion<f64>],
     effects: &mut [ContactEffect],
 ) {
-    if let Some(last) = balls.len().checked_sub(1) {
-        // Lanes without a ball repeat the last.
-        evaluate_lanes(contact, race, std::array::from_fn(|lane| &balls[lane.min(last)]), effects);
+    let Some(last) = balls.len().checked_sub(1) else {
+        return;
+    };
+    // Lanes without a ball repeat the last.
+    let ball = |lane: usize| &balls[lane.min(last)];
+    let motion = BallMotion {
+        position: Lanes::vector(|lane| ball(lane).position),
+        velocity: Lanes::vector(|lane| ball(lane).velocity),
+        angular_velocity: Lanes::vector(|lane| ball(lane).angular_velocity),
+    };
+    let mut together = ContactEffect::none();
+    evaluate_lanes(contact, race, &motion, &mut together);
+    for (lane, effect) in effects.iter_mut().enumerate().take(balls.len()) {
+        *effect = together.lane(lane);
     }
 }
 
 /// One version for processors with vectors of four numbers, one for those without; the running one is chosen at run time.
+///
+/// Arguments and result lie in memory lane by lane: compilers begin to build vectors where numbers are stored.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn evaluate_lanes(
     contact: &ContactModel<'_>,
     race: &RaceMotion<f64>,
-    balls: [&BallMotion<f64>; WIDTH],
-    effects: &mut [ContactEffect],
+    balls: &BallMotion<Lanes>,
+    effects: &mut ContactEffect<Lanes>,
 ) {
-    let motion = BallMotion {
-        position: Lanes::vector(|lane| balls[lane].position),
-        velocity: Lanes::vector(|lane| balls[lane].velocity),
-        angular_velocity: Lanes::vector(|lane| balls[lane].angular_velocity),
-    };
     let race = RaceMotion {
         position: constant_vector(&race.position),
         axis: constant_vector(&race.axis),
         velocity: constant_vector(&race.velocity),
         angular_velocity: constant_vector(&race.angular_velocity),
     };
-    let contact: BallRaceContact<Lanes> = contact.evaluate(&motion, &race);
-    let vector = |v: &Vector3<Lanes>, lane: usize| Vector3::new(v.x.0[lane], v.y.0[lane], v.z.0[lane]);
-    for (lane, effect) in effects.iter_mut().enumerate() {
-        *effect = ContactEffect {
-            load: contact.load.0[lane],
-            stiffness: contact.stiffness.0[lane],
-            force: vector(&contact.force, lane),
-            ball_moment: vector(&contact.ball_moment, lane),
-            race_moment: vector(&contact.race_moment, lane),
-            friction_power: contact.friction_power.0[lane],
-            damping_power: contact.damping_power.0[lane],
-        };
-    }
+    *effects = ContactEffect::from(&contact.evaluate(balls, &race));
 }

@@ -99,7 +99,7 @@ impl<'a> BearingStep<'a> {
             cage: self.model.cage.as_ref().zip(workspace.cage.as_ref()),
         };
         let radius = self.model.bearing.ball.radius;
-        let mut effects = [[ContactEffect::default(); WIDTH]; 2];
+        let mut effects = [[ContactEffect::none(); WIDTH]; 2];
         let mut motions = [BallMotion::at_rest(); WIDTH];
         for (group, trials) in workspace.balls.chunks_mut(WIDTH).enumerate() {
             let first = WIDTH * group;
