@@ -152,6 +152,13 @@ pub enum EquilibriumError {
     },
 }
 
+impl EquilibriumError {
+    /// Does it say what the bearing cannot do, not just where the search ended?
+    fn is_physical(&self) -> bool {
+        !matches!(self, Self::Ball { .. } | Self::NoConvergence { .. })
+    }
+}
+
 /// One ball in equilibrium, relative to the outer race.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BallEquilibrium {
@@ -188,20 +195,28 @@ pub struct Equilibrium {
 
 /// Solves a quasi-static problem.
 ///
-/// Newton's method first from the centred race for a falling residual, then for a falling potential, then from the
-/// bearing at rest through growing speeds.
+/// Newton's method from the centred race for a falling residual, then for a falling potential; then from the bearing at
+/// rest through growing speeds; last from a race that its loads have pushed off the centre.
 ///
 /// # Errors
 /// See [`EquilibriumError`]; an unconverged result is never returned.
 pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, EquilibriumError> {
     let problem = Problem::new(model, input);
-    let checked = |found: Found| problem.check(problem.finish(&found));
-    problem
-        .search(problem.centred(), None, Progress::Residual)
-        .or_else(|_| problem.search(problem.centred(), None, Progress::Work))
-        .or_else(|_| through_speeds(model, input))
-        .map_err(|why| beyond_outer_race_control(model, input).unwrap_or(why))
-        .and_then(checked)
+    let downhill = |start| problem.search(start, None, Progress::Work);
+    let mut failure = match problem.search(problem.centred(), None, Progress::Residual) {
+        Ok(found) => return problem.check(problem.finish(&found)),
+        Err(why) => why,
+    };
+    let further: [&dyn Fn() -> Result<Found, EquilibriumError>; 3] =
+        [&|| downhill(problem.centred()), &|| through_speeds(model, input), &|| downhill(problem.pushed())];
+    for attempt in further {
+        match attempt() {
+            Ok(found) => return problem.check(problem.finish(&found)),
+            Err(why) if !failure.is_physical() => failure = why,
+            Err(_) => {}
+        }
+    }
+    Err(beyond_outer_race_control(model, input).unwrap_or(failure))
 }
 
 /// Why there is no solution, if that is Jones's hypothesis: that friction at the outer race carries the gyroscopic moment,

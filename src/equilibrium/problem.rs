@@ -97,6 +97,22 @@ impl<'a> Problem<'a> {
         unknowns
     }
 
+    /// The race a thousandth of a ball diameter off the centre, where its loads push it.
+    pub fn pushed(&self) -> SharedVector {
+        let mut loads = SharedVector::zeros();
+        for (i, condition) in self.input.conditions.iter().enumerate() {
+            if let Prescribed::Load(load) = condition {
+                loads[i] = load / self.size(i);
+            }
+        }
+        let mut way = loads.normalize() * (1e-3 * self.diameter);
+        for i in 0..5 {
+            way[i] /= self.size(i);
+        }
+        // No load pushes nowhere.
+        if loads.amax() > 0.0 { self.centred() + way } else { self.centred() }
+    }
+
     /// [N] size of the forces at work.
     fn reference(&self, trial: &Trial) -> f64 {
         self.known_force.max(trial.inner_load_sum)

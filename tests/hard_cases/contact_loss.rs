@@ -6,13 +6,15 @@ use roulement::outputs::Outputs;
 use roulement::simulation::Simulation;
 
 use crate::gates::{Case, Limits, limits};
-use crate::scenes::{ANGULAR, FLAT, GROOVE, groove, load, scene};
+use crate::scenes::{ANGULAR, FLAT, GROOVE, HELD, groove, load, scene};
 
 /// 1500 N radially on a bearing with clearance at 6000 rpm, looked at every `interval`.
 fn loose(name: &str, micrometres: f64, conformity: f64, milliseconds: f64, interval: &str, limit: Limits) {
     let rows = format!("y = {{ force = 1500.0 }}\n{FLAT}output_interval = \"{interval}\"\n");
     let scene = scene(GROOVE, &(groove(micrometres, conformity) + &load(milliseconds, 6000.0, &rows)));
-    let run = Case::new(name, scene, limit).pass();
+    let mut case = Case::new(name, scene, limit);
+    case.window = [0.1, 1.0];
+    let run = case.pass();
     let ball = run.simulation.model().bearing.ball;
     let late = &run.history[run.history.len() / 2..];
     // Opposite to the load the balls touch the outer race alone, with their centrifugal force.
@@ -47,8 +49,21 @@ fn rattling_in_a_millimetre() {
         0.56,
         1000.0,
         "20 us",
-        limits(900_000, 9000, 1500, 4.0),
+        limits(900_000, 15_000, 1500, 4.0),
     );
+}
+
+#[test]
+fn thrust_takes_up_a_millimetre() {
+    let thrust = format!("x = {{ force = 1500.0 }}\n{HELD}");
+    let scene = scene(GROOVE, &(groove(1000.0, 0.56) + &load(15.0, 6000.0, &thrust)));
+    let run = Case::new("thrust, clearance 1 mm", scene, limits(1700, 10, 10, 4.0)).pass();
+    // The balls climb to where the clearance is used up: cos(alpha) = 1 - P_d/(2 (f_i + f_o - 1) D), compression aside.
+    let expected = (1.0f64 - 1e-3 / (2.0 * 0.12 * 9.525e-3)).acos();
+    for ball in &run.last().balls {
+        let angle = 0.5 * (ball.inner.contact_angle + ball.outer.contact_angle);
+        assert!((angle - expected).abs() < 0.02, "{angle} rad, {expected} rad");
+    }
 }
 
 #[test]

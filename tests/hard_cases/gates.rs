@@ -360,7 +360,10 @@ fn residual(end: &Simulation, before: &State) -> f64 {
     let cage_motion = state.cage.as_ref().map(RaceState::body_motion);
     let mut on_cage = Wrench::default();
     for (index, (now, old)) in state.balls.iter().zip(&before.balls).enumerate() {
-        let [inner, outer] = [0, 1].map(|race: usize| contacts[race].evaluate(&now.motion(), &races[race]));
+        // Polynomials are those that the step was solved with.
+        let [inner, outer] = [0, 1].map(|race: usize| {
+            contacts[race].of_ball(before.difference(index, race)).evaluate(&now.motion(), &races[race])
+        });
         let mut force = model.gravity * ball.mass + inner.force + outer.force;
         let mut moment = inner.ball_moment + outer.ball_moment;
         let touching = cage

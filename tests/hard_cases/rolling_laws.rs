@@ -9,11 +9,12 @@ use crate::scenes::{ANGULAR, load, ramp, scene};
 const COMBINED: &str = "x = { force = 1500.0 }\ny = { force = 300.0 }\n";
 
 /// Laws with the section that asks for them: the nonlinear theory, the same with Heathcote slip, and the paper's law
-/// with spin coupling, which is always full.
-const LAWS: [(&str, &str); 3] = [
+/// with spin coupling, which is always full; and the nonlinear theory in polynomials, frozen for each step.
+const LAWS: [(&str, &str); 4] = [
     ("kalker_table", "creep = \"kalker_table\""),
     ("kalker_table, Heathcote slip", "creep = \"kalker_table\"\nheathcote_slip = true"),
     ("regularised", "creep = \"regularised\""),
+    ("kalker", "creep = \"kalker\""),
 ];
 
 fn effects(law: &str) -> String {
