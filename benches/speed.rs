@@ -52,7 +52,7 @@ fn contact_values_together(bencher: Bencher, law: &str) {
     let contact = simulation.model().contact(INNER, 0.08);
     let race = simulation.state().races[INNER].motion();
     let balls: [_; WIDTH] = std::array::from_fn(|lane| simulation.state().balls[lane].motion());
-    let mut effects = [ContactEffect::default(); WIDTH];
+    let mut effects = [ContactEffect::none(); WIDTH];
     bencher.counter(ItemsCount::new(WIDTH)).bench_local(|| {
         evaluate_group(&contact, divan::black_box(&race), divan::black_box(&balls), &mut effects);
         effects[0].load

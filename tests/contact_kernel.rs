@@ -200,7 +200,7 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
 
             // With the vectors that this processor has.
             for count in 1..=WIDTH {
-                let mut together = [ContactEffect::default(); WIDTH];
+                let mut together = [ContactEffect::none(); WIDTH];
                 evaluate_group(&contact, &race_motion, &motions[..count], &mut together[..count]);
                 assert_eq!(together[..count], alone[..count], "{name}");
             }

@@ -5,6 +5,7 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{UnitQuaternion, Vector3};
+use roulement::arrowhead::KeptMatrix;
 use roulement::dynamics::{Boundary, RaceLoad, Workspace, make_consistent, try_step};
 use roulement::model::{Constraint, INNER, Model, RaceBody};
 use roulement::motion::{Pose, Twist, Wrench};
@@ -41,6 +42,7 @@ impl Flight {
             races: [RaceState::new(pose, twist, constraints), RaceState::new(outer, &Twist::default(), 0)],
             control: StepControl::new(h, h, h),
             force_tolerance: 0.0,
+            matrix: KeptMatrix::default(),
             powers: Powers::default(),
             energies: Energies::default(),
             statistics: Statistics::default(),
