@@ -13,6 +13,7 @@ pub mod half_space;
 pub mod linear;
 pub mod load_displacement;
 pub mod nonlinear;
+mod objective;
 pub mod printed;
 pub mod scaled_law;
 pub mod table;

@@ -14,15 +14,16 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{DMatrix, DVector, Dyn, MatrixView};
+use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::linear::{LinearError, adhesion_tractions, leading_edge, resultants};
 use super::load_displacement::{Basis, load_displacement};
+use super::objective::{Expansion, Fields, project};
 use super::{Patch, ScaledCreepage, ScaledForces};
 
 /// [-] slip against traction in the projection.
-const SLIP_WEIGHT: f64 = 2.0;
+pub(super) const SLIP_WEIGHT: f64 = 2.0;
 /// [-] weight of the leading-edge rows.
 const EDGE_WEIGHT: f64 = 8.0;
 /// Iterations of one solve; 6 to 10 are usual.
@@ -58,8 +59,8 @@ pub enum KalkerError {
 /// A point of the elliptical grid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
-    x: f64,
-    y: f64,
+    pub(super) x: f64,
+    pub(super) y: f64,
     /// Area on the unit disc.
     pub(super) weight: f64,
     /// Coulomb's bound over mu p0.
@@ -69,19 +70,21 @@ pub(super) struct Point {
 /// The problem of one patch: everything that does not depend on the creepages.
 #[derive(Clone, Debug)]
 pub struct Kalker {
-    patch: Patch,
+    pub(super) patch: Patch,
     pub(super) points: Vec<Point>,
     /// Traction polynomials at the points: one row a point, one column a monomial.
     pub(super) values: DMatrix<f64>,
     /// The same, one column a point.
-    monomial_values: DMatrix<f64>,
+    pub(super) monomial_values: DMatrix<f64>,
     /// Slip at the points by all coefficients: rows x of each point, then y.
     pub(super) slips: DMatrix<f64>,
     /// Arguments of the projection at the points by all coefficients: one column each of x and y.
-    arguments: DMatrix<f64>,
+    pub(super) arguments: DMatrix<f64>,
     /// Leading-edge rows, and their square.
-    edge: DMatrix<f64>,
-    edge_square: DMatrix<f64>,
+    pub(super) edge: DMatrix<f64>,
+    pub(super) edge_square: DMatrix<f64>,
+    /// Second derivative of the objective while every point sticks.
+    pub(super) stick_curvature: DMatrix<f64>,
     /// Linear solutions of unit creepages.
     adhesion: DMatrix<f64>,
     /// Net forces over mu Q, mu Q c and mu Q c^2 by all coefficients.
@@ -137,71 +140,6 @@ fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
             (0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope))
         })
         .collect()
-}
-
-/// Derivatives of the objective at a point.
-struct Expansion {
-    gradient: DVector<f64>,
-    /// Second derivative as Gauss and Newton take it: positive definite.
-    gauss_newton: DMatrix<f64>,
-    /// What the bend of the projection adds to it.
-    bend: DMatrix<f64>,
-    /// Derivatives of the weighted residuals, one column each of x and y at every point.
-    jacobian: DMatrix<f64>,
-    /// Slope of the projection at every point.
-    slopes: Vec<[f64; 3]>,
-    /// Points that slide, and the weighted bend of the projection there.
-    sliding: Vec<(usize, [f64; 3])>,
-}
-
-/// The transpose, without a copy.
-fn transposed(matrix: &DMatrix<f64>) -> MatrixView<'_, f64, Dyn, Dyn, Dyn, Dyn> {
-    let (rows, columns) = matrix.shape();
-    MatrixView::from_slice_with_strides_generic(matrix.as_slice(), Dyn(columns), Dyn(rows), Dyn(rows), Dyn(1))
-}
-
-/// A column as a slice.
-fn column(matrix: &DMatrix<f64>, index: usize) -> &[f64] {
-    &matrix.as_slice()[index * matrix.nrows()..(index + 1) * matrix.nrows()]
-}
-
-/// A column as a slice.
-fn column_mut(matrix: &mut DMatrix<f64>, index: usize) -> &mut [f64] {
-    let rows = matrix.nrows();
-    &mut matrix.as_mut_slice()[index * rows..(index + 1) * rows]
-}
-
-/// `result = by_a a + by_b b`.
-fn combine(result: &mut [f64], by_a: f64, a: &[f64], by_b: f64, b: &[f64]) {
-    for ((entry, a), b) in result.iter_mut().zip(a).zip(b) {
-        *entry = by_a * a + by_b * b;
-    }
-}
-
-/// Second derivative of `w P(v)` with the projection P on the disc of radius `bound` (symmetric: xx, xy, yy).
-fn projection_bend(v: [f64; 2], bound: f64, w: [f64; 2]) -> [f64; 3] {
-    let size = v[0].hypot(v[1]);
-    if size <= bound {
-        return [0.0; 3];
-    }
-    let (c, s) = (v[0] / size, v[1] / size);
-    let along = w[0] * c + w[1] * s;
-    let factor = bound / (size * size);
-    [
-        factor * (3.0 * along * c * c - along - 2.0 * w[0] * c),
-        factor * (3.0 * along * c * s - w[0] * s - w[1] * c),
-        factor * (3.0 * along * s * s - along - 2.0 * w[1] * s),
-    ]
-}
-
-/// Projection of v on the disc of radius `bound`, and its derivative (symmetric: xx, xy, yy).
-fn project(v: [f64; 2], bound: f64) -> ([f64; 2], [f64; 3]) {
-    let size = v[0].hypot(v[1]);
-    if size <= bound {
-        return (v, [1.0, 0.0, 1.0]);
-    }
-    let (c, s, ratio) = (v[0] / size, v[1] / size, bound / size);
-    ([bound * c, bound * s], [ratio * s * s, -ratio * c * s, ratio * c * c])
 }
 
 impl Kalker {
@@ -265,6 +203,11 @@ impl Kalker {
             }
         }
         let edge = leading_edge(&patch, &basis) * EDGE_WEIGHT;
+        let edge_square = edge.transpose() * &edge;
+        let slip_square = {
+            let weighted = DMatrix::from_fn(2 * rows, 2 * n, |i, k| slips[(i, k)] * points[i % rows].weight);
+            slips.transpose() * weighted
+        };
         Ok(Self {
             patch,
             points,
@@ -272,7 +215,8 @@ impl Kalker {
             values,
             slips,
             arguments,
-            edge_square: edge.transpose() * &edge,
+            stick_curvature: &edge_square + slip_square * (SLIP_WEIGHT * SLIP_WEIGHT),
+            edge_square,
             edge,
             adhesion,
             resultants: resultants(&patch, &basis) * (1.5 / PI),
@@ -286,7 +230,7 @@ impl Kalker {
     }
 
     /// Rigid slip at a point.
-    fn rigid(&self, h: &ScaledCreepage, point: &Point) -> [f64; 2] {
+    pub(super) fn rigid(&self, h: &ScaledCreepage, point: &Point) -> [f64; 2] {
         let (a, b) = (self.patch.axis_ratio.sqrt(), 1.0 / self.patch.axis_ratio.sqrt());
         let y = b * point.y;
         [h.x - (h.spin + h.curvature * y) * y, h.y + h.spin * a * point.x]
@@ -306,117 +250,6 @@ impl Kalker {
                 ([fx[i], fy[i]], [rigid[0] + elastic[i], rigid[1] + elastic[rows + i]])
             })
             .collect()
-    }
-
-    /// Traction and argument of the projection at every point: components x, y, in turn.
-    fn arguments_at(&self, z: &DVector<f64>, h: &ScaledCreepage) -> (DVector<f64>, DVector<f64>) {
-        let (n, rows) = (self.monomials, self.points.len());
-        let mut tractions = DVector::zeros(2 * rows);
-        for (k, start) in [(0, 0), (1, n)] {
-            let component = self.monomial_values.tr_mul(&z.rows(start, n));
-            for (i, value) in component.iter().enumerate() {
-                tractions[2 * i + k] = *value;
-            }
-        }
-        let mut arguments = self.arguments.tr_mul(z);
-        for (i, point) in self.points.iter().enumerate() {
-            let rigid = self.rigid(h, point);
-            arguments[2 * i] += SLIP_WEIGHT * rigid[0];
-            arguments[2 * i + 1] += SLIP_WEIGHT * rigid[1];
-        }
-        (tractions, arguments)
-    }
-
-    /// The objective at z.
-    fn objective(&self, z: &DVector<f64>, h: &ScaledCreepage) -> f64 {
-        let (f, v) = self.arguments_at(z, h);
-        let mut sum = (&self.edge * z).norm_squared();
-        for (i, point) in self.points.iter().enumerate() {
-            let (p, _) = project([v[2 * i], v[2 * i + 1]], point.bound);
-            sum += point.weight * ((f[2 * i] - p[0]).powi(2) + (f[2 * i + 1] - p[1]).powi(2));
-        }
-        sum
-    }
-
-    /// Derivatives of the objective at z.
-    fn expand(&self, z: &DVector<f64>, h: &ScaledCreepage) -> Expansion {
-        let (n, rows) = (self.monomials, self.points.len());
-        let (f, v) = self.arguments_at(z, h);
-        let mut jacobian = DMatrix::zeros(2 * n, 2 * rows);
-        let mut residual = DVector::zeros(2 * rows);
-        let mut slopes = Vec::with_capacity(rows);
-        let mut sliding = Vec::with_capacity(rows);
-        for (i, point) in self.points.iter().enumerate() {
-            let argument = [v[2 * i], v[2 * i + 1]];
-            let (p, slope) = project(argument, point.bound);
-            let [xx, xy, yy] = slope;
-            slopes.push(slope);
-            let root = point.weight.sqrt();
-            let r = [f[2 * i] - p[0], f[2 * i + 1] - p[1]];
-            let values = column(&self.monomial_values, i);
-            let (ax, ay) = (column(&self.arguments, 2 * i), column(&self.arguments, 2 * i + 1));
-            for (k, [by_x, by_y]) in [[xx, xy], [xy, yy]].into_iter().enumerate() {
-                residual[2 * i + k] = root * r[k];
-                let column = column_mut(&mut jacobian, 2 * i + k);
-                combine(column, -root * by_x, ax, -root * by_y, ay);
-                for (entry, value) in column[k * n..(k + 1) * n].iter_mut().zip(values) {
-                    *entry += root * value;
-                }
-            }
-            if argument[0].hypot(argument[1]) > point.bound {
-                // second derivative of -r P(argument)
-                sliding.push((i, projection_bend(argument, point.bound, r).map(|bend| -point.weight * bend)));
-            }
-        }
-        let mut bent = DMatrix::zeros(2 * n, 2 * sliding.len());
-        let mut straight = DMatrix::zeros(2 * n, 2 * sliding.len());
-        for (to, (i, [xx, xy, yy])) in sliding.iter().enumerate() {
-            let (ax, ay) = (column(&self.arguments, 2 * i), column(&self.arguments, 2 * i + 1));
-            for (k, (by_x, by_y, own)) in [(xx, xy, ax), (xy, yy, ay)].into_iter().enumerate() {
-                column_mut(&mut straight, 2 * to + k).copy_from_slice(own);
-                combine(column_mut(&mut bent, 2 * to + k), *by_x, ax, *by_y, ay);
-            }
-        }
-        let mut gauss_newton = self.edge_square.clone();
-        gauss_newton.gemm(1.0, &jacobian, &transposed(&jacobian), 1.0);
-        let mut bend = DMatrix::zeros(2 * n, 2 * n);
-        bend.gemm(1.0, &straight, &transposed(&bent), 0.0);
-        Expansion {
-            gradient: &jacobian * &residual + &self.edge_square * z,
-            gauss_newton,
-            bend,
-            jacobian,
-            slopes,
-            sliding,
-        }
-    }
-
-    /// Derivatives of the objective's gradient by the creepages.
-    fn by_creepage(&self, expansion: &Expansion) -> DMatrix<f64> {
-        let rows = self.points.len();
-        let (a, b) = (self.patch.axis_ratio.sqrt(), 1.0 / self.patch.axis_ratio.sqrt());
-        let slips = |point: &Point| {
-            let (x, y) = (a * point.x, b * point.y);
-            [[1.0, 0.0], [0.0, 1.0], [-y, x], [-y * y, 0.0]]
-                .map(|slip| slip.map(|component| SLIP_WEIGHT * component))
-        };
-        let mut by_residual = DMatrix::zeros(2 * rows, 4);
-        for (i, (point, [xx, xy, yy])) in self.points.iter().zip(&expansion.slopes).enumerate() {
-            let root = point.weight.sqrt();
-            for (column, slip) in slips(point).into_iter().enumerate() {
-                by_residual[(2 * i, column)] = -root * (xx * slip[0] + xy * slip[1]);
-                by_residual[(2 * i + 1, column)] = -root * (xy * slip[0] + yy * slip[1]);
-            }
-        }
-        let mut result = &expansion.jacobian * by_residual;
-        for (i, [xx, xy, yy]) in &expansion.sliding {
-            for (column, slip) in slips(&self.points[*i]).into_iter().enumerate() {
-                let mut column = result.column_mut(column);
-                column.axpy(xx * slip[0] + xy * slip[1], &self.arguments.column(2 * i), 1.0);
-                column.axpy(xy * slip[0] + yy * slip[1], &self.arguments.column(2 * i + 1), 1.0);
-            }
-        }
-        result
     }
 
     /// Solves for creepages, from the linear solution or from the coefficients of neighbouring creepages.
@@ -443,46 +276,53 @@ impl Kalker {
                 linear * if excess > 1.0 { 1.0 / excess } else { 1.0 }
             }
         };
-        let mut objective = self.objective(&z, &h);
+        let mut fields = self.fields_at(&z, &h);
+        let mut objective = self.objective(&z, &fields);
         let mut damping: f64 = 1e-3;
         let mut iterations = 0;
         while iterations < MAX_ITERATIONS {
-            let Expansion { gradient, gauss_newton, bend, .. } = self.expand(&z, &h);
+            let Expansion { gradient, sliding } = self.expand(&z, &fields);
             let before = objective;
             let enough = DECREASE * before + NEGLIGIBLE * size.min(1.0).powi(2);
             iterations += 1;
             // Newton's own step where the objective is convex: it ends the iteration at the minimum to rounding, so
             // that results are a smooth function of the creepages.
-            let step = (&gauss_newton + bend).cholesky().map(|factor| factor.solve(&gradient));
+            let step = self.curvature(&sliding, true).cholesky().map(|factor| factor.solve(&gradient));
             if let Some(step) = step {
                 // What the step still promises; below this, rounding decides whether the objective falls.
                 let last = 0.5 * gradient.dot(&step) <= enough;
                 let trial = &z - step;
-                let reached = self.objective(&trial, &h);
+                let there = self.fields_at(&trial, &h);
+                let reached = self.objective(&trial, &there);
                 if last {
                     let better = reached <= objective + enough;
-                    return Ok(self.finish(if better { trial } else { z }, &h, iterations));
+                    let (z, fields) = if better { (trial, there) } else { (z, fields) };
+                    return Ok(self.finish(z, &fields, iterations));
                 }
                 if reached < objective {
-                    (z, objective) = (trial, reached);
+                    (z, fields, objective) = (trial, there, reached);
                     damping = (damping * 0.1).max(1e-12);
                     if before - objective <= enough {
-                        return Ok(self.finish(z, &h, iterations));
+                        return Ok(self.finish(z, &fields, iterations));
                     }
                     continue;
                 }
             }
+            let gauss_newton = self.curvature(&sliding, false);
             loop {
                 let mut damped = gauss_newton.clone();
                 for i in 0..damped.nrows() {
                     damped[(i, i)] += damping * (gauss_newton[(i, i)] + 1e-12);
                 }
-                let trial = damped.cholesky().map(|factor| &z - factor.solve(&gradient));
-                let reached = trial.as_ref().map_or(f64::INFINITY, |trial| self.objective(trial, &h));
-                if let Some(trial) = trial
+                let trial = damped.cholesky().map(|factor| {
+                    let trial = &z - factor.solve(&gradient);
+                    let there = self.fields_at(&trial, &h);
+                    (self.objective(&trial, &there), trial, there)
+                });
+                if let Some((reached, trial, there)) = trial
                     && reached < objective
                 {
-                    (z, objective) = (trial, reached);
+                    (z, fields, objective) = (trial, there, reached);
                     damping = (damping * 0.1).max(1e-12);
                     break;
                 }
@@ -490,7 +330,7 @@ impl Kalker {
                 iterations += 1;
                 if damping > 1e12 {
                     // No direction leads down: this is the minimum to rounding.
-                    return Ok(self.finish(z, &h, iterations));
+                    return Ok(self.finish(z, &fields, iterations));
                 }
                 if iterations >= MAX_ITERATIONS {
                     return Err(KalkerError::NoConvergence(*creepage));
@@ -498,13 +338,13 @@ impl Kalker {
             }
             // Where points change between sticking and sliding for ever, the last digits are not worth more steps.
             if iterations > PATIENCE && before - objective <= IDLE_DECREASE * before {
-                return Ok(self.finish(z, &h, iterations));
+                return Ok(self.finish(z, &fields, iterations));
             }
         }
         Err(KalkerError::NoConvergence(*creepage))
     }
 
-    pub(super) fn finish(&self, z: DVector<f64>, h: &ScaledCreepage, iterations: u32) -> Solution {
+    pub(super) fn finish(&self, z: DVector<f64>, fields: &Fields, iterations: u32) -> Solution {
         let net = &self.resultants * &z;
         let mut forces = ScaledForces { fx: net[0], fy: net[1], mz: net[2], second_moment: net[3] };
         // A polynomial may overstep the bound by its own error: a sliding contact stays at the friction limit.
@@ -514,7 +354,7 @@ impl Kalker {
             forces.fy /= size * (1.0 + f64::EPSILON);
         }
         let (mut stick, mut area) = (0.0, 0.0);
-        let (_, v) = self.arguments_at(&z, h);
+        let v = &fields.arguments;
         for (i, point) in self.points.iter().enumerate() {
             area += point.weight;
             if v[2 * i].hypot(v[2 * i + 1]) <= point.bound {
@@ -529,9 +369,9 @@ impl Kalker {
     /// By implicit differentiation of the minimum: where its gradient stays zero, the coefficients follow.
     /// None where the minimum is not isolated.
     pub fn derivatives(&self, solution: &Solution, creepage: &ScaledCreepage) -> Option<[[f64; 4]; 4]> {
-        let expansion = self.expand(&solution.coefficients, creepage);
-        let by_creepage = self.by_creepage(&expansion);
-        let follow = (expansion.gauss_newton + expansion.bend).lu().solve(&-by_creepage)?;
+        let z = &solution.coefficients;
+        let Expansion { sliding, .. } = self.expand(z, &self.fields_at(z, creepage));
+        let follow = self.curvature(&sliding, true).lu().solve(&-self.by_creepage(&sliding))?;
         let net = &self.resultants * follow;
         Some(std::array::from_fn(|i| std::array::from_fn(|k| net[(i, k)])))
     }

@@ -56,5 +56,6 @@ pub fn solve(kalker: &Kalker, h: &ScaledCreepage) -> (Solution, f64) {
         }
     }
     let objective = r.norm_squared();
-    (kalker.finish(z, h, iterations), objective)
+    let fields = kalker.fields_at(&z, h);
+    (kalker.finish(z, &fields, iterations), objective)
 }

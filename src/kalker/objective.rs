@@ -1,0 +1,226 @@
+//! The objective of Kalker's nonlinear problem in polynomials, and its derivatives.
+
+use nalgebra::{DMatrix, DVector, Dyn, MatrixView};
+
+use super::ScaledCreepage;
+use super::nonlinear::{Kalker, Point, SLIP_WEIGHT};
+
+/// Tractions and arguments of the projection at every point, components x and y in turn.
+pub(super) struct Fields {
+    pub(super) tractions: DVector<f64>,
+    pub(super) arguments: DVector<f64>,
+}
+
+/// A point that slides, and what the projection does there.
+pub(super) struct Sliding {
+    point: usize,
+    /// Slope of the projection (symmetric: xx, xy, yy).
+    slope: [f64; 3],
+    /// Its bend under the weighted residual.
+    bend: [f64; 3],
+}
+
+/// First derivatives of the objective, and what the second ones follow from.
+pub(super) struct Expansion {
+    pub(super) gradient: DVector<f64>,
+    pub(super) sliding: Vec<Sliding>,
+}
+
+/// Square of a symmetric matrix (xx, xy, yy).
+fn square([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
+    [xx * xx + xy * xy, xy * (xx + yy), xy * xy + yy * yy]
+}
+
+/// Product of a symmetric matrix (xx, xy, yy) with a vector.
+fn times([xx, xy, yy]: [f64; 3], [x, y]: [f64; 2]) -> [f64; 2] {
+    [xx * x + xy * y, xy * x + yy * y]
+}
+
+/// The transpose, without a copy.
+fn transposed(matrix: &DMatrix<f64>) -> MatrixView<'_, f64, Dyn, Dyn, Dyn, Dyn> {
+    let (rows, columns) = matrix.shape();
+    MatrixView::from_slice_with_strides_generic(matrix.as_slice(), Dyn(columns), Dyn(rows), Dyn(rows), Dyn(1))
+}
+
+/// A column as a slice.
+fn column(matrix: &DMatrix<f64>, index: usize) -> &[f64] {
+    &matrix.as_slice()[index * matrix.nrows()..(index + 1) * matrix.nrows()]
+}
+
+/// A column as a slice.
+fn column_mut(matrix: &mut DMatrix<f64>, index: usize) -> &mut [f64] {
+    let rows = matrix.nrows();
+    &mut matrix.as_mut_slice()[index * rows..(index + 1) * rows]
+}
+
+/// `result = by_a a + by_b b`.
+fn combine(result: &mut [f64], by_a: f64, a: &[f64], by_b: f64, b: &[f64]) {
+    for ((entry, a), b) in result.iter_mut().zip(a).zip(b) {
+        *entry = by_a * a + by_b * b;
+    }
+}
+
+/// Second derivative of `w P(v)` with the projection P on the disc of radius `bound` (symmetric: xx, xy, yy).
+fn projection_bend(v: [f64; 2], bound: f64, w: [f64; 2]) -> [f64; 3] {
+    let size = v[0].hypot(v[1]);
+    if size <= bound {
+        return [0.0; 3];
+    }
+    let (c, s) = (v[0] / size, v[1] / size);
+    let along = w[0] * c + w[1] * s;
+    let factor = bound / (size * size);
+    [
+        factor * (3.0 * along * c * c - along - 2.0 * w[0] * c),
+        factor * (3.0 * along * c * s - w[0] * s - w[1] * c),
+        factor * (3.0 * along * s * s - along - 2.0 * w[1] * s),
+    ]
+}
+
+/// Projection of v on the disc of radius `bound`, and its derivative (symmetric: xx, xy, yy).
+pub(super) fn project(v: [f64; 2], bound: f64) -> ([f64; 2], [f64; 3]) {
+    let size = v[0].hypot(v[1]);
+    if size <= bound {
+        return (v, [1.0, 0.0, 1.0]);
+    }
+    let (c, s, ratio) = (v[0] / size, v[1] / size, bound / size);
+    ([bound * c, bound * s], [ratio * s * s, -ratio * c * s, ratio * c * c])
+}
+
+impl Kalker {
+    /// Fields at coefficients z.
+    pub(super) fn fields_at(&self, z: &DVector<f64>, h: &ScaledCreepage) -> Fields {
+        let (n, rows) = (self.monomials, self.points.len());
+        let mut tractions = DVector::zeros(2 * rows);
+        for (k, start) in [(0, 0), (1, n)] {
+            let component = self.monomial_values.tr_mul(&z.rows(start, n));
+            for (i, value) in component.iter().enumerate() {
+                tractions[2 * i + k] = *value;
+            }
+        }
+        let mut arguments = self.arguments.tr_mul(z);
+        for (i, point) in self.points.iter().enumerate() {
+            let rigid = self.rigid(h, point);
+            arguments[2 * i] += SLIP_WEIGHT * rigid[0];
+            arguments[2 * i + 1] += SLIP_WEIGHT * rigid[1];
+        }
+        Fields { tractions, arguments }
+    }
+
+    /// The objective at z, whose fields are given.
+    pub(super) fn objective(&self, z: &DVector<f64>, fields: &Fields) -> f64 {
+        let (f, v) = (&fields.tractions, &fields.arguments);
+        let mut sum = (&self.edge * z).norm_squared();
+        for (i, point) in self.points.iter().enumerate() {
+            let (p, _) = project([v[2 * i], v[2 * i + 1]], point.bound);
+            sum += point.weight * ((f[2 * i] - p[0]).powi(2) + (f[2 * i + 1] - p[1]).powi(2));
+        }
+        sum
+    }
+
+    /// Half the objective's gradient at z, whose fields are given.
+    ///
+    /// With values V and arguments A of a point's traction and slope S of the projection, the residual's derivative is
+    /// `V - S A`.
+    pub(super) fn expand(&self, z: &DVector<f64>, fields: &Fields) -> Expansion {
+        let (n, rows) = (self.monomials, self.points.len());
+        let (f, v) = (&fields.tractions, &fields.arguments);
+        let mut by_value = [DVector::zeros(rows), DVector::zeros(rows)];
+        let mut by_argument = DVector::zeros(2 * rows);
+        let mut sliding = Vec::with_capacity(rows);
+        for (i, point) in self.points.iter().enumerate() {
+            let argument = [v[2 * i], v[2 * i + 1]];
+            let (p, slope) = project(argument, point.bound);
+            let residual = [f[2 * i] - p[0], f[2 * i + 1] - p[1]];
+            let seen = times(slope, residual);
+            for k in 0..2 {
+                by_value[k][i] = point.weight * residual[k];
+                by_argument[2 * i + k] = -point.weight * seen[k];
+            }
+            if argument[0].hypot(argument[1]) > point.bound {
+                // second derivative of -residual P(argument)
+                let bend = projection_bend(argument, point.bound, residual).map(|b| -point.weight * b);
+                sliding.push(Sliding { point: i, slope, bend });
+            }
+        }
+        let mut gradient = &self.edge_square * z;
+        gradient.gemv(1.0, &self.arguments, &by_argument, 1.0);
+        for (k, by_value) in by_value.iter().enumerate() {
+            gradient.rows_mut(k * n, n).gemv(1.0, &self.monomial_values, by_value, 1.0);
+        }
+        Expansion { gradient, sliding }
+    }
+
+    /// Half the objective's second derivative; without the bend of the projection as Gauss and Newton take it, which is
+    /// positive definite.
+    ///
+    /// Only what sliding points change is computed, w the weight of a point and I the slope while it sticks:
+    /// `A^T (w (S^2 - I) + bend) A - w (V^T (S - I) A + its transpose)`.
+    pub(super) fn curvature(&self, sliding: &[Sliding], with_bend: bool) -> DMatrix<f64> {
+        let n = self.monomials;
+        let mut arguments = DMatrix::zeros(2 * n, 2 * sliding.len());
+        let mut changes = DMatrix::zeros(2 * n, 2 * sliding.len());
+        for (to, Sliding { point, slope, bend }) in sliding.iter().enumerate() {
+            let weight = self.points[*point].weight;
+            let values = column(&self.monomial_values, *point);
+            let own = [0, 1].map(|k| column(&self.arguments, 2 * point + k));
+            let mut outer = square(*slope);
+            let mut change = *slope;
+            for (k, stick) in [1.0, 0.0, 1.0].into_iter().enumerate() {
+                outer[k] = weight * (outer[k] - stick) + if with_bend { bend[k] } else { 0.0 };
+                change[k] = -2.0 * weight * (change[k] - stick);
+            }
+            for k in 0..2 {
+                column_mut(&mut arguments, 2 * to + k).copy_from_slice(own[k]);
+                let column = column_mut(&mut changes, 2 * to + k);
+                combine(column, outer[k], own[0], outer[k + 1], own[1]);
+                for (part, change) in column.chunks_exact_mut(n).zip([change[k], change[k + 1]]) {
+                    for (entry, value) in part.iter_mut().zip(values) {
+                        *entry += change * value;
+                    }
+                }
+            }
+        }
+        let mut curvature = DMatrix::zeros(2 * n, 2 * n);
+        curvature.gemm(0.5, &arguments, &transposed(&changes), 0.0);
+        for i in 0..2 * n {
+            for k in 0..=i {
+                let sum = curvature[(i, k)] + curvature[(k, i)];
+                curvature[(i, k)] = sum + self.stick_curvature[(i, k)];
+                curvature[(k, i)] = curvature[(i, k)];
+            }
+        }
+        curvature
+    }
+
+    /// Derivatives of half the objective's gradient by the creepages.
+    pub(super) fn by_creepage(&self, sliding: &[Sliding]) -> DMatrix<f64> {
+        let (n, rows) = (self.monomials, self.points.len());
+        let (a, b) = (self.patch.axis_ratio.sqrt(), 1.0 / self.patch.axis_ratio.sqrt());
+        let slips = |point: &Point| {
+            let (x, y) = (a * point.x, b * point.y);
+            [[1.0, 0.0], [0.0, 1.0], [-y, x], [-y * y, 0.0]]
+                .map(|slip| slip.map(|component| SLIP_WEIGHT * component))
+        };
+        let mut projections = vec![([1.0, 0.0, 1.0], [0.0; 3]); rows];
+        for Sliding { point, slope, bend } in sliding {
+            projections[*point] = (*slope, *bend);
+        }
+        let mut by_value = [DMatrix::zeros(rows, 4), DMatrix::zeros(rows, 4)];
+        let mut by_argument = DMatrix::zeros(2 * rows, 4);
+        for (i, (point, (slope, bend))) in self.points.iter().zip(projections).enumerate() {
+            for (column, slip) in slips(point).into_iter().enumerate() {
+                let (seen, bent) = (times(slope, slip), times(bend, slip));
+                let twice = times(slope, seen);
+                for k in 0..2 {
+                    by_value[k][(i, column)] = -point.weight * seen[k];
+                    by_argument[(2 * i + k, column)] = point.weight * twice[k] + bent[k];
+                }
+            }
+        }
+        let mut result = &self.arguments * by_argument;
+        for (k, by_value) in by_value.iter().enumerate() {
+            result.rows_mut(k * n, n).gemm(1.0, &self.monomial_values, by_value, 1.0);
+        }
+        result
+    }
+}
