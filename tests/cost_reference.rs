@@ -201,13 +201,15 @@ fn independent_integrator_confirms_the_reference() {
     }
 }
 
+/// The error bar is the distance to twice the step: three times the error of a method of order 2, where rounding and the
+/// tolerances of both integrators (1e-7) do not matter.
 #[test]
 #[ignore = "a minute"]
-fn independent_integrator_confirms_the_reference_of_whole_scenes() {
+fn independent_integrator_confirms_the_reference_and_its_error_bar_of_whole_scenes() {
     for scene in [tilting(MISALIGNMENT), Scene::parse(LOAD_ZONE).unwrap()] {
         println!("{}", scene.title);
         for [error, bar] in compare(&scene) {
-            assert!(error < 1e-7 && bar < 1e-7, "{error} {bar}");
+            assert!(error < f64::max(1e-7, 0.5 * bar) && bar < 5e-6, "{error} {bar}");
         }
     }
 }

@@ -147,9 +147,11 @@ fn goals(smooth: &[&SceneStudy], impacts: &[&SceneStudy]) -> Block {
         let largest = |group, get| number(over(group, get).into_iter().reduce(f64::max));
         let times = |group| {
             let times = over(group, &|measured| Some(measured.cpu));
-            let least = times.iter().copied().reduce(f64::min);
-            let (least, most) = (least.unwrap_or(0.0), times.into_iter().fold(0.0, f64::max));
-            if most > 0.0 { format!("{least:.2} to {most:.2}") } else { String::new() }
+            let [least, most] = [f64::min, f64::max].map(|choose| times.iter().copied().reduce(choose));
+            match least.zip(most) {
+                Some((least, most)) if least < most => format!("{least:.2} to {most:.2}"),
+                only => only.map(|(time, _)| format!("{time:.2}")).unwrap_or_default(),
+            }
         };
         let solver = goal.solver();
         vec![
@@ -181,7 +183,7 @@ fn models(group: &[&SceneStudy]) -> Block {
             .ok()
             .cloned()
     };
-    let norms = [Norm::Wrench, Norm::FrictionTorque, Norm::Power, Norm::CageSpeed];
+    let norms = [Norm::Wrench, Norm::FrictionTorque, Norm::Power];
     let mut rows = Vec::new();
     for norm in norms {
         let name = norm.name().to_string();
