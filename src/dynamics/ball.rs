@@ -11,7 +11,7 @@ use crate::contact::many::ContactEffect;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::hht::HhtStep;
 use crate::kalker::scaled_law::Difference;
-use crate::model::{CAGE, Model};
+use crate::model::{CAGE, Model, OUTER};
 use crate::motion::Wrench;
 use crate::scalar::{Dual, Scalar, constant_vector};
 use crate::state::{BallState, stack};
@@ -63,8 +63,8 @@ pub struct BallTrial {
     pub motion: BallMotion<f64>,
     /// Contacts at the end of the step.
     pub contacts: [ContactEffect; 2],
-    /// [m] where the ball was when its tangent was computed.
-    pub tangent_position: Vector3<f64>,
+    /// [m] where the ball was, seen from the outer race, when its tangent was computed.
+    pub tangent_offset: Vector3<f64>,
     /// Total force and moment at the end of the step.
     pub total: Wrench,
     /// [N] residual; moments over the ball radius.
@@ -86,7 +86,7 @@ impl BallTrial {
             motion,
             contacts: [0, 1]
                 .map(|race: usize| ContactEffect::from(&contacts[race].evaluate(&motion, races[race]))),
-            tangent_position: motion.position,
+            tangent_offset: motion.position - races[OUTER].position,
             total: ball.total,
             residual: Vector6::zeros(),
             block: BallBlock::default(),
@@ -121,7 +121,7 @@ impl BallTrial {
         let Surroundings { model, contacts, differences, races, .. } = *around;
         let radius = model.bearing.ball.radius;
         let mut tangent = Matrix6::zeros();
-        self.tangent_position = self.motion.position;
+        self.tangent_offset = self.motion.position - races[OUTER].value().position;
         for race in 0..2 {
             self.reactions[race] = None;
             let contact_model = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));

@@ -13,7 +13,7 @@ use crate::contact::many::{ContactEffect, evaluate_group};
 use crate::contact::{BallMotion, ContactModel};
 use crate::hht::HhtStep;
 use crate::lanes::WIDTH;
-use crate::model::{CAGE, Model, RaceBody};
+use crate::model::{CAGE, Model, OUTER, RaceBody};
 use crate::newton::Equations;
 use crate::state::{State, race_motion};
 
@@ -89,7 +89,7 @@ impl<'a> BearingStep<'a> {
     }
 
     /// Do the balls not feel each other, because no body has unknowns?
-    fn balls_are_independent(&self) -> bool {
+    pub fn balls_are_independent(&self) -> bool {
         self.model.border_offsets() == [None; BODIES]
     }
 
@@ -267,7 +267,9 @@ impl Equations for BearingStep<'_> {
         workspace.ball_corrections.clear();
         // A ball's own matrix goes round with it; a ball that is solved already, and that nothing else can disturb, stays
         // where it is.
-        let turn = |trial: &BallTrial| Turn::between(&trial.motion.position, &trial.tangent_position);
+        let centre = self.seen[OUTER].value().position;
+        let turn =
+            |trial: &BallTrial| Turn::between(&(trial.motion.position - centre), &trial.tangent_offset);
         for trial in &workspace.balls {
             workspace.ball_corrections.push(match independent {
                 true if trial.residual.amax() <= self.force_tolerance => Vector6::zeros(),

@@ -149,5 +149,5 @@ fn acceleration_is_gravity() {
     };
     let differences = [1, 10, 50, 100, 150, 200].map(difference);
     // Newton's tolerance is 1e-6 N of 200 N in each of both.
-    assert!(differences.iter().all(|d| *d < 1e-8), "{differences:?}");
+    assert!(differences.iter().all(|d| *d < 1e-9), "{differences:?}");
 }

@@ -30,7 +30,7 @@ pub struct Limits {
     pub rejected: u64,
     /// Solves in which Newton's method failed.
     pub failed: u64,
-    /// Newton corrections per accepted step, next to one matrix; see [`work`].
+    /// Newton corrections per accepted step.
     pub corrections: f64,
 }
 
@@ -210,7 +210,7 @@ impl<'a> Case<'a> {
         let inside = s.steps <= limits.steps
             && s.rejected_error <= limits.rejected
             && failed(s) <= limits.failed
-            && work(s) <= limits.corrections + MATRIX;
+            && corrections(s) <= limits.corrections;
         assert!(inside, "{}: {s:?} is beyond {limits:?}", self.name);
     }
 }
@@ -222,15 +222,6 @@ fn number(seconds: f64) -> String {
 /// A rejected step has failed twice, from both first guesses.
 fn failed(s: &Statistics) -> u64 {
     s.second_guesses + s.rejected_newton
-}
-
-/// Corrections that cost what one matrix costs (measured: six to eight, docs/accuracy-cost.md).
-const MATRIX: f64 = 5.0;
-
-/// Work per accepted step in corrections. A matrix that is kept over steps makes for more corrections, which are cheaper:
-/// corrections alone would ask for a matrix in every step, and matrices alone are no bound on corrections.
-fn work(s: &Statistics) -> f64 {
-    corrections(s) + MATRIX * s.newton.factorisations as f64 / s.steps as f64
 }
 
 fn corrections(s: &Statistics) -> f64 {
