@@ -121,9 +121,9 @@ fn invariant_every_creep_model_of_the_study_changes_the_scene_as_it_says() {
 }
 
 #[test]
-fn order_polynomials_come_closer_to_the_table_with_their_degree() {
+fn invariant_polynomials_come_closer_to_the_table_with_their_degree() {
     for slip in ["", " + Heathcote slip"] {
-        // The polynomials' own table is the truth for laws with and without the slip alike: power, without vibration.
+        // Flat ones too: where all balls stay loaded the degree matters more than the slip.
         let power = |degree: usize| {
             let label = format!("kalker M={degree}{slip}");
             find(Lever::CreepLaw, &label).errors.get(Norm::Power).unwrap()

@@ -13,7 +13,7 @@ use crate::plots::{COLOURS, PlotError};
 use crate::scene::CreepLaw;
 
 const PANEL: (u32, u32) = (500, 460);
-const LEGEND_WIDTH: u32 = 230;
+const LEGEND_WIDTH: u32 = 245;
 /// [-] errors below this are rounding and drawn here.
 const LEAST_ERROR: f64 = 1e-12;
 /// [-] a quantity whose errors are all below this is given, not computed: the displacement of a driven race.
@@ -212,14 +212,16 @@ fn levers_of(kind: ReferenceKind) -> impl Iterator<Item = Lever> {
 
 fn legend(kinds: &[ReferenceKind], area: &Area<'_>) -> Drawn {
     const LINE: i32 = 18;
+    // Clear of the last label of the panel beside.
+    const LEFT: i32 = 16;
     let text = |words: &str, at| Text::new(words.to_string(), at, ("sans-serif", 13));
     let mut y = 20;
     for &kind in kinds {
         for (words, look) in key(kind) {
             if let Some(look) = look {
-                look.draw(area, (14, y + 6))?;
+                look.draw(area, (LEFT + 10, y + 6))?;
             }
-            area.draw(&text(&words, (if look.is_some() { 28 } else { 4 }, y)))?;
+            area.draw(&text(&words, (LEFT + if look.is_some() { 24 } else { 0 }, y)))?;
             y += LINE;
         }
         y += LINE / 2;
@@ -227,10 +229,10 @@ fn legend(kinds: &[ReferenceKind], area: &Area<'_>) -> Drawn {
     for (words, style, (dash, gap)) in
         [("Pareto front", FRONT, FRONT_DASH), ("error bar of the reference", BAR, BAR_DASH)]
     {
-        for x in (2..24 - dash).step_by((dash + gap) as usize) {
+        for x in (LEFT..LEFT + 22 - dash).step_by((dash + gap) as usize) {
             area.draw(&PathElement::new([(x, y + 6), (x + dash, y + 6)], style))?;
         }
-        area.draw(&text(words, (28, y)))?;
+        area.draw(&text(words, (LEFT + 24, y)))?;
         y += LINE;
     }
     Ok(())
