@@ -23,6 +23,8 @@ pub enum Block {
         /// What it shows.
         caption: String,
     },
+    /// Parts between comments with a name, by which `scripts/study` finds them.
+    Section(String, Vec<Block>),
 }
 
 /// The document as Markdown.
@@ -34,6 +36,9 @@ pub fn markdown(blocks: &[Block]) -> String {
             Block::Heading(level, text) => writeln!(out, "{} {text}\n", "#".repeat(usize::from(*level))),
             Block::Text(text) => writeln!(out, "{text}\n"),
             Block::Figure { file, caption } => writeln!(out, "![{caption}]({file})\n"),
+            Block::Section(name, blocks) => {
+                writeln!(out, "<!-- begin {name} -->\n\n{}<!-- end -->\n", markdown(blocks))
+            }
             Block::Table { header, rows } => {
                 let line = |cells: &[String]| {
                     let cells: Vec<_> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
@@ -51,18 +56,28 @@ pub fn markdown(blocks: &[Block]) -> String {
 
 /// The document as a page of its own.
 pub fn html(title: &str, blocks: &[Block]) -> String {
-    let mut body = String::new();
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{}</title>\n\
+         <style>{STYLE}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
+        escape(title),
+        body(blocks)
+    )
+}
+
+fn body(blocks: &[Block]) -> String {
+    let mut out = String::new();
     for block in blocks {
         let _ = match block {
-            Block::Heading(level, text) => writeln!(body, "<h{level}>{}</h{level}>", escape(text)),
-            Block::Text(text) => writeln!(body, "<p>{}</p>", escape(text)),
+            Block::Heading(level, text) => writeln!(out, "<h{level}>{}</h{level}>", escape(text)),
+            Block::Text(text) => writeln!(out, "<p>{}</p>", escape(text)),
             Block::Figure { file, caption } => {
                 let (file, caption) = (escape(file), escape(caption));
                 writeln!(
-                    body,
+                    out,
                     "<figure><img src=\"{file}\" alt=\"{caption}\"><figcaption>{caption}</figcaption></figure>"
                 )
             }
+            Block::Section(_, blocks) => write!(out, "{}", body(blocks)),
             Block::Table { header, rows } => {
                 let line = |tag: &str, cells: &[String]| {
                     let cells: String =
@@ -71,18 +86,14 @@ pub fn html(title: &str, blocks: &[Block]) -> String {
                 };
                 let rows: String = rows.iter().map(|row| line("td", row)).collect();
                 writeln!(
-                    body,
+                    out,
                     "<table>\n<thead>{}</thead>\n<tbody>\n{rows}</tbody></table>",
                     line("th", header)
                 )
             }
         };
     }
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{}</title>\n\
-         <style>{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
-        escape(title)
-    )
+    out
 }
 
 const STYLE: &str = "body { font: 15px/1.5 sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em; color: #222 } \
@@ -103,7 +114,7 @@ mod tests {
         let cell = |text: &str| text.to_string();
         let blocks = [
             Block::Heading(2, cell("A & B")),
-            Block::Text(cell("x < 1e-3")),
+            Block::Section(cell("part"), vec![Block::Text(cell("x < 1e-3"))]),
             Block::Table {
                 header: vec![cell("lever"), cell("a|b"), cell("n")],
                 rows: vec![vec![cell("l"), cell("s"), cell("1")]],
@@ -112,7 +123,7 @@ mod tests {
         ];
         assert_eq!(
             markdown(&blocks),
-            "## A & B\n\nx < 1e-3\n\n| lever | a\\|b | n |\n| --- | --- | ---: |\n| l | s | 1 |\n\n![\"F\"](f.svg)\n\n"
+            "## A & B\n\n<!-- begin part -->\n\nx < 1e-3\n\n<!-- end -->\n\n| lever | a\\|b | n |\n| --- | --- | ---: |\n| l | s | 1 |\n\n![\"F\"](f.svg)\n\n"
         );
         let page = html("T", &blocks);
         for part in [

@@ -6,18 +6,22 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use strum::VariantArray;
 
-use super::levers::{Lever, ReferenceKind};
+use super::levers::{CreepModel, Level, Lever, ReferenceKind};
 use super::norms::{Errors, Norm};
 use super::{Point, SceneStudy};
 use crate::plots::{COLOURS, PlotError};
+use crate::scene::CreepLaw;
 
-const PANEL: (u32, u32) = (500, 360);
-const LEGEND_WIDTH: u32 = 230;
+const PANEL: (u32, u32) = (500, 460);
+const LEGEND_WIDTH: u32 = 245;
 /// [-] errors below this are rounding and drawn here.
 const LEAST_ERROR: f64 = 1e-12;
 /// [-] a quantity whose errors are all below this is given, not computed: the displacement of a driven race.
 const WORTH_SHOWING: f64 = 1e-6;
 const FRONT: ShapeStyle = ShapeStyle { color: RGBAColor(0, 0, 0, 1.0), filled: false, stroke_width: 2 };
+/// [pixel] dash and gap.
+const FRONT_DASH: (i32, i32) = (6, 4);
+const BAR_DASH: (i32, i32) = (2, 3);
 const BAR: ShapeStyle = ShapeStyle { color: RGBAColor(90, 90, 90, 1.0), filled: false, stroke_width: 1 };
 
 /// A panel: the errors of one norm, or the largest of all.
@@ -104,36 +108,132 @@ fn write(path: &Path, title: &str, panels: &[Panel<'_>], kinds: &[ReferenceKind]
     draw_all().map_err(|why| PlotError { path: path.display().to_string(), why: why.to_string() })
 }
 
+/// Shape of a mark.
+#[derive(Clone, Copy)]
+enum Shape {
+    Circle,
+    Square,
+    Triangle,
+}
+
+/// How the points of a curve look.
+#[derive(Clone, Copy)]
+struct Look {
+    shape: Shape,
+    colour: RGBColor,
+    filled: bool,
+}
+
+impl Look {
+    fn of_lever(lever: Lever) -> Self {
+        let circle = |colour: usize, filled| Self { shape: Shape::Circle, colour: COLOURS[colour], filled };
+        match lever {
+            Lever::Goal => Self { shape: Shape::Square, colour: BLACK, filled: true },
+            Lever::FixedStep => circle(0, true),
+            Lever::Tolerance => circle(1, true),
+            Lever::StepCap => circle(2, true),
+            Lever::AlphaF => circle(3, true),
+            Lever::MatrixReuse => circle(4, true),
+            Lever::CommunicationHeld => circle(0, false),
+            Lever::CommunicationDerivatives => circle(1, false),
+            Lever::CommunicationAhead => circle(2, false),
+            Lever::Level | Lever::CreepLaw => circle(6, true),
+        }
+    }
+
+    /// Triangles are the polynomials; filled is with the slip of bent grooves.
+    fn of_model(model: CreepModel, level: Level) -> Self {
+        let (shape, colour) = match (level, model.law) {
+            (Level::Equilibrium, _) => (Shape::Square, COLOURS[6]),
+            (_, CreepLaw::Frictionless) => (Shape::Circle, COLOURS[6]),
+            (_, CreepLaw::Linear) => (Shape::Circle, COLOURS[5]),
+            (_, CreepLaw::Regularised) => (Shape::Circle, COLOURS[4]),
+            (_, CreepLaw::Saturated) => (Shape::Circle, COLOURS[1]),
+            (_, CreepLaw::Kalker) => {
+                (Shape::Triangle, COLOURS[[0, 2, 3, 5][model.degree.unwrap_or(1) / 2 % 4]])
+            }
+            (_, CreepLaw::KalkerTable) => (Shape::Square, BLACK),
+        };
+        Self { shape, colour, filled: model.heathcote_slip && level == Level::Dynamic }
+    }
+
+    fn of(point: &Point) -> Self {
+        match point.lever.reference() {
+            ReferenceKind::Numerical => Self::of_lever(point.lever),
+            ReferenceKind::Model => Self::of_model(point.creep, point.level),
+        }
+    }
+
+    /// Draws a mark at a pixel of the area.
+    fn draw(self, area: &Area<'_>, (x, y): (i32, i32)) -> Drawn {
+        let style = if self.filled { self.colour.filled() } else { self.colour.stroke_width(2) };
+        let corners: &[(i32, i32)] = match self.shape {
+            Shape::Circle => return Ok(area.draw(&Circle::new((x, y), 4, style))?),
+            Shape::Square => &[(-4, -4), (4, -4), (4, 4), (-4, 4), (-4, -4)],
+            Shape::Triangle => &[(-5, 4), (0, -5), (5, 4), (-5, 4)],
+        };
+        let corners: Vec<_> = corners.iter().map(|(right, down)| (x + right, y + down)).collect();
+        if self.filled {
+            area.draw(&Polygon::new(corners, style))?;
+        } else {
+            area.draw(&PathElement::new(corners, style))?;
+        }
+        Ok(())
+    }
+}
+
+/// What the marks of one kind of error mean.
+fn key(kind: ReferenceKind) -> Vec<(String, Option<Look>)> {
+    let heading = (kind_name(kind).to_string(), None);
+    let entries: Vec<_> = match kind {
+        ReferenceKind::Numerical => levers_of(kind)
+            .map(|lever| {
+                let from_left = if lever == Lever::Goal { ": fast, balanced, reference" } else { "" };
+                (format!("{}{from_left}", lever.name()), Some(Look::of_lever(lever)))
+            })
+            .collect(),
+        ReferenceKind::Model => {
+            let flat = CreepModel::studied().into_iter().filter(|model| !model.heathcote_slip);
+            let laws = flat.map(|model| (model.name(), Some(Look::of_model(model, Level::Dynamic))));
+            let equilibrium = Look::of_model(CreepModel::RICHEST, Level::Equilibrium);
+            let filled = ("filled: with Heathcote slip".to_string(), None);
+            std::iter::once(("equilibrium".to_string(), Some(equilibrium)))
+                .chain(laws)
+                .chain([filled])
+                .collect()
+        }
+    };
+    std::iter::once(heading).chain(entries).collect()
+}
+
 fn levers_of(kind: ReferenceKind) -> impl Iterator<Item = Lever> {
     Lever::VARIANTS.iter().copied().filter(move |lever| lever.reference() == kind)
 }
 
-/// A mark whose colour, and fill where colours run out, tells the lever by its place in [`levers_of`].
-fn mark<C>(index: usize, at: C) -> Circle<C, i32> {
-    let colour = colour(index);
-    Circle::new(at, 4, if index < COLOURS.len() { colour.filled() } else { colour.stroke_width(2) })
-}
-
-fn colour(index: usize) -> RGBColor {
-    COLOURS[index % COLOURS.len()]
-}
-
 fn legend(kinds: &[ReferenceKind], area: &Area<'_>) -> Drawn {
+    const LINE: i32 = 18;
+    // Clear of the last label of the panel beside.
+    const LEFT: i32 = 16;
     let text = |words: &str, at| Text::new(words.to_string(), at, ("sans-serif", 13));
-    let mut y = 30;
+    let mut y = 20;
     for &kind in kinds {
-        area.draw(&text(kind_name(kind), (4, y)))?;
-        for (index, lever) in levers_of(kind).enumerate() {
-            y += 20;
-            area.draw(&mark(index, (14, y + 6)))?;
-            area.draw(&text(lever.name(), (28, y)))?;
+        for (words, look) in key(kind) {
+            if let Some(look) = look {
+                look.draw(area, (LEFT + 10, y + 6))?;
+            }
+            area.draw(&text(&words, (LEFT + if look.is_some() { 24 } else { 0 }, y)))?;
+            y += LINE;
         }
-        y += 34;
+        y += LINE / 2;
     }
-    for (words, style) in [("Pareto front", FRONT), ("error bar of the reference", BAR)] {
-        area.draw(&PathElement::new([(4, y + 6), (22, y + 6)], style))?;
-        area.draw(&text(words, (28, y)))?;
-        y += 20;
+    for (words, style, (dash, gap)) in
+        [("Pareto front", FRONT, FRONT_DASH), ("error bar of the reference", BAR, BAR_DASH)]
+    {
+        for x in (LEFT..LEFT + 22 - dash).step_by((dash + gap) as usize) {
+            area.draw(&PathElement::new([(x, y + 6), (x + dash, y + 6)], style))?;
+        }
+        area.draw(&text(words, (LEFT + 24, y)))?;
+        y += LINE;
     }
     Ok(())
 }
@@ -144,7 +244,8 @@ fn decades(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     if low > high {
         return 0.1..10.0;
     }
-    10f64.powf((low.log10() - 0.05).floor())..10f64.powf((high.log10() + 0.05).ceil())
+    // A little beyond, so that the first decade has its label.
+    0.999 * 10f64.powf((low.log10() - 0.05).floor())..1.001 * 10f64.powf((high.log10() + 0.05).ceil())
 }
 
 fn draw(panel: &Panel<'_>, area: &Area<'_>) -> Drawn {
@@ -163,34 +264,40 @@ fn draw(panel: &Panel<'_>, area: &Area<'_>) -> Drawn {
         // Decades are enough, and lines between them would be most of the file.
         .max_light_lines(0)
         .bold_line_style(RGBColor(215, 215, 215))
-        .x_desc("CPU seconds per simulated second")
-        .y_desc("relative error")
+        .x_desc("CPU seconds per simulated second [s/s]")
+        .y_desc("relative error [-]")
         .axis_desc_style(("sans-serif", 13))
         .label_style(("sans-serif", 12))
         .x_label_formatter(&|value| format!("{}", (value * 1e6).round() / 1e6))
         .y_label_formatter(&|value| format!("{value:.0e}"))
         .draw()?;
-    for (index, lever) in levers_of(kind).enumerate() {
-        let points: Vec<_> = study.points_of(kind).filter(|point| point.lever == lever).collect();
-        let places: Vec<_> = points.iter().filter_map(|point| panel.place(point)).collect();
-        if kind == ReferenceKind::Numerical {
-            chart.draw_series(LineSeries::new(places.iter().copied(), colour(index).stroke_width(1)))?;
-        } else {
-            // Models are no scale: no line joins them, each has its name.
-            let named = points.iter().filter_map(|point| Some((point, panel.place(point)?)));
-            // The richest law is also the dynamic level: names of the levers one above the other.
-            let above = if lever == Lever::Level { -16 } else { -5 };
-            let name = |(point, place): (&&Point, _)| {
-                EmptyElement::at(place) + Text::new(point.label.clone(), (7, above), ("sans-serif", 12))
-            };
-            chart.draw_series(named.map(name))?;
+    // The goals last, on top of the others.
+    let mut levers: Vec<_> = levers_of(kind).collect();
+    levers.sort_by_key(|lever| *lever == Lever::Goal);
+    for lever in levers {
+        let points = study.points_of(kind).filter(|point| point.lever == lever);
+        let places: Vec<_> =
+            points.filter_map(|point| Some((Look::of(point), panel.place(point)?))).collect();
+        // Models are no scale: no line joins them.
+        if let (ReferenceKind::Numerical, Some((look, _))) = (kind, places.first()) {
+            let line = places.iter().map(|(_, place)| *place);
+            chart.draw_series(LineSeries::new(line, look.colour.stroke_width(1)))?;
         }
-        chart.draw_series(places.into_iter().map(|place| mark(index, place)))?;
+        let (left, top) = area.get_base_pixel();
+        for (look, place) in places {
+            let (x, y) = chart.plotting_area().map_coordinate(&place);
+            look.draw(area, (x - left, y - top))?;
+        }
     }
     let front = study.pareto(kind, panel.norm).into_iter().filter_map(|(point, _, _)| panel.place(point));
-    chart.draw_series(DashedLineSeries::new(front.collect::<Vec<_>>(), 6, 4, FRONT))?;
+    chart.draw_series(DashedLineSeries::new(front.collect::<Vec<_>>(), FRONT_DASH.0, FRONT_DASH.1, FRONT))?;
     if let Some(bar) = bar {
-        chart.draw_series(DashedLineSeries::new([(x.start, bar), (x.end, bar)], 2, 3, BAR))?;
+        chart.draw_series(DashedLineSeries::new(
+            [(x.start, bar), (x.end, bar)],
+            BAR_DASH.0,
+            BAR_DASH.1,
+            BAR,
+        ))?;
     }
     Ok(())
 }

@@ -11,7 +11,7 @@ pub enum Lever {
     /// Quasi-static or dynamic.
     #[strum(serialize = "level")]
     Level,
-    /// Creep law.
+    /// Creep law, degree of its polynomials, slip of bent grooves.
     #[strum(serialize = "creep law")]
     CreepLaw,
     /// Goal of `solver.accuracy`.
@@ -123,14 +123,66 @@ impl Setting {
         Self::plain(Lever::FixedStep, seconds(step), scene)
     }
 
-    /// The scene with another creep law.
-    pub fn creep_law(scene: &Scene, law: CreepLaw) -> Self {
+    /// The scene with another creep model.
+    pub fn creep(scene: &Scene, model: CreepModel) -> Self {
         let mut scene = scene.clone();
-        scene.effects.creep = law;
-        Self::plain(Lever::CreepLaw, <&str>::from(law), scene)
+        let effects = &mut scene.effects;
+        effects.creep = model.law;
+        effects.kalker_degree = model.degree.unwrap_or(effects.kalker_degree);
+        effects.heathcote_slip = model.heathcote_slip;
+        Self::plain(Lever::CreepLaw, model.name(), scene)
     }
 }
 
+/// A creep law with what it can be combined with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CreepModel {
+    /// Law.
+    pub law: CreepLaw,
+    /// [-] degree M of the polynomials, of the law that has them.
+    pub degree: Option<usize>,
+    /// With the slip of bent grooves.
+    pub heathcote_slip: bool,
+}
+
+impl CreepModel {
+    /// The most exact there is. Against boundary elements the table is closer than polynomials of degree 7 and than every
+    /// closed form, and with the slip of bent grooves no other law is closer in spin moment and power
+    /// (`docs/rolling-contact.md`).
+    pub const RICHEST: Self = Self { law: CreepLaw::KalkerTable, degree: None, heathcote_slip: true };
+
+    /// That of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        let effects = &scene.effects;
+        let degree = (effects.creep == CreepLaw::Kalker).then_some(effects.kalker_degree);
+        Self { law: effects.creep, degree, heathcote_slip: effects.heathcote_slip }
+    }
+
+    /// Those of the study, from the poorest to the richest. `linear` is left out: it is unbounded, wrong by up to six
+    /// decades where balls spin.
+    pub fn studied() -> Vec<Self> {
+        let laws = CreepLaw::VARIANTS.iter().filter(|law| **law != CreepLaw::Linear);
+        let degrees = |law| if law == CreepLaw::Kalker { DEGREES.map(Some).to_vec() } else { vec![None] };
+        let slips = |law| if law == CreepLaw::Frictionless { &[false][..] } else { &[false, true] };
+        laws.flat_map(|&law| degrees(law).into_iter().map(move |degree| (law, degree)))
+            .flat_map(|(law, degree)| {
+                slips(law).iter().map(move |&heathcote_slip| Self { law, degree, heathcote_slip })
+            })
+            .collect()
+    }
+
+    /// Law, degree and slip as shown.
+    pub fn name(self) -> String {
+        let law: &str = self.law.into();
+        let degree = self.degree.map(|degree| format!(" M={degree}")).unwrap_or_default();
+        format!("{law}{degree}{}", if self.heathcote_slip { " + Heathcote slip" } else { "" })
+    }
+}
+
+/// [-] degrees of the polynomials: odd ones, whose errors fall by steps (`docs/rolling-contact.md`).
+const DEGREES: [usize; 4] = [1, 3, 5, 7];
+/// Name of the richest model at the lever `level`.
+pub const DYNAMIC: &str = "dynamic";
 /// [-] largest tolerance that a scene may have.
 const OPEN_TOLERANCE: f64 = 1e-2;
 /// Halvings of the output interval: fixed steps of the ladder, and the two steps of the reference.
@@ -149,24 +201,13 @@ pub fn reference_steps(scene: &Scene) -> [f64; 2] {
     [fine, coarse]
 }
 
-/// The richest creep law there is.
-pub fn richest_law() -> CreepLaw {
-    CreepLaw::VARIANTS.last().copied().unwrap_or_default()
-}
-
-/// Creep laws of the study: all but the polynomials, which take a millisecond a contact and are less accurate than the
-/// table; `docs/rolling-contact.md` has their cost.
-pub fn studied_laws() -> impl Iterator<Item = CreepLaw> {
-    CreepLaw::VARIANTS.iter().copied().filter(|law| *law != CreepLaw::Kalker)
-}
-
 /// All settings of the levers that change the model, at the scene's own step.
 pub fn model_settings(scene: &Scene) -> Vec<Setting> {
     let quasi_static =
         Setting { level: Level::Equilibrium, ..Setting::plain(Lever::Level, "equilibrium", scene.clone()) };
-    let mut richest = Setting::creep_law(scene, richest_law());
-    (richest.lever, richest.label) = (Lever::Level, "dynamic".to_string());
-    let laws = studied_laws().map(|law| Setting::creep_law(scene, law));
+    let mut richest = Setting::creep(scene, CreepModel::RICHEST);
+    (richest.lever, richest.label) = (Lever::Level, DYNAMIC.to_string());
+    let laws = CreepModel::studied().into_iter().map(|model| Setting::creep(scene, model));
     [quasi_static, richest].into_iter().chain(laws).collect()
 }
 

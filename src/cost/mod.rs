@@ -18,7 +18,7 @@ use indicatif::ProgressBar;
 use crate::scene::Scene;
 use crate::simulation::SimulationError;
 use crate::units::Time;
-use levers::{Lever, ReferenceKind, Setting};
+use levers::{CreepModel, Level, Lever, ReferenceKind, Setting};
 use norms::{Comparison, Errors, Norm, errors};
 use record::{Record, record};
 
@@ -51,6 +51,10 @@ pub struct Point {
     pub lever: Lever,
     /// What it was set to.
     pub label: String,
+    /// Creep model.
+    pub creep: CreepModel,
+    /// Quasi-static or dynamic.
+    pub level: Level,
     /// Cost and error, or why the run ended early.
     pub result: Result<Measured, String>,
 }
@@ -156,7 +160,7 @@ pub fn study(name: &str, scene: &Scene, progress: &ProgressBar) -> Result<SceneS
     let tiny = Reference { error_bar: compare(&second, &finest), run: finest };
 
     // the richest model at the scene's own step, and at half of it
-    let richest = Setting::creep_law(scene, levers::richest_law());
+    let richest = Setting::creep(scene, CreepModel::RICHEST);
     let run = timed("richest model".into(), &richest)?;
     let mut finer = richest.scene.clone();
     let solver = &mut finer.solver;
@@ -181,8 +185,13 @@ pub fn study(name: &str, scene: &Scene, progress: &ProgressBar) -> Result<SceneS
                 instructions: run.cost.instructions.map(|count| count / duration),
                 work: run.work,
             });
-            let (lever, label) = (setting.lever, setting.label.clone());
-            Point { lever, label, result: measured.map_err(|why| why.to_string()) }
+            Point {
+                lever: setting.lever,
+                label: setting.label.clone(),
+                creep: CreepModel::of(&setting.scene),
+                level: setting.level,
+                result: measured.map_err(|why| why.to_string()),
+            }
         })
         .collect();
     Ok(SceneStudy {

@@ -7,10 +7,11 @@ use strum::VariantArray;
 use thiserror::Error;
 
 use super::document::{Block, html, markdown};
-use super::levers::{Lever, ReferenceKind, seconds};
+use super::levers::{DYNAMIC, Lever, ReferenceKind, seconds};
 use super::norms::{Comparison, Errors, Norm};
-use super::{Point, SceneStudy, figures, table};
+use super::{Measured, Point, SceneStudy, figures, table};
 use crate::plots::PlotError;
+use crate::scene::Accuracy;
 
 /// Why a report could not be written.
 #[derive(Debug, Error)]
@@ -75,46 +76,137 @@ fn text(text: impl Into<String>) -> Block {
 }
 
 fn report(studies: &[SceneStudy]) -> Vec<Block> {
+    let group =
+        |comparison| studies.iter().filter(|study| study.comparison == comparison).collect::<Vec<_>>();
+    let (smooth, impacts) = (group(Comparison::Pointwise), group(Comparison::WindowMeans));
+    let made = format!("roulement {} on {}.", env!("ROULEMENT_VERSION"), machine());
     let mut blocks = vec![
         Block::Heading(1, TITLE.into()),
-        text(format!("roulement {} on {}.", env!("ROULEMENT_VERSION"), machine())),
+        Block::Section("machine".into(), vec![text(made)]),
         text(
             "CPU is the time of one thread per simulated second, without the start; the least of up to three runs. \
              Errors are relative, from a quarter of the simulated time on. The numerical error is against the same \
              model at a tiny step, the model error against the richest model at the scene's own step. Each reference \
              has an error bar, its difference to a run at another step: errors near the bar or below it say no more than that.",
         ),
+        text("The goals of `solver.accuracy` over all scenes:"),
+        Block::Section("goals".into(), vec![goals(&smooth, &impacts)]),
     ];
-    for (comparison, heading, how) in [
+    for (group, name, heading, how) in [
         (
-            Comparison::Pointwise,
+            smooth,
+            "smooth",
             "Smooth scenes",
             "The two finest runs stay together: errors are root mean squares of differences at equal times.",
         ),
         (
-            Comparison::WindowMeans,
+            impacts,
+            "impacts",
             "Scenes with impacts",
             "Trajectories diverge, whatever the step: errors are differences of means over the window.",
         ),
     ] {
-        let group: Vec<_> = studies.iter().filter(|study| study.comparison == comparison).collect();
         if group.is_empty() {
             continue;
         }
+        let section = |part: &str, blocks| Block::Section(format!("{name} {part}"), blocks);
+        let plot = |study: &&SceneStudy| figure(study, "overview", "largest error against CPU time");
         blocks.extend([
             Block::Heading(2, heading.into()),
             text(how),
-            goals(&group),
+            section("goals", vec![goals_by_scene(&group)]),
+            section("plots", group.iter().map(plot).collect()),
             text(CHEAPEST),
-            cheapest(&group),
+            section("cheapest", vec![cheapest(&group)]),
+            text("Error of every model against the richest, at the scene's own step, and its CPU time:"),
+            section("models", vec![models(&group)]),
         ]);
         group.iter().for_each(|study| scene(study, &mut blocks));
     }
     blocks
 }
 
+/// The goals of `solver.accuracy`: what they stand for, and their errors and times over all scenes.
+fn goals(smooth: &[&SceneStudy], impacts: &[&SceneStudy]) -> Block {
+    let header = [
+        "goal",
+        "settings",
+        "wrench error, smooth",
+        "largest error, smooth",
+        "CPU [s/s], smooth",
+        "largest error, impacts",
+        "CPU [s/s], impacts",
+    ];
+    let row = |goal: &Accuracy| {
+        let name: &str = goal.into();
+        let over = |group: &[&SceneStudy], get: &dyn Fn(&Measured) -> Option<f64>| -> Vec<f64> {
+            let points = group.iter().flat_map(|study| &study.points);
+            let of_goal = points.filter(|point| point.lever == Lever::Goal && point.label == name);
+            of_goal.filter_map(|point| get(point.result.as_ref().ok()?)).collect()
+        };
+        let largest = |group, get| number(over(group, get).into_iter().reduce(f64::max));
+        let times = |group| {
+            let times = over(group, &|measured| Some(measured.cpu));
+            let [least, most] = [f64::min, f64::max].map(|choose| times.iter().copied().reduce(choose));
+            match least.zip(most) {
+                Some((least, most)) if least < most => format!("{least:.2} to {most:.2}"),
+                only => only.map(|(time, _)| format!("{time:.2}")).unwrap_or_default(),
+            }
+        };
+        let solver = goal.solver();
+        vec![
+            format!("`{name}`"),
+            format!("`tolerance` {:e}, `max_step` {}", solver.tolerance, seconds(solver.max_step.0)),
+            largest(smooth, &|measured| measured.errors.get(Norm::Wrench)),
+            largest(smooth, &|measured| measured.errors.worst()),
+            times(smooth),
+            largest(impacts, &|measured| measured.errors.worst()),
+            times(impacts),
+        ]
+    };
+    let rows = Accuracy::VARIANTS.iter().map(row).collect();
+    Block::Table { header: header.map(String::from).to_vec(), rows }
+}
+
+/// Model errors and times: a row for every quantity and model, a column for every scene.
+fn models(group: &[&SceneStudy]) -> Block {
+    let header = ["quantity", "model"].map(String::from).into_iter();
+    let header = header.chain(group.iter().map(|study| study.name.clone())).collect();
+    let models = group[0].points_of(ReferenceKind::Model).filter(|point| point.label != DYNAMIC);
+    let models: Vec<_> = models.map(|point| point.label.clone()).collect();
+    let measured = |study: &SceneStudy, label: &str| {
+        study
+            .points_of(ReferenceKind::Model)
+            .find(|point| point.label == label)?
+            .result
+            .as_ref()
+            .ok()
+            .cloned()
+    };
+    let norms = [Norm::Wrench, Norm::FrictionTorque, Norm::Power];
+    let mut rows = Vec::new();
+    for norm in norms {
+        let name = norm.name().to_string();
+        let bars = group.iter().map(|study| number(study.error_bar(ReferenceKind::Model).get(norm)));
+        rows.push([name.clone(), "error bar".into()].into_iter().chain(bars).collect());
+        for label in &models {
+            let errors = group
+                .iter()
+                .map(|study| measured(study, label).map_or("failed".into(), |m| number(m.errors.get(norm))));
+            rows.push([name.clone(), label.clone()].into_iter().chain(errors).collect());
+        }
+    }
+    for label in &models {
+        let times = group
+            .iter()
+            .map(|study| measured(study, label).map_or("failed".into(), |m| format!("{:.2}", m.cpu)));
+        rows.push(["CPU [s/s]".to_string(), label.clone()].into_iter().chain(times).collect());
+    }
+    Block::Table { header, rows }
+}
+
 /// The goals of `solver.accuracy`, scene by scene.
-fn goals(group: &[&SceneStudy]) -> Block {
+fn goals_by_scene(group: &[&SceneStudy]) -> Block {
     let header = ["scene", "goal", "wrench", "friction torque", "mean power", "largest", "CPU [s/s]"];
     let mut rows = Vec::new();
     for study in group {
@@ -161,11 +253,11 @@ fn cheapest(group: &[&SceneStudy]) -> Block {
     Block::Table { header, rows }
 }
 
+fn figure(study: &SceneStudy, what: &str, caption: &str) -> Block {
+    Block::Figure { file: figure_file(study, what), caption: format!("{}: {caption}", study.title()) }
+}
+
 fn scene(study: &SceneStudy, blocks: &mut Vec<Block>) {
-    let figure = |what, caption: &str| Block::Figure {
-        file: figure_file(study, what),
-        caption: format!("{}: {caption}", study.title()),
-    };
     blocks.extend([
         Block::Heading(3, study.title().to_string()),
         text(format!(
@@ -176,11 +268,10 @@ fn scene(study: &SceneStudy, blocks: &mut Vec<Block>) {
             seconds(study.reference_step),
             number(Some(study.divergence)),
         )),
-        figure("overview", "largest error against CPU time"),
-        figure("numerical", "numerical error of every quantity"),
+        figure(study, "numerical", "numerical error of every quantity"),
         text("Numerical error, same model. A star marks the Pareto front of the largest error."),
         points(study, ReferenceKind::Numerical),
-        figure("model", "model error of every quantity"),
+        figure(study, "model", "model error of every quantity"),
         text("Model error, at the scene's own step."),
         points(study, ReferenceKind::Model),
     ]);
