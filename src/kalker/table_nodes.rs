@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use super::half_space::{HalfSpace, HalfSpaceError, Tractions, cells, limit};
 use super::linear::Scales;
 use super::table::{MIDDLE, NODES, POISSON, SHAPE, Stretch, index};
-use super::table_pieces::size;
+use super::table_pieces::{between_steps, size, weights};
 use super::{Patch, ScaledCreepage};
 
 /// Cells of the coarser grid over the geometric mean of the axes: of ellipses wide across rolling, and of those long
@@ -24,6 +24,8 @@ pub struct Rays {
     stretch: Stretch,
     coarse: HalfSpace,
     fine: HalfSpace,
+    /// Whether there is a peak between the even steps of t.
+    peaked: bool,
 }
 
 impl Rays {
@@ -34,22 +36,25 @@ impl Rays {
     pub fn new(axis_ratio: f64) -> Result<Self, HalfSpaceError> {
         let patch = Patch { axis_ratio, poisson_ratio: POISSON, rolling_angle: 0.0 };
         let scales = Scales::new(&patch)?;
-        let [along, across] = if axis_ratio > 0.99 { cells(&patch, CELLS[1]) } else { [CELLS[0]; 2] };
+        let long = axis_ratio > 0.99;
+        let [along, across] = if long { cells(&patch, CELLS[1]) } else { [CELLS[0]; 2] };
         Ok(Self {
             scales,
             stretch: Stretch::new(axis_ratio, &scales),
             coarse: HalfSpace::with_cells(&patch, [along, across])?,
             fine: HalfSpace::with_cells(&patch, [2 * along, 2 * across])?,
+            peaked: long,
         })
     }
 
     /// Stored values from rest to sliding at one node of theta and phi, each from the solution before. The one at rest,
-    /// which is linear theory, is left out of the computation.
+    /// which is linear theory, is left out of the computation. Of ellipses wide across rolling, which have no peak there,
+    /// nodes between the even steps of t lie on the cubic through the others.
     ///
     /// # Errors
     /// If the reference solver has no answer at a node.
     pub fn ray(&self, j: usize, k: usize) -> Result<[[f64; 3]; SHAPE[0] + 1], HalfSpaceError> {
-        let Self { scales, stretch, coarse, fine } = self;
+        let Self { scales, stretch, coarse, fine, peaked } = self;
         // On the axis and the plane of symmetry what would be divided by zero has its limit: a little beside them.
         let theta = (FRAC_PI_2 * j as f64 / SHAPE[1] as f64).clamp(ASIDE, FRAC_PI_2 - ASIDE);
         let phi = PI * k as f64 / SHAPE[2] as f64;
@@ -57,6 +62,9 @@ impl Rays {
         let mut values = [[0.0; 3]; SHAPE[0] + 1];
         let mut starts: [Option<Tractions>; 2] = [None, None];
         for (i, value) in values.iter_mut().enumerate().skip(1) {
+            if !peaked && between_steps(i).is_some() {
+                continue;
+            }
             let t = size(i);
             let r = if i == SHAPE[0] { SLIDING } else { MIDDLE * t / (1.0 - t) };
             let creepage = ScaledCreepage {
@@ -74,6 +82,14 @@ impl Rays {
                 forces.mz / (scales.moment * t * theta.sin()),
             ];
             starts = solutions.map(Some);
+        }
+        if !peaked {
+            for i in 0..=SHAPE[0] {
+                if let Some((around, u)) = between_steps(i) {
+                    let (w, _) = weights(u, 1.0);
+                    values[i] = std::array::from_fn(|m| (0..4).map(|n| w[n] * values[around[n]][m]).sum());
+                }
+            }
         }
         Ok(values)
     }

@@ -5,12 +5,21 @@
 const SIZES: [u8; 18] = [0, 4, 8, 12, 16, 18, 19, 20, 21, 22, 24, 26, 28, 32, 36, 40, 44, PARTS as u8];
 /// Equal parts of t, each of which lies inside one piece.
 const PARTS: usize = 48;
+/// Parts in a step of t where nodes are not closer.
+const STEP: u8 = 4;
 /// Pieces of t.
 pub(super) const COUNT: usize = SIZES.len() - 1;
 
 /// t at a node.
 pub(super) fn size(node: usize) -> f64 {
     f64::from(SIZES[node]) / PARTS as f64
+}
+
+/// Of a node between the even steps of t: the four nodes at even steps around it, and its place between the inner two.
+pub(super) fn between_steps(node: usize) -> Option<([usize; 4], f64)> {
+    let (before, rest) = (SIZES[node] / STEP, SIZES[node] % STEP);
+    let at = |offset: u8| SIZES.iter().position(|size| size + STEP == STEP * (before + offset)).unwrap_or(0);
+    (rest != 0).then(|| ([0, 1, 2, 3].map(at), f64::from(rest) / f64::from(STEP)))
 }
 
 /// A piece of t.
