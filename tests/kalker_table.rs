@@ -6,9 +6,13 @@ mod common;
 use std::f64::consts::PI;
 
 use common::cases;
+use roulement::kalker::half_space::extrapolated;
 use roulement::kalker::linear::creep_matrix;
-use roulement::kalker::table::CreepTable;
+use roulement::kalker::table::{CreepTable, index, knot, shipped};
+use roulement::kalker::table_nodes::Rays;
 use roulement::kalker::{Patch, ScaledCreepage};
+use roulement::rolling_contact::{Law, RollingContact};
+use roulement::scene::CreepLaw;
 
 fn patch(axis_ratio: f64) -> Patch {
     Patch { axis_ratio, poisson_ratio: 0.3, rolling_angle: 0.0 }
@@ -65,11 +69,101 @@ fn independent_data_contacts_of_bearings_and_up_to_circles() {
 
 #[test]
 fn independent_data_ellipses_long_along_rolling() {
-    // Pure spin saturates the lateral force at a sharp peak between two nodes: off by 0.036 and 0.032 at two of 22 cases,
-    // whose data are known to 0.008 and 0.005.
     let (mean, worst) = errors("general", 1.5..21.0);
-    assert!(mean[0].max(mean[1]) < 0.0075 && worst[0].max(worst[1]) < 0.04, "{mean:?} {worst:?}");
-    assert!(mean[2] < 0.01 && worst[2] < 0.05, "{mean:?} {worst:?}");
+    assert!(mean[0].max(mean[1]) < 0.005 && worst[0].max(worst[1]) < 0.02, "{mean:?} {worst:?}");
+    assert!(mean[2] < 0.01 && worst[2] < 0.02, "{mean:?} {worst:?}");
+}
+
+/// A sequence in [0, 1) that fills it evenly: multiples of the golden ratio's powers by dimension.
+fn spread(case: u32, dimension: i32) -> f64 {
+    // root of x^7 = x + 1: six dimensions at once (R-sequence, Roberts 2018)
+    (0.5 + f64::from(case) * 1.1127756842787054706f64.powi(-dimension)).fract()
+}
+
+#[test]
+#[ignore = "30 solutions of the reference solver near its slowest"]
+fn regression_spin_of_long_ellipses_near_the_peak_of_lateral_force() {
+    let (mut sum, mut worst) = ([0.0; 3], [0.0f64; 3]);
+    for case in 1..=30 {
+        let u = |dimension| spread(case, dimension);
+        let patch =
+            Patch { axis_ratio: 20f64.powf(u(1)), poisson_ratio: 0.2 + 0.15 * u(2), rolling_angle: 0.0 };
+        let c = creep_matrix(&patch).unwrap() * (1.5 / PI);
+        // The lateral force of spin saturates at a response of about 1.1.
+        let coupling = CreepTable::new(&patch).unwrap().spin_coupling();
+        let response = 0.75 + u(3);
+        let spin = response / 1f64.hypot(coupling) * largest_moment(patch.axis_ratio) / c[(2, 2)];
+        // a third pure spin, the others with some creepage
+        let some = if case % 3 == 0 { 0.0 } else { 0.6 * response };
+        let creepage = ScaledCreepage {
+            x: some * (u(4) - 0.5) / c[(0, 0)],
+            y: some * (u(5) - 0.5) / c[(1, 1)],
+            spin,
+            curvature: 0.0,
+        };
+        let ours = forces(&patch, &creepage);
+        let reference = extrapolated(&patch, &creepage, 24).unwrap();
+        let errors = [ours[0] - reference.fx, ours[1] - reference.fy, ours[2] - reference.mz].map(f64::abs);
+        println!("{:.2} {response:.2} {errors:.4?}", patch.axis_ratio);
+        for (k, error) in errors.into_iter().enumerate() {
+            sum[k] += error / 30.0;
+            worst[k] = worst[k].max(error);
+        }
+    }
+    println!("mean {sum:.4?} worst {worst:.4?}");
+    // One case lies at 0.031, where the peak falls between two nodes of phi; its reference changes by 0.008 with the grid.
+    assert!(
+        sum[0].max(sum[1]) < 0.01 && worst[0].max(worst[1]) < 0.033 && worst[2] < 0.05,
+        "{sum:?} {worst:?}"
+    );
+}
+
+/// Twenty oblique contacts with ellipses of ball bearings, 4 to 86 degrees from an axis.
+fn oblique_contacts() -> Vec<RollingContact> {
+    let between = |low: f64, high: f64, u: f64| low + (high - low) * u;
+    (1..=20)
+        .map(|case| {
+            let u = |dimension| spread(case, dimension);
+            let ratio = between(0.06f64.ln(), 0.3f64.ln(), u(1)).exp();
+            let size = between(0.1f64.ln(), 6f64.ln(), u(3)).exp();
+            let (y, x) = (2.0 * PI * u(4)).sin_cos();
+            let spin = between(0.2f64.ln(), 10f64.ln(), u(5)).exp() * (u(6) - 0.5).signum();
+            RollingContact {
+                id: format!("{case}"),
+                poisson_ratio: 0.3,
+                shear_modulus: 8e10,
+                friction: 0.05,
+                peak_pressure: 1.6e9,
+                semi_axis_x: 3e-4 * ratio.sqrt(),
+                semi_axis_y: 3e-4 / ratio.sqrt(),
+                rolling_angle: between(4.0, 86.0, u(2)).to_radians(),
+                creep_x: 1e-3 * size * x,
+                creep_y: 1e-3 * size * y,
+                spin: 1e-3 * spin / 3e-4,
+                curvature: 0.0,
+            }
+        })
+        .collect()
+}
+
+#[test]
+#[ignore = "a measurement for docs/rolling-contact.md"]
+fn regression_error_of_oblique_rolling() {
+    let (mut sum, mut worst) = ([0.0; 3], [0.0f64; 3]);
+    for contact in oblique_contacts() {
+        let table = contact.evaluate(Law::Simulated(CreepLaw::KalkerTable)).unwrap();
+        let reference = contact.evaluate(Law::Reference(16)).unwrap();
+        let errors =
+            [table.fx - reference.fx, table.fy - reference.fy, table.mz - reference.mz].map(f64::abs);
+        let angle = contact.rolling_angle.to_degrees();
+        println!("{:.3} {angle:.0} {errors:.4?}", contact.semi_axis_x / contact.semi_axis_y);
+        for (k, error) in errors.into_iter().enumerate() {
+            sum[k] += error / 20.0;
+            worst[k] = worst[k].max(error);
+        }
+    }
+    println!("mean {sum:.4?} worst {worst:.4?}");
+    assert!(sum[0].max(sum[1]) < 0.12 && sum[2] < 0.24, "{sum:?} {worst:?}");
 }
 
 /// Points all over the space of q, the poles and planes of symmetry among them.
@@ -141,6 +235,48 @@ fn invariant_gradients_agree_with_differences_across_cells_and_poles() {
                         gradient[m][n]
                     );
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn invariant_slopes_are_continuous_from_rest_to_sliding() {
+    // The largest change of a slope from one point to the next halves with the distance: no jump anywhere.
+    for ratio in [0.107, 2.0, 15.4] {
+        let table = CreepTable::new(&patch(ratio)).unwrap();
+        for direction in [[0.0, 0.0, 1.0], [0.2, 0.1, 0.9], [0.6, -0.5, 0.3]] {
+            let largest_change = |count: u32| {
+                let slopes = |k: u32| {
+                    let size = 1e-4 * 1e6f64.powf(f64::from(k) / f64::from(count));
+                    table.evaluate(direction.map(|component| size * component)).1
+                };
+                let change = |k: u32| {
+                    let (one, other) = (slopes(k), slopes(k + 1));
+                    let pairs = one.iter().flatten().zip(other.iter().flatten());
+                    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+                };
+                (1..count).map(change).fold(0.0, f64::max)
+            };
+            let (coarse, fine) = (largest_change(10_000), largest_change(20_000));
+            assert!(fine < 0.55 * coarse, "{ratio} {direction:?}: {coarse} {fine}");
+        }
+    }
+}
+
+#[test]
+fn regression_nodes_are_what_the_builder_computes() {
+    for (place, j, k) in [(2, 3, 5), (6, 10, 8)] {
+        let stored = shipped(place);
+        let computed = Rays::new(knot(place)).unwrap().ray(j, k).unwrap();
+        for (i, values) in computed.iter().enumerate().skip(1) {
+            for (m, value) in values.iter().enumerate() {
+                let error = (value - f64::from(stored[3 * index(i, j, k) + m])).abs();
+                println!("{place} {j} {k} {i} {m} {value} {error:.1e}");
+                assert!(
+                    error < 1e-3,
+                    "knot {place}, node {i} {j} {k}, force {m}: {value} off by {error:.1e}"
+                );
             }
         }
     }

@@ -4,7 +4,7 @@
 //! ball; velocity of the ball minus that of the raceway) and forces of the ball ON THE RACEWAY, which point along the
 //! creepage (paper eq. 14). The force on the ball is the opposite.
 
-use crate::contact::heathcote::curvature_effect;
+use crate::contact::heathcote::{curvature_effect, curvature_effect_with_gradient};
 use crate::contact::regularised::Parameters;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
@@ -209,7 +209,7 @@ impl<S: Scalar> LinearTheory<S> {
             spin,
             side,
         ];
-        let [dx, dy, dz, second] = S::map_smooth_many(q, curvature_effect);
+        let [dx, dy, dz, second] = S::map_smooth_apart(q, curvature_effect, curvature_effect_with_gradient);
         let [x, y] = within_limit(x + dx, y + dy);
         let z = (z + dz * self.friction_limit * self.half_width * per_moment).clamp_to(-1.0, 1.0);
         self.dimensional([x, y, z], second * self.second_moment_scale())

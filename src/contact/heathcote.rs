@@ -9,96 +9,138 @@
 
 use std::sync::LazyLock;
 
+use crate::lanes::{Lanes, WIDTH};
+use crate::scalar::Scalar;
+
 /// Strips across the contact.
 const STRIPS: usize = 24;
 
-/// Places y/b of the strips and their shares of the load, `3/4 (1 - y^2)` integrated: Gauss-Chebyshev quadrature.
-static PLACES: LazyLock<[(f64, f64); STRIPS]> = LazyLock::new(|| {
+/// Places y/b of the strips, in lanes, and their shares of the load, `3/4 (1 - y^2)` integrated: Gauss-Chebyshev
+/// quadrature.
+static PLACES: LazyLock<[[Lanes; 2]; STRIPS / WIDTH]> = LazyLock::new(|| {
     let raw: [(f64, f64); STRIPS] = std::array::from_fn(|k| {
         let (sin, cos) = (std::f64::consts::PI * (k as f64 + 0.5) / STRIPS as f64).sin_cos();
         (cos, sin.powi(3))
     });
     let sum: f64 = raw.iter().map(|(_, weight)| weight).sum();
-    raw.map(|(place, weight)| (place, weight / sum))
+    std::array::from_fn(|group| {
+        let strip = |lane: usize| raw[WIDTH * group + lane];
+        [Lanes::from_fn(|lane| strip(lane).0), Lanes::from_fn(|lane| strip(lane).1 / sum)]
+    })
 });
 
-/// Sums over the strips: of the forces and of their derivatives by u, times powers of y/b.
-#[derive(Default)]
-struct Sums {
-    /// f_x times 1, y, y^2.
-    x: [f64; 3],
-    y: f64,
-    /// d f_x / d u_x times 1 to y^4.
-    xx: [f64; 5],
-    /// d f_x / d u_y times 1, y, y^2.
-    xy: [f64; 3],
-    yy: f64,
+/// Sums of forces over the strips, lane by lane.
+#[derive(Clone, Copy)]
+struct Forces {
+    /// f_x times 1, y/b and its square.
+    x: [Lanes; 3],
+    y: Lanes,
 }
 
-impl Sums {
-    #[inline(always)]
-    fn new([x, y, spin, curvature]: [f64; 4]) -> Self {
-        let mut sums = Self::default();
-        let uy = 0.5 * y;
-        for &(place, weight) in PLACES.iter() {
-            let ux = 0.5 * (x - (spin + curvature * place) * place);
-            let size = (ux * ux + uy * uy).sqrt();
-            // f = g u; slope is the derivative of g by |u|, over |u|
-            let (g, slope) = if size < 1.0 {
-                (2.0 - size, if size > 0.0 { -1.0 / size } else { 0.0 })
-            } else {
-                (1.0 / size, -1.0 / (size * size * size))
-            };
-            let (wg, ws) = (weight * g, weight * slope);
+/// Sums of the forces' derivatives, times powers of y/b.
+#[derive(Clone, Copy)]
+struct Slopes {
+    /// d f_x / d u_x times 1 to y^4.
+    xx: [Lanes; 5],
+    /// d f_x / d u_y times 1, y, y^2.
+    xy: [Lanes; 3],
+    yy: Lanes,
+}
+
+/// Sums over the strips; those of derivatives are written where they are asked for.
+#[inline(always)]
+fn sums(q: [f64; 4], mut slopes: Option<&mut Slopes>) -> Forces {
+    let zero = Lanes::constant(0.0);
+    let one = Lanes::constant(1.0);
+    let [x, y, spin, curvature] = q.map(Lanes::constant);
+    let mut forces = Forces { x: [zero; 3], y: zero };
+    let uy = y.scale(0.5);
+    for &[place, weight] in PLACES.iter() {
+        let ux = (x - (spin + curvature * place) * place).scale(0.5);
+        let square = ux.square() + uy.square();
+        let size = square.sqrt();
+        let inverse = one / size.where_positive(size, one);
+        let sliding = size - one;
+        // f = g u
+        let g = inverse.where_positive(sliding, Lanes::constant(2.0) - size);
+        let wg = weight * g;
+        let mut fx = wg * ux;
+        forces.y += wg * uy;
+        for sum in &mut forces.x {
+            *sum += fx;
+            fx *= place;
+        }
+        if let Some(slopes) = &mut slopes {
+            // derivative of g by |u|, over |u|; nothing where |u| is
+            let slope =
+                (-inverse * inverse * inverse).where_positive(sliding, -inverse.where_positive(size, zero));
+            let ws = weight * slope;
             let mut xx = wg + ws * ux * ux;
             let mut xy = ws * ux * uy;
-            let mut fx = wg * ux;
-            sums.y += wg * uy;
-            sums.yy += wg + ws * uy * uy;
-            for power in 0..5 {
-                sums.xx[power] += xx;
-                if power < 3 {
-                    sums.x[power] += fx;
-                    sums.xy[power] += xy;
-                }
+            slopes.yy += wg + ws * uy * uy;
+            for sum in &mut slopes.xx {
+                *sum += xx;
                 xx *= place;
+            }
+            for sum in &mut slopes.xy {
+                *sum += xy;
                 xy *= place;
-                fx *= place;
             }
         }
-        sums
     }
+    forces
+}
+
+fn total(Lanes([a, b, c, d]): Lanes) -> f64 {
+    (a + b) + (c + d)
 }
 
 /// What the curvature of the groove adds to `(F_x/(mu Q), F_y/(mu Q), M_z/(mu Q b))`, and the second moment
-/// `y^2 f_x` over `mu Q b^2` as a whole; and their derivatives.
+/// `y^2 f_x` over `mu Q b^2` as a whole.
 ///
 /// Arguments are forces of linear theory over mu Q: of the creepages along and across rolling, of the slip
 /// `phi b` of the spin and of the slip `kappa b^2` of the curvature at the contact's side.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+pub fn curvature_effect(q: [f64; 4]) -> [f64; 4] {
+    changes(&sums(q, None), &sums(flat(q), None))
+}
+
+/// The same creepages without curvature.
+fn flat([x, y, spin, _]: [f64; 4]) -> [f64; 4] {
+    [x, y, spin, 0.0]
+}
+
 #[inline(always)]
-pub fn curvature_effect(q: [f64; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
-    let curved = Sums::new(q);
-    let flat = Sums::new([q[0], q[1], q[2], 0.0]);
-    let values = |s: &Sums| [s.x[0], s.y, -s.x[1]];
-    let slopes = |s: &Sums| {
+fn changes(curved: &Forces, flat: &Forces) -> [f64; 4] {
+    let change = |curved: Lanes, flat: Lanes| total(curved) - total(flat);
+    [
+        change(curved.x[0], flat.x[0]),
+        change(curved.y, flat.y),
+        -change(curved.x[1], flat.x[1]),
+        total(curved.x[2]),
+    ]
+}
+
+/// The same with its derivatives.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+pub fn curvature_effect_with_gradient(q: [f64; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
+    let zero = Lanes::constant(0.0);
+    let none = Slopes { xx: [zero; 5], xy: [zero; 3], yy: zero };
+    let (mut with, mut without) = (none, none);
+    let change = changes(&sums(q, Some(&mut with)), &sums(flat(q), Some(&mut without)));
+    let slopes = |s: &Slopes| {
+        let (xx, xy) = (s.xx.map(total), s.xy.map(total));
         [
-            [s.xx[0], s.xy[0], -s.xx[1], -s.xx[2]],
-            [s.xy[0], s.yy, -s.xy[1], -s.xy[2]],
-            [-s.xx[1], -s.xy[1], s.xx[2], s.xx[3]],
+            [xx[0], xy[0], -xx[1], -xx[2]],
+            [xy[0], total(s.yy), -xy[1], -xy[2]],
+            [-xx[1], -xy[1], xx[2], xx[3]],
+            [xx[2], xy[2], -xx[3], -xx[4]],
         ]
     };
-    let (with, without) = (values(&curved), values(&flat));
-    let (with_slopes, without_slopes) = (slopes(&curved), slopes(&flat));
-    let mut change = [0.0; 4];
-    let mut gradient = [[0.0; 4]; 4];
-    for m in 0..3 {
-        change[m] = with[m] - without[m];
-        for n in 0..4 {
-            let flat_slope = if n < 3 { without_slopes[m][n] } else { 0.0 };
-            gradient[m][n] = 0.5 * (with_slopes[m][n] - flat_slope);
-        }
-    }
-    change[3] = curved.x[2];
-    gradient[3] = [curved.xx[2], curved.xy[2], -curved.xx[3], -curved.xx[4]].map(|slope| 0.5 * slope);
+    let (with, without) = (slopes(&with), slopes(&without));
+    let gradient = std::array::from_fn(|m| {
+        // the second moment is that of the curved strips alone, and the flat ones know no curvature
+        std::array::from_fn(|n| 0.5 * (with[m][n] - if m < 3 && n < 3 { without[m][n] } else { 0.0 }))
+    });
     (change, gradient)
 }

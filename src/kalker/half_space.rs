@@ -63,7 +63,7 @@ struct Cell {
 /// Change of displacement over one step along rolling, per unit traction of a cell, over the step: xx, xy, yy.
 type Influence = [f64; 3];
 
-/// A slip of every square of the grid, those outside of the ellipse included: rows stay contiguous. Single precision
+/// A slip of every square of the grid, those outside of the ellipse included: rows along x stay contiguous. Single precision
 /// holds two digits more than the sweeps ask for, and is twice as fast.
 #[derive(Clone, Debug)]
 struct Slips {
@@ -76,7 +76,7 @@ struct Slips {
 pub struct HalfSpace {
     /// Cells from the leading edge on.
     cells: Vec<Cell>,
-    /// Influences xx, xy and yy by difference of indices, from -(n-1) to n-1 in both.
+    /// Influences xx, xy and yy by difference of indices, from -(n-1) to n-1 in both; along x from one to the next.
     influences: [Vec<f32>; 3],
     /// Cells along the axes x and y of the ellipse.
     n: [usize; 2],
@@ -152,8 +152,8 @@ impl HalfSpace {
         // One cell along rolling: the smaller of the two crossings of a cell.
         let step = (2.0 * half.0 / cos.abs().max(1e-12)).min(2.0 * half.1 / sin.abs().max(1e-12));
         let mut influences = [const { Vec::new() }; 3];
-        for di in 0..2 * n[0] - 1 {
-            for dj in 0..2 * n[1] - 1 {
+        for dj in 0..2 * n[1] - 1 {
+            for di in 0..2 * n[0] - 1 {
                 let x = (di as f64 - (n[0] as f64 - 1.0)) * 2.0 * half.0;
                 let y = (dj as f64 - (n[1] as f64 - 1.0)) * 2.0 * half.1;
                 let here = displacement(x, y, half, patch.poisson_ratio);
@@ -170,15 +170,15 @@ impl HalfSpace {
     #[inline(always)]
     fn add(&self, slips: &mut Slips, by: &Cell, change: [f64; 2]) {
         let change = change.map(|component| component as f32);
-        let ([rows, n], width) = (self.n, 2 * self.n[1] - 1);
-        for i in 0..rows {
-            let start = (i + rows - 1 - by.i) * width + n - 1 - by.j;
+        let ([n, rows], width) = (self.n, 2 * self.n[0] - 1);
+        for j in 0..rows {
+            let start = (j + rows - 1 - by.j) * width + n - 1 - by.i;
             let [xx, xy, yy] = self.influences.each_ref().map(|list| &list[start..start + n]);
-            let row = i * n..(i + 1) * n;
+            let row = j * n..(j + 1) * n;
             let (x, y) = (&mut slips.x[row.clone()], &mut slips.y[row]);
-            for j in 0..n {
-                x[j] += xx[j] * change[0] + xy[j] * change[1];
-                y[j] += xy[j] * change[0] + yy[j] * change[1];
+            for i in 0..n {
+                x[i] += xx[i] * change[0] + xy[i] * change[1];
+                y[i] += xy[i] * change[0] + yy[i] * change[1];
             }
         }
     }
@@ -199,7 +199,7 @@ impl HalfSpace {
         let count = self.cells.len();
         let mut tractions = start.map_or_else(|| vec![[0.0; 2]; count], |start| start.tractions.clone());
         let mut sticking = vec![true; count];
-        let [rows, n] = self.n;
+        let [n, rows] = self.n;
         let centre = (rows - 1) * (2 * n - 1) + n - 1;
         // Own influence: a traction along the slip takes slip away.
         let flexibility = [0, 2].map(|k| -f64::from(self.influences[k][centre]));
@@ -214,7 +214,7 @@ impl HalfSpace {
         for sweep in 1..=MAX_SWEEPS {
             change = 0.0;
             for (index, cell) in self.cells.iter().enumerate() {
-                let (old, place) = (tractions[index], cell.i * n + cell.j);
+                let (old, place) = (tractions[index], cell.j * n + cell.i);
                 // slip without the cell's own traction
                 let slip = [
                     creepage.x - (creepage.spin + creepage.curvature * cell.y) * cell.y

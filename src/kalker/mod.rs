@@ -18,6 +18,7 @@ pub mod printed;
 pub mod scaled_law;
 pub mod table;
 pub mod table_nodes;
+mod table_pieces;
 
 /// What a rolling contact patch looks like to Kalker's theory.
 #[derive(Clone, Copy, Debug, PartialEq)]

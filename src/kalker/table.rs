@@ -10,18 +10,20 @@
 //! ends matter: near rest what counts is linear theory, in complete sliding whether spin outruns creepage inside the
 //! ellipse. With theta the angle from the x axis and phi the angle from y towards z, what is stored is
 //! `f_x/(t cos theta)`, `f_y/(t sin theta)`, `m_z/(t sin theta)`: smooth across rest, the poles and the planes of
-//! symmetry. Interpolation is by cubic Hermite pieces in all three directions: continuous with its first derivatives.
+//! symmetry. Interpolation is by cubic Hermite pieces in all three directions: continuous with its first derivatives. The
+//! pieces of t are short where the lateral force of spin has a sharp peak.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::{LazyLock, OnceLock};
 
 use super::Patch;
 use super::linear::{LinearError, Scales};
+use super::table_pieces::{COUNT, locate, locate_size, piece, weights};
 use crate::lanes::{Lanes, WIDTH};
 use crate::scalar::Scalar;
 
 /// Intervals from rest to sliding, from the x axis to the plane of y and spin, and of half a turn in that plane.
-pub const SHAPE: [usize; 3] = [12, 10, 16];
+pub const SHAPE: [usize; 3] = [COUNT, 10, 16];
 /// Intervals of ln(axis ratio) from 0.05 to 20.
 pub const RATIOS: usize = 12;
 /// Poisson's ratio of the table.
@@ -33,6 +35,21 @@ const SHIPPED: &[u8] = include_bytes!("table.bin");
 
 /// Nodes of one axis ratio.
 pub const NODES: usize = (SHAPE[0] + 1) * (SHAPE[1] + 1) * SHAPE[2];
+
+const _: () = assert!(SHIPPED.len() == (RATIOS + 1) * NODES * 12);
+
+/// Number of a node of one axis ratio, by t, theta and phi.
+pub fn index(i: usize, j: usize, k: usize) -> usize {
+    (i * (SHAPE[1] + 1) + j) * SHAPE[2] + k
+}
+
+/// Shipped values of all nodes of one axis ratio, three a node.
+pub fn shipped(knot: usize) -> &'static [f32] {
+    static PARSED: OnceLock<Vec<f32>> = OnceLock::new();
+    let number = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    let values = PARSED.get_or_init(|| SHIPPED.chunks_exact(4).map(number).collect());
+    &values[knot * NODES * 3..(knot + 1) * NODES * 3]
+}
 
 /// Axis ratio of a knot.
 pub fn knot(index: usize) -> f64 {
@@ -88,60 +105,29 @@ pub struct CreepTable {
 /// Padded sizes: one node more on each side in t and theta, one before and two behind in phi.
 const PADDED: [usize; 3] = [SHAPE[0] + 3, SHAPE[1] + 3, SHAPE[2] + 3];
 
-/// Weights and their slopes of the cubic Hermite piece at `u` in [0, 1], whose slopes at the nodes are central
-/// differences times `steepness`.
-#[inline(always)]
-fn weights(u: f64, steepness: f64) -> ([f64; 4], [f64; 4]) {
-    let (u2, u3) = (u * u, u * u * u);
-    let step = 3.0 * u2 - 2.0 * u3;
-    let (first, last) = (0.5 * steepness * (u3 - 2.0 * u2 + u), 0.5 * steepness * (u3 - u2));
-    let step_slope = 6.0 * (u - u2);
-    let first_slope = 0.5 * steepness * (3.0 * u2 - 4.0 * u + 1.0);
-    let last_slope = 0.5 * steepness * (3.0 * u2 - 2.0 * u);
-    (
-        [-first, 1.0 - step - last, step + first, last],
-        [-first_slope, -step_slope - last_slope, step_slope + first_slope, last_slope],
-    )
-}
-
-/// Piece and place in it of a coordinate in [0, count].
-#[inline(always)]
-fn locate(x: f64, count: usize) -> (usize, f64) {
-    let piece = (x as usize).min(count - 1);
-    (piece, x - piece as f64)
-}
-
 impl CreepTable {
     /// The table of a patch that rolls along an axis of its ellipse, from the shipped one.
     ///
     /// # Errors
     /// If the patch is out of range.
     pub fn new(patch: &Patch) -> Result<Self, LinearError> {
-        static PARSED: OnceLock<Vec<f32>> = OnceLock::new();
-        let values = PARSED.get_or_init(|| {
-            SHIPPED
-                .chunks_exact(4)
-                .map(|bytes| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
-                .collect()
-        });
         let aligned = Patch { rolling_angle: 0.0, ..*patch };
         let scales = Scales::new(&aligned)?;
         // cubic in ln(axis ratio) between the knots
         let position = (patch.axis_ratio / 0.05).ln() / (20f64 / 0.05).ln() * RATIOS as f64;
-        let (piece, u) = locate(position.clamp(0.0, RATIOS as f64), RATIOS);
+        let (first, u) = locate(position.clamp(0.0, RATIOS as f64), RATIOS);
         let (w, _) = weights(u, 1.0);
         let mut nodes = vec![[0.0; 3]; NODES];
         for (offset, weight) in w.into_iter().enumerate() {
             let mut add = |knot: usize, weight: f64| {
-                let slice = &values[knot * NODES * 3..(knot + 1) * NODES * 3];
-                for (node, stored) in nodes.iter_mut().zip(slice.chunks_exact(3)) {
+                for (node, stored) in nodes.iter_mut().zip(shipped(knot).chunks_exact(3)) {
                     for (value, stored) in node.iter_mut().zip(stored) {
                         *value += weight * f64::from(*stored);
                     }
                 }
             };
             // Beyond the ends the table goes on straight.
-            match (piece + offset).checked_sub(1) {
+            match (first + offset).checked_sub(1) {
                 None => {
                     add(0, 2.0 * weight);
                     add(1, -weight);
@@ -180,7 +166,7 @@ impl CreepTable {
                 let limits = [1.0 / stretch.direction[0], cos, sin / stretch.direction[1]];
                 linear_forces(scales, &stretch, limits).map(|force| MIDDLE * force / size)
             } else {
-                nodes[((i * (n_theta + 1) + j) * n_phi + k) as usize]
+                nodes[index(i as usize, j as usize, k as usize)]
             };
             [x, sign * y, sign * z]
         };
@@ -225,9 +211,9 @@ impl CreepTable {
         let t = size / (MIDDLE + size);
         let theta = across.atan2(x);
         let phi = sin_phi.atan2(cos_phi);
-        let (i, u) = locate(t * DENSITY[0], SHAPE[0]);
-        let (j, v) = locate(theta * DENSITY[1], SHAPE[1]);
-        let (k, w) = locate(phi * DENSITY[2], SHAPE[2]);
+        let (i, u) = locate_size(t);
+        let (j, v) = locate(theta * DENSITY[0], SHAPE[1]);
+        let (k, w) = locate(phi * DENSITY[1], SHAPE[2]);
         Some(Place {
             signs: [sign_x, sign_yz, sign_yz],
             scaled,
@@ -319,6 +305,7 @@ impl CreepTable {
         let polar = [-sin_theta, cos_theta * cos_phi, cos_theta * sin_phi];
         let azimuthal = [0.0, -sin_phi, cos_phi];
         let t_slope = (1.0 - t) / (MIDDLE + size);
+        let density = piece(place.piece[0]).density;
         let [stretch_x, stretch_z] = self.stretch.direction;
         let by_direction = [stretch_x, 1.0, stretch_z];
         let [response_y, response_z] = self.stretch.response;
@@ -326,13 +313,13 @@ impl CreepTable {
         let mut forces = place.forces(&value);
         let mut gradient = [[0.0; 3]; 3];
         for m in 0..3 {
-            let along = t_slope * factor[m] * (value[m] + t * by_t[m] * DENSITY[0]);
-            let down = t / length * (factor_slope[m] * value[m] + factor[m] * by_theta[m] * DENSITY[1]);
+            let along = t_slope * factor[m] * (value[m] + t * by_t[m] * density);
+            let down = t / length * (factor_slope[m] * value[m] + factor[m] * by_theta[m] * DENSITY[0]);
             // f_x does not depend on phi at the pole, the others carry sin(theta) in front
             let around = match m {
                 0 if sin_theta < 1e-9 => 0.0,
-                0 => t / length * cos_theta / sin_theta * by_phi[0] * DENSITY[2],
-                _ => t / length * by_phi[m] * DENSITY[2],
+                0 => t / length * cos_theta / sin_theta * by_phi[0] * DENSITY[1],
+                _ => t / length * by_phi[m] * DENSITY[1],
             };
             for n in 0..3 {
                 let turn = (down * polar[n] + around * azimuthal[n]) * by_direction[n];
@@ -345,8 +332,8 @@ impl CreepTable {
     }
 }
 
-/// Pieces per unit of t, theta and phi.
-const DENSITY: [f64; 3] = [SHAPE[0] as f64, SHAPE[1] as f64 / FRAC_PI_2, SHAPE[2] as f64 / PI];
+/// Pieces per unit of theta and phi.
+const DENSITY: [f64; 2] = [SHAPE[1] as f64 / FRAC_PI_2, SHAPE[2] as f64 / PI];
 
 /// A place in the table.
 #[derive(Clone, Copy, Debug)]
@@ -405,7 +392,7 @@ impl Place {
 /// Values of the stored functions.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn interpolate(nodes: &[Lanes], place: &Place) -> Lanes {
-    let ((wt, _), (wv, _)) = (weights(place.within[0], 1.0), weights(place.within[1], 1.0));
+    let ((wt, _), (wv, _)) = (piece(place.piece[0]).weights(place.within[0]), weights(place.within[1], 1.0));
     let (ww, _) = place.weights_along_phi();
     let mut value = Lanes::constant(0.0);
     for a in 0..4 {
@@ -424,7 +411,8 @@ fn interpolate(nodes: &[Lanes], place: &Place) -> Lanes {
 /// The same with slopes by t, theta and phi, over the piece.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn interpolate_with_slopes(nodes: &[Lanes], place: &Place) -> [Lanes; 4] {
-    let ((wt, dt), (wv, dv)) = (weights(place.within[0], 1.0), weights(place.within[1], 1.0));
+    let ((wt, dt), (wv, dv)) =
+        (piece(place.piece[0]).weights(place.within[0]), weights(place.within[1], 1.0));
     let (ww, dw) = place.weights_along_phi();
     let [mut value, mut by_t, mut by_theta, mut by_phi] = [Lanes::constant(0.0); 4];
     for a in 0..4 {
