@@ -77,7 +77,7 @@ fn independent_data_ellipses_long_along_rolling() {
 /// A sequence in [0, 1) that fills it evenly: multiples of the golden ratio's powers by dimension.
 fn spread(case: u32, dimension: i32) -> f64 {
     // root of x^7 = x + 1: six dimensions at once (R-sequence, Roberts 2018)
-    (0.5 + f64::from(case) * 1.1127756842787054706f64.powi(-dimension)).fract()
+    (0.5 + f64::from(case) * 1.112_775_684_278_705_5_f64.powi(-dimension)).fract()
 }
 
 #[test]
