@@ -12,9 +12,7 @@ use crate::scenes::{ANGULAR, FLAT, GROOVE, HELD, groove, load, scene};
 fn loose(name: &str, micrometres: f64, conformity: f64, milliseconds: f64, interval: &str, limit: Limits) {
     let rows = format!("y = {{ force = 1500.0 }}\n{FLAT}output_interval = \"{interval}\"\n");
     let scene = scene(GROOVE, &(groove(micrometres, conformity) + &load(milliseconds, 6000.0, &rows)));
-    let mut case = Case::new(name, scene, limit);
-    case.window = [0.1, 1.0];
-    let run = case.pass();
+    let run = Case::new(name, scene, limit).pass();
     let ball = run.simulation.model().bearing.ball;
     let late = &run.history[run.history.len() / 2..];
     // Opposite to the load the balls touch the outer race alone, with their centrifugal force.
@@ -41,15 +39,15 @@ fn unloaded_zone() {
 #[test]
 #[ignore = "long"]
 fn rattling_in_a_millimetre() {
-    // Chaotic: the race falls from ball to ball, so that only long means repeat; and their blows last a tenth of a
-    // millisecond, so that means of fewer points than these miss some.
+    // Chaotic: the race falls from ball to ball, so that only long means repeat, after the balls have lost the speeds that
+    // they started with; and blows last a tenth of a millisecond, so that means of fewer points than these miss some.
     loose(
         "radial load, clearance 1 mm, 6000 rpm",
         1000.0,
         0.56,
-        1000.0,
-        "20 us",
-        limits(900_000, 15_000, 1500, 4.0),
+        2000.0,
+        "40 us",
+        limits(1_800_000, 30_000, 3000, 4.0),
     );
 }
 
@@ -136,7 +134,7 @@ fn shock_of_5_kn_on_the_radial_load() {
 #[test]
 fn acceleration_is_gravity() {
     let acceleration = 50.0 * 9.80665;
-    let load = load(20.0, 6000.0, "x = { force = 200.0 }\n");
+    let load = load(10.0, 6000.0, "x = { force = 200.0 }\n");
     let importer = |simulation: &Simulation, point: u32| -> (Inputs, f64) {
         let time = simulation.time();
         let mut inputs = simulation.scripted_inputs(time);
@@ -149,7 +147,7 @@ fn acceleration_is_gravity() {
     let mut case = Case::new(
         "outer race accelerated by 50 g",
         scene_of("[outer]\ndrive = \"pose\""),
-        limits(2300, 10, 10, 3.0),
+        limits(1150, 10, 10, 3.0),
     );
     case.importer = Some(&importer);
     let moving = case.pass();
@@ -157,13 +155,13 @@ fn acceleration_is_gravity() {
         "[effects]\ncreep = \"saturated\"\ndamping = \"0.02 s/m\"\ngravity = [0.0, {}, 0.0]",
         -acceleration
     );
-    let standing = Case::new("gravity of 50 g", scene_of(&effects), limits(2300, 10, 10, 3.0)).pass();
+    let standing = Case::new("gravity of 50 g", scene_of(&effects), limits(1150, 10, 10, 3.0)).pass();
     // Nothing inside the bearing can tell which of both it is.
     let difference = |i: usize| {
         let (a, b) = (&moving.history[i].inner.wrench.force, &standing.history[i].inner.wrench.force);
         (a - b).norm() / b.norm()
     };
-    let differences = [1, 10, 50, 100, 150, 200].map(difference);
+    let differences = [1, 10, 25, 50, 75, 100].map(difference);
     // Newton's tolerance is 1e-6 N of 200 N in each of both.
     assert!(differences.iter().all(|d| *d < 1e-8), "{differences:?}");
 }
