@@ -55,7 +55,7 @@ pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<
     let outer = &inputs.outer.pose;
     let mut problem = EquilibriumInput::from_scene(scene, Gyroscopic::Friction);
     problem.friction = inputs.friction;
-    problem.outer_orientation = outer.orientation;
+    problem.outer_orientation = spin_free(&outer.orientation);
     problem.outer_speed = own_spin(&inputs.outer);
     let relative = inputs.inner.pose.position - outer.position;
     if model.bodies[INNER].is_some() {
@@ -98,12 +98,15 @@ fn own_spin(input: &RaceInput) -> f64 {
     input.twist.angular_velocity.dot(&(input.pose.orientation * Vector3::x()))
 }
 
+/// Orientation of the equilibrium's frame: tilted like the outer race, which turns in it.
+fn spin_free(outer: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::rotation_between(&Vector3::x(), &(outer * Vector3::x())).unwrap_or_default()
+}
+
 /// The state of a solution: balls roll, races move as the inputs say.
 fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::Equilibrium) -> State {
     let outer = &inputs.outer;
-    // The equilibrium's frame does not spin with the outer race.
-    let axis = outer.pose.orientation * Vector3::x();
-    let frame = UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default();
+    let frame = spin_free(&outer.pose.orientation);
     let races = [(0, &inputs.inner), (1, outer)].map(|(race, input): (usize, _)| {
         let n_constraints = model.bodies[race].as_ref().map_or(0, |body| body.constraints.len());
         RaceState::new(input.pose, &input.twist, n_constraints)
@@ -224,6 +227,5 @@ pub fn script_motion(scene: &Scene, race: usize, time: f64, now: &Pose, input: &
 
 /// Rotation vector [0, ry, rz] that carries the x axis to a pose's axis.
 fn tilt_of(pose: &Pose) -> Vector3<f64> {
-    let axis = pose.orientation * Vector3::x();
-    UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default().scaled_axis()
+    spin_free(&pose.orientation).scaled_axis()
 }

@@ -180,6 +180,11 @@ fn closed_form_loads_are_those_of_statics_with_the_lateral_friction_of_the_run()
     let mut without_friction = 0.0f64;
     for case in cases() {
         let simulation = reference_run(&case, 0.08, true);
+        // Held where the data say, the run leaves the band in three cases, for that friction alone.
+        if !["P-04", "P-08", "P-14"].contains(&case["id"].as_str().unwrap()) {
+            let own = distance_in_bands(&simulation);
+            assert!(own <= 1.0, "{}: {own}", case["id"]);
+        }
         let percent = percent_from_statics(&simulation, 1.0, 0.02);
         let edge = if ["P-04", "P-15"].contains(&case["id"].as_str().unwrap()) { 2.0 } else { 1.0 };
         assert!(percent <= edge, "{}: {percent} %", case["id"]);

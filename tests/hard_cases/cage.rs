@@ -152,8 +152,8 @@ fn whirl() {
             (inputs, f64::from(point + 1) * 1e-4)
         };
         let rows = "x = { force = 1500.0 }\ny = { force = 300.0 }\n";
-        let changes = load(30.0, 6000.0, rows) + WEIGHTLESS + &section;
-        let mut case = Case::new(name, scene(CAGE, &changes), limits(3500, 20, 10, 4.0));
+        let changes = load(20.0, 6000.0, rows) + WEIGHTLESS + &section;
+        let mut case = Case::new(name, scene(CAGE, &changes), limits(2300, 20, 10, 4.0));
         case.importer = Some(&importer);
         let run = case.pass();
         // It goes round with the load, and as far out as the lands let it.
@@ -198,15 +198,15 @@ fn clearances() {
 
 #[test]
 fn from_rest() {
-    let speed = "[[0.0, 0.0], [0.02, \"6000 rpm\"]]";
+    let speed = "[[0.0, 0.0], [0.012, \"6000 rpm\"]]";
     for (name, section) in [
-        ("cage on outer lands from rest in 20 ms", on_lands(0.2, 0.2, 0.5)),
-        ("cage on the balls from rest in 20 ms", section(0.2, 0.5, "guided_by = \"balls\"")),
+        ("cage on outer lands from rest in 12 ms", on_lands(0.2, 0.2, 0.5)),
+        ("cage on the balls from rest in 12 ms", section(0.2, 0.5, "guided_by = \"balls\"")),
     ] {
         // Without lands there is no friction on them.
         let friction = if section.contains("land") { "" } else { "[friction]\nball_cage = 0.05\n" };
-        let scene = scene(CAGE, &(ramp(30.0, speed, COMBINED) + &section + friction));
-        let run = Case::new(name, scene, limits(4000, 40, 40, 4.0)).pass();
+        let scene = scene(CAGE, &(ramp(18.0, speed, COMBINED) + &section + friction));
+        let run = Case::new(name, scene, limits(2400, 40, 40, 4.0)).pass();
         assert_eq!(run.history[0].cage_speed, 0.0);
         assert!(run.last().cage_slip.abs() < 0.02, "{}", run.last().cage_slip);
         assert!(run.history.windows(2).all(|pair| pair[1].dissipated >= pair[0].dissipated));

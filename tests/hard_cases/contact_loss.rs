@@ -5,21 +5,40 @@ use roulement::inputs::Inputs;
 use roulement::outputs::Outputs;
 use roulement::simulation::Simulation;
 
-use crate::gates::{Case, Limits, limits};
+use crate::gates::{Case, Limits, Run, limits};
 use crate::scenes::{ANGULAR, FLAT, GROOVE, HELD, groove, load, scene};
 
 /// 1500 N radially on a bearing with clearance at 6000 rpm, looked at every `interval`.
-fn loose(name: &str, micrometres: f64, conformity: f64, milliseconds: f64, interval: &str, limit: Limits) {
+fn loose(
+    name: &str,
+    micrometres: f64,
+    conformity: f64,
+    milliseconds: f64,
+    interval: &str,
+    limit: Limits,
+) -> Run {
     let rows = format!("y = {{ force = 1500.0 }}\n{FLAT}output_interval = \"{interval}\"\n");
     let scene = scene(GROOVE, &(groove(micrometres, conformity) + &load(milliseconds, 6000.0, &rows)));
-    let mut case = Case::new(name, scene, limit);
-    case.window = [0.1, 1.0];
-    let run = case.pass();
+    Case::new(name, scene, limit).pass()
+}
+
+/// The second half of a run, and the mean of a quantity over it.
+fn late(run: &Run) -> &[Outputs] {
+    &run.history[run.history.len() / 2..]
+}
+
+fn late_mean(run: &Run, get: impl Fn(&Outputs) -> f64) -> f64 {
+    late(run).iter().map(get).sum::<f64>() / late(run).len() as f64
+}
+
+#[test]
+fn unloaded_zone() {
+    let limit = limits(5700, 10, 10, 4.0);
+    let run = loose("radial load, clearance 50 um", 50.0, 0.52, 50.0, "100 us", limit);
     let ball = run.simulation.model().bearing.ball;
-    let late = &run.history[run.history.len() / 2..];
     // Opposite to the load the balls touch the outer race alone, with their centrifugal force.
     let mut unloaded = 0;
-    for b in late.iter().flat_map(|o| &o.balls).filter(|b| b.azimuth.abs() > 2.0) {
+    for b in late(&run).iter().flat_map(|o| &o.balls).filter(|b| b.azimuth.abs() > 2.0) {
         assert_eq!(b.inner.load, 0.0);
         unloaded += 1;
         let centrifugal = ball.mass * b.orbital_speed.powi(2) * b.position.yz().norm();
@@ -29,28 +48,24 @@ fn loose(name: &str, micrometres: f64, conformity: f64, milliseconds: f64, inter
     // The race goes as deep as the equilibrium says, from load over a ball to load between balls.
     let input = EquilibriumInput::from_scene(run.simulation.scene(), Gyroscopic::None);
     let expected = equilibrium::solve(run.simulation.model(), &input).unwrap().displacement[1];
-    let mean = late.iter().map(|o| o.inner.pose.position.y).sum::<f64>() / late.len() as f64;
-    assert!((mean - expected).abs() < 5e-6 + 0.1 * micrometres * 1e-6, "{mean} m, {expected} m");
-}
-
-#[test]
-fn unloaded_zone() {
-    loose("radial load, clearance 50 um", 50.0, 0.52, 50.0, "100 us", limits(5700, 10, 10, 4.0));
+    let mean = late_mean(&run, |o| o.inner.pose.position.y);
+    assert!((mean - expected).abs() < 10e-6, "{mean} m, {expected} m");
 }
 
 #[test]
 #[ignore = "long"]
 fn rattling_in_a_millimetre() {
-    // Chaotic: the race falls from ball to ball, so that only long means repeat; and their blows last a tenth of a
-    // millisecond, so that means of fewer points than these miss some.
-    loose(
-        "radial load, clearance 1 mm, 6000 rpm",
-        1000.0,
-        0.56,
-        1000.0,
-        "20 us",
-        limits(900_000, 15_000, 1500, 4.0),
-    );
+    // Chaotic: the race falls from ball to ball, so that only long means repeat, after the balls have lost the speeds that
+    // they started with; and blows last a tenth of a millisecond, so that means of fewer points than these miss some.
+    let limit = limits(900_000, 15_000, 1500, 4.5);
+    let run = loose("radial load, clearance 1 mm, 6000 rpm", 1000.0, 0.56, 1000.0, "20 us", limit);
+    // The blows carry the load on the mean, and the race leaves its balls in between.
+    let force = late_mean(&run, |o| -o.inner.wrench.force.y);
+    assert!((force / 1500.0 - 1.0).abs() < 0.03, "{force} N");
+    let flying = late_mean(&run, |o| if o.inner.wrench.force.y == 0.0 { 1.0 } else { 0.0 });
+    let depth = late_mean(&run, |o| o.inner.pose.position.y);
+    println!("force {force} N, in the air {flying} of the time, depth {depth} m");
+    assert!(flying > 0.05, "{flying}");
 }
 
 #[test]
@@ -136,7 +151,7 @@ fn shock_of_5_kn_on_the_radial_load() {
 #[test]
 fn acceleration_is_gravity() {
     let acceleration = 50.0 * 9.80665;
-    let load = load(20.0, 6000.0, "x = { force = 200.0 }\n");
+    let load = load(10.0, 6000.0, "x = { force = 200.0 }\n");
     let importer = |simulation: &Simulation, point: u32| -> (Inputs, f64) {
         let time = simulation.time();
         let mut inputs = simulation.scripted_inputs(time);
@@ -149,7 +164,7 @@ fn acceleration_is_gravity() {
     let mut case = Case::new(
         "outer race accelerated by 50 g",
         scene_of("[outer]\ndrive = \"pose\""),
-        limits(2300, 10, 10, 3.0),
+        limits(1150, 10, 10, 3.0),
     );
     case.importer = Some(&importer);
     let moving = case.pass();
@@ -157,13 +172,13 @@ fn acceleration_is_gravity() {
         "[effects]\ncreep = \"saturated\"\ndamping = \"0.02 s/m\"\ngravity = [0.0, {}, 0.0]",
         -acceleration
     );
-    let standing = Case::new("gravity of 50 g", scene_of(&effects), limits(2300, 10, 10, 3.0)).pass();
+    let standing = Case::new("gravity of 50 g", scene_of(&effects), limits(1150, 10, 10, 3.0)).pass();
     // Nothing inside the bearing can tell which of both it is.
     let difference = |i: usize| {
         let (a, b) = (&moving.history[i].inner.wrench.force, &standing.history[i].inner.wrench.force);
         (a - b).norm() / b.norm()
     };
-    let differences = [1, 10, 50, 100, 150, 200].map(difference);
+    let differences = [1, 10, 25, 50, 75, 100].map(difference);
     // Newton's tolerance is 1e-6 N of 200 N in each of both.
     assert!(differences.iter().all(|d| *d < 1e-9), "{differences:?}");
 }

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use roulement::motion::Wrench;
 use roulement::outputs::{ContactOutput, Outputs};
 use roulement::scene::{CreepLaw, Scene};
-use roulement::simulation::Simulation;
+use roulement::simulation::{Simulation, Snapshot};
 use roulement::state::{RaceState, State, Statistics};
 use roulement::variables::Variables;
 
@@ -94,7 +94,8 @@ impl<'a> Case<'a> {
     pub fn pass(&self) -> Run {
         let variables = Variables::moving(&self.scene, true);
         let mut snapshot = None;
-        let run = self.run(&self.scene, |simulation, point| {
+        let fresh = self.simulation(&self.scene);
+        let run = self.run_from(fresh.clone(), |simulation, point| {
             possible(self.name, simulation, &variables);
             converged(self.name, simulation);
             if point == self.replay_from() {
@@ -102,7 +103,7 @@ impl<'a> Case<'a> {
             }
         });
         let snapshot = snapshot.expect("a run has a third quarter");
-        self.replay(&run, &snapshot);
+        self.replay(fresh, &run, &snapshot);
 
         let energy = energy_residual(&run.history);
         let statistics = run.simulation.state().statistics;
@@ -133,8 +134,11 @@ impl<'a> Case<'a> {
     }
 
     /// (a) the case runs to its end; `look` sees it at every communication point.
-    pub fn run(&self, scene: &Scene, mut look: impl FnMut(&Simulation, u32)) -> Run {
-        let mut simulation = self.simulation(scene);
+    pub fn run(&self, scene: &Scene, look: impl FnMut(&Simulation, u32)) -> Run {
+        self.run_from(self.simulation(scene), look)
+    }
+
+    fn run_from(&self, mut simulation: Simulation, mut look: impl FnMut(&Simulation, u32)) -> Run {
         let mut history = vec![simulation.outputs().clone()];
         look(&simulation, 0);
         for point in 0..self.points {
@@ -163,8 +167,7 @@ impl<'a> Case<'a> {
     }
 
     /// (e) from a saved state, in an instance that never was there, to the same bits.
-    fn replay(&self, run: &Run, snapshot: &roulement::simulation::Snapshot) {
-        let mut other = Simulation::new(&self.scene).unwrap();
+    fn replay(&self, mut other: Simulation, run: &Run, snapshot: &Snapshot) {
         assert!(other.restore(snapshot), "{}", self.name);
         for point in self.replay_from()..self.points {
             self.step(&mut other, point);
