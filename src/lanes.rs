@@ -7,7 +7,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 use nalgebra::Vector3;
 
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, SmoothMap, Values};
 
 /// Numbers in one: what a vector register of 256 bits holds.
 pub const WIDTH: usize = 4;
@@ -67,15 +67,11 @@ impl Scalar for Lanes {
         x: [Self; K],
         mut function: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
     ) -> [Self; M] {
-        lane_by_lane(x, |x| function(x).0)
+        Self::each(x, |x| function(x).0)
     }
     #[inline(always)]
-    fn map_smooth_apart<const K: usize, const M: usize>(
-        x: [Self; K],
-        values: impl FnMut([f64; K]) -> [f64; M],
-        _with_gradients: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
-    ) -> [Self; M] {
-        lane_by_lane(x, values)
+    fn apply<const K: usize, const M: usize>(map: &impl SmoothMap<K, M>, x: [Self; K]) -> [Self; M] {
+        map.values(x)
     }
     #[inline(always)]
     fn polynomial<const K: usize>(self, coefficients: &[f64; K]) -> Self {
@@ -93,26 +89,31 @@ impl Scalar for Lanes {
     }
 }
 
-/// Functions of several numbers that are no formula.
-#[inline(always)]
-fn lane_by_lane<const K: usize, const M: usize>(
-    x: [Lanes; K],
-    mut function: impl FnMut([f64; K]) -> [f64; M],
-) -> [Lanes; M] {
-    let mut results = [Lanes([0.0; WIDTH]); M];
-    let (mut last, mut values) = ([f64::NAN; K], [0.0; M]);
-    for lane in 0..WIDTH {
-        let arguments = x.map(|component| component.0[lane]);
-        // Lanes without a ball of their own repeat another.
-        if arguments != last {
-            values = function(arguments);
-            last = arguments;
+impl Values for Lanes {
+    #[inline(always)]
+    fn each<const K: usize, const M: usize>(
+        x: [Self; K],
+        mut function: impl FnMut([f64; K]) -> [f64; M],
+    ) -> [Self; M] {
+        let mut results = [Lanes([0.0; WIDTH]); M];
+        let (mut last, mut values) = ([f64::NAN; K], [0.0; M]);
+        for lane in 0..WIDTH {
+            let arguments = x.map(|component| component.0[lane]);
+            // Lanes without a ball of their own repeat another.
+            if arguments != last {
+                values = function(arguments);
+                last = arguments;
+            }
+            for (result, value) in results.iter_mut().zip(values) {
+                result.0[lane] = value;
+            }
         }
-        for (result, value) in results.iter_mut().zip(values) {
-            result.0[lane] = value;
-        }
+        results
     }
-    results
+    #[inline(always)]
+    fn all(self, condition: impl Fn(f64) -> bool) -> bool {
+        self.0.into_iter().all(condition)
+    }
 }
 
 impl num_traits::Zero for Lanes {

@@ -42,14 +42,7 @@ pub trait Scalar:
     ) -> [Self; M];
 
     /// The same of functions whose values alone are cheaper than with their gradients.
-    #[inline(always)]
-    fn map_smooth_apart<const K: usize, const M: usize>(
-        x: [Self; K],
-        _values: impl FnMut([f64; K]) -> [f64; M],
-        with_gradients: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
-    ) -> [Self; M] {
-        Self::map_smooth_many(x, with_gradients)
-    }
+    fn apply<const K: usize, const M: usize>(map: &impl SmoothMap<K, M>, x: [Self; K]) -> [Self; M];
 
     /// A polynomial of this number, coefficients by ascending powers.
     fn polynomial<const K: usize>(self, coefficients: &[f64; K]) -> Self;
@@ -80,6 +73,41 @@ pub trait Scalar:
     }
 }
 
+/// Smooth functions of several numbers.
+pub trait SmoothMap<const K: usize, const M: usize> {
+    /// Their values.
+    fn values<V: Values>(&self, x: [V; K]) -> [V; M];
+
+    /// Their values and gradients, row by function.
+    fn with_gradient(&self, x: [f64; K]) -> ([f64; M], [[f64; K]; M]);
+}
+
+/// Numbers without derivatives, one or several at a time.
+pub trait Values: Scalar {
+    /// Functions of several numbers that are no formula.
+    fn each<const K: usize, const M: usize>(
+        x: [Self; K],
+        function: impl FnMut([f64; K]) -> [f64; M],
+    ) -> [Self; M];
+
+    /// Does a condition hold for every number?
+    fn all(self, condition: impl Fn(f64) -> bool) -> bool;
+}
+
+impl Values for f64 {
+    #[inline(always)]
+    fn each<const K: usize, const M: usize>(
+        x: [Self; K],
+        mut function: impl FnMut([f64; K]) -> [f64; M],
+    ) -> [Self; M] {
+        function(x)
+    }
+    #[inline(always)]
+    fn all(self, condition: impl Fn(f64) -> bool) -> bool {
+        condition(self)
+    }
+}
+
 /// A number that stands for one quantity, so that a program can go by its value.
 pub trait Single: Scalar {
     /// The value without derivatives.
@@ -91,6 +119,17 @@ impl Single for f64 {
     fn value(self) -> f64 {
         self
     }
+}
+
+/// A force over its limit, brought back to the limit with its direction kept where it exceeds it.
+#[inline(always)]
+pub fn within_limit<S: Scalar>(x: S, y: S) -> [S; 2] {
+    let square = x.square() + y.square();
+    let inside = square - S::one();
+    // One unit of rounding inside.
+    let factor = S::constant(1.0 - f64::EPSILON) / square.where_positive(inside, S::one()).sqrt();
+    let factor = factor.where_positive(inside, S::one());
+    [x * factor, y * factor]
 }
 
 impl Scalar for f64 {
@@ -118,12 +157,8 @@ impl Scalar for f64 {
         function(x).0
     }
     #[inline(always)]
-    fn map_smooth_apart<const K: usize, const M: usize>(
-        x: [Self; K],
-        mut values: impl FnMut([f64; K]) -> [f64; M],
-        _with_gradients: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
-    ) -> [Self; M] {
-        values(x)
+    fn apply<const K: usize, const M: usize>(map: &impl SmoothMap<K, M>, x: [Self; K]) -> [Self; M] {
+        map.values(x)
     }
     #[inline(always)]
     fn polynomial<const K: usize>(self, coefficients: &[f64; K]) -> Self {
@@ -214,6 +249,10 @@ impl<const N: usize> Scalar for Dual<N> {
             }
             Self { value: values[m], derivatives }
         })
+    }
+    #[inline(always)]
+    fn apply<const K: usize, const M: usize>(map: &impl SmoothMap<K, M>, x: [Self; K]) -> [Self; M] {
+        Self::map_smooth_many(x, |x| map.with_gradient(x))
     }
     #[inline(always)]
     fn polynomial<const K: usize>(self, coefficients: &[f64; K]) -> Self {

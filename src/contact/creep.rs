@@ -4,11 +4,11 @@
 //! ball; velocity of the ball minus that of the raceway) and forces of the ball ON THE RACEWAY, which point along the
 //! creepage (paper eq. 14). The force on the ball is the opposite.
 
-use crate::contact::heathcote::{curvature_effect, curvature_effect_with_gradient};
+use crate::contact::heathcote::CurvatureEffect;
 use crate::contact::regularised::Parameters;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, within_limit};
 
 /// A law with what it needs beside the contact's linear theory; chosen once per step.
 #[derive(Clone, Copy, Debug)]
@@ -175,7 +175,7 @@ impl<S: Scalar> LinearTheory<S> {
             self.spin * per_moment * creepage.spin,
             self.direction(table),
         ];
-        S::map_smooth_apart(q, |q| table.mixed_values(q), |q| table.mixed(q))
+        S::apply(table, q)
     }
 
     /// 1 where the contact rolls along +x, -1 against it, between where it hardly rolls along x: smooth.
@@ -209,7 +209,7 @@ impl<S: Scalar> LinearTheory<S> {
             spin,
             side,
         ];
-        let [dx, dy, dz, second] = S::map_smooth_apart(q, curvature_effect, curvature_effect_with_gradient);
+        let [dx, dy, dz, second] = S::apply(&CurvatureEffect, q);
         let [x, y] = within_limit(x + dx, y + dy);
         let z = (z + dz * self.friction_limit * self.half_width * per_moment).clamp_to(-1.0, 1.0);
         self.dimensional([x, y, z], second * self.second_moment_scale())
@@ -284,15 +284,4 @@ impl LinearTheory<f64> {
         ];
         (q, results)
     }
-}
-
-/// A force over its limit, brought back to the limit with its direction kept where it exceeds it.
-#[inline(always)]
-pub fn within_limit<S: Scalar>(x: S, y: S) -> [S; 2] {
-    let square = x.square() + y.square();
-    let inside = square - S::one();
-    // One unit of rounding inside.
-    let factor = S::constant(1.0 - f64::EPSILON) / square.where_positive(inside, S::one()).sqrt();
-    let factor = factor.where_positive(inside, S::one());
-    [x * factor, y * factor]
 }

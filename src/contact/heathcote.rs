@@ -10,7 +10,7 @@
 use std::sync::LazyLock;
 
 use crate::lanes::{Lanes, WIDTH};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, SmoothMap, Values};
 
 /// Strips across the contact.
 const STRIPS: usize = 24;
@@ -100,8 +100,21 @@ fn total(Lanes([a, b, c, d]): Lanes) -> f64 {
 ///
 /// Arguments are forces of linear theory over mu Q: of the creepages along and across rolling, of the slip
 /// `phi b` of the spin and of the slip `kappa b^2` of the curvature at the contact's side.
+#[derive(Clone, Copy, Debug)]
+pub struct CurvatureEffect;
+
+impl SmoothMap<4, 4> for CurvatureEffect {
+    #[inline(always)]
+    fn values<V: Values>(&self, q: [V; 4]) -> [V; 4] {
+        V::each(q, curvature_effect)
+    }
+    fn with_gradient(&self, q: [f64; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
+        curvature_effect_with_gradient(q)
+    }
+}
+
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-pub fn curvature_effect(q: [f64; 4]) -> [f64; 4] {
+fn curvature_effect(q: [f64; 4]) -> [f64; 4] {
     changes(&sums(q, None), &sums(flat(q), None))
 }
 
@@ -123,7 +136,7 @@ fn changes(curved: &Forces, flat: &Forces) -> [f64; 4] {
 
 /// The same with its derivatives.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-pub fn curvature_effect_with_gradient(q: [f64; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
+fn curvature_effect_with_gradient(q: [f64; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
     let zero = Lanes::constant(0.0);
     let none = Slopes { xx: [zero; 5], xy: [zero; 3], yy: zero };
     let (mut with, mut without) = (none, none);

@@ -19,8 +19,8 @@ use std::sync::{LazyLock, OnceLock};
 use super::Patch;
 use super::linear::{LinearError, Scales};
 use super::table_pieces::{COUNT, locate, locate_size, piece, weights};
-use crate::lanes::{Lanes, WIDTH};
-use crate::scalar::Scalar;
+use crate::lanes::Lanes;
+use crate::scalar::{Scalar, SmoothMap, Values, within_limit};
 
 /// Intervals from rest to sliding, from the x axis to the plane of y and spin, and of half a turn in that plane.
 pub const SHAPE: [usize; 3] = [COUNT, 10, 16];
@@ -30,6 +30,9 @@ pub const RATIOS: usize = 12;
 pub const POISSON: f64 = 0.3;
 /// [-] size |q| in the middle between rest and sliding.
 pub(super) const MIDDLE: f64 = 1.5;
+/// [-] sizes |q| below which a contact is at rest, and above which squares are no numbers any more.
+const REST: f64 = 1e-12;
+const LARGEST: f64 = 1e150;
 /// The shipped table: `cargo run --release --example kalker_table` makes it.
 const SHIPPED: &[u8] = include_bytes!("table.bin");
 
@@ -189,48 +192,40 @@ impl CreepTable {
         Self { nodes, coupling, stretch }
     }
 
-    /// Where `q` lies in the table; `None` at rest, and where there is no number.
+    /// Where `q` lies in the table.
     #[inline(always)]
-    fn place(&self, q: [f64; 3]) -> Option<Place> {
-        let norm = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
-        let size = norm(q);
-        if size < 1e-12 || !size.is_finite() {
-            return None;
-        }
+    fn place<V: Values>(&self, q: [V; 3]) -> Place<V> {
+        let norm = |[x, y, z]: [V; 3]| (x * x + y * y + z * z).sqrt();
+        let (one, minus) = (V::one(), -V::one());
         // into the quarter that is stored, with responses of size one
-        let sign_x = if q[0] < 0.0 { -1.0 } else { 1.0 };
-        let sign_yz = if q[2] < 0.0 || (q[2] == 0.0 && q[1] < 0.0) { -1.0 } else { 1.0 };
+        let sign_x = minus.where_positive(-q[0], one);
+        let sign_yz = minus.where_positive(-q[2], one.where_positive(q[2], minus.where_positive(-q[1], one)));
         let [response_y, response_z] = self.stretch.response;
-        let scaled = [sign_x * q[0], sign_yz * q[1] * response_y, sign_yz * q[2] * response_z];
+        let scaled = [sign_x * q[0], (sign_yz * q[1]).scale(response_y), (sign_yz * q[2]).scale(response_z)];
         let size = norm(scaled);
         let [stretch_x, stretch_z] = self.stretch.direction;
-        let (x, y, z) = (scaled[0] * stretch_x, scaled[1], scaled[2] * stretch_z);
+        let (x, y, z) = (scaled[0].scale(stretch_x), scaled[1], scaled[2].scale(stretch_z));
         let across = (y * y + z * z).sqrt();
         let length = norm([x, y, z]);
-        let (cos_phi, sin_phi) = if across > 0.0 { (y / across, z / across) } else { (1.0, 0.0) };
-        let t = size / (MIDDLE + size);
-        let theta = across.atan2(x);
-        let phi = sin_phi.atan2(cos_phi);
-        let (i, u) = locate_size(t);
-        let (j, v) = locate(theta * DENSITY[0], SHAPE[1]);
-        let (k, w) = locate(phi * DENSITY[1], SHAPE[2]);
-        Some(Place {
+        // On the x axis every phi is as good, and at rest every direction.
+        let per_across = one / across.where_positive(across, one);
+        let per_length = one / length.where_positive(length, one);
+        Place {
             signs: [sign_x, sign_yz, sign_yz],
             scaled,
             size,
             length,
-            t,
-            theta: [x / length, across / length],
-            phi: [cos_phi, sin_phi],
-            piece: [i, j, k],
-            within: [u, v, w],
-        })
+            t: size / (size + V::constant(MIDDLE)),
+            theta: [x * per_length, across * per_length],
+            phi: [(y * per_across).where_positive(across, one), z * per_across],
+        }
     }
 
     /// Linear theory: what remains at rest.
-    fn at_rest(&self, q: [f64; 3]) -> [f64; 3] {
+    #[inline(always)]
+    fn at_rest<V: Values>(&self, q: [V; 3]) -> [V; 3] {
         let [yz, zy] = self.coupling;
-        [q[0], q[1] + yz * q[2], q[2] + zy * q[1]]
+        [q[0], q[1] + q[2].scale(yz), q[2] + q[1].scale(zy)]
     }
 
     /// [-] lateral force over mu Q of a spin whose moment without coupling is M_max, in linear theory.
@@ -240,16 +235,18 @@ impl CreepTable {
 
     /// Forces over mu Q, mu Q and M_max at `[q_x, q_y, q_z, direction]`: the table rolls along +x, where the direction
     /// is 1. Against it, at -1, all is seen turned by half a turn; between, both are mixed.
-    pub fn mixed_values(&self, [x, y, z, direction]: [f64; 4]) -> [f64; 3] {
-        let rolling = |sign: f64| {
+    #[inline(always)]
+    pub fn mixed_values<V: Values>(&self, [x, y, z, direction]: [V; 4]) -> [V; 3] {
+        let rolling = |sign: V| {
             let [x, y, z] = self.values([sign * x, sign * y, z]);
             [sign * x, sign * y, z]
         };
-        if direction.abs() == 1.0 {
+        if direction.all(|direction| direction.abs() == 1.0) {
             return rolling(direction);
         }
-        let (forwards, backwards) = (rolling(1.0), rolling(-1.0));
-        std::array::from_fn(|m| backwards[m] + (forwards[m] - backwards[m]) * (0.5 * (direction + 1.0)))
+        let (forwards, backwards) = (rolling(V::one()), rolling(-V::one()));
+        let share = (direction + V::one()).scale(0.5);
+        std::array::from_fn(|m| mix(forwards[m], backwards[m], share))
     }
 
     /// The same with the derivatives by all four: row by force.
@@ -269,7 +266,7 @@ impl CreepTable {
         }
         let ((forwards, by_forwards), (backwards, by_backwards)) = (rolling(1.0), rolling(-1.0));
         let share = 0.5 * (direction + 1.0);
-        let mix = |forwards: f64, backwards: f64| backwards + (forwards - backwards) * share;
+        let mix = |forwards: f64, backwards: f64| mix(forwards, backwards, share);
         let row = |m: usize| {
             let [a, b, c] = std::array::from_fn(|n| mix(by_forwards[m][n], by_backwards[m][n]));
             [a, b, c, 0.5 * (forwards[m] - backwards[m])]
@@ -278,24 +275,33 @@ impl CreepTable {
     }
 
     /// Forces over mu Q, mu Q and M_max at `q`.
-    pub fn values(&self, q: [f64; 3]) -> [f64; 3] {
-        let Some(place) = self.place(q) else {
-            return self.at_rest(q);
-        };
-        let Lanes(stored) = interpolate(&self.nodes, &place);
-        let mut forces = place.forces(&stored);
-        within_limits(&mut forces, None);
-        forces
+    #[inline(always)]
+    pub fn values<V: Values>(&self, q: [V; 3]) -> [V; 3] {
+        let place = self.place(q);
+        let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (place.theta, place.phi);
+        let stored = V::each([place.t, cos_theta, sin_theta, cos_phi, sin_phi], |[t, ct, st, cp, sp]| {
+            let Lanes([x, y, z, _]) = interpolate(&self.nodes, &Stencil::new(t, [ct, st], [cp, sp]));
+            [x, y, z]
+        });
+        let [x, y, z] = place.forces(&stored);
+        let [x, y] = within_limit(x, y);
+        let rest = self.at_rest(q);
+        let table = [x, y, z.clamp_to(-1.0, 1.0)];
+        // at rest, and where there is no number
+        let (moving, finite) = (place.size - V::constant(REST), V::constant(LARGEST) - place.size);
+        std::array::from_fn(|m| table[m].where_positive(moving, rest[m]).where_positive(finite, rest[m]))
     }
 
     /// Forces over mu Q, mu Q and M_max at `q`, and their derivatives by q: row by force, column by q.
     pub fn evaluate(&self, q: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
-        let Some(place) = self.place(q) else {
+        let place = self.place(q);
+        if !(place.size > REST && place.size < LARGEST) {
             let [yz, zy] = self.coupling;
             return (self.at_rest(q), [[1.0, 0.0, 0.0], [0.0, 1.0, yz], [0.0, zy, 1.0]]);
-        };
+        }
+        let stencil = Stencil::new(place.t, place.theta, place.phi);
         let [Lanes(value), Lanes(by_t), Lanes(by_theta), Lanes(by_phi)] =
-            interpolate_with_slopes(&self.nodes, &place);
+            interpolate_with_slopes(&self.nodes, &stencil);
 
         // gradient: by t, theta and phi, and these by q
         let Place { signs, scaled, size, length, t, .. } = place;
@@ -305,12 +311,13 @@ impl CreepTable {
         let polar = [-sin_theta, cos_theta * cos_phi, cos_theta * sin_phi];
         let azimuthal = [0.0, -sin_phi, cos_phi];
         let t_slope = (1.0 - t) / (MIDDLE + size);
-        let density = piece(place.piece[0]).density;
+        let density = piece(stencil.piece[0]).density;
         let [stretch_x, stretch_z] = self.stretch.direction;
         let by_direction = [stretch_x, 1.0, stretch_z];
         let [response_y, response_z] = self.stretch.response;
         let by_response = [1.0, response_y, response_z];
-        let mut forces = place.forces(&value);
+        let [x, y, z, _] = value;
+        let [x, y, z] = place.forces(&[x, y, z]);
         let mut gradient = [[0.0; 3]; 3];
         for m in 0..3 {
             let along = t_slope * factor[m] * (value[m] + t * by_t[m] * density);
@@ -327,41 +334,58 @@ impl CreepTable {
                 gradient[m][n] = signs[m] * signs[n] * slope * by_response[n];
             }
         }
-        within_limits(&mut forces, Some(&mut gradient));
-        (forces, gradient)
+        limit_gradient([x, y, z], &mut gradient);
+        let [x, y] = within_limit(x, y);
+        ([x, y, z.clamp_to(-1.0, 1.0)], gradient)
     }
 }
 
 /// Pieces per unit of theta and phi.
 const DENSITY: [f64; 2] = [SHAPE[1] as f64 / FRAC_PI_2, SHAPE[2] as f64 / PI];
 
-/// A place in the table.
+/// Where creepages lie in the table.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct Place<V> {
     /// Signs of x and of y and spin against the quarter that is stored.
-    signs: [f64; 3],
+    signs: [V; 3],
     /// Creepages in that quarter with responses of size one, and their size.
-    scaled: [f64; 3],
-    size: f64,
+    scaled: [V; 3],
+    size: V,
     /// Size after stretching directions.
-    length: f64,
-    t: f64,
+    length: V,
+    t: V,
     /// Cosine and sine of theta.
-    theta: [f64; 2],
+    theta: [V; 2],
     /// Cosine and sine of phi.
-    phi: [f64; 2],
+    phi: [V; 2],
+}
+
+impl<V: Values> Place<V> {
+    /// Forces from the stored functions.
+    #[inline(always)]
+    fn forces(&self, value: &[V; 3]) -> [V; 3] {
+        let [cos_theta, sin_theta] = self.theta;
+        let factor = [cos_theta, sin_theta, sin_theta];
+        std::array::from_fn(|m| self.signs[m] * self.t * factor[m] * value[m])
+    }
+}
+
+/// The nodes around a place.
+#[derive(Clone, Copy, Debug)]
+struct Stencil {
     /// Piece by t, theta and phi, and where in it.
     piece: [usize; 3],
     within: [f64; 3],
 }
 
-impl Place {
-    /// Forces from the stored functions.
+impl Stencil {
+    /// By t, cosine and sine of theta, and those of phi.
     #[inline(always)]
-    fn forces(&self, value: &[f64; WIDTH]) -> [f64; 3] {
-        let [cos_theta, sin_theta] = self.theta;
-        let factor = [cos_theta, sin_theta, sin_theta];
-        std::array::from_fn(|m| self.signs[m] * self.t * factor[m] * value[m])
+    fn new(t: f64, [cos_theta, sin_theta]: [f64; 2], [cos_phi, sin_phi]: [f64; 2]) -> Self {
+        let (i, u) = locate_size(t);
+        let (j, v) = locate(sin_theta.atan2(cos_theta) * DENSITY[0], SHAPE[1]);
+        let (k, w) = locate(sin_phi.atan2(cos_phi) * DENSITY[1], SHAPE[2]);
+        Self { piece: [i, j, k], within: [u, v, w] }
     }
 
     /// First of the four nodes along phi, at step `a` along t and `b` along theta.
@@ -391,13 +415,14 @@ impl Place {
 
 /// Values of the stored functions.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn interpolate(nodes: &[Lanes], place: &Place) -> Lanes {
-    let ((wt, _), (wv, _)) = (piece(place.piece[0]).weights(place.within[0]), weights(place.within[1], 1.0));
-    let (ww, _) = place.weights_along_phi();
+fn interpolate(nodes: &[Lanes], stencil: &Stencil) -> Lanes {
+    let ((wt, _), (wv, _)) =
+        (piece(stencil.piece[0]).weights(stencil.within[0]), weights(stencil.within[1], 1.0));
+    let (ww, _) = stencil.weights_along_phi();
     let mut value = Lanes::constant(0.0);
     for a in 0..4 {
         for b in 0..4 {
-            let row = place.row(a, b);
+            let row = stencil.row(a, b);
             let mut line = Lanes::constant(0.0);
             for (w, node) in ww.iter().zip(&nodes[row..row + 4]) {
                 line += *w * *node;
@@ -410,14 +435,14 @@ fn interpolate(nodes: &[Lanes], place: &Place) -> Lanes {
 
 /// The same with slopes by t, theta and phi, over the piece.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn interpolate_with_slopes(nodes: &[Lanes], place: &Place) -> [Lanes; 4] {
+fn interpolate_with_slopes(nodes: &[Lanes], stencil: &Stencil) -> [Lanes; 4] {
     let ((wt, dt), (wv, dv)) =
-        (piece(place.piece[0]).weights(place.within[0]), weights(place.within[1], 1.0));
-    let (ww, dw) = place.weights_along_phi();
+        (piece(stencil.piece[0]).weights(stencil.within[0]), weights(stencil.within[1], 1.0));
+    let (ww, dw) = stencil.weights_along_phi();
     let [mut value, mut by_t, mut by_theta, mut by_phi] = [Lanes::constant(0.0); 4];
     for a in 0..4 {
         for b in 0..4 {
-            let row = place.row(a, b);
+            let row = stencil.row(a, b);
             let [mut line, mut slope] = [Lanes::constant(0.0); 2];
             for (c, node) in nodes[row..row + 4].iter().enumerate() {
                 line += ww[c] * *node;
@@ -432,26 +457,35 @@ fn interpolate_with_slopes(nodes: &[Lanes], place: &Place) -> [Lanes; 4] {
     [value, by_t, by_theta, by_phi]
 }
 
-/// Keeps the tangential force within the friction limit and the moment within its own, with the gradient.
-fn within_limits(forces: &mut [f64; 3], mut gradient: Option<&mut [[f64; 3]; 3]>) {
-    let size = (forces[0] * forces[0] + forces[1] * forces[1]).sqrt();
+/// `forwards` at a share of 1, `backwards` at 0.
+#[inline(always)]
+fn mix<V: Values>(forwards: V, backwards: V, share: V) -> V {
+    forwards * share + backwards * (V::one() - share)
+}
+
+/// Derivatives of forces that are kept within their limits: of the tangential force its size stays, the moment does.
+fn limit_gradient([x, y, z]: [f64; 3], gradient: &mut [[f64; 3]; 3]) {
+    let size = (x * x + y * y).sqrt();
     if size > 1.0 {
-        let direction = [forces[0] / size, forces[1] / size];
-        if let Some(gradient) = &mut gradient {
-            for n in 0..3 {
-                let radial = direction[0] * gradient[0][n] + direction[1] * gradient[1][n];
-                for m in 0..2 {
-                    gradient[m][n] = (gradient[m][n] - radial * direction[m]) / size;
-                }
+        let direction = [x / size, y / size];
+        for n in 0..3 {
+            let radial = direction[0] * gradient[0][n] + direction[1] * gradient[1][n];
+            for m in 0..2 {
+                gradient[m][n] = (gradient[m][n] - radial * direction[m]) / size;
             }
         }
-        // One unit of rounding inside.
-        (forces[0], forces[1]) = (direction[0] * (1.0 - f64::EPSILON), direction[1] * (1.0 - f64::EPSILON));
     }
-    if forces[2].abs() > 1.0 {
-        forces[2] = forces[2].signum();
-        if let Some(gradient) = &mut gradient {
-            gradient[2] = [0.0; 3];
-        }
+    if z.abs() > 1.0 {
+        gradient[2] = [0.0; 3];
+    }
+}
+
+impl SmoothMap<4, 3> for CreepTable {
+    #[inline(always)]
+    fn values<V: Values>(&self, x: [V; 4]) -> [V; 3] {
+        self.mixed_values(x)
+    }
+    fn with_gradient(&self, x: [f64; 4]) -> ([f64; 3], [[f64; 4]; 3]) {
+        self.mixed(x)
     }
 }
