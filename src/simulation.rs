@@ -65,6 +65,21 @@ pub enum SimulationError {
         /// [m] approach.
         approach: f64,
     },
+    /// A contact lies where no groove is.
+    #[error(
+        "at {time} s ball {ball} touches the {race} race on the side where it has no groove, {approach:.3e} m deep: the \
+         race has come past its balls; the load, the clearance or the motion is too large, or a cage is missing"
+    )]
+    LeftGroove {
+        /// [s] time.
+        time: f64,
+        /// Ball, counted from 1.
+        ball: usize,
+        /// Inner or outer.
+        race: &'static str,
+        /// [m] approach.
+        approach: f64,
+    },
     /// The Newton matrix of a step that neighbours were to follow is singular.
     #[error("at {0} s the Newton matrix is singular")]
     Singular(f64),
@@ -273,8 +288,8 @@ impl Simulation {
     /// Runs its own steps to exactly `end` [s]. The inputs are taken as valid now, at the start.
     ///
     /// # Errors
-    /// See [`SimulationError`]; the state is then that of the last converged step, at [`Simulation::time`]. The depth of
-    /// contacts is looked at where the step ends.
+    /// See [`SimulationError`]; the state is then that of the last converged step, at [`Simulation::time`]. Depth and place of
+    /// contacts are looked at where the step ends.
     pub fn advance(&mut self, end: f64) -> Result<(), SimulationError> {
         self.advance_with_neighbours(end, &[]).map(drop)
     }
@@ -309,7 +324,7 @@ impl Simulation {
             })
             .collect();
         self.paths = self.paths.towards(&self.inputs, begin, end - begin);
-        let result = self.step_to(end, &mut neighbours).and_then(|()| self.check_depth());
+        let result = self.step_to(end, &mut neighbours).and_then(|()| self.check_contacts());
         self.outputs = Outputs::new(&self.model, &self.state, self.inputs.friction);
         result?;
         Ok(neighbours.iter().map(|n| Outputs::new(&self.model, &n.state, n.friction)).collect())
@@ -378,17 +393,22 @@ impl Simulation {
         Ok(())
     }
 
-    /// Refuses contacts that no material takes.
-    fn check_depth(&self) -> Result<(), SimulationError> {
+    /// Refuses contacts that no material takes, or where no groove is.
+    fn check_contacts(&self) -> Result<(), SimulationError> {
         let radius = self.model.bearing.ball.radius;
         for (race, name) in [(INNER, "inner"), (OUTER, "outer")] {
             let motion = self.state.races[race].motion();
             for (index, ball) in self.state.balls.iter().enumerate() {
                 let offset = ball.position - motion.position;
                 let contact = GrooveContact::new(self.model.raceway(race), radius, &offset, &motion.axis);
-                if contact.approach > MAX_APPROACH * 2.0 * radius {
-                    let (time, approach) = (self.state.time, contact.approach);
-                    return Err(SimulationError::Overload { time, ball: index + 1, race: name, approach });
+                let (time, ball, approach) = (self.state.time, index + 1, contact.approach);
+                if approach > MAX_APPROACH * 2.0 * radius {
+                    return Err(SimulationError::Overload { time, ball, race: name, approach });
+                }
+                // The groove of the inner race opens away from its axis, that of the outer race towards it.
+                let out = if race == INNER { -1.0 } else { 1.0 };
+                if approach > 0.0 && out * contact.normal.dot(&contact.radial) < 0.0 {
+                    return Err(SimulationError::LeftGroove { time, ball, race: name, approach });
                 }
             }
         }

@@ -3,7 +3,7 @@
 use roulement::simulation::Simulation;
 
 use crate::gates::refuses;
-use crate::scenes::{ANGULAR, CAGE, GROOVE, groove, load, scene};
+use crate::scenes::{ANGULAR, CAGE, FLAT, GROOVE, groove, load, scene};
 
 /// Runs a scene to its refusal.
 fn refusal(base: &str, changes: &str) -> String {
@@ -86,4 +86,16 @@ fn a_load_that_crushes_while_it_runs() {
     let rows = "x = { force = [[0.0, 1500.0], [0.001, 1500.0], [0.002, 1e7]] }\n";
     let why = refusal(ANGULAR, &load(5.0, 6000.0, rows));
     refuses("thrust of 10 MN", &why, &["at 0.00", "ball", "inner"]);
+}
+
+#[test]
+fn a_race_that_falls_between_its_balls() {
+    // A millimetre of clearance under a radial load, and no cage that would keep the balls apart.
+    let rows = format!("y = {{ force = 1500.0 }}\n{FLAT}");
+    let why = refusal(GROOVE, &(groove(1000.0, 0.56) + &load(200.0, 6000.0, &rows)));
+    refuses(
+        "radial load, clearance 1 mm, no cage",
+        &why,
+        &["at 0.", "ball", "race on the side", "no groove"],
+    );
 }
