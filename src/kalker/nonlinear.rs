@@ -14,12 +14,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use thiserror::Error;
 
 use super::linear::{LinearError, adhesion_tractions, leading_edge, resultants};
 use super::load_displacement::{Basis, load_displacement};
-use super::objective::{Expansion, Fields, project};
+use super::objective::{Expansion, Fields, norm, project};
 use super::{Patch, ScaledCreepage, ScaledForces};
 
 /// [-] slip against traction in the projection.
@@ -30,6 +30,8 @@ const EDGE_WEIGHT: f64 = 8.0;
 const MAX_ITERATIONS: u32 = 200;
 /// [-] relative decrease of the objective, promised or reached by Newton's step, that ends the iteration with it.
 const DECREASE: f64 = 1e-11;
+/// [-] share of that decrease below which Newton's step may take the matrix of the step before.
+const NEARLY_NOTHING: f64 = 1e-2;
 /// [-] objective over the square of creepages (up to sliding) at which Coulomb's law holds to twelve digits of traction.
 const NEGLIGIBLE: f64 = 1e-24;
 /// [-] relative decrease that is enough after `PATIENCE` iterations.
@@ -202,7 +204,8 @@ impl Kalker {
                 arguments[(n + k, 2 * i + 1)] += values[(i, k)];
             }
         }
-        let edge = leading_edge(&patch, &basis) * EDGE_WEIGHT;
+        // As many rows as coefficients have the same sum of squares as one for every point of the edge.
+        let edge = (leading_edge(&patch, &basis) * EDGE_WEIGHT).qr().r();
         let edge_square = edge.transpose() * &edge;
         let slip_square = {
             let weighted = DMatrix::from_fn(2 * rows, 2 * n, |i, k| slips[(i, k)] * points[i % rows].weight);
@@ -280,17 +283,25 @@ impl Kalker {
         let mut objective = self.objective(&z, &fields);
         let mut damping: f64 = 1e-3;
         let mut iterations = 0;
+        // Factorised second derivative of the last Newton step.
+        let mut factor: Option<Cholesky<f64, Dyn>> = None;
         while iterations < MAX_ITERATIONS {
             let Expansion { gradient, sliding } = self.expand(&z, &fields);
+            let promise = |step: &DVector<f64>| 0.5 * gradient.dot(step);
             let before = objective;
             let enough = DECREASE * before + NEGLIGIBLE * size.min(1.0).powi(2);
             iterations += 1;
             // Newton's own step where the objective is convex: it ends the iteration at the minimum to rounding, so
             // that results are a smooth function of the creepages.
-            let step = self.curvature(&sliding, true).cholesky().map(|factor| factor.solve(&gradient));
+            // Where nearly nothing is left, the last step's matrix serves.
+            let rest = factor.take().map(|factor| factor.solve(&gradient));
+            let step = rest.filter(|step| promise(step) <= NEARLY_NOTHING * enough).or_else(|| {
+                factor = self.curvature(&sliding, true).cholesky();
+                factor.as_ref().map(|factor| factor.solve(&gradient))
+            });
             if let Some(step) = step {
                 // What the step still promises; below this, rounding decides whether the objective falls.
-                let last = 0.5 * gradient.dot(&step) <= enough;
+                let last = promise(&step) <= enough;
                 let trial = &z - step;
                 let there = self.fields_at(&trial, &h);
                 let reached = self.objective(&trial, &there);
@@ -308,6 +319,7 @@ impl Kalker {
                     continue;
                 }
             }
+            factor = None;
             let gauss_newton = self.curvature(&sliding, false);
             loop {
                 let mut damped = gauss_newton.clone();
@@ -357,7 +369,7 @@ impl Kalker {
         let v = &fields.arguments;
         for (i, point) in self.points.iter().enumerate() {
             area += point.weight;
-            if v[2 * i].hypot(v[2 * i + 1]) <= point.bound {
+            if norm([v[2 * i], v[2 * i + 1]]) <= point.bound {
                 stick += point.weight;
             }
         }

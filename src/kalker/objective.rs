@@ -1,9 +1,10 @@
 //! The objective of Kalker's nonlinear problem in polynomials, and its derivatives.
 
-use nalgebra::{DMatrix, DVector, Dyn, MatrixView};
+use nalgebra::{DMatrix, DMatrixView, DVector, Dyn, MatrixView};
 
 use super::ScaledCreepage;
 use super::nonlinear::{Kalker, Point, SLIP_WEIGHT};
+use crate::lanes::WIDTH;
 
 /// Tractions and arguments of the projection at every point, components x and y in turn.
 pub(super) struct Fields {
@@ -20,10 +21,18 @@ pub(super) struct Sliding {
     bend: [f64; 3],
 }
 
+/// Sliding points that are taken together: their columns fit a processor's first cache.
+const TOGETHER: usize = 32;
+
 /// First derivatives of the objective, and what the second ones follow from.
 pub(super) struct Expansion {
     pub(super) gradient: DVector<f64>,
     pub(super) sliding: Vec<Sliding>,
+}
+
+/// Length of a vector whose components are far from overflow.
+pub(super) fn norm([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
 }
 
 /// Square of a symmetric matrix (xx, xy, yy).
@@ -36,24 +45,39 @@ fn times([xx, xy, yy]: [f64; 3], [x, y]: [f64; 2]) -> [f64; 2] {
     [xx * x + xy * y, xy * x + yy * y]
 }
 
-/// The transpose, without a copy.
-fn transposed(matrix: &DMatrix<f64>) -> MatrixView<'_, f64, Dyn, Dyn, Dyn, Dyn> {
-    let (rows, columns) = matrix.shape();
-    MatrixView::from_slice_with_strides_generic(matrix.as_slice(), Dyn(columns), Dyn(rows), Dyn(rows), Dyn(1))
-}
-
 /// A column as a slice.
 fn column(matrix: &DMatrix<f64>, index: usize) -> &[f64] {
     &matrix.as_slice()[index * matrix.nrows()..(index + 1) * matrix.nrows()]
 }
 
-/// A column as a slice.
-fn column_mut(matrix: &mut DMatrix<f64>, index: usize) -> &mut [f64] {
-    let rows = matrix.nrows();
-    &mut matrix.as_mut_slice()[index * rows..(index + 1) * rows]
+/// Product of every column with a vector.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn products(matrix: &DMatrix<f64>, vector: &[f64], results: &mut [f64]) {
+    for (result, column) in results.iter_mut().zip(matrix.as_slice().chunks_exact(vector.len())) {
+        let mut sums = [0.0; WIDTH];
+        let (quads, ends) = (column.chunks_exact(WIDTH), vector.chunks_exact(WIDTH));
+        let rest = quads.remainder().iter().zip(ends.remainder()).map(|(a, b)| a * b).sum::<f64>();
+        for (a, b) in quads.zip(ends) {
+            for lane in 0..WIDTH {
+                sums[lane] += a[lane] * b[lane];
+            }
+        }
+        *result = (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest;
+    }
+}
+
+/// Adds every column times its factor.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn add_columns(sum: &mut [f64], matrix: &DMatrix<f64>, factors: &[f64]) {
+    for (column, factor) in matrix.as_slice().chunks_exact(sum.len()).zip(factors) {
+        for (entry, value) in sum.iter_mut().zip(column) {
+            *entry += factor * value;
+        }
+    }
 }
 
 /// `result = by_a a + by_b b`.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn combine(result: &mut [f64], by_a: f64, a: &[f64], by_b: f64, b: &[f64]) {
     for ((entry, a), b) in result.iter_mut().zip(a).zip(b) {
         *entry = by_a * a + by_b * b;
@@ -62,7 +86,7 @@ fn combine(result: &mut [f64], by_a: f64, a: &[f64], by_b: f64, b: &[f64]) {
 
 /// Second derivative of `w P(v)` with the projection P on the disc of radius `bound` (symmetric: xx, xy, yy).
 fn projection_bend(v: [f64; 2], bound: f64, w: [f64; 2]) -> [f64; 3] {
-    let size = v[0].hypot(v[1]);
+    let size = norm(v);
     if size <= bound {
         return [0.0; 3];
     }
@@ -78,7 +102,7 @@ fn projection_bend(v: [f64; 2], bound: f64, w: [f64; 2]) -> [f64; 3] {
 
 /// Projection of v on the disc of radius `bound`, and its derivative (symmetric: xx, xy, yy).
 pub(super) fn project(v: [f64; 2], bound: f64) -> ([f64; 2], [f64; 3]) {
-    let size = v[0].hypot(v[1]);
+    let size = norm(v);
     if size <= bound {
         return (v, [1.0, 0.0, 1.0]);
     }
@@ -91,13 +115,15 @@ impl Kalker {
     pub(super) fn fields_at(&self, z: &DVector<f64>, h: &ScaledCreepage) -> Fields {
         let (n, rows) = (self.monomials, self.points.len());
         let mut tractions = DVector::zeros(2 * rows);
-        for (k, start) in [(0, 0), (1, n)] {
-            let component = self.monomial_values.tr_mul(&z.rows(start, n));
+        let mut component = vec![0.0; rows];
+        for (k, z) in z.as_slice().chunks_exact(n).enumerate() {
+            products(&self.monomial_values, z, &mut component);
             for (i, value) in component.iter().enumerate() {
                 tractions[2 * i + k] = *value;
             }
         }
-        let mut arguments = self.arguments.tr_mul(z);
+        let mut arguments = DVector::zeros(2 * rows);
+        products(&self.arguments, z.as_slice(), arguments.as_mut_slice());
         for (i, point) in self.points.iter().enumerate() {
             let rigid = self.rigid(h, point);
             arguments[2 * i] += SLIP_WEIGHT * rigid[0];
@@ -124,8 +150,8 @@ impl Kalker {
     pub(super) fn expand(&self, z: &DVector<f64>, fields: &Fields) -> Expansion {
         let (n, rows) = (self.monomials, self.points.len());
         let (f, v) = (&fields.tractions, &fields.arguments);
-        let mut by_value = [DVector::zeros(rows), DVector::zeros(rows)];
-        let mut by_argument = DVector::zeros(2 * rows);
+        let mut by_value = [vec![0.0; rows], vec![0.0; rows]];
+        let mut by_argument = vec![0.0; 2 * rows];
         let mut sliding = Vec::with_capacity(rows);
         for (i, point) in self.points.iter().enumerate() {
             let argument = [v[2 * i], v[2 * i + 1]];
@@ -136,16 +162,16 @@ impl Kalker {
                 by_value[k][i] = point.weight * residual[k];
                 by_argument[2 * i + k] = -point.weight * seen[k];
             }
-            if argument[0].hypot(argument[1]) > point.bound {
+            if norm(argument) > point.bound {
                 // second derivative of -residual P(argument)
                 let bend = projection_bend(argument, point.bound, residual).map(|b| -point.weight * b);
                 sliding.push(Sliding { point: i, slope, bend });
             }
         }
         let mut gradient = &self.edge_square * z;
-        gradient.gemv(1.0, &self.arguments, &by_argument, 1.0);
-        for (k, by_value) in by_value.iter().enumerate() {
-            gradient.rows_mut(k * n, n).gemv(1.0, &self.monomial_values, by_value, 1.0);
+        add_columns(gradient.as_mut_slice(), &self.arguments, &by_argument);
+        for (part, by_value) in gradient.as_mut_slice().chunks_exact_mut(n).zip(&by_value) {
+            add_columns(part, &self.monomial_values, by_value);
         }
         Expansion { gradient, sliding }
     }
@@ -157,31 +183,43 @@ impl Kalker {
     /// `A^T (w (S^2 - I) + bend) A - w (V^T (S - I) A + its transpose)`.
     pub(super) fn curvature(&self, sliding: &[Sliding], with_bend: bool) -> DMatrix<f64> {
         let n = self.monomials;
-        let mut arguments = DMatrix::zeros(2 * n, 2 * sliding.len());
-        let mut changes = DMatrix::zeros(2 * n, 2 * sliding.len());
-        for (to, Sliding { point, slope, bend }) in sliding.iter().enumerate() {
-            let weight = self.points[*point].weight;
-            let values = column(&self.monomial_values, *point);
-            let own = [0, 1].map(|k| column(&self.arguments, 2 * point + k));
-            let mut outer = square(*slope);
-            let mut change = *slope;
-            for (k, stick) in [1.0, 0.0, 1.0].into_iter().enumerate() {
-                outer[k] = weight * (outer[k] - stick) + if with_bend { bend[k] } else { 0.0 };
-                change[k] = -2.0 * weight * (change[k] - stick);
-            }
-            for k in 0..2 {
-                column_mut(&mut arguments, 2 * to + k).copy_from_slice(own[k]);
-                let column = column_mut(&mut changes, 2 * to + k);
-                combine(column, outer[k], own[0], outer[k + 1], own[1]);
-                for (part, change) in column.chunks_exact_mut(n).zip([change[k], change[k + 1]]) {
-                    for (entry, value) in part.iter_mut().zip(values) {
-                        *entry += change * value;
+        let rows = 2 * n;
+        let mut curvature = DMatrix::zeros(rows, rows);
+        let mut arguments = Vec::with_capacity(2 * TOGETHER * rows);
+        let mut changes = Vec::with_capacity(2 * TOGETHER * rows);
+        for sliding in sliding.chunks(TOGETHER) {
+            arguments.clear();
+            changes.clear();
+            for Sliding { point, slope, bend } in sliding {
+                let weight = self.points[*point].weight;
+                let values = column(&self.monomial_values, *point);
+                let own = [0, 1].map(|k| column(&self.arguments, 2 * point + k));
+                let mut outer = square(*slope);
+                let mut change = *slope;
+                for (k, stick) in [1.0, 0.0, 1.0].into_iter().enumerate() {
+                    outer[k] = weight * (outer[k] - stick) + if with_bend { bend[k] } else { 0.0 };
+                    change[k] = -2.0 * weight * (change[k] - stick);
+                }
+                for k in 0..2 {
+                    arguments.extend_from_slice(own[k]);
+                    let at = changes.len();
+                    changes.resize(at + rows, 0.0);
+                    let column = &mut changes[at..];
+                    combine(column, outer[k], own[0], outer[k + 1], own[1]);
+                    for (part, change) in column.chunks_exact_mut(n).zip([change[k], change[k + 1]]) {
+                        for (entry, value) in part.iter_mut().zip(values) {
+                            *entry += change * value;
+                        }
                     }
                 }
             }
+            let width = 2 * sliding.len();
+            let arguments = DMatrixView::from_slice(&arguments, rows, width);
+            // the transpose, without a copy
+            let ([width, rows], one) = ([width, rows].map(Dyn), Dyn(1));
+            let changes = MatrixView::from_slice_with_strides_generic(&changes, width, rows, rows, one);
+            curvature.gemm(0.5, &arguments, &changes, 1.0);
         }
-        let mut curvature = DMatrix::zeros(2 * n, 2 * n);
-        curvature.gemm(0.5, &arguments, &transposed(&changes), 0.0);
         for i in 0..2 * n {
             for k in 0..=i {
                 let sum = curvature[(i, k)] + curvature[(k, i)];
