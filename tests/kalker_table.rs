@@ -102,7 +102,7 @@ fn regression_spin_of_long_ellipses_near_the_peak_of_lateral_force() {
             curvature: 0.0,
         };
         let ours = forces(&patch, &creepage);
-        let reference = extrapolated(&patch, &creepage, 24).unwrap();
+        let reference = extrapolated(&patch, &creepage, 30).unwrap();
         let errors = [ours[0] - reference.fx, ours[1] - reference.fy, ours[2] - reference.mz].map(f64::abs);
         println!("{:.2} {response:.2} {errors:.4?}", patch.axis_ratio);
         for (k, error) in errors.into_iter().enumerate() {
@@ -111,9 +111,9 @@ fn regression_spin_of_long_ellipses_near_the_peak_of_lateral_force() {
         }
     }
     println!("mean {sum:.4?} worst {worst:.4?}");
-    // One case lies at 0.031, where the peak falls between two nodes of phi; its reference changes by 0.008 with the grid.
+    // At the largest error the peak falls between two nodes of phi; with 24 cells its reference would move by 0.008.
     assert!(
-        sum[0].max(sum[1]) < 0.01 && worst[0].max(worst[1]) < 0.033 && worst[2] < 0.05,
+        sum[0].max(sum[1]) < 0.01 && worst[0].max(worst[1]) < 0.03 && worst[2] < 0.05,
         "{sum:?} {worst:?}"
     );
 }
