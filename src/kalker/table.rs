@@ -278,9 +278,8 @@ impl CreepTable {
     #[inline(always)]
     pub fn values<V: Values>(&self, q: [V; 3]) -> [V; 3] {
         let place = self.place(q);
-        let ([cos_theta, sin_theta], [cos_phi, sin_phi]) = (place.theta, place.phi);
-        let stored = V::each([place.t, cos_theta, sin_theta, cos_phi, sin_phi], |[t, ct, st, cp, sp]| {
-            let Lanes([x, y, z, _]) = interpolate(&self.nodes, &Stencil::new(t, [ct, st], [cp, sp]));
+        let stored = V::each(place.coordinates(), |coordinates| {
+            let Lanes([x, y, z, _]) = interpolate(&self.nodes, &Stencil::new(coordinates));
             [x, y, z]
         });
         let [x, y, z] = place.forces(&stored);
@@ -299,7 +298,7 @@ impl CreepTable {
             let [yz, zy] = self.coupling;
             return (self.at_rest(q), [[1.0, 0.0, 0.0], [0.0, 1.0, yz], [0.0, zy, 1.0]]);
         }
-        let stencil = Stencil::new(place.t, place.theta, place.phi);
+        let stencil = Stencil::new(place.coordinates());
         let [Lanes(value), Lanes(by_t), Lanes(by_theta), Lanes(by_phi)] =
             interpolate_with_slopes(&self.nodes, &stencil);
 
@@ -343,6 +342,27 @@ impl CreepTable {
 /// Pieces per unit of theta and phi.
 const DENSITY: [f64; 2] = [SHAPE[1] as f64 / FRAC_PI_2, SHAPE[2] as f64 / PI];
 
+/// Angle in [0, pi] of a unit vector, given by cosine and sine: tangents of half, a quarter and an eighth of it, whose arc
+/// is a short series. Libraries have it for single numbers only.
+#[inline(always)]
+fn angle<V: Values>([cos, sin]: [V; 2]) -> V {
+    const SERIES: [f64; 11] = {
+        let mut series = [0.0; 11];
+        let mut k = 0;
+        while k < series.len() {
+            series[k] = if k % 2 == 0 { 8.0 } else { -8.0 } / (2 * k + 1) as f64;
+            k += 1;
+        }
+        series
+    };
+    let one = V::one();
+    let half = sin / (one + cos.where_positive(cos, -cos));
+    let quarter = half / (one + (one + half.square()).sqrt());
+    let eighth = quarter / (one + (one + quarter.square()).sqrt());
+    let acute = eighth * eighth.square().polynomial(&SERIES);
+    acute.where_positive(cos, V::constant(PI) - acute)
+}
+
 /// Where creepages lie in the table.
 #[derive(Clone, Copy, Debug)]
 struct Place<V> {
@@ -361,6 +381,12 @@ struct Place<V> {
 }
 
 impl<V: Values> Place<V> {
+    /// t, theta and phi.
+    #[inline(always)]
+    fn coordinates(&self) -> [V; 3] {
+        [self.t, angle(self.theta), angle(self.phi)]
+    }
+
     /// Forces from the stored functions.
     #[inline(always)]
     fn forces(&self, value: &[V; 3]) -> [V; 3] {
@@ -379,12 +405,12 @@ struct Stencil {
 }
 
 impl Stencil {
-    /// By t, cosine and sine of theta, and those of phi.
+    /// At t, theta and phi.
     #[inline(always)]
-    fn new(t: f64, [cos_theta, sin_theta]: [f64; 2], [cos_phi, sin_phi]: [f64; 2]) -> Self {
+    fn new([t, theta, phi]: [f64; 3]) -> Self {
         let (i, u) = locate_size(t);
-        let (j, v) = locate(sin_theta.atan2(cos_theta) * DENSITY[0], SHAPE[1]);
-        let (k, w) = locate(sin_phi.atan2(cos_phi) * DENSITY[1], SHAPE[2]);
+        let (j, v) = locate(theta * DENSITY[0], SHAPE[1]);
+        let (k, w) = locate(phi * DENSITY[1], SHAPE[2]);
         Self { piece: [i, j, k], within: [u, v, w] }
     }
 
@@ -487,5 +513,19 @@ impl SmoothMap<4, 3> for CreepTable {
     }
     fn with_gradient(&self, x: [f64; 4]) -> ([f64; 3], [[f64; 4]; 3]) {
         self.mixed(x)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_form_angles() {
+        for step in 0..=1000 {
+            let expected = PI * f64::from(step) / 1000.0;
+            let error = angle([expected.cos(), expected.sin().abs()]) - expected;
+            assert!(error.abs() < 1e-15, "{expected}: {error:e}");
+        }
     }
 }
