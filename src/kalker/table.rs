@@ -237,14 +237,23 @@ impl CreepTable {
     /// is 1. Against it, at -1, all is seen turned by half a turn; between, both are mixed.
     #[inline(always)]
     pub fn mixed_values<V: Values>(&self, [x, y, z, direction]: [V; 4]) -> [V; 3] {
-        let rolling = |sign: V| {
-            let [x, y, z] = self.values([sign * x, sign * y, z]);
-            [sign * x, sign * y, z]
-        };
-        if direction.all(|direction| direction.abs() == 1.0) {
-            return rolling(direction);
-        }
-        let (forwards, backwards) = (rolling(V::one()), rolling(-V::one()));
+        let settled = direction.all(|direction| direction.abs() == 1.0);
+        let forwards = self.rolling([x, y, z], if settled { direction } else { V::one() });
+        if settled { forwards } else { self.mix_in_backwards(forwards, [x, y, z, direction]) }
+    }
+
+    /// Forces of rolling along +x (1) or against it (-1).
+    #[inline(always)]
+    fn rolling<V: Values>(&self, [x, y, z]: [V; 3], sign: V) -> [V; 3] {
+        let [x, y, z] = self.values([sign * x, sign * y, z]);
+        [sign * x, sign * y, z]
+    }
+
+    // Seldom, and not worth a second copy of the table's evaluation.
+    #[cold]
+    #[inline(never)]
+    fn mix_in_backwards<V: Values>(&self, forwards: [V; 3], [x, y, z, direction]: [V; 4]) -> [V; 3] {
+        let backwards = self.rolling([x, y, z], -V::one());
         let share = (direction + V::one()).scale(0.5);
         std::array::from_fn(|m| mix(forwards[m], backwards[m], share))
     }

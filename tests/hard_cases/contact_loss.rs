@@ -60,7 +60,12 @@ fn rattling_in_a_millimetre() {
     let changes = groove(1000.0, 0.56)
         + &load(1000.0, 6000.0, &rows)
         + "[effects]\ncreep = \"saturated\"\ndamping = \"0.02 s/m\"\ncage = true\n";
-    let run = Case::new("radial load, clearance 1 mm, with a cage", scene(CAGE, &changes), limits(900_000, 15_000, 1500, 4.5)).pass();
+    let run = Case::new(
+        "radial load, clearance 1 mm, with a cage",
+        scene(CAGE, &changes),
+        limits(900_000, 15_000, 1500, 4.5),
+    )
+    .pass();
     // The blows carry the load on the mean.
     let force = late_mean(&run, |o| -o.inner.wrench.force.y);
     assert!((force / 1500.0 - 1.0).abs() < 0.03, "{force} N");
