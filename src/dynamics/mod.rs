@@ -29,8 +29,8 @@ pub use neighbour::follow;
 pub use race::RaceLoad;
 use race::RaceTrial;
 
-/// Corrections beyond one a step that a kept matrix may take: they cost about as much as a new one.
-const PATIENCE: u64 = 12;
+/// Corrections beyond one a step that a kept matrix may take: they cost about as much as a new one (benches/speed.rs).
+const PATIENCE: u64 = 5;
 
 /// What is imposed at the end of a step.
 #[derive(Clone, Debug)]
