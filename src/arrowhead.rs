@@ -41,7 +41,7 @@ impl Default for BallBlock {
 pub struct KeptMatrix {
     /// [s] size of the steps that it serves.
     pub step: f64,
-    /// Corrections beyond one a step that it has taken.
+    /// Corrections beyond one a step that it has taken after the step that it was made in.
     pub extra_corrections: u64,
     /// By ball; empty while there is none.
     pub balls: Vec<KeptBlock>,
@@ -59,7 +59,7 @@ pub struct KeptBlock {
 /// A ball block, solved.
 #[derive(Clone, Debug)]
 struct Factor {
-    /// `A^-1`: it serves many steps, and a product costs a quarter of two triangular solves.
+    /// `A^-1`: a product costs a quarter of two triangular solves.
     inverse: Matrix6<f64>,
     /// `A^-1 R` per body.
     right: [Matrix6<f64>; BODIES],

@@ -7,6 +7,7 @@ use nalgebra::{SVector, Vector3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::arrowhead::KeptMatrix;
 use crate::contact::geometry::GrooveContact;
 use crate::dynamics::{
     Blame, Boundary, RaceLoad, StepFailure, Workspace, follow, make_consistent, to_blame, try_step,
@@ -184,6 +185,7 @@ impl Simulation {
     pub fn tune(&mut self, scene: &Scene) {
         Arc::make_mut(&mut self.model).tune(scene);
         self.scene = Arc::new(scene.clone());
+        self.state.matrix = KeptMatrix::default();
     }
 
     /// Sets the time of a simulation that has not moved yet [s].
@@ -402,13 +404,13 @@ impl Simulation {
                 let offset = ball.position - motion.position;
                 let contact = GrooveContact::new(self.model.raceway(race), radius, &offset, &motion.axis);
                 let (time, ball, approach) = (self.state.time, index + 1, contact.approach);
-                if approach > MAX_APPROACH * 2.0 * radius {
-                    return Err(SimulationError::Overload { time, ball, race: name, approach });
-                }
                 // The groove of the inner race opens away from its axis, that of the outer race towards it.
                 let out = if race == INNER { -1.0 } else { 1.0 };
                 if approach > 0.0 && out * contact.normal.dot(&contact.radial) < 0.0 {
                     return Err(SimulationError::LeftGroove { time, ball, race: name, approach });
+                }
+                if approach > MAX_APPROACH * 2.0 * radius {
+                    return Err(SimulationError::Overload { time, ball, race: name, approach });
                 }
             }
         }

@@ -71,7 +71,8 @@ impl ContactEffect<Lanes> {
     }
 }
 
-/// Evaluates the contacts of up to [`WIDTH`](crate::lanes::WIDTH) balls with a race, to the same bits as [`ContactModel::evaluate`].
+/// Evaluates the contacts of up to [`WIDTH`](crate::lanes::WIDTH) balls with a race, to the same bits as
+/// [`ContactModel::evaluate`].
 pub fn evaluate_group(
     contact: &ContactModel<'_>,
     race: &RaceMotion<f64>,

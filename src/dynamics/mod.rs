@@ -70,8 +70,8 @@ pub enum StepFailure {
     Error(Worst),
 }
 
-/// Tries one step of `h` [s]. On success the state is the new one; otherwise only its statistics and step control
-/// have changed.
+/// Tries one step of `h` [s]. On success the state is the new one; otherwise only its statistics, step control and kept
+/// matrix have changed.
 ///
 /// # Errors
 /// See [`StepFailure`]; the step control has then been told.
@@ -92,7 +92,7 @@ pub fn try_step(
     let mut solved = newton::solve(&mut equations, &mut unknowns, &mut buffers, &mut statistics.newton);
     if solved.is_err() {
         statistics.second_guesses += 1;
-        equations.workspace.kept.balls.clear();
+        equations.workspace.kept = KeptMatrix::default();
         equations.guess_steady_velocity(&mut unknowns);
         solved = newton::solve(&mut equations, &mut unknowns, &mut buffers, &mut statistics.newton);
     }
@@ -115,9 +115,13 @@ pub fn try_step(
     workspace.newton = buffers;
     workspace.unknowns = unknowns;
     state.matrix = std::mem::take(&mut workspace.kept);
-    state.matrix.extra_corrections += (statistics.newton.iterations - before.iterations).saturating_sub(1);
+    // Corrections of the step that a matrix was made in are not its own alone.
+    if !state.matrix.balls.is_empty() && statistics.newton.factorisations == before.factorisations {
+        let extra = (statistics.newton.iterations - before.iterations).saturating_sub(1);
+        state.matrix.extra_corrections = state.matrix.extra_corrections.saturating_add(extra);
+    }
     if state.matrix.extra_corrections > PATIENCE {
-        state.matrix.balls.clear();
+        state.matrix = KeptMatrix::default();
     }
     state.statistics = statistics;
     state.control = control;

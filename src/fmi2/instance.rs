@@ -21,7 +21,7 @@ pub const SCENE_FILE: &str = "scene.toml";
 /// [-] relative disagreement of importer and instance about the time that is still rounding.
 const TIME_TOLERANCE: f64 = 1e-9;
 /// First bytes of a serialised state: what it is, and the version of its form.
-const MAGIC: &[u8; 8] = b"rlmtFMU2";
+const MAGIC: &[u8; 8] = b"rlmtFMU3";
 
 /// A refusal or failure: its status and why.
 pub type Outcome<T = ()> = Result<T, (Status, String)>;

@@ -268,7 +268,10 @@ impl Kalker {
         let shrink = if size > LARGEST_CREEPAGE { LARGEST_CREEPAGE / size } else { 1.0 };
         let [x, y, spin, curvature] = components.map(|component| component * shrink);
         let h = ScaledCreepage { x, y, spin, curvature };
-        let mut z = match start {
+        // A start of another problem, or none at all, is no start.
+        let usable =
+            |start: &&[f64]| start.len() == self.coefficients() && start.iter().all(|z| z.is_finite());
+        let mut z = match start.filter(usable) {
             Some(start) => DVector::from_column_slice(start),
             None => {
                 // The linear solution, brought down where it is far above the bound.
