@@ -69,8 +69,7 @@ pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<
         }
     } else {
         problem.inner_speed = own_spin(&inputs.inner);
-        let axis = inputs.inner.pose.orientation * Vector3::x();
-        let tilt = UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default().scaled_axis();
+        let tilt = tilt_of(&inputs.inner.pose);
         let motion = [relative.x, relative.y, relative.z, tilt.y, tilt.z];
         problem.conditions = motion.map(Prescribed::Motion);
     }
@@ -98,9 +97,9 @@ fn own_spin(input: &RaceInput) -> f64 {
     input.twist.angular_velocity.dot(&(input.pose.orientation * Vector3::x()))
 }
 
-/// Orientation of the equilibrium's frame: tilted like the outer race, which turns in it.
-fn spin_free(outer: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-    UnitQuaternion::rotation_between(&Vector3::x(), &(outer * Vector3::x())).unwrap_or_default()
+/// Orientation of a race without its turn about its own axis; that of the outer race is the equilibrium's frame.
+fn spin_free(race: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::rotation_between(&Vector3::x(), &(race * Vector3::x())).unwrap_or_default()
 }
 
 /// The state of a solution: balls roll, races move as the inputs say.
