@@ -11,10 +11,10 @@ use roulement::contact::many::{ContactEffect, evaluate_group};
 use roulement::contact::{BallMotion, RaceMotion};
 use roulement::dynamics::{Boundary, make_consistent};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
-use roulement::fmi2::Status;
-use roulement::lanes::WIDTH;
+use roulement::fmi::v2::Status;
 use roulement::model::{INNER, Model};
-use roulement::scalar::Dual;
+use roulement::numerics::lanes::WIDTH;
+use roulement::numerics::scalar::Dual;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 

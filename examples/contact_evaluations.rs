@@ -8,7 +8,7 @@ use std::time::Instant;
 use nalgebra::Vector3;
 use roulement::contact::{BallMotion, RaceMotion};
 use roulement::model::INNER;
-use roulement::scalar::Dual;
+use roulement::numerics::scalar::Dual;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 

@@ -6,11 +6,11 @@ use std::path::Path;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use roulement::analysis::single_contact::{Law, RollingContact, RollingForces};
 use roulement::contact::identification::{Identification, identify_by_table};
 use roulement::kalker::linear::Scales;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::kalker::{Patch, ScaledCreepage};
-use roulement::rolling_contact::{Law, RollingContact, RollingForces};
 use roulement::scene::CreepLaw;
 use serde::Deserialize;
 

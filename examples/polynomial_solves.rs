@@ -5,9 +5,9 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
+use roulement::analysis::single_contact::RollingContact;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::kalker::{Patch, ScaledCreepage};
-use roulement::rolling_contact::RollingContact;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

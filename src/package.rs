@@ -8,9 +8,9 @@ use thiserror::Error;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use crate::documentation;
-use crate::fmi2::SCENE_FILE;
-use crate::model_description::{MODEL_IDENTIFIER, render};
+use crate::fmi::v2::SCENE_FILE;
+use crate::interface::documentation;
+use crate::interface::model_description::{MODEL_IDENTIFIER, render};
 use crate::scene::Scene;
 use crate::simulation::{Simulation, SimulationError};
 

@@ -7,8 +7,8 @@ use plotters::prelude::*;
 use thiserror::Error;
 
 use crate::model::Model;
-use crate::outputs::{BallOutput, ContactOutput, Outputs};
 use crate::scene::Scene;
+use crate::simulation::outputs::{BallOutput, ContactOutput, Outputs};
 
 /// Why a plot could not be written.
 #[derive(Debug, Error)]

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::inputs::Inputs;
-use crate::outputs::Outputs;
+use crate::interface::variables::Variables;
 use crate::scene::Scene;
-use crate::variables::Variables;
+use crate::simulation::inputs::Inputs;
+use crate::simulation::outputs::Outputs;
 
 /// Why results could not be written.
 #[derive(Debug, Error)]

@@ -4,16 +4,16 @@
 use std::time::Instant;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use roulement::bearing::Pair;
 use roulement::contact::body::{BodyContact, BodyMotion};
 use roulement::contact::land::{LandModel, Lands};
+use roulement::contact::materials::Pair;
 use roulement::contact::pocket::PocketModel;
 use roulement::contact::{BallMotion, RaceMotion};
-use roulement::outputs::{CageOutput, Outputs, PocketOutput};
-use roulement::scalar::{Dual, Scalar, constant_vector};
+use roulement::interface::variables::Variables;
+use roulement::numerics::scalar::{Dual, Scalar, constant_vector};
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
-use roulement::variables::Variables;
+use roulement::simulation::outputs::{CageOutput, Outputs, PocketOutput};
 
 const THRUST: &str = include_str!("../scenes/thrust.toml");
 const CAGE: &str = include_str!("../scenes/cage.toml");

@@ -10,9 +10,9 @@ use roulement::contact::creep::Law;
 use roulement::contact::many::{ContactEffect, evaluate_group};
 use roulement::contact::{BallMotion, BallRaceContact, RaceMotion};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
-use roulement::lanes::{Lanes, WIDTH};
 use roulement::model::{INNER, Model, OUTER};
-use roulement::scalar::{Dual, Scalar, constant_vector};
+use roulement::numerics::lanes::{Lanes, WIDTH};
+use roulement::numerics::scalar::{Dual, Scalar, constant_vector};
 use roulement::scene::Scene;
 
 fn model() -> Model {

@@ -10,8 +10,8 @@ use std::ptr;
 
 use fmi2_abi::*;
 use random::Random;
-use roulement::fmi2::Status;
-use roulement::variables::Causality;
+use roulement::fmi::v2::Status;
+use roulement::interface::variables::Causality;
 
 /// One importer that knows no manners.
 struct Hooligan<'a> {

@@ -8,7 +8,7 @@ mod fmi2_abi;
 use std::ptr;
 
 use fmi2_abi::*;
-use roulement::fmi2::Status;
+use roulement::fmi::v2::Status;
 
 /// [kB] resident memory of this process.
 fn resident() -> f64 {

@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used)]
 
 use nalgebra::{UnitQuaternion, Vector3};
-use roulement::outputs::Outputs;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
+use roulement::simulation::outputs::Outputs;
 
 const THRUST: &str = include_str!("../scenes/thrust.toml");
 

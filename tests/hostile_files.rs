@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use hostile::*;
 use random::Random;
-use roulement::fmi2::Status;
+use roulement::fmi::v2::Status;
 
 /// Scenes that ship, of every effect, drive and solver setting that they use.
 const SCENES: [&str; 10] = [

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use nalgebra::Vector3;
-use roulement::hht::HhtStep;
-use roulement::newton::{Equations, NewtonBuffers, NewtonWork, solve};
+use roulement::numerics::hht::HhtStep;
+use roulement::numerics::newton::{Equations, NewtonBuffers, NewtonWork, solve};
 
 /// `x'' = -k x - c x' - q x^3` per unit mass, three components at once.
 #[derive(Clone, Copy)]

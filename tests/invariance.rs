@@ -4,9 +4,9 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
-use roulement::inputs::Inputs;
-use roulement::outputs::Outputs;
 use roulement::scene::Scene;
+use roulement::simulation::inputs::Inputs;
+use roulement::simulation::outputs::Outputs;
 use roulement::simulation::{Simulation, Snapshot};
 
 /// Scales of length, mass and time.

@@ -6,12 +6,12 @@ mod common;
 use std::f64::consts::PI;
 
 use common::cases;
+use roulement::analysis::single_contact::{Law, RollingContact};
 use roulement::kalker::half_space::extrapolated;
 use roulement::kalker::linear::creep_matrix;
 use roulement::kalker::table::{CreepTable, index, knot, shipped};
 use roulement::kalker::table_nodes::Rays;
 use roulement::kalker::{Patch, ScaledCreepage};
-use roulement::rolling_contact::{Law, RollingContact};
 use roulement::scene::CreepLaw;
 
 fn patch(axis_ratio: f64) -> Patch {

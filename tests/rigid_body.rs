@@ -5,14 +5,14 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{UnitQuaternion, Vector3};
-use roulement::arrowhead::KeptMatrix;
+use roulement::dynamics::arrowhead::KeptMatrix;
+use roulement::dynamics::state::{BallState, Energies, Powers, RaceState, State, Statistics};
 use roulement::dynamics::{Boundary, RaceLoad, Workspace, make_consistent, try_step};
 use roulement::model::{Constraint, INNER, Model, RaceBody};
-use roulement::motion::{Pose, Twist, Wrench};
-use roulement::rotation;
+use roulement::numerics::motion::{Pose, Twist, Wrench};
+use roulement::numerics::rotation;
+use roulement::numerics::step_control::StepControl;
 use roulement::scene::Scene;
-use roulement::state::{BallState, Energies, Powers, RaceState, State, Statistics};
-use roulement::step_control::StepControl;
 
 const THRUST: &str = include_str!("../scenes/thrust.toml");
 

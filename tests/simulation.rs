@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
-use roulement::outputs::Outputs;
 use roulement::scene::Scene;
+use roulement::simulation::outputs::Outputs;
 use roulement::simulation::{Simulation, SimulationError};
 
 const THRUST: &str = include_str!("../scenes/thrust.toml");

@@ -6,9 +6,9 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix2, Vector2};
 use roulement::contact::geometry::GrooveContact;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
-use roulement::outputs::Outputs;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
+use roulement::simulation::outputs::Outputs;
 use serde_json::{Value, json};
 
 #[path = "common/reference.rs"]

@@ -2,12 +2,12 @@
 #![allow(clippy::unwrap_used)]
 
 use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
-use roulement::condensed::Condensed;
+use roulement::analysis::condensed::Condensed;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
+use roulement::interface::variables::Variables;
 use roulement::model::Model;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
-use roulement::variables::Variables;
 use serde_json::Value;
 
 #[path = "common/reference.rs"]

@@ -6,11 +6,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use roulement::bearing::Bearing;
 use roulement::contact::identification::{identify, identify_by_table};
 use roulement::contact::shape::ContactShape;
 use roulement::kalker::Patch;
 use roulement::kalker::nonlinear::Kalker;
+use roulement::model::bearing::Bearing;
 use roulement::scene::Scene;
 
 /// What to identify for.

@@ -9,11 +9,11 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
+use roulement::analysis::single_contact::{Law, RollingContact};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
+use roulement::interface::model_description::render;
 use roulement::model::Model;
-use roulement::model_description::render;
 use roulement::package::{library_beside_executable, write_fmu};
-use roulement::rolling_contact::{Law, RollingContact};
 use roulement::scene::{CreepLaw, Scene};
 use roulement::simulation::Simulation;
 

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::time::Duration;
 
-use roulement::outputs::{CageOutput, Outputs};
 use roulement::simulation::Simulation;
+use roulement::simulation::outputs::{CageOutput, Outputs};
 
 /// Summary of a finished run; means are over the second half.
 pub fn summary(simulation: &Simulation, history: &[Outputs], wall: Duration) -> String {
@@ -33,7 +33,7 @@ fn write_summary(
     writeln!(out, "force on inner   x {:.3}  y {:.3}  z {:.3} N", force.x, force.y, force.z)?;
     writeln!(out, "moment on inner  x {:.5}  y {:.5}  z {:.5} N m", moment.x, moment.y, moment.z)?;
     writeln!(out, "inner race at    x {:.4}  y {:.4}  z {:.4} um", position.x, position.y, position.z)?;
-    let extremes = |get: fn(&roulement::outputs::BallOutput) -> f64| {
+    let extremes = |get: fn(&roulement::simulation::outputs::BallOutput) -> f64| {
         let values = now.balls.iter().map(get);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         format!("{low:.3} to {high:.3}")

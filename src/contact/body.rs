@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::scalar::{Scalar, Single, values};
+use crate::numerics::scalar::{Scalar, Single, values};
 
 /// Motion of a rigid body, in world axes.
 #[derive(Clone, Copy, Debug)]

@@ -8,7 +8,7 @@ use crate::contact::heathcote::CurvatureEffect;
 use crate::contact::regularised::Parameters;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
-use crate::scalar::{Scalar, within_limit};
+use crate::numerics::scalar::{Scalar, within_limit};
 
 /// A law with what it needs beside the contact's linear theory; chosen once per step.
 #[derive(Clone, Copy, Debug)]

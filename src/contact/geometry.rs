@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::bearing::Raceway;
-use crate::scalar::{Scalar, Single, cross, dot, values};
+use crate::contact::raceway::Raceway;
+use crate::numerics::scalar::{Scalar, Single, cross, dot, values};
 
 /// [m] distance from the groove centre below which the contact normal fades to zero.
 const DISTANCE_FLOOR: f64 = 1e-15;

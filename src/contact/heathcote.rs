@@ -9,8 +9,8 @@
 
 use std::sync::LazyLock;
 
-use crate::lanes::{Lanes, WIDTH};
-use crate::scalar::{Scalar, SmoothMap, Values};
+use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::numerics::scalar::{Scalar, SmoothMap, Values};
 
 /// Strips across the contact.
 const STRIPS: usize = 24;

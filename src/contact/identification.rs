@@ -10,7 +10,7 @@ use super::regularised::{Parameters, lateral_by_spin, moment_by_lateral, moment_
 use crate::kalker::linear::{LinearError, Scales};
 use crate::kalker::table::CreepTable;
 use crate::kalker::{Patch, ScaledCreepage, ScaledForces};
-use crate::scalar::{Dual, Scalar};
+use crate::numerics::scalar::{Dual, Scalar};
 
 /// Contacts of a sweep (paper section 3.1.3).
 const SAMPLES: usize = 50;

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::body::{BodyContact, BodyMotion, damped};
 use crate::contact::RaceMotion;
-use crate::scalar::{Scalar, Single, cross, dot};
+use crate::numerics::scalar::{Scalar, Single, cross, dot};
 
 /// [m/s] sliding speed below which friction fades: `v/sqrt(v^2 + this^2)`. A cage slides on its land at metres per
 /// second.

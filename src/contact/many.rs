@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 
 use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
-use crate::lanes::Lanes;
-use crate::scalar::{Scalar, constant_vector};
+use crate::numerics::lanes::Lanes;
+use crate::numerics::scalar::{Scalar, constant_vector};
 
 /// What a ball-race contact does, in world axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +71,7 @@ impl ContactEffect<Lanes> {
     }
 }
 
-/// Evaluates the contacts of up to [`WIDTH`](crate::lanes::WIDTH) balls with a race, to the same bits as
+/// Evaluates the contacts of up to [`WIDTH`](crate::numerics::lanes::WIDTH) balls with a race, to the same bits as
 /// [`ContactModel::evaluate`].
 pub fn evaluate_group(
     contact: &ContactModel<'_>,

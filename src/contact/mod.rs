@@ -8,16 +8,18 @@ pub mod hertz;
 pub mod identification;
 pub mod land;
 pub mod many;
+pub mod materials;
 pub mod pocket;
+pub mod raceway;
 pub mod regularised;
 pub mod shape;
 
 use nalgebra::Vector3;
 
-use crate::bearing::Raceway;
+use crate::contact::raceway::Raceway;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::{Difference, ScaledKalker};
-use crate::scalar::{Scalar, Single, cross, dot, values};
+use crate::numerics::scalar::{Scalar, Single, cross, dot, values};
 use creep::{CreepForces, Creepage, Law, LinearTheory};
 use geometry::GrooveContact;
 use shape::{ContactShape, ShapeAt};

@@ -14,10 +14,10 @@ use super::body::{BodyContact, BodyMotion, damped};
 use super::creep::{Creepage, Law, LinearTheory};
 use super::hertz::HertzContact;
 use super::shape::ShapeAt;
-use crate::bearing::Pair;
 use crate::contact::BallMotion;
+use crate::contact::materials::Pair;
 use crate::kalker::linear::LinearError;
-use crate::scalar::{Scalar, Single, cross, dot};
+use crate::numerics::scalar::{Scalar, Single, cross, dot};
 
 /// [-] axis ratio of the most slender patch with creep coefficients. A tighter cylinder (clearance below 0.8 % of the ball)
 /// takes those of this patch: the ball spins in its pocket and slides completely, where they hardly matter.

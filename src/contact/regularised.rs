@@ -14,7 +14,7 @@
 //! F_x has none at all at c_x = 0: the law is kept as the paper's reference, not as the default.
 
 use super::creep::{Creepage, LinearTheory};
-use crate::scalar::{Scalar, within_limit};
+use crate::numerics::scalar::{Scalar, within_limit};
 
 /// [-] creepages below this count as zero where a printed formula is 0/0 there.
 const CREEP_FLOOR: f64 = 1e-12;

@@ -5,11 +5,12 @@
 
 use std::f64::consts::PI;
 
-use crate::bearing::{Bearing, Raceway};
 use crate::contact::hertz::{HertzContact, complete_elliptic_integrals};
+use crate::contact::raceway::Raceway;
 use crate::kalker::Patch;
 use crate::kalker::linear::{LinearError, creep_matrix};
-use crate::scalar::Scalar;
+use crate::model::bearing::Bearing;
+use crate::numerics::scalar::Scalar;
 
 /// Nodes per polynomial. The interval of curvatures is short, so that they converge at about two digits a node:
 /// the relative error of the stiffness is below 1e-10 for ball over pitch diameter up to 0.4 (tested).

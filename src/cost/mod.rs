@@ -16,8 +16,8 @@ pub mod table;
 use indicatif::ProgressBar;
 
 use crate::scene::Scene;
+use crate::scene::units::Time;
 use crate::simulation::SimulationError;
-use crate::units::Time;
 use levers::{CreepModel, Level, Lever, ReferenceKind, Setting};
 use norms::{Comparison, Errors, Norm, errors};
 use record::{Record, record};
@@ -69,7 +69,7 @@ pub struct Measured {
     /// [1/s] instructions per simulated second, where the machine counts them.
     pub instructions: Option<f64>,
     /// Work of the integrator.
-    pub work: crate::state::Statistics,
+    pub work: crate::dynamics::state::Statistics,
 }
 
 /// The study of one scene.

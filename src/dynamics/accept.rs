@@ -7,10 +7,10 @@ use super::race::RaceLoad;
 use super::{Boundary, Workspace, race};
 use crate::contact::body::BodyContact;
 use crate::contact::many::ContactEffect;
-use crate::hht::HhtStep;
+use crate::dynamics::state::{BallState, Powers, RaceState, State};
 use crate::model::Model;
-use crate::motion::Wrench;
-use crate::state::{BallState, Powers, RaceState, State};
+use crate::numerics::hht::HhtStep;
+use crate::numerics::motion::Wrench;
 
 /// [N] residual that is small enough for any bearing (paper section 5).
 const FORCE_TOLERANCE: f64 = 1e-6;

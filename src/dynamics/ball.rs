@@ -5,17 +5,17 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 use super::cage::CageTrial;
 use super::race::RaceTrial;
 use super::reaction::RaceReaction;
-use crate::arrowhead::BallBlock;
-use crate::cage::CageModel;
 use crate::contact::body::BodyContact;
 use crate::contact::many::ContactEffect;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
-use crate::hht::HhtStep;
+use crate::dynamics::arrowhead::BallBlock;
+use crate::dynamics::state::{BallState, stack};
 use crate::kalker::scaled_law::Difference;
+use crate::model::cage::CageModel;
 use crate::model::{CAGE, Model};
-use crate::motion::Wrench;
-use crate::scalar::{Dual, Scalar, constant_vector};
-use crate::state::{BallState, stack};
+use crate::numerics::hht::HhtStep;
+use crate::numerics::motion::Wrench;
+use crate::numerics::scalar::{Dual, Scalar, constant_vector};
 
 /// Directions of differentiation: translation (0 to 2) and rotation (3 to 5) of the ball, rotation of a race body
 /// (6 to 8). A contact depends on the relative translation alone, so that of the race is minus that of the ball: nine

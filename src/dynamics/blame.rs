@@ -3,9 +3,9 @@
 use std::fmt;
 
 use super::{Boundary, Workspace};
+use crate::dynamics::state::{RaceState, State};
 use crate::model::{INNER, Model, OUTER};
-use crate::motion::Wrench;
-use crate::state::{RaceState, State};
+use crate::numerics::motion::Wrench;
 
 /// What a ball touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

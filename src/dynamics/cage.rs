@@ -5,12 +5,12 @@ use nalgebra::{Matrix6, Vector3};
 use super::ball::{DIRECTIONS, RACE_ROTATION, RaceSeen};
 use super::race::RaceTrial;
 use super::reaction::RaceReaction;
-use crate::cage::CageModel;
 use crate::contact::body::{BodyContact, BodyMotion};
 use crate::contact::land::LandModel;
-use crate::hht::HhtStep;
-use crate::scalar::{Dual, values};
-use crate::state::RaceState;
+use crate::dynamics::state::RaceState;
+use crate::model::cage::CageModel;
+use crate::numerics::hht::HhtStep;
+use crate::numerics::scalar::{Dual, values};
 
 type D = Dual<DIRECTIONS>;
 

@@ -8,14 +8,14 @@ use super::race::{RaceLoad, RaceScales, RaceTrial};
 use super::reaction::RaceReaction;
 use super::turn::Turn;
 use super::{Boundary, Workspace};
-use crate::arrowhead::{BLOCK, BODIES, BallBlock, KeptBlock, KeptMatrix};
 use crate::contact::many::{ContactEffect, evaluate_group};
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
-use crate::hht::HhtStep;
-use crate::lanes::WIDTH;
+use crate::dynamics::arrowhead::{BLOCK, BODIES, BallBlock, KeptBlock, KeptMatrix};
+use crate::dynamics::state::{State, race_motion};
 use crate::model::{CAGE, Model, OUTER, RaceBody};
-use crate::newton::Equations;
-use crate::state::{State, race_motion};
+use crate::numerics::hht::HhtStep;
+use crate::numerics::lanes::WIDTH;
+use crate::numerics::newton::Equations;
 
 /// [-] accepted violation of position constraints over the ball diameter (paper section 5: 1e-8).
 const CONSTRAINT_TOLERANCE: f64 = 1e-8;

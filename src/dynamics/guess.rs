@@ -4,7 +4,7 @@ use nalgebra::Vector6;
 
 use super::equations::BearingStep;
 use super::turn::Turn;
-use crate::arrowhead::BLOCK;
+use crate::dynamics::arrowhead::BLOCK;
 use crate::model::{CAGE, Constraint, OUTER};
 
 impl BearingStep<'_> {

@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 use super::blame::Worst;
 use super::equations::BearingStep;
 use super::race::RaceTrial;
+use crate::dynamics::state::RaceState;
 use crate::model::{CAGE, INNER, OUTER};
-use crate::state::RaceState;
 
 /// A vector at start and end of a step.
 type Ends<'a> = (&'a Vector3<f64>, &'a Vector3<f64>);

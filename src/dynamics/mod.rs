@@ -1,6 +1,7 @@
 //! One implicit step of the whole bearing: Newton's equations of balls and race bodies under the HHT scheme.
 
 mod accept;
+pub mod arrowhead;
 mod ball;
 mod blame;
 mod cage;
@@ -10,15 +11,16 @@ mod local_error;
 mod neighbour;
 mod race;
 mod reaction;
+pub mod state;
 mod turn;
 
 use nalgebra::{DMatrix, DVector, Vector6};
 
-use crate::arrowhead::{Arrowhead, KeptMatrix};
+use crate::dynamics::arrowhead::{Arrowhead, KeptMatrix};
+use crate::dynamics::state::State;
 use crate::model::Model;
-use crate::motion::{Pose, Twist};
-use crate::newton::{self, NewtonBuffers, NewtonFailure};
-use crate::state::State;
+use crate::numerics::motion::{Pose, Twist};
+use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure};
 use accept::{accept, renew_polynomials};
 pub use accept::{bearing_wrench, make_consistent};
 use ball::BallTrial;

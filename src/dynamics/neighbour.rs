@@ -8,9 +8,9 @@
 use super::accept::accept;
 use super::equations::BearingStep;
 use super::{Boundary, Workspace};
+use crate::dynamics::state::State;
 use crate::model::Model;
-use crate::newton::Equations;
-use crate::state::State;
+use crate::numerics::newton::Equations;
 
 /// Takes the neighbours along a step of `h` [s] from `start` that was `accepted` just now with that workspace; false if
 /// the Newton matrix is singular.

@@ -6,12 +6,12 @@ use super::ball::{DIRECTIONS, RACE_ROTATION, by_ball, by_race_unknown, constant_
 use super::reaction::RaceReaction;
 use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
-use crate::hht::HhtStep;
+use crate::dynamics::state::{RaceState, normalised};
 use crate::model::{Constraint, RaceBody, tilt_component, tilt_direction};
-use crate::motion::{Pose, Wrench};
-use crate::rotation::{from_rotation_vector, rotate, to_quaternion};
-use crate::scalar::{Dual, Scalar, constant_vector, values};
-use crate::state::{RaceState, normalised};
+use crate::numerics::hht::HhtStep;
+use crate::numerics::motion::{Pose, Wrench};
+use crate::numerics::rotation::{from_rotation_vector, rotate, to_quaternion};
+use crate::numerics::scalar::{Dual, Scalar, constant_vector, values};
 
 type D = Dual<DIRECTIONS>;
 

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::ball::DIRECTIONS;
 use crate::contact::body::BodyContact;
 use crate::contact::many::ContactEffect;
-use crate::scalar::{Dual, constant_vector};
+use crate::numerics::scalar::{Dual, constant_vector};
 
 /// Force and moment (world axes) of one contact on a race, with derivatives.
 #[derive(Clone, Copy, Debug)]

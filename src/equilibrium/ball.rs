@@ -3,10 +3,10 @@
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::{EquilibriumInput, Gyroscopic};
-use crate::bearing::azimuth_directions;
 use crate::contact::geometry::GrooveContact;
+use crate::model::bearing::azimuth_directions;
 use crate::model::{INNER, Model, OUTER};
-use crate::scalar::{Dual, Scalar, constant_vector};
+use crate::numerics::scalar::{Dual, Scalar, constant_vector};
 
 /// Directions of differentiation: ball axial and radial, inner race x, y, z, ry, rz, cage speed.
 pub const DIRECTIONS: usize = 8;

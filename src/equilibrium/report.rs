@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::Equilibrium;
 use super::ball::BallBalance;
 use crate::contact::geometry::GrooveContact;
-use crate::scalar::{Dual, Single, values};
+use crate::numerics::scalar::{Dual, Single, values};
 
 /// What is reported of a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,9 +6,9 @@ use super::ball::{
     BallBalance, DIRECTIONS, N_SHARED, Place, SHARED, Shared, bottom_of_outer_groove, middle_of_gap, settle,
 };
 use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
-use crate::bearing::azimuth_directions;
 use crate::model::Model;
-use crate::scalar::{Dual, Scalar, Single};
+use crate::model::bearing::azimuth_directions;
+use crate::numerics::scalar::{Dual, Scalar, Single};
 
 type D = Dual<DIRECTIONS>;
 /// Displacements x, y, z, ry, rz and cage speed.

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DMatrixView, DVector, Dyn, MatrixView};
 
 use super::ScaledCreepage;
 use super::nonlinear::{Kalker, Point, SLIP_WEIGHT};
-use crate::lanes::WIDTH;
+use crate::numerics::lanes::WIDTH;
 
 /// Tractions and arguments of the projection at every point, components x and y in turn.
 pub(super) struct Fields {

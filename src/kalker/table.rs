@@ -19,8 +19,8 @@ use std::sync::{LazyLock, OnceLock};
 use super::Patch;
 use super::linear::{LinearError, Scales};
 use super::table_pieces::{COUNT, locate, locate_size, piece, weights};
-use crate::lanes::Lanes;
-use crate::scalar::{Scalar, SmoothMap, Values, within_limit};
+use crate::numerics::lanes::Lanes;
+use crate::numerics::scalar::{Scalar, SmoothMap, Values, within_limit};
 
 /// Intervals from rest to sliding, from the x axis to the plane of y and spin, and of half a turn in that plane.
 pub const SHAPE: [usize; 3] = [COUNT, 10, 16];

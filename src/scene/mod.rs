@@ -1,12 +1,13 @@
 //! The scene file: one bearing, its load, and what is to be simulated.
 //!
-//! A scene is TOML; every number is SI or text with a unit ([`crate::units`]). Unknown keys, missing keys and values
+//! A scene is TOML; every number is SI or text with a unit ([`crate::scene::units`]). Unknown keys, missing keys and values
 //! out of range are errors that name the key, the value and the allowed range.
 
 mod accuracy;
 pub mod parameters;
 mod schedule;
 mod sections;
+pub mod units;
 mod validate;
 
 use std::path::Path;

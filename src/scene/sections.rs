@@ -5,7 +5,7 @@ use strum::{IntoStaticStr, VariantArray};
 
 use super::schedule::{self, Schedule};
 use crate::contact::regularised::Parameters;
-use crate::units::*;
+use crate::scene::units::*;
 
 /// Internal geometry of the bearing.
 #[derive(Clone, Debug, Deserialize)]

@@ -5,11 +5,11 @@ use std::ffi::{CString, c_char, c_int, c_void};
 use std::path::PathBuf;
 use std::ptr;
 
-use roulement::fmi2::{CallbackFunctions, Status};
-use roulement::model_description::render;
+use roulement::fmi::v2::{CallbackFunctions, Status};
+use roulement::interface::model_description::render;
+use roulement::interface::variables::{Causality, Variable, Variables};
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
-use roulement::variables::{Causality, Variable, Variables};
 
 pub type Component = *mut c_void;
 pub type State = *mut c_void;

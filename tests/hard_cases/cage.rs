@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
-use roulement::inputs::Inputs;
-use roulement::outputs::{BallOutput, CageOutput, Outputs, PocketOutput};
 use roulement::simulation::Simulation;
+use roulement::simulation::inputs::Inputs;
+use roulement::simulation::outputs::{BallOutput, CageOutput, Outputs, PocketOutput};
 
 use crate::gates::{Case, Run, limits};
 use crate::scenes::{CAGE, load, ramp, scene};

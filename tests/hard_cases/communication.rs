@@ -1,7 +1,7 @@
 //! Communication steps of any size, and inputs that jump, shake and step.
 
-use roulement::inputs::Inputs;
 use roulement::simulation::Simulation;
+use roulement::simulation::inputs::Inputs;
 
 use crate::gates::{Case, Importer, Run, limits};
 use crate::random::Random;

@@ -1,9 +1,9 @@
 //! Contacts that open and close: clearance, thrust through zero, shock, an accelerated bearing.
 
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
-use roulement::inputs::Inputs;
-use roulement::outputs::Outputs;
 use roulement::simulation::Simulation;
+use roulement::simulation::inputs::Inputs;
+use roulement::simulation::outputs::Outputs;
 
 use crate::gates::{Case, Run, limits};
 use crate::scenes::{ANGULAR, FLAT, GROOVE, HELD, groove, load, scene};

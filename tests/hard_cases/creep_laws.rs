@@ -1,7 +1,7 @@
 //! Creep laws over a million random inputs, extremes included.
 
 use roulement::contact::creep::{CreepForces, Creepage, Law, LinearTheory};
-use roulement::scalar::{Dual, Scalar};
+use roulement::numerics::scalar::{Dual, Scalar};
 
 use crate::laws::Laws;
 use crate::random::Random;

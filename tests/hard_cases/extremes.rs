@@ -1,8 +1,8 @@
 //! Few and many balls, soft and stiff ones, clearance to its limit, far from the origin, and very long.
 
 use nalgebra::Vector3;
-use roulement::inputs::Inputs;
 use roulement::simulation::Simulation;
+use roulement::simulation::inputs::Inputs;
 
 use crate::gates::{Case, Limits, Run, limits};
 use crate::scenes::{ANGULAR, FLAT, GROOVE, HELD, POSE, groove, load, scene};

@@ -1,7 +1,7 @@
 //! Gate (f): without friction, damping and load, an oscillation gains no energy over 1e5 steps.
 
+use roulement::dynamics::state::Statistics;
 use roulement::simulation::Simulation;
-use roulement::state::Statistics;
 
 use crate::scenes::{GROOVE, scene};
 

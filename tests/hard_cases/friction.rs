@@ -1,9 +1,9 @@
 //! Friction: none, hardly any, high, suddenly high, suddenly gone; skidding and recovery.
 
 use nalgebra::Vector3;
-use roulement::inputs::Inputs;
-use roulement::outputs::BallOutput;
 use roulement::simulation::Simulation;
+use roulement::simulation::inputs::Inputs;
+use roulement::simulation::outputs::BallOutput;
 
 use crate::gates::{Case, Run, limits};
 use crate::scenes::{ANGULAR, load, ramp, scene};

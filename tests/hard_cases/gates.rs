@@ -4,14 +4,14 @@
 //! to the same bits; (g) bounded rejections. Gate (f), no gain of energy, has cases of its own.
 
 use nalgebra::Vector3;
-use roulement::motion::Wrench;
-use roulement::outputs::{ContactOutput, Outputs};
+use roulement::dynamics::state::{RaceState, State, Statistics};
+use roulement::interface::variables::Variables;
+use roulement::numerics::motion::Wrench;
 use roulement::scene::{CreepLaw, Scene};
+use roulement::simulation::outputs::{ContactOutput, Outputs};
 use roulement::simulation::{Simulation, Snapshot};
-use roulement::state::{RaceState, State, Statistics};
-use roulement::variables::Variables;
 
-use roulement::inputs::Inputs;
+use roulement::simulation::inputs::Inputs;
 
 /// (b) largest residual of the energy balance over work plus friction.
 const ENERGY: f64 = 0.01;
@@ -266,8 +266,9 @@ struct Mean {
 fn means(window: &[Outputs], lever: f64) -> Vec<Mean> {
     let n = window.len() as f64;
     let mean = |get: &dyn Fn(&Outputs) -> f64| window.iter().map(get).sum::<f64>() / n;
-    let load =
-        |get: fn(&roulement::outputs::BallOutput) -> f64| mean(&|o| o.balls.iter().map(get).sum::<f64>());
+    let load = |get: fn(&roulement::simulation::outputs::BallOutput) -> f64| {
+        mean(&|o| o.balls.iter().map(get).sum::<f64>())
+    };
     let force = mean(&|o| o.inner.wrench.force.norm());
     let inner = load(|ball| ball.inner.load);
     let outer = load(|ball| ball.outer.load);

@@ -1,7 +1,7 @@
 //! Standstill, a jump of friction and a reversal with the richer rolling contact laws.
 
-use roulement::inputs::Inputs;
 use roulement::simulation::Simulation;
+use roulement::simulation::inputs::Inputs;
 
 use crate::gates::{Case, limits};
 use crate::scenes::{ANGULAR, load, ramp, scene};

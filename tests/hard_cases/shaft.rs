@@ -1,9 +1,9 @@
 //! Two bearings on one rigid shaft that the importer integrates, coupled by pose and wrench.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use roulement::outputs::Outputs;
+use roulement::interface::variables::Variables;
+use roulement::simulation::outputs::Outputs;
 use roulement::simulation::{Simulation, Snapshot};
-use roulement::variables::Variables;
 
 use crate::gates::{change, converged, energy_residual, possible};
 use crate::scenes::{ANGULAR, HELD, POSE, load, scene};

@@ -4,12 +4,12 @@
 
 use std::ptr;
 
-use roulement::documentation;
-use roulement::fmi2::Status;
-use roulement::model_description::render;
+use roulement::fmi::v2::Status;
+use roulement::interface::documentation;
+use roulement::interface::model_description::render;
+use roulement::interface::variables::{Causality, Variables};
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
-use roulement::variables::{Causality, Variables};
 use sha2::{Digest, Sha256};
 
 use crate::fmi2_abi::*;

@@ -7,7 +7,7 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use crate::scalar::Scalar;
+use crate::numerics::scalar::Scalar;
 
 /// `c0 = 2 - c.c/8`, the scalar companion of c in the formulas of the reference.
 #[inline(always)]
@@ -102,7 +102,7 @@ mod tests {
     use num_traits::Zero;
 
     use super::*;
-    use crate::scalar::Dual;
+    use crate::numerics::scalar::Dual;
 
     fn vectors() -> impl Iterator<Item = Vector3<f64>> {
         [0.0, 1e-9, 0.1, 1.0, 3.0, 3.9]

@@ -6,11 +6,11 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
 
+use crate::interface::variables::units::{self, Unit};
+use crate::interface::variables::{Causality, Kind, Source, Variable, Variables};
 use crate::scene::Scene;
 use crate::scene::parameters::Variability;
 use crate::simulation::Simulation;
-use crate::variables::units::{self, Unit};
-use crate::variables::{Causality, Kind, Source, Variable, Variables};
 
 /// Model identifier: the name of the shared library in a package.
 pub const MODEL_IDENTIFIER: &str = "roulement";

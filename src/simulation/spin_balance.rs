@@ -7,7 +7,7 @@
 
 use nalgebra::{Matrix4, Matrix6, Vector4};
 
-use crate::condensed::{Linear, Orbit};
+use crate::analysis::condensed::{Linear, Orbit};
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::model::{INNER, Model, OUTER};
 

@@ -3,8 +3,8 @@
 use nalgebra::{SVector, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::motion::{Pose, Twist};
-use crate::rotation::{from_quaternion, rotate, tangent, tangent_inverse, to_quaternion};
+use crate::numerics::motion::{Pose, Twist};
+use crate::numerics::rotation::{from_quaternion, rotate, tangent, tangent_inverse, to_quaternion};
 
 /// A cubic in time with given values and rates at both ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

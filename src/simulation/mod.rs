@@ -1,5 +1,11 @@
 //! A running bearing: model, state, inputs, and the one function that advances it.
 
+pub mod inputs;
+pub mod outputs;
+pub mod path;
+pub mod spin_balance;
+pub mod start;
+
 use std::cmp::Ordering;
 use std::sync::Arc;
 
@@ -7,21 +13,20 @@ use nalgebra::{SVector, Vector3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::arrowhead::KeptMatrix;
 use crate::contact::geometry::GrooveContact;
+use crate::dynamics::arrowhead::KeptMatrix;
+use crate::dynamics::state::State;
 use crate::dynamics::{
     Blame, Boundary, RaceLoad, StepFailure, Workspace, follow, make_consistent, to_blame, try_step,
 };
 use crate::equilibrium::{EquilibriumError, MAX_APPROACH};
-use crate::inputs::{Inputs, RaceInput};
 use crate::kalker::nonlinear::KalkerError;
 use crate::model::{INNER, Model, OUTER};
-use crate::motion::Wrench;
-use crate::outputs::Outputs;
-use crate::path::{RAMP_WIDTH, RacePath, Ramp};
+use crate::numerics::motion::Wrench;
 use crate::scene::{Condition, Drive, Scene};
-use crate::start;
-use crate::state::State;
+use crate::simulation::inputs::{Inputs, RaceInput};
+use crate::simulation::outputs::Outputs;
+use crate::simulation::path::{RAMP_WIDTH, RacePath, Ramp};
 
 /// Why a simulation could not start or go on.
 #[derive(Debug, Error)]

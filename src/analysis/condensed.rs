@@ -20,9 +20,9 @@ use nalgebra::{Matrix2, Matrix2x6, Matrix4, Matrix4x6, Matrix6, Matrix6x2, Matri
 
 use crate::contact::creep::Law;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
+use crate::dynamics::state::{BallState, State};
 use crate::model::{INNER, Model, OUTER};
-use crate::scalar::{Dual, constant_vector};
-use crate::state::{BallState, State};
+use crate::numerics::scalar::{Dual, constant_vector};
 
 /// [s] time in which friction has to be able to change the velocities of a ball so that they follow. Rolling takes
 /// microseconds; a ball that slides freely, or pivots against hardly any friction, does not follow.

@@ -4,20 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
+use crate::contact::materials::Pair;
+use crate::contact::raceway::Raceway;
 use crate::scene::Scene;
-
-/// One raceway: a groove of circular section swept about the race's own x axis (a torus).
-///
-/// Lengths are in the race frame, whose origin is the bearing centre of the unloaded bearing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Raceway {
-    /// [m] radius of the groove's section.
-    pub groove_radius: f64,
-    /// [m] radius of the circle of groove centres.
-    pub groove_circle_radius: f64,
-    /// [m] axial position of the groove centres.
-    pub groove_offset: f64,
-}
 
 /// A ball: homogeneous sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,30 +17,6 @@ pub struct Ball {
     pub mass: f64,
     /// [kg m2] moment of inertia about any axis through the centre.
     pub inertia: f64,
-}
-
-/// Elastic constants of a pair of materials.
-#[derive(Clone, Copy, Debug)]
-pub struct Pair {
-    /// [1/Pa] `(1 - nu1^2)/E1 + (1 - nu2^2)/E2`.
-    pub compliance: f64,
-    /// [Pa] combined shear modulus.
-    pub shear_modulus: f64,
-    /// [-] combined Poisson's ratio.
-    pub poisson_ratio: f64,
-}
-
-impl Pair {
-    /// Two materials, each by Young's modulus [Pa] and Poisson's ratio (combined as in Kalker 1967).
-    pub fn new(materials: [(f64, f64); 2]) -> Self {
-        let shear = materials.map(|(youngs, nu)| youngs / (2.0 * (1.0 + nu)));
-        let shear_modulus = 2.0 / (1.0 / shear[0] + 1.0 / shear[1]);
-        Self {
-            compliance: materials.iter().map(|(youngs, nu)| (1.0 - nu * nu) / youngs).sum(),
-            shear_modulus,
-            poisson_ratio: shear_modulus * (materials[0].1 / shear[0] + materials[1].1 / shear[1]) / 2.0,
-        }
-    }
 }
 
 /// A ball bearing: everything that does not change while it runs.

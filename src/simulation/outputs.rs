@@ -2,12 +2,12 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::condensed::Condensed;
+use crate::analysis::condensed::Condensed;
 use crate::contact::BallRaceContact;
 use crate::contact::body::BodyContact;
+use crate::dynamics::state::{RaceState, State, Statistics};
 use crate::model::{Constraint, INNER, Model, OUTER, RaceBody, tilt_direction};
-use crate::motion::{Pose, Twist, Wrench};
-use crate::state::{RaceState, State, Statistics};
+use crate::numerics::motion::{Pose, Twist, Wrench};
 
 /// A race.
 #[derive(Clone, Copy, Debug, PartialEq)]

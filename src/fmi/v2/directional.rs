@@ -8,10 +8,10 @@
 
 use super::instance::{Instance, Outcome, error};
 use super::state_machine::Phase;
-use crate::inputs::Inputs;
-use crate::outputs::Outputs;
+use crate::interface::variables::{Causality, Kind, RaceQuantity, Source, Variable};
+use crate::simulation::inputs::Inputs;
+use crate::simulation::outputs::Outputs;
 use crate::simulation::{Simulation, SimulationError};
-use crate::variables::{Causality, Kind, RaceQuantity, Source, Variable};
 
 /// Sizes of the changes of inputs whose effects are compared: small against what bends the contact laws (an approach of
 /// some micrometres, slip speeds of millimetres per second), large against rounding.

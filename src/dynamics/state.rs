@@ -4,13 +4,13 @@ use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use serde::{Deserialize, Serialize};
 
-use crate::arrowhead::KeptMatrix;
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
+use crate::dynamics::arrowhead::KeptMatrix;
 use crate::kalker::scaled_law::Difference;
-use crate::motion::{Pose, Twist, Wrench};
-use crate::newton::NewtonWork;
-use crate::step_control::StepControl;
+use crate::numerics::motion::{Pose, Twist, Wrench};
+use crate::numerics::newton::NewtonWork;
+use crate::numerics::step_control::StepControl;
 
 /// One ball. It is isotropic, so it has no orientation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

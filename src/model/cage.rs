@@ -4,14 +4,15 @@
 
 use nalgebra::Vector3;
 
-use crate::bearing::{Bearing, Pair};
 use crate::contact::body::{BodyContact, BodyMotion};
 use crate::contact::land::{LandModel, Lands};
+use crate::contact::materials::Pair;
 use crate::contact::pocket::PocketModel;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::kalker::linear::LinearError;
+use crate::model::bearing::Bearing;
 use crate::model::{INNER, OUTER, RaceBody};
-use crate::scalar::Single;
+use crate::numerics::scalar::Single;
 use crate::scene::{CageSection, Guidance, Scene};
 
 /// A cage.

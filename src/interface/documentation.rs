@@ -1,8 +1,8 @@
 //! The page that a package brings along: interface, frames, effects, limits, parameters.
 
+use crate::interface::variables::{Causality, Source, Variable, Variables};
 use crate::scene::parameters::Variability;
 use crate::scene::{Drive, Scene};
-use crate::variables::{Causality, Source, Variable, Variables};
 
 const STYLE: &str = "body{font:16px sans-serif;max-width:64em;margin:2em auto;padding:0 1em}\
     td,th{text-align:left;padding:.2em .6em;vertical-align:top}tr:nth-child(even){background:#f3f5f7}\

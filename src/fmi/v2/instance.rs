@@ -9,12 +9,12 @@ use sha2::{Digest, Sha256};
 use super::log::Log;
 use super::state_machine::{Call, Phase, allowed};
 use super::types::{CallbackFunctions, Status};
-use crate::inputs::Inputs;
-use crate::model_description;
+use crate::interface::model_description;
+use crate::interface::variables::{Causality, Kind, Source, Variables};
 use crate::scene::Scene;
 use crate::scene::parameters::Variability;
+use crate::simulation::inputs::Inputs;
 use crate::simulation::{Simulation, Snapshot};
-use crate::variables::{Causality, Kind, Source, Variables};
 
 /// Name of the scene inside a package's resources folder.
 pub const SCENE_FILE: &str = "scene.toml";

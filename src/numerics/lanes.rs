@@ -7,7 +7,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 use nalgebra::Vector3;
 
-use crate::scalar::{Scalar, SmoothMap, Values};
+use crate::numerics::scalar::{Scalar, SmoothMap, Values};
 
 /// Numbers in one: what a vector register of 256 bits holds.
 pub const WIDTH: usize = 4;

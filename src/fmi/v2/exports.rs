@@ -14,7 +14,7 @@ use super::instance::{FmuState, Instance, Outcome, error};
 use super::log::Log;
 use super::state_machine::Call;
 use super::types::{Boolean, CallbackFunctions, Status};
-use crate::variables::Kind;
+use crate::interface::variables::Kind;
 
 /// Runs a call on an instance: null check, phase check, panic guard, log, status.
 fn guard(component: *mut c_void, call: Call, work: impl FnOnce(&mut Instance) -> Outcome) -> Status {
@@ -152,8 +152,9 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
 ) -> Status {
     guard(component, Call::SetDebugLogging, |instance| {
         let names: Vec<String> = list(categories, n)?.iter().filter_map(|name| text(*name)).collect();
-        let known =
-            |name: &String| crate::model_description::LOG_CATEGORIES.iter().any(|(known, _)| known == name);
+        let known = |name: &String| {
+            crate::interface::model_description::LOG_CATEGORIES.iter().any(|(known, _)| known == name)
+        };
         if let Some(unknown) = names.iter().find(|name| !known(name)) {
             return error(format!("there is no log category {unknown}"));
         }

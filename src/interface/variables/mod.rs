@@ -8,11 +8,11 @@ pub mod units;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use thiserror::Error;
 
-use crate::inputs::{Inputs, RaceInput};
-use crate::motion::{Pose, Twist, Wrench};
-use crate::outputs::{BallOutput, CageOutput, ContactOutput, Outputs, RaceOutput};
+use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::scene::parameters::Parameter;
 use crate::scene::{Orientation, Scene};
+use crate::simulation::inputs::{Inputs, RaceInput};
+use crate::simulation::outputs::{BallOutput, CageOutput, ContactOutput, Outputs, RaceOutput};
 use units::Unit;
 
 /// FMI causality.

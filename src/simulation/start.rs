@@ -2,16 +2,16 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::arrowhead::KeptMatrix;
-use crate::bearing::azimuth_directions;
+use crate::dynamics::arrowhead::KeptMatrix;
+use crate::dynamics::state::{BallState, Energies, Powers, RaceState, State, Statistics};
 use crate::equilibrium::{self, BallEquilibrium, EquilibriumError, EquilibriumInput, Gyroscopic, Prescribed};
-use crate::inputs::{Inputs, RaceInput};
+use crate::model::bearing::azimuth_directions;
 use crate::model::{INNER, Model, OUTER};
-use crate::motion::{Pose, Twist, Wrench};
+use crate::numerics::motion::{Pose, Twist, Wrench};
+use crate::numerics::step_control::StepControl;
 use crate::scene::{Condition, Drive, Scene, Schedule};
-use crate::spin_balance::balanced;
-use crate::state::{BallState, Energies, Powers, RaceState, State, Statistics};
-use crate::step_control::StepControl;
+use crate::simulation::inputs::{Inputs, RaceInput};
+use crate::simulation::spin_balance::balanced;
 
 /// Inputs and state of a scene at time 0: the equilibrium under the scene's load, every race spinning about its own
 /// axis at its scripted speed.

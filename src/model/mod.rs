@@ -1,19 +1,23 @@
 //! The immutable model of a run: bearing, contact tables, effects, and which races are bodies.
 
+pub mod bearing;
+pub mod cage;
+
 use nalgebra::Vector3;
 
-use crate::arrowhead::{BLOCK, BODIES};
-use crate::bearing::{Bearing, Raceway};
-use crate::cage::CageModel;
 use crate::contact::ContactModel;
 use crate::contact::creep::Law;
 use crate::contact::identification::identify_by_table;
+use crate::contact::raceway::Raceway;
 use crate::contact::regularised::Parameters;
 use crate::contact::shape::ContactShape;
+use crate::dynamics::arrowhead::{BLOCK, BODIES};
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
-use crate::scalar::Scalar;
+use crate::model::bearing::Bearing;
+use crate::model::cage::CageModel;
+use crate::numerics::scalar::Scalar;
 use crate::scene::{Condition, CreepLaw, Drive, RaceSection, Scene, Schedule, Solver};
 
 /// Index of the inner race wherever races come in pairs.

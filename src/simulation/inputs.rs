@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::motion::{Pose, Twist, Wrench};
+use crate::numerics::motion::{Pose, Twist, Wrench};
 
 /// What a race is given from outside, valid at the last communication point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

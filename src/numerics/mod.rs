@@ -1,0 +1,9 @@
+//! Numerical methods without a bearing in them: numbers with derivatives, rigid-body motion, Newton's method, HHT steps.
+
+pub mod hht;
+pub mod lanes;
+pub mod motion;
+pub mod newton;
+pub mod rotation;
+pub mod scalar;
+pub mod step_control;
