@@ -7,12 +7,14 @@ mod fmi2_abi;
 
 use divan::{Bencher, counter::ItemsCount};
 use nalgebra::Vector3;
-use roulement::contact::many::{ContactEffect, evaluate_group};
+use roulement::contact::many::evaluate_group;
+use roulement::contact::pair::PairForces;
 use roulement::contact::{BallMotion, RaceMotion};
 use roulement::dynamics::{Boundary, make_consistent};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::fmi::v2::Status;
-use roulement::model::{INNER, Model};
+use roulement::model::bodies::{PerRace, Race};
+use roulement::model::{Conditions, Model};
 use roulement::numerics::lanes::WIDTH;
 use roulement::numerics::scalar::Dual;
 use roulement::scene::Scene;
@@ -40,8 +42,8 @@ fn simulation(law: &str) -> Simulation {
 #[divan::bench(args = LAWS)]
 fn contact_value(bencher: Bencher, law: &str) {
     let simulation = simulation(law);
-    let contact = simulation.model().contact(INNER, 0.08);
-    let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().races[INNER].motion());
+    let contact = simulation.model().contact(Race::Inner, &Conditions { friction: 0.08 });
+    let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().race(Race::Inner).motion());
     bencher.bench_local(|| contact.evaluate(divan::black_box(&ball), divan::black_box(&race)));
 }
 
@@ -49,10 +51,10 @@ fn contact_value(bencher: Bencher, law: &str) {
 #[divan::bench(args = LAWS)]
 fn contact_values_together(bencher: Bencher, law: &str) {
     let simulation = simulation(law);
-    let contact = simulation.model().contact(INNER, 0.08);
-    let race = simulation.state().races[INNER].motion();
+    let contact = simulation.model().contact(Race::Inner, &Conditions { friction: 0.08 });
+    let race = simulation.state().race(Race::Inner).motion();
     let balls: [_; WIDTH] = std::array::from_fn(|lane| simulation.state().balls[lane].motion());
-    let mut effects = [ContactEffect::none(); WIDTH];
+    let mut effects = [PairForces::none(); WIDTH];
     bencher.counter(ItemsCount::new(WIDTH)).bench_local(|| {
         evaluate_group(&contact, divan::black_box(&race), divan::black_box(&balls), &mut effects);
         effects[0].load
@@ -63,8 +65,8 @@ fn contact_values_together(bencher: Bencher, law: &str) {
 #[divan::bench(args = LAWS)]
 fn contact_with_derivatives(bencher: Bencher, law: &str) {
     let simulation = simulation(law);
-    let contact = simulation.model().contact(INNER, 0.08);
-    let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().races[INNER].motion());
+    let contact = simulation.model().contact(Race::Inner, &Conditions { friction: 0.08 });
+    let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().race(Race::Inner).motion());
     type D = Dual<9>;
     let seed = |v: &Vector3<f64>, first: usize| -> Vector3<D> {
         Vector3::from_fn(|k, _| Dual::variable(v[k], first + k, 1.0))
@@ -88,8 +90,12 @@ fn contact_with_derivatives(bencher: Bencher, law: &str) {
 #[divan::bench]
 fn force_assembly(bencher: Bencher) {
     let simulation = simulation("saturated");
-    let motion = simulation.state().races.each_ref().map(|race| (race.pose, race.twist()));
-    let boundary = Boundary { time: 0.0, motion, loads: Default::default(), friction: 0.08 };
+    let motion = PerRace::new(|race| {
+        let race = simulation.state().race(race);
+        (race.pose, race.twist())
+    });
+    let conditions = Conditions { friction: 0.08 };
+    let boundary = Boundary { time: 0.0, motion, loads: Default::default(), conditions };
     bencher.with_inputs(|| simulation.state().clone()).bench_local_values(|mut state| {
         make_consistent(simulation.model(), &mut state, &boundary);
         state

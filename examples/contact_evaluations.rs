@@ -7,7 +7,8 @@ use std::time::Instant;
 
 use nalgebra::Vector3;
 use roulement::contact::{BallMotion, RaceMotion};
-use roulement::model::INNER;
+use roulement::model::Conditions;
+use roulement::model::bodies::Race;
 use roulement::numerics::scalar::Dual;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
@@ -32,8 +33,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scene =
         Scene::parse(&include_str!("../scenes/thrust.toml").replace("creep = \"saturated\"", &effects))?;
     let simulation = Simulation::new(&scene)?;
-    let contact = simulation.model().contact(INNER, 0.08);
-    let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().races[INNER].motion());
+    let contact = simulation.model().contact(Race::Inner, &Conditions { friction: 0.08 });
+    let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().race(Race::Inner).motion());
     let dual_ball: BallMotion<D> = BallMotion {
         position: lift(&ball.position, 0),
         velocity: lift(&ball.velocity, 3),

@@ -6,6 +6,7 @@ pub mod cost;
 pub mod dynamics;
 pub mod equilibrium;
 pub mod fmi;
+pub mod forces;
 pub mod interface;
 pub mod kalker;
 pub mod model;

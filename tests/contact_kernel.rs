@@ -7,10 +7,12 @@ mod laws;
 use laws::Laws;
 use nalgebra::Vector3;
 use roulement::contact::creep::Law;
-use roulement::contact::many::{ContactEffect, evaluate_group};
+use roulement::contact::many::evaluate_group;
+use roulement::contact::pair::PairForces;
 use roulement::contact::{BallMotion, BallRaceContact, RaceMotion};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
-use roulement::model::{INNER, Model, OUTER};
+use roulement::model::bodies::Race;
+use roulement::model::{Conditions, Model};
 use roulement::numerics::lanes::{Lanes, WIDTH};
 use roulement::numerics::scalar::{Dual, Scalar, constant_vector};
 use roulement::scene::Scene;
@@ -20,12 +22,13 @@ fn model() -> Model {
 }
 
 /// Ball 2 of the thrust case near its equilibrium, with slip, spin and tilt: 18 independent numbers.
-fn motion(race: usize) -> [f64; 18] {
+fn motion(race: Race) -> [f64; 18] {
     let scene = Scene::parse(include_str!("../scenes/thrust.toml")).unwrap();
     let input = EquilibriumInput::from_scene(&scene, Gyroscopic::None);
     let solution = equilibrium::solve(&model(), &input).unwrap();
     let ball = &solution.balls[1];
-    let (displacement, speed) = if race == INNER { (solution.displacement[0], 628.0) } else { (0.0, 0.3) };
+    let (displacement, speed) =
+        if race == Race::Inner { (solution.displacement[0], 628.0) } else { (0.0, 0.3) };
     let (p, v, w) = (ball.position, ball.velocity, ball.angular_velocity);
     [
         // ball: position, velocity, angular velocity
@@ -64,10 +67,10 @@ fn all(laws: &Laws) -> Vec<(&'static str, Law<'_>, Option<f64>)> {
 fn evaluate<S: Scalar>(
     model: &Model,
     (law, bend): (Law<'_>, Option<f64>),
-    race: usize,
+    race: Race,
     x: &[S; 18],
 ) -> BallRaceContact<S> {
-    let mut contact = model.contact(race, 0.08);
+    let mut contact = model.contact(race, &Conditions { friction: 0.08 });
     (contact.law, contact.groove_bend) = (law, bend);
     let vector = |i: usize| Vector3::new(x[i], x[i + 1], x[i + 2]);
     let ball = BallMotion { position: vector(0), velocity: vector(3), angular_velocity: vector(6) };
@@ -102,7 +105,7 @@ fn invariant_exact_tangents_agree_with_differences_to_1e_6() {
     };
     let laws = Laws::new();
     for (name, law, bend) in all(&laws) {
-        for race in [INNER, OUTER] {
+        for race in Race::BOTH {
             let x = motion(race);
             let dual: [Dual<18>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i, 1.0));
             let exact = rows(&evaluate(&model, (law, bend), race, &dual));
@@ -127,7 +130,7 @@ fn invariant_exact_tangents_agree_with_differences_to_1e_6() {
                     let error = (difference - row.derivatives[i]).abs();
                     assert!(
                         error < tolerance,
-                        "{name} race {race} row {k} by {i}, {bend:?}: {difference} {}",
+                        "{name} race {race:?} row {k} by {i}, {bend:?}: {difference} {}",
                         row.derivatives[i]
                     );
                 }
@@ -141,9 +144,9 @@ fn invariant_action_is_reaction_and_power_is_lost() {
     let model = model();
     let laws = Laws::new();
     for (_, law, bend) in all(&laws) {
-        let contact = evaluate(&model, (law, bend), INNER, &motion(INNER));
+        let contact = evaluate(&model, (law, bend), Race::Inner, &motion(Race::Inner));
         // Force and moments of ball and race balance about the race origin.
-        let x = motion(INNER);
+        let x = motion(Race::Inner);
         let offset = Vector3::new(x[0] - x[9], x[1] - x[10], x[2] - x[11]);
         let balance = contact.ball_moment + offset.cross(&contact.force) + contact.race_moment;
         assert!(balance.norm() < 1e-12 * contact.race_moment.norm().max(1.0));
@@ -154,13 +157,13 @@ fn invariant_action_is_reaction_and_power_is_lost() {
 #[test]
 fn an_open_contact_has_neither_force_nor_slope() {
     let model = model();
-    let mut x = motion(OUTER);
+    let mut x = motion(Race::Outer);
     x[1] *= 0.999;
     x[2] *= 0.999;
     let laws = Laws::new();
     for (name, law, bend) in all(&laws) {
         let dual: [Dual<18>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i, 1.0));
-        let contact = evaluate(&model, (law, bend), OUTER, &dual);
+        let contact = evaluate(&model, (law, bend), Race::Outer, &dual);
         assert!(contact.geometry.approach.value < 0.0);
         for row in rows(&contact) {
             assert_eq!(row.value, 0.0);
@@ -174,8 +177,8 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
     let model = model();
     let laws = Laws::new();
     for (name, law, bend) in all(&laws) {
-        for race in [INNER, OUTER] {
-            let mut contact = model.contact(race, 0.08);
+        for race in Race::BOTH {
+            let mut contact = model.contact(race, &Conditions { friction: 0.08 });
             (contact.law, contact.groove_bend) = (law, bend);
             // One ball as it is, one that slides, one that spins, one that touches nothing.
             let changes = [(0.0, 0.0, 0.0), (0.0, 0.4, 0.0), (1e-6, 0.0, 300.0), (-3e-5, 0.1, -5.0)];
@@ -183,7 +186,7 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             let x = motion(race);
             let motions = changes.map(|(inwards, slip, spin)| {
                 let mut x = x;
-                x[0] += if race == INNER { -inwards } else { inwards };
+                x[0] += if race == Race::Inner { -inwards } else { inwards };
                 x[5] += slip;
                 x[6] += spin;
                 BallMotion {
@@ -195,12 +198,12 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             let axis = Vector3::new(1.0, x[13], -x[12]).normalize();
             let (position, velocity) = (vector(&x, 9), Vector3::repeat(x[14]));
             let race_motion = RaceMotion { position, axis, velocity, angular_velocity: vector(&x, 15) };
-            let alone = motions.each_ref().map(|m| ContactEffect::from(&contact.evaluate(m, &race_motion)));
+            let alone = motions.each_ref().map(|m| PairForces::from(&contact.evaluate(m, &race_motion)));
             assert!(alone[0].load > 50.0 && alone[3].load == 0.0);
 
             // With the vectors that this processor has.
             for count in 1..=WIDTH {
-                let mut together = [ContactEffect::none(); WIDTH];
+                let mut together = [PairForces::none(); WIDTH];
                 evaluate_group(&contact, &race_motion, &motions[..count], &mut together[..count]);
                 assert_eq!(together[..count], alone[..count], "{name}");
             }

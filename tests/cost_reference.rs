@@ -9,7 +9,8 @@ use roulement::contact::{BallMotion, BallRaceContact, RaceMotion};
 use roulement::cost::levers::{Setting, reference_steps};
 use roulement::cost::norms::{Comparison, Norm, errors};
 use roulement::cost::record::{Record, Sample, record};
-use roulement::model::{INNER, Model, OUTER};
+use roulement::model::bodies::Race;
+use roulement::model::{Conditions, Model};
 use roulement::scene::{Condition, Scene};
 use roulement::simulation::Simulation;
 
@@ -55,9 +56,9 @@ impl Balls<'_> {
     }
 
     fn contacts(&self, time: f64, ball: &BallMotion<f64>) -> [BallRaceContact<f64>; 2] {
-        let races = [self.inner(time), Self::outer()];
-        [INNER, OUTER]
-            .map(|race| self.model.contact(race, self.scene.friction.ball_race).evaluate(ball, &races[race]))
+        let conditions = Conditions { friction: self.scene.friction.ball_race };
+        let races = [(Race::Inner, self.inner(time)), (Race::Outer, Self::outer())];
+        races.map(|(race, motion)| self.model.contact(race, &conditions).evaluate(ball, &motion))
     }
 
     /// What the study compares, of a state. The energy is not integrated.
@@ -67,8 +68,8 @@ impl Balls<'_> {
         let mut orbital_speed = Vec::new();
         for ball in y.chunks_exact(WIDTH).map(|y| self.motion(y)) {
             let contacts = self.contacts(time, &ball);
-            force -= contacts[INNER].force;
-            moment += contacts[INNER].race_moment;
+            force -= contacts[0].force;
+            moment += contacts[0].race_moment;
             friction_power += contacts.iter().map(|contact| contact.friction_power).sum::<f64>();
             let (x, v) = (ball.position, ball.velocity);
             orbital_speed.push((x.y * v.z - x.z * v.y) / (x.y * x.y + x.z * x.z));
@@ -116,7 +117,7 @@ impl System<f64, Unknowns<f64>> for &Balls<'_> {
 fn independent(scene: &Scene, like: &Record) -> Record {
     let simulation = Simulation::new(scene).unwrap();
     let model = simulation.model();
-    let balls = Balls { scene, model, inner_position: simulation.state().races[INNER].pose.position };
+    let balls = Balls { scene, model, inner_position: simulation.state().race(Race::Inner).pose.position };
     let length = model.bearing.ball.radius;
     let start = simulation.state().balls.iter().flat_map(|ball| {
         let scaled = [ball.position / length, ball.velocity / (length * RATE), ball.angular_velocity / RATE];

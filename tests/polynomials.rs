@@ -8,7 +8,8 @@ use roulement::kalker::linear::Scales;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::kalker::table::CreepTable;
 use roulement::kalker::{Patch, ScaledCreepage};
-use roulement::model::{INNER, OUTER};
+use roulement::model::Conditions;
+use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 
@@ -28,10 +29,10 @@ fn run(text: &str, duration: f64) -> Simulation {
 fn forces(simulation: &Simulation, ball: usize, race: usize) -> [[f64; 3]; 2] {
     let (model, state) = (simulation.model(), simulation.state());
     let kalker = model.polynomials(race).unwrap();
-    let frozen = model.contact(race, 0.08).of_ball(state.difference(ball, race));
+    let frozen = model.contact(race, &Conditions { friction: 0.08 }).of_ball(state.difference(ball, race));
     let direct = roulement::contact::ContactModel { law: Law::Kalker(kalker), ..frozen };
     [frozen, direct].map(|contact| {
-        let contact = contact.evaluate(&state.balls[ball].motion(), &state.races[race].motion());
+        let contact = contact.evaluate(&state.balls[ball].motion(), &state.race(race).motion());
         let limit = 0.08 * contact.load;
         [contact.creep.longitudinal / limit, contact.creep.lateral / limit, contact.creep.spin_moment / limit]
     })
@@ -42,7 +43,7 @@ fn invariant_frozen_polynomials_are_the_polynomials() {
     // Solved anew after every step, the difference makes the table the polynomials, but for minima beside the one that
     // a solution from scratch finds.
     let simulation = run(&polynomials(3, 0.0), 0.5e-3);
-    for race in [INNER, OUTER] {
+    for race in Race::BOTH {
         let [frozen, direct] = forces(&simulation, 0, race);
         let table = simulation.state().difference(0, race).unwrap().value;
         println!(

@@ -5,10 +5,10 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{UnitQuaternion, Vector3};
-use roulement::dynamics::arrowhead::KeptMatrix;
-use roulement::dynamics::state::{BallState, Energies, Powers, RaceState, State, Statistics};
-use roulement::dynamics::{Boundary, RaceLoad, Workspace, make_consistent, try_step};
-use roulement::model::{Constraint, INNER, Model, RaceBody};
+use roulement::dynamics::{BodyLoad, Boundary, Workspace, make_consistent, try_step};
+use roulement::model::bodies::{Bodies, Constraint, PerRace, Race, RigidBody};
+use roulement::model::state::{BallState, BodyState, Energies, KeptMatrix, Powers, State, Statistics};
+use roulement::model::{Conditions, Model};
 use roulement::numerics::motion::{Pose, Twist, Wrench};
 use roulement::numerics::rotation;
 use roulement::numerics::step_control::StepControl;
@@ -27,19 +27,24 @@ struct Flight {
 
 impl Flight {
     /// `scene` is its text; the balls are those given.
-    fn new(scene: &str, body: RaceBody, pose: Pose, twist: &Twist, balls: Vec<BallState>, h: f64) -> Self {
+    fn new(scene: &str, body: RigidBody, pose: Pose, twist: &Twist, balls: Vec<BallState>, h: f64) -> Self {
         let mut model = Model::new(&Scene::parse(scene).unwrap()).unwrap();
         let constraints = body.constraints.len();
-        model.bodies = [Some(body), None];
+        model.bodies = Bodies::new(PerRace { inner: Some(body), outer: None }, None);
         // Steps are given here: their local error is not asked.
         model.solver.tolerance = f64::INFINITY;
         let outer = Pose::default();
         let mut state = State {
             differences: vec![],
-            cage: None,
             time: 0.0,
             balls,
-            races: [RaceState::new(pose, twist, constraints), RaceState::new(outer, &Twist::default(), 0)],
+            bodies: Bodies::new(
+                PerRace {
+                    inner: BodyState::new(pose, twist, constraints),
+                    outer: BodyState::new(outer, &Twist::default(), 0),
+                },
+                None,
+            ),
             control: StepControl::new(h, h, h),
             force_tolerance: 0.0,
             matrix: KeptMatrix::default(),
@@ -47,10 +52,11 @@ impl Flight {
             energies: Energies::default(),
             statistics: Statistics::default(),
         };
-        let speed = state.races[INNER].rate.x;
-        let load = RaceLoad { applied: Wrench::default(), speed };
-        let motion = [(pose, *twist), (outer, Twist::default())];
-        let boundary = Boundary { time: 0.0, motion, loads: [load; 2], friction: 0.08 };
+        let speed = state.race(Race::Inner).rate.x;
+        let load = BodyLoad { applied: Wrench::default(), speed };
+        let motion = PerRace { inner: (pose, *twist), outer: (outer, Twist::default()) };
+        let conditions = Conditions { friction: 0.08 };
+        let boundary = Boundary { time: 0.0, motion, loads: PerRace::new(|_| load), conditions };
         make_consistent(&model, &mut state, &boundary);
         Self { model, state, boundary, workspace: Workspace::default(), h }
     }
@@ -58,7 +64,7 @@ impl Flight {
     /// A free body without any ball.
     fn free(inertia: Vector3<f64>, rate: Vector3<f64>, alpha_f: f64, h: f64) -> Self {
         let text = THRUST.replace("alpha_f = 0.05", &format!("alpha_f = {alpha_f:?}"));
-        let body = RaceBody { mass: 1.0, inertia, constraints: vec![] };
+        let body = RigidBody { mass: 1.0, inertia, constraints: vec![] };
         let twist = Twist { velocity: Vector3::zeros(), angular_velocity: rate };
         Self::new(&text, body, Pose::default(), &twist, vec![], h)
     }
@@ -68,12 +74,12 @@ impl Flight {
         try_step(&self.model, &mut self.state, &self.boundary, self.h, &mut self.workspace).unwrap();
     }
 
-    fn race(&self) -> &RaceState {
-        &self.state.races[INNER]
+    fn race(&self) -> &BodyState {
+        self.state.race(Race::Inner)
     }
 
     fn inertia(&self) -> Vector3<f64> {
-        self.model.bodies[INNER].as_ref().unwrap().inertia
+        self.model.bodies[Race::Inner].as_ref().unwrap().inertia
     }
 
     /// [J] energy of rotation.
@@ -170,11 +176,11 @@ fn spun(revolutions: u32) -> [f64; 3] {
     let start = UnitQuaternion::new(Vector3::new(0.3, 0.5, -0.7));
     let (speed, h) = (1000.0, TAU / 1000.0 / 8.0);
     let inertia = Vector3::new(6e-5, 4e-5, 4e-5);
-    let body = RaceBody { mass: 0.2, inertia, constraints: vec![Constraint::Spin] };
+    let body = RigidBody { mass: 0.2, inertia, constraints: vec![Constraint::Spin] };
     let pose = Pose { position: Vector3::zeros(), orientation: start };
     let twist = Twist { velocity: Vector3::zeros(), angular_velocity: start * Vector3::x() * speed };
     let mut flight = Flight::new(THRUST, body, pose, &twist, vec![], h);
-    flight.boundary.loads[INNER].speed = speed;
+    flight.boundary.loads.inner.speed = speed;
     for _ in 0..8 * revolutions {
         flight.step();
     }
@@ -276,7 +282,7 @@ const GAP: &str = "contact_angle = \"25 deg\"        # chosen";
 fn invariant_a_ball_in_free_flight_keeps_its_momentum() {
     let text = THRUST.replace(GAP, "diametral_clearance = \"0.7 mm\"");
     assert_ne!(text, THRUST);
-    let body = RaceBody { mass: 0.2, inertia: Vector3::new(6e-5, 4e-5, 4e-5), constraints: vec![] };
+    let body = RigidBody { mass: 0.2, inertia: Vector3::new(6e-5, 4e-5, 4e-5), constraints: vec![] };
     let (velocity, spin) = (Vector3::new(0.01, -0.05, 0.3), Vector3::new(300.0, -40.0, 5.0));
     let start = ball(Vector3::new(0.0, 23e-3, 0.0), velocity, spin);
     let twist = Twist { velocity: Vector3::zeros(), angular_velocity: Vector3::x() * 600.0 };
@@ -292,7 +298,7 @@ fn invariant_a_ball_in_free_flight_keeps_its_momentum() {
 #[test]
 fn invariant_a_ball_that_bounces_off_a_free_race_keeps_the_sum_of_momenta() {
     let text = THRUST.replace(GAP, "diametral_clearance = \"0.7 mm\"");
-    let body = RaceBody { mass: 0.2, inertia: Vector3::new(6e-5, 4e-5, 4e-5), constraints: vec![] };
+    let body = RigidBody { mass: 0.2, inertia: Vector3::new(6e-5, 4e-5, 4e-5), constraints: vec![] };
     let start = ball(Vector3::new(0.0, 22.9e-3, 0.0), Vector3::new(0.0, -0.5, 0.1), Vector3::zeros());
     let twist = Twist { velocity: Vector3::zeros(), angular_velocity: Vector3::x() * 600.0 };
     let mut flight = Flight::new(&text, body, Pose::default(), &twist, vec![start], 1e-6);
@@ -312,7 +318,7 @@ fn invariant_a_ball_that_bounces_off_a_free_race_keeps_the_sum_of_momenta() {
     for _ in 0..600 {
         flight.step();
         touched += u32::from(flight.race().bearing_wrench.force.norm() > 0.0);
-        outer += u32::from(flight.state.races[1].bearing_wrench.force.norm() > 0.0);
+        outer += u32::from(flight.state.race(Race::Outer).bearing_wrench.force.norm() > 0.0);
     }
     assert!(touched > 10 && outer == 0, "{touched} {outer} steps in contact");
     assert!(flight.state.balls[0].velocity.y > 0.1, "the ball came back");

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 use roulement::dynamics::Partner;
+use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement::simulation::{Simulation, SimulationError};
 
@@ -23,8 +24,8 @@ fn unbalanced(simulation: &Simulation, index: usize) -> (Vector3<f64>, f64) {
     let ball = &state.balls[index];
     let contacts = [0, 1].map(|race: usize| {
         model
-            .contact(race, simulation.inputs().friction)
-            .evaluate(&ball.motion(), &state.races[race].motion())
+            .contact(race, &simulation.inputs().conditions())
+            .evaluate(&ball.motion(), &state.race(race).motion())
     });
     let orbit = Vector3::x() * simulation.outputs().balls[index].orbital_speed;
     let gyroscopic = orbit.cross(&ball.angular_velocity) * model.bearing.ball.inertia;
@@ -40,9 +41,9 @@ fn closed_form_accelerations_and_multipliers_are_consistent_at_the_start() {
         let mut on_race = Vector3::zeros();
         let mut about_axis = 0.0;
         for ball in &state.balls {
-            let races = [0, 1].map(|race: usize| state.races[race].motion());
+            let races = Race::BOTH.map(|race| state.race(race).motion());
             let [inner, outer] = [0, 1].map(|race: usize| {
-                model.contact(race, simulation.inputs().friction).evaluate(&ball.motion(), &races[race])
+                model.contact(race, &simulation.inputs().conditions()).evaluate(&ball.motion(), &races[race])
             });
             let force = inner.force + outer.force;
             assert!((ball.acceleration * model.bearing.ball.mass - force).norm() < 1e-9 * inner.load);
@@ -53,7 +54,7 @@ fn closed_form_accelerations_and_multipliers_are_consistent_at_the_start() {
             on_race -= inner.force;
             about_axis += inner.race_moment.dot(&races[0].axis);
         }
-        let race = &state.races[0];
+        let race = state.race(Race::Inner);
         let applied = simulation.inputs().inner.applied.force;
         let mass = model.bodies[0].as_ref().unwrap().mass;
         assert!((race.acceleration * mass - applied - on_race).norm() < 1e-6);

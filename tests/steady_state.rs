@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix2, Vector2};
 use roulement::contact::geometry::GrooveContact;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
+use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::Outputs;
@@ -94,8 +95,8 @@ fn distance_in_bands(simulation: &Simulation) -> f64 {
 /// centrifugal force and a share of the lateral friction. Races, speed and friction are those of the run.
 fn static_loads(simulation: &Simulation, index: usize, share: f64) -> [f64; 2] {
     let (model, ball) = (simulation.model(), &simulation.state().balls[index]);
-    let contacts = [0, 1].map(|race| model.contact(race, simulation.inputs().friction));
-    let races = [0, 1].map(|race: usize| simulation.state().races[race].motion());
+    let contacts = Race::BOTH.map(|race| model.contact(race, &simulation.inputs().conditions()));
+    let races = Race::BOTH.map(|race| simulation.state().race(race).motion());
     let (axis, offset) = (races[1].axis, ball.position - races[1].position);
     let across = offset - axis * offset.dot(&axis);
     let radial = across.normalize();

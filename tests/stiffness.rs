@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
 use roulement::analysis::condensed::Condensed;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use roulement::interface::variables::Variables;
+use roulement::model::Conditions;
 use roulement::model::Model;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
@@ -188,8 +189,8 @@ fn closed_form_damping_of_one_ball_between_two_contacts() {
     let (outputs, state) = (simulation.outputs(), simulation.state());
     assert_eq!(outputs.balls.iter().filter(|ball| ball.inner.load > 0.0).count(), 1);
     let stiffness = [0, 1].map(|race: usize| {
-        let contact = simulation.model().contact(race, 0.0);
-        let contact = contact.evaluate(&state.balls[0].motion(), &state.races[race].motion());
+        let contact = simulation.model().contact(race, &Conditions { friction: 0.0 });
+        let contact = contact.evaluate(&state.balls[0].motion(), &state.race(race).motion());
         1.5 * contact.load / contact.geometry.approach
     });
     let sum = stiffness[0] + stiffness[1];

@@ -20,8 +20,9 @@ use nalgebra::{Matrix2, Matrix2x6, Matrix4, Matrix4x6, Matrix6, Matrix6x2, Matri
 
 use crate::contact::creep::Law;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
-use crate::dynamics::state::{BallState, State};
-use crate::model::{INNER, Model, OUTER};
+use crate::model::bodies::{PerRace, Race};
+use crate::model::state::{BallState, State};
+use crate::model::{Conditions, Model};
 use crate::numerics::scalar::{Dual, constant_vector};
 
 /// [s] time in which friction has to be able to change the velocities of a ball so that they follow. Rolling takes
@@ -43,14 +44,14 @@ pub struct Condensed {
 }
 
 impl Condensed {
-    /// Of a state, at a friction coefficient. Contacts of a cage are left out; so is a ball that does not touch both
+    /// Of a state. Contacts of a cage are left out; so is a ball that does not touch both
     /// races.
-    pub fn new(model: &Model, state: &State, friction: f64) -> Self {
-        let contacts = [INNER, OUTER].map(|race| model.contact(race, friction));
-        let races = [INNER, OUTER].map(|race| state.races[race].motion());
+    pub fn new(model: &Model, state: &State, conditions: &Conditions) -> Self {
+        let contacts = model.contacts(conditions);
+        let races = PerRace::new(|race| state.race(race).motion());
         let zero = Self { stiffness: Matrix6::zeros(), damping: Matrix6::zeros() };
         let add = |sum: Self, (index, ball): (usize, &BallState)| {
-            let contacts = [INNER, OUTER].map(|race| contacts[race].of_ball(state.difference(index, race)));
+            let contacts = PerRace::new(|race| contacts[race].of_ball(state.difference(index, race)));
             share(model, &contacts, &races, ball).map_or(sum, |one| Self {
                 stiffness: sum.stiffness + one.stiffness,
                 damping: sum.damping + one.damping,
@@ -148,21 +149,21 @@ fn derivatives(force: &Vector3<D>, moment: &Vector3<D>) -> Derivatives {
 /// The share of one ball; none if it does not touch both races.
 fn share(
     model: &Model,
-    contacts: &[ContactModel<'_>; 2],
-    races: &[RaceMotion<f64>; 2],
+    contacts: &PerRace<ContactModel<'_>>,
+    races: &PerRace<RaceMotion<f64>>,
     state: &BallState,
 ) -> Option<Condensed> {
     let (ball, motion) = (&model.bearing.ball, state.motion());
-    let touches = |race: usize| contacts[race].evaluate(&motion, &races[race]).load > 0.0;
-    if !(touches(INNER) && touches(OUTER)) {
+    let touches = |race: Race| contacts[race].evaluate(&motion, &races[race]).load > 0.0;
+    if !(touches(Race::Inner) && touches(Race::Outer)) {
         return None;
     }
-    let linear = |model: &ContactModel<'_>, race: usize| Linear::new(model, &motion, &races[race]);
-    let [inner, outer] = [INNER, OUTER].map(|race| linear(&contacts[race], race));
+    let linear = |model: &ContactModel<'_>, race: Race| Linear::new(model, &motion, &races[race]);
+    let [inner, outer] = Race::BOTH.map(|race| linear(&contacts[race], race));
     let smooth =
-        |race: usize| linear(&ContactModel { law: Law::Frictionless, damping: 0.0, ..contacts[race] }, race);
-    let [smooth_inner, smooth_outer] = [smooth(INNER), smooth(OUTER)];
-    let orbit = Orbit::new(&motion, &races[OUTER]);
+        |race: Race| linear(&ContactModel { law: Law::Frictionless, damping: 0.0, ..contacts[race] }, race);
+    let [smooth_inner, smooth_outer] = Race::BOTH.map(smooth);
+    let orbit = Orbit::new(&motion, &races.outer);
 
     // The directions of q and u among translation and rotation of a ball, and of f and g among force and moment on it.
     let mut plane = Matrix6x2::zeros();

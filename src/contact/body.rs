@@ -1,8 +1,8 @@
-//! What contacts of the cage have in common: the motion of a body with its axes, and forces of a pair.
+//! What contacts of the cage have in common: the motion of a body with its axes, and damping.
 
 use nalgebra::Vector3;
 
-use crate::numerics::scalar::{Scalar, Single, values};
+use crate::numerics::scalar::Scalar;
 
 /// Motion of a rigid body, in world axes.
 #[derive(Clone, Copy, Debug)]
@@ -15,40 +15,6 @@ pub struct BodyMotion<S: Scalar> {
     pub velocity: Vector3<S>,
     /// [rad/s] angular velocity.
     pub angular_velocity: Vector3<S>,
-}
-
-/// Forces between a first and a second body, world axes. The force on the second is the opposite.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyContact<S: Scalar> {
-    /// [m] approach.
-    pub approach: S,
-    /// [N] normal load.
-    pub load: S,
-    /// [N] force on the first body.
-    pub force: Vector3<S>,
-    /// [N m] moment on the first body about its origin.
-    pub moment: Vector3<S>,
-    /// [N m] moment on the second body about its origin.
-    pub other_moment: Vector3<S>,
-    /// [W] power lost to friction.
-    pub friction_power: S,
-    /// [W] power lost to contact damping.
-    pub damping_power: S,
-}
-
-impl<S: Single> BodyContact<S> {
-    /// The same without derivatives.
-    pub fn values(&self) -> BodyContact<f64> {
-        BodyContact {
-            approach: self.approach.value(),
-            load: self.load.value(),
-            force: values(&self.force),
-            moment: values(&self.moment),
-            other_moment: values(&self.other_moment),
-            friction_power: self.friction_power.value(),
-            damping_power: self.damping_power.value(),
-        }
-    }
 }
 
 /// [N] elastic load with Hunt-Crossley dissipation `chi` [s/m], never pulling.

@@ -5,7 +5,8 @@
 
 use nalgebra::Vector3;
 
-use super::body::{BodyContact, BodyMotion, damped};
+use super::body::{BodyMotion, damped};
+use super::pair::PairForces;
 use crate::contact::RaceMotion;
 use crate::numerics::scalar::{Scalar, Single, cross, dot};
 
@@ -18,11 +19,10 @@ const EXPONENT: f64 = 1.0 / 0.9;
 /// What does not change in the contacts of the cage with the lands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandModel {
-    /// Race that guides, 0 inner or 1 outer.
-    pub race: usize,
     /// [m] half the diametral clearance: how far the cage's centre moves before it touches.
     pub half_clearance: f64,
-    /// [m] radius of the race's land.
+    /// [m] radius of the race's land; negative on an inner race, which is touched on the side that the cage moved away
+    /// from.
     radius: f64,
     /// [m] axial positions of the lands' middles in the cage.
     pub positions: [f64; 2],
@@ -37,8 +37,8 @@ pub struct LandModel {
 /// Dimensions of the lands.
 #[derive(Clone, Copy, Debug)]
 pub struct Lands {
-    /// Race that guides, 0 inner or 1 outer.
-    pub race: usize,
+    /// Are they those of an inner race, which the cage lies around?
+    pub inside: bool,
     /// [m] diametral clearance.
     pub clearance: f64,
     /// [m] diameter of the race's lands.
@@ -54,9 +54,8 @@ impl LandModel {
     pub fn new(lands: &Lands, friction: f64, damping: f64) -> Self {
         let middle = lands.edge + 0.5 * lands.width;
         Self {
-            race: lands.race,
             half_clearance: 0.5 * lands.clearance,
-            radius: 0.5 * lands.diameter,
+            radius: if lands.inside { -0.5 } else { 0.5 } * lands.diameter,
             positions: [-middle, middle],
             stiffness: lundberg_stiffness(lands.width),
             friction,
@@ -82,7 +81,7 @@ impl LandModel {
         cage: &BodyMotion<S>,
         race: &RaceMotion<S>,
         position: f64,
-    ) -> Option<BodyContact<S>> {
+    ) -> Option<PairForces<S>> {
         let (axial, eccentric) = eccentricity(cage, race, position);
         let eccentricity = dot(&eccentric, &eccentric).sqrt();
         let approach = eccentricity - S::constant(self.half_clearance);
@@ -91,9 +90,7 @@ impl LandModel {
         }
         let outwards = eccentric.map(|component| component / eccentricity);
 
-        // an inner land is touched on the side that the cage moved away from
-        let radius = if self.race == crate::model::INNER { -self.radius } else { self.radius };
-        let race_arm = race.axis * axial + outwards.map(|c| c.scale(radius));
+        let race_arm = race.axis * axial + outwards.map(|c| c.scale(self.radius));
         let cage_arm = race_arm + race.position - cage.position;
         let slip = cage.velocity + cross(&cage.angular_velocity, &cage_arm)
             - race.velocity
@@ -109,9 +106,10 @@ impl LandModel {
         let speed = (dot(&sliding, &sliding) + S::constant(SLIDING_FLOOR * SLIDING_FLOOR)).sqrt();
         let friction = sliding * (load.scale(self.friction) / speed);
         let force = -(outwards * load + friction);
-        Some(BodyContact {
+        Some(PairForces {
             approach,
             load,
+            stiffness: S::constant(self.stiffness),
             force,
             moment: cross(&cage_arm, &force),
             other_moment: -cross(&race_arm, &force),

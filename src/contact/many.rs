@@ -2,69 +2,37 @@
 
 use nalgebra::Vector3;
 
+use super::pair::PairForces;
 use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::scalar::{Scalar, constant_vector};
 
-/// What a ball-race contact does, in world axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactEffect<S: Scalar = f64> {
-    /// [N] normal load.
-    pub load: S,
-    /// [N/m^1.5] Hertz stiffness.
-    pub stiffness: S,
-    /// [N] force on the ball.
-    pub force: Vector3<S>,
-    /// [N m] moment on the ball about its centre.
-    pub ball_moment: Vector3<S>,
-    /// [N m] moment on the race about its origin.
-    pub race_moment: Vector3<S>,
-    /// [W] power lost to friction.
-    pub friction_power: S,
-    /// [W] power lost to contact damping.
-    pub damping_power: S,
-}
-
-impl<S: Scalar> From<&BallRaceContact<S>> for ContactEffect<S> {
+impl<S: Scalar> From<&BallRaceContact<S>> for PairForces<S> {
     #[inline(always)]
     fn from(contact: &BallRaceContact<S>) -> Self {
         Self {
+            approach: contact.geometry.approach,
             load: contact.load,
             stiffness: contact.stiffness,
             force: contact.force,
-            ball_moment: contact.ball_moment,
-            race_moment: contact.race_moment,
+            moment: contact.ball_moment,
+            other_moment: contact.race_moment,
             friction_power: contact.friction_power,
             damping_power: contact.damping_power,
         }
     }
 }
 
-impl<S: Scalar> ContactEffect<S> {
-    /// That of no contact.
-    pub fn none() -> Self {
-        let (zero, vector) = (S::zero(), constant_vector(&Vector3::zeros()));
-        Self {
-            load: zero,
-            stiffness: zero,
-            force: vector,
-            ball_moment: vector,
-            race_moment: vector,
-            friction_power: zero,
-            damping_power: zero,
-        }
-    }
-}
-
-impl ContactEffect<Lanes> {
-    fn lane(&self, lane: usize) -> ContactEffect {
+impl PairForces<Lanes> {
+    fn lane(&self, lane: usize) -> PairForces {
         let vector = |v: &Vector3<Lanes>| v.map(|component| component.0[lane]);
-        ContactEffect {
+        PairForces {
+            approach: self.approach.0[lane],
             load: self.load.0[lane],
             stiffness: self.stiffness.0[lane],
             force: vector(&self.force),
-            ball_moment: vector(&self.ball_moment),
-            race_moment: vector(&self.race_moment),
+            moment: vector(&self.moment),
+            other_moment: vector(&self.other_moment),
             friction_power: self.friction_power.0[lane],
             damping_power: self.damping_power.0[lane],
         }
@@ -77,7 +45,7 @@ pub fn evaluate_group(
     contact: &ContactModel<'_>,
     race: &RaceMotion<f64>,
     balls: &[BallMotion<f64>],
-    effects: &mut [ContactEffect],
+    effects: &mut [PairForces],
 ) {
     let Some(last) = balls.len().checked_sub(1) else {
         return;
@@ -89,7 +57,7 @@ pub fn evaluate_group(
         velocity: Lanes::vector(|lane| ball(lane).velocity),
         angular_velocity: Lanes::vector(|lane| ball(lane).angular_velocity),
     };
-    let mut together = ContactEffect::none();
+    let mut together = PairForces::none();
     evaluate_lanes(contact, race, &motion, &mut together);
     for (lane, effect) in effects.iter_mut().enumerate().take(balls.len()) {
         *effect = together.lane(lane);
@@ -104,7 +72,7 @@ fn evaluate_lanes(
     contact: &ContactModel<'_>,
     race: &RaceMotion<f64>,
     balls: &BallMotion<Lanes>,
-    effects: &mut ContactEffect<Lanes>,
+    effects: &mut PairForces<Lanes>,
 ) {
     let race = RaceMotion {
         position: constant_vector(&race.position),
@@ -112,5 +80,5 @@ fn evaluate_lanes(
         velocity: constant_vector(&race.velocity),
         angular_velocity: constant_vector(&race.angular_velocity),
     };
-    *effects = ContactEffect::from(&contact.evaluate(balls, &race));
+    *effects = PairForces::from(&contact.evaluate(balls, &race));
 }

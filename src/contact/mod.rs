@@ -9,6 +9,7 @@ pub mod identification;
 pub mod land;
 pub mod many;
 pub mod materials;
+pub mod pair;
 pub mod pocket;
 pub mod raceway;
 pub mod regularised;
@@ -138,6 +139,13 @@ impl<S: Single> BallRaceContact<S> {
             friction_power: self.friction_power.value(),
             damping_power: self.damping_power.value(),
         }
+    }
+}
+
+impl BallRaceContact<f64> {
+    /// [J] elastic energy.
+    pub fn elastic_energy(&self) -> f64 {
+        0.4 * self.stiffness * self.geometry.approach.max(0.0).powf(2.5)
     }
 }
 

@@ -10,9 +10,10 @@
 use nalgebra::Vector3;
 
 use super::REGULARISATION_SPEED;
-use super::body::{BodyContact, BodyMotion, damped};
+use super::body::{BodyMotion, damped};
 use super::creep::{Creepage, Law, LinearTheory};
 use super::hertz::HertzContact;
+use super::pair::PairForces;
 use super::shape::ShapeAt;
 use crate::contact::BallMotion;
 use crate::contact::materials::Pair;
@@ -93,7 +94,7 @@ impl PocketModel {
         ball: &BallMotion<S>,
         cage: &BodyMotion<S>,
         direction: [f64; 2],
-    ) -> Option<BodyContact<S>> {
+    ) -> Option<PairForces<S>> {
         // geometry: the pocket's axis, and where the ball is off it
         let axis = pocket_axis(cage, direction);
         let offset = ball.position - cage.position;
@@ -160,9 +161,10 @@ impl PocketModel {
         let tangential = x * creep.longitudinal + y * creep.lateral;
         let force = -(normal * load + tangential);
         let contact_moment = normal * creep.spin_moment;
-        Some(BodyContact {
+        Some(PairForces {
             approach,
             load,
+            stiffness: S::constant(shape.stiffness),
             force,
             moment: contact_moment - cross(&arm, &tangential),
             other_moment: -cross(&cage_arm, &force) - contact_moment,

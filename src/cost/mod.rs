@@ -69,7 +69,7 @@ pub struct Measured {
     /// [1/s] instructions per simulated second, where the machine counts them.
     pub instructions: Option<f64>,
     /// Work of the integrator.
-    pub work: crate::dynamics::state::Statistics,
+    pub work: crate::model::state::Statistics,
 }
 
 /// The study of one scene.

@@ -4,8 +4,8 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::levers::{Inputs, Level, Setting};
 use super::meter::{Cost, Meter};
-use crate::dynamics::state::Statistics;
-use crate::model::INNER;
+use crate::model::bodies::Race;
+use crate::model::state::Statistics;
 use crate::numerics::motion::{Pose, Twist};
 use crate::scene::Drive;
 use crate::simulation::inputs;
@@ -138,7 +138,8 @@ fn inputs_of_step(simulation: &Simulation, knows: Inputs, end: f64) -> inputs::I
             let here = inputs;
             inputs = simulation.scripted_inputs(end);
             if pose_driven {
-                let target = pose_at_end(&simulation.state().races[INNER].pose, &here, &inputs, duration);
+                let target =
+                    pose_at_end(&simulation.state().race(Race::Inner).pose, &here, &inputs, duration);
                 // The model goes on from the inputs with their twist: they are set back so that it ends on the target.
                 let Twist { velocity, angular_velocity } = inputs.inner.twist;
                 inputs.inner.pose = Pose {

@@ -2,13 +2,13 @@
 
 use nalgebra::Vector3;
 
-use super::equations::weighted;
-use super::race::RaceLoad;
-use super::{Boundary, Workspace, race};
-use crate::contact::body::BodyContact;
-use crate::contact::many::ContactEffect;
-use crate::dynamics::state::{BallState, Powers, RaceState, State};
+use super::ball::BallTrial;
+use super::{Boundary, Workspace, body};
+use crate::contact::pair::PairForces;
+use crate::forces::{Contacts, Pairs, Totals, between_cage_and_lands, on_ball};
 use crate::model::Model;
+use crate::model::bodies::{Body, Race};
+use crate::model::state::{BallState, BodyState, Powers, State};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
 
@@ -20,77 +20,76 @@ const RELATIVE_TOLERANCE: f64 = 1e-9;
 /// method still reached one unit in every step (tests/hard_cases/extremes.rs); the rest is margin.
 const ROUND_OFF_UNITS: f64 = 10.0;
 
+/// The pairs of a step that was solved.
+struct Solved<'a> {
+    workspace: &'a Workspace,
+    guide: Option<Race>,
+}
+
+impl Pairs for Solved<'_> {
+    fn of_ball(&self, ball: usize) -> impl Iterator<Item = (Body, PairForces)> {
+        self.workspace.balls[ball].pairs().map(|(body, pair)| (body, *pair))
+    }
+
+    fn between_bodies(&self) -> impl Iterator<Item = (Body, Body, PairForces)> {
+        let cage = self.workspace.cage.as_ref();
+        cage.into_iter().flat_map(|cage| between_cage_and_lands(self.guide, &cage.lands))
+    }
+}
+
 /// Takes over a solved step.
 pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep, workspace: &Workspace) {
     state.time = boundary.time;
     state.statistics.steps += 1;
-    let land = model.cage.as_ref().and_then(|cage| cage.land);
     for (ball, trial) in state.balls.iter_mut().zip(&workspace.balls) {
-        *ball = BallState {
-            position: trial.motion.position,
-            velocity: trial.motion.velocity,
-            angular_velocity: trial.motion.angular_velocity,
-            acceleration: trial.unknowns.fixed_rows::<3>(0).into_owned(),
-            angular_acceleration: trial.unknowns.fixed_rows::<3>(3) / model.bearing.ball.radius,
-            total: trial.total,
-        };
+        *ball = trial.end(model.bearing.ball.radius);
     }
-    for race in 0..2 {
-        let before = &state.races[race];
-        let (turned, spin) = ((before.turned, before.turned_rest), before.rate.x);
-        match &workspace.races[race] {
-            Some(trial) => state.races[race].clone_from(&trial.end),
-            None => {
-                let (pose, twist) = &boundary.motion[race];
-                let mut wrench = bearing_wrench(workspace.balls.iter().map(|ball| &ball.contacts[race]));
-                if let (Some(land), Some(cage)) = (land, &workspace.cage)
-                    && land.race == race
-                {
-                    wrench = add_reaction(&wrench, cage.lands.iter().flatten());
-                }
-                state.races[race] = RaceState::new(*pose, twist, 0);
-                state.races[race].bearing_wrench = wrench;
+    let guide = model.cage.as_ref().and_then(|cage| cage.guide());
+    let totals = Totals::of(&Solved { workspace, guide }, state.balls.len());
+    let mut powers = Powers {
+        input: weight_power(model, &state.balls),
+        friction: totals.friction_power,
+        damping: totals.damping_power,
+    };
+    for ((body, state), (_, trial)) in state.bodies.iter_mut().zip(workspace.bodies.iter()) {
+        let (turned, spin) = ((state.turned, state.turned_rest), state.rate.x);
+        match (body, trial) {
+            (_, Some(trial)) => {
+                state.clone_from(&trial.end);
+                powers.input += trial.input_power;
             }
+            (Body::Race(race), None) => {
+                let (pose, twist) = &boundary.motion[race];
+                *state = BodyState::new(*pose, twist, 0);
+                state.bearing_wrench = totals.on(body);
+                powers.input -= state.twist().power(&state.bearing_wrench);
+            }
+            // A cage is moved by forces alone.
+            (Body::Cage, None) => {}
         }
-        let angle = 0.5 * step.h * (spin + state.races[race].rate.x);
-        state.races[race].count_turn(turned, angle);
-    }
-    let mut powers = Powers::default();
-    if let (Some(cage), Some(trial)) = (&mut state.cage, &workspace.cage) {
-        let (turned, spin) = (cage.turned, cage.rate.x);
-        cage.clone_from(&trial.body.end);
-        cage.turned = turned + 0.5 * step.h * (spin + cage.rate.x);
-        powers.input += trial.body.input_power;
-        trial.lands.iter().flatten().for_each(|contact| powers.add(contact));
-    }
-    for ball in &workspace.balls {
-        for contact in &ball.contacts {
-            powers.friction += contact.friction_power;
-            powers.damping += contact.damping_power;
-        }
-        ball.pocket.iter().for_each(|(contact, _)| powers.add(contact));
-        powers.input += model.bearing.ball.mass * model.gravity.dot(&ball.motion.velocity);
-    }
-    for (trial, race) in workspace.races.iter().zip(&state.races) {
-        powers.input += match trial {
-            Some(trial) => trial.input_power,
-            None => -race.twist().power(&race.bearing_wrench),
-        };
+        state.count_turn(turned, 0.5 * step.h * (spin + state.rate.x));
     }
     state.energies.add(&state.powers, &powers, step.h);
     state.powers = powers;
-    let contacts = workspace.balls.iter().flat_map(|ball| &ball.contacts);
-    state.force_tolerance = force_tolerance(contacts, reach(model, state));
+    let pairs = workspace.balls.iter().flat_map(|ball| ball.raceways.iter());
+    state.force_tolerance = force_tolerance(pairs, reach(model, state));
+}
+
+/// [W] power of the weight of all balls.
+fn weight_power(model: &Model, balls: &[BallState]) -> f64 {
+    let power = |ball: &BallState| model.bearing.ball.mass * model.gravity.dot(&ball.velocity);
+    balls.iter().map(power).fold(0.0, |sum, power| sum + power)
 }
 
 /// [m] largest coordinate of a ball to expect: its last digit is what contacts cannot resolve.
 fn reach(model: &Model, state: &State) -> f64 {
-    state.races.iter().fold(0.0f64, |far, race| far.max(race.pose.position.amax())) + model.race_length()
+    let races = Race::BOTH.map(|race| state.race(race).pose.position.amax());
+    races[0].max(races[1]) + model.race_length()
 }
 
 /// [N] residual below which nothing but rounding remains: nine digits of the largest load, or a last digit of a
 /// coordinate times the stiffness `dQ/dx` of the stiffest contact.
-fn force_tolerance<'a>(contacts: impl Iterator<Item = &'a ContactEffect>, reach: f64) -> f64 {
+fn force_tolerance<'a>(contacts: impl Iterator<Item = &'a PairForces>, reach: f64) -> f64 {
     // `dQ/dx = 1.5 K^(2/3) Q^(1/3)`; the root is taken once, of the largest
     let (mut load, mut cube) = (0.0f64, 0.0f64);
     for contact in contacts {
@@ -102,43 +101,35 @@ fn force_tolerance<'a>(contacts: impl Iterator<Item = &'a ContactEffect>, reach:
     FORCE_TOLERANCE.max(RELATIVE_TOLERANCE * load).max(round_off)
 }
 
-/// Solves Kalker's polynomials anew where the creepages of a contact have moved.
-pub fn renew_polynomials(model: &Model, state: &mut State, friction: f64) {
-    let contacts = [0, 1].map(|race| model.contact(race, friction));
-    for (ball, differences) in state.balls.iter().zip(&mut state.differences) {
-        for race in 0..2 {
-            let Some(kalker) = model.polynomials(race) else {
-                continue;
-            };
-            let contact = contacts[race].evaluate(&ball.motion(), &state.races[race].motion());
-            match contacts[race].renew(kalker, &contact, model.epsilon_switch, &mut differences[race]) {
-                Ok(solved) => state.statistics.polynomials += u64::from(solved),
-                Err(_) => state.statistics.polynomial_failures += 1,
-            }
+impl BallTrial {
+    /// State at the end of the step.
+    fn end(&self, radius: f64) -> BallState {
+        BallState {
+            position: self.motion.position,
+            velocity: self.motion.velocity,
+            angular_velocity: self.motion.angular_velocity,
+            acceleration: self.unknowns.fixed_rows::<3>(0).into_owned(),
+            angular_acceleration: self.unknowns.fixed_rows::<3>(3) / radius,
+            total: self.total,
         }
     }
 }
 
-/// Sum of the contacts' effect on a race.
-pub fn bearing_wrench<'a>(contacts: impl Iterator<Item = &'a ContactEffect>) -> Wrench {
-    contacts.fold(Wrench::default(), |sum, contact| Wrench {
-        force: sum.force - contact.force,
-        moment: sum.moment + contact.race_moment,
-    })
-}
-
-/// Adds what contacts exert on their second body.
-fn add_reaction<'a>(wrench: &Wrench, contacts: impl Iterator<Item = &'a BodyContact<f64>>) -> Wrench {
-    contacts.fold(*wrench, |sum, contact| Wrench {
-        force: sum.force - contact.force,
-        moment: sum.moment + contact.other_moment,
-    })
-}
-
-impl Powers {
-    fn add(&mut self, contact: &BodyContact<f64>) {
-        self.friction += contact.friction_power;
-        self.damping += contact.damping_power;
+/// Solves Kalker's polynomials anew where the creepages of a contact have moved.
+pub fn renew_polynomials(model: &Model, state: &mut State, boundary: &Boundary) {
+    let contacts = model.contacts(&boundary.conditions);
+    let State { balls, bodies, differences, statistics, .. } = state;
+    for (ball, differences) in balls.iter().zip(differences) {
+        for race in Race::BOTH {
+            let Some(kalker) = model.polynomials(race) else {
+                continue;
+            };
+            let contact = contacts[race].evaluate(&ball.motion(), &bodies[race].motion());
+            match contacts[race].renew(kalker, &contact, model.epsilon_switch, &mut differences[race]) {
+                Ok(solved) => statistics.polynomials += u64::from(solved),
+                Err(_) => statistics.polynomial_failures += 1,
+            }
+        }
     }
 }
 
@@ -146,67 +137,31 @@ impl Powers {
 ///
 /// Multipliers hold the constrained directions still (or at the given rate of the spin speed [rad/s2]).
 pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
-    let contacts = [0, 1].map(|race| model.contact(race, boundary.friction));
-    let races = [0, 1].map(|race: usize| state.races[race].motion());
-    renew_polynomials(model, state, boundary.friction);
+    renew_polynomials(model, state, boundary);
+    let contacts = Contacts::new(model, state, &boundary.conditions);
     let ball_model = &model.bearing.ball;
-    let mut powers = Powers::default();
-    let mut wrenches = [Wrench::default(); 2];
-    let mut all_contacts = Vec::with_capacity(2 * state.balls.len());
-    let cage = model.cage.as_ref().zip(state.cage.as_ref().map(RaceState::body_motion));
-    let mut on_cage = Wrench::default();
-    if let Some((cage_model, motion)) = &cage
-        && let Some(land) = &cage_model.land
-    {
-        for contact in cage_model.land_contacts(motion, races.each_ref()).iter().flatten() {
-            on_cage.force += contact.force;
-            on_cage.moment += contact.moment;
-            wrenches[land.race] = add_reaction(&wrenches[land.race], std::iter::once(contact));
-            powers.add(contact);
-        }
-    }
     for (index, ball) in state.balls.iter_mut().enumerate() {
-        ball.total = Wrench { force: model.gravity * ball_model.mass, moment: Vector3::zeros() };
-        powers.input += ball_model.mass * model.gravity.dot(&ball.velocity);
-        for race in 0..2 {
-            let contact = contacts[race]
-                .of_ball(state.differences.get(index).map(|of_ball| &of_ball[race]))
-                .evaluate(&ball.motion(), &races[race]);
-            ball.total.force += contact.force;
-            ball.total.moment += contact.ball_moment;
-            powers.friction += contact.friction_power;
-            powers.damping += contact.damping_power;
-            wrenches[race].force -= contact.force;
-            wrenches[race].moment += contact.race_moment;
-            all_contacts.push(ContactEffect::from(&contact));
-        }
-        let pocket =
-            cage.as_ref().and_then(|(cage, motion)| cage.pocket_contact(index, &ball.motion(), motion));
-        if let Some(contact) = &pocket {
-            ball.total.force += contact.force;
-            ball.total.moment += contact.moment;
-            on_cage = add_reaction(&on_cage, std::iter::once(contact));
-            powers.add(contact);
-        }
+        let weight = Wrench { force: model.gravity * ball_model.mass, moment: Vector3::zeros() };
+        ball.total = on_ball(contacts.of_ball(index).map(|(_, pair)| pair), weight);
         ball.acceleration = ball.total.force / ball_model.mass;
         ball.angular_acceleration = ball.total.moment / ball_model.inertia;
     }
-    if let (Some(cage), Some(state)) = (&model.cage, &mut state.cage) {
-        state.bearing_wrench = on_cage;
-        let load = weighted(&RaceLoad::default(), &cage.body, &model.gravity);
-        powers.input += race::make_consistent(state, &cage.body, &load);
-    }
-    for race in 0..2 {
-        let state = &mut state.races[race];
-        state.bearing_wrench = wrenches[race];
-        powers.input += match &model.bodies[race] {
-            Some(body) => {
-                let load = weighted(&boundary.loads[race], body, &model.gravity);
-                race::make_consistent(state, body, &load)
+    let totals = Totals::of(&contacts, state.balls.len());
+    let mut powers = Powers {
+        input: weight_power(model, &state.balls),
+        friction: totals.friction_power,
+        damping: totals.damping_power,
+    };
+    for ((body, state), (_, moved)) in state.bodies.iter_mut().zip(model.bodies.iter()) {
+        state.bearing_wrench = totals.on(body);
+        powers.input += match moved {
+            Some(moved) => {
+                body::make_consistent(state, moved, &boundary.load_on(body, moved, &model.gravity))
             }
-            None => -state.twist().power(&wrenches[race]),
+            None => -state.twist().power(&state.bearing_wrench),
         };
     }
     state.powers = powers;
-    state.force_tolerance = force_tolerance(all_contacts.iter(), reach(model, state));
+    let pairs: Vec<PairForces> = contacts.raceway_pairs().collect();
+    state.force_tolerance = force_tolerance(pairs.iter(), reach(model, state));
 }

@@ -1,45 +1,85 @@
-//! One ball in one trial step: motion from its unknown accelerations, contacts, residual and tangent blocks.
+//! One ball in one trial step: motion from its unknown accelerations, pairs, residual and tangent blocks.
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
+use super::body::BodyTrial;
 use super::cage::CageTrial;
-use super::race::RaceTrial;
-use super::reaction::RaceReaction;
-use crate::contact::body::BodyContact;
-use crate::contact::many::ContactEffect;
+use super::directions::{D, DIRECTIONS, by_first, by_second, constant_race, scale_moments, seed};
+use super::reaction::Reaction;
+use crate::contact::many::evaluate_group;
+use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
-use crate::dynamics::arrowhead::BallBlock;
-use crate::dynamics::state::{BallState, stack};
+use crate::forces::on_ball;
 use crate::kalker::scaled_law::Difference;
+use crate::model::Model;
+use crate::model::bodies::{Bodies, Body, PerRace, Race};
 use crate::model::cage::CageModel;
-use crate::model::{CAGE, Model};
+use crate::model::state::{BallState, stack};
+use crate::numerics::arrowhead::{Block, SLOTS};
 use crate::numerics::hht::HhtStep;
+use crate::numerics::lanes::WIDTH;
 use crate::numerics::motion::Wrench;
-use crate::numerics::scalar::{Dual, Scalar, constant_vector};
-
-/// Directions of differentiation: translation (0 to 2) and rotation (3 to 5) of the ball, rotation of a race body
-/// (6 to 8). A contact depends on the relative translation alone, so that of the race is minus that of the ball: nine
-/// directions do the work of twelve.
-pub const DIRECTIONS: usize = 9;
+use crate::numerics::scalar::Dual;
 
 /// A race as the balls see it in a trial step.
 #[derive(Clone, Copy, Debug)]
 pub struct RaceSeen<'a> {
     /// Its motion.
     pub motion: &'a RaceMotion<f64>,
-    /// The same with derivatives by the rotation, where the race is a body.
-    pub of_body: Option<&'a RaceMotion<Dual<DIRECTIONS>>>,
+    /// Its motion with derivatives by the rotation, where forces move it.
+    pub moved: Option<&'a RaceMotion<D>>,
 }
 
 impl<'a> RaceSeen<'a> {
-    /// Race by index, of motions and of those that are bodies.
-    pub fn new(race: usize, motions: &'a [RaceMotion<f64>; 2], bodies: &'a [Option<RaceTrial>; 2]) -> Self {
-        Self { motion: &motions[race], of_body: bodies[race].as_ref().map(|trial| &trial.motion) }
+    /// A race of motions and of those that forces move.
+    pub fn new(
+        race: Race,
+        motions: &'a PerRace<RaceMotion<f64>>,
+        bodies: &'a Bodies<Option<BodyTrial>>,
+    ) -> Self {
+        Self { motion: &motions[race], moved: bodies[race].as_ref().map(|trial| &trial.motion) }
     }
 
     /// Motion with derivatives by the rotation, all zero where it is prescribed.
-    pub fn with_derivatives(&self) -> RaceMotion<Dual<DIRECTIONS>> {
-        self.of_body.copied().unwrap_or_else(|| constant_race(self.motion))
+    pub fn with_derivatives(&self) -> RaceMotion<D> {
+        self.moved.copied().unwrap_or_else(|| constant_race(self.motion))
+    }
+}
+
+/// What a ball may touch in a trial step.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Contact with each race.
+    pub contacts: &'a PerRace<ContactModel<'a>>,
+    /// What Kalker's polynomials add at each ball.
+    pub differences: &'a [PerRace<Difference>],
+    /// Motion of each race.
+    pub races: PerRace<RaceSeen<'a>>,
+    /// Constants and motion of the cage.
+    pub cage: Option<(&'a CageModel, &'a CageTrial)>,
+}
+
+impl Surroundings<'_> {
+    /// Evaluates the contacts of up to [`WIDTH`] balls with a race, the first of them ball `first`.
+    pub fn evaluate_group(
+        &self,
+        race: Race,
+        first: usize,
+        motions: &[BallMotion<f64>],
+        forces: &mut [PairForces; WIDTH],
+    ) {
+        let (contact, seen) = (&self.contacts[race], self.races[race].motion);
+        match self.differences.get(first..first + motions.len()) {
+            None => evaluate_group(contact, seen, motions, forces),
+            Some(differences) => {
+                for (lane, (motion, of_ball)) in motions.iter().zip(differences).enumerate() {
+                    let contact = contact.of_ball(Some(&of_ball[race]));
+                    forces[lane] = PairForces::from(&contact.evaluate(motion, seen));
+                }
+            }
+        }
     }
 }
 
@@ -50,34 +90,32 @@ pub struct BallTrial {
     pub unknowns: Vector6<f64>,
     /// Motion at the end of the step.
     pub motion: BallMotion<f64>,
-    /// Contacts at the end of the step.
-    pub contacts: [ContactEffect; 2],
+    /// Contacts with the races at the end of the step.
+    pub raceways: PerRace<PairForces>,
+    /// Contact with the cage's pocket at the end of the step, where they touch.
+    pub pocket: Option<PairForces>,
     /// Total force and moment at the end of the step.
     pub total: Wrench,
     /// [N] residual; moments over the ball radius.
     pub residual: Vector6<f64>,
-    /// Tangent.
-    pub block: BallBlock,
-    /// Reactions on race bodies with their derivatives.
-    pub reactions: [Option<RaceReaction>; 2],
-    /// Contact with the cage's pocket at the end of the step, where they touch, and its reaction on the cage.
-    pub pocket: Option<(BodyContact<f64>, RaceReaction)>,
+    /// Tangent, with its couplings to the bodies.
+    pub block: Block,
+    /// Reactions on the bodies with their derivatives, where those were asked for.
+    reactions: [Option<Reaction>; SLOTS],
 }
 
 impl BallTrial {
-    /// A ball as it is.
-    pub fn new(ball: &BallState, contacts: &[ContactModel<'_>; 2], races: [&RaceMotion<f64>; 2]) -> Self {
-        let motion = ball.motion();
+    /// Buffers for a ball.
+    pub fn new(ball: &BallState) -> Self {
         Self {
             unknowns: Vector6::zeros(),
-            motion,
-            contacts: [0, 1]
-                .map(|race: usize| ContactEffect::from(&contacts[race].evaluate(&motion, races[race]))),
+            motion: ball.motion(),
+            raceways: PerRace::new(|_| PairForces::none()),
+            pocket: None,
             total: ball.total,
             residual: Vector6::zeros(),
-            block: BallBlock::default(),
-            reactions: [None; 2],
-            pocket: None,
+            block: Block::default(),
+            reactions: [None; SLOTS],
         }
     }
 
@@ -97,6 +135,24 @@ impl BallTrial {
         };
     }
 
+    /// The pairs of this ball: the body that it touches, and the forces.
+    pub fn pairs(&self) -> impl Iterator<Item = (Body, &PairForces)> {
+        Body::ALL.into_iter().filter_map(|body| Some((body, self.pair(body)?)))
+    }
+
+    /// The forces between this ball and a body; none where it does not touch the cage.
+    pub fn pair(&self, body: Body) -> Option<&PairForces> {
+        match body {
+            Body::Race(race) => Some(&self.raceways[race]),
+            Body::Cage => self.pocket.as_ref(),
+        }
+    }
+
+    /// Reaction of a pair of this ball on its second body, with derivatives where they were asked for.
+    pub fn reaction(&self, body: Body, pair: &PairForces) -> Reaction {
+        self.reactions[body.index()].unwrap_or_else(|| Reaction::constant_on_second(pair))
+    }
+
     /// Evaluates the contacts with the races and returns their derivatives.
     pub fn contacts_with_tangent(
         &mut self,
@@ -104,28 +160,25 @@ impl BallTrial {
         around: &Surroundings<'_>,
         step: &HhtStep,
     ) -> Matrix6<f64> {
-        let Surroundings { model, contacts, differences, races, .. } = *around;
+        let Surroundings { model, contacts, differences, races, .. } = around;
         let radius = model.bearing.ball.radius;
         let mut tangent = Matrix6::zeros();
-        for race in 0..2 {
-            self.reactions[race] = None;
-            let contact_model = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));
-            self.contacts[race] = match races[race].of_body {
+        self.reactions = [None; SLOTS];
+        for race in Race::BOTH {
+            let contact = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));
+            self.raceways[race] = match races[race].moved {
                 None => {
                     let seeded = seed(&self.motion, step, radius);
-                    let (effect, by_ball) = by_ball_alone(&contact_model, &seeded, races[race].motion);
+                    let (forces, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);
                     tangent += by_ball;
-                    effect
+                    forces
                 }
                 Some(motion) => {
                     let seeded = seed(&self.motion, step, radius);
-                    let contact = by_ball_and_race(&contact_model, &seeded, motion);
-                    tangent += by_ball(&contact.force, &contact.ball_moment);
-                    let by_race = by_race(&contact.force, &contact.ball_moment);
-                    self.block.right[race] = scale_moments(by_race, radius) * -(1.0 - step.alpha_f);
-                    let reaction = RaceReaction { force: -contact.force, moment: contact.race_moment };
-                    self.reactions[race] = Some(reaction);
-                    ContactEffect::from(&contact.values())
+                    let contact = by_ball_and_race(&contact, &seeded, motion);
+                    let forces = PairForces::from(&contact);
+                    tangent += self.couple(race.into(), &forces, step, radius);
+                    PairForces::from(&contact.values())
                 }
             };
         }
@@ -133,32 +186,58 @@ impl BallTrial {
     }
 
     /// Takes over contacts with the races that were evaluated without derivatives.
-    pub fn take_contacts(&mut self, contacts: [ContactEffect; 2]) {
-        self.contacts = contacts;
-        self.reactions = [None; 2];
+    pub fn take_contacts(&mut self, raceways: PerRace<PairForces>) {
+        self.raceways = raceways;
+        self.reactions = [None; SLOTS];
     }
 
-    /// Residual of the ball whose contacts with the races are evaluated, and its tangent if their derivatives are given.
-    pub fn assemble(
+    /// Evaluates the contact with the cage, and adds its derivatives to a tangent if there is one.
+    pub fn evaluate_pocket(
         &mut self,
         index: usize,
         around: &Surroundings<'_>,
         step: &HhtStep,
-        start: &BallState,
-        mut tangent: Option<Matrix6<f64>>,
+        tangent: Option<&mut Matrix6<f64>>,
     ) {
-        let Surroundings { model, cage, .. } = *around;
+        let Some((cage, trial)) = around.cage else {
+            return;
+        };
+        self.pocket = cage.pocket_contact(index, &self.motion, &trial.value);
+        let Some(tangent) = tangent else {
+            return;
+        };
+        let slot = Body::Cage.index();
+        self.block.right[slot].fill(0.0);
+        self.block.left[slot].fill(0.0);
+        if self.pocket.is_some() {
+            let radius = around.model.bearing.ball.radius;
+            let seeded = seed::<DIRECTIONS>(&self.motion, step, radius);
+            if let Some(forces) = cage.pocket_contact(index, &seeded, &trial.motion) {
+                *tangent += self.couple(Body::Cage, &forces, step, radius);
+            }
+        }
+    }
+
+    /// Takes over the reaction of a pair and its derivatives by the body's unknowns; returns those by the ball's.
+    fn couple(&mut self, body: Body, forces: &PairForces<D>, step: &HhtStep, radius: f64) -> Matrix6<f64> {
+        let by_body = scale_moments(by_second(&forces.force, &forces.moment), radius);
+        self.block.right[body.index()] = by_body * -(1.0 - step.alpha_f);
+        self.reactions[body.index()] = Some(Reaction::on_second(forces));
+        by_first(&forces.force, &forces.moment)
+    }
+
+    /// Residual of the ball whose pairs are evaluated, and its tangent if their derivatives are given.
+    pub fn assemble(
+        &mut self,
+        model: &Model,
+        step: &HhtStep,
+        start: &BallState,
+        tangent: Option<Matrix6<f64>>,
+    ) {
         let ball = &model.bearing.ball;
         let share = 1.0 - step.alpha_f;
-        self.total = Wrench { force: model.gravity * ball.mass, moment: Vector3::zeros() };
-        for contact in &self.contacts {
-            self.total.force += contact.force;
-            self.total.moment += contact.ball_moment;
-        }
-        if let Some((model, cage)) = cage {
-            let pocket = Pocket { model, cage, index };
-            self.evaluate_pocket(&pocket, step, ball.radius, tangent.as_mut());
-        }
+        let weight = Wrench { force: model.gravity * ball.mass, moment: Vector3::zeros() };
+        self.total = on_ball(self.pairs().map(|(_, pair)| *pair), weight);
         let blended = start.total.blend(&self.total, share);
         let acceleration = Vector3::new(self.unknowns[0], self.unknowns[1], self.unknowns[2]);
         let angular_acceleration =
@@ -176,129 +255,23 @@ impl BallTrial {
     }
 }
 
-impl BallTrial {
-    /// Adds the contact with the cage, and its derivatives if there is a tangent.
-    fn evaluate_pocket(
-        &mut self,
-        seen: &Pocket<'_>,
-        step: &HhtStep,
-        radius: f64,
-        tangent: Option<&mut Matrix6<f64>>,
-    ) {
-        let touching = seen.model.pocket_contact(seen.index, &self.motion, &seen.cage.value);
-        if tangent.is_some() {
-            self.block.right[CAGE].fill(0.0);
-            self.block.left[CAGE].fill(0.0);
-        }
-        self.pocket = touching.map(|contact| {
-            self.total.force += contact.force;
-            self.total.moment += contact.moment;
-            let mut reaction = RaceReaction::opposite(&contact);
-            if let Some(tangent) = tangent {
-                let seeded = seed::<DIRECTIONS>(&self.motion, step, radius);
-                if let Some(contact) = seen.model.pocket_contact(seen.index, &seeded, &seen.cage.motion) {
-                    *tangent += by_ball(&contact.force, &contact.moment);
-                    let by_cage = scale_moments(by_race(&contact.force, &contact.moment), radius);
-                    self.block.right[CAGE] = by_cage * -(1.0 - step.alpha_f);
-                    reaction = RaceReaction { force: -contact.force, moment: contact.other_moment };
-                }
-            }
-            (contact, reaction)
-        });
-    }
-}
-
-/// A ball's pocket in a trial step.
-#[derive(Clone, Copy, Debug)]
-struct Pocket<'a> {
-    model: &'a CageModel,
-    cage: &'a CageTrial,
-    index: usize,
-}
-
-/// What a ball may touch in a trial step.
-#[derive(Clone, Copy, Debug)]
-pub struct Surroundings<'a> {
-    /// The model.
-    pub model: &'a Model,
-    /// Contact with each race.
-    pub contacts: &'a [ContactModel<'a>; 2],
-    /// What Kalker's polynomials add at each ball.
-    pub differences: &'a [[Difference; 2]],
-    /// Motion of each race.
-    pub races: [RaceSeen<'a>; 2],
-    /// Constants and motion of the cage.
-    pub cage: Option<(&'a CageModel, &'a CageTrial)>,
-}
-
 /// A contact with a race of given motion, and derivatives of force and moment on the ball by the ball's unknowns.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn by_ball_alone(
     contact: &ContactModel<'_>,
     ball: &BallMotion<Dual<6>>,
     race: &RaceMotion<f64>,
-) -> (ContactEffect, Matrix6<f64>) {
+) -> (PairForces, Matrix6<f64>) {
     let contact = contact.evaluate(ball, &constant_race(race));
-    (ContactEffect::from(&contact.values()), by_ball(&contact.force, &contact.ball_moment))
+    (PairForces::from(&contact.values()), by_first(&contact.force, &contact.ball_moment))
 }
 
-/// A contact with a race body, with derivatives by the unknowns of both.
+/// A contact with a race that forces move, with derivatives by the unknowns of both.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn by_ball_and_race(
     contact: &ContactModel<'_>,
-    ball: &BallMotion<Dual<DIRECTIONS>>,
-    race: &RaceMotion<Dual<DIRECTIONS>>,
-) -> BallRaceContact<Dual<DIRECTIONS>> {
+    ball: &BallMotion<D>,
+    race: &RaceMotion<D>,
+) -> BallRaceContact<D> {
     contact.evaluate(ball, race)
-}
-
-/// A ball's motion as a function of its own unknowns.
-fn seed<const N: usize>(motion: &BallMotion<f64>, step: &HhtStep, radius: f64) -> BallMotion<Dual<N>> {
-    let variable = |v: &Vector3<f64>, first: usize, gain: f64| {
-        Vector3::from_fn(|i, _| Dual::variable(v[i], first + i, gain))
-    };
-    BallMotion {
-        position: variable(&motion.position, 0, step.position_gain()),
-        velocity: variable(&motion.velocity, 0, step.velocity_gain()),
-        angular_velocity: variable(&motion.angular_velocity, 3, step.velocity_gain() / radius),
-    }
-}
-
-/// A race's motion without derivatives, as numbers that could have some.
-#[inline(always)]
-pub fn constant_race<S: Scalar>(motion: &RaceMotion<f64>) -> RaceMotion<S> {
-    RaceMotion {
-        position: constant_vector(&motion.position),
-        axis: constant_vector(&motion.axis),
-        velocity: constant_vector(&motion.velocity),
-        angular_velocity: constant_vector(&motion.angular_velocity),
-    }
-}
-
-/// Derivatives of force (rows 0 to 2) and moment (rows 3 to 5) by the ball's unknowns.
-#[inline(always)]
-pub fn by_ball<const N: usize>(force: &Vector3<Dual<N>>, moment: &Vector3<Dual<N>>) -> Matrix6<f64> {
-    Matrix6::from_fn(|i, k| {
-        let row = if i < 3 { &force[i] } else { &moment[i - 3] };
-        row.derivatives[k]
-    })
-}
-
-/// Derivatives of force (rows 0 to 2) and moment (rows 3 to 5) by the unknowns of a race body.
-fn by_race(force: &Vector3<Dual<DIRECTIONS>>, moment: &Vector3<Dual<DIRECTIONS>>) -> Matrix6<f64> {
-    Matrix6::from_fn(|i, k| by_race_unknown(if i < 3 { &force[i] } else { &moment[i - 3] }, k))
-}
-
-/// Derivative by unknown k of a race body: translation (0 to 2), rotation (3 to 5).
-pub fn by_race_unknown(x: &Dual<DIRECTIONS>, k: usize) -> f64 {
-    if k < 3 { -x.derivatives[k] } else { x.derivatives[RACE_ROTATION + k - 3] }
-}
-
-/// First direction of a race body's rotation.
-pub const RACE_ROTATION: usize = 6;
-
-/// Divides the moment rows by a length.
-fn scale_moments(mut matrix: Matrix6<f64>, length: f64) -> Matrix6<f64> {
-    matrix.fixed_rows_mut::<3>(3).scale_mut(1.0 / length);
-    matrix
 }

@@ -1,127 +1,122 @@
-//! The cage in one trial step: a rigid body like a race, with the lands that guide it.
+//! The cage in one trial step, as balls and lands see it: its motion with all axes, and the lands that guide it.
 
 use nalgebra::{Matrix6, Vector3};
 
-use super::ball::{DIRECTIONS, RACE_ROTATION, RaceSeen};
-use super::race::RaceTrial;
-use super::reaction::RaceReaction;
-use crate::contact::body::{BodyContact, BodyMotion};
+use super::ball::RaceSeen;
+use super::body::BodyTrial;
+use super::directions::{D, exchange_bodies};
+use super::reaction::Reaction;
+use crate::contact::body::BodyMotion;
 use crate::contact::land::LandModel;
-use crate::dynamics::state::RaceState;
+use crate::contact::pair::PairForces;
 use crate::model::cage::CageModel;
 use crate::numerics::hht::HhtStep;
-use crate::numerics::scalar::{Dual, values};
-
-type D = Dual<DIRECTIONS>;
-
-/// First direction of the rotation of the body that a ball is, or that stands for it.
-const BALL_ROTATION: usize = 3;
+use crate::numerics::scalar::values;
 
 /// A cage in a trial step.
 #[derive(Clone, Debug)]
 pub struct CageTrial {
-    /// The body's motion, residual and tangent.
-    pub body: RaceTrial,
-    /// Motion as the balls see it, with derivatives by the cage's rotation.
+    /// Motion with derivatives by the cage's rotation.
     pub motion: BodyMotion<D>,
-    /// The same without derivatives.
+    /// Motion without derivatives.
     pub value: BodyMotion<f64>,
     /// Contacts with the lands at the end of the step, where they touch.
-    pub lands: [Option<BodyContact<f64>>; 2],
-    /// Derivatives of the guiding race's residual by the cage's unknowns, and the other way round.
+    pub lands: [Option<PairForces>; 2],
+    /// Derivatives of the guiding race's residual by the cage's unknowns.
     pub race_by_cage: Matrix6<f64>,
-    /// See there.
+    /// Derivatives of the cage's residual by the guiding race's unknowns.
     pub cage_by_race: Matrix6<f64>,
 }
 
-/// Reactions of a land contact on race (by index) and cage.
-type LandReaction = (usize, RaceReaction, RaceReaction);
+/// What one land exerts on the cage and on its race.
+#[derive(Clone, Copy, Debug)]
+pub struct LandReactions {
+    /// On the cage.
+    pub on_cage: Reaction,
+    /// On the race.
+    pub on_race: Reaction,
+}
 
 impl CageTrial {
-    /// Buffers for a cage, as at the start of a step.
-    pub fn new(model: &CageModel, start: &RaceState) -> Self {
-        let body = RaceTrial::new(&model.body, start);
+    /// A cage that has moved to the end of a step.
+    pub fn new(body: &BodyTrial) -> Self {
+        let motion = body.body_motion();
         Self {
-            motion: body.body_motion(),
-            value: start.body_motion(),
-            body,
+            value: motion_value(&motion),
+            motion,
             lands: [None; 2],
             race_by_cage: Matrix6::zeros(),
             cage_by_race: Matrix6::zeros(),
         }
     }
 
-    /// Motion at the end of the step, see [`RaceTrial::move_to`].
-    pub fn move_to(&mut self, unknowns: &[f64], start: &RaceState, step: &HhtStep, length: f64) {
-        self.body.move_to(unknowns, start, step, length);
-        self.motion = self.body.body_motion();
-        self.value = BodyMotion {
-            position: values(&self.motion.position),
-            axes: self.motion.axes.each_ref().map(values),
-            velocity: values(&self.motion.velocity),
-            angular_velocity: values(&self.motion.angular_velocity),
-        };
+    /// Takes over the motion of the body at the end of a step.
+    pub fn see(&mut self, body: &BodyTrial) {
+        self.motion = body.body_motion();
+        self.value = motion_value(&self.motion);
     }
 
     /// Evaluates the contacts with the lands and returns their reactions, with derivatives if asked for.
     pub fn touch_lands(
         &mut self,
         model: &CageModel,
-        races: [RaceSeen<'_>; 2],
+        race: &RaceSeen<'_>,
         step: &HhtStep,
         with_tangent: bool,
-    ) -> [Option<LandReaction>; 2] {
+    ) -> [Option<LandReactions>; 2] {
         self.race_by_cage.fill(0.0);
         self.cage_by_race.fill(0.0);
-        self.lands = model.land_contacts(&self.value, races.map(|race| race.motion));
-        let Some(land) = &model.land else {
+        self.lands = model.land_contacts(&self.value, |_| *race.motion);
+        let Some((_, land)) = &model.land else {
             return [None; 2];
         };
         [0, 1].map(|side: usize| {
-            let contact = self.lands[side].as_ref()?;
-            let constant = (land.race, RaceReaction::opposite(contact), RaceReaction::direct(contact));
+            let pair = self.lands[side].as_ref()?;
+            let constant = LandReactions {
+                on_cage: Reaction::constant_on_first(pair),
+                on_race: Reaction::constant_on_second(pair),
+            };
             if !with_tangent {
                 return Some(constant);
             }
-            let contact = self.with_derivatives(land, land.positions[side], &races[land.race], step);
-            Some(contact.unwrap_or(constant))
+            let exact = self.with_derivatives(land, land.positions[side], race, step);
+            Some(exact.unwrap_or(constant))
         })
     }
 
-    /// A land contact as a function of the unknowns of cage and race. The cage takes the ball's part: its translation
-    /// is directions 0 to 2, its rotation 3 to 5.
+    /// A land contact as a function of the unknowns of cage (first body) and race (second).
     fn with_derivatives(
         &self,
         land: &LandModel,
         position: f64,
         race: &RaceSeen<'_>,
         step: &HhtStep,
-    ) -> Option<LandReaction> {
+    ) -> Option<LandReactions> {
         let translation = |v: &Vector3<f64>, gain: f64| Vector3::from_fn(|i, _| D::variable(v[i], i, gain));
+        // As second bodies both have their rotation in the same directions.
         let cage = BodyMotion {
             position: translation(&self.value.position, step.position_gain()),
-            axes: self.motion.axes.map(|axis| axis.map(exchange_parts)),
+            axes: self.motion.axes.map(|axis| axis.map(exchange_bodies)),
             velocity: translation(&self.value.velocity, step.velocity_gain()),
-            angular_velocity: self.motion.angular_velocity.map(exchange_parts),
+            angular_velocity: self.motion.angular_velocity.map(exchange_bodies),
         };
-        let contact = land.evaluate(&cage, &race.with_derivatives(), position)?;
-        let on_race = RaceReaction { force: -contact.force, moment: contact.other_moment };
-        let on_cage = RaceReaction {
-            force: contact.force.map(exchange_parts),
-            moment: contact.moment.map(exchange_parts),
-        };
-        Some((land.race, on_race, on_cage))
+        let pair = land.evaluate(&cage, &race.with_derivatives(), position)?;
+        let on_cage = Reaction::on_first(&pair);
+        Some(LandReactions {
+            on_cage: Reaction {
+                force: on_cage.force.map(exchange_bodies),
+                moment: on_cage.moment.map(exchange_bodies),
+            },
+            on_race: Reaction::on_second(&pair),
+        })
     }
 }
 
-/// The same number with the parts of ball and race body exchanged: the relative translation changes sign, and the
-/// rotations change places.
-fn exchange_parts(x: D) -> D {
-    let mut exchanged = x;
-    for i in 0..3 {
-        exchanged.derivatives[i] = -x.derivatives[i];
-        exchanged.derivatives[BALL_ROTATION + i] = x.derivatives[RACE_ROTATION + i];
-        exchanged.derivatives[RACE_ROTATION + i] = x.derivatives[BALL_ROTATION + i];
+fn motion_value(motion: &BodyMotion<D>) -> BodyMotion<f64> {
+    BodyMotion {
+        position: values(&motion.position),
+        axes: motion.axes.each_ref().map(values),
+        velocity: values(&motion.velocity),
+        angular_velocity: values(&motion.angular_velocity),
     }
-    exchanged
 }

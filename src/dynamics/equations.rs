@@ -3,16 +3,17 @@
 use nalgebra::{Vector3, Vector6};
 
 use super::ball::{BallTrial, RaceSeen, Surroundings};
+use super::body::{BodyLoad, BodyScales, BodyTrial};
 use super::cage::CageTrial;
-use super::race::{RaceLoad, RaceScales, RaceTrial};
-use super::reaction::RaceReaction;
-use super::turn::Turn;
+use super::orbit_turn::OrbitTurn;
+use super::reaction::Reaction;
 use super::{Boundary, Workspace};
-use crate::contact::many::{ContactEffect, evaluate_group};
+use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
-use crate::dynamics::arrowhead::{BLOCK, BODIES, BallBlock, KeptBlock, KeptMatrix};
-use crate::dynamics::state::{State, race_motion};
-use crate::model::{CAGE, Model, OUTER, RaceBody};
+use crate::model::Model;
+use crate::model::bodies::{Bodies, Body, PerRace, Race, RigidBody};
+use crate::model::state::{BodyState, KeptBlock, KeptMatrix, State, race_motion};
+use crate::numerics::arrowhead::{BLOCK, Block, Offsets, SLOTS};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::lanes::WIDTH;
 use crate::numerics::newton::Equations;
@@ -23,19 +24,19 @@ const CONSTRAINT_TOLERANCE: f64 = 1e-8;
 /// The equations of one trial step.
 pub struct BearingStep<'a> {
     pub model: &'a Model,
-    contacts: [ContactModel<'a>; 2],
+    contacts: PerRace<ContactModel<'a>>,
     pub start: &'a State,
     pub step: HhtStep,
     pub boundary: &'a Boundary,
     /// Motion of the races at the end of the step.
-    races: [RaceMotion<f64>; 2],
+    races: PerRace<RaceMotion<f64>>,
     pub force_tolerance: f64,
     pub workspace: &'a mut Workspace,
-    /// Contacts evaluated without and with derivatives.
+    /// Ball-race contacts evaluated without derivatives.
     pub contact_values: u64,
-    /// See there.
+    /// Ball-race contacts evaluated with derivatives.
     pub contact_tangents: u64,
-    /// Nothing was evaluated yet.
+    /// Was nothing evaluated yet?
     fresh: bool,
 }
 
@@ -48,30 +49,17 @@ impl<'a> BearingStep<'a> {
         h: f64,
         workspace: &'a mut Workspace,
     ) -> Self {
-        let contacts = [0, 1].map(|race| model.contact(race, boundary.friction));
-        let races = boundary.motion.each_ref().map(|(pose, twist)| race_motion(pose, twist));
         if workspace.balls.len() != start.balls.len() {
-            let trial = |ball| BallTrial::new(ball, &contacts, races.each_ref());
-            workspace.balls = start.balls.iter().map(trial).collect();
+            workspace.balls = start.balls.iter().map(BallTrial::new).collect();
         }
-        for race in 0..2 {
-            let body = model.bodies[race].as_ref();
-            match (body, &mut workspace.races[race]) {
-                (Some(_), Some(trial)) => trial.end.clone_from(&start.races[race]),
-                (body, trial) => *trial = body.map(|body| RaceTrial::new(body, &start.races[race])),
-            }
-        }
-        match (model.cage.as_ref().zip(start.cage.as_ref()), &mut workspace.cage) {
-            (Some((_, state)), Some(trial)) => trial.body.end.clone_from(state),
-            (cage, trial) => *trial = cage.map(|(cage, state)| CageTrial::new(cage, state)),
-        }
+        workspace.prepare_bodies(model, start);
         Self {
             model,
-            contacts,
+            contacts: model.contacts(&boundary.conditions),
             start,
             step: HhtStep::new(model.solver.alpha_f, h),
             boundary,
-            races,
+            races: PerRace::new(|race| race_motion(&boundary.motion[race].0, &boundary.motion[race].1)),
             force_tolerance: start.force_tolerance,
             workspace,
             contact_values: 0,
@@ -80,12 +68,28 @@ impl<'a> BearingStep<'a> {
         }
     }
 
-    /// Do the balls not feel each other, because no body has unknowns?
+    /// Are the balls without influence on each other, because no body has unknowns?
     pub fn balls_are_independent(&self) -> bool {
-        self.model.border_offsets() == [None; BODIES]
+        self.model.border_offsets() == [None; SLOTS]
     }
 
-    /// Moves the balls to the end of the step and evaluates their contacts, residuals and, if asked for, tangents.
+    /// Moves the bodies to the end of the step.
+    fn move_bodies(&mut self, unknowns: &[f64]) {
+        let length = self.model.race_length();
+        let offsets = self.model.border_offsets();
+        let border = &unknowns[BLOCK * self.start.balls.len()..];
+        for ((body, trial), (_, start)) in self.workspace.bodies.iter_mut().zip(self.start.bodies.iter()) {
+            if let (Some(trial), Some(from)) = (trial, offsets[body.index()]) {
+                trial.move_to(&border[from..from + trial.unknowns.len()], start, &self.step, length);
+                match body {
+                    Body::Race(race) => self.races[race] = trial.motion_value(),
+                    Body::Cage => self.workspace.cage.iter_mut().for_each(|cage| cage.see(trial)),
+                }
+            }
+        }
+    }
+
+    /// Moves the balls to the end of the step and evaluates their pairs, residuals and, if asked for, tangents.
     ///
     /// Under prescribed races balls whose unknowns did not change keep their last evaluation.
     fn evaluate_balls(&mut self, unknowns: &[f64], with_tangent: bool) {
@@ -95,11 +99,11 @@ impl<'a> BearingStep<'a> {
             model: self.model,
             contacts: &self.contacts,
             differences: &self.start.differences,
-            races: [0, 1].map(|race| RaceSeen::new(race, &self.races, &workspace.races)),
+            races: PerRace::new(|race| RaceSeen::new(race, &self.races, &workspace.bodies)),
             cage: self.model.cage.as_ref().zip(workspace.cage.as_ref()),
         };
         let radius = self.model.bearing.ball.radius;
-        let mut effects = [[ContactEffect::none(); WIDTH]; 2];
+        let mut forces = PerRace::new(|_| [PairForces::none(); WIDTH]);
         let mut motions = [BallMotion::at_rest(); WIDTH];
         for (group, trials) in workspace.balls.chunks_mut(WIDTH).enumerate() {
             let first = WIDTH * group;
@@ -117,35 +121,85 @@ impl<'a> BearingStep<'a> {
                 continue;
             }
             if !with_tangent {
-                for race in 0..2 {
-                    let motions = &motions[..trials.len()];
-                    let (contact, seen) = (&self.contacts[race], &self.races[race]);
-                    match self.start.differences.get(first..first + trials.len()) {
-                        None => evaluate_group(contact, seen, motions, &mut effects[race]),
-                        Some(differences) => {
-                            for (lane, (motion, of_ball)) in motions.iter().zip(differences).enumerate() {
-                                let contact = contact.of_ball(Some(&of_ball[race]));
-                                effects[race][lane] = ContactEffect::from(&contact.evaluate(motion, seen));
-                            }
-                        }
-                    }
+                for race in Race::BOTH {
+                    around.evaluate_group(race, first, &motions[..trials.len()], &mut forces[race]);
                 }
             }
             for (lane, trial) in trials.iter_mut().enumerate() {
-                let tangent = if with_tangent {
+                let index = first + lane;
+                let mut tangent = if with_tangent {
                     self.contact_tangents += 2;
-                    Some(trial.contacts_with_tangent(first + lane, &around, &self.step))
+                    Some(trial.contacts_with_tangent(index, &around, &self.step))
                 } else if changed[lane] {
                     self.contact_values += 2;
-                    trial.take_contacts([effects[0][lane], effects[1][lane]]);
+                    trial.take_contacts(PerRace { inner: forces.inner[lane], outer: forces.outer[lane] });
                     None
                 } else {
                     continue;
                 };
-                trial.assemble(first + lane, &around, &self.step, &self.start.balls[first + lane], tangent);
+                trial.evaluate_pocket(index, &around, &self.step, tangent.as_mut());
+                trial.assemble(self.model, &self.step, &self.start.balls[index], tangent);
             }
         }
         self.fresh = false;
+    }
+
+    /// Sums what all pairs exert on the bodies that forces move and, with a tangent, sets their couplings.
+    fn scatter(&mut self, with_tangent: bool) -> [Reaction; SLOTS] {
+        let length = self.model.race_length();
+        let mut sums = [Reaction::zero(); SLOTS];
+        let Workspace { balls, bodies, cage, .. } = &mut *self.workspace;
+        for trial in balls {
+            for slot in Body::ALL {
+                let Some(Some(body)) = bodies.get(slot) else {
+                    continue;
+                };
+                let Some(pair) = trial.pair(slot) else {
+                    continue;
+                };
+                let reaction = trial.reaction(slot, pair);
+                sums[slot.index()].add(&reaction);
+                if with_tangent {
+                    trial.block.left[slot.index()] = body.coupling(&reaction, &self.step, length);
+                }
+            }
+        }
+        if let (Some(model), Some(cage), Some(Some(body))) =
+            (&self.model.cage, cage.as_mut(), bodies.get(Body::Cage))
+            && let Some(guide) = model.guide()
+        {
+            let seen = RaceSeen::new(guide, &self.races, bodies);
+            let lands = cage.touch_lands(model, &seen, &self.step, with_tangent);
+            for land in lands.iter().flatten() {
+                sums[Body::from(guide).index()].add(&land.on_race);
+                sums[Body::Cage.index()].add(&land.on_cage);
+                if let (true, Some(race)) = (with_tangent, &bodies[guide]) {
+                    cage.race_by_cage += race.coupling(&land.on_race, &self.step, length);
+                    cage.cage_by_race += body.coupling(&land.on_cage, &self.step, length);
+                }
+            }
+        }
+        sums
+    }
+
+    /// Residuals and tangents of the bodies under these forces; returns the largest norm.
+    fn assemble_bodies(&mut self, sums: &[Reaction; SLOTS]) -> f64 {
+        let scales = BodyScales {
+            length: self.model.race_length(),
+            length_tolerance: CONSTRAINT_TOLERANCE * 2.0 * self.model.bearing.ball.radius,
+            time: self.boundary.time,
+        };
+        let mut norm = 0.0;
+        let bodies = self.model.bodies.iter().zip(self.start.bodies.iter());
+        for (((body, model), (_, start)), (_, trial)) in bodies.zip(self.workspace.bodies.iter_mut()) {
+            if let (Some(model), Some(trial)) = (model, trial) {
+                let load = self.boundary.load_on(body, model, &self.model.gravity);
+                trial.assemble(model, start, &load, &sums[body.index()], &self.step, &scales);
+                norm = worse(norm, trial.residual.rows(0, 6).amax() / self.force_tolerance);
+                norm = worse(norm, trial.violation);
+            }
+        }
+        norm
     }
 }
 
@@ -156,89 +210,17 @@ fn worse(a: f64, b: f64) -> f64 {
 
 impl Equations for BearingStep<'_> {
     fn residual(&mut self, unknowns: &[f64], with_tangent: bool) -> f64 {
-        let length = self.model.race_length();
-        let offsets = self.model.border_offsets();
-        let border_start = BLOCK * self.start.balls.len();
-        let mut bearing = [RaceReaction::zero(); 2];
-        let mut pockets = RaceReaction::zero();
-
-        // race bodies first: the balls see them move
-        for race in 0..2 {
-            if let (Some(trial), Some(offset)) = (&mut self.workspace.races[race], offsets[race]) {
-                let rows = self.model.border_rows(race);
-                let from = border_start + offset;
-                trial.move_to(&unknowns[from..from + rows], &self.start.races[race], &self.step, length);
-                self.races[race] = trial.motion_value();
-            }
-        }
-        if let (Some(cage), Some(offset)) = (&mut self.workspace.cage, offsets[CAGE]) {
-            let (from, start) = (border_start + offset, self.start.cage.as_ref());
-            if let Some(start) = start {
-                cage.move_to(&unknowns[from..from + BLOCK], start, &self.step, length);
-            }
-        }
-
-        // balls
+        // bodies first: the balls see them move
+        self.move_bodies(unknowns);
         self.evaluate_balls(unknowns, with_tangent);
         let mut norm = 0.0f64;
-        for trial in &mut self.workspace.balls {
+        for trial in &self.workspace.balls {
             norm = worse(norm, trial.residual.amax() / self.force_tolerance);
-            for race in 0..2 {
-                if let Some(race_trial) = &self.workspace.races[race] {
-                    let reaction = match &trial.reactions[race] {
-                        Some(reaction) => *reaction,
-                        None => RaceReaction::constant(&trial.contacts[race]),
-                    };
-                    bearing[race].add(&reaction);
-                    if with_tangent {
-                        trial.block.left[race] = race_trial.coupling(&reaction, &self.step, length);
-                    }
-                }
-            }
-            if let (Some((_, reaction)), Some(cage)) = (&trial.pocket, &self.workspace.cage) {
-                pockets.add(reaction);
-                if with_tangent {
-                    trial.block.left[CAGE] = cage.body.coupling(reaction, &self.step, length);
-                }
-            }
         }
-
-        // cage
-        if let (Some(model), Some(cage), Some(start)) =
-            (&self.model.cage, &mut self.workspace.cage, &self.start.cage)
-        {
-            let seen = [0, 1].map(|race| RaceSeen::new(race, &self.races, &self.workspace.races));
-            let lands = cage.touch_lands(model, seen, &self.step, with_tangent);
-            for (race, on_race, on_cage) in lands.into_iter().flatten() {
-                bearing[race].add(&on_race);
-                pockets.add(&on_cage);
-                if let (true, Some(race)) = (with_tangent, &self.workspace.races[race]) {
-                    cage.race_by_cage += race.coupling(&on_race, &self.step, length);
-                    cage.cage_by_race += cage.body.coupling(&on_cage, &self.step, length);
-                }
-            }
-            let load = weighted(&RaceLoad::default(), &model.body, &self.model.gravity);
-            let scales = RaceScales { length, length_tolerance: f64::INFINITY, time: self.boundary.time };
-            cage.body.assemble(&model.body, start, &load, &pockets, &self.step, &scales);
-            norm = worse(norm, cage.body.residual.amax() / self.force_tolerance);
+        if !self.balls_are_independent() {
+            let sums = self.scatter(with_tangent);
+            norm = worse(norm, self.assemble_bodies(&sums));
         }
-
-        // race bodies
-        let scales = RaceScales {
-            length,
-            length_tolerance: CONSTRAINT_TOLERANCE * 2.0 * self.model.bearing.ball.radius,
-            time: self.boundary.time,
-        };
-        for race in 0..2 {
-            if let (Some(trial), Some(body)) = (&mut self.workspace.races[race], &self.model.bodies[race]) {
-                let load = weighted(&self.boundary.loads[race], body, &self.model.gravity);
-                let start = &self.start.races[race];
-                trial.assemble(body, start, &load, &bearing[race], &self.step, &scales);
-                norm = worse(norm, trial.residual.rows(0, 6).amax() / self.force_tolerance);
-                norm = worse(norm, trial.violation);
-            }
-        }
-
         if with_tangent {
             self.factorise();
         }
@@ -246,8 +228,9 @@ impl Equations for BearingStep<'_> {
     }
 
     fn has_tangent(&self) -> bool {
-        // Step sizes that differ by rounding have the same matrix. Where there are bodies every step has its own: corrections
-        // with an old one stop just inside the tolerance, and what they leave adds up in a body that nothing else holds.
+        // Step sizes that differ by rounding have the same matrix. Where bodies have unknowns every step has its own matrix:
+        // corrections with an old one stop just inside the tolerance, and what they leave adds up in a body that nothing
+        // else holds.
         let kept = &self.workspace.kept;
         let same = (kept.step - self.step.h).abs() < 1e-6 * self.step.h;
         let there = kept.balls.len() == self.start.balls.len();
@@ -268,8 +251,8 @@ impl Equations for BearingStep<'_> {
 }
 
 impl BearingStep<'_> {
-    /// Corrections of balls that feel nothing but races of prescribed motion. A ball's matrix goes round with it; a ball that
-    /// is solved already stays where it is.
+    /// Corrections of balls between races of prescribed motion. A ball's matrix turns with its orbit; a ball that is solved
+    /// already stays where it is.
     fn correct_balls(&self, correction: &mut [f64]) -> bool {
         let Workspace { balls, kept, .. } = &*self.workspace;
         let mut regular = kept.balls.len() == balls.len();
@@ -278,7 +261,7 @@ impl BearingStep<'_> {
                 x.fill(0.0);
                 continue;
             }
-            let turn = Turn::between(&block.offset, &self.offset(trial));
+            let turn = OrbitTurn::between(&block.offset, &self.offset(trial));
             let solution = turn.stacked(&(block.inverse * turn.back().stacked(&-trial.residual)));
             regular &= solution.iter().all(|v| v.is_finite());
             x.copy_from_slice(solution.as_slice());
@@ -292,16 +275,10 @@ impl BearingStep<'_> {
         let workspace = &mut *self.workspace;
         workspace.ball_corrections.clear();
         workspace.ball_corrections.extend(workspace.balls.iter().map(|trial| -trial.residual));
-        let rows = self.model.border_size();
-        workspace.border_correction.resize_vertically_mut(rows, 0.0);
-        for race in 0..2 {
-            if let (Some(trial), Some(offset)) = (&workspace.races[race], offsets[race]) {
-                let rows = trial.residual.len();
-                workspace.border_correction.rows_mut(offset, rows).copy_from(&-&trial.residual);
-            }
-        }
-        if let (Some(cage), Some(offset)) = (&workspace.cage, offsets[CAGE]) {
-            workspace.border_correction.rows_mut(offset, BLOCK).copy_from(&-&cage.body.residual);
+        workspace.border_correction.resize_vertically_mut(self.model.border_size(), 0.0);
+        for (from, trial) in moved(&workspace.bodies, &offsets) {
+            let rows = trial.residual.len();
+            workspace.border_correction.rows_mut(from, rows).copy_from(&-&trial.residual);
         }
         let solved = workspace.arrowhead.solve(
             &mut workspace.ball_corrections,
@@ -318,10 +295,10 @@ impl BearingStep<'_> {
 
     /// [m] a ball's position seen from the outer race.
     fn offset(&self, trial: &BallTrial) -> Vector3<f64> {
-        trial.motion.position - self.races[OUTER].position
+        trial.motion.position - self.races.outer.position
     }
 
-    /// Inverts the blocks of balls that feel nothing but races of prescribed motion; leaves none if one is singular.
+    /// Inverts the blocks of balls between races of prescribed motion; leaves none if one is singular.
     fn invert_balls(&mut self) {
         let invert = |trial: &BallTrial| {
             let inverse = trial.block.diagonal.try_inverse()?;
@@ -341,29 +318,58 @@ impl BearingStep<'_> {
         let workspace = &mut *self.workspace;
         workspace.border.resize_mut(rows, rows, 0.0);
         workspace.border.fill(0.0);
-        for race in 0..2 {
-            if let (Some(trial), Some(offset)) = (&workspace.races[race], offsets[race]) {
-                let rows = trial.residual.len();
-                workspace.border.view_mut((offset, offset), (rows, rows)).copy_from(&trial.block);
-            }
+        for (from, trial) in moved(&workspace.bodies, &offsets) {
+            let rows = trial.residual.len();
+            workspace.border.view_mut((from, from), (rows, rows)).copy_from(&trial.block);
         }
-        if let (Some(cage), Some(offset)) = (&workspace.cage, offsets[CAGE]) {
+        let guide = self.model.cage.as_ref().and_then(|cage| cage.guide()).map(Body::from);
+        if let (Some(cage), Some(guide)) = (&workspace.cage, guide)
+            && let (Some(race), Some(own)) = (offsets[guide.index()], offsets[Body::Cage.index()])
+        {
             let size = (BLOCK, BLOCK);
-            workspace.border.view_mut((offset, offset), size).copy_from(&cage.body.block);
-            let guide = self.model.cage.as_ref().and_then(|cage| cage.land).map(|land| offsets[land.race]);
-            if let Some(Some(race)) = guide {
-                workspace.border.view_mut((race, offset), size).copy_from(&cage.race_by_cage);
-                workspace.border.view_mut((offset, race), size).copy_from(&cage.cage_by_race);
-            }
+            workspace.border.view_mut((race, own), size).copy_from(&cage.race_by_cage);
+            workspace.border.view_mut((own, race), size).copy_from(&cage.cage_by_race);
         }
-        let blocks: Vec<&BallBlock> = workspace.balls.iter().map(|trial| &trial.block).collect();
+        let blocks: Vec<&Block> = workspace.balls.iter().map(|trial| &trial.block).collect();
         workspace.arrowhead.factorise(&blocks, &workspace.border, offsets);
     }
 }
 
-/// Adds the weight of a race body to its applied load.
-pub fn weighted(load: &RaceLoad, body: &RaceBody, gravity: &Vector3<f64>) -> RaceLoad {
-    let mut load = *load;
-    load.applied.force += gravity * body.mass;
-    load
+/// Bodies that forces move, with their first border rows.
+fn moved<'a>(
+    bodies: &'a Bodies<Option<BodyTrial>>,
+    offsets: &Offsets,
+) -> impl Iterator<Item = (usize, &'a BodyTrial)> {
+    bodies.iter().filter_map(|(body, trial)| Some((offsets[body.index()]?, trial.as_ref()?)))
+}
+
+impl Workspace {
+    /// Buffers of the bodies, as they are at the start of a step.
+    fn prepare_bodies(&mut self, model: &Model, start: &State) {
+        if self.bodies.len() == start.bodies.len() {
+            for ((_, trial), (_, state)) in self.bodies.iter_mut().zip(start.bodies.iter()) {
+                trial.iter_mut().for_each(|trial| trial.end.clone_from(state));
+            }
+        } else {
+            let trial = |body: Body, state: &BodyState| {
+                let moved = model.bodies.get(body)?.as_ref();
+                moved.map(|moved: &RigidBody| BodyTrial::new(moved, state))
+            };
+            self.bodies = start.bodies.map(trial);
+            let cage = self.bodies.get(Body::Cage).and_then(Option::as_ref);
+            self.cage = cage.map(CageTrial::new);
+        }
+    }
+}
+
+impl Boundary {
+    /// What acts on a body from outside: applied loads and its weight.
+    pub fn load_on(&self, body: Body, moved: &RigidBody, gravity: &Vector3<f64>) -> BodyLoad {
+        let mut load = match body {
+            Body::Race(race) => self.loads[race],
+            Body::Cage => BodyLoad::default(),
+        };
+        load.applied.force += gravity * moved.mass;
+        load
+    }
 }

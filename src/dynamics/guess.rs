@@ -3,12 +3,12 @@
 use nalgebra::Vector6;
 
 use super::equations::BearingStep;
-use super::turn::Turn;
-use crate::dynamics::arrowhead::BLOCK;
-use crate::model::{CAGE, Constraint, OUTER};
+use super::orbit_turn::OrbitTurn;
+use crate::model::bodies::{Body, Constraint, Race};
+use crate::numerics::arrowhead::BLOCK;
 
 impl BearingStep<'_> {
-    /// First guess: accelerations and multipliers stay as they are; under prescribed races those of a ball go round with it.
+    /// First guess: accelerations and multipliers stay as they are; under prescribed races those of a ball turn with its orbit.
     ///
     /// That saves the second correction, which would take the residual far inside its tolerance: between bodies, where
     /// what is left adds up over many steps, it is not spared.
@@ -17,11 +17,11 @@ impl BearingStep<'_> {
         if !self.balls_are_independent() {
             return;
         }
-        let race = &self.start.races[OUTER];
+        let race = self.start.race(Race::Outer);
         for (ball, unknowns) in self.start.balls.iter().zip(unknowns.chunks_exact_mut(BLOCK)) {
             let offset = ball.position - race.pose.position;
             let ahead = offset + (ball.velocity - race.velocity) * self.step.h;
-            let turn = Turn::between(&offset, &ahead);
+            let turn = OrbitTurn::between(&offset, &ahead);
             let guess = turn.stacked(&Vector6::from_row_slice(unknowns));
             unknowns.copy_from_slice(guess.as_slice());
         }
@@ -35,10 +35,7 @@ impl BearingStep<'_> {
             unknowns.extend(ball.angular_acceleration.iter().map(|a| a * self.model.bearing.ball.radius));
         }
         let length = self.model.race_length();
-        let races = self.start.races.iter().zip(self.model.bodies.iter().map(Option::as_ref));
-        let cage =
-            self.start.cage.iter().zip(std::iter::once(self.model.cage.as_ref().map(|cage| &cage.body)));
-        for (state, body) in races.chain(cage) {
+        for ((_, state), (_, body)) in self.start.bodies.iter().zip(self.model.bodies.iter()) {
             if let Some(body) = body {
                 unknowns.extend(state.acceleration.iter());
                 unknowns.extend(state.rate_derivative.iter().map(|a| a * length));
@@ -58,11 +55,11 @@ impl BearingStep<'_> {
         let back = -(1.0 - self.step.gamma) / self.step.gamma;
         let (balls, border) = unknowns.split_at_mut(BLOCK * self.start.balls.len());
         balls.iter_mut().for_each(|a| *a *= back);
-        for (body, offset) in self.model.border_offsets().into_iter().enumerate() {
+        for (body, offset) in Body::ALL.into_iter().zip(self.model.border_offsets()) {
             if let Some(offset) = offset {
                 border[offset..offset + BLOCK].iter_mut().for_each(|a| *a *= back);
-                if body != CAGE {
-                    let gained = self.boundary.loads[body].speed - self.start.races[body].rate.x;
+                if let Body::Race(race) = body {
+                    let gained = self.boundary.loads[race].speed - self.start.race(race).rate.x;
                     border[offset + 3] += gained / self.step.velocity_gain() * self.model.race_length();
                 }
             }

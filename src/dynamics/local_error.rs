@@ -2,23 +2,20 @@
 
 use nalgebra::Vector3;
 
-use super::blame::Worst;
+use super::body::BodyTrial;
 use super::equations::BearingStep;
-use super::race::RaceTrial;
-use crate::dynamics::state::RaceState;
-use crate::model::{CAGE, INNER, OUTER};
+use super::failure::Worst;
+use crate::model::bodies::Body;
+use crate::model::state::BodyState;
 
 /// A vector at start and end of a step.
 type Ends<'a> = (&'a Vector3<f64>, &'a Vector3<f64>);
 
 impl BearingStep<'_> {
-    /// Bodies with unknowns: index, state at the start, trial.
-    fn bodies(&self) -> impl Iterator<Item = (usize, &RaceState, &RaceTrial)> {
-        let races = [INNER, OUTER]
-            .into_iter()
-            .filter_map(|race| Some((race, &self.start.races[race], self.workspace.races[race].as_ref()?)));
-        let cage = self.start.cage.iter().zip(&self.workspace.cage);
-        races.chain(cage.map(|(start, trial)| (CAGE, start, &trial.body)))
+    /// Bodies with unknowns: state at the start, and trial.
+    fn moved(&self) -> impl Iterator<Item = (Body, &BodyState, &BodyTrial)> {
+        let bodies = self.start.bodies.iter().zip(self.workspace.bodies.iter());
+        bodies.filter_map(|((body, start), (_, trial))| Some((body, start, trial.as_ref()?)))
     }
 
     /// Where the residual is largest.
@@ -26,9 +23,9 @@ impl BearingStep<'_> {
         let tolerance = self.force_tolerance;
         let balls = self.workspace.balls.iter().map(|ball| ball.residual.amax() / tolerance);
         // A sum that is not a number wins over any violation.
-        let bodies = self.bodies().map(|(index, _, trial)| {
+        let bodies = self.moved().map(|(body, _, trial)| {
             let residual = trial.residual.rows(0, 6).amax() / tolerance;
-            (index, if trial.violation > residual { trial.violation } else { residual })
+            (body, if trial.violation > residual { trial.violation } else { residual })
         });
         Worst::of(balls, bodies)
     }
@@ -58,13 +55,13 @@ impl BearingStep<'_> {
         })
     }
 
-    /// The same of every body, with its index; rotations count as displacements at the pitch circle.
-    fn body_errors(&self) -> impl Iterator<Item = (usize, f64)> {
+    /// Square of the local error of every body over its tolerance; rotations count as displacements at the pitch circle.
+    fn body_errors(&self) -> impl Iterator<Item = (Body, f64)> {
         let length = self.model.race_length();
-        self.bodies().map(move |(index, start, trial)| {
+        self.moved().map(move |(body, start, trial)| {
             let angular = [start, &trial.end].map(|state| state.rate_derivative * length);
             let linear = (&start.acceleration, &trial.end.acceleration);
-            (index, self.square(linear, (&angular[0], &angular[1])))
+            (body, self.square(linear, (&angular[0], &angular[1])))
         })
     }
 

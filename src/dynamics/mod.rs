@@ -1,35 +1,35 @@
 //! One implicit step of the whole bearing: Newton's equations of balls and race bodies under the HHT scheme.
 
 mod accept;
-pub mod arrowhead;
 mod ball;
-mod blame;
+mod body;
 mod cage;
+mod directions;
 mod equations;
+mod failure;
 mod guess;
 mod local_error;
-mod neighbour;
-mod race;
+mod orbit_turn;
 mod reaction;
-pub mod state;
-mod turn;
+mod sensitivity;
 
 use nalgebra::{DMatrix, DVector, Vector6};
 
-use crate::dynamics::arrowhead::{Arrowhead, KeptMatrix};
-use crate::dynamics::state::State;
-use crate::model::Model;
+use crate::model::bodies::{Bodies, PerRace};
+use crate::model::state::{KeptMatrix, State};
+use crate::model::{Conditions, Model};
+use crate::numerics::arrowhead::Arrowhead;
 use crate::numerics::motion::{Pose, Twist};
 use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure};
+pub use accept::make_consistent;
 use accept::{accept, renew_polynomials};
-pub use accept::{bearing_wrench, make_consistent};
 use ball::BallTrial;
-pub use blame::{Blame, Partner, Worst, to_blame};
+pub use body::BodyLoad;
+use body::BodyTrial;
 use cage::CageTrial;
 use equations::BearingStep;
-pub use neighbour::follow;
-pub use race::RaceLoad;
-use race::RaceTrial;
+pub use failure::{FailureSite, Worst, failure_site};
+pub use sensitivity::advance_perturbed;
 
 /// Corrections beyond one a step that a kept matrix may take: they cost about as much as a new one (benches/speed.rs).
 const PATIENCE: u64 = 5;
@@ -39,12 +39,12 @@ const PATIENCE: u64 = 5;
 pub struct Boundary {
     /// [s] end of the step.
     pub time: f64,
-    /// Pose and twist of races with prescribed motion; ignored for bodies.
-    pub motion: [(Pose, Twist); 2],
-    /// Load and speed of race bodies; ignored for the others.
-    pub loads: [RaceLoad; 2],
-    /// [-] friction coefficient of the ball-race contacts.
-    pub friction: f64,
+    /// Pose and twist of races with prescribed motion; not used where forces move the race.
+    pub motion: PerRace<(Pose, Twist)>,
+    /// Load and speed of races that forces move; not used for the others.
+    pub loads: PerRace<BodyLoad>,
+    /// What is the same in every contact.
+    pub conditions: Conditions,
 }
 
 /// Buffers of a step, kept between steps.
@@ -53,7 +53,8 @@ pub struct Workspace {
     balls: Vec<BallTrial>,
     /// The state's matrix during a step.
     kept: KeptMatrix,
-    races: [Option<RaceTrial>; 2],
+    /// Those that forces move; empty before the first step.
+    bodies: Bodies<Option<BodyTrial>>,
     cage: Option<CageTrial>,
     arrowhead: Arrowhead,
     border: DMatrix<f64>,
@@ -131,6 +132,6 @@ pub fn try_step(
         return Err(failure);
     }
     accept(model, state, boundary, &step, workspace);
-    renew_polynomials(model, state, boundary.friction);
+    renew_polynomials(model, state, boundary);
     Ok(())
 }

@@ -1,41 +1,45 @@
-//! Force and moment of one contact on a body, with their derivatives.
+//! Force and moment of a pair on one of its bodies, with their derivatives.
 
 use nalgebra::Vector3;
 
-use super::ball::DIRECTIONS;
-use crate::contact::body::BodyContact;
-use crate::contact::many::ContactEffect;
-use crate::numerics::scalar::{Dual, constant_vector};
+use super::directions::D;
+use crate::contact::pair::PairForces;
+use crate::numerics::scalar::constant_vector;
 
-/// Force and moment (world axes) of one contact on a race, with derivatives.
+/// Force and moment of one or many pairs on a body, world axes, with derivatives.
 #[derive(Clone, Copy, Debug)]
-pub struct RaceReaction {
+pub struct Reaction {
     /// [N] force.
-    pub force: Vector3<Dual<DIRECTIONS>>,
-    /// [N m] moment about the race origin.
-    pub moment: Vector3<Dual<DIRECTIONS>>,
+    pub force: Vector3<D>,
+    /// [N m] moment about the body's origin.
+    pub moment: Vector3<D>,
 }
 
-impl RaceReaction {
-    /// What a contact exerts on its second body, without derivatives.
-    pub fn opposite(contact: &BodyContact<f64>) -> Self {
-        Self { force: constant_vector(&-contact.force), moment: constant_vector(&contact.other_moment) }
+impl Reaction {
+    /// On the first body of a pair.
+    pub fn on_first(pair: &PairForces<D>) -> Self {
+        Self { force: pair.force, moment: pair.moment }
     }
 
-    /// What a contact exerts on its first body, without derivatives.
-    pub fn direct(contact: &BodyContact<f64>) -> Self {
-        Self { force: constant_vector(&contact.force), moment: constant_vector(&contact.moment) }
+    /// On the second body of a pair.
+    pub fn on_second(pair: &PairForces<D>) -> Self {
+        Self { force: -pair.force, moment: pair.other_moment }
+    }
+
+    /// On the first body, without derivatives.
+    pub fn constant_on_first(pair: &PairForces) -> Self {
+        Self { force: constant_vector(&pair.force), moment: constant_vector(&pair.moment) }
+    }
+
+    /// On the second body, without derivatives.
+    pub fn constant_on_second(pair: &PairForces) -> Self {
+        Self { force: constant_vector(&-pair.force), moment: constant_vector(&pair.other_moment) }
     }
 
     /// None.
     pub fn zero() -> Self {
         let zero = constant_vector(&Vector3::zeros());
         Self { force: zero, moment: zero }
-    }
-
-    /// That of a ball on a race, without derivatives.
-    pub fn constant(contact: &ContactEffect) -> Self {
-        Self { force: constant_vector(&-contact.force), moment: constant_vector(&contact.race_moment) }
     }
 
     /// Adds another.

@@ -5,7 +5,8 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 use super::{EquilibriumInput, Gyroscopic};
 use crate::contact::geometry::GrooveContact;
 use crate::model::bearing::azimuth_directions;
-use crate::model::{INNER, Model, OUTER};
+use crate::model::bodies::PerRace;
+use crate::model::{Conditions, Model};
 use crate::numerics::scalar::{Dual, Scalar, constant_vector};
 
 /// Directions of differentiation: ball axial and radial, inner race x, y, z, ry, rz, cage speed.
@@ -55,7 +56,7 @@ pub struct BallBalance {
     /// Outer contact.
     pub outer: GrooveContact<D>,
     /// [N/m^1.5] Hertz stiffness of inner and outer contact.
-    pub stiffness: [D; 2],
+    pub stiffness: PerRace<D>,
     /// [N] centrifugal force.
     pub centrifugal_force: D,
     /// [N m] gyroscopic moment; negative for a positive contact angle, as in Harris.
@@ -95,19 +96,19 @@ pub fn balance(
     let position =
         radial.map(|c| radius.scale(c)) + Vector3::new(axial_place, D::constant(0.0), D::constant(0.0));
     let axis = constant_vector(&Vector3::x());
-    let contacts = [INNER, OUTER].map(|race| model.contact(race, 0.0));
+    let contacts = model.contacts(&Conditions { friction: 0.0 });
     let offset = position - shared.position;
-    let inner = GrooveContact::new(contacts[INNER].raceway, ball.radius, &offset, &shared.axis);
-    let outer = GrooveContact::new(contacts[OUTER].raceway, ball.radius, &position, &axis);
-    let stiffness = [
-        contacts[INNER].shape.stiffness(inner.circumferential_curvature),
-        contacts[OUTER].shape.stiffness(outer.circumferential_curvature),
-    ];
+    let inner = GrooveContact::new(contacts.inner.raceway, ball.radius, &offset, &shared.axis);
+    let outer = GrooveContact::new(contacts.outer.raceway, ball.radius, &position, &axis);
+    let stiffness = PerRace {
+        inner: contacts.inner.shape.stiffness(inner.circumferential_curvature),
+        outer: contacts.outer.shape.stiffness(outer.circumferential_curvature),
+    };
     let load = |contact: &GrooveContact<D>, stiffness: D| {
         let depth = contact.approach.positive_part();
         stiffness * depth * depth.sqrt()
     };
-    let (inner_load, outer_load) = (load(&inner, stiffness[INNER]), load(&outer, stiffness[OUTER]));
+    let (inner_load, outer_load) = (load(&inner, stiffness.inner), load(&outer, stiffness.outer));
 
     // rolling without slip at both contacts and without spin at the outer one (Jones's outer race control)
     let (inner_cos, inner_sin) = (-inner.normal.dot(&inner.radial), -inner.normal.dot(&shared.axis));
@@ -196,7 +197,7 @@ pub fn bottom_of_outer_groove(
 ) -> Place {
     let touching = Vector2::new(0.0, arc_radius(model));
     let there = balance(model, input, shared, azimuth, &touching);
-    let depth = (there.centrifugal_force.value / there.stiffness[OUTER].value).powf(2.0 / 3.0);
+    let depth = (there.centrifugal_force.value / there.stiffness.outer.value).powf(2.0 / 3.0);
     touching + Vector2::new(0.0, depth)
 }
 
@@ -244,7 +245,7 @@ pub fn settle(
             }
             _ => {
                 // from a thousandth of the stiffness at a micrometre upwards
-                let scale = 1.5 * here.stiffness[OUTER].value * 1e-3;
+                let scale = 1.5 * here.stiffness.outer.value * 1e-3;
                 shift = if shift == 0.0 { 1e-3 * scale } else { shift * 8.0 };
                 if shift > 1e9 * scale {
                     return None;

@@ -5,7 +5,8 @@ use std::f64::consts::FRAC_PI_2;
 use super::ball::Place;
 use super::trial::{SharedMatrix, SharedVector, Trial, evaluate, finish};
 use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
-use crate::model::Model;
+use crate::model::bodies::Race;
+use crate::model::{Conditions, Model};
 
 /// [-] accepted residual over the size of the forces at work.
 const TOLERANCE: f64 = 1e-11;
@@ -61,7 +62,8 @@ impl<'a> Problem<'a> {
         let diameter = 2.0 * bearing.ball.radius;
         let epicyclic =
             bearing.epicyclic_speed(bearing.free_contact_angle, input.inner_speed, input.outer_speed);
-        let smallest = model.contact(0, 0.0).shape.stiffness(0.0) * (1e-6 * diameter).powf(1.5);
+        let smallest = model.contact(Race::Inner, &Conditions { friction: 0.0 }).shape.stiffness(0.0)
+            * (1e-6 * diameter).powf(1.5);
         let inertia_force = bearing.ball.mass * epicyclic * epicyclic * length;
         let mut problem = Self {
             model,

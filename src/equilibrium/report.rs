@@ -52,8 +52,8 @@ impl BallReport {
             outer_approach: balance.outer.approach.value,
             centrifugal_force: balance.centrifugal_force.value(),
             gyroscopic_moment: balance.gyroscopic_moment.value,
-            inner_hertz_stiffness: balance.stiffness[0].value,
-            outer_hertz_stiffness: balance.stiffness[1].value,
+            inner_hertz_stiffness: balance.stiffness.inner.value,
+            outer_hertz_stiffness: balance.stiffness.outer.value,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Forces of a bearing at given displacements and cage speed, its balls settled.
 
-use nalgebra::{Matrix2, SMatrix, SVector, UnitQuaternion, Vector3};
+use nalgebra::{Matrix2, SMatrix, SVector, Vector3};
 
 use super::ball::{
     BallBalance, DIRECTIONS, N_SHARED, Place, SHARED, Shared, bottom_of_outer_groove, middle_of_gap, settle,
@@ -8,6 +8,7 @@ use super::ball::{
 use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
+use crate::numerics::rotation::turn;
 use crate::numerics::scalar::{Dual, Scalar, Single};
 
 type D = Dual<DIRECTIONS>;
@@ -54,11 +55,6 @@ fn sinc(s: f64) -> f64 {
 /// Derivative of [`sinc`] by s.
 fn sinc_slope(s: f64) -> f64 {
     if s < 1e-6 { -1.0 / 6.0 + s / 60.0 } else { (s.sqrt().cos() - sinc(s)) / (2.0 * s) }
-}
-
-fn turn(q: &UnitQuaternion<f64>, v: &Vector3<D>) -> Vector3<D> {
-    let m = q.to_rotation_matrix();
-    Vector3::from_fn(|i, _| v[0].scale(m[(i, 0)]) + v[1].scale(m[(i, 1)]) + v[2].scale(m[(i, 2)]))
 }
 
 /// Settles all balls at these displacements; `start` is where they were, `tolerance` [N] what balance leaves of each.

@@ -4,6 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
+use super::bodies::Race;
 use crate::contact::materials::Pair;
 use crate::contact::raceway::Raceway;
 use crate::scene::Scene;
@@ -88,6 +89,14 @@ impl Bearing {
             contact_compliance: pair.compliance,
             shear_modulus: pair.shear_modulus,
             poisson_ratio: pair.poisson_ratio,
+        }
+    }
+
+    /// Raceway of a race.
+    pub fn raceway(&self, race: Race) -> &Raceway {
+        match race {
+            Race::Inner => &self.inner,
+            Race::Outer => &self.outer,
         }
     }
 

@@ -1,29 +1,26 @@
-//! The cage as a model: a rigid body with a pocket for each ball and, where a race guides it, two lands.
+//! What the cage touches: a pocket for each ball and, where a race guides it, two lands.
 //!
 //! Its frame has x along its own axis and its origin in the plane of the pockets.
 
-use nalgebra::Vector3;
-
-use crate::contact::body::{BodyContact, BodyMotion};
+use super::bearing::Bearing;
+use super::bodies::Race;
+use crate::contact::body::BodyMotion;
 use crate::contact::land::{LandModel, Lands};
 use crate::contact::materials::Pair;
+use crate::contact::pair::PairForces;
 use crate::contact::pocket::PocketModel;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::kalker::linear::LinearError;
-use crate::model::bearing::Bearing;
-use crate::model::{INNER, OUTER, RaceBody};
 use crate::numerics::scalar::Single;
 use crate::scene::{CageSection, Guidance, Scene};
 
 /// A cage.
 #[derive(Clone, Debug)]
 pub struct CageModel {
-    /// Mass and inertia; it has no constraints.
-    pub body: RaceBody,
     /// Contact of a ball and its pocket.
     pub pocket: PocketModel,
-    /// Contact with the lands of a race.
-    pub land: Option<LandModel>,
+    /// Contact with the lands of the race that guides it.
+    pub land: Option<(Race, LandModel)>,
     /// Components [y, z] of each pocket's axis in the cage.
     directions: Vec<[f64; 2]>,
 }
@@ -49,21 +46,21 @@ impl CageModel {
             damping,
         )?;
         let race = match section.guided_by {
-            Guidance::Inner => Some(INNER),
-            Guidance::Outer => Some(OUTER),
+            Guidance::Inner => Some(Race::Inner),
+            Guidance::Outer => Some(Race::Outer),
             Guidance::Balls => None,
         };
         let dimensions = (race, section.guidance_clearance, section.land_diameter, section.land_width);
         let land = match dimensions {
             (Some(race), Some(guidance), Some(diameter), Some(width)) => {
                 let lands = Lands {
-                    race,
+                    inside: race == Race::Inner,
                     clearance: guidance.0,
                     diameter: diameter.0,
                     width: width.0,
                     edge: bearing.ball.radius + 0.5 * clearance,
                 };
-                Some(LandModel::new(&lands, friction(scene.friction.cage_race), damping))
+                Some((race, LandModel::new(&lands, friction(scene.friction.cage_race), damping)))
             }
             _ => None,
         };
@@ -71,16 +68,12 @@ impl CageModel {
             let (sin, cos) = bearing.ball_azimuth(index).sin_cos();
             [cos, sin]
         };
-        Ok(Self {
-            body: RaceBody {
-                mass: section.mass.0,
-                inertia: Vector3::from(section.inertia.map(|moment| moment.0)),
-                constraints: vec![],
-            },
-            pocket,
-            land,
-            directions: (0..bearing.n_balls).map(direction).collect(),
-        })
+        Ok(Self { pocket, land, directions: (0..bearing.n_balls).map(direction).collect() })
+    }
+
+    /// The race whose lands guide the cage; none where the balls do.
+    pub fn guide(&self) -> Option<Race> {
+        self.land.as_ref().map(|(race, _)| *race)
     }
 
     /// Forces between a ball (first, 0 is the first) and the cage; `None` where they do not touch.
@@ -90,7 +83,7 @@ impl CageModel {
         index: usize,
         ball: &BallMotion<S>,
         cage: &BodyMotion<S>,
-    ) -> Option<BodyContact<S>> {
+    ) -> Option<PairForces<S>> {
         self.pocket.evaluate(ball, cage, self.directions[index])
     }
 
@@ -99,14 +92,18 @@ impl CageModel {
         self.pocket.approach(ball, cage, self.directions[index])
     }
 
-    /// Forces between cage (first) and the race that guides it on both lands.
+    /// Forces between cage (first) and the race that guides it on the lands at the cage's -x and +x side; `None` where
+    /// they do not touch.
     pub fn land_contacts(
         &self,
         cage: &BodyMotion<f64>,
-        races: [&RaceMotion<f64>; 2],
-    ) -> [Option<BodyContact<f64>>; 2] {
+        race: impl FnOnce(Race) -> RaceMotion<f64>,
+    ) -> [Option<PairForces>; 2] {
         match &self.land {
-            Some(land) => land.positions.map(|position| land.evaluate(cage, races[land.race], position)),
+            Some((guide, land)) => {
+                let race = race(*guide);
+                land.positions.map(|position| land.evaluate(cage, &race, position))
+            }
             None => [None; 2],
         }
     }

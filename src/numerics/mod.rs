@@ -1,5 +1,6 @@
 //! Numerical methods without a bearing in them: numbers with derivatives, rigid-body motion, Newton's method, HHT steps.
 
+pub mod arrowhead;
 pub mod hht;
 pub mod lanes;
 pub mod motion;

@@ -15,6 +15,14 @@ fn c0<S: Scalar>(c: &Vector3<S>) -> S {
     S::constant(2.0) - c.dot(c).scale(0.125)
 }
 
+/// Rotates a vector by a constant rotation.
+pub fn turn<S: Scalar>(q: &UnitQuaternion<f64>, v: &Vector3<S>) -> Vector3<S> {
+    let matrix = q.to_rotation_matrix();
+    Vector3::from_fn(|i, _| {
+        v[0].scale(matrix[(i, 0)]) + v[1].scale(matrix[(i, 1)]) + v[2].scale(matrix[(i, 2)])
+    })
+}
+
 /// Rotates a vector by the rotation of `c`.
 #[inline(always)]
 pub fn rotate<S: Scalar>(c: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {

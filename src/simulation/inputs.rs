@@ -1,7 +1,11 @@
 //! What a bearing is given from outside.
 
+use std::ops::{Index, IndexMut};
+
 use serde::{Deserialize, Serialize};
 
+use crate::model::Conditions;
+use crate::model::bodies::Race;
 use crate::numerics::motion::{Pose, Twist, Wrench};
 
 /// What a race is given from outside, valid at the last communication point.
@@ -13,9 +17,9 @@ pub struct RaceInput {
     pub twist: Twist,
     /// [m/s2, rad/s2] rate of change of the twist; zero if not known.
     pub twist_rate: Twist,
-    /// Wrench applied to a race body, about its origin, world axes.
+    /// Wrench applied to a race that forces move, about its origin, world axes.
     pub applied: Wrench,
-    /// [rad/s] prescribed spin of a race body or of a fixed race about its own axis.
+    /// [rad/s] prescribed spin about its own axis, of a race that has no pose as its input.
     pub speed: f64,
 }
 
@@ -28,4 +32,30 @@ pub struct Inputs {
     pub outer: RaceInput,
     /// [-] friction coefficient of the ball-race contacts.
     pub friction: f64,
+}
+
+impl Inputs {
+    /// What is the same in every contact.
+    pub fn conditions(&self) -> Conditions {
+        Conditions { friction: self.friction }
+    }
+}
+
+impl Index<Race> for Inputs {
+    type Output = RaceInput;
+    fn index(&self, race: Race) -> &RaceInput {
+        match race {
+            Race::Inner => &self.inner,
+            Race::Outer => &self.outer,
+        }
+    }
+}
+
+impl IndexMut<Race> for Inputs {
+    fn index_mut(&mut self, race: Race) -> &mut RaceInput {
+        match race {
+            Race::Inner => &mut self.inner,
+            Race::Outer => &mut self.outer,
+        }
+    }
 }

@@ -1,12 +1,16 @@
 //! What a bearing shows of its state at a communication point.
 
+use std::ops::Index;
+
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::analysis::condensed::Condensed;
 use crate::contact::BallRaceContact;
-use crate::contact::body::BodyContact;
-use crate::dynamics::state::{RaceState, State, Statistics};
-use crate::model::{Constraint, INNER, Model, OUTER, RaceBody, tilt_direction};
+use crate::forces::{BallContacts, Contacts, Totals};
+use crate::model::bodies::{Constraint, Race, RigidBody, tilt_direction};
+use crate::model::cage::CageModel;
+use crate::model::state::{BallState, BodyState, State, Statistics};
+use crate::model::{Conditions, Model};
 use crate::numerics::motion::{Pose, Twist, Wrench};
 
 /// A race.
@@ -18,9 +22,10 @@ pub struct RaceOutput {
     pub twist: Twist,
     /// What the bearing exerts on the race, about its origin, world axes.
     pub wrench: Wrench,
-    /// [N m] torque that keeps a race body at its prescribed speed; for other races, that balances the bearing's.
+    /// [N m] torque that keeps a race that forces move at its prescribed speed; for other races, the torque that balances
+    /// the bearing's.
     pub drive_torque: f64,
-    /// What the constraints of a race body exert on it, about its origin, world axes: reactions of held directions and
+    /// What the constraints of a race that forces move exert on it, about its origin, world axes: reactions of held directions and
     /// the drive torque. Zero for other races.
     pub reaction: Wrench,
     /// [rad] turned about the own axis since the start, without limit.
@@ -150,108 +155,54 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Evaluates the outputs of a state at a friction coefficient.
-    pub fn new(model: &Model, state: &State, friction: f64) -> Self {
-        let contacts = [INNER, OUTER].map(|race| model.contact(race, friction));
-        let races = [INNER, OUTER].map(|race| state.races[race].motion());
-        let outer = &races[OUTER];
-        let (mut friction_power, mut damping_power) = (0.0, 0.0);
-        let ball_model = &model.bearing.ball;
-        let mut stored_energy = 0.0;
-        let mut balls = Vec::with_capacity(state.balls.len());
-        let cage = model.cage.as_ref().zip(state.cage.as_ref());
-        let cage_motion = state.cage.as_ref().map(RaceState::body_motion);
-        let (mut cosine, mut loaded) = (0.0, 0.0);
-        for (index, ball) in state.balls.iter().enumerate() {
-            let [inner_contact, outer_contact] = [INNER, OUTER].map(|race| {
-                let contact = contacts[race].of_ball(state.difference(index, race));
-                contact.evaluate(&ball.motion(), &races[race])
-            });
-            stored_energy += 0.5 * ball_model.mass * ball.velocity.norm_squared()
-                + 0.5 * ball_model.inertia * ball.angular_velocity.norm_squared();
-            for contact in [&inner_contact, &outer_contact] {
-                friction_power += contact.friction_power;
-                damping_power += contact.damping_power;
-                let depth = contact.geometry.approach.max(0.0);
-                stored_energy += 0.4 * contact.stiffness * depth.powf(2.5);
-                cosine += contact.load * contact.geometry.normal.dot(&contact.geometry.radial).abs();
-                loaded += contact.load;
-            }
-            let pocket = cage.zip(cage_motion.as_ref()).map(|((cage, _), motion)| {
-                let contact = cage.pocket_contact(index, &ball.motion(), motion);
-                if let Some(contact) = &contact {
-                    friction_power += contact.friction_power;
-                    damping_power += contact.damping_power;
-                    stored_energy += cage.pocket.elastic_energy(contact.approach);
-                }
+    /// Evaluates the outputs of a state.
+    pub fn new(model: &Model, state: &State, conditions: &Conditions) -> Self {
+        let contacts = Contacts::new(model, state, conditions);
+        let totals = Totals::of(&contacts, state.balls.len());
+        let cage = model.cage.as_ref().zip(state.cage());
+        let outer = state.race(Race::Outer);
+        let races = Race::BOTH.map(|race| state.race(race).motion());
+        let of_ball = |(index, (ball, contacts)): (usize, (&BallState, &BallContacts))| {
+            let pocket = cage.map(|(model, state)| {
+                let approach = model.pocket_approach(index, &ball.motion(), &state.body_motion());
                 PocketOutput {
-                    load: contact.map_or(0.0, |contact| contact.load),
-                    force: contact.map_or(Vector3::zeros(), |contact| contact.force),
-                    approach: cage.pocket_approach(index, &ball.motion(), motion),
-                    power: contact.map_or(0.0, |contact| contact.friction_power),
+                    load: contacts.pocket.map_or(0.0, |pair| pair.load),
+                    force: contacts.pocket.map_or(Vector3::zeros(), |pair| pair.force),
+                    approach,
+                    power: contacts.pocket.map_or(0.0, |pair| pair.friction_power),
                 }
             });
-            let frame = state.races[OUTER].pose.orientation.inverse();
-            let offset = frame * (ball.position - outer.position);
-            let relative = frame * (ball.velocity - outer.velocity);
-            let radius_squared = offset.y * offset.y + offset.z * offset.z;
-            // The frame of a turning race turns; azimuths are those of a frame that only tilts with it.
-            let spin_free = spin_free_azimuth(&state.races[OUTER], &(ball.position - outer.position));
-            balls.push(BallOutput {
-                azimuth: spin_free,
-                orbital_speed: (offset.y * relative.z - offset.z * relative.y) / radius_squared,
+            BallOutput {
+                azimuth: spin_free_azimuth(outer, &(ball.position - outer.pose.position)),
+                orbital_speed: orbital_speed(ball, outer),
                 position: ball.position,
                 angular_velocity: ball.angular_velocity,
-                inner: contact_output(&inner_contact, &races[INNER].axis),
-                outer: contact_output(&outer_contact, &races[OUTER].axis),
+                inner: contact_output(&contacts.raceways.inner, &races[0].axis),
+                outer: contact_output(&contacts.raceways.outer, &races[1].axis),
                 pocket,
-            });
-        }
-        let bodies = state.races.iter().zip(model.bodies.iter().map(Option::as_ref));
-        for (body_state, body) in bodies.chain(cage.map(|(cage, state)| (state, Some(&cage.body)))) {
-            if let Some(body) = body {
-                stored_energy += 0.5 * body.mass * body_state.velocity.norm_squared()
-                    + 0.5 * body_state.rate.component_mul(&body.inertia).dot(&body_state.rate);
             }
-        }
-        let mut cage_output = None;
-        if let (Some((cage, state_of_cage)), Some(motion)) = (cage, &cage_motion) {
-            let lands = cage.land_contacts(motion, races.each_ref());
-            for contact in lands.iter().flatten() {
-                friction_power += contact.friction_power;
-                damping_power += contact.damping_power;
-                stored_energy += cage.land.map_or(0.0, |land| land.elastic_energy(contact.approach));
-            }
-            let guide = cage.land.map_or(OUTER, |land| land.race);
-            let output = CageOutput::new(state_of_cage, &state.races[guide], &balls, &lands);
-            let approach =
-                cage.land.map(|land| land.positions.map(|x| land.approach(motion, &races[guide], x)));
-            let land_approach = approach.map_or(f64::NEG_INFINITY, |[a, b]| a.max(b));
-            cage_output = Some(CageOutput { land_approach, ..output });
-        }
+        };
+        let balls: Vec<_> = state.balls.iter().zip(&contacts.balls).enumerate().map(of_ball).collect();
+        let cage_output = cage.map(|(model, cage)| CageOutput::new(model, state, &balls, &contacts, cage));
         let mean_orbit = balls.iter().map(|ball| ball.orbital_speed).sum::<f64>() / balls.len() as f64;
         let cage_speed = cage.map_or(mean_orbit, |(_, state)| state.rate.x);
-        let contact_angle = if loaded > 0.0 {
-            (cosine / loaded).clamp(-1.0, 1.0).acos()
-        } else {
-            model.bearing.free_contact_angle
-        };
-        let speeds = [INNER, OUTER].map(|race| state.races[race].rate.x);
-        let epicyclic = model.bearing.epicyclic_speed(contact_angle, speeds[INNER], speeds[OUTER]);
-        let [inner, outer] = [INNER, OUTER].map(|race| race_output(&state.races[race], model, race));
+        let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
+        let angle = mean_contact_angle(&contacts).unwrap_or(model.bearing.free_contact_angle);
+        let epicyclic = model.bearing.epicyclic_speed(angle, speeds[0], speeds[1]);
+        let [inner, outer] = Race::BOTH.map(|race| race_output(state.race(race), model, race));
         Self {
             time: state.time,
-            friction_torque: -inner.wrench.moment.dot(&races[INNER].axis) * sign(speeds[INNER]),
+            friction_torque: -inner.wrench.moment.dot(&races[0].axis) * sign(speeds[0]),
             inner,
             outer,
             balls,
             cage: cage_output,
-            condensed: model.stiffness_outputs.then(|| Condensed::new(model, state, friction)),
+            condensed: model.stiffness_outputs.then(|| Condensed::new(model, state, conditions)),
             cage_speed,
             cage_slip: if epicyclic == 0.0 { 0.0 } else { 1.0 - cage_speed / epicyclic },
-            friction_power,
-            damping_power,
-            stored_energy,
+            friction_power: totals.friction_power,
+            damping_power: totals.damping_power,
+            stored_energy: stored_energy(model, state, &contacts),
             work: state.energies.input,
             dissipated: state.energies.friction + state.energies.damping,
             statistics: state.statistics,
@@ -259,25 +210,89 @@ impl Outputs {
     }
 }
 
+impl Index<Race> for Outputs {
+    type Output = RaceOutput;
+    fn index(&self, race: Race) -> &RaceOutput {
+        match race {
+            Race::Inner => &self.inner,
+            Race::Outer => &self.outer,
+        }
+    }
+}
+
+impl Index<Race> for BallOutput {
+    type Output = ContactOutput;
+    fn index(&self, race: Race) -> &ContactOutput {
+        match race {
+            Race::Inner => &self.inner,
+            Race::Outer => &self.outer,
+        }
+    }
+}
+
+/// [J] kinetic energy of balls and of the bodies that forces move, and elastic energy of all contacts.
+fn stored_energy(model: &Model, state: &State, contacts: &Contacts) -> f64 {
+    let ball_model = &model.bearing.ball;
+    let mut energy = 0.0;
+    for (ball, contacts) in state.balls.iter().zip(&contacts.balls) {
+        energy += 0.5 * ball_model.mass * ball.velocity.norm_squared()
+            + 0.5 * ball_model.inertia * ball.angular_velocity.norm_squared();
+        contacts.elastic_energies(model).for_each(|elastic| energy += elastic);
+    }
+    for ((_, body), (_, state)) in model.bodies.iter().zip(state.bodies.iter()) {
+        if let Some(body) = body {
+            energy += 0.5 * body.mass * state.velocity.norm_squared()
+                + 0.5 * state.rate.component_mul(&body.inertia).dot(&state.rate);
+        }
+    }
+    contacts.land_energies(model).for_each(|elastic| energy += elastic);
+    energy
+}
+
+/// [rad] contact angle of the mean of all contacts with the races, weighted by their loads; none without load.
+fn mean_contact_angle(contacts: &Contacts) -> Option<f64> {
+    let (mut cosine, mut loaded) = (0.0, 0.0);
+    for contact in contacts.balls.iter().flat_map(|ball| ball.raceways.iter()) {
+        cosine += contact.load * contact.geometry.normal.dot(&contact.geometry.radial).abs();
+        loaded += contact.load;
+    }
+    (loaded > 0.0).then(|| (cosine / loaded).clamp(-1.0, 1.0).acos())
+}
+
+/// [rad/s] orbital speed of a ball about the axis of the outer race.
+fn orbital_speed(ball: &BallState, outer: &BodyState) -> f64 {
+    let frame = outer.pose.orientation.inverse();
+    let offset = frame * (ball.position - outer.pose.position);
+    let relative = frame * (ball.velocity - outer.velocity);
+    (offset.y * relative.z - offset.z * relative.y) / (offset.y * offset.y + offset.z * offset.z)
+}
+
 impl CageOutput {
     fn new(
-        cage: &RaceState,
-        guide: &RaceState,
+        model: &CageModel,
+        state: &State,
         balls: &[BallOutput],
-        lands: &[Option<BodyContact<f64>>; 2],
+        contacts: &Contacts,
+        cage: &BodyState,
     ) -> Self {
         let pockets = || balls.iter().filter_map(|ball| ball.pocket);
+        let lands = &contacts.lands;
+        let guide = state.race(model.guide().unwrap_or(Race::Outer));
+        let approach = model
+            .land
+            .as_ref()
+            .map(|(_, land)| land.positions.map(|x| land.approach(&cage.body_motion(), &guide.motion(), x)));
         Self {
             pose: cage.pose,
             twist: cage.twist(),
             eccentricity: spin_free_frame(guide).inverse() * (cage.pose.position - guide.pose.position),
             turned: cage.turned,
             pocket_force: -pockets().map(|pocket| pocket.force).sum::<Vector3<f64>>(),
-            land_force: lands.iter().flatten().map(|contact| contact.force).sum(),
-            land_loads: lands.map(|contact| contact.map_or(0.0, |contact| contact.load)),
-            land_approach: f64::NEG_INFINITY,
+            land_force: lands.iter().flatten().map(|pair| pair.force).sum(),
+            land_loads: lands.map(|pair| pair.map_or(0.0, |pair| pair.load)),
+            land_approach: approach.map_or(f64::NEG_INFINITY, |[a, b]| a.max(b)),
             pocket_power: pockets().fold(0.0, |sum, pocket| sum + pocket.power),
-            land_power: lands.iter().flatten().fold(0.0, |sum, contact| sum + contact.friction_power),
+            land_power: lands.iter().flatten().fold(0.0, |sum, pair| sum + pair.friction_power),
         }
     }
 }
@@ -287,35 +302,37 @@ fn sign(x: f64) -> f64 {
 }
 
 /// Frame that tilts with a race but does not spin.
-fn spin_free_frame(race: &RaceState) -> UnitQuaternion<f64> {
+fn spin_free_frame(race: &BodyState) -> UnitQuaternion<f64> {
     let axis = race.pose.orientation * Vector3::x();
     UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default()
 }
 
 /// Azimuth of an offset about the race axis, in the frame that tilts with the race but does not spin.
-fn spin_free_azimuth(race: &RaceState, offset: &Vector3<f64>) -> f64 {
+fn spin_free_azimuth(race: &BodyState, offset: &Vector3<f64>) -> f64 {
     let seen = spin_free_frame(race).inverse() * offset;
     seen.z.atan2(seen.y)
 }
 
-fn race_output(race: &RaceState, model: &Model, index: usize) -> RaceOutput {
-    let twist = race.twist();
-    let axis = race.pose.orientation * Vector3::x();
-    let spin = model.bodies[index].as_ref().and_then(|body| {
-        body.constraints.iter().position(|constraint| matches!(constraint, Constraint::Spin))
-    });
+fn race_output(state: &BodyState, model: &Model, race: Race) -> RaceOutput {
+    let axis = state.pose.orientation * Vector3::x();
+    let moved = model.bodies[race].as_ref();
+    let spin = moved.and_then(|body| body.constraints.iter().position(|c| matches!(c, Constraint::Spin)));
     let drive_torque = match spin {
-        Some(index) => race.multipliers[index],
-        None => -race.bearing_wrench.moment.dot(&axis),
+        Some(index) => state.multipliers[index],
+        None => -state.bearing_wrench.moment.dot(&axis),
     };
-    let reaction =
-        model.bodies[index].as_ref().map_or_else(Wrench::default, |body| reaction(race, body, &axis));
-    let wrench = race.bearing_wrench;
-    RaceOutput { pose: race.pose, twist, wrench, drive_torque, reaction, turned: race.turned }
+    RaceOutput {
+        pose: state.pose,
+        twist: state.twist(),
+        wrench: state.bearing_wrench,
+        drive_torque,
+        reaction: moved.map_or_else(Wrench::default, |body| reaction(state, body, &axis)),
+        turned: state.turned,
+    }
 }
 
-/// Sum of the multipliers of a race body along their directions.
-fn reaction(race: &RaceState, body: &RaceBody, axis: &Vector3<f64>) -> Wrench {
+/// Sum of the multipliers of a race along their directions.
+fn reaction(race: &BodyState, body: &RigidBody, axis: &Vector3<f64>) -> Wrench {
     let mut sum = Wrench::default();
     for (constraint, multiplier) in body.constraints.iter().zip(&race.multipliers) {
         match constraint {

@@ -9,7 +9,8 @@ use nalgebra::{Matrix4, Matrix6, Vector4};
 
 use crate::analysis::condensed::{Linear, Orbit};
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
-use crate::model::{INNER, Model, OUTER};
+use crate::model::Model;
+use crate::model::bodies::{PerRace, Race};
 
 /// [s] first step in time: rolling takes microseconds.
 const FIRST_STEP: f64 = 1e-6;
@@ -21,21 +22,21 @@ const MAX_ITERATIONS: u32 = 3000;
 /// The motion in balance, from a motion of the same place; none where there is none, or no balance is found.
 pub fn balanced(
     model: &Model,
-    contacts: &[ContactModel<'_>; 2],
-    races: &[RaceMotion<f64>; 2],
+    contacts: &PerRace<ContactModel<'_>>,
+    races: &PerRace<RaceMotion<f64>>,
     start: &BallMotion<f64>,
 ) -> Option<BallMotion<f64>> {
     let (mass, radius) = (model.bearing.ball.mass, model.bearing.ball.radius);
     let inertia = model.bearing.ball.inertia / (radius * radius);
-    let orbit = |motion: &BallMotion<f64>| Orbit::new(motion, &races[OUTER]);
+    let orbit = |motion: &BallMotion<f64>| Orbit::new(motion, &races.outer);
     let tangential = orbit(start).tangential;
     // Force along the orbit, and moments over the radius beyond the gyroscopic moment.
     let residual = |motion: &BallMotion<f64>| -> (Vector4<f64>, f64) {
-        let [inner, outer] = [INNER, OUTER].map(|race| contacts[race].evaluate(motion, &races[race]));
+        let [inner, outer] = Race::BOTH.map(|race| contacts[race].evaluate(motion, &races[race]));
         let moment = inner.ball_moment + outer.ball_moment + orbit(motion).gyroscopic_moment(model, motion);
         let moment = moment / radius;
         let force = (inner.force + outer.force).dot(&tangential);
-        let limit = inner.load.min(outer.load) * contacts[INNER].friction;
+        let limit = inner.load.min(outer.load) * contacts.inner.friction;
         (Vector4::new(force, moment.x, moment.y, moment.z), limit)
     };
     let mut motion = *start;
@@ -48,8 +49,8 @@ pub fn balanced(
         if here.amax() <= TOLERANCE * limit {
             return Some(motion);
         }
-        let contact = |race: usize| Linear::new(&contacts[race], &motion, &races[race]).ball_by_rate();
-        let by_rate: Matrix6<f64> = contact(INNER) + contact(OUTER);
+        let contact = |race: Race| Linear::new(&contacts[race], &motion, &races[race]).ball_by_rate();
+        let by_rate: Matrix6<f64> = contact(Race::Inner) + contact(Race::Outer);
         let by_orbit = orbit(&motion).inertia_by_rate(model, &motion);
         // First row and column along the orbit, the others of moments over the radius and velocities of the surface.
         let velocities = by_rate.fixed_columns::<3>(0) * tangential + by_orbit.column(2);

@@ -2,11 +2,11 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::dynamics::arrowhead::KeptMatrix;
-use crate::dynamics::state::{BallState, Energies, Powers, RaceState, State, Statistics};
 use crate::equilibrium::{self, BallEquilibrium, EquilibriumError, EquilibriumInput, Gyroscopic, Prescribed};
+use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
-use crate::model::{INNER, Model, OUTER};
+use crate::model::bodies::{Bodies, Body, PerRace, Race};
+use crate::model::state::{BallState, BodyState, Energies, KeptMatrix, Powers, State, Statistics};
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::step_control::StepControl;
 use crate::scene::{Condition, Drive, Scene, Schedule};
@@ -58,7 +58,7 @@ pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<
     problem.outer_orientation = spin_free(&outer.orientation);
     problem.outer_speed = own_spin(&inputs.outer);
     let relative = inputs.inner.pose.position - outer.position;
-    if model.bodies[INNER].is_some() {
+    if model.bodies[Race::Inner].is_some() {
         problem.inner_speed = inputs.inner.speed;
         let (force, moment) = (inputs.inner.applied.force, inputs.inner.applied.moment);
         let loads = [force.x, force.y, force.z, moment.y, moment.z];
@@ -74,7 +74,7 @@ pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<
         problem.conditions = motion.map(Prescribed::Motion);
     }
     let solution = equilibrium::solve(model, &problem)?;
-    if model.bodies[INNER].is_some() {
+    if model.bodies[Race::Inner].is_some() {
         let [x, y, z, ry, rz] = solution.displacement;
         inputs.inner.pose = Pose {
             position: outer.position + Vector3::new(x, y, z),
@@ -106,9 +106,9 @@ fn spin_free(race: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
 fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::Equilibrium) -> State {
     let outer = &inputs.outer;
     let frame = spin_free(&outer.pose.orientation);
-    let races = [(0, &inputs.inner), (1, outer)].map(|(race, input): (usize, _)| {
+    let races = PerRace::new(|race| {
         let n_constraints = model.bodies[race].as_ref().map_or(0, |body| body.constraints.len());
-        RaceState::new(input.pose, &input.twist, n_constraints)
+        BodyState::new(inputs[race].pose, &inputs[race].twist, n_constraints)
     });
     let mut balls: Vec<BallState> = solution
         .balls
@@ -126,8 +126,8 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
         })
         .collect();
     if scene.start.spin_balance {
-        let contacts = [INNER, OUTER].map(|race| model.contact(race, inputs.friction));
-        let motions = races.each_ref().map(RaceState::motion);
+        let contacts = model.contacts(&inputs.conditions());
+        let motions = PerRace::new(|race| races[race].motion());
         for ball in &mut balls {
             // A ball that is not held by both races, or without friction, keeps the velocities of rolling.
             if let Some(motion) = balanced(model, &contacts, &motions, &ball.motion()) {
@@ -135,17 +135,17 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
             }
         }
     }
+    let cage = model.bodies.get(Body::Cage).map(|_| centred_cage(&balls, outer, &frame, solution.cage_speed));
     let solver = &scene.solver;
     State {
         time: 0.0,
-        cage: model.cage.as_ref().map(|_| centred_cage(&balls, outer, &frame, solution.cage_speed)),
-        differences: if model.polynomials(INNER).is_some() {
+        bodies: Bodies::new(races, cage),
+        differences: if model.polynomials(Race::Inner).is_some() {
             vec![Default::default(); balls.len()]
         } else {
             vec![]
         },
         balls,
-        races,
         control: StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0),
         force_tolerance: 0.0,
         matrix: KeptMatrix::default(),
@@ -162,14 +162,14 @@ fn centred_cage(
     outer: &RaceInput,
     frame: &UnitQuaternion<f64>,
     speed: f64,
-) -> RaceState {
+) -> BodyState {
     let axis = frame * Vector3::x();
     let origin = outer.pose.position;
     let axial =
         balls.iter().map(|ball| axis.dot(&(ball.position - origin))).sum::<f64>() / balls.len() as f64;
     let pose = Pose { position: origin + axis * axial, orientation: *frame };
     let twist = Twist { velocity: outer.twist.velocity, angular_velocity: axis * speed };
-    RaceState::new(pose, &twist, 0)
+    BodyState::new(pose, &twist, 0)
 }
 
 /// Velocity of a ball's centre and its angular velocity in the outer race's frame: the scene's, or those of rolling.
@@ -187,20 +187,23 @@ fn given_velocities(scene: &Scene, ball: &BallEquilibrium) -> (Vector3<f64>, Vec
 
 /// Sets the pose and twist of a race from the scene's script at a time [s]. `now` is where the race is: its angle
 /// about its own axis goes on from there, as a script does not prescribe it.
-pub fn script_motion(scene: &Scene, race: usize, time: f64, now: &Pose, input: &mut RaceInput) {
-    let section = if race == INNER { &scene.inner } else { &scene.outer };
+pub fn script_motion(scene: &Scene, race: Race, time: f64, now: &Pose, input: &mut RaceInput) {
+    let section = match race {
+        Race::Inner => &scene.inner,
+        Race::Outer => &scene.outer,
+    };
     let speed = input.speed;
     let (mut position, mut rates) = (input.pose.position, [0.0; 3]);
     let mut tilt = tilt_of(&input.pose);
     let mut tilt_rate = Vector3::zeros();
-    if race == OUTER && section.drive == Drive::Fixed {
+    if race == Race::Outer && section.drive == Drive::Fixed {
         for (axis, schedule) in [(1, &section.misalignment.ry), (2, &section.misalignment.rz)] {
             if let Schedule::Table(_) = schedule {
                 (tilt[axis], tilt_rate[axis]) = schedule.smooth_at(time);
             }
         }
     }
-    if race == INNER && section.drive == Drive::Pose {
+    if race == Race::Inner && section.drive == Drive::Pose {
         for (direction, condition) in scene.load.conditions().iter().enumerate() {
             if let Condition::Motion(schedule) = condition {
                 let (value, rate) = schedule.smooth_at(time);

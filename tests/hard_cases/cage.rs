@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
+use roulement::model::bodies::Body;
 use roulement::simulation::Simulation;
 use roulement::simulation::inputs::Inputs;
 use roulement::simulation::outputs::{BallOutput, CageOutput, Outputs, PocketOutput};
@@ -64,7 +65,8 @@ fn changes(run: &Run) -> usize {
 /// Angular momentum of balls and cage about the axis [kg m2/s].
 fn momentum(run: &Run, o: &Outputs) -> f64 {
     let model = run.simulation.model();
-    let (mass, inertia) = (model.bearing.ball.mass, model.cage.as_ref().unwrap().body.inertia.x);
+    let (mass, inertia) =
+        (model.bearing.ball.mass, model.bodies.get(Body::Cage).unwrap().as_ref().unwrap().inertia.x);
     let orbit = |ball: &BallOutput| mass * ball.orbital_speed * ball.position.yz().norm_squared();
     o.balls.iter().map(orbit).sum::<f64>() + inertia * o.cage_speed
 }

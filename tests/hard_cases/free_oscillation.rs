@@ -1,6 +1,6 @@
 //! Gate (f): without friction, damping and load, an oscillation gains no energy over 1e5 steps.
 
-use roulement::dynamics::state::Statistics;
+use roulement::model::state::Statistics;
 use roulement::simulation::Simulation;
 
 use crate::scenes::{GROOVE, scene};

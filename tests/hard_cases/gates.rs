@@ -4,8 +4,9 @@
 //! to the same bits; (g) bounded rejections. Gate (f), no gain of energy, has cases of its own.
 
 use nalgebra::Vector3;
-use roulement::dynamics::state::{RaceState, State, Statistics};
 use roulement::interface::variables::Variables;
+use roulement::model::bodies::{Body, Race};
+use roulement::model::state::{BodyState, State, Statistics};
 use roulement::numerics::motion::Wrench;
 use roulement::scene::{CreepLaw, Scene};
 use roulement::simulation::outputs::{ContactOutput, Outputs};
@@ -355,18 +356,19 @@ pub fn converged(name: &str, simulation: &Simulation) {
 /// [N] largest residual of `m a1 = (1 - alpha_f) g1 + alpha_f g0` with forces evaluated afresh at the end.
 fn residual(end: &Simulation, before: &State) -> f64 {
     let (model, state) = (end.model(), end.state());
-    let (share, friction) = (1.0 - model.solver.alpha_f, end.inputs().friction);
-    let contacts = [0, 1].map(|race| model.contact(race, friction));
-    let races = [0, 1].map(|race: usize| state.races[race].motion());
+    let share = 1.0 - model.solver.alpha_f;
+    let contacts = model.contacts(&end.inputs().conditions());
+    let races = Race::BOTH.map(|race| state.race(race).motion());
     let ball = &model.bearing.ball;
     let mut worst = 0.0f64;
-    let cage = model.cage.as_ref().zip(state.cage.as_ref());
-    let cage_motion = state.cage.as_ref().map(RaceState::body_motion);
+    let cage = model.cage.as_ref().zip(state.cage());
+    let cage_motion = state.cage().map(BodyState::body_motion);
     let mut on_cage = Wrench::default();
     for (index, (now, old)) in state.balls.iter().zip(&before.balls).enumerate() {
         // Polynomials are those that the step was solved with.
-        let [inner, outer] = [0, 1].map(|race: usize| {
-            contacts[race].of_ball(before.difference(index, race)).evaluate(&now.motion(), &races[race])
+        let [inner, outer] = Race::BOTH.map(|race| {
+            let contact = contacts[race].of_ball(before.difference(index, race));
+            contact.evaluate(&now.motion(), &races[race as usize])
         });
         let mut force = model.gravity * ball.mass + inner.force + outer.force;
         let mut moment = inner.ball_moment + outer.ball_moment;
@@ -384,9 +386,9 @@ fn residual(end: &Simulation, before: &State) -> f64 {
             now.angular_acceleration * ball.inertia - moment * share - old.total.moment * (1.0 - share);
         worst = worst.max(linear.amax()).max(angular.amax() / ball.radius);
     }
-    for (race, body) in model.bodies.iter().enumerate() {
-        let (now, old) = (&state.races[race], &before.races[race]);
-        if let Some(body) = body {
+    for race in Race::BOTH {
+        let (now, old) = (state.race(race), before.race(race));
+        if let Some(body) = &model.bodies[race] {
             let linear =
                 now.acceleration * body.mass - now.total.force * share - old.total.force * (1.0 - share);
             let angular = now.rate_derivative.component_mul(&body.inertia)
@@ -395,12 +397,12 @@ fn residual(end: &Simulation, before: &State) -> f64 {
             worst = worst.max(linear.amax()).max(angular.amax() / model.race_length());
         }
     }
-    if let (Some((cage, now)), Some(motion), Some(old)) = (cage, &cage_motion, &before.cage) {
-        for land in cage.land_contacts(motion, races.each_ref()).iter().flatten() {
+    if let (Some((cage, now)), Some(motion), Some(old)) = (cage, &cage_motion, before.cage()) {
+        for land in cage.land_contacts(motion, |race| races[race as usize]).iter().flatten() {
             on_cage.force += land.force;
             on_cage.moment += land.moment;
         }
-        let body = &cage.body;
+        let body = model.bodies.get(Body::Cage).unwrap().as_ref().unwrap();
         let force = on_cage.force + model.gravity * body.mass;
         let momentum = now.rate.component_mul(&body.inertia);
         let moment = now.pose.orientation.inverse() * on_cage.moment - now.rate.cross(&momentum);

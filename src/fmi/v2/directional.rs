@@ -3,7 +3,7 @@
 //! After a step they are the derivatives of that step, from its start with everything but the inputs as it was: what
 //! repeating the step from a saved state with slightly different inputs would show, without the noise of the
 //! iteration. Every internal step contributes by its Newton matrix with the balls eliminated
-//! ([`crate::dynamics::follow`]). Before the first step they are those of the equilibrium that the simulation starts
+//! ([`crate::dynamics::advance_perturbed`]). Before the first step they are those of the equilibrium that the simulation starts
 //! from.
 
 use super::instance::{Instance, Outcome, error};
@@ -154,7 +154,7 @@ impl Instance {
                     return error("the start of the last step is of another scene");
                 }
                 central.set_inputs(*base);
-                central.advance_with_neighbours(self.simulation.time(), &neighbours).or_else(failed)?
+                central.advance_perturbed(self.simulation.time(), &neighbours).or_else(failed)?
             }
             None => {
                 let start = |inputs: &Inputs| {

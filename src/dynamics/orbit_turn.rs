@@ -1,15 +1,15 @@
-//! Turns about the bearing axis: what goes round with a ball.
+//! Turns about the bearing axis: vectors and matrices of a ball turn with its orbit.
 
 use nalgebra::{Vector3, Vector6};
 
 /// A rotation about the world's x axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
+pub struct OrbitTurn {
     cos: f64,
     sin: f64,
 }
 
-impl Turn {
+impl OrbitTurn {
     /// The turn that takes the azimuth of one point to that of another; none for a point on the axis.
     #[inline]
     pub fn between(from: &Vector3<f64>, to: &Vector3<f64>) -> Self {
@@ -46,13 +46,13 @@ mod tests {
     #[test]
     fn closed_form_turn_and_back() {
         let (from, to) = (Vector3::new(5.0, 2.0, 0.0), Vector3::new(-1.0, 0.0, 3.0));
-        let turn = Turn::between(&from, &to);
+        let turn = OrbitTurn::between(&from, &to);
         assert_eq!(turn.vector(&Vector3::new(1.0, 2.0, 3.0)), Vector3::new(1.0, -3.0, 2.0));
         let v = Vector6::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0);
         assert_eq!(turn.back().stacked(&turn.stacked(&v)), v);
         // Exactly nothing between equal points: a new matrix is used as it is.
-        let none = Turn::between(&from, &from);
+        let none = OrbitTurn::between(&from, &from);
         assert_eq!(none.stacked(&v), v);
-        assert_eq!(Turn::between(&Vector3::x(), &to).stacked(&v), v);
+        assert_eq!(OrbitTurn::between(&Vector3::x(), &to).stacked(&v), v);
     }
 }

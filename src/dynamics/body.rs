@@ -1,35 +1,33 @@
-//! A race that is a rigid body, in one trial step: motion from its unknown accelerations, residual, constraints.
+//! A body that forces move, in one trial step: motion from its unknown accelerations, residual, constraints.
 
 use nalgebra::{DMatrix, DVector, Matrix6, UnitQuaternion, Vector3};
 
-use super::ball::{DIRECTIONS, RACE_ROTATION, by_ball, by_race_unknown, constant_race};
-use super::reaction::RaceReaction;
+use super::directions::{D, SECOND_ROTATION, by_first, by_second_unknown, constant_race};
+use super::reaction::Reaction;
 use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
-use crate::dynamics::state::{RaceState, normalised};
-use crate::model::{Constraint, RaceBody, tilt_component, tilt_direction};
+use crate::model::bodies::{Constraint, RigidBody, tilt_component, tilt_direction};
+use crate::model::state::{BodyState, normalised};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::{Pose, Wrench};
-use crate::numerics::rotation::{from_rotation_vector, rotate, to_quaternion};
-use crate::numerics::scalar::{Dual, Scalar, constant_vector, values};
-
-type D = Dual<DIRECTIONS>;
+use crate::numerics::rotation::{from_rotation_vector, rotate, to_quaternion, turn};
+use crate::numerics::scalar::{Scalar, constant_vector, values};
 
 /// [rad/s] accepted violation of a speed constraint (paper section 5).
 const SPEED_TOLERANCE: f64 = 1e-8;
 
-/// What acts on a race body from outside the bearing at the end of a step.
+/// What acts on a body from outside the bearing at the end of a step.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct RaceLoad {
+pub struct BodyLoad {
     /// Applied wrench and weight, world axes.
     pub applied: Wrench,
     /// [rad/s] prescribed spin speed.
     pub speed: f64,
 }
 
-/// Lengths and time that a race body's equations are scaled with.
+/// Lengths and time that a body's equations are scaled with.
 #[derive(Clone, Copy, Debug)]
-pub struct RaceScales {
+pub struct BodyScales {
     /// [m] turns moments into forces.
     pub length: f64,
     /// [m] accepted violation of a position constraint.
@@ -38,12 +36,12 @@ pub struct RaceScales {
     pub time: f64,
 }
 
-/// A race body in a trial step. The rotation of the step is a conformal vector (paper section 2).
+/// A body in a trial step. The rotation of the step is a conformal vector (paper section 2).
 #[derive(Clone, Debug)]
-pub struct RaceTrial {
+pub struct BodyTrial {
     /// State at the end of the step.
-    pub end: RaceState,
-    /// Unknowns that [`RaceTrial::move_to`] was given.
+    pub end: BodyState,
+    /// Unknowns that [`BodyTrial::move_to`] was given.
     pub unknowns: Vec<f64>,
     /// Residual rows: force, moment over `length`, then constraints over their gains.
     pub residual: DVector<f64>,
@@ -63,9 +61,9 @@ pub struct RaceTrial {
     start_orientation: UnitQuaternion<f64>,
 }
 
-impl RaceTrial {
-    /// Buffers for a race body, as at the start of a step.
-    pub fn new(body: &RaceBody, start: &RaceState) -> Self {
+impl BodyTrial {
+    /// Buffers for a body, as at the start of a step.
+    pub fn new(body: &RigidBody, start: &BodyState) -> Self {
         let rows = 6 + body.constraints.len();
         let zero = constant_vector(&Vector3::zeros());
         Self {
@@ -85,7 +83,7 @@ impl RaceTrial {
 
     /// Motion at the end of the step: `unknowns` are acceleration [m/s2], material angular acceleration times
     /// `length` [m/s2], multipliers [N, N m over `length`].
-    pub fn move_to(&mut self, unknowns: &[f64], start: &RaceState, step: &HhtStep, length: f64) {
+    pub fn move_to(&mut self, unknowns: &[f64], start: &BodyState, step: &HhtStep, length: f64) {
         self.unknowns.copy_from_slice(unknowns);
         let acceleration = Vector3::from_row_slice(&unknowns[0..3]);
         let angular = Vector3::from_row_slice(&unknowns[3..6]) / length;
@@ -98,8 +96,9 @@ impl RaceTrial {
         // with c although the speed is constant; at 6000 rpm and 10 us that put 2 % on the drive torque.
         let turn_vector = step.displacement(&start.rate, &start.rate_derivative, &angular);
         let rate = step.velocity(&start.rate, &start.rate_derivative, &angular);
-        let variable =
-            |v: &Vector3<f64>, gain: f64| Vector3::from_fn(|i, _| D::variable(v[i], RACE_ROTATION + i, gain));
+        let variable = |v: &Vector3<f64>, gain: f64| {
+            Vector3::from_fn(|i, _| D::variable(v[i], SECOND_ROTATION + i, gain))
+        };
         self.rotation = from_rotation_vector(&variable(&turn_vector, step.position_gain() / length));
         self.rate = variable(&rate, step.velocity_gain() / length);
         self.rate_derivative = variable(&angular, 1.0 / length);
@@ -127,20 +126,20 @@ impl RaceTrial {
         }
     }
 
-    /// Residual and tangent for the bearing's force and moment on the race, world axes, summed over the balls.
+    /// Residual and tangent for force and moment of all pairs on the body.
     pub fn assemble(
         &mut self,
-        body: &RaceBody,
-        start: &RaceState,
-        load: &RaceLoad,
-        bearing: &RaceReaction,
+        body: &RigidBody,
+        start: &BodyState,
+        load: &BodyLoad,
+        pairs: &Reaction,
         step: &HhtStep,
-        scales: &RaceScales,
+        scales: &BodyScales,
     ) {
         let (share, length) = (1.0 - step.alpha_f, scales.length);
         let motion = &self.motion;
-        let mut force = bearing.force + constant_vector(&load.applied.force);
-        let mut world_moment = bearing.moment + constant_vector(&load.applied.moment);
+        let mut force = pairs.force + constant_vector(&load.applied.force);
+        let mut world_moment = pairs.moment + constant_vector(&load.applied.moment);
         let mut material_moment = Vector3::from_element(D::constant(0.0));
         self.block.fill(0.0);
         self.violation = 0.0;
@@ -158,18 +157,18 @@ impl RaceTrial {
                     // Directions 0 to 2 are those of the balls, which are minus the race's.
                     let position = D::variable(self.end.pose.position[*axis], *axis, -step.position_gain());
                     let value = position - D::constant(target);
-                    (value, step.position_gain(), 1.0, body.mass, Reaction::Force(direction))
+                    (value, step.position_gain(), 1.0, body.mass, Along::Force(direction))
                 }
                 Constraint::Tilt(axis, _) => {
                     let (other, sign) = tilt_component(*axis);
                     let target = body.tilt_target(*axis, scales.time);
                     let value = motion.axis[other].scale(sign) - D::constant(target);
                     let direction = tilt_direction(*axis, &motion.axis);
-                    (value, step.position_gain(), length, body.inertia[*axis], Reaction::Moment(direction))
+                    (value, step.position_gain(), length, body.inertia[*axis], Along::Moment(direction))
                 }
                 Constraint::Spin => {
                     let value = self.rate[0] - D::constant(load.speed);
-                    (value, step.velocity_gain(), length, body.inertia[0], Reaction::Drive)
+                    (value, step.velocity_gain(), length, body.inertia[0], Along::Drive)
                 }
             };
             let penalty = inertia / gain;
@@ -177,21 +176,21 @@ impl RaceTrial {
             self.end.multipliers[k] = multiplier.value;
             self.residual[row] = value.value * scale / gain;
             for i in 0..6 {
-                self.block[(row, i)] = by_race_unknown(&value, i) * scale / gain;
+                self.block[(row, i)] = by_second_unknown(&value, i) * scale / gain;
             }
             let (column, power) = match &direction {
-                Reaction::Force(direction) => {
+                Along::Force(direction) => {
                     force += direction.map(D::constant) * multiplier;
                     self.violation = self.violation.max(value.value.abs() / scales.length_tolerance);
                     ((*direction, Vector3::zeros()), direction.dot(&self.end.velocity))
                 }
-                Reaction::Moment(direction) => {
+                Along::Moment(direction) => {
                     world_moment += direction * multiplier;
                     self.violation = self.violation.max(value.value.abs() * length / scales.length_tolerance);
                     let material = self.end.pose.orientation.inverse() * values(direction);
                     ((Vector3::zeros(), material), values(direction).dot(&values(&motion.angular_velocity)))
                 }
-                Reaction::Drive => {
+                Along::Drive => {
                     material_moment[0] += multiplier;
                     self.violation = self.violation.max(value.value.abs() / SPEED_TOLERANCE);
                     ((Vector3::zeros(), Vector3::x()), self.end.rate[0])
@@ -210,7 +209,7 @@ impl RaceTrial {
         let seen = turn(&self.start_orientation.inverse(), &world_moment);
         material_moment += rotate(&-self.rotation, &seen) - self.rate.cross(&momentum);
         self.end.total = Wrench { force: values(&force), moment: values(&material_moment) };
-        self.end.bearing_wrench = Wrench { force: values(&bearing.force), moment: values(&bearing.moment) };
+        self.end.bearing_wrench = Wrench { force: values(&pairs.force), moment: values(&pairs.moment) };
 
         for i in 0..3 {
             let translation = self.end.acceleration[i] * body.mass
@@ -221,13 +220,13 @@ impl RaceTrial {
             self.residual[3 + i] = (rotation.value - step.alpha_f * start.total.moment[i]) / length;
             for k in 0..6 {
                 let inertia = if i == k { body.mass } else { 0.0 };
-                self.block[(i, k)] = inertia - share * by_race_unknown(&force[i], k);
-                self.block[(3 + i, k)] = by_race_unknown(&rotation, k) / length;
+                self.block[(i, k)] = inertia - share * by_second_unknown(&force[i], k);
+                self.block[(3 + i, k)] = by_second_unknown(&rotation, k) / length;
             }
         }
     }
 
-    /// Motion with all axes, with derivatives by the rotation, as the balls in a cage see it.
+    /// Motion with all axes, with derivatives by the rotation, as what touches a cage sees it.
     pub fn body_motion(&self) -> BodyMotion<D> {
         let axis = |axis: Vector3<f64>| {
             turn(&self.start_orientation, &rotate(&self.rotation, &constant_vector(&axis)))
@@ -241,10 +240,10 @@ impl RaceTrial {
         }
     }
 
-    /// Rows of a ball's coupling block: derivatives of this race's residual by the ball's unknowns.
-    pub fn coupling(&self, reaction: &RaceReaction, step: &HhtStep, length: f64) -> Matrix6<f64> {
+    /// Derivatives of this body's residual by the unknowns of the other body of a pair, from the reaction on this one.
+    pub fn coupling(&self, reaction: &Reaction, step: &HhtStep, length: f64) -> Matrix6<f64> {
         let share = 1.0 - step.alpha_f;
-        let world = by_ball(&reaction.force, &reaction.moment);
+        let world = by_first(&reaction.force, &reaction.moment);
         let to_material = self.end.pose.orientation.inverse().to_rotation_matrix();
         let mut rows = world * -share;
         let moments = to_material.matrix() * world.fixed_rows::<3>(3) * (-share / length);
@@ -253,9 +252,9 @@ impl RaceTrial {
     }
 }
 
-/// Accelerations and multipliers of a race body that follow from its load and the bearing's wrench, with the
+/// Accelerations and multipliers of a body that follow from its load and the wrench of its pairs, with the
 /// constrained directions at rest or in steady rotation. Returns the power of loads and constraints [W].
-pub fn make_consistent(state: &mut RaceState, body: &RaceBody, load: &RaceLoad) -> f64 {
+pub fn make_consistent(state: &mut BodyState, body: &RigidBody, load: &BodyLoad) -> f64 {
     let mut force = state.bearing_wrench.force + load.applied.force;
     let to_material = state.pose.orientation.inverse();
     let mut moment = to_material * (state.bearing_wrench.moment + load.applied.moment);
@@ -292,19 +291,11 @@ pub fn make_consistent(state: &mut RaceState, body: &RaceBody, load: &RaceLoad) 
 
 /// What a constraint acts along.
 #[allow(clippy::large_enum_variant)]
-enum Reaction {
+enum Along {
     /// World direction of a force.
     Force(Vector3<f64>),
     /// World direction of a moment.
     Moment(Vector3<D>),
-    /// The race's own axis.
+    /// The body's own axis.
     Drive,
-}
-
-/// Turns a vector by a constant rotation.
-fn turn<S: Scalar>(q: &UnitQuaternion<f64>, v: &Vector3<S>) -> Vector3<S> {
-    let matrix = q.to_rotation_matrix();
-    Vector3::from_fn(|i, _| {
-        v[0].scale(matrix[(i, 0)]) + v[1].scale(matrix[(i, 1)]) + v[2].scale(matrix[(i, 2)])
-    })
 }

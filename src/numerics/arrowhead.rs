@@ -1,123 +1,96 @@
-//! Block elimination of the Newton matrix: one 6x6 block per ball, bordered by the bodies that all balls touch.
+//! Block elimination of an arrowhead matrix: 6x6 blocks on the diagonal, coupled through a border alone.
 //!
 //! ```text
-//! | A_1           R_1 | | x_1 |   | b_1 |      A_j 6x6 ball, R_j ball by body, L_j body by ball,
-//! |      A_2      R_2 | | x_2 | = | b_2 |      D the bodies' own block with their constraints
+//! | A_1           R_1 | | x_1 |   | b_1 |      A_j 6x6 block, R_j block by border, L_j border by block,
+//! |      A_2      R_2 | | x_2 | = | b_2 |      D the border's own matrix
 //! |          ...  ... | | ... |   | ... |
 //! | L_1  L_2 ...  D   | | y   |   | c   |      (D - sum L_j A_j^-1 R_j) y = c - sum L_j A_j^-1 b_j
 //! ```
-//! The matrix is not symmetric (friction), so every block is inverted by LU with pivoting. Cost grows linearly with the
-//! number of balls.
+//! A block is coupled to six border rows of each of up to [`SLOTS`] members of the border; a bearing has a block per ball
+//! and its bodies in the border. The matrix is not symmetric (friction), so every block is inverted by LU with pivoting.
+//! Cost grows linearly with the number of blocks.
 
-use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix6, Vector3, Vector6};
-use serde::{Deserialize, Serialize};
+use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix6, Vector6};
 
-/// Rows and columns of one ball or one free body in the matrix.
+/// Rows and columns of a block.
 pub const BLOCK: usize = 6;
 
-/// Bodies in the border: inner race, outer race, cage.
-pub const BODIES: usize = 3;
+/// Members of the border that a block can be coupled to.
+pub const SLOTS: usize = 3;
 
-/// One ball's part of the matrix. `right[r]` and `left[r]` couple it to the 6 motion unknowns of body r.
+/// First border row of every member that blocks can be coupled to; `None` where it has no unknowns.
+pub type Offsets = [Option<usize>; SLOTS];
+
+/// One block with its couplings. `right[k]` and `left[k]` are those to the first six rows of member k of the border.
 #[derive(Clone, Debug)]
-pub struct BallBlock {
-    /// Ball rows, ball columns.
+pub struct Block {
+    /// Own rows, own columns.
     pub diagonal: Matrix6<f64>,
-    /// Ball rows, body columns.
-    pub right: [Matrix6<f64>; BODIES],
-    /// Body rows, ball columns.
-    pub left: [Matrix6<f64>; BODIES],
+    /// Own rows, border columns.
+    pub right: [Matrix6<f64>; SLOTS],
+    /// Border rows, own columns.
+    pub left: [Matrix6<f64>; SLOTS],
 }
 
-impl Default for BallBlock {
+impl Default for Block {
     fn default() -> Self {
         let zero = Matrix6::zeros();
-        Self { diagonal: zero, right: [zero; BODIES], left: [zero; BODIES] }
+        Self { diagonal: zero, right: [zero; SLOTS], left: [zero; SLOTS] }
     }
 }
 
-/// The inverted matrix of balls that nothing couples. It is part of the state, as it serves many steps.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct KeptMatrix {
-    /// [s] size of the steps that it serves.
-    pub step: f64,
-    /// Corrections beyond one a step that it has taken after the step that it was made in.
-    pub extra_corrections: u64,
-    /// By ball; empty while there is none.
-    pub balls: Vec<KeptBlock>,
-}
-
-/// The inverted block of one ball.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct KeptBlock {
-    /// `A^-1`.
-    pub inverse: Matrix6<f64>,
-    /// [m] where the ball was, seen from the outer race: the block goes round with its ball.
-    pub offset: Vector3<f64>,
-}
-
-/// A ball block, solved.
+/// A block, solved.
 #[derive(Clone, Debug)]
 struct Factor {
     /// `A^-1`: a product costs a quarter of two triangular solves.
     inverse: Matrix6<f64>,
-    /// `A^-1 R` per body.
-    right: [Matrix6<f64>; BODIES],
-    left: [Matrix6<f64>; BODIES],
+    /// `A^-1 R` per member of the border.
+    right: [Matrix6<f64>; SLOTS],
+    left: [Matrix6<f64>; SLOTS],
 }
 
 /// The factorised matrix.
 #[derive(Clone, Debug, Default)]
 pub struct Arrowhead {
-    balls: Vec<Factor>,
+    blocks: Vec<Factor>,
     border: Option<LU<f64, Dyn, Dyn>>,
 }
 
 impl Arrowhead {
-    /// Factorises. `offsets[r]` is the first border row of body r, `None` where r has no unknowns.
-    pub fn factorise(
-        &mut self,
-        balls: &[&BallBlock],
-        border: &DMatrix<f64>,
-        offsets: [Option<usize>; BODIES],
-    ) {
-        self.balls.clear();
+    /// Factorises blocks and border.
+    pub fn factorise(&mut self, blocks: &[&Block], border: &DMatrix<f64>, offsets: Offsets) {
+        self.blocks.clear();
         let mut schur = border.clone();
-        for block in balls {
+        for block in blocks {
             // A singular block shows in `solve`.
             let inverse = block.diagonal.lu().try_inverse().unwrap_or(Matrix6::repeat(f64::NAN));
             let mut right = block.right;
-            for (body, offset) in offsets.into_iter().enumerate() {
+            for (slot, offset) in offsets.into_iter().enumerate() {
                 if offset.is_some() {
-                    right[body] = inverse * block.right[body];
+                    right[slot] = inverse * block.right[slot];
                 }
             }
-            for (row_body, row) in offsets.into_iter().enumerate() {
-                for (column_body, column) in offsets.into_iter().enumerate() {
+            for (row_slot, row) in offsets.into_iter().enumerate() {
+                for (column_slot, column) in offsets.into_iter().enumerate() {
                     if let (Some(row), Some(column)) = (row, column) {
                         let mut view = schur.fixed_view_mut::<BLOCK, BLOCK>(row, column);
-                        view -= block.left[row_body] * right[column_body];
+                        view -= block.left[row_slot] * right[column_slot];
                     }
                 }
             }
-            self.balls.push(Factor { inverse, right, left: block.left });
+            self.blocks.push(Factor { inverse, right, left: block.left });
         }
         self.border = if border.is_empty() { None } else { Some(schur.lu()) };
     }
 
-    /// Solves in place for the right-hand sides of balls and border; false if the matrix is singular.
-    pub fn solve(
-        &self,
-        balls: &mut [Vector6<f64>],
-        border: &mut DVector<f64>,
-        offsets: [Option<usize>; BODIES],
-    ) -> bool {
-        for (factor, x) in self.balls.iter().zip(&mut *balls) {
+    /// Solves in place for the right-hand sides of blocks and border; false if the matrix is singular.
+    pub fn solve(&self, blocks: &mut [Vector6<f64>], border: &mut DVector<f64>, offsets: Offsets) -> bool {
+        for (factor, x) in self.blocks.iter().zip(&mut *blocks) {
             *x = factor.inverse * *x;
-            for (body, offset) in offsets.into_iter().enumerate() {
+            for (slot, offset) in offsets.into_iter().enumerate() {
                 if let Some(offset) = offset {
                     let mut rows = border.fixed_rows_mut::<BLOCK>(offset);
-                    rows -= factor.left[body] * *x;
+                    rows -= factor.left[slot] * *x;
                 }
             }
         }
@@ -125,15 +98,15 @@ impl Arrowhead {
             if !lu.solve_mut(border) {
                 return false;
             }
-            for (factor, x) in self.balls.iter().zip(&mut *balls) {
-                for (body, offset) in offsets.into_iter().enumerate() {
+            for (factor, x) in self.blocks.iter().zip(&mut *blocks) {
+                for (slot, offset) in offsets.into_iter().enumerate() {
                     if let Some(offset) = offset {
-                        *x -= factor.right[body] * border.fixed_rows::<BLOCK>(offset);
+                        *x -= factor.right[slot] * border.fixed_rows::<BLOCK>(offset);
                     }
                 }
             }
         }
-        balls.iter().all(|x| x.iter().all(|v| v.is_finite())) && border.iter().all(|v| v.is_finite())
+        blocks.iter().all(|x| x.iter().all(|v| v.is_finite())) && border.iter().all(|v| v.is_finite())
     }
 }
 
@@ -156,7 +129,7 @@ mod tests {
         let (n_balls, n_border, offsets) = (5, 19, [Some(0), Some(7), Some(13)]);
         let size = BLOCK * n_balls + n_border;
         let mut dense = DMatrix::<f64>::zeros(size, size);
-        let mut blocks = vec![BallBlock::default(); n_balls];
+        let mut blocks = vec![Block::default(); n_balls];
         let border_start = BLOCK * n_balls;
         for (j, block) in blocks.iter_mut().enumerate() {
             block.diagonal = Matrix6::from_fn(|i, k| random() + if i == k { 3.0 } else { 0.0 });
@@ -189,7 +162,7 @@ mod tests {
     #[test]
     fn a_singular_matrix_is_refused() {
         let mut arrowhead = Arrowhead::default();
-        arrowhead.factorise(&[&BallBlock::default()], &DMatrix::zeros(0, 0), [None; BODIES]);
-        assert!(!arrowhead.solve(&mut [Vector6::repeat(1.0)], &mut DVector::zeros(0), [None; BODIES]));
+        arrowhead.factorise(&[&Block::default()], &DMatrix::zeros(0, 0), [None; SLOTS]);
+        assert!(!arrowhead.solve(&mut [Vector6::repeat(1.0)], &mut DVector::zeros(0), [None; SLOTS]));
     }
 }

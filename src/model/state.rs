@@ -1,12 +1,11 @@
 //! The complete state of a running bearing: plain data, cloned to save and restore.
 
-use nalgebra::{UnitQuaternion, Vector3, Vector6};
-
+use nalgebra::{Matrix6, UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
+use super::bodies::{Bodies, Body, PerRace, Race};
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
-use crate::dynamics::arrowhead::KeptMatrix;
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::newton::NewtonWork;
@@ -29,13 +28,6 @@ pub struct BallState {
     pub total: Wrench,
 }
 
-impl State {
-    /// What Kalker's polynomials add to the table at a ball's contact with a race, where they are simulated.
-    pub fn difference(&self, ball: usize, race: usize) -> Option<&Difference> {
-        self.differences.get(ball).map(|differences| &differences[race])
-    }
-}
-
 impl BallState {
     /// The motion that contacts depend on.
     pub fn motion(&self) -> BallMotion<f64> {
@@ -47,24 +39,24 @@ impl BallState {
     }
 }
 
-/// One race. Rates of rotation are material (components along the race's own axes), those of translation spatial.
+/// A race or the cage. Rates of rotation are material (components along the body's own axes), those of translation spatial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RaceState {
+pub struct BodyState {
     /// Pose in world axes.
     pub pose: Pose,
     /// [m/s] velocity of the origin.
     pub velocity: Vector3<f64>,
     /// [rad/s] material angular velocity.
     pub rate: Vector3<f64>,
-    /// [m/s2] acceleration of the origin; of a body only.
+    /// [m/s2] acceleration of the origin; 0 where the motion is prescribed.
     pub acceleration: Vector3<f64>,
-    /// [rad/s2] material angular acceleration; of a body only.
+    /// [rad/s2] material angular acceleration; 0 where the motion is prescribed.
     pub rate_derivative: Vector3<f64>,
-    /// Total force (spatial) and moment (material) of a body, the `g` of the HHT scheme.
+    /// Total force (spatial) and moment (material), the `g` of the HHT scheme; 0 where the motion is prescribed.
     pub total: Wrench,
-    /// Lagrange multipliers of a body's constraints [N, N m].
+    /// Lagrange multipliers of its constraints [N, N m].
     pub multipliers: Vec<f64>,
-    /// What the bearing exerts on the race, world axes, about its origin.
+    /// What balls and lands exert on the body, world axes, about its origin.
     pub bearing_wrench: Wrench,
     /// [rad] turned about the own axis since the start, without limit.
     pub turned: f64,
@@ -72,8 +64,8 @@ pub struct RaceState {
     pub turned_rest: f64,
 }
 
-impl RaceState {
-    /// A race with a pose and a twist, free of forces.
+impl BodyState {
+    /// A body with a pose and a twist, free of forces.
     pub fn new(pose: Pose, twist: &Twist, n_constraints: usize) -> Self {
         Self {
             pose,
@@ -89,7 +81,7 @@ impl RaceState {
         }
     }
 
-    /// Goes on counting the turn from before a step in which the race turned by `angle` [rad] (Kahan's summation).
+    /// Goes on counting the turn from before a step in which the body turned by `angle` [rad] (Kahan's summation).
     pub fn count_turn(&mut self, (turned, rest): (f64, f64), angle: f64) {
         let added = angle + rest;
         self.turned = turned + added;
@@ -106,7 +98,7 @@ impl RaceState {
         race_motion(&self.pose, &self.twist())
     }
 
-    /// The motion with all axes that contacts of the cage depend on.
+    /// The motion with all axes, for contacts of the cage.
     pub fn body_motion(&self) -> BodyMotion<f64> {
         let orientation = self.pose.orientation;
         BodyMotion {
@@ -213,13 +205,11 @@ pub struct State {
     pub time: f64,
     /// Balls, by azimuth at the start.
     pub balls: Vec<BallState>,
-    /// Inner and outer race.
-    pub races: [RaceState; 2],
-    /// What Kalker's polynomials add to the table at each ball's contact with inner and outer race; empty where they are
-    /// not simulated.
-    pub differences: Vec<[Difference; 2]>,
-    /// The cage, a body like a race; none where it is not simulated.
-    pub cage: Option<RaceState>,
+    /// Races, and the cage where it is simulated.
+    pub bodies: Bodies<BodyState>,
+    /// By ball, what Kalker's polynomials add to the table at its contacts with the races; empty where they are not
+    /// simulated.
+    pub differences: Vec<PerRace<Difference>>,
     /// Step size.
     pub control: StepControl,
     /// [N] residual that counts as converged in the next step.
@@ -234,7 +224,44 @@ pub struct State {
     pub statistics: Statistics,
 }
 
-/// Linear part of an orientation-free vector of six: force and moment as one.
+impl State {
+    /// The state of a race.
+    pub fn race(&self, race: Race) -> &BodyState {
+        &self.bodies[race]
+    }
+
+    /// The state of the cage, where it is simulated.
+    pub fn cage(&self) -> Option<&BodyState> {
+        self.bodies.get(Body::Cage)
+    }
+
+    /// What Kalker's polynomials add to the table at a ball's contact with a race, where they are simulated.
+    pub fn difference(&self, ball: usize, race: Race) -> Option<&Difference> {
+        self.differences.get(ball).map(|differences| &differences[race])
+    }
+}
+
+/// The inverted matrix of balls that nothing couples. It is part of the state, as it serves many steps.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct KeptMatrix {
+    /// [s] size of the steps that it serves.
+    pub step: f64,
+    /// Corrections beyond one a step that it has taken after the step that it was made in.
+    pub extra_corrections: u64,
+    /// By ball; empty while there is none.
+    pub balls: Vec<KeptBlock>,
+}
+
+/// The inverted block of one ball.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KeptBlock {
+    /// `A^-1`.
+    pub inverse: Matrix6<f64>,
+    /// [m] where the ball was, seen from the outer race: the block turns with the orbit of its ball.
+    pub offset: Vector3<f64>,
+}
+
+/// Force and moment as one vector.
 pub fn stack(force: &Vector3<f64>, moment: &Vector3<f64>) -> Vector6<f64> {
     Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
 }

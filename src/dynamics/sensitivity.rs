@@ -1,26 +1,26 @@
-//! Neighbours of a step: where it would have led from a slightly different start or under slightly different
+//! Sensitivities of a step: where it would have led from a slightly different start or under slightly different
 //! boundaries, to first order.
 //!
 //! The step's equations `R(U, p) = 0` give `dU = -R_U^-1 R_p dp`. `R_U` is the Newton matrix at the solution, factorised
-//! once for all neighbours by eliminating the balls; `R_p dp` is the residual of the neighbour with the unknowns of the
-//! step itself. What is left is of second order, and even: it cancels between two neighbours on opposite sides.
+//! once for all perturbations by eliminating the balls; `R_p dp` is the residual of the perturbed step with the unknowns of
+//! the step itself. What is left is of second order, and even: it cancels between two perturbations of opposite sign.
 
 use super::accept::accept;
 use super::equations::BearingStep;
 use super::{Boundary, Workspace};
-use crate::dynamics::state::State;
 use crate::model::Model;
+use crate::model::state::State;
 use crate::numerics::newton::Equations;
 
-/// Takes the neighbours along a step of `h` [s] from `start` that was `accepted` just now with that workspace; false if
+/// Takes perturbed states along a step of `h` [s] from `start` that was `accepted` just now with that workspace; false if
 /// the Newton matrix is singular.
 #[must_use]
-pub fn follow<'a>(
+pub fn advance_perturbed<'a>(
     model: &Model,
     start: &State,
     boundary: &Boundary,
     h: f64,
-    neighbours: impl Iterator<Item = (&'a mut State, Boundary)>,
+    perturbed: impl Iterator<Item = (&'a mut State, Boundary)>,
     accepted: &Workspace,
     workspace: &mut Workspace,
 ) -> bool {
@@ -28,8 +28,8 @@ pub fn follow<'a>(
     let mut unknowns = vec![0.0; solution.len()];
     BearingStep::new(model, start, boundary, h, workspace).residual(solution, true);
     let mut regular = true;
-    for (state, boundary) in neighbours {
-        // frozen in a step, for its neighbours too
+    for (state, boundary) in perturbed {
+        // The differences to the table are frozen in a step, in its perturbations too.
         state.differences.clone_from(&start.differences);
         let mut equations = BearingStep::new(model, state, &boundary, h, workspace);
         // No residual is small enough to be left alone: only its change counts.

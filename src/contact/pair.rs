@@ -1,0 +1,43 @@
+//! What any pair of bodies that touch exert on each other.
+
+use nalgebra::Vector3;
+
+use crate::numerics::scalar::{Scalar, constant_vector};
+
+/// Forces between a first and a second body, world axes. The force on the second is the opposite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairForces<S: Scalar = f64> {
+    /// [m] approach; negative is a gap.
+    pub approach: S,
+    /// [N] normal load.
+    pub load: S,
+    /// [N/m^1.5] Hertz stiffness; of a line contact [N/m^(10/9)].
+    pub stiffness: S,
+    /// [N] force on the first body.
+    pub force: Vector3<S>,
+    /// [N m] moment on the first body about its origin.
+    pub moment: Vector3<S>,
+    /// [N m] moment on the second body about its origin.
+    pub other_moment: Vector3<S>,
+    /// [W] power lost to friction.
+    pub friction_power: S,
+    /// [W] power lost to contact damping.
+    pub damping_power: S,
+}
+
+impl<S: Scalar> PairForces<S> {
+    /// Those of bodies that do not touch.
+    pub fn none() -> Self {
+        let (zero, vector) = (S::zero(), constant_vector(&Vector3::zeros()));
+        Self {
+            approach: zero,
+            load: zero,
+            stiffness: zero,
+            force: vector,
+            moment: vector,
+            other_moment: vector,
+            friction_power: zero,
+            damping_power: zero,
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Where a step failed: which body, which ball, which contact.
+
+use std::fmt;
+
+use super::{Boundary, Workspace};
+use crate::contact::pair::PairForces;
+use crate::forces::{Contacts, Pairs};
+use crate::model::Model;
+use crate::model::bodies::{Body, Race};
+use crate::model::state::State;
+
+/// Where the residual or local error of a failed step is largest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Worst {
+    /// Index of the worst ball.
+    pub ball: usize,
+    /// The body that is worse than every ball.
+    pub body: Option<Body>,
+}
+
+impl Worst {
+    /// The first of the largest norms of balls, and of bodies. What is not a number is largest.
+    pub fn of(balls: impl Iterator<Item = f64>, bodies: impl Iterator<Item = (Body, f64)>) -> Self {
+        let worse = |norm: f64, than: f64| !than.is_nan() && (norm.is_nan() || norm > than);
+        let (mut ball, mut worst) = (0, f64::NEG_INFINITY);
+        for (index, norm) in balls.enumerate() {
+            if worse(norm, worst) {
+                (ball, worst) = (index, norm);
+            }
+        }
+        let mut body = None;
+        for (candidate, norm) in bodies {
+            if worse(norm, worst) {
+                (body, worst) = (Some(candidate), norm);
+            }
+        }
+        Self { ball, body }
+    }
+}
+
+/// Where a step failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FailureSite {
+    /// The body whose residual or local error is larger than that of every ball.
+    pub body: Option<Body>,
+    /// Ball, counted from 1: of that body's balls the one whose contact force changed most in the step, else the ball
+    /// with the largest residual or local error.
+    pub ball: usize,
+    /// Its contact whose force changed most in the step.
+    pub contact: Body,
+}
+
+impl fmt::Display for FailureSite {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (ball, contact) = (self.ball, self.contact);
+        match self.body {
+            Some(body) if body == contact => write!(f, "the {body}, at its contact with ball {ball}"),
+            Some(body) => write!(f, "the {body}, then at ball {ball} on the {contact}"),
+            None => write!(f, "ball {ball} on the {contact}"),
+        }
+    }
+}
+
+/// Where the step from `state` failed that was tried last with this workspace.
+pub fn failure_site(
+    model: &Model,
+    state: &State,
+    boundary: &Boundary,
+    worst: Worst,
+    workspace: &Workspace,
+) -> FailureSite {
+    let before = Contacts::new(model, state, &boundary.conditions);
+    let radius = model.bearing.ball.radius;
+    let before = &before;
+    let changes = |ball: usize| {
+        let trial = &workspace.balls[ball];
+        Body::ALL.into_iter().filter_map(move |contact| {
+            let old = before_of(before, ball, contact);
+            let new = trial.pair(contact);
+            let force = change(old.as_ref(), new, radius)?;
+            Some(Change { ball, contact, force })
+        })
+    };
+    let of_body = (0..state.balls.len())
+        .flat_map(changes)
+        .filter(|change| Some(change.contact) == worst.body && change.force > 0.0);
+    // A body may be in trouble without its balls: a cage on its lands.
+    let (ball, contact) = largest(of_body)
+        .or_else(|| largest(changes(worst.ball)))
+        .map_or((worst.ball, Race::Inner.into()), |change| (change.ball, change.contact));
+    FailureSite { body: worst.body, ball: ball + 1, contact }
+}
+
+/// How much a contact changed in a step.
+struct Change {
+    ball: usize,
+    contact: Body,
+    /// [N] force and moment over the ball's radius.
+    force: f64,
+}
+
+/// The first of the largest.
+fn largest(changes: impl Iterator<Item = Change>) -> Option<Change> {
+    changes.reduce(|worst, change| if change.force > worst.force { change } else { worst })
+}
+
+/// The forces between a ball and a body at the start of the step.
+fn before_of(contacts: &Contacts, ball: usize, body: Body) -> Option<PairForces> {
+    contacts.of_ball(ball).find_map(|(other, pair)| (other == body).then_some(pair))
+}
+
+/// [N] change of the force on a ball, and of its moment over the radius [m]; none where they never touched.
+fn change(old: Option<&PairForces>, new: Option<&PairForces>, radius: f64) -> Option<f64> {
+    let none = PairForces::none();
+    if old.is_none() && new.is_none() {
+        return None;
+    }
+    let (old, new) = (old.unwrap_or(&none), new.unwrap_or(&none));
+    let force = (new.force - old.force).norm().hypot(((new.moment - old.moment) / radius).norm());
+    // What is not a number has changed most.
+    Some(if force.is_nan() { f64::INFINITY } else { force })
+}

@@ -1,0 +1,157 @@
+//! Forces of all pairs of a bearing: what touches what, and the sums over it.
+
+use crate::contact::BallRaceContact;
+use crate::contact::pair::PairForces;
+use crate::model::bodies::{Body, PerRace, Race};
+use crate::model::cage::CageModel;
+use crate::model::state::{BallState, BodyState, State};
+use crate::model::{Conditions, Model};
+use crate::numerics::motion::Wrench;
+
+/// The contacts of one ball.
+#[derive(Clone, Copy, Debug)]
+pub struct BallContacts {
+    /// With the races.
+    pub raceways: PerRace<BallRaceContact<f64>>,
+    /// With its pocket of the cage, where they touch.
+    pub pocket: Option<PairForces>,
+}
+
+/// All contacts of a bearing in a state.
+#[derive(Clone, Debug)]
+pub struct Contacts {
+    /// Of every ball.
+    pub balls: Vec<BallContacts>,
+    /// Of the cage with the lands at its -x and +x side, where they touch.
+    pub lands: [Option<PairForces>; 2],
+    /// The race of these lands, where there are some.
+    guide: Option<Race>,
+}
+
+impl Contacts {
+    /// Evaluates the contacts of a state.
+    pub fn new(model: &Model, state: &State, conditions: &Conditions) -> Self {
+        let contacts = model.contacts(conditions);
+        let races = PerRace::new(|race| state.race(race).motion());
+        let cage = model.cage.as_ref().zip(state.cage().map(BodyState::body_motion));
+        let of_ball = |(index, ball): (usize, &BallState)| {
+            let motion = ball.motion();
+            BallContacts {
+                raceways: PerRace::new(|race| {
+                    contacts[race].of_ball(state.difference(index, race)).evaluate(&motion, &races[race])
+                }),
+                pocket: cage.as_ref().and_then(|(cage, seen)| cage.pocket_contact(index, &motion, seen)),
+            }
+        };
+        Self {
+            balls: state.balls.iter().enumerate().map(of_ball).collect(),
+            guide: model.cage.as_ref().and_then(CageModel::guide),
+            lands: cage
+                .as_ref()
+                .map_or([None; 2], |(cage, seen)| cage.land_contacts(seen, |race| races[race])),
+        }
+    }
+}
+
+impl Contacts {
+    /// Forces between all balls and races.
+    pub fn raceway_pairs(&self) -> impl Iterator<Item = PairForces> {
+        self.balls.iter().flat_map(|ball| ball.raceways.iter().map(PairForces::from))
+    }
+}
+
+impl BallContacts {
+    /// [J] elastic energy of each contact.
+    pub fn elastic_energies(&self, model: &Model) -> impl Iterator<Item = f64> {
+        let pocket = model.cage.as_ref().zip(self.pocket.as_ref());
+        let of_pocket = pocket.map(|(cage, pair)| cage.pocket.elastic_energy(pair.approach));
+        self.raceways.iter().map(BallRaceContact::elastic_energy).chain(of_pocket)
+    }
+}
+
+impl Contacts {
+    /// [J] elastic energy of each contact of cage and lands.
+    pub fn land_energies(&self, model: &Model) -> impl Iterator<Item = f64> {
+        let land = model.cage.as_ref().and_then(|cage| cage.land.as_ref());
+        let pairs = self.lands.iter().flatten();
+        land.into_iter()
+            .flat_map(move |(_, land)| pairs.clone().map(|pair| land.elastic_energy(pair.approach)))
+    }
+}
+
+/// Pairs of bodies that touch, in one order for all sums: by ball, then between bodies.
+pub trait Pairs {
+    /// Pairs of a ball and the body that it touches.
+    fn of_ball(&self, ball: usize) -> impl Iterator<Item = (Body, PairForces)>;
+
+    /// Pairs of two bodies.
+    fn between_bodies(&self) -> impl Iterator<Item = (Body, Body, PairForces)>;
+}
+
+impl Pairs for Contacts {
+    fn of_ball(&self, ball: usize) -> impl Iterator<Item = (Body, PairForces)> {
+        let BallContacts { raceways, pocket } = &self.balls[ball];
+        let races = Body::ALL.into_iter().zip(raceways.iter().map(PairForces::from));
+        races.chain(pocket.iter().map(|pair| (Body::Cage, *pair)))
+    }
+
+    fn between_bodies(&self) -> impl Iterator<Item = (Body, Body, PairForces)> {
+        between_cage_and_lands(self.guide, &self.lands)
+    }
+}
+
+/// The pairs of the cage and the lands of its guide.
+pub fn between_cage_and_lands(
+    guide: Option<Race>,
+    lands: &[Option<PairForces>; 2],
+) -> impl Iterator<Item = (Body, Body, PairForces)> {
+    let pairs = lands.iter().flatten();
+    guide.into_iter().flat_map(move |race| pairs.clone().map(move |pair| (Body::Cage, race.into(), *pair)))
+}
+
+/// Sums over all pairs of a bearing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Totals {
+    bodies: [Wrench; 3],
+    /// [W] power lost to friction.
+    pub friction_power: f64,
+    /// [W] power lost to contact damping.
+    pub damping_power: f64,
+}
+
+impl Totals {
+    /// Over the pairs of this many balls and those between bodies.
+    pub fn of(pairs: &impl Pairs, n_balls: usize) -> Self {
+        let mut totals = Self::default();
+        for ball in 0..n_balls {
+            for (body, pair) in pairs.of_ball(ball) {
+                totals.add_to_second(body, &pair);
+            }
+        }
+        for (first, second, pair) in pairs.between_bodies() {
+            let wrench = &mut totals.bodies[first.index()];
+            wrench.force += pair.force;
+            wrench.moment += pair.moment;
+            totals.add_to_second(second, &pair);
+        }
+        totals
+    }
+
+    fn add_to_second(&mut self, body: Body, pair: &PairForces) {
+        let wrench = &mut self.bodies[body.index()];
+        wrench.force -= pair.force;
+        wrench.moment += pair.other_moment;
+        self.friction_power += pair.friction_power;
+        self.damping_power += pair.damping_power;
+    }
+
+    /// Force and moment of all its pairs on a body, about its origin, world axes.
+    pub fn on(&self, body: Body) -> Wrench {
+        self.bodies[body.index()]
+    }
+}
+
+/// Force and moment of all its pairs on a ball, on top of `start`.
+pub fn on_ball(pairs: impl Iterator<Item = PairForces>, start: Wrench) -> Wrench {
+    pairs.fold(start, |sum, pair| Wrench { force: sum.force + pair.force, moment: sum.moment + pair.moment })
+}

@@ -1,0 +1,94 @@
+//! Balls against a raceway: contact tables and creep law of one race.
+
+use super::bearing::Bearing;
+use super::bodies::Race;
+use crate::contact::creep::Law;
+use crate::contact::identification::identify_by_table;
+use crate::contact::regularised::Parameters;
+use crate::contact::shape::ContactShape;
+use crate::kalker::nonlinear::KalkerError;
+use crate::kalker::scaled_law::ScaledKalker;
+use crate::kalker::table::CreepTable;
+use crate::scene::{CreepLaw, Scene};
+
+/// Creep law of a raceway with what it needs.
+#[derive(Clone, Debug)]
+enum RacewayLaw {
+    Frictionless,
+    Linear,
+    Regularised(Parameters),
+    Saturated,
+    Table(CreepTable),
+    Kalker(CreepTable, Box<ScaledKalker>),
+}
+
+impl RacewayLaw {
+    fn new(scene: &Scene, shape: &ContactShape, bearing: &Bearing, race: Race) -> Result<Self, KalkerError> {
+        let patch = shape.typical_patch(bearing.poisson_ratio);
+        let given = match race {
+            Race::Inner => scene.regularised.inner,
+            Race::Outer => scene.regularised.outer,
+        };
+        Ok(match scene.effects.creep {
+            CreepLaw::Frictionless => Self::Frictionless,
+            CreepLaw::Linear => Self::Linear,
+            CreepLaw::Regularised => Self::Regularised(match given {
+                Some(parameters) => parameters,
+                None => identify_by_table(&patch)?.parameters,
+            }),
+            CreepLaw::Saturated => Self::Saturated,
+            CreepLaw::KalkerTable => Self::Table(CreepTable::new(&patch)?),
+            CreepLaw::Kalker => {
+                let kalker = ScaledKalker::new(&patch, scene.effects.kalker_degree)?;
+                Self::Kalker(CreepTable::new(&patch)?, Box::new(kalker))
+            }
+        })
+    }
+
+    fn law(&self) -> Law<'_> {
+        match self {
+            Self::Frictionless => Law::Frictionless,
+            Self::Linear => Law::Linear,
+            Self::Regularised(parameters) => Law::Regularised(parameters),
+            Self::Saturated => Law::Saturated,
+            Self::Table(table) | Self::Kalker(table, _) => Law::Table(table),
+        }
+    }
+}
+
+/// What does not change in the contacts of all balls with one raceway.
+#[derive(Clone, Debug)]
+pub struct RacewayContacts {
+    /// Contact tables.
+    pub shape: ContactShape,
+    law: RacewayLaw,
+    /// [1/m] mean transverse curvature of ball and groove over 2, where its slip is simulated.
+    pub groove_bend: Option<f64>,
+}
+
+impl RacewayContacts {
+    /// Of a race in a scene.
+    ///
+    /// # Errors
+    /// If creep coefficients cannot be computed.
+    pub fn new(scene: &Scene, bearing: &Bearing, race: Race) -> Result<Self, KalkerError> {
+        let raceway = bearing.raceway(race);
+        let shape = ContactShape::new(bearing, raceway)?;
+        let bend = 0.25 * (1.0 / bearing.ball.radius + 1.0 / raceway.groove_radius);
+        let law = RacewayLaw::new(scene, &shape, bearing, race)?;
+        Ok(Self { shape, law, groove_bend: scene.effects.heathcote_slip.then_some(bend) })
+    }
+
+    /// Creep law; Kalker's polynomials give their table.
+    pub fn law(&self) -> Law<'_> {
+        self.law.law()
+    }
+
+    /// Kalker's polynomials, where they are simulated.
+    pub fn polynomials(&self) -> Option<&ScaledKalker> {
+        match &self.law {
+            RacewayLaw::Kalker(_, kalker) => Some(kalker),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Why a simulation could not start or go on.
+
+use thiserror::Error;
+
+use crate::dynamics::FailureSite;
+use crate::equilibrium::{EquilibriumError, MAX_APPROACH};
+use crate::kalker::nonlinear::KalkerError;
+
+/// Why a simulation could not start or go on.
+#[derive(Debug, Error)]
+pub enum SimulationError {
+    /// No creep coefficients for the bearing's contacts.
+    #[error("the creep law has no coefficients for this bearing: {0}")]
+    Creep(#[from] KalkerError),
+    /// No quasi-static equilibrium to start from.
+    #[error("no equilibrium to start from: {0}")]
+    Start(#[from] EquilibriumError),
+    /// The step size fell below its minimum.
+    #[error(
+        "at {time} s the step fell below solver.min_step = {min_step} s: {cause}, worst at {site} \
+         (inner load {inner_load} N, outer load {outer_load} N)"
+    )]
+    StepTooSmall {
+        /// [s] time reached.
+        time: f64,
+        /// [s] smallest step allowed.
+        min_step: f64,
+        /// What made the last step fail.
+        cause: &'static str,
+        /// Body, ball and contact where the residual or the local error is largest.
+        site: FailureSite,
+        /// [N] load of that ball on the inner race.
+        inner_load: f64,
+        /// [N] its load on the outer race.
+        outer_load: f64,
+    },
+    /// A contact is deeper than Hertz's theory reaches.
+    #[error(
+        "at {time} s ball {ball} is pressed into the {race} race by {approach:.3e} m: more than {MAX_APPROACH} of its \
+         diameter, far beyond elastic Hertzian contact; the load is too large or the imposed motion is"
+    )]
+    Overload {
+        /// [s] time.
+        time: f64,
+        /// Ball, counted from 1.
+        ball: usize,
+        /// Inner or outer.
+        race: &'static str,
+        /// [m] approach.
+        approach: f64,
+    },
+    /// A contact lies where no groove is.
+    #[error(
+        "at {time} s ball {ball} touches the {race} race on the side where it has no groove, {approach:.3e} m deep: the \
+         race has come past its balls; the load, the clearance or the motion is too large, or a cage is missing"
+    )]
+    LeftGroove {
+        /// [s] time.
+        time: f64,
+        /// Ball, counted from 1.
+        ball: usize,
+        /// Inner or outer.
+        race: &'static str,
+        /// [m] approach.
+        approach: f64,
+    },
+    /// The Newton matrix of a step whose sensitivities were asked for is singular.
+    #[error("at {0} s the Newton matrix is singular")]
+    Singular(f64),
+    /// So late that a step no longer changes the time.
+    #[error("at {time} s a step of {step} s is lost in rounding: begin nearer to time 0")]
+    LostInRounding {
+        /// [s] time reached.
+        time: f64,
+        /// [s] step.
+        step: f64,
+    },
+    /// A step end that is not a time after the present one.
+    #[error("cannot advance from {from} s to {to} s")]
+    Backwards {
+        /// [s] present time.
+        from: f64,
+        /// [s] asked for.
+        to: f64,
+    },
+}

@@ -1,0 +1,68 @@
+//! How everything that is given from outside moves during a communication step.
+
+use nalgebra::{SVector, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::inputs::{Inputs, RaceInput};
+use super::path::{RAMP_WIDTH, RacePath, Ramp};
+use crate::dynamics::{BodyLoad, Boundary};
+use crate::model::Conditions;
+use crate::model::bodies::PerRace;
+use crate::model::state::State;
+use crate::numerics::motion::Wrench;
+
+/// How inputs move during a communication step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InputPaths {
+    /// Pose and twist of races with prescribed motion.
+    pub races: PerRace<RacePath>,
+    /// Applied force, applied moment, speed.
+    loads: PerRace<Ramp>,
+}
+
+impl InputPaths {
+    /// What they impose at a time [s].
+    pub fn boundary(&self, time: f64, conditions: Conditions) -> Boundary {
+        Boundary {
+            time,
+            motion: PerRace::new(|race| self.races[race].at(time)),
+            loads: PerRace::new(|race| {
+                let [fx, fy, fz, mx, my, mz, speed] = self.loads[race].at(time).into();
+                let applied = Wrench { force: Vector3::new(fx, fy, fz), moment: Vector3::new(mx, my, mz) };
+                BodyLoad { applied, speed }
+            }),
+            conditions,
+        }
+    }
+
+    /// Paths of a state that goes on as it is.
+    pub fn steady(inputs: &Inputs, state: &State) -> Self {
+        Self {
+            races: PerRace::new(|race| {
+                RacePath::steady(state.time, &state.race(race).pose, &state.race(race).twist())
+            }),
+            loads: PerRace::new(|race| Ramp::constant(load_components(&inputs[race]))),
+        }
+    }
+
+    /// Paths from here on, over a communication step.
+    pub fn towards(&self, inputs: &Inputs, time: f64, duration: f64) -> Self {
+        Self {
+            races: PerRace::new(|race| {
+                let (pose, twist) = self.races[race].at(time);
+                let input = &inputs[race];
+                let target = (&input.pose, &input.twist, &input.twist_rate);
+                RacePath::towards(time, (&pose, &twist), target.0, target.1, target.2, duration)
+            }),
+            loads: PerRace::new(|race| {
+                self.loads[race].towards(time, load_components(&inputs[race]), duration)
+            }),
+        }
+    }
+}
+
+/// Applied force, applied moment and speed as one vector.
+fn load_components(input: &RaceInput) -> SVector<f64, RAMP_WIDTH> {
+    let (force, moment) = (input.applied.force, input.applied.moment);
+    SVector::from([force.x, force.y, force.z, moment.x, moment.y, moment.z, input.speed])
+}
