@@ -222,7 +222,7 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             let contacts = contact.evaluate(&ball, &race);
             assert_eq!(contacts.load, Lanes::from_fn(|lane| alone[lane].load), "{name}");
             assert_eq!(contacts.force, Lanes::vector(|lane| alone[lane].force), "{name}");
-            assert_eq!(contacts.ball_moment, Lanes::vector(|lane| alone[lane].ball_moment), "{name}");
+            assert_eq!(contacts.ball_moment, Lanes::vector(|lane| alone[lane].moment), "{name}");
         }
     }
 }

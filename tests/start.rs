@@ -4,8 +4,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
-use roulement::dynamics::Partner;
-use roulement::model::bodies::Race;
+use roulement::model::bodies::{Body, Race};
 use roulement::scene::Scene;
 use roulement::simulation::{Simulation, SimulationError};
 
@@ -22,7 +21,7 @@ fn combined(start: &str) -> Simulation {
 fn unbalanced(simulation: &Simulation, index: usize) -> (Vector3<f64>, f64) {
     let (model, state) = (simulation.model(), simulation.state());
     let ball = &state.balls[index];
-    let contacts = [0, 1].map(|race: usize| {
+    let contacts = Race::BOTH.map(|race| {
         model
             .contact(race, &simulation.inputs().conditions())
             .evaluate(&ball.motion(), &state.race(race).motion())
@@ -42,8 +41,9 @@ fn closed_form_accelerations_and_multipliers_are_consistent_at_the_start() {
         let mut about_axis = 0.0;
         for ball in &state.balls {
             let races = Race::BOTH.map(|race| state.race(race).motion());
-            let [inner, outer] = [0, 1].map(|race: usize| {
-                model.contact(race, &simulation.inputs().conditions()).evaluate(&ball.motion(), &races[race])
+            let [inner, outer] = Race::BOTH.map(|race| {
+                let contact = model.contact(race, &simulation.inputs().conditions());
+                contact.evaluate(&ball.motion(), &races[race as usize])
             });
             let force = inner.force + outer.force;
             assert!((ball.acceleration * model.bearing.ball.mass - force).norm() < 1e-9 * inner.load);
@@ -56,7 +56,7 @@ fn closed_form_accelerations_and_multipliers_are_consistent_at_the_start() {
         }
         let race = state.race(Race::Inner);
         let applied = simulation.inputs().inner.applied.force;
-        let mass = model.bodies[0].as_ref().unwrap().mass;
+        let mass = model.bodies[Race::Inner].as_ref().unwrap().mass;
         assert!((race.acceleration * mass - applied - on_race).norm() < 1e-6);
         // The drive torque carries all friction about the axis, so that the spin goes on as it is.
         assert!((simulation.outputs().inner.drive_torque + about_axis).abs() < 1e-9);
@@ -117,14 +117,16 @@ fn a_step_that_cannot_be_finished_names_ball_and_contact() {
         let mut inputs = *struck.inputs();
         inputs.outer.pose.position.y -= 20e-6;
         struck.set_inputs(inputs);
-        for (simulation, expected) in [(&mut shaken, Partner::Inner), (&mut struck, Partner::Outer)] {
+        for (simulation, expected) in
+            [(&mut shaken, Body::Race(Race::Inner)), (&mut struck, Body::Race(Race::Outer))]
+        {
             let why = simulation.advance(20e-6).unwrap_err();
             println!("{why}");
-            let SimulationError::StepTooSmall { blame, .. } = why else { panic!("{why}") };
-            assert_eq!((blame.ball as f64, blame.contact), (ball, expected));
+            let SimulationError::StepTooSmall { site, .. } = why else { panic!("{why}") };
+            assert_eq!((site.ball as f64, site.contact), (ball, expected));
             // A force flings the race body; a pose that moves has only the balls to upset.
-            let body = (expected == Partner::Inner).then_some(Partner::Inner);
-            assert_eq!(blame.body, body);
+            let body = (expected == Body::Race(Race::Inner)).then_some(Body::Race(Race::Inner));
+            assert_eq!(site.body, body);
             let names = match body {
                 Some(body) => format!("worst at the {body}, at its contact with ball {ball} "),
                 None => format!("worst at ball {ball} on the {expected} "),
