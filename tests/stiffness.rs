@@ -7,6 +7,7 @@ use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use roulement::interface::variables::Variables;
 use roulement::model::Conditions;
 use roulement::model::Model;
+use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 use serde_json::Value;
