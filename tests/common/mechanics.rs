@@ -167,6 +167,9 @@ pub fn saturated(patch: &Patch, slip: [f64; 3], rolling: [f64; 2]) -> Friction {
     c23 *= rolling[0] / speed;
     let g = patch.shear;
     let limit = patch.friction * patch.load;
+    if limit == 0.0 {
+        return Friction { forces: [0.0; 3], creepages: [xi, eta, phi], power: 0.0 };
+    }
     let (long, short) = (a.max(b), a.min(b));
     // Hertz's pressure times the distance from the centre, integrated.
     let moment_limit = 0.375 * limit * long * elliptic(1.0 - (short / long).powi(2)).1;
