@@ -3,7 +3,6 @@
 use crate::contact::BallRaceContact;
 use crate::contact::pair::PairForces;
 use crate::model::bodies::{Body, PerRace, Race};
-use crate::model::cage::CageModel;
 use crate::model::state::{BallState, BodyState, State};
 use crate::model::{Conditions, Model};
 use crate::numerics::motion::Wrench;
@@ -45,7 +44,7 @@ impl Contacts {
         };
         Self {
             balls: state.balls.iter().enumerate().map(of_ball).collect(),
-            guide: model.cage.as_ref().and_then(CageModel::guide),
+            guide: model.cage_guide(),
             lands: cage
                 .as_ref()
                 .map_or([None; 2], |(cage, seen)| cage.land_contacts(seen, |race| races[race])),

@@ -8,6 +8,7 @@ use laws::Laws;
 use nalgebra::Vector3;
 use roulement::contact::creep::Law;
 use roulement::contact::many::evaluate_group;
+use roulement::contact::materials::Pair;
 use roulement::contact::pair::PairForces;
 use roulement::contact::{BallMotion, BallRaceContact, RaceMotion};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
@@ -225,4 +226,14 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             assert_eq!(contacts.ball_moment, Lanes::vector(|lane| alone[lane].moment), "{name}");
         }
     }
+}
+
+#[test]
+fn published_number_unlike_materials_after_kalker() {
+    // 1/G = (1/G1 + 1/G2)/2 and nu/G = (nu1/G1 + nu2/G2)/2 (Kalker 1967), written out: G1 = 125 GPa, nu1 = 0.2 and
+    // G2 = 50 GPa, nu2 = 0.35 give 1/G = 0.014/GPa, nu/G = 0.0043/GPa. Hertz: 0.96/300 + 0.8775/135 per GPa.
+    let pair = Pair::new([(300e9, 0.2), (135e9, 0.35)]);
+    assert!((pair.shear_modulus / (1e9 / 0.014) - 1.0).abs() < 1e-12, "{pair:?}");
+    assert!((pair.poisson_ratio / (0.0043 / 0.014) - 1.0).abs() < 1e-12, "{pair:?}");
+    assert!((pair.compliance / 9.7e-12 - 1.0).abs() < 1e-12, "{pair:?}");
 }

@@ -1,15 +1,18 @@
 //! Quasi-static equilibrium against independent data (tests/data/bearing/README.md) and invariants.
 #![allow(clippy::unwrap_used)]
 
-use nalgebra::{Rotation2, Vector2};
+use nalgebra::{Rotation2, UnitQuaternion, Vector2};
 use roulement::equilibrium::{self, Equilibrium, EquilibriumInput, Gyroscopic, Prescribed};
 use roulement::model::Model;
 use roulement::scene::Scene;
 use serde_json::Value;
 
+#[path = "common/mechanics.rs"]
+mod mechanics;
 #[path = "common/reference.rs"]
 mod reference;
 
+use mechanics::{Body, Dimensions, V, grooves};
 use reference::{cases, number, scene_text};
 
 fn solve(text: &str, gyroscopic: Gyroscopic) -> Equilibrium {
@@ -249,4 +252,75 @@ fn a_load_that_no_bearing_takes_is_refused_with_its_reason() {
     let refusal = equilibrium::solve(&Model::new(&scene).unwrap(), &input);
     let message = refusal.map(|solution| solution.displacement).unwrap_err().to_string();
     assert!(message.contains("beyond elastic Hertzian contact"), "{message}");
+}
+
+#[test]
+fn closed_form_balance_of_a_ball_that_both_races_keep_from_turning() {
+    // Newton and Euler for one ball: rolling without slip turns it about an axis, which its orbit carries round; the moment
+    // for that is friction at both races in proportion to their loads, if that is enough (1.5), and slides otherwise (0.002).
+    let (diameter, pitch, angle, conformity): (f64, f64, f64, f64) =
+        (22.23e-3, 125.26e-3, 40f64.to_radians(), 0.5232);
+    let steel = (206e9, 0.3);
+    let dimensions = Dimensions {
+        ball_radius: 0.5 * diameter,
+        grooves: grooves(diameter, pitch, angle, [conformity; 2]),
+        materials: [steel; 2],
+        friction: 0.0,
+        damping: 0.0,
+    };
+    let mass = 7870.0 * std::f64::consts::PI / 6.0 * diameter.powi(3);
+    let inertia = 0.1 * mass * diameter * diameter;
+    for (friction, slides) in [(1.5, false), (0.002, true)] {
+        let load = "inner_speed = 1500.0\nx = { force = 22250.0 }\ny = { displacement = 0.0 }\n\
+                    z = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n[friction]\nball_race = ";
+        let text = bearing_text(ANGULAR_218, &format!("{load}{friction}"));
+        let solution = solve(&text, Gyroscopic::Friction);
+        let still = |position: V| Body {
+            position,
+            orientation: UnitQuaternion::identity(),
+            velocity: V::zeros(),
+            omega: V::zeros(),
+        };
+        let ball = &solution.balls[2];
+        let races = [still(V::x() * solution.displacement[0]), still(V::zeros())];
+        let contacts =
+            [0, 1].map(|race| dimensions.ball_race(race, &still(ball.position), &races[race]).unwrap());
+        let radial = ball.position - V::x() * ball.position.x;
+        let (radius, radial) = (radial.norm(), radial.normalize());
+        let tangent = V::x().cross(&radial);
+        let normals = contacts.map(|contact| contact.normal);
+        // Rolling: no slip at either contact, no spin at the outer one, whose race rests.
+        let orbit = solution.cage_speed;
+        let rolling =
+            tangent.cross(&normals[1]) * (-orbit * (radius + normals[1].dot(&radial) * 0.5 * diameter));
+        // About the line through the outer contact, across its normal; at that point the ball rests.
+        let spin = tangent.cross(&normals[1]) * (rolling.norm() / (0.5 * diameter)) * -1.0;
+        let at_outer = tangent * (orbit * radius) + spin.cross(&(normals[1] * (0.5 * diameter)));
+        let spin = spin * (orbit * radius / (orbit * radius - at_outer.dot(&tangent)));
+        let at = |race: usize| tangent * (orbit * radius) + spin.cross(&(normals[race] * (0.5 * diameter)));
+        assert!(at(1).norm() < 1e-9 && spin.dot(&normals[1]).abs() < 1e-9 * spin.norm());
+        assert!(
+            (spin - ball.angular_velocity).norm() < 1e-9 * spin.norm(),
+            "{spin} {}",
+            ball.angular_velocity
+        );
+        let inner_point = contacts[0].point - V::x() * contacts[0].point.x;
+        assert!((at(0).dot(&tangent) / (1500.0 * inner_point.norm()) - 1.0).abs() < 1e-9);
+        // Euler: the moment that turns the spin with the orbit, by forces F across the contacts.
+        let needed = (V::x() * orbit).cross(&spin) * inertia;
+        let loads = contacts.map(|contact| contact.load);
+        let limit = friction * (loads[0] + loads[1]);
+        let all = needed.norm() / (0.5 * diameter);
+        assert!(if slides { all > 5.0 * limit } else { all < 0.1 * limit }, "{all} {limit}");
+        let carried = all.min(limit);
+        let mut sum = radial * (mass * radius * orbit * orbit);
+        for race in 0..2 {
+            // A force along n x e_t gives a moment along -e_t.
+            let direction = normals[race].cross(&tangent) * -needed.dot(&tangent).signum();
+            sum += direction * (carried * loads[race] / (loads[0] + loads[1])) - normals[race] * loads[race];
+        }
+        let share = (loads[1] - loads[0]) / (loads[0] + loads[1]);
+        assert!(share > 0.05 && carried * share > 1e-3 * loads[0], "{share} {carried} {loads:?}");
+        assert!(sum.norm() < 1e-3 * carried, "{friction}: {sum}, {carried} N of friction");
+    }
 }

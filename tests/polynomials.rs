@@ -26,7 +26,7 @@ fn run(text: &str, duration: f64) -> Simulation {
 }
 
 /// Contact forces over their limits with the frozen difference, and by the polynomials themselves.
-fn forces(simulation: &Simulation, ball: usize, race: usize) -> [[f64; 3]; 2] {
+fn forces(simulation: &Simulation, ball: usize, race: Race) -> [[f64; 3]; 2] {
     let (model, state) = (simulation.model(), simulation.state());
     let kalker = model.polynomials(race).unwrap();
     let frozen = model.contact(race, &Conditions { friction: 0.08 }).of_ball(state.difference(ball, race));
@@ -47,10 +47,10 @@ fn invariant_frozen_polynomials_are_the_polynomials() {
         let [frozen, direct] = forces(&simulation, 0, race);
         let table = simulation.state().difference(0, race).unwrap().value;
         println!(
-            "race {race}: frozen {frozen:.4?}, direct {direct:.4?}, difference from the table {table:.4?}"
+            "race {race:?}: frozen {frozen:.4?}, direct {direct:.4?}, difference from the table {table:.4?}"
         );
         for k in 0..3 {
-            assert!((frozen[k] - direct[k]).abs() < 0.02, "race {race}: {frozen:?} {direct:?}");
+            assert!((frozen[k] - direct[k]).abs() < 0.02, "race {race:?}: {frozen:?} {direct:?}");
         }
         assert!(table.iter().any(|value| value.abs() > 0.01), "the table alone: {table:?}");
     }

@@ -1,7 +1,9 @@
 //! Stiffness and damping of the running bearing, balls condensed out.
 #![allow(clippy::unwrap_used)]
 
-use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
+use nalgebra::{Matrix2, Matrix3, Matrix6, SMatrix, UnitQuaternion, Vector2, Vector3, Vector6};
+use std::ops::AddAssign;
+
 use roulement::analysis::condensed::Condensed;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use roulement::interface::variables::Variables;
@@ -12,9 +14,12 @@ use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 use serde_json::Value;
 
+#[path = "common/mechanics.rs"]
+mod mechanics;
 #[path = "common/reference.rs"]
 mod reference;
 
+use mechanics::{Body, Dimensions, V, grooves};
 use reference::{cases, number, scene_text};
 
 const THRUST: &str = include_str!("../scenes/thrust.toml");
@@ -71,6 +76,88 @@ fn closed_form_central_differences_of_the_equilibrium_at_rest() {
         let d = difference(&ours, &differences);
         println!("{} {d:.1e}", case["id"]);
         assert!(d < 1e-3, "{}: {d:e}", case["id"]);
+    }
+}
+
+#[test]
+fn closed_form_stiffness_at_speed_with_the_centrifugal_force_of_held_orbits() {
+    // Statics by own formulas: each ball finds its place in its azimuthal plane between Hertz's forces and its centrifugal
+    // force, at the azimuth and orbital speed that it has. Central differences of the load that holds the inner race.
+    let text = "[bearing]\nballs = 7\nball_diameter = 0.0127\npitch_diameter = 0.06\ncontact_angle = 0.4\n\
+                inner_conformity = 0.515\nouter_conformity = 0.525\n[friction]\nball_race = 0.0\n\
+                [effects]\ncreep = \"frictionless\"\nstiffness_outputs = true\n\
+                [inner]\ndrive = \"wrench\"\nmass = 0.05\ninertia = [2e-5, 1e-5, 1e-5]\n\
+                [outer]\nmisalignment = { ry = 3e-4 }\n\
+                [load]\ninner_speed = 2500.0\nx = { force = 900.0 }\ny = { force = 150.0 }\nrz = { rotation = 2e-4 }\n";
+    let simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+    let ours = simulation.outputs().condensed.unwrap().stiffness;
+    let (diameter, steel) = (0.0127, (206e9, 0.3));
+    let dimensions = Dimensions {
+        ball_radius: 0.5 * diameter,
+        grooves: grooves(diameter, 0.06, 0.4, [0.515, 0.525]),
+        materials: [steel; 2],
+        friction: 0.0,
+        damping: 0.0,
+    };
+    let mass = 7800.0 * std::f64::consts::PI / 6.0 * f64::powi(diameter, 3);
+    let still = |position: V, orientation: UnitQuaternion<f64>| Body {
+        position,
+        orientation,
+        velocity: V::zeros(),
+        omega: V::zeros(),
+    };
+    let pose = simulation.outputs().inner.pose;
+    let outer = still(V::zeros(), simulation.outputs().outer.pose.orientation);
+    let axis = outer.axis();
+    let mut share = 0.0f64;
+    let mut load = |change: Vector6<f64>| {
+        let turn = UnitQuaternion::new(change.fixed_rows::<3>(3).into_owned());
+        let inner = still(pose.position + change.fixed_rows::<3>(0), turn * pose.orientation);
+        let mut load = Vector6::zeros();
+        for ball in &simulation.state().balls {
+            let offset = ball.position - axis * ball.position.dot(&axis);
+            let (radius, radial) = (offset.norm(), offset.normalize());
+            let speed = ball.velocity.norm() / radius;
+            let at = |place: &Vector2<f64>| {
+                let ball = still(axis * place.x + radial * place.y, UnitQuaternion::identity());
+                let on = |race, body| dimensions.ball_race(race, &ball, body).unwrap();
+                let contacts = [on(0, &inner), on(1, &outer)];
+                let centrifugal = mass * place.y * speed * speed;
+                let sum = contacts[0].force + contacts[1].force + radial * centrifugal;
+                (Vector2::new(sum.dot(&axis), sum.dot(&radial)), contacts, centrifugal)
+            };
+            let mut place = Vector2::new(ball.position.dot(&axis), radius);
+            for _ in 0..8 {
+                let h = 1e-9;
+                let column = |k: usize| {
+                    let change = Vector2::ith(k, h);
+                    (at(&(place + change)).0 - at(&(place - change)).0) / (2.0 * h)
+                };
+                let slope = Matrix2::from_columns(&[column(0), column(1)]);
+                place -= slope.lu().solve(&at(&place).0).unwrap();
+            }
+            let (rest, contacts, centrifugal) = at(&place);
+            assert!(rest.norm() < 1e-7 * contacts[1].load, "{rest} {contacts:?}");
+            share = share.max(centrifugal / contacts[0].load);
+            load.fixed_rows_mut::<3>(0).add_assign(contacts[0].force);
+            load.fixed_rows_mut::<3>(3).add_assign(-contacts[0].other_moment);
+        }
+        load
+    };
+    let mut differences = Matrix6::zeros();
+    for k in 0..6 {
+        let h = if k < 3 { 2e-9 } else { 1e-7 };
+        let slope = (load(Vector6::ith(k, h)) - load(Vector6::ith(k, -h))) / (2.0 * h);
+        differences.set_column(k, &slope);
+    }
+    assert!(share > 0.5, "centrifugal force over load {share}");
+    // About the axis nothing resists but what tilts the moment.
+    let scale = |i: usize| if i == 3 { differences[(4, 4)] } else { differences[(i, i)] }.abs();
+    for i in 0..6 {
+        for k in 0..6 {
+            let error = (ours[(i, k)] - differences[(i, k)]).abs() / (scale(i) * scale(k)).sqrt();
+            assert!(error < 1e-5, "{i} by {k}: {:e} {:e}", ours[(i, k)], differences[(i, k)]);
+        }
     }
 }
 

@@ -44,8 +44,8 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
     for (ball, trial) in state.balls.iter_mut().zip(&workspace.balls) {
         *ball = trial.end(model.bearing.ball.radius);
     }
-    let guide = model.cage.as_ref().and_then(|cage| cage.guide());
-    let totals = Totals::of(&Solved { workspace, guide }, state.balls.len());
+    let solved = Solved { workspace, guide: model.cage_guide() };
+    let totals = Totals::of(&solved, state.balls.len());
     let mut powers = Powers {
         input: weight_power(model, &state.balls),
         friction: totals.friction_power,

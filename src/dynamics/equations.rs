@@ -322,7 +322,7 @@ impl BearingStep<'_> {
             let rows = trial.residual.len();
             workspace.border.view_mut((from, from), (rows, rows)).copy_from(&trial.block);
         }
-        let guide = self.model.cage.as_ref().and_then(|cage| cage.guide()).map(Body::from);
+        let guide = self.model.cage_guide().map(Body::from);
         if let (Some(cage), Some(guide)) = (&workspace.cage, guide)
             && let (Some(race), Some(own)) = (offsets[guide.index()], offsets[Body::Cage.index()])
         {

@@ -100,6 +100,11 @@ impl Model {
         PerRace::new(|race| self.contact(race, conditions))
     }
 
+    /// The race whose lands guide the cage; none where the balls do, or without a cage.
+    pub fn cage_guide(&self) -> Option<Race> {
+        self.cage.as_ref().and_then(CageModel::guide)
+    }
+
     /// Kalker's polynomials on a race, where they are simulated.
     pub fn polynomials(&self, race: Race) -> Option<&ScaledKalker> {
         self.raceways[race].polynomials()

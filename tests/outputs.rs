@@ -1,0 +1,679 @@
+//! Every reported quantity of a bearing against mechanics in own formulas (tests/common/mechanics.rs): values, signs,
+//! frames and units.
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{UnitQuaternion, Vector2};
+use roulement::model::Conditions;
+use roulement::model::Model;
+use roulement::model::bodies::{Body as BodyName, Race};
+use roulement::model::state::{BallState, BodyState, State};
+use roulement::scene::Scene;
+use roulement::simulation::Simulation;
+use roulement::simulation::outputs::{ContactOutput, Outputs};
+
+#[path = "common/mechanics.rs"]
+mod mechanics;
+
+use mechanics::{Body, CageDimensions, Contact, Dimensions, Land, V, grooves};
+
+const DIAMETER: f64 = 9.525e-3;
+const RADIUS: f64 = 0.5 * DIAMETER;
+const PITCH: f64 = 46e-3;
+const ANGLE: f64 = 0.44;
+const CONFORMITIES: [f64; 2] = [0.515, 0.525];
+const BALLS: usize = 9;
+const FIRST: f64 = 0.2;
+/// Silicon nitride in steel.
+const MATERIALS: [(f64, f64); 2] = [(310e9, 0.26), (206e9, 0.29)];
+const BRASS: (f64, f64) = (105e9, 0.3);
+const DENSITY: f64 = 3200.0;
+const GRAVITY: [f64; 3] = [1.0, -3.0, -9.0];
+const MASSES: [f64; 3] = [0.2, 0.3, 0.02];
+const INERTIAS: [[f64; 3]; 3] = [[6e-5, 4e-5, 4e-5], [9e-5, 6e-5, 6e-5], [1.1e-5, 6e-6, 7e-6]];
+const CLEARANCE: f64 = 0.2e-3;
+const TILT: [f64; 2] = [0.8e-3, -0.5e-3];
+const SPEEDS: [f64; 2] = [600.0, -150.0];
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Guide {
+    Inner,
+    Outer,
+    Balls,
+}
+
+fn dimensions() -> Dimensions {
+    Dimensions {
+        ball_radius: RADIUS,
+        grooves: grooves(DIAMETER, PITCH, ANGLE, CONFORMITIES),
+        materials: MATERIALS,
+        friction: 0.07,
+        damping: 0.02,
+    }
+}
+
+fn cage_dimensions(guide: Guide) -> CageDimensions {
+    let land = |race, diameter| Some((race, CLEARANCE, diameter, 2e-3));
+    CageDimensions {
+        ball_radius: RADIUS,
+        materials: [MATERIALS[0], BRASS],
+        pocket_clearance: CLEARANCE,
+        ball_friction: 0.05,
+        land_friction: 0.06,
+        damping: 0.5,
+        sphere: (guide == Guide::Balls).then_some(0.5 * PITCH),
+        lands: match guide {
+            Guide::Inner => land(0, 40e-3),
+            Guide::Outer => land(1, 52e-3),
+            Guide::Balls => None,
+        },
+    }
+}
+
+/// Thrust, radial load and tilt on turning races, the outer one on a misaligned hinge; hybrid, with a cage.
+fn scene(guide: Guide) -> String {
+    let (guided_by, lands) = match guide {
+        Guide::Inner => ("inner", "land_diameter = 0.04"),
+        Guide::Outer => ("outer", "land_diameter = 0.052"),
+        Guide::Balls => ("balls", ""),
+    };
+    let (lands, race_friction) = if lands.is_empty() {
+        (String::new(), "")
+    } else {
+        (format!("{lands}\nguidance_clearance = {CLEARANCE}\nland_width = 2e-3"), "cage_race = 0.06")
+    };
+    let body = |i: usize| format!("mass = {}\ninertia = {:?}", MASSES[i], INERTIAS[i]);
+    let [(ball_e, ball_nu), (race_e, race_nu)] = MATERIALS;
+    format!(
+        "[bearing]\nballs = {BALLS}\nball_diameter = {DIAMETER}\npitch_diameter = {PITCH}\ncontact_angle = {ANGLE}\n\
+         inner_conformity = {}\nouter_conformity = {}\nfirst_ball_azimuth = {FIRST}\n\
+         [ball]\nyoungs_modulus = {ball_e:?}\npoisson_ratio = {ball_nu}\ndensity = {DENSITY:?}\n\
+         [race]\nyoungs_modulus = {race_e:?}\npoisson_ratio = {race_nu}\n\
+         [friction]\nball_race = 0.07\nball_cage = 0.05\n{race_friction}\n\
+         [effects]\ncreep = \"saturated\"\ndamping = 0.02\ncage = true\ngravity = {GRAVITY:?}\n\
+         [cage]\n{}\npocket_clearance = {CLEARANCE}\nguided_by = \"{guided_by}\"\n{lands}\n\
+         youngs_modulus = {:?}\npoisson_ratio = {}\ndamping = 0.5\n\
+         [inner]\ndrive = \"wrench\"\n{}\n\
+         [outer]\ndrive = \"hinge\"\n{}\nmisalignment = {{ ry = {}, rz = {} }}\n\
+         [solver]\nalpha_f = 0.05\ninitial_step = 1e-6\nmax_step = 1e-5\n\
+         [load]\ninner_speed = {:?}\nouter_speed = {:?}\nx = {{ force = 1500.0 }}\ny = {{ force = 300.0 }}\n\
+         z = {{ displacement = 2e-6 }}\nry = {{ moment = 2.0 }}\nrz = {{ rotation = 2e-4 }}\n",
+        CONFORMITIES[0],
+        CONFORMITIES[1],
+        body(2),
+        BRASS.0,
+        BRASS.1,
+        body(0),
+        body(1),
+        TILT[0],
+        TILT[1],
+        SPEEDS[0],
+        SPEEDS[1],
+    )
+}
+
+fn simulation(text: &str) -> Simulation {
+    Simulation::new(&Scene::parse(text).unwrap()).unwrap()
+}
+
+fn body_of_ball(ball: &BallState) -> Body {
+    Body {
+        position: ball.position,
+        orientation: UnitQuaternion::identity(),
+        velocity: ball.velocity,
+        omega: ball.angular_velocity,
+    }
+}
+
+fn body_of(race: &BodyState) -> Body {
+    Body {
+        position: race.pose.position,
+        orientation: race.pose.orientation,
+        velocity: race.velocity,
+        omega: race.pose.orientation * race.rate,
+    }
+}
+
+/// [rad] of a ball's pocket in the cage.
+fn azimuth(j: usize) -> f64 {
+    FIRST + TAU * j as f64 / BALLS as f64
+}
+
+/// Number k of a fixed table of values in [-1, 1].
+fn number(k: usize) -> f64 {
+    (12.9898 * (k as f64 + 1.0)).sin()
+}
+
+fn vector(k: usize) -> V {
+    V::new(number(3 * k), number(3 * k + 1), number(3 * k + 2))
+}
+
+/// A state in general motion, and everything that the mechanics say of it.
+struct Case {
+    model: Model,
+    state: State,
+    outputs: Outputs,
+    balls: Vec<[Contact; 2]>,
+    pockets: Vec<(f64, Option<Contact>)>,
+    lands: Option<[Land; 2]>,
+    guide: Guide,
+}
+
+impl Case {
+    fn of(model: &Model, state: &State, guide: Guide) -> Self {
+        let races = Race::BOTH.map(|race| body_of(state.race(race)));
+        let bearing = dimensions();
+        let contacts = |ball: &BallState| {
+            [0, 1].map(|race| bearing.ball_race(race, &body_of_ball(ball), &races[race]).unwrap())
+        };
+        let dimensions = cage_dimensions(guide);
+        let cage = body_of(state.cage().unwrap());
+        let pocket = |(j, ball): (usize, &BallState)| {
+            let ball = body_of_ball(ball);
+            let (approach, _) = dimensions.pocket_place(azimuth(j), &ball, &cage);
+            (approach, dimensions.pocket(azimuth(j), &ball, &cage))
+        };
+        Self {
+            model: model.clone(),
+            state: state.clone(),
+            outputs: Outputs::new(model, state, &Conditions { friction: 0.07 }),
+            balls: state.balls.iter().map(contacts).collect(),
+            pockets: state.balls.iter().enumerate().map(pocket).collect(),
+            lands: dimensions.land(&cage, &races),
+            guide,
+        }
+    }
+
+    fn races(&self) -> [Body; 2] {
+        Race::BOTH.map(|race| body_of(self.state.race(race)))
+    }
+
+    fn cage(&self) -> Body {
+        body_of(self.state.cage().unwrap())
+    }
+}
+
+/// States around a run of a millisecond: velocities of balls, races and cage changed by some vectors times a size, and
+/// the cage pushed into pockets and lands.
+fn cases() -> Vec<Case> {
+    let mut cases = vec![];
+    for (g, guide) in [Guide::Outer, Guide::Inner, Guide::Balls].into_iter().enumerate() {
+        let mut simulation = simulation(&scene(guide));
+        simulation.advance(1e-3).unwrap();
+        for (k, size) in [0.003, 0.03, 0.3].into_iter().enumerate() {
+            let mut state = simulation.state().clone();
+            let seed = 100 * g + 1000 * k;
+            for (j, ball) in state.balls.iter_mut().enumerate() {
+                ball.velocity += vector(seed + 2 * j) * size;
+                ball.angular_velocity += vector(seed + 2 * j + 1) * (300.0 * size);
+                ball.position += vector(seed + j + 50) * 1e-7;
+            }
+            for (i, (_, race)) in state.bodies.iter_mut().take(2).enumerate() {
+                race.velocity += vector(seed + 30 + i) * (0.3 * size);
+                race.rate += vector(seed + 33 + i) * (100.0 * size);
+                race.turned = 3.0 + i as f64;
+            }
+            let cage = state.bodies.get_mut(BodyName::Cage).unwrap();
+            let push = 1.13 * 0.5 * CLEARANCE;
+            let angle = 1.1 + 2.0 * k as f64;
+            cage.pose.position += V::new(1e-5, push * angle.cos(), push * angle.sin());
+            cage.pose.orientation = UnitQuaternion::new(V::new(2e-4, 3e-4, -2e-4)) * cage.pose.orientation;
+            // Turned about its own axis until a ball is 2 um deep in its pocket.
+            let depth = |cage: &BodyState| {
+                let (cage, dimensions) = (body_of(cage), cage_dimensions(guide));
+                let place = |(j, ball)| dimensions.pocket_place(azimuth(j), &body_of_ball(ball), &cage).0;
+                state.balls.iter().enumerate().map(place).fold(f64::NEG_INFINITY, f64::max)
+            };
+            while depth(cage) < 2e-6 {
+                cage.pose.orientation *= UnitQuaternion::new(V::x() * 1e-4);
+            }
+            cage.velocity += vector(seed + 40) * 0.1;
+            cage.rate += vector(seed + 41) * 5.0;
+            cage.turned = 7.0;
+            cases.push(Case::of(simulation.model(), &state, guide));
+        }
+    }
+    cases
+}
+
+#[track_caller]
+fn close(what: &str, value: f64, expected: f64, tolerance: f64, scale: f64) {
+    let error = (value - expected).abs();
+    assert!(error <= tolerance * scale.abs().max(expected.abs()), "{what}: {value:e}, expected {expected:e}");
+}
+
+#[track_caller]
+fn close_vector(what: &str, value: &V, expected: &V, tolerance: f64, scale: f64) {
+    assert!(
+        (value - expected).norm() <= tolerance * scale.abs().max(expected.norm()),
+        "{what}: {value}, expected {expected}"
+    );
+}
+
+#[test]
+fn closed_form_ball_race_contacts() {
+    let (mut stick, mut slide) = (0, 0);
+    for case in cases() {
+        for (j, ball) in case.outputs.balls.iter().enumerate() {
+            for (race, output) in [(0, &ball.inner), (1, &ball.outer)] {
+                let (body, contact) = (case.races()[race], case.balls[j][race]);
+                let ContactOutput { load, contact_angle, .. } = *output;
+                close("load", load, contact.load, 1e-7, 0.0);
+                // Of the force on the ball for the inner race, of the opposite for the outer one; relative to the race.
+                let outwards = contact.normal * if race == 0 { -1.0 } else { 1.0 };
+                let axial = outwards.dot(&body.axis());
+                close("contact angle", contact_angle, axial.asin(), 1e-9, 1.0);
+                assert!(contact_angle > 0.1);
+                close("semi-axis along", output.semi_axis_rolling, contact.semi[0], 1e-7, 0.0);
+                close("semi-axis across", output.semi_axis_transverse, contact.semi[1], 1e-7, 0.0);
+                let pressure = 3.0 * contact.load / (2.0 * PI * contact.semi[0] * contact.semi[1]);
+                close("pressure", output.peak_pressure, pressure, 1e-7, 0.0);
+                let friction = &contact.friction;
+                let c = (contact.semi[0] * contact.semi[1]).sqrt();
+                let seen = [output.creepage_longitudinal, output.creepage_lateral, output.creepage_spin * c];
+                let [xi, eta, phi] = friction.creepages;
+                for (seen, expected) in seen.into_iter().zip([xi, eta, phi * c]) {
+                    close("creepage", seen, expected, 1e-6, 1e-3);
+                }
+                // Between the independent coefficients, which are good to 1e-3 and interpolated.
+                let limit = 0.07 * contact.load;
+                close("force along", output.force_longitudinal, friction.forces[0], 4e-3, limit);
+                close("force across", output.force_lateral, friction.forces[1], 4e-3, limit);
+                close("moment", output.spin_moment, friction.forces[2], 4e-3, limit * contact.semi[1]);
+                close("power", output.power, friction.power, 4e-3, 1e-3);
+                let used = f64::hypot(friction.forces[0], friction.forces[1]) / limit;
+                stick += u32::from(used < 0.5);
+                slide += u32::from(used > 0.95);
+            }
+        }
+    }
+    assert!(stick > 10 && slide > 10, "{stick} {slide}");
+}
+
+#[test]
+fn invariant_friction_opposes_each_slip() {
+    // Whatever the law: where one slip rules, its force is against it.
+    let mut seen = [0; 3];
+    for case in cases() {
+        for (j, ball) in case.outputs.balls.iter().enumerate() {
+            for (race, output) in [(0, &ball.inner), (1, &ball.outer)] {
+                let c = (output.semi_axis_rolling * output.semi_axis_transverse).sqrt();
+                let slips = case.balls[j][race].friction.creepages;
+                let sizes = [slips[0], slips[1], slips[2] * c].map(f64::abs);
+                let forces = [output.force_longitudinal, output.force_lateral, output.spin_moment];
+                for i in 0..3 {
+                    if sizes[i] > 0.75 * sizes.iter().sum::<f64>() {
+                        assert!(forces[i] * slips[i] < 0.0, "{i}: {forces:?} {slips:?}");
+                        seen[i] += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(seen.iter().all(|n| *n > 3), "{seen:?}");
+}
+
+#[test]
+fn closed_form_balls() {
+    for case in cases() {
+        let outer = case.races()[1];
+        let tilt = case.state.race(Race::Outer).pose.orientation * V::x();
+        for (ball, state) in case.outputs.balls.iter().zip(&case.state.balls) {
+            assert_eq!((ball.position, ball.angular_velocity), (state.position, state.angular_velocity));
+            // In a frame that tilts with the outer race but does not spin, azimuth from its y towards its z.
+            let angle = V::x().cross(&tilt);
+            let frame = UnitQuaternion::new(angle * (angle.norm().asin() / angle.norm()));
+            let offset = |t: f64| state.position + state.velocity * t - outer.after(t).position;
+            let seen = frame.inverse() * offset(0.0);
+            close("azimuth", ball.azimuth, seen.z.atan2(seen.y), 1e-10, 1.0);
+            // Swept angle about the axis as it stands.
+            let around = |t: f64| frame.inverse() * offset(t);
+            let (after, before) = (around(1e-7), around(-1e-7));
+            let swept = (before.y * after.z - before.z * after.y) / (before.yz().norm() * after.yz().norm());
+            close("orbital speed", ball.orbital_speed, swept.asin() / 2e-7, 1e-6, 1.0);
+        }
+    }
+}
+
+#[test]
+fn closed_form_pockets() {
+    let mut touching = 0;
+    for case in cases() {
+        for (ball, (approach, contact)) in case.outputs.balls.iter().zip(&case.pockets) {
+            let pocket = ball.pocket.unwrap();
+            close("approach", pocket.approach, *approach, 1e-9, CLEARANCE);
+            let Some(contact) = contact else {
+                assert_eq!((pocket.load, pocket.force, pocket.power), (0.0, V::zeros(), 0.0));
+                continue;
+            };
+            touching += 1;
+            close("load", pocket.load, contact.load, 1e-6, 0.0);
+            close_vector("force", &pocket.force, &contact.force, 2e-4, contact.load);
+            close("power", pocket.power, contact.friction.power, 4e-3, 0.0);
+            // Pushed back, towards the pocket's middle.
+            assert!(contact.load == 0.0 || pocket.force.dot(&contact.normal) < 0.0);
+        }
+    }
+    assert!(touching > 15, "{touching}");
+}
+
+#[test]
+fn closed_form_cage() {
+    let mut lands_touched = [0; 2];
+    for case in cases() {
+        let (cage, body) = (case.outputs.cage.unwrap(), case.cage());
+        assert_eq!((cage.pose.position, cage.pose.orientation), (body.position, body.orientation));
+        assert_eq!(cage.twist.velocity, body.velocity);
+        close_vector("angular velocity", &cage.twist.angular_velocity, &body.omega, 1e-14, 0.0);
+        assert_eq!(cage.turned, 7.0);
+        // The centre seen from the race that guides, in axes that tilt with it: along its axis, and across.
+        let guide = case.races()[usize::from(case.guide != Guide::Inner)];
+        let offset = body.position - guide.position;
+        let n = guide.axis();
+        close("axial eccentricity", cage.eccentricity.x, offset.dot(&n), 1e-10, CLEARANCE);
+        // World y and z turned by the smallest rotation that takes x to the axis (Rodrigues).
+        let tilted = |e: V| {
+            let w = V::x().cross(&n);
+            e + w.cross(&e) + w.cross(&w.cross(&e)) / (1.0 + n.x)
+        };
+        close("eccentricity y", cage.eccentricity.y, offset.dot(&tilted(V::y())), 1e-10, CLEARANCE);
+        close("eccentricity z", cage.eccentricity.z, offset.dot(&tilted(V::z())), 1e-10, CLEARANCE);
+
+        let on_cage = |sum: V, contact: &Contact| sum - contact.force;
+        let forces = case.pockets.iter().filter_map(|(_, contact)| contact.as_ref());
+        let loads: f64 = forces.clone().map(|contact| contact.load).sum();
+        close_vector("pockets", &cage.pocket_force, &forces.clone().fold(V::zeros(), on_cage), 2e-4, loads);
+        let power: f64 = forces.map(|contact| contact.friction.power).sum();
+        close("pocket power", cage.pocket_power, power, 4e-3, 0.0);
+        match &case.lands {
+            None => {
+                assert_eq!((cage.land_force, cage.land_loads, cage.land_power), (V::zeros(), [0.0; 2], 0.0));
+                assert_eq!(cage.land_approach, f64::NEG_INFINITY);
+            }
+            Some(lands) => {
+                let force = lands.iter().fold(V::zeros(), |sum, land| sum + land.force);
+                close_vector("land force", &cage.land_force, &force, 1e-8, 1.0);
+                for (side, land) in lands.iter().enumerate() {
+                    close("land load", cage.land_loads[side], land.load, 1e-8, 1.0);
+                    lands_touched[side] += u32::from(land.load > 0.0);
+                }
+                let deepest = lands[0].approach.max(lands[1].approach);
+                close("land approach", cage.land_approach, deepest, 1e-10, CLEARANCE);
+                let power = lands[0].friction_power + lands[1].friction_power;
+                close("land power", cage.land_power, power, 1e-8, 0.0);
+            }
+        }
+    }
+    assert!(lands_touched.iter().all(|n| *n > 2), "{lands_touched:?}");
+}
+
+#[test]
+fn closed_form_sums() {
+    for case in cases() {
+        let (outputs, races) = (&case.outputs, case.races());
+        let contacts = || case.balls.iter().flatten();
+        let pockets = || case.pockets.iter().filter_map(|(_, contact)| contact.as_ref());
+        let lands = || case.lands.iter().flatten();
+        let friction = contacts().chain(pockets()).map(|c| c.friction.power).sum::<f64>()
+            + lands().map(|land| land.friction_power).sum::<f64>();
+        close("friction power", outputs.friction_power, friction, 4e-3, 0.0);
+        let damping = contacts().chain(pockets()).map(|c| c.damping_power).sum::<f64>()
+            + lands().map(|land| land.damping_power).sum::<f64>();
+        close("damping power", outputs.damping_power, damping, 1e-5, 0.0);
+        // Kinetic energy by velocity and spin, elastic energy by springs.
+        let mass = DENSITY * 4.0 / 3.0 * PI * RADIUS.powi(3);
+        let kinetic = |mass: f64, inertia: V, body: &Body| {
+            let rate = body.orientation.inverse() * body.omega;
+            0.5 * mass * body.velocity.norm_squared() + 0.5 * inertia.dot(&rate.component_mul(&rate))
+        };
+        let mut energy = contacts().chain(pockets()).map(|c| c.elastic_energy).sum::<f64>()
+            + lands().map(|land| land.elastic_energy).sum::<f64>();
+        for ball in &case.state.balls {
+            energy += kinetic(mass, V::repeat(0.4 * mass * RADIUS * RADIUS), &body_of_ball(ball));
+        }
+        for (i, body) in [races[0], races[1], case.cage()].iter().enumerate() {
+            energy += kinetic(MASSES[i], V::from(INERTIAS[i]), body);
+        }
+        close("energy", outputs.stored_energy, energy, 1e-9, 0.0);
+        // Cage speed about its own axis; slip against rolling at the mean contact angle, weighted by load.
+        let cage = case.cage();
+        let speed = cage.omega.dot(&cage.axis());
+        close("cage speed", outputs.cage_speed, speed, 1e-12, 0.0);
+        let (mut cosine, mut load) = (0.0, 0.0);
+        for of_ball in &case.balls {
+            for (race, contact) in of_ball.iter().enumerate() {
+                cosine += contact.load * (1.0 - contact.normal.dot(&races[race].axis()).powi(2)).sqrt();
+                load += contact.load;
+            }
+        }
+        let gamma = DIAMETER / PITCH * cosine / load;
+        let spins = races.map(|race| race.omega.dot(&race.axis()));
+        let rolling = 0.5 * ((1.0 - gamma) * spins[0] + (1.0 + gamma) * spins[1]);
+        close("cage slip", outputs.cage_slip, 1.0 - speed / rolling, 1e-9, 1.0);
+        assert_eq!(outputs.time, 1e-3);
+        assert!(case.model.stiffness_outputs == outputs.condensed.is_some());
+    }
+}
+
+/// A race and what the mechanics say that contacts exert on it, about its origin.
+fn wrench_on_race(case: &Case, race: usize) -> (V, V) {
+    let mut sum = (V::zeros(), V::zeros());
+    for of_ball in &case.balls {
+        sum = (sum.0 - of_ball[race].force, sum.1 + of_ball[race].other_moment);
+    }
+    if usize::from(case.guide != Guide::Inner) == race {
+        for land in case.lands.iter().flatten() {
+            sum = (sum.0 - land.force, sum.1 + land.other_moment);
+        }
+    }
+    sum
+}
+
+#[test]
+fn closed_form_races_of_a_run() {
+    for guide in [Guide::Outer, Guide::Inner, Guide::Balls] {
+        let mut simulation = simulation(&scene(guide));
+        let mut turned = [0.0; 2];
+        // The cage is thrown against pockets and lands on the way.
+        for point in 0..=6 {
+            if point > 0 {
+                simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
+                let end = f64::from(point) * 0.5e-3;
+                turned = [0, 1].map(|i: usize| turned[i] + SPEEDS[i] * (end - simulation.time()));
+                simulation.advance(end).unwrap();
+            }
+            let (outputs, races) =
+                (simulation.outputs(), [&simulation.outputs().inner, &simulation.outputs().outer]);
+            let case = Case::of(simulation.model(), simulation.state(), guide);
+            for (i, race) in races.into_iter().enumerate() {
+                let body = case.races()[i];
+                assert_eq!((race.pose.position, race.pose.orientation), (body.position, body.orientation));
+                assert_eq!(race.twist.velocity, body.velocity);
+                close_vector("angular velocity", &race.twist.angular_velocity, &body.omega, 1e-14, 0.0);
+                close("spin", body.omega.dot(&body.axis()), SPEEDS[i], 1e-9, 0.0);
+                close("turned", race.turned, turned[i], 1e-9, 1e-3);
+                let (force, moment) = wrench_on_race(&case, i);
+                let loads: f64 = case.balls.iter().map(|contacts| contacts[i].load).sum();
+                close_vector("force", &race.wrench.force, &force, 1e-4, loads);
+                close_vector("moment", &race.wrench.moment, &moment, 1e-4, loads * 0.5 * PITCH);
+                // Only friction turns a race about its axis: creep coefficients are good to a few per mille.
+                let axial = moment.dot(&body.axis());
+                let friction = 0.07 * loads * 0.5 * PITCH;
+                close("axial moment", race.wrench.moment.dot(&body.axis()), axial, 4e-3, 0.02 * friction);
+                if i == 0 {
+                    close("friction torque", outputs.friction_torque, -axial, 4e-3, 0.02 * friction);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn closed_form_friction_torque_turns_with_the_speed() {
+    // Against the inner race's rotation: positive either way round.
+    for speed in [600.0, -600.0] {
+        let text = scene(Guide::Outer)
+            .replace("inner_speed = 600.0", &format!("inner_speed = {speed:?}"))
+            .replace("outer_speed = -150.0", "outer_speed = 0.0");
+        let mut simulation = simulation(&text);
+        simulation.advance(3e-3).unwrap();
+        let outputs = simulation.outputs();
+        let torque = outputs.inner.wrench.moment.dot(&(outputs.inner.pose.orientation * V::x()));
+        assert!(outputs.friction_torque > 1e-3 && torque * speed < 0.0);
+        close("torque", outputs.friction_torque, torque.abs(), 1e-12, 0.0);
+    }
+}
+
+#[test]
+fn closed_form_drive_torque_and_reactions_balance_a_race() {
+    // Consistent at the start and after settling: Newton's and Euler's laws about each race's own origin.
+    let mut text = scene(Guide::Outer);
+    for ramp in [false, true] {
+        if ramp {
+            text = text.replace("inner_speed = 600.0", "inner_speed = [[0.0, 600.0], [0.1, 1600.0]]");
+        }
+        let mut simulation = simulation(&text);
+        for point in 1..=60 {
+            simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
+            simulation.advance(f64::from(point) * 1e-4).unwrap();
+        }
+        if ramp {
+            // Driven up by 1e4 rad/s2.
+            let inner = &simulation.outputs().inner;
+            let axis = inner.pose.orientation * V::x();
+            let moment = inner.wrench.moment + simulation.inputs().inner.applied.moment;
+            let expected = 1e4 * INERTIAS[0][0] - moment.dot(&axis);
+            close("drive torque", inner.drive_torque, expected, 2e-3, 0.01);
+            continue;
+        }
+        // The scheme weighs forces of both ends of a step: short ones, between which forces hardly change.
+        let mut held_about_z = Vector2::zeros();
+        for point in 1..=10 {
+            simulation.advance(6e-3 + f64::from(point) * 2e-7).unwrap();
+            let inner = &simulation.outputs().inner;
+            let about_z = inner.wrench.moment.z;
+            held_about_z += 0.1 * Vector2::new(inner.reaction.moment.z, about_z);
+        }
+        let (outputs, inputs) = (simulation.outputs(), simulation.inputs());
+        let weight = |i: usize| V::from(GRAVITY) * MASSES[i];
+        // The hinge holds place and axis; the spin is steady: nothing is left over.
+        let outer = &outputs.outer;
+        let scale = outer.wrench.force.norm();
+        close_vector("hinge force", &outer.reaction.force, &-(outer.wrench.force + weight(1)), 1e-5, scale);
+        close_vector(
+            "hinge moment",
+            &outer.reaction.moment,
+            &-outer.wrench.moment,
+            1e-5,
+            scale * 0.5 * PITCH,
+        );
+        let axis = outer.pose.orientation * V::x();
+        close("axis", axis.z, -(TILT[0].hypot(TILT[1]).sin() / TILT[0].hypot(TILT[1])) * TILT[0], 1e-9, 1.0);
+        close("drive torque", outer.drive_torque, -outer.wrench.moment.dot(&axis), 1e-3, 1e-4);
+        close("drive torque", outer.drive_torque, outer.reaction.moment.dot(&axis), 1e-12, 1e-3);
+
+        // The inner race is held along z and about world z, and driven; it may move in the other directions.
+        let inner = &outputs.inner;
+        let axis = inner.pose.orientation * V::x();
+        let held = inner.wrench.force.z + inputs.inner.applied.force.z + weight(0).z;
+        close("force along z", inner.reaction.force.z, -held, 1e-5, scale);
+        assert_eq!((inner.reaction.force.x, inner.reaction.force.y), (0.0, 0.0));
+        assert!(held.abs() > 10.0);
+        let drive = -(inner.wrench.moment + inputs.inner.applied.moment).dot(&axis);
+        close("drive torque", inner.drive_torque, drive, 2e-3, 0.01);
+        assert!(drive.abs() > 1e-3);
+        // What holds the tilt about z does not act about the axis nor about y.
+        let across = inner.reaction.moment - axis * inner.drive_torque;
+        assert!(across.dot(&axis).abs() < 1e-9 * across.norm() && across.y.abs() < 2e-3 * across.norm());
+        // Multipliers of places and tilts go to and fro from step to step; their mean holds.
+        close("moment about z", held_about_z[0], -held_about_z[1], 5e-3, 0.1);
+        assert!(held_about_z[1].abs() > 0.05);
+    }
+}
+
+#[test]
+fn closed_form_work_and_losses_by_quadrature() {
+    // Every microsecond over half a millisecond: power of loads, drives and weights; and what friction and damping took.
+    let mut simulation = simulation(&scene(Guide::Outer));
+    simulation.advance(1e-3).unwrap();
+    let powers = |simulation: &Simulation| {
+        let (o, state) = (simulation.outputs(), simulation.state());
+        let applied = &simulation.inputs().inner.applied;
+        let mut input =
+            applied.force.dot(&o.inner.twist.velocity) + applied.moment.dot(&o.inner.twist.angular_velocity);
+        for race in [&o.inner, &o.outer] {
+            // Held directions do not move: of the reactions only the drive works.
+            input += race.drive_torque * race.twist.angular_velocity.dot(&(race.pose.orientation * V::x()));
+        }
+        let gravity = V::from(GRAVITY);
+        let mass = DENSITY * 4.0 / 3.0 * PI * RADIUS.powi(3);
+        input += state.balls.iter().map(|ball| mass * gravity.dot(&ball.velocity)).sum::<f64>();
+        let bodies = [&o.inner.twist.velocity, &o.outer.twist.velocity, &o.cage.unwrap().twist.velocity];
+        input += bodies.iter().zip(MASSES).map(|(v, mass)| mass * gravity.dot(v)).sum::<f64>();
+        [input, o.friction_power + o.damping_power]
+    };
+    let first = simulation.outputs().clone();
+    let (mut before, mut sums) = (powers(&simulation), [0.0; 2]);
+    for point in 1..=500 {
+        simulation.advance(1e-3 + f64::from(point) * 1e-6).unwrap();
+        let after = powers(&simulation);
+        sums = [0, 1].map(|i: usize| sums[i] + 0.5e-6 * (before[i] + after[i]));
+        before = after;
+    }
+    let last = simulation.outputs();
+    close("work", last.work - first.work, sums[0], 1e-3, 0.0);
+    close("dissipated", last.dissipated - first.dissipated, sums[1], 1e-6, 0.0);
+    let stored = last.stored_energy - first.stored_energy;
+    close("balance", last.work - first.work, last.dissipated - first.dissipated + stored, 1e-3, 0.0);
+}
+
+#[test]
+fn closed_form_without_a_cage_the_mean_orbit_is_the_cage_speed() {
+    let text = include_str!("../scenes/thrust.toml");
+    let mut simulation = simulation(text);
+    simulation.advance(1e-3).unwrap();
+    let mut state = simulation.state().clone();
+    for (j, ball) in state.balls.iter_mut().enumerate() {
+        ball.velocity *= 1.0 + 0.01 * j as f64;
+    }
+    let outputs = Outputs::new(simulation.model(), &state, &Conditions { friction: 0.08 });
+    let speeds = outputs.balls.iter().map(|ball| {
+        let p = ball.position;
+        let state = state.balls.iter().find(|state| state.position == p).unwrap();
+        (p.y * state.velocity.z - p.z * state.velocity.y) / (p.y * p.y + p.z * p.z)
+    });
+    let mean = speeds.sum::<f64>() / 10.0;
+    close("cage speed", outputs.cage_speed, mean, 1e-12, 0.0);
+    assert!(outputs.cage.is_none() && outputs.balls.iter().all(|ball| ball.pocket.is_none()));
+    // A race of given motion: the torque that would balance the bearing's, and no reaction.
+    let outer = &outputs.outer;
+    close("drive torque", outer.drive_torque, -outer.wrench.moment.x, 1e-12, 0.0);
+    assert_eq!((outer.reaction.force, outer.reaction.moment), (V::zeros(), V::zeros()));
+    // Balls alone and the inner race store energy: a fixed race does not.
+    let still = simulation.outputs();
+    assert!(still.stored_energy > 0.0 && still.time == 1e-3);
+    // Races at rest have no speed to compare with.
+    let rest = text.replace("inner_speed = \"6000 rpm\"", "inner_speed = 0.0");
+    assert_eq!(Simulation::new(&Scene::parse(&rest).unwrap()).unwrap().outputs().cage_slip, 0.0);
+}
+
+#[test]
+fn closed_form_counters_of_equal_steps() {
+    let text =
+        include_str!("../scenes/thrust.toml").replace("initial_step = \"1 us\"", "initial_step = \"10 us\"");
+    let mut simulation = simulation(&text);
+    simulation.advance(2e-3).unwrap();
+    let s = simulation.outputs().statistics;
+    // The last step may leave a rounded rest.
+    assert!((200..=201).contains(&s.steps) && s.rejected_error + s.rejected_newton == 0, "{s:?}");
+    // A step evaluates 20 contacts at least once, and each correction once more.
+    assert!(s.newton.iterations >= 200 && s.newton.factorisations >= 200, "{s:?}");
+    assert_eq!(s.contact_tangents, 20 * s.newton.factorisations, "{s:?}");
+    let evaluations = s.contact_values + s.contact_tangents;
+    assert!(
+        evaluations >= 20 * s.newton.iterations && evaluations <= 40 * (s.newton.iterations + 200),
+        "{s:?}"
+    );
+    assert_eq!((s.polynomials, s.polynomial_failures, s.second_guesses), (0, 0, 0));
+}
