@@ -73,8 +73,8 @@ pub enum StepFailure {
     Error(Worst),
 }
 
-/// Tries one step of `h` [s]. On success the state is the new one; otherwise only its statistics, step control and kept
-/// matrix have changed.
+/// Tries one step of `h` [s]. On success the state is the new one; otherwise only its statistics, step control, kept
+/// matrix and differences to the table have changed.
 ///
 /// # Errors
 /// See [`StepFailure`]; the step control has then been told.
@@ -88,6 +88,8 @@ pub fn try_step(
     let mut buffers = std::mem::take(&mut workspace.newton);
     let mut unknowns = std::mem::take(&mut workspace.unknowns);
     workspace.kept = std::mem::take(&mut state.matrix);
+    // Here and not at the end of a step, so that a state keeps those that its forces were computed with.
+    renew_polynomials(model, state, boundary);
     let mut statistics = state.statistics;
     let mut equations = BearingStep::new(model, state, boundary, h, workspace);
     equations.guess_steady_orbit(&mut unknowns);
@@ -132,6 +134,5 @@ pub fn try_step(
         return Err(failure);
     }
     accept(model, state, boundary, &step, workspace);
-    renew_polynomials(model, state, boundary);
     Ok(())
 }

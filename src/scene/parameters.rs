@@ -66,17 +66,10 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Value in a scene; none if the scene makes no use of it.
-    pub fn value(&self, scene: &Scene) -> Option<f64> {
-        (self.place)(&mut scene.clone()).copied()
-    }
-
-    /// Gives it another value; [`Scene::check`] tells whether that is allowed. Without effect if the scene makes no use
-    /// of it.
-    pub fn set(&self, scene: &mut Scene, value: f64) {
-        if let Some(place) = (self.place)(scene) {
-            *place = value;
-        }
+    /// Its place in a scene, to be read or changed; [`Scene::check`] tells whether a value is allowed. None if the scene
+    /// makes no use of it.
+    pub fn place<'a>(&self, scene: &'a mut Scene) -> Option<&'a mut f64> {
+        (self.place)(scene)
     }
 }
 

@@ -17,8 +17,9 @@ fn conflict(key: &str, why: &str) -> SceneError {
 
 /// Checks every value of a scene against its range, and the keys against one another.
 pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
+    let mut copy = scene.clone();
     for parameter in &PARAMETERS {
-        if let Some(value) = parameter.value(scene) {
+        if let Some(&mut value) = parameter.place(&mut copy) {
             parameter.range.check(parameter.key, value)?;
         }
     }

@@ -288,7 +288,9 @@ impl Simulation {
             let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
             let (cause, worst) = match tried {
                 Ok(()) => {
-                    if let Some(start) = start {
+                    if let Some(mut start) = start {
+                        // Renewed by the step itself.
+                        start.differences.clone_from(&self.state.differences);
                         let perturbed = perturbed.iter_mut().map(|p| {
                             let boundary = p.paths.boundary(boundary.time, p.inputs.conditions());
                             (&mut p.state, boundary)

@@ -8,7 +8,7 @@
 
 use super::instance::{Instance, Outcome, error};
 use super::state_machine::Phase;
-use crate::interface::variables::{Causality, Kind, RaceQuantity, Source, Variable};
+use crate::interface::variables::{Causality, InputKind, Kind, Variable};
 use crate::simulation::inputs::Inputs;
 use crate::simulation::outputs::Outputs;
 use crate::simulation::{Simulation, SimulationError};
@@ -29,29 +29,19 @@ struct Changes {
 }
 
 impl Changes {
+    /// [unit] change of an input; not a number for other variables, which are no knowns.
     fn of(&self, row: &Variable) -> f64 {
-        use RaceQuantity as Q;
-        match row.source {
-            Source::Race(_, Q::Position(_)) => self.displacement,
+        match row.input_kind() {
+            Some(InputKind::Displacement) => self.displacement,
             // A quaternion turns by twice the change of its components.
-            Source::Race(_, Q::Orientation(_)) => 0.5 * self.displacement / self.length,
-            Source::Race(_, Q::Angle(_)) => self.displacement / self.length,
-            Source::Race(_, Q::Velocity(_)) => self.velocity,
-            Source::Race(_, Q::AngularVelocity(_) | Q::Speed) => self.velocity / self.length,
-            Source::Race(_, Q::AppliedForce(_)) => self.force,
-            Source::Race(_, Q::AppliedMoment(_)) => self.force * self.length,
-            Source::Friction => self.friction,
-            // Neither outputs nor parameters are knowns.
-            Source::Race(
-                _,
-                Q::Force(_) | Q::Moment(_) | Q::ReactionForce(_) | Q::ReactionMoment(_) | Q::DriveTorque,
-            )
-            | Source::Bearing(_)
-            | Source::Condensed(_)
-            | Source::Cage(_)
-            | Source::Ball(..)
-            | Source::Contact(..)
-            | Source::Parameter(..) => f64::NAN,
+            Some(InputKind::Quaternion) => 0.5 * self.displacement / self.length,
+            Some(InputKind::Angle) => self.displacement / self.length,
+            Some(InputKind::Velocity) => self.velocity,
+            Some(InputKind::AngularVelocity) => self.velocity / self.length,
+            Some(InputKind::Force) => self.force,
+            Some(InputKind::Moment) => self.force * self.length,
+            Some(InputKind::Friction) => self.friction,
+            None => f64::NAN,
         }
     }
 }

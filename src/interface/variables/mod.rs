@@ -2,17 +2,19 @@
 //!
 //! Model description, value references, CSV headers and the documentation of a package all derive from it.
 
+mod race_rows;
 mod rows;
 pub mod units;
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use thiserror::Error;
 
-use crate::numerics::motion::{Pose, Twist, Wrench};
+use crate::model::bodies::{PerRace, Race};
 use crate::scene::parameters::Parameter;
 use crate::scene::{Orientation, Scene};
-use crate::simulation::inputs::{Inputs, RaceInput};
-use crate::simulation::outputs::{BallOutput, CageOutput, ContactOutput, Outputs, RaceOutput};
+use crate::simulation::inputs::Inputs;
+use crate::simulation::outputs::{BallOutput, CageOutput, ContactOutput, Outputs};
+pub use race_rows::InputKind;
+use race_rows::{RaceSetting, RaceVariable};
 use units::Unit;
 
 /// FMI causality.
@@ -35,56 +37,6 @@ pub enum Kind {
     Integer,
 }
 
-/// Which of the two races.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Race {
-    /// Inner race.
-    Inner,
-    /// Outer race.
-    Outer,
-}
-
-impl Race {
-    /// First part of its variables' names.
-    pub fn prefix(self) -> &'static str {
-        match self {
-            Self::Inner => "inner",
-            Self::Outer => "outer",
-        }
-    }
-}
-
-/// A quantity of a race, with its component.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RaceQuantity {
-    /// Position of the race frame's origin.
-    Position(usize),
-    /// Quaternion component w, x, y, z.
-    Orientation(usize),
-    /// Cardan angle.
-    Angle(usize),
-    /// Velocity of the origin.
-    Velocity(usize),
-    /// Angular velocity.
-    AngularVelocity(usize),
-    /// Force of the bearing on the race.
-    Force(usize),
-    /// Moment of the bearing on the race.
-    Moment(usize),
-    /// External force.
-    AppliedForce(usize),
-    /// External moment.
-    AppliedMoment(usize),
-    /// Prescribed spin speed.
-    Speed,
-    /// Torque that keeps it.
-    DriveTorque,
-    /// Force of the hinge on the race.
-    ReactionForce(usize),
-    /// Moment of the hinge on the race.
-    ReactionMoment(usize),
-}
-
 /// A component of the condensed stiffness or damping: row of the load, column of the displacement or velocity; force
 /// or translation x, y, z first, then moment or rotation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,8 +55,8 @@ type FromContact = fn(&ContactOutput) -> f64;
 /// Where a variable's value comes from.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
-    /// A race.
-    Race(Race, RaceQuantity),
+    /// A component of a quantity of a race.
+    Race(Race, &'static RaceVariable, usize),
     /// The friction coefficient.
     Friction,
     /// The bearing as a whole.
@@ -166,8 +118,6 @@ pub enum InputError {
     Friction(f64),
 }
 
-/// [-] deviation of a quaternion's norm from 1 that is corrected; more is refused.
-const NORM_TOLERANCE: f64 = 1e-3;
 /// [-] largest friction coefficient that an importer may give.
 const MAX_FRICTION: f64 = 2.0;
 
@@ -175,7 +125,6 @@ const MAX_FRICTION: f64 = 2.0;
 #[derive(Clone, Debug)]
 pub struct Variables {
     rows: Vec<Variable>,
-    cardan: bool,
 }
 
 impl Variables {
@@ -188,10 +137,9 @@ impl Variables {
 
     /// What can change in a run, with or without every ball.
     pub fn moving(scene: &Scene, per_ball: bool) -> Self {
-        let cardan = scene.interface.orientation == Orientation::Cardan;
-        let mut table = Self { rows: vec![], cardan };
-        table.add_race(Race::Inner, scene.inner.drive);
-        table.add_race(Race::Outer, scene.outer.drive);
+        let mut table = Self { rows: vec![] };
+        table.add_race(Race::Inner, scene.inner.drive, scene.interface.orientation);
+        table.add_race(Race::Outer, scene.outer.drive, scene.interface.orientation);
         table.add_bearing();
         if scene.effects.stiffness_outputs {
             table.add_condensed();
@@ -224,25 +172,11 @@ impl Variables {
             }),
             Source::Cage(get) => outputs.cage.as_ref().map_or(0.0, get),
             Source::Ball(ball, get) => outputs.balls.get(ball).map_or(0.0, get),
-            Source::Contact(ball, race, get) => outputs
-                .balls
-                .get(ball)
-                .map_or(0.0, |ball| get(if race == Race::Inner { &ball.inner } else { &ball.outer })),
-            Source::Race(race, quantity) => {
-                let (input, output) = match race {
-                    Race::Inner => (&inputs.inner, &outputs.inner),
-                    Race::Outer => (&inputs.outer, &outputs.outer),
-                };
-                match row.causality {
-                    Causality::Input => {
-                        race_value(quantity, &input.pose, &input.twist, &input.applied, input, output, 0.0)
-                    }
-                    Causality::Output | Causality::Parameter => {
-                        let (pose, twist) = (&output.pose, &output.twist);
-                        race_value(quantity, pose, twist, &output.wrench, input, output, output.turned)
-                    }
-                }
-            }
+            Source::Contact(ball, race, get) => outputs.balls.get(ball).map_or(0.0, |ball| get(&ball[race])),
+            Source::Race(race, quantity, component) => match (row.causality, &quantity.input) {
+                (Causality::Input, Some(access)) => (access.get)(&inputs[race], component),
+                _ => (quantity.read)(&outputs[race], component),
+            },
         }
     }
 
@@ -255,7 +189,9 @@ impl Variables {
     pub fn set_parameters(&self, scene: &mut Scene, values: &[f64]) {
         for (row, value) in self.rows.iter().zip(values) {
             if let Source::Parameter(parameter, _) = row.source {
-                parameter.set(scene, *value);
+                if let Some(place) = parameter.place(scene) {
+                    *place = *value;
+                }
             }
         }
     }
@@ -270,17 +206,9 @@ impl Variables {
 
     /// Rates of all rows that inputs were given with: those of a twist.
     pub fn rates(&self, inputs: &Inputs) -> Vec<f64> {
-        let rate = |row: &Variable| match row.source {
-            Source::Race(race, quantity) if row.causality == Causality::Input => {
-                let rate = match race {
-                    Race::Inner => &inputs.inner.twist_rate,
-                    Race::Outer => &inputs.outer.twist_rate,
-                };
-                match quantity {
-                    RaceQuantity::Velocity(i) => rate.velocity[i],
-                    RaceQuantity::AngularVelocity(i) => rate.angular_velocity[i],
-                    _ => 0.0,
-                }
+        let rate = |row: &Variable| match (row.causality, row.source) {
+            (Causality::Input, Source::Race(race, RaceVariable { input: Some(access), .. }, component)) => {
+                (access.rate)(&inputs[race], component)
             }
             _ => 0.0,
         };
@@ -293,7 +221,7 @@ impl Variables {
     /// If a value is not finite, a quaternion far from unit length, or friction out of range; names the variable.
     pub fn inputs(&self, values: &[f64], rates: &[f64], base: &Inputs) -> Result<Inputs, InputError> {
         let mut inputs = *base;
-        let mut components = [[None::<f64>; 4]; 2];
+        let mut races = PerRace::new(|race| RaceSetting::new(&base[race]));
         for ((row, &value), &rate) in self.rows.iter().zip(values).zip(rates) {
             if row.causality != Causality::Input {
                 continue;
@@ -306,108 +234,26 @@ impl Variables {
             match row.source {
                 Source::Friction if (0.0..=MAX_FRICTION).contains(&value) => inputs.friction = value,
                 Source::Friction => return Err(InputError::Friction(value)),
-                Source::Race(race, quantity) => {
-                    let (input, index) = match race {
-                        Race::Inner => (&mut inputs.inner, 0),
-                        Race::Outer => (&mut inputs.outer, 1),
-                    };
-                    match quantity {
-                        RaceQuantity::Orientation(i) | RaceQuantity::Angle(i) => {
-                            components[index][i] = Some(value);
-                        }
-                        other => set_race_value(other, value, rate, input),
-                    }
+                Source::Race(race, RaceVariable { input: Some(access), .. }, component) => {
+                    (access.set)(&mut races[race], component, value, rate);
                 }
-                Source::Bearing(_)
-                | Source::Condensed(_)
-                | Source::Cage(_)
-                | Source::Ball(..)
-                | Source::Contact(..)
-                | Source::Parameter(..) => {}
-            }
-        }
-        for (index, name) in [(0, "inner"), (1, "outer")] {
-            let input = if index == 0 { &mut inputs.inner } else { &mut inputs.outer };
-            match components[index] {
-                [Some(w), Some(x), Some(y), Some(z)] => {
-                    let quaternion = Quaternion::new(w, x, y, z);
-                    let norm = quaternion.norm();
-                    if (norm - 1.0).abs() > NORM_TOLERANCE {
-                        return Err(InputError::Quaternion { name: format!("{name}.orientation"), norm });
-                    }
-                    input.pose.orientation = UnitQuaternion::new_normalize(quaternion);
-                }
-                [Some(x), Some(y), Some(z), None] => input.pose.orientation = from_cardan(x, y, z),
                 _ => {}
             }
         }
+        inputs.inner = races.inner.finish(Race::Inner)?;
+        inputs.outer = races.outer.finish(Race::Outer)?;
         Ok(inputs)
     }
 }
 
-/// Orientation of Cardan angles, intrinsic x-y-z: `R = Rx(x) Ry(y) Rz(z)`.
-fn from_cardan(x: f64, y: f64, z: f64) -> UnitQuaternion<f64> {
-    let turn = |axis: Vector3<f64>, angle: f64| UnitQuaternion::new(axis * angle);
-    turn(Vector3::x(), x) * turn(Vector3::y(), y) * turn(Vector3::z(), z)
-}
-
-/// Cardan angles of an orientation; the first is the one nearest to `turned` [rad].
-fn to_cardan(orientation: &UnitQuaternion<f64>, turned: f64) -> [f64; 3] {
-    let m = orientation.to_rotation_matrix();
-    let y = m[(0, 2)].clamp(-1.0, 1.0).asin();
-    let x = (-m[(1, 2)]).atan2(m[(2, 2)]);
-    let z = (-m[(0, 1)]).atan2(m[(0, 0)]);
-    let turns = ((turned - x) / std::f64::consts::TAU).round();
-    [x + turns * std::f64::consts::TAU, y, z]
-}
-
-fn race_value(
-    quantity: RaceQuantity,
-    pose: &Pose,
-    twist: &Twist,
-    wrench: &Wrench,
-    input: &RaceInput,
-    output: &RaceOutput,
-    turned: f64,
-) -> f64 {
-    match quantity {
-        RaceQuantity::Position(i) => pose.position[i],
-        RaceQuantity::Orientation(0) => pose.orientation.w,
-        RaceQuantity::Orientation(i) => pose.orientation.imag()[i - 1],
-        RaceQuantity::Angle(i) => to_cardan(&pose.orientation, turned)[i],
-        RaceQuantity::Velocity(i) => twist.velocity[i],
-        RaceQuantity::AngularVelocity(i) => twist.angular_velocity[i],
-        RaceQuantity::Force(i) | RaceQuantity::AppliedForce(i) => wrench.force[i],
-        RaceQuantity::Moment(i) | RaceQuantity::AppliedMoment(i) => wrench.moment[i],
-        RaceQuantity::Speed => input.speed,
-        RaceQuantity::DriveTorque => output.drive_torque,
-        RaceQuantity::ReactionForce(i) => output.reaction.force[i],
-        RaceQuantity::ReactionMoment(i) => output.reaction.moment[i],
-    }
-}
-
-/// Sets an input other than an orientation. A rate says how the velocity goes on; those of positions and angles are
-/// what the twist says already.
-fn set_race_value(quantity: RaceQuantity, value: f64, rate: f64, input: &mut RaceInput) {
-    match quantity {
-        RaceQuantity::Position(i) => input.pose.position[i] = value,
-        RaceQuantity::Velocity(i) => {
-            input.twist.velocity[i] = value;
-            input.twist_rate.velocity[i] = rate;
+impl Variable {
+    /// What kind of input this is; none of other variables.
+    pub fn input_kind(&self) -> Option<InputKind> {
+        match self.source {
+            _ if self.causality != Causality::Input => None,
+            Source::Friction => Some(InputKind::Friction),
+            Source::Race(_, RaceVariable { input, .. }, _) => input.map(|access| access.kind),
+            _ => None,
         }
-        RaceQuantity::AngularVelocity(i) => {
-            input.twist.angular_velocity[i] = value;
-            input.twist_rate.angular_velocity[i] = rate;
-        }
-        RaceQuantity::AppliedForce(i) => input.applied.force[i] = value,
-        RaceQuantity::AppliedMoment(i) => input.applied.moment[i] = value,
-        RaceQuantity::Speed => input.speed = value,
-        RaceQuantity::Orientation(_)
-        | RaceQuantity::Angle(_)
-        | RaceQuantity::Force(_)
-        | RaceQuantity::Moment(_)
-        | RaceQuantity::DriveTorque
-        | RaceQuantity::ReactionForce(_)
-        | RaceQuantity::ReactionMoment(_) => {}
     }
 }

@@ -1,34 +1,24 @@
 //! The rows of the table.
 
+use super::race_rows::RACE_VARIABLES;
 use super::units::{self, Unit};
 use super::{
-    Causality, Coefficient, FromBall, FromCage, FromContact, FromOutputs, Kind, MAX_FRICTION, NORM_TOLERANCE,
-    Race, RaceQuantity, Source, Variable, Variables,
+    Causality, Coefficient, FromBall, FromCage, FromContact, FromOutputs, Kind, MAX_FRICTION, Source,
+    Variable, Variables,
 };
+use crate::model::bodies::Race;
 use crate::scene::parameters::PARAMETERS;
-use crate::scene::{Drive, Guidance, Scene};
+use crate::scene::{Drive, Guidance, Orientation, Scene};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
-
-/// What the components of a vector have in common.
-#[derive(Clone, Copy)]
-struct Kin {
-    unit: Unit,
-    causality: Causality,
-    nominal: f64,
-}
 
 /// Smallest and largest value that a variable can have.
 fn limits(source: &Source) -> [Option<f64>; 2] {
     match source {
-        // What is a little longer than a unit quaternion is normalised.
-        Source::Race(_, RaceQuantity::Orientation(_)) => {
-            [Some(-1.0 - NORM_TOLERANCE), Some(1.0 + NORM_TOLERANCE)]
-        }
+        Source::Race(_, quantity, _) => quantity.limits,
         Source::Friction => [Some(0.0), Some(MAX_FRICTION)],
         Source::Parameter(parameter, _) => [Some(parameter.range.low), Some(parameter.range.high)],
-        Source::Race(..)
-        | Source::Bearing(_)
+        Source::Bearing(_)
         | Source::Condensed(_)
         | Source::Cage(_)
         | Source::Ball(..)
@@ -61,8 +51,9 @@ impl Variables {
 
     /// Adds the parameters that a scene makes use of.
     pub(super) fn add_parameters(&mut self, scene: &Scene) {
+        let mut scene = scene.clone();
         for parameter in &PARAMETERS {
-            if let Some(start) = parameter.value(scene) {
+            if let Some(&mut start) = parameter.place(&mut scene) {
                 let unit = units::of_parameter(parameter.range.unit);
                 let nominal = if start == 0.0 { 1.0 } else { start.abs() };
                 let source = Source::Parameter(parameter, start);
@@ -72,90 +63,17 @@ impl Variables {
         }
     }
 
-    /// Adds the three world components of a vector of a race; `what` ends before "<prefix> race".
-    fn add_vector(
-        &mut self,
-        race: Race,
-        quantity: fn(usize) -> RaceQuantity,
-        (name, what): (&str, &str),
-        kind: Kin,
-    ) {
-        let prefix = race.prefix();
-        for (i, axis) in AXES.iter().enumerate() {
-            let description = format!("{what} the {prefix} race, {axis} component, world axes");
-            let name = format!("{prefix}.{name}.{axis}");
-            self.add(
-                name,
-                kind.unit,
-                kind.causality,
-                kind.nominal,
-                description,
-                Source::Race(race, quantity(i)),
-            );
-        }
-    }
-
-    pub(super) fn add_race(&mut self, race: Race, drive: Drive) {
-        use RaceQuantity as Q;
-        use units::{METRE, METRE_PER_SECOND, NEWTON, NEWTON_METRE, RADIAN_PER_SECOND};
-        let of = |unit, causality, nominal| Kin { unit, causality, nominal };
-        let motion = match drive {
-            Drive::Pose => Some(Causality::Input),
-            Drive::Wrench | Drive::Hinge => Some(Causality::Output),
-            Drive::Fixed => None,
-        };
-        if let Some(causality) = motion {
-            let position = ("position", "position of the origin of");
-            self.add_vector(race, Q::Position, position, of(METRE, causality, 1e-5));
-            self.add_orientation(race, race.prefix(), causality);
-            let velocity = ("velocity", "velocity of the origin of");
-            self.add_vector(race, Q::Velocity, velocity, of(METRE_PER_SECOND, causality, 1e-3));
-            let angular = ("angular_velocity", "angular velocity of");
-            self.add_vector(race, Q::AngularVelocity, angular, of(RADIAN_PER_SECOND, causality, 100.0));
-        }
-        let (input, output) = (Causality::Input, Causality::Output);
-        let force = ("force", "force that the bearing exerts on");
-        self.add_vector(race, Q::Force, force, of(NEWTON, output, 1e3));
-        let moment = ("moment", "moment that the bearing exerts about the origin of");
-        self.add_vector(race, Q::Moment, moment, of(NEWTON_METRE, output, 1.0));
-        let prefix = race.prefix();
-        let torque = format!("torque that keeps the {prefix} race at its prescribed speed");
-        if drive == Drive::Hinge {
-            let force = ("reaction_force", "force of the hinge on");
-            self.add_vector(race, Q::ReactionForce, force, of(NEWTON, output, 1e3));
-            let moment = ("reaction_moment", "moment of the hinge and its drive about the origin of");
-            self.add_vector(race, Q::ReactionMoment, moment, of(NEWTON_METRE, output, 1.0));
-            let source = Source::Race(race, Q::DriveTorque);
-            self.add(format!("{prefix}.drive_torque"), NEWTON_METRE, output, 0.1, torque, source);
-        } else if drive == Drive::Wrench {
-            let force = ("applied_force", "external force on");
-            self.add_vector(race, Q::AppliedForce, force, of(NEWTON, input, 1e3));
-            let moment = ("applied_moment", "external moment about the origin of");
-            self.add_vector(race, Q::AppliedMoment, moment, of(NEWTON_METRE, input, 1.0));
-            let speed = format!("prescribed spin of the {prefix} race about its own axis");
-            let source = Source::Race(race, Q::Speed);
-            self.add(format!("{prefix}.speed"), RADIAN_PER_SECOND, input, 100.0, speed, source);
-            let source = Source::Race(race, Q::DriveTorque);
-            self.add(format!("{prefix}.drive_torque"), NEWTON_METRE, output, 0.1, torque, source);
-        }
-    }
-
-    fn add_orientation(&mut self, race: Race, prefix: &str, causality: Causality) {
-        if self.cardan {
-            for (i, axis) in AXES.iter().enumerate() {
-                let description =
-                    format!("Cardan angle {axis} of the {prefix} race, intrinsic x-y-z (x without limit)");
-                let source = Source::Race(race, RaceQuantity::Angle(i));
-                let name = format!("{prefix}.angle.{axis}");
-                self.add(name, units::RADIAN, causality, 1e-3, description, source);
-            }
-        } else {
-            for (i, component) in ["w", "x", "y", "z"].iter().enumerate() {
-                let description =
-                    format!("orientation of the {prefix} race, unit quaternion component {component}");
-                let source = Source::Race(race, RaceQuantity::Orientation(i));
-                let name = format!("{prefix}.orientation.{component}");
-                self.add(name, units::ONE, causality, 1.0, description, source);
+    /// Adds what a race has under its drive.
+    pub(super) fn add_race(&mut self, race: Race, drive: Drive, orientation: Orientation) {
+        for quantity in &RACE_VARIABLES {
+            let Some(causality) = (quantity.causality)(drive, orientation) else {
+                continue;
+            };
+            for component in 0..quantity.components.len() {
+                let source = Source::Race(race, quantity, component);
+                let name = quantity.name_of(race, component);
+                let description = quantity.description_of(race, component);
+                self.add(name, quantity.unit, causality, quantity.nominal, description, source);
             }
         }
     }
@@ -372,7 +290,8 @@ impl Variables {
                 self.add(name, unit, Causality::Output, nominal, description, Source::Ball(index, get));
             }
         }
-        for (race, name) in [(Race::Inner, "inner"), (Race::Outer, "outer")] {
+        for race in Race::BOTH {
+            let name = race.name();
             let mut output = |quantity: &str, unit, nominal, what: &str, get: FromContact| {
                 let description = format!("{what} of ball {number} and the {name} race");
                 let source = Source::Contact(index, race, get);

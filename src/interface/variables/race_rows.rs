@@ -1,0 +1,351 @@
+//! The variables that each race has: one row each, with what reads it, what sets it, and when it is there.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use super::units::{self, Unit};
+use super::{Causality, InputError};
+use crate::model::bodies::Race;
+use crate::scene::{Drive, Orientation};
+use crate::simulation::inputs::RaceInput;
+use crate::simulation::outputs::RaceOutput;
+
+/// A quantity of a race; a variable per component.
+#[derive(Debug)]
+pub struct RaceVariable {
+    /// Name after that of the race.
+    name: &'static str,
+    /// Last part of the names; one that is empty for a scalar.
+    pub components: &'static [&'static str],
+    /// Unit.
+    pub unit: Unit,
+    /// [unit] typical size.
+    pub nominal: f64,
+    /// [unit] smallest and largest value, where there are some.
+    pub limits: [Option<f64>; 2],
+    /// One sentence, with `{race}` and `{component}` in it.
+    description: &'static str,
+    /// What it is, by the drive of the race and how orientations are given; none where there is no such variable.
+    pub causality: fn(Drive, Orientation) -> Option<Causality>,
+    /// [unit] component as an output.
+    pub read: fn(&RaceOutput, usize) -> f64,
+    /// As an input, where it can be one.
+    pub input: Option<InputAccess>,
+}
+
+/// How a quantity of a race is an input.
+#[derive(Clone, Copy, Debug)]
+pub struct InputAccess {
+    /// [unit] component as set last.
+    pub get: fn(&RaceInput, usize) -> f64,
+    /// Sets a component and its rate [unit, unit/s].
+    pub set: fn(&mut RaceSetting, usize, f64, f64),
+    /// [unit/s] rate of a component as set last.
+    pub rate: fn(&RaceInput, usize) -> f64,
+    /// What kind of quantity it is.
+    pub kind: InputKind,
+}
+
+/// Kinds of inputs: what a small change of one is measured by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InputKind {
+    /// [m] a translation.
+    Displacement,
+    /// [-] a component of a unit quaternion.
+    Quaternion,
+    /// [rad] an angle.
+    Angle,
+    /// [m/s] a velocity.
+    Velocity,
+    /// [rad/s] an angular velocity.
+    AngularVelocity,
+    /// [N] a force.
+    Force,
+    /// [N m] a moment.
+    Moment,
+    /// [-] a friction coefficient.
+    Friction,
+}
+
+/// Inputs of a race while they are being set, component by component.
+#[derive(Debug)]
+pub struct RaceSetting {
+    /// All but the orientation.
+    pub input: RaceInput,
+    quaternion: [Option<f64>; 4],
+    angles: [Option<f64>; 3],
+}
+
+/// [-] deviation of a quaternion's norm from 1 that is corrected; more is refused.
+pub const NORM_TOLERANCE: f64 = 1e-3;
+
+impl RaceSetting {
+    /// On top of these inputs.
+    pub fn new(base: &RaceInput) -> Self {
+        Self { input: *base, quaternion: [None; 4], angles: [None; 3] }
+    }
+
+    /// The inputs, with the orientation whose components were set.
+    ///
+    /// # Errors
+    /// If the quaternion is far from unit length.
+    pub fn finish(mut self, race: Race) -> Result<RaceInput, InputError> {
+        if let [Some(w), Some(x), Some(y), Some(z)] = self.quaternion {
+            let quaternion = Quaternion::new(w, x, y, z);
+            let norm = quaternion.norm();
+            if (norm - 1.0).abs() > NORM_TOLERANCE {
+                return Err(InputError::Quaternion { name: format!("{}.orientation", race.name()), norm });
+            }
+            self.input.pose.orientation = UnitQuaternion::new_normalize(quaternion);
+        }
+        if let [Some(x), Some(y), Some(z)] = self.angles {
+            self.input.pose.orientation = from_cardan(x, y, z);
+        }
+        Ok(self.input)
+    }
+}
+
+impl RaceVariable {
+    /// Name of a component.
+    pub fn name_of(&self, race: Race, component: usize) -> String {
+        let (race, name, component) = (race.name(), self.name, self.components[component]);
+        if component.is_empty() { format!("{race}.{name}") } else { format!("{race}.{name}.{component}") }
+    }
+
+    /// Description of a component.
+    pub fn description_of(&self, race: Race, component: usize) -> String {
+        self.description.replace("{race}", race.name()).replace("{component}", self.components[component])
+    }
+}
+
+/// Pose and twist: inputs where they are given, outputs where forces move the race.
+fn motion(drive: Drive) -> Option<Causality> {
+    match drive {
+        Drive::Pose => Some(Causality::Input),
+        Drive::Wrench | Drive::Hinge => Some(Causality::Output),
+        Drive::Fixed => None,
+    }
+}
+
+/// No rate of its own: that of a pose is its twist.
+fn no_rate(_: &RaceInput, _: usize) -> f64 {
+    0.0
+}
+
+const AXES: &[&str] = &["x", "y", "z"];
+const SCALAR: &[&str] = &[""];
+const NO_LIMITS: [Option<f64>; 2] = [None; 2];
+
+/// All of them, in the order of their value references.
+pub static RACE_VARIABLES: [RaceVariable; 13] = [
+    RaceVariable {
+        name: "position",
+        components: AXES,
+        unit: units::METRE,
+        nominal: 1e-5,
+        limits: NO_LIMITS,
+        description: "position of the origin of the {race} race, {component} component, world axes",
+        causality: |drive, _| motion(drive),
+        read: |race, i| race.pose.position[i],
+        input: Some(InputAccess {
+            get: |race, i| race.pose.position[i],
+            set: |race, i, value, _| race.input.pose.position[i] = value,
+            rate: no_rate,
+            kind: InputKind::Displacement,
+        }),
+    },
+    RaceVariable {
+        name: "orientation",
+        components: &["w", "x", "y", "z"],
+        unit: units::ONE,
+        nominal: 1.0,
+        // A quaternion a little longer than 1 is normalised.
+        limits: [Some(-1.0 - NORM_TOLERANCE), Some(1.0 + NORM_TOLERANCE)],
+        description: "orientation of the {race} race, unit quaternion component {component}",
+        causality: |drive, orientation| motion(drive).filter(|_| orientation == Orientation::Quaternion),
+        read: |race, i| quaternion(&race.pose.orientation, i),
+        input: Some(InputAccess {
+            get: |race, i| quaternion(&race.pose.orientation, i),
+            set: |race, i, value, _| race.quaternion[i] = Some(value),
+            rate: no_rate,
+            kind: InputKind::Quaternion,
+        }),
+    },
+    RaceVariable {
+        name: "angle",
+        components: AXES,
+        unit: units::RADIAN,
+        nominal: 1e-3,
+        limits: NO_LIMITS,
+        description: "Cardan angle {component} of the {race} race, intrinsic x-y-z (x without limit)",
+        causality: |drive, orientation| motion(drive).filter(|_| orientation == Orientation::Cardan),
+        read: |race, i| to_cardan(&race.pose.orientation, race.turned)[i],
+        input: Some(InputAccess {
+            get: |race, i| to_cardan(&race.pose.orientation, 0.0)[i],
+            set: |race, i, value, _| race.angles[i] = Some(value),
+            rate: no_rate,
+            kind: InputKind::Angle,
+        }),
+    },
+    RaceVariable {
+        name: "velocity",
+        components: AXES,
+        unit: units::METRE_PER_SECOND,
+        nominal: 1e-3,
+        limits: NO_LIMITS,
+        description: "velocity of the origin of the {race} race, {component} component, world axes",
+        causality: |drive, _| motion(drive),
+        read: |race, i| race.twist.velocity[i],
+        input: Some(InputAccess {
+            get: |race, i| race.twist.velocity[i],
+            set: |race, i, value, rate| {
+                race.input.twist.velocity[i] = value;
+                race.input.twist_rate.velocity[i] = rate;
+            },
+            rate: |race, i| race.twist_rate.velocity[i],
+            kind: InputKind::Velocity,
+        }),
+    },
+    RaceVariable {
+        name: "angular_velocity",
+        components: AXES,
+        unit: units::RADIAN_PER_SECOND,
+        nominal: 100.0,
+        limits: NO_LIMITS,
+        description: "angular velocity of the {race} race, {component} component, world axes",
+        causality: |drive, _| motion(drive),
+        read: |race, i| race.twist.angular_velocity[i],
+        input: Some(InputAccess {
+            get: |race, i| race.twist.angular_velocity[i],
+            set: |race, i, value, rate| {
+                race.input.twist.angular_velocity[i] = value;
+                race.input.twist_rate.angular_velocity[i] = rate;
+            },
+            rate: |race, i| race.twist_rate.angular_velocity[i],
+            kind: InputKind::AngularVelocity,
+        }),
+    },
+    RaceVariable {
+        name: "force",
+        components: AXES,
+        unit: units::NEWTON,
+        nominal: 1e3,
+        limits: NO_LIMITS,
+        description: "force that the bearing exerts on the {race} race, {component} component, world axes",
+        causality: |_, _| Some(Causality::Output),
+        read: |race, i| race.wrench.force[i],
+        input: None,
+    },
+    RaceVariable {
+        name: "moment",
+        components: AXES,
+        unit: units::NEWTON_METRE,
+        nominal: 1.0,
+        limits: NO_LIMITS,
+        description: "moment that the bearing exerts about the origin of the {race} race, {component} component, world axes",
+        causality: |_, _| Some(Causality::Output),
+        read: |race, i| race.wrench.moment[i],
+        input: None,
+    },
+    RaceVariable {
+        name: "reaction_force",
+        components: AXES,
+        unit: units::NEWTON,
+        nominal: 1e3,
+        limits: NO_LIMITS,
+        description: "force of the hinge on the {race} race, {component} component, world axes",
+        causality: |drive, _| (drive == Drive::Hinge).then_some(Causality::Output),
+        read: |race, i| race.reaction.force[i],
+        input: None,
+    },
+    RaceVariable {
+        name: "reaction_moment",
+        components: AXES,
+        unit: units::NEWTON_METRE,
+        nominal: 1.0,
+        limits: NO_LIMITS,
+        description: "moment of the hinge and its drive about the origin of the {race} race, {component} component, world axes",
+        causality: |drive, _| (drive == Drive::Hinge).then_some(Causality::Output),
+        read: |race, i| race.reaction.moment[i],
+        input: None,
+    },
+    RaceVariable {
+        name: "applied_force",
+        components: AXES,
+        unit: units::NEWTON,
+        nominal: 1e3,
+        limits: NO_LIMITS,
+        description: "external force on the {race} race, {component} component, world axes",
+        causality: |drive, _| (drive == Drive::Wrench).then_some(Causality::Input),
+        read: |_, _| 0.0,
+        input: Some(InputAccess {
+            get: |race, i| race.applied.force[i],
+            set: |race, i, value, _| race.input.applied.force[i] = value,
+            rate: no_rate,
+            kind: InputKind::Force,
+        }),
+    },
+    RaceVariable {
+        name: "applied_moment",
+        components: AXES,
+        unit: units::NEWTON_METRE,
+        nominal: 1.0,
+        limits: NO_LIMITS,
+        description: "external moment about the origin of the {race} race, {component} component, world axes",
+        causality: |drive, _| (drive == Drive::Wrench).then_some(Causality::Input),
+        read: |_, _| 0.0,
+        input: Some(InputAccess {
+            get: |race, i| race.applied.moment[i],
+            set: |race, i, value, _| race.input.applied.moment[i] = value,
+            rate: no_rate,
+            kind: InputKind::Moment,
+        }),
+    },
+    RaceVariable {
+        name: "speed",
+        components: SCALAR,
+        unit: units::RADIAN_PER_SECOND,
+        nominal: 100.0,
+        limits: NO_LIMITS,
+        description: "prescribed spin of the {race} race about its own axis",
+        causality: |drive, _| (drive == Drive::Wrench).then_some(Causality::Input),
+        read: |_, _| 0.0,
+        input: Some(InputAccess {
+            get: |race, _| race.speed,
+            set: |race, _, value, _| race.input.speed = value,
+            rate: no_rate,
+            kind: InputKind::AngularVelocity,
+        }),
+    },
+    RaceVariable {
+        name: "drive_torque",
+        components: SCALAR,
+        unit: units::NEWTON_METRE,
+        nominal: 0.1,
+        limits: NO_LIMITS,
+        description: "torque that keeps the {race} race at its prescribed speed",
+        causality: |drive, _| matches!(drive, Drive::Wrench | Drive::Hinge).then_some(Causality::Output),
+        read: |race, _| race.drive_torque,
+        input: None,
+    },
+];
+
+/// Component w, x, y, z of a unit quaternion.
+fn quaternion(orientation: &UnitQuaternion<f64>, component: usize) -> f64 {
+    if component == 0 { orientation.w } else { orientation.imag()[component - 1] }
+}
+
+/// Orientation of Cardan angles, intrinsic x-y-z: `R = Rx(x) Ry(y) Rz(z)`.
+fn from_cardan(x: f64, y: f64, z: f64) -> UnitQuaternion<f64> {
+    let about = |axis: Vector3<f64>, angle: f64| UnitQuaternion::new(axis * angle);
+    about(Vector3::x(), x) * about(Vector3::y(), y) * about(Vector3::z(), z)
+}
+
+/// Cardan angles of an orientation; the first is the one nearest to `turned` [rad].
+fn to_cardan(orientation: &UnitQuaternion<f64>, turned: f64) -> [f64; 3] {
+    let m = orientation.to_rotation_matrix();
+    let y = m[(0, 2)].clamp(-1.0, 1.0).asin();
+    let x = (-m[(1, 2)]).atan2(m[(2, 2)]);
+    let z = (-m[(0, 1)]).atan2(m[(0, 0)]);
+    let turns = ((turned - x) / std::f64::consts::TAU).round();
+    [x + turns * std::f64::consts::TAU, y, z]
+}
