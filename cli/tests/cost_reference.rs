@@ -6,15 +6,15 @@ use nalgebra::{UnitQuaternion, Vector3};
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{DVector as Unknowns, Dop853, System};
 use roulement::contact::{BallMotion, BallRaceContact, RaceMotion};
-use roulement::cost::levers::{Setting, reference_steps};
-use roulement::cost::norms::{Comparison, Norm, errors};
-use roulement::cost::record::{Record, Sample, record};
 use roulement::model::{INNER, Model, OUTER};
 use roulement::scene::{Condition, Scene};
 use roulement::simulation::Simulation;
+use roulement_cli::cost::levers::{Setting, reference_steps};
+use roulement_cli::cost::norms::{Comparison, Norm, errors};
+use roulement_cli::cost::record::{Record, Sample, record};
 
-const MISALIGNMENT: &str = include_str!("../scenes/cost/misalignment.toml");
-const LOAD_ZONE: &str = include_str!("../scenes/cost/load_zone.toml");
+const MISALIGNMENT: &str = include_str!("../../scenes/cost/misalignment.toml");
+const LOAD_ZONE: &str = include_str!("../../scenes/cost/load_zone.toml");
 /// Unknowns of a ball: position, velocity, angular velocity.
 const WIDTH: usize = 9;
 /// [1/s] scales velocities and angular velocities so that one tolerance fits all unknowns.

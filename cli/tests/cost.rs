@@ -4,18 +4,18 @@
 use std::sync::OnceLock;
 
 use indicatif::ProgressBar;
-use roulement::cost::levers::{CreepModel, Lever, ReferenceKind, Setting};
-use roulement::cost::norms::{Comparison, Norm, errors};
-use roulement::cost::record::record;
-use roulement::cost::{Measured, SCENES, SceneStudy, study};
 use roulement::scene::{Accuracy, CreepLaw, Scene};
+use roulement_cli::cost::levers::{CreepModel, Lever, ReferenceKind, Setting};
+use roulement_cli::cost::norms::{Comparison, Norm, errors};
+use roulement_cli::cost::record::record;
+use roulement_cli::cost::{Measured, SCENES, SceneStudy, study};
 use strum::VariantArray;
 
 /// The misalignment scene without its cage, which makes it smooth, and with its tilt in 2.4 ms instead of 16.
 fn short_study() -> &'static SceneStudy {
     static STUDY: OnceLock<SceneStudy> = OnceLock::new();
     STUDY.get_or_init(|| {
-        let mut text = include_str!("../scenes/cost/misalignment.toml").to_string();
+        let mut text = include_str!("../../scenes/cost/misalignment.toml").to_string();
         for (from, to) in [
             ("\"12 ms\"", "\"0.8 ms\""),
             ("\"28 ms\"", "\"3.2 ms\""),
@@ -145,7 +145,7 @@ fn invariant_the_cage_of_the_misalignment_scene_is_measured() {
     };
     // The cage falls on its land and strikes the pockets: its speed is a quantity of its own.
     let mean = |speeds: &[f64]| speeds.iter().sum::<f64>() / speeds.len() as f64;
-    let apart = |run: &roulement::cost::record::Record| {
+    let apart = |run: &roulement_cli::cost::record::Record| {
         run.samples.iter().map(|s| (s.cage_speed - mean(&s.orbital_speed)).abs()).fold(0.0, f64::max)
     };
     assert!(apart(&caged) > 0.1, "{}", apart(&caged));
@@ -179,7 +179,7 @@ fn check_goals(study: &SceneStudy) {
     let mut steps = 0;
     for goal in Accuracy::VARIANTS {
         let name: &str = goal.into();
-        let of_goal = |p: &&roulement::cost::Point| p.lever == Lever::Goal && p.label == name;
+        let of_goal = |p: &&roulement_cli::cost::Point| p.lever == Lever::Goal && p.label == name;
         let measured = study.points.iter().find(of_goal).unwrap().result.as_ref().unwrap();
         let error = measured.errors.get(Norm::Wrench).unwrap();
         println!("{} {name}: wrench {error:.2e}, {} steps", study.name, measured.work.steps);

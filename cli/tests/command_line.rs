@@ -11,7 +11,7 @@ fn roulement(arguments: &[&str]) -> Output {
 }
 
 fn scene(name: &str) -> String {
-    format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+    format!("{}/../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))
 }
 
 /// A directory of its own for a test, removed at the end.

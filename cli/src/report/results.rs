@@ -5,10 +5,10 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::interface::variables::Variables;
-use crate::scene::Scene;
-use crate::simulation::inputs::Inputs;
-use crate::simulation::outputs::Outputs;
+use roulement::interface::variables::Variables;
+use roulement::scene::Scene;
+use roulement::simulation::inputs::Inputs;
+use roulement::simulation::outputs::Outputs;
 
 /// Why results could not be written.
 #[derive(Debug, Error)]

@@ -15,21 +15,21 @@ pub mod table;
 
 use indicatif::ProgressBar;
 
-use crate::scene::Scene;
-use crate::scene::units::Time;
-use crate::simulation::SimulationError;
 use levers::{CreepModel, Level, Lever, ReferenceKind, Setting};
 use norms::{Comparison, Errors, Norm, errors};
 use record::{Record, record};
+use roulement::scene::Scene;
+use roulement::scene::units::Time;
+use roulement::simulation::SimulationError;
 
 /// The scenes of the standard study: name and text.
 pub const SCENES: [(&str, &str); 6] = [
-    ("thrust", include_str!("../../scenes/cost/thrust.toml")),
-    ("load_zone", include_str!("../../scenes/cost/load_zone.toml")),
-    ("reversal", include_str!("../../scenes/cost/reversal.toml")),
-    ("speed_ramp", include_str!("../../scenes/cost/speed_ramp.toml")),
-    ("shock", include_str!("../../scenes/cost/shock.toml")),
-    ("misalignment", include_str!("../../scenes/cost/misalignment.toml")),
+    ("thrust", include_str!("../../../scenes/cost/thrust.toml")),
+    ("load_zone", include_str!("../../../scenes/cost/load_zone.toml")),
+    ("reversal", include_str!("../../../scenes/cost/reversal.toml")),
+    ("speed_ramp", include_str!("../../../scenes/cost/speed_ramp.toml")),
+    ("shock", include_str!("../../../scenes/cost/shock.toml")),
+    ("misalignment", include_str!("../../../scenes/cost/misalignment.toml")),
 ];
 
 /// [-] the errors are of the run from this share of its duration on.
@@ -69,7 +69,7 @@ pub struct Measured {
     /// [1/s] instructions per simulated second, where the machine counts them.
     pub instructions: Option<f64>,
     /// Work of the integrator.
-    pub work: crate::dynamics::state::Statistics,
+    pub work: roulement::dynamics::state::Statistics,
 }
 
 /// The study of one scene.

@@ -10,8 +10,8 @@ use super::document::{Block, html, markdown};
 use super::levers::{DYNAMIC, Lever, ReferenceKind, seconds};
 use super::norms::{Comparison, Errors, Norm};
 use super::{Measured, Point, SceneStudy, figures, table};
-use crate::plots::PlotError;
-use crate::scene::Accuracy;
+use crate::report::plots::PlotError;
+use roulement::scene::Accuracy;
 
 /// Why a report could not be written.
 #[derive(Debug, Error)]

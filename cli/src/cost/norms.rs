@@ -138,7 +138,7 @@ fn mean_power(record: &Record, from: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::cost::meter::Cost;
-    use crate::dynamics::state::Statistics;
+    use roulement::dynamics::state::Statistics;
 
     /// A run of 1 s at 100 W whose quantities are `1 + ripple cos(time) + offset`.
     fn run(points: u32, ripple: f64, offset: f64) -> Record {

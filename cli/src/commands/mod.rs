@@ -13,9 +13,9 @@ use roulement::analysis::single_contact::{Law, RollingContact};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::interface::model_description::render;
 use roulement::model::Model;
-use roulement::package::{library_beside_executable, write_fmu};
 use roulement::scene::{CreepLaw, Scene};
 use roulement::simulation::Simulation;
+use roulement_cli::package::{library_beside_executable, write_fmu};
 
 /// 3-D dynamic ball bearing for gearbox co-simulation.
 #[derive(Parser)]

@@ -6,8 +6,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use roulement::cost::{SCENES, SceneStudy, report, study};
 use roulement::scene::Scene;
+use roulement_cli::cost::{SCENES, SceneStudy, report, study};
 
 /// Studies one scene file, or the standard scenes if there is none, into a directory.
 ///

@@ -2,8 +2,8 @@
 
 use strum::{IntoStaticStr, VariantArray};
 
-use crate::scene::units::Time;
-use crate::scene::{Accuracy, CreepLaw, Drive, Scene};
+use roulement::scene::units::Time;
+use roulement::scene::{Accuracy, CreepLaw, Drive, Scene};
 
 /// A lever of accuracy and speed; one curve in the plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, IntoStaticStr, VariantArray)]

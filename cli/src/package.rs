@@ -8,11 +8,11 @@ use thiserror::Error;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use crate::fmi::v2::SCENE_FILE;
-use crate::interface::documentation;
-use crate::interface::model_description::{MODEL_IDENTIFIER, render};
-use crate::scene::Scene;
-use crate::simulation::{Simulation, SimulationError};
+use roulement::fmi::v2::SCENE_FILE;
+use roulement::interface::documentation;
+use roulement::interface::model_description::{MODEL_IDENTIFIER, render};
+use roulement::scene::Scene;
+use roulement::simulation::{Simulation, SimulationError};
 
 /// Why a package was not written.
 #[derive(Debug, Error)]
@@ -98,8 +98,8 @@ pub fn write_fmu(scene: &Scene, libraries: &[PathBuf], output: &Path) -> Result<
         add(&format!("binaries/{folder}/{MODEL_IDENTIFIER}.{ending}"), &binary)?;
     }
     add(&format!("resources/{SCENE_FILE}"), scene.source.as_bytes())?;
-    add("model.png", include_bytes!("../assets/model.png"))?;
-    add("documentation/licenses/licenses.txt", include_bytes!("../assets/licenses.txt"))?;
+    add("model.png", include_bytes!("../../assets/model.png"))?;
+    add("documentation/licenses/licenses.txt", include_bytes!("../../assets/licenses.txt"))?;
     add("documentation/index.html", documentation::page(scene).as_bytes())?;
     let bytes = zip.finish()?.into_inner();
 

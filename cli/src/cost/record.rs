@@ -4,13 +4,13 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::levers::{Inputs, Level, Setting};
 use super::meter::{Cost, Meter};
-use crate::dynamics::state::Statistics;
-use crate::model::INNER;
-use crate::numerics::motion::{Pose, Twist};
-use crate::scene::Drive;
-use crate::simulation::inputs;
-use crate::simulation::outputs::Outputs;
-use crate::simulation::{Simulation, SimulationError};
+use roulement::dynamics::state::Statistics;
+use roulement::model::INNER;
+use roulement::numerics::motion::{Pose, Twist};
+use roulement::scene::Drive;
+use roulement::simulation::inputs;
+use roulement::simulation::outputs::Outputs;
+use roulement::simulation::{Simulation, SimulationError};
 
 /// [s] CPU time after which a run is not repeated any more, and the largest number of runs.
 const ENOUGH_TIME: f64 = 0.4;

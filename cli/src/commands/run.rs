@@ -6,10 +6,10 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use roulement::plots::write_plots;
-use roulement::results::ResultsWriter;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
+use roulement_cli::report::plots::write_plots;
+use roulement_cli::report::results::ResultsWriter;
 
 use super::summary::summary;
 

@@ -1,11 +1,11 @@
 //! Command line of roulement.
 
-mod cli;
+mod commands;
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match cli::run() {
+    match commands::run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(why) => {
             eprintln!("error: {why}");

@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (interval, steps): (u32, u32) = (interval.parse()?, steps.parse()?);
     // A large tolerance keeps the step at its cap; more balls need a larger pitch circle.
     let n_balls: f64 = balls.parse()?;
-    let text = include_str!("../scenes/thrust.toml")
+    let text = include_str!("../../scenes/thrust.toml")
         .replace("drive = \"wrench\"", &format!("drive = \"{drive}\""))
         .replace("\"saturated\"", &format!("\"{law}\""))
         .replace("balls = 10 ", &format!("balls = {balls} "))

@@ -9,8 +9,8 @@ use strum::VariantArray;
 use super::levers::{CreepModel, Level, Lever, ReferenceKind};
 use super::norms::{Errors, Norm};
 use super::{Point, SceneStudy};
-use crate::plots::{COLOURS, PlotError};
-use crate::scene::CreepLaw;
+use crate::report::plots::{COLOURS, PlotError};
+use roulement::scene::CreepLaw;
 
 const PANEL: (u32, u32) = (500, 460);
 const LEGEND_WIDTH: u32 = 245;

@@ -6,9 +6,9 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use thiserror::Error;
 
-use crate::model::Model;
-use crate::scene::Scene;
-use crate::simulation::outputs::{BallOutput, ContactOutput, Outputs};
+use roulement::model::Model;
+use roulement::scene::Scene;
+use roulement::simulation::outputs::{BallOutput, ContactOutput, Outputs};
 
 /// Why a plot could not be written.
 #[derive(Debug, Error)]
