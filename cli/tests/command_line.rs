@@ -182,6 +182,42 @@ fn a_missing_library_is_named() {
     assert!(!Path::new(&package).exists());
 }
 
+/// Header of an ELF library of 64 bits with a piece to load, for a machine by its number.
+fn elf(machine: u8) -> Vec<u8> {
+    let mut file = vec![0; 120];
+    file[..7].copy_from_slice(b"\x7fELF\x02\x01\x01");
+    // kind, machine, version; where the table of pieces is, its entries' size, their number
+    for (at, value) in [(16, 3), (18, machine), (20, 1), (32, 64), (52, 64), (54, 56), (56, 1)] {
+        file[at] = value;
+    }
+    // a piece to load, from the start to the end of the file
+    (file[64], file[96]) = (1, 120);
+    file
+}
+
+#[test]
+fn only_libraries_of_the_platform_are_packed() {
+    let scratch = Scratch::new("platforms");
+    let (package, library, other) = (scratch.path("x.fmu"), scratch.path("a.so"), scratch.path("b.so"));
+    let pack = |libraries: &[&str]| {
+        let mut arguments = vec!["fmu".to_string(), scene("thrust"), "-o".into(), package.clone()];
+        arguments.extend(libraries.iter().flat_map(|library| ["--library".into(), library.to_string()]));
+        let output = roulement(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(output.status.success(), Path::new(&package).exists());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    std::fs::write(&library, elf(183)).unwrap();
+    let message = pack(&[&library]);
+    for part in ["a.so", "linux64", "Aarch64", "x86-64"] {
+        assert!(message.contains(part), "{message}");
+    }
+    std::fs::write(&library, elf(62)).unwrap();
+    std::fs::write(&other, elf(62)).unwrap();
+    let message = pack(&[&library, &other]);
+    assert!(message.contains("two libraries for linux64"), "{message}");
+    assert_eq!(pack(&[&library]), "");
+}
+
 #[test]
 fn an_interrupted_run_keeps_what_it_has() {
     let scratch = Scratch::new("interrupted");

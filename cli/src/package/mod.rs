@@ -1,9 +1,12 @@
 //! Packs a scene as an FMU: model description, shared library, scene and documentation in one zip file.
 
+mod library;
+
 use std::fs;
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
+use library::{Platform, platform};
 use thiserror::Error;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
@@ -46,16 +49,45 @@ pub enum PackageError {
         "the shared library {0} ends neither in .so nor in .dll nor in .dylib: its platform is not known"
     )]
     Platform(String),
+    /// A library that the platform its name promises does not load.
+    #[error("the library {path} cannot be packed for {folder}: it is {found}; needed is {wanted}")]
+    Library {
+        /// File.
+        path: String,
+        /// Folder of the platform.
+        folder: &'static str,
+        /// What the file is.
+        found: String,
+        /// What the platform loads.
+        wanted: String,
+    },
+    /// Two libraries for one platform.
+    #[error("there are two libraries for {0}")]
+    Twice(&'static str),
 }
 
-/// Folder in a package (FMI 2.0.4, section 2.3) and ending of the library, per platform; all are 64-bit x86.
-const PLATFORMS: [(&str, &str); 3] = [("linux64", "so"), ("win64", "dll"), ("darwin64", "dylib")];
+/// A library and its platform, after a look at its header.
+///
+/// # Errors
+/// If it cannot be read, its ending is of no platform, or it is not what its ending says.
+fn read_library(path: &Path) -> Result<(Platform, Vec<u8>), PackageError> {
+    let name = || path.display().to_string();
+    let platform = platform(path).ok_or_else(|| PackageError::Platform(name()))?;
+    let library = fs::read(path).map_err(file_error("cannot read", path))?;
+    let refused = |found| PackageError::Library {
+        path: name(),
+        folder: platform.folder,
+        found,
+        wanted: platform.wanted(),
+    };
+    platform.check(&library).map_err(refused)?;
+    Ok((platform, library))
+}
 
-/// Folder and ending of a library.
-fn platform(library: &Path) -> Result<(&'static str, &'static str), PackageError> {
-    let ending = library.extension().unwrap_or_default();
-    let found = PLATFORMS.into_iter().find(|(_, known)| ending == *known);
-    found.ok_or_else(|| PackageError::Platform(library.display().to_string()))
+/// What to make of an error of the operating system with a file.
+fn file_error(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> PackageError {
+    let path = path.display().to_string();
+    move |source| PackageError::File { what, path, source }
 }
 
 /// Path of the shared library that was built together with this executable.
@@ -77,10 +109,12 @@ pub fn write_fmu(scene: &Scene, libraries: &[PathBuf], output: &Path) -> Result<
     if let Some(missing) = libraries.iter().find(|library| !library.is_file()) {
         return Err(PackageError::NoLibrary(missing.display().to_string()));
     }
-    let file_error = |what: &'static str, path: &Path| {
-        let path = path.display().to_string();
-        move |source| PackageError::File { what, path, source }
-    };
+    let libraries: Vec<_> = libraries.iter().map(|path| read_library(path)).collect::<Result<_, _>>()?;
+    for (index, (platform, _)) in libraries.iter().enumerate() {
+        if libraries[..index].iter().any(|(other, _)| other == platform) {
+            return Err(PackageError::Twice(platform.folder));
+        }
+    }
     let simulation = Simulation::new(scene)?;
     let description = render(&simulation)?;
 
@@ -92,14 +126,12 @@ pub fn write_fmu(scene: &Scene, libraries: &[PathBuf], output: &Path) -> Result<
         Ok(zip.write_all(content)?)
     };
     add("modelDescription.xml", description.xml.as_bytes())?;
-    for library in libraries {
-        let (folder, ending) = platform(library)?;
-        let binary = fs::read(library).map_err(file_error("cannot read", library))?;
-        add(&format!("binaries/{folder}/{MODEL_IDENTIFIER}.{ending}"), &binary)?;
+    for (Platform { folder, ending, .. }, library) in &libraries {
+        add(&format!("binaries/{folder}/{MODEL_IDENTIFIER}.{ending}"), library)?;
     }
     add(&format!("resources/{SCENE_FILE}"), scene.source.as_bytes())?;
-    add("model.png", include_bytes!("../../assets/model.png"))?;
-    add("documentation/licenses/licenses.txt", include_bytes!("../../assets/licenses.txt"))?;
+    add("model.png", include_bytes!("../../../assets/model.png"))?;
+    add("documentation/licenses/licenses.txt", include_bytes!("../../../assets/licenses.txt"))?;
     add("documentation/index.html", documentation::page(scene).as_bytes())?;
     let bytes = zip.finish()?.into_inner();
 
