@@ -11,7 +11,7 @@ use thiserror::Error;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use roulement::fmi::v2::SCENE_FILE;
+use roulement::fmi::SCENE_FILE;
 use roulement::interface::documentation;
 use roulement::interface::model_description::{MODEL_IDENTIFIER, render};
 use roulement::scene::Scene;

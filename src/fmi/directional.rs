@@ -1,4 +1,4 @@
-//! `fmi2GetDirectionalDerivative`: how the outputs at the last communication point depend on the inputs that led there.
+//! Directional derivatives: how the outputs at the last communication point depend on the inputs that led there.
 //!
 //! After a step they are the derivatives of that step, from its start with everything but the inputs as it was: what
 //! repeating the step from a saved state with slightly different inputs would show, without the noise of the
@@ -6,8 +6,9 @@
 //! ([`crate::dynamics::follow`]). Before the first step they are those of the equilibrium that the simulation starts
 //! from.
 
-use super::instance::{Instance, Outcome, error};
-use super::state_machine::Phase;
+use super::instance::Instance;
+use super::outcome::{Outcome, error};
+use super::state::Phase;
 use crate::interface::variables::{Causality, Kind, RaceQuantity, Source, Variable};
 use crate::simulation::inputs::Inputs;
 use crate::simulation::outputs::Outputs;
@@ -98,7 +99,7 @@ impl Instance {
         if let Some(value) = changes.iter().find(|value| !value.is_finite()) {
             return error(format!("{value} is no change of a known"));
         }
-        match self.phase {
+        match self.state.phase {
             Phase::Initialization => self.refresh()?,
             Phase::StepFailed | Phase::Error => {
                 return error("there are no directional derivatives of a step that was not finished");
@@ -126,7 +127,7 @@ impl Instance {
     fn compute_columns(&self) -> Outcome<Vec<Vec<f64>>> {
         let failed = |why: SimulationError| error(format!("no directional derivatives here: {why}"));
         let base = self.simulation.inputs();
-        let duration = self.before.as_ref().map(|before| self.simulation.time() - before.time());
+        let duration = self.state.before.as_ref().map(|before| self.simulation.time() - before.time());
         let changes = changes(&self.simulation, duration);
         let rows = self.variables.rows();
         let inputs: Vec<usize> = (0..rows.len())
@@ -148,7 +149,7 @@ impl Instance {
             neighbours.push(neighbour(index, -1.0)?);
         }
         let mut central = self.simulation.clone();
-        let outputs: Vec<Outputs> = match &self.before {
+        let outputs: Vec<Outputs> = match &self.state.before {
             Some(before) => {
                 if !central.restore(before) {
                     return error("the start of the last step is of another scene");
