@@ -4,7 +4,6 @@
 use std::error::Error;
 use std::path::Path;
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use roulement::analysis::single_contact::{Law, RollingContact, RollingForces};
 use roulement::contact::identification::{Identification, identify_by_table};
@@ -12,17 +11,13 @@ use roulement::kalker::linear::Scales;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::kalker::{Patch, ScaledCreepage};
 use roulement::scene::CreepLaw;
+use roulement_cli::report::style::{Area, CAPTION, COLOURS, Drawn, LABEL, LINE, MARGIN, axes, legend};
 use serde::Deserialize;
 
-/// Colour-blind safe (Okabe and Ito).
-const COLOURS: [RGBColor; 4] =
-    [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
 const PANEL: (u32, u32) = (560, 360);
 /// [m] radius of the paper's ball on a plane.
 const BALL_RADIUS: f64 = 6.35e-3;
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn = Result<(), Box<dyn Error>>;
 type OfLaw = fn(&RollingForces) -> f64;
 type OfCase = fn(&Case) -> f64;
 /// Label of an axis, a case's place on it, and how a contact is put there.
@@ -78,20 +73,12 @@ fn chart(panel: &Panel, area: &Area<'_>) -> Drawn {
     let ((x0, x1), (y0, y1)) = (extent(|p| p.0), extent(|p| p.1));
     let air = 0.06 * (y1 - y0);
     let mut chart = ChartBuilder::on(area)
-        .margin(10)
-        .caption(&panel.title, ("sans-serif", 15))
+        .margin(MARGIN)
+        .caption(&panel.title, CAPTION)
         .x_label_area_size(36)
         .y_label_area_size(56)
         .build_cartesian_2d(x0..x1, y0 - air..y1 + air)?;
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .bold_line_style(RGBColor(225, 225, 225))
-        .x_desc(panel.x)
-        .y_desc(panel.y)
-        .axis_desc_style(("sans-serif", 13))
-        .label_style(("sans-serif", 12))
-        .draw()?;
+    axes(&mut chart.configure_mesh(), panel.x, panel.y).draw()?;
     for curve in &panel.curves {
         let colour = curve.colour;
         if curve.data {
@@ -101,18 +88,12 @@ fn chart(panel: &Panel, area: &Area<'_>) -> Drawn {
                 .legend(move |(x, y)| Circle::new((x + 9, y), 3, colour.stroke_width(1)));
         } else {
             chart
-                .draw_series(LineSeries::new(curve.points.iter().copied(), colour.stroke_width(2)))?
+                .draw_series(LineSeries::new(curve.points.iter().copied(), colour.stroke_width(LINE)))?
                 .label(&curve.name)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(LINE)));
         }
     }
-    chart
-        .configure_series_labels()
-        .background_style(WHITE.mix(0.8))
-        .label_font(("sans-serif", 12))
-        .position(SeriesLabelPosition::MiddleRight)
-        .draw()?;
-    Ok(())
+    legend(&mut chart, SeriesLabelPosition::MiddleRight)
 }
 
 /// Light where nothing is used of the friction limit, dark where all is.
@@ -140,12 +121,12 @@ fn adhesion_map(case: &Case, area: &Area<'_>) -> Drawn {
         100.0 * solution.stick
     );
     let mut chart = ChartBuilder::on(area)
-        .margin(10)
-        .caption(title, ("sans-serif", 15))
+        .margin(MARGIN)
+        .caption(title, CAPTION)
         .x_label_area_size(36)
         .y_label_area_size(56)
         .build_cartesian_2d(-1.6f64..1.6, -1.05f64..1.05)?;
-    chart.configure_mesh().disable_mesh().x_desc("x/a (rolling to the right)").y_desc("y/b").draw()?;
+    axes(&mut chart.configure_mesh(), "x/a (rolling to the right)", "y/b").disable_mesh().draw()?;
     chart.draw_series(kalker.local_states(&solution, &creepage).iter().map(|state| {
         let share = state.traction[0].hypot(state.traction[1]) / state.bound;
         let colour = shade(share);
@@ -155,7 +136,7 @@ fn adhesion_map(case: &Case, area: &Area<'_>) -> Drawn {
         let y = -0.6 + 0.3 * k as f64;
         let colour = shade(share);
         chart.draw_series([Rectangle::new([(1.2, y - 0.1), (1.3, y + 0.1)], colour.filled())])?;
-        chart.draw_series([Text::new(format!("{share}"), (1.35, y + 0.04), ("sans-serif", 12))])?;
+        chart.draw_series([Text::new(format!("{share}"), (1.35, y + 0.04), LABEL)])?;
     }
     Ok(())
 }

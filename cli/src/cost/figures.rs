@@ -2,14 +2,13 @@
 
 use std::path::Path;
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use strum::VariantArray;
 
 use super::levers::{CreepModel, Level, Lever, ReferenceKind};
 use super::norms::{Errors, Norm};
 use super::{Point, SceneStudy};
-use crate::report::plots::{COLOURS, PlotError};
+use crate::report::style::{Area, CAPTION, COLOURS, DESCRIPTION, Drawn, MARGIN, PlotError, axes, picture};
 use roulement::scene::CreepLaw;
 
 const PANEL: (u32, u32) = (500, 460);
@@ -87,25 +86,17 @@ fn kind_name(kind: ReferenceKind) -> &'static str {
     }
 }
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn = Result<(), Box<dyn std::error::Error>>;
-
 fn write(path: &Path, title: &str, panels: &[Panel<'_>], kinds: &[ReferenceKind]) -> Result<(), PlotError> {
     let columns = 2;
     let rows = panels.len().div_ceil(columns);
     let width = PANEL.0 * columns as u32;
-    let draw_all = || -> Drawn {
-        let root =
-            SVGBackend::new(path, (width + LEGEND_WIDTH, PANEL.1 * rows as u32 + 40)).into_drawing_area();
-        root.fill(&WHITE)?;
-        let (grid, key) = root.titled(title, ("sans-serif", 20))?.split_horizontally(width);
+    picture(path, (width + LEGEND_WIDTH, PANEL.1 * rows as u32), title, |body| {
+        let (grid, key) = body.split_horizontally(width);
         for (panel, area) in panels.iter().zip(grid.split_evenly((rows, columns))) {
             draw(panel, &area)?;
         }
-        legend(kinds, &key)?;
-        Ok(root.present()?)
-    };
-    draw_all().map_err(|why| PlotError { path: path.display().to_string(), why: why.to_string() })
+        legend(kinds, &key)
+    })
 }
 
 /// Shape of a mark.
@@ -214,7 +205,7 @@ fn legend(kinds: &[ReferenceKind], area: &Area<'_>) -> Drawn {
     const LINE: i32 = 18;
     // Clear of the last label of the panel beside.
     const LEFT: i32 = 16;
-    let text = |words: &str, at| Text::new(words.to_string(), at, ("sans-serif", 13));
+    let text = |words: &str, at| Text::new(words.to_string(), at, DESCRIPTION);
     let mut y = 20;
     for &kind in kinds {
         for (words, look) in key(kind) {
@@ -254,20 +245,12 @@ fn draw(panel: &Panel<'_>, area: &Area<'_>) -> Drawn {
     let x = decades(panel.places().map(|place| place.0));
     let y = decades(panel.places().map(|place| place.1).chain(bar));
     let mut chart = ChartBuilder::on(area)
-        .margin(10)
-        .caption(&panel.caption, ("sans-serif", 15))
+        .margin(MARGIN)
+        .caption(&panel.caption, CAPTION)
         .x_label_area_size(38)
         .y_label_area_size(64)
         .build_cartesian_2d(x.clone().log_scale(), y.log_scale())?;
-    chart
-        .configure_mesh()
-        // Decades are enough, and lines between them would be most of the file.
-        .max_light_lines(0)
-        .bold_line_style(RGBColor(215, 215, 215))
-        .x_desc("CPU seconds per simulated second [s/s]")
-        .y_desc("relative error [-]")
-        .axis_desc_style(("sans-serif", 13))
-        .label_style(("sans-serif", 12))
+    axes(&mut chart.configure_mesh(), "CPU seconds per simulated second [s/s]", "relative error [-]")
         .x_label_formatter(&|value| format!("{}", (value * 1e6).round() / 1e6))
         .y_label_formatter(&|value| format!("{value:.0e}"))
         .draw()?;

@@ -10,7 +10,7 @@ use super::document::{Block, html, markdown};
 use super::levers::{DYNAMIC, Lever, ReferenceKind, seconds};
 use super::norms::{Comparison, Errors, Norm};
 use super::{Measured, Point, SceneStudy, figures, table};
-use crate::report::plots::PlotError;
+use crate::report::style::PlotError;
 use roulement::scene::Accuracy;
 
 /// Why a report could not be written.

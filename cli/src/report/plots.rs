@@ -2,32 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
-use thiserror::Error;
-
 use roulement::model::Model;
 use roulement::scene::Scene;
 use roulement::simulation::outputs::{BallOutput, ContactOutput, Outputs};
 
-/// Why a plot could not be written.
-#[derive(Debug, Error)]
-#[error("cannot draw {path}: {why}")]
-pub struct PlotError {
-    pub(crate) path: String,
-    pub(crate) why: String,
-}
+use super::style::{Area, COLOURS, Drawn, LINE, MARGIN, PlotError, axes, legend, picture};
 
-/// Colour-blind safe colours (Okabe and Ito).
-pub const COLOURS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(120, 120, 120),
-];
 const PANEL: (u32, u32) = (520, 270);
 
 /// A curve: its name and points.
@@ -67,8 +48,7 @@ pub fn write_plots(
         .into_iter()
         .map(|(name, title, panels)| {
             let path = directory.join(name);
-            let failed = |why: String| PlotError { path: path.display().to_string(), why };
-            figure(&path, &title, &panels).map_err(failed)?;
+            figure(&path, &title, &panels)?;
             Ok(path)
         })
         .collect()
@@ -164,18 +144,14 @@ fn ball_panels(history: &[Outputs]) -> Vec<Panel> {
     ]
 }
 
-fn figure(path: &Path, title: &str, panels: &[Panel]) -> Result<(), String> {
+fn figure(path: &Path, title: &str, panels: &[Panel]) -> Result<(), PlotError> {
     let columns = 2;
     let rows = panels.len().div_ceil(columns);
-    let size = (PANEL.0 * columns as u32, PANEL.1 * rows as u32 + 40);
-    let text = |why: &dyn std::fmt::Display| why.to_string();
-    let root = SVGBackend::new(path, size).into_drawing_area();
-    root.fill(&WHITE).map_err(|why| text(&why))?;
-    let body = root.titled(title, ("sans-serif", 20)).map_err(|why| text(&why))?;
-    for (panel, area) in panels.iter().zip(body.split_evenly((rows, columns))) {
-        draw(panel, &area).map_err(|why| text(&why))?;
-    }
-    root.present().map_err(|why| text(&why))
+    let size = (PANEL.0 * columns as u32, PANEL.1 * rows as u32);
+    picture(path, size, title, |body| {
+        let areas = body.split_evenly((rows, columns));
+        panels.iter().zip(&areas).try_for_each(|(panel, area)| draw(panel, area))
+    })
 }
 
 /// Range of values with some air; a constant gets a range that shows it as constant.
@@ -190,7 +166,7 @@ fn range(values: impl Iterator<Item = f64>, least: f64) -> std::ops::Range<f64> 
     low - air..high + air
 }
 
-fn draw(panel: &Panel, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), Box<dyn std::error::Error>> {
+fn draw(panel: &Panel, area: &Area<'_>) -> Drawn {
     let points = || panel.curves.iter().flat_map(|curve| curve.points.iter());
     let x = if panel.scattered { -185.0..185.0 } else { range(points().map(|p| p.0), 1e-6) };
     // Air above the curves for the legend.
@@ -198,18 +174,11 @@ fn draw(panel: &Panel, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), 
     y.end += 0.25 * (y.end - y.start);
     let digits = digits(y.end - y.start);
     let mut chart = ChartBuilder::on(area)
-        .margin(12)
+        .margin(MARGIN)
         .x_label_area_size(38)
         .y_label_area_size(72)
         .build_cartesian_2d(x, y)?;
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .bold_line_style(RGBColor(225, 225, 225))
-        .x_desc(panel.x_label)
-        .y_desc(panel.y_label)
-        .axis_desc_style(("sans-serif", 14))
-        .label_style(("sans-serif", 12))
+    axes(&mut chart.configure_mesh(), panel.x_label, panel.y_label)
         .y_labels(6)
         .x_labels(8)
         .y_label_formatter(&move |value| format!("{value:.digits$}"))
@@ -222,20 +191,14 @@ fn draw(panel: &Panel, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), 
                 .label(curve.name)
                 .legend(move |(x, y)| Circle::new((x + 9, y), 4, colour.filled()));
         } else {
-            let line = LineSeries::new(curve.points.iter().copied(), colour.stroke_width(2));
+            let line = LineSeries::new(curve.points.iter().copied(), colour.stroke_width(LINE));
             chart
                 .draw_series(line)?
                 .label(curve.name)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(LINE)));
         }
     }
-    chart
-        .configure_series_labels()
-        .background_style(WHITE.mix(0.8))
-        .label_font(("sans-serif", 12))
-        .position(SeriesLabelPosition::UpperRight)
-        .draw()?;
-    Ok(())
+    legend(&mut chart, SeriesLabelPosition::UpperRight)
 }
 
 /// Decimals that tell neighbouring tick labels of a range apart.
