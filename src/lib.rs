@@ -2,7 +2,6 @@
 
 pub mod analysis;
 pub mod contact;
-pub mod cost;
 pub mod dynamics;
 pub mod equilibrium;
 pub mod fmi;
@@ -11,8 +10,5 @@ pub mod interface;
 pub mod kalker;
 pub mod model;
 pub mod numerics;
-pub mod package;
-pub mod plots;
-pub mod results;
 pub mod scene;
 pub mod simulation;

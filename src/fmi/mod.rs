@@ -1,4 +1,28 @@
 //! The functional mock-up interface of the shared library.
+//!
+//! ```text
+//! instance.rs     an instance: its start, its phases, its variables
+//! step.rs         communication steps and derivatives by time
+//! directional.rs  derivatives of the outputs by the inputs
+//! state.rs        what changes between two calls: saved, restored, as bytes
+//! resources.rs    the folder that a package was unpacked to
+//! handles.rs      instances and states held by importers
+//! log.rs          messages to the importer
+//! outcome.rs      how calls end
+//! v2/             FMI 2.0: its C functions, its types, what it allows when
+//! ```
+//!
+//! Only the folder of a version knows C types and pointers.
 
+mod directional;
+mod handles;
+mod instance;
+mod log;
+mod outcome;
+mod resources;
+mod state;
+mod step;
 #[allow(non_snake_case)]
 pub mod v2;
+
+pub use resources::SCENE_FILE;

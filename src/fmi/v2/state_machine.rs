@@ -1,24 +1,7 @@
 //! Which function may be called in which phase of an instance (FMI 2.0.4, section 4.2.4), as data.
 
-/// Phase of an instance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phase {
-    /// After `fmi2Instantiate`.
-    Instantiated,
-    /// Between `fmi2EnterInitializationMode` and `fmi2ExitInitializationMode`.
-    Initialization,
-    /// Ready for the next step.
-    StepComplete,
-    /// After a step that returned `fmi2Discard`.
-    StepFailed,
-    /// After `fmi2Terminate`.
-    Terminated,
-    /// After a call that returned `fmi2Error`: reset or free.
-    Error,
-    /// After a fault: free only.
-    Fatal,
-}
-
+use crate::fmi::outcome::Status;
+use crate::fmi::state::Phase;
 use Phase::{Error, Initialization, Instantiated, StepComplete, StepFailed, Terminated};
 
 /// All calls that need an instance.
@@ -81,4 +64,15 @@ pub const ALLOWED: [(Call, &[Phase]); 15] = [
 /// May this function be called in this phase?
 pub fn allowed(call: Call, phase: Phase) -> bool {
     ALLOWED.iter().any(|(listed, phases)| *listed == call && phases.contains(&phase))
+}
+
+/// Phase after a call that ended with this status.
+pub fn after(call: Call, status: Status, phase: Phase) -> Phase {
+    match status {
+        Status::Fatal => Phase::Fatal,
+        // A value that was refused leaves the instance as it was, and so does an unwelcome call of no effect.
+        Status::Error if call == Call::DoStep || call == Call::ExitInitializationMode => Phase::Error,
+        Status::Discard if call == Call::DoStep => Phase::StepFailed,
+        _ => phase,
+    }
 }

@@ -2,6 +2,8 @@
 
 use std::ffi::{c_char, c_int, c_void};
 
+use crate::fmi::outcome;
+
 /// `fmi2Status`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
@@ -18,6 +20,17 @@ pub enum Status {
     Fatal = 4,
     /// Not used: steps are synchronous.
     Pending = 5,
+}
+
+impl From<outcome::Status> for Status {
+    fn from(status: outcome::Status) -> Self {
+        match status {
+            outcome::Status::Ok => Self::Ok,
+            outcome::Status::Discard => Self::Discard,
+            outcome::Status::Error => Self::Error,
+            outcome::Status::Fatal => Self::Fatal,
+        }
+    }
 }
 
 /// `fmi2Boolean`.

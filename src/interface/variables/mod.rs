@@ -9,8 +9,8 @@ pub mod units;
 use thiserror::Error;
 
 use crate::model::bodies::{PerRace, Race};
+use crate::scene::Scene;
 use crate::scene::parameters::Parameter;
-use crate::scene::{Orientation, Scene};
 use crate::simulation::inputs::Inputs;
 use crate::simulation::outputs::{BallOutput, CageOutput, ContactOutput, Outputs};
 pub use race_rows::InputKind;

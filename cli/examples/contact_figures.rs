@@ -1,0 +1,297 @@
+//! Draws the rolling contact laws as the paper's figures 1 to 4 and 8 to 10, with independent data as points:
+//! `cargo run --release --example contact_figures [DIRECTORY]`.
+
+use std::error::Error;
+use std::path::Path;
+
+use plotters::prelude::*;
+use roulement::analysis::single_contact::{Law, RollingContact, RollingForces};
+use roulement::contact::identification::{Identification, identify_by_table};
+use roulement::kalker::linear::Scales;
+use roulement::kalker::nonlinear::Kalker;
+use roulement::kalker::{Patch, ScaledCreepage};
+use roulement::scene::CreepLaw;
+use roulement_cli::report::style::{Area, CAPTION, COLOURS, Drawn, LABEL, LINE, MARGIN, axes, legend};
+use serde::Deserialize;
+
+const PANEL: (u32, u32) = (560, 360);
+/// [m] radius of the paper's ball on a plane.
+const BALL_RADIUS: f64 = 6.35e-3;
+
+type OfLaw = fn(&RollingForces) -> f64;
+type OfCase = fn(&Case) -> f64;
+/// Label of an axis, a case's place on it, and how a contact is put there.
+type Axis = (&'static str, OfCase, fn(&mut RollingContact, f64));
+/// Name of a force, and what a law and the data say of it.
+type Quantity = (&'static str, OfLaw, OfCase);
+
+/// A case of the independent data.
+#[derive(Clone)]
+struct Case {
+    contact: RollingContact,
+    result: Reference,
+}
+
+/// What the boundary elements give for it.
+#[derive(Clone, Deserialize)]
+struct Reference {
+    kind: String,
+    fx: f64,
+    fy: f64,
+    mz: f64,
+}
+
+fn read_cases(path: &str) -> Result<Vec<Case>, csv::Error> {
+    let mut table = csv::Reader::from_path(path)?;
+    let headers = table.headers()?.clone();
+    let case = |record: csv::StringRecord| -> Result<Case, csv::Error> {
+        Ok(Case { contact: record.deserialize(Some(&headers))?, result: record.deserialize(Some(&headers))? })
+    };
+    table.records().map(|record| record.and_then(case)).collect()
+}
+
+struct Curve {
+    name: String,
+    points: Vec<(f64, f64)>,
+    /// Independent data are drawn as points.
+    data: bool,
+    colour: RGBColor,
+}
+
+struct Panel {
+    title: String,
+    x: &'static str,
+    y: &'static str,
+    curves: Vec<Curve>,
+}
+
+fn chart(panel: &Panel, area: &Area<'_>) -> Drawn {
+    let points = || panel.curves.iter().flat_map(|curve| &curve.points);
+    let extent = |get: fn(&(f64, f64)) -> f64| {
+        points().map(get).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
+    };
+    let ((x0, x1), (y0, y1)) = (extent(|p| p.0), extent(|p| p.1));
+    let air = 0.06 * (y1 - y0);
+    let mut chart = ChartBuilder::on(area)
+        .margin(MARGIN)
+        .caption(&panel.title, CAPTION)
+        .x_label_area_size(36)
+        .y_label_area_size(56)
+        .build_cartesian_2d(x0..x1, y0 - air..y1 + air)?;
+    axes(&mut chart.configure_mesh(), panel.x, panel.y).draw()?;
+    for curve in &panel.curves {
+        let colour = curve.colour;
+        if curve.data {
+            chart
+                .draw_series(curve.points.iter().map(|&point| Circle::new(point, 3, colour.stroke_width(1))))?
+                .label(&curve.name)
+                .legend(move |(x, y)| Circle::new((x + 9, y), 3, colour.stroke_width(1)));
+        } else {
+            chart
+                .draw_series(LineSeries::new(curve.points.iter().copied(), colour.stroke_width(LINE)))?
+                .label(&curve.name)
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(LINE)));
+        }
+    }
+    legend(&mut chart, SeriesLabelPosition::MiddleRight)
+}
+
+/// Light where nothing is used of the friction limit, dark where all is.
+fn shade(share: f64) -> RGBColor {
+    let mix = |light: f64, dark: f64| (light + (dark - light) * share.min(1.0)) as u8;
+    RGBColor(mix(240.0, 0.0), mix(245.0, 60.0), mix(255.0, 140.0))
+}
+
+/// Traction over its bound on the ellipse: 1 where the contact slides.
+fn adhesion_map(case: &Case, area: &Area<'_>) -> Drawn {
+    let contact = &case.contact;
+    let a = contact.semi_axis_x;
+    let creep = 0.8 * contact.friction * a / BALL_RADIUS;
+    let patch = Patch {
+        axis_ratio: a / contact.semi_axis_y,
+        poisson_ratio: contact.poisson_ratio,
+        rolling_angle: 0.0,
+    };
+    let kalker = Kalker::new(patch, 7)?;
+    let scale = contact.shear_modulus / (contact.friction * contact.peak_pressure);
+    let creepage = ScaledCreepage { x: creep * scale, ..Default::default() };
+    let solution = kalker.solve(&creepage, None)?;
+    let title = format!(
+        "1b  |f|/(mu p) at c_x R/(mu a) = 0.8, degree 7; adhesion on {:.0} % of the ellipse",
+        100.0 * solution.stick
+    );
+    let mut chart = ChartBuilder::on(area)
+        .margin(MARGIN)
+        .caption(title, CAPTION)
+        .x_label_area_size(36)
+        .y_label_area_size(56)
+        .build_cartesian_2d(-1.6f64..1.6, -1.05f64..1.05)?;
+    axes(&mut chart.configure_mesh(), "x/a (rolling to the right)", "y/b").disable_mesh().draw()?;
+    chart.draw_series(kalker.local_states(&solution, &creepage).iter().map(|state| {
+        let share = state.traction[0].hypot(state.traction[1]) / state.bound;
+        let colour = shade(share);
+        Circle::new((state.place[0], state.place[1]), 7, colour.filled())
+    }))?;
+    for (k, share) in [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().enumerate() {
+        let y = -0.6 + 0.3 * k as f64;
+        let colour = shade(share);
+        chart.draw_series([Rectangle::new([(1.2, y - 0.1), (1.3, y + 0.1)], colour.filled())])?;
+        chart.draw_series([Text::new(format!("{share}"), (1.35, y + 0.04), LABEL)])?;
+    }
+    Ok(())
+}
+
+/// One quantity over one creepage: laws as lines, data as points.
+fn compare(
+    title: &str,
+    cases: &[Case],
+    x: Axis,
+    quantities: &[Quantity],
+    laws: &[(&str, Law)],
+) -> Result<Panel, Box<dyn Error>> {
+    let (label, place, set) = x;
+    let mut curves = vec![];
+    let last = cases.iter().map(place).fold(0.0, f64::max);
+    for (number, (name, of_law, of_case)) in quantities.iter().enumerate() {
+        for (k, (law_name, law)) in laws.iter().enumerate() {
+            let mut points = vec![];
+            for step in 0..=60 {
+                let at = last * f64::from(step) / 60.0;
+                let mut contact = cases[0].contact.clone();
+                set(&mut contact, at);
+                points.push((at, of_law(&contact.evaluate(*law)?)));
+            }
+            let colour = COLOURS[(number * laws.len() + k) % COLOURS.len()];
+            curves.push(Curve { name: format!("{name} {law_name}"), points, data: false, colour });
+        }
+        curves.push(Curve {
+            name: format!("{name} boundary elements"),
+            points: cases.iter().map(|case| (place(case), of_case(case))).collect(),
+            data: true,
+            colour: BLACK,
+        });
+    }
+    Ok(Panel { title: title.into(), x: label, y: "force over mu Q", curves })
+}
+
+/// A function of the spin coupling: theory and fit, data as points.
+fn fitted(
+    title: &str,
+    found: &Identification,
+    which: usize,
+    data: Vec<(f64, f64)>,
+    x: &'static str,
+) -> Panel {
+    let samples = &found.samples[which];
+    let curve = |name: &str, k: usize, colour| Curve {
+        name: name.into(),
+        points: samples.iter().map(|sample| (sample[0], sample[k])).collect(),
+        data: false,
+        colour,
+    };
+    let last = samples.iter().map(|sample| sample[0]).fold(0.0, f64::max);
+    let curves = vec![
+        curve("Kalker, table", 1, COLOURS[0]),
+        curve("identified", 2, COLOURS[1]),
+        Curve {
+            name: "boundary elements".into(),
+            points: data.into_iter().filter(|point| point.0 <= last).collect(),
+            data: true,
+            colour: BLACK,
+        },
+    ];
+    Panel { title: title.into(), x, y: "[-]", curves }
+}
+
+fn main() -> Drawn {
+    let directory = std::env::args().nth(1).unwrap_or_else(|| "docs/figures".into());
+    let cases = read_cases("tests/data/contact/curves.csv")?;
+    let of = |kind: &str| -> Vec<Case> {
+        let mut chosen: Vec<Case> = cases.iter().filter(|case| case.result.kind == kind).cloned().collect();
+        chosen.sort_by(|one, other| {
+            let key = |case: &Case| case.contact.creep_x + case.contact.creep_y + case.contact.spin;
+            key(one).total_cmp(&key(other))
+        });
+        chosen
+    };
+    let (kalker3, kalker5) = (("Kalker, degree 3", Law::Kalker(3)), ("Kalker, degree 5", Law::Kalker(5)));
+    let regularised = ("regularised", Law::Simulated(CreepLaw::Regularised));
+    let table_law = ("table", Law::Simulated(CreepLaw::KalkerTable));
+    let saturated = ("saturated", Law::Simulated(CreepLaw::Saturated));
+    let fx: Quantity = ("F_x", |f| f.fx, |case| case.result.fx);
+    let fy: Quantity = ("F_y", |f| f.fy, |case| case.result.fy);
+    let mz: Quantity = ("M_z/c", |f| f.mz, |case| case.result.mz);
+    let by_x: Axis =
+        ("longitudinal creepage c_x", |case| case.contact.creep_x, |contact, x| contact.creep_x = x);
+    let by_y: Axis = (
+        "lateral creepage c_y, with c_x = 5e-4",
+        |case| case.contact.creep_y,
+        |contact, x| contact.creep_y = x,
+    );
+    let by_spin: Axis = (
+        "spin [1/m], with c_x = 5e-4 and c_y = 2e-4",
+        |case| case.contact.spin,
+        |contact, x| contact.spin = x,
+    );
+    let (fig1, fig3, fig4) = (of("fig1"), of("fig3"), of("fig4"));
+
+    // spin coupling of a ball on a plane (axis ratio 1)
+    let patch = Patch { axis_ratio: 1.0, poisson_ratio: 0.3, rolling_angle: 0.0 };
+    let found = identify_by_table(&patch)?;
+    let scales = Scales::new(&patch)?;
+    let mut sweeps = csv::Reader::from_path("tests/data/contact/identification.csv")?;
+    let rows = sweeps.deserialize().collect::<Result<Vec<(f64, f64, String, f64, f64, f64, f64)>, _>>()?;
+    let sweep = |creep: &str, get: &dyn Fn(f64, f64, f64) -> (f64, f64)| -> Vec<(f64, f64)> {
+        let chosen = rows.iter().filter(|row| row.0 == 1.0 && row.2 == creep);
+        chosen.map(|row| get(row.3, row.5, row.6)).collect()
+    };
+    let Scales { c23, c33, moment, .. } = scales;
+    let panels = [
+        compare(
+            "1a  net traction, longitudinal creepage",
+            &fig1,
+            by_x,
+            &[fx],
+            &[kalker3, kalker5, saturated],
+        )?,
+        compare("2  the same: laws of simulations", &fig1, by_x, &[fx], &[table_law, regularised])?,
+        compare("3  growing lateral creepage", &fig3, by_y, &[fx, fy], &[kalker5, regularised])?,
+        compare("4  growing spin", &fig4, by_spin, &[fx, fy], &[kalker5, regularised])?,
+        compare("4  growing spin: moment", &fig4, by_spin, &[mz], &[kalker5, regularised, table_law])?,
+        fitted(
+            "8  phi_yz: lateral force by spin, axis ratio 1",
+            &found,
+            0,
+            sweep("spin", &|h, fy, _| (0.5 * h * c23, fy)),
+            "spin over eps_yz",
+        ),
+        fitted(
+            "9  phi_z: spin moment by spin",
+            &found,
+            1,
+            sweep("spin", &|h, _, mz| (h * c33 / moment, mz / moment)),
+            "spin over eps_z",
+        ),
+        fitted(
+            "10  phi_zy: spin moment by lateral creepage",
+            &found,
+            2,
+            sweep("lateral", &|h, _, mz| (h * c23 / moment, -mz / moment)),
+            "lateral creepage over eps_zy",
+        ),
+    ];
+    let path = Path::new(&directory).join("rolling-contact.svg");
+    let (columns, rows) = (3, 3);
+    let root = SVGBackend::new(&path, (columns * PANEL.0, rows * PANEL.1)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let areas = root.split_evenly((rows as usize, columns as usize));
+    let order = [0, 2, 3, 4, 5, 6, 7, 8];
+    for (panel, place) in panels.iter().zip(order) {
+        chart(panel, &areas[place])?;
+    }
+    adhesion_map(&fig1[0], &areas[1])?;
+    root.present()?;
+    drop(areas);
+    println!("{}", path.display());
+    Ok(())
+}

@@ -1,0 +1,177 @@
+//! Commands and their options.
+
+mod cost;
+mod identify;
+mod run;
+mod summary;
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum};
+use roulement::analysis::single_contact::{Law, RollingContact};
+use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
+use roulement::interface::model_description::render;
+use roulement::model::Model;
+use roulement::scene::{CreepLaw, Scene};
+use roulement::simulation::Simulation;
+use roulement_cli::package::{library_beside_executable, write_fmu};
+
+/// 3-D dynamic ball bearing for gearbox co-simulation.
+#[derive(Parser)]
+#[command(name = "roulement", version = env!("ROULEMENT_VERSION"), about, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Simulate a scene: result table, plots, summary.
+    Run {
+        /// Scene file.
+        scene: PathBuf,
+        /// Directory for the results; made if missing.
+        #[arg(short, long, default_value = "results")]
+        output: PathBuf,
+    },
+    /// Solve the quasi-static equilibrium of a scene at time 0.
+    Equilibrium {
+        /// Scene file.
+        scene: PathBuf,
+        /// Print JSON instead of text.
+        #[arg(long)]
+        json: bool,
+        /// How the gyroscopic moment of the balls is carried.
+        #[arg(long, value_enum, default_value = "outer-race-control")]
+        gyroscopic: GyroscopicChoice,
+    },
+    /// Pack a scene as an FMI 2.0 co-simulation FMU.
+    Fmu {
+        /// Scene file.
+        scene: PathBuf,
+        /// Package to write.
+        #[arg(short, long)]
+        output: PathBuf,
+        /// Shared library to pack, once per platform; the one built beside this program if not given.
+        #[arg(long)]
+        library: Vec<PathBuf>,
+    },
+    /// Evaluate single rolling contacts of a CSV table; prints CSV.
+    Contact {
+        /// Table of cases: id, poisson_ratio, shear_modulus [Pa], friction, peak_pressure [Pa], semi_axis_x [m],
+        /// semi_axis_y [m], rolling_angle [rad], creep_x, creep_y, spin [1/m]; other columns are ignored.
+        cases: PathBuf,
+        /// Creep law.
+        #[arg(long, value_enum)]
+        law: LawChoice,
+        /// Degree of the traction polynomials of `kalker`, 1 to 7.
+        #[arg(long, default_value_t = 5)]
+        degree: usize,
+        /// Cells across the ellipse of the coarser grid of `reference`, 4 to 128.
+        #[arg(long, default_value_t = 16)]
+        grid: usize,
+    },
+    /// Identify the spin coupling of the regularised creep law against Kalker's nonlinear theory.
+    Identify(identify::Options),
+    /// Measure what accuracy costs in time: every lever, its error and its CPU time.
+    Cost {
+        /// Scene file; the six standard scenes if not given.
+        scene: Option<PathBuf>,
+        /// Directory for table, plots and report; made if missing.
+        #[arg(short, long, default_value = "cost")]
+        output: PathBuf,
+    },
+    /// Print the model description of a scene's package.
+    Describe {
+        /// Scene file.
+        scene: PathBuf,
+    },
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum LawChoice {
+    /// No tangential force.
+    Frictionless,
+    /// Kalker's linear theory, unbounded.
+    Linear,
+    /// The paper's regularised law with spin coupling.
+    Regularised,
+    /// Linear theory, saturated as a vector.
+    Saturated,
+    /// Kalker's nonlinear theory in polynomials.
+    Kalker,
+    /// Kalker's nonlinear theory as a smooth table.
+    #[value(name = "kalker_table", alias = "kalker-table")]
+    KalkerTable,
+    /// Half-space reference solver: slow.
+    Reference,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum GyroscopicChoice {
+    /// By friction at the outer race alone, whatever it takes (Jones).
+    OuterRaceControl,
+    /// Ignored.
+    None,
+    /// By friction at both races, at most the friction limit.
+    Friction,
+}
+
+impl From<GyroscopicChoice> for Gyroscopic {
+    fn from(choice: GyroscopicChoice) -> Self {
+        match choice {
+            GyroscopicChoice::OuterRaceControl => Self::OuterRaceControl,
+            GyroscopicChoice::None => Self::None,
+            GyroscopicChoice::Friction => Self::Friction,
+        }
+    }
+}
+
+/// Reads the command line and does what it says.
+///
+/// # Errors
+/// Whatever went wrong, as a sentence.
+pub fn run() -> Result<(), Box<dyn Error>> {
+    match Arguments::parse().command {
+        Command::Run { scene, output } => run::run(&Scene::load(&scene)?, &output)?,
+        Command::Equilibrium { scene, json, gyroscopic } => {
+            let scene = Scene::load(&scene)?;
+            let input = EquilibriumInput::from_scene(&scene, gyroscopic.into());
+            let solution = equilibrium::solve(&Model::new(&scene)?, &input)?;
+            if json {
+                println!("{:#}", solution.to_json());
+            } else {
+                print!("{solution}");
+            }
+        }
+        Command::Fmu { scene, output, library } => {
+            let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
+            write_fmu(&Scene::load(&scene)?, &libraries, &output)?;
+            println!("{}", output.display());
+        }
+        Command::Contact { cases, law, degree, grid } => {
+            let law = match law {
+                LawChoice::Frictionless => Law::Simulated(CreepLaw::Frictionless),
+                LawChoice::Linear => Law::Simulated(CreepLaw::Linear),
+                LawChoice::Regularised => Law::Simulated(CreepLaw::Regularised),
+                LawChoice::Saturated => Law::Simulated(CreepLaw::Saturated),
+                LawChoice::Kalker => Law::Kalker(degree),
+                LawChoice::KalkerTable => Law::Simulated(CreepLaw::KalkerTable),
+                LawChoice::Reference => Law::Reference(grid),
+            };
+            let cannot_read = |why: csv::Error| format!("{}: {why}", cases.display());
+            let mut table =
+                csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(&cases).map_err(cannot_read)?;
+            let mut answers = csv::Writer::from_writer(std::io::stdout().lock());
+            for case in table.deserialize::<RollingContact>() {
+                answers.serialize(case.map_err(cannot_read)?.evaluate(law)?)?;
+            }
+            answers.flush()?;
+        }
+        Command::Identify(options) => identify::run(&options)?,
+        Command::Cost { scene, output } => cost::run(scene.as_deref(), &output)?,
+        Command::Describe { scene } => print!("{}", render(&Simulation::new(&Scene::load(&scene)?)?)?.xml),
+    }
+    Ok(())
+}

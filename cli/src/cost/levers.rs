@@ -1,0 +1,279 @@
+//! What a user can turn: every lever with its settings, as changed copies of a scene.
+
+use strum::{IntoStaticStr, VariantArray};
+
+use roulement::scene::units::Time;
+use roulement::scene::{Accuracy, CreepLaw, Drive, Scene};
+
+/// A lever of accuracy and speed; one curve in the plots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, IntoStaticStr, VariantArray)]
+pub enum Lever {
+    /// Quasi-static or dynamic.
+    #[strum(serialize = "level")]
+    Level,
+    /// Creep law, degree of its polynomials, slip of bent grooves.
+    #[strum(serialize = "creep law")]
+    CreepLaw,
+    /// Goal of `solver.accuracy`.
+    #[strum(serialize = "goal")]
+    Goal,
+    /// Fixed step.
+    #[strum(serialize = "fixed step")]
+    FixedStep,
+    /// Tolerance of the local error, the step being free.
+    #[strum(serialize = "tolerance")]
+    Tolerance,
+    /// Largest step at the scene's tolerance.
+    #[strum(serialize = "step cap")]
+    StepCap,
+    /// HHT damping.
+    #[strum(serialize = "alpha_f")]
+    AlphaF,
+    /// Contraction above which the matrix is renewed.
+    #[strum(serialize = "matrix reuse")]
+    MatrixReuse,
+    /// Communication step, inputs as they are at its start.
+    #[strum(serialize = "communication (held)")]
+    CommunicationHeld,
+    /// Communication step, inputs at its start with their derivatives.
+    #[strum(serialize = "communication (derivatives)")]
+    CommunicationDerivatives,
+    /// Communication step, inputs that lead to where the importer is at its end.
+    #[strum(serialize = "communication (ahead)")]
+    CommunicationAhead,
+}
+
+impl Lever {
+    /// Name in tables and plots.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+
+    /// What the lever's error is measured against.
+    pub fn reference(self) -> ReferenceKind {
+        match self {
+            Self::Level | Self::CreepLaw => ReferenceKind::Model,
+            _ => ReferenceKind::Numerical,
+        }
+    }
+}
+
+/// What an error is measured against; the two are never mixed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+pub enum ReferenceKind {
+    /// The same model at a tiny step.
+    Numerical,
+    /// The richest model at the scene's own step.
+    Model,
+}
+
+/// Quasi-static or dynamic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// An equilibrium at every communication point; no time integration.
+    Equilibrium,
+    /// Time integration.
+    Dynamic,
+}
+
+/// What an importer knows when it sets the inputs of a communication step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inputs {
+    /// Pose, twist and loads at the start of the step.
+    Held,
+    /// The same, and the rate of the twist.
+    Derivatives,
+    /// Pose, twist and loads at the end of the step.
+    Ahead,
+}
+
+/// One way to run a scene.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    /// Lever it belongs to.
+    pub lever: Lever,
+    /// What the lever is set to, as shown.
+    pub label: String,
+    /// Scene as changed by the lever.
+    pub scene: Scene,
+    /// Quasi-static or dynamic.
+    pub level: Level,
+    /// [s] communication step.
+    pub communication: f64,
+    /// What the importer knows.
+    pub inputs: Inputs,
+}
+
+impl Setting {
+    /// A scene as it is, with inputs that add no error of their own.
+    pub fn plain(lever: Lever, label: impl Into<String>, scene: Scene) -> Self {
+        let communication = scene.load.output_interval.0;
+        let (level, inputs) = (Level::Dynamic, Inputs::Ahead);
+        Self { lever, label: label.into(), scene, level, communication, inputs }
+    }
+
+    /// The scene at a fixed step [s]: error control is opened so far that only Newton's method could ask for less.
+    pub fn fixed_step(scene: &Scene, step: f64) -> Self {
+        let mut scene = scene.clone();
+        let solver = &mut scene.solver;
+        (solver.initial_step, solver.max_step) = (Time(step), Time(step));
+        solver.min_step = Time(solver.min_step.0.min(step));
+        solver.tolerance = OPEN_TOLERANCE;
+        Self::plain(Lever::FixedStep, seconds(step), scene)
+    }
+
+    /// The scene with another creep model.
+    pub fn creep(scene: &Scene, model: CreepModel) -> Self {
+        let mut scene = scene.clone();
+        let effects = &mut scene.effects;
+        effects.creep = model.law;
+        effects.kalker_degree = model.degree.unwrap_or(effects.kalker_degree);
+        effects.heathcote_slip = model.heathcote_slip;
+        Self::plain(Lever::CreepLaw, model.name(), scene)
+    }
+}
+
+/// A creep law with what it can be combined with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CreepModel {
+    /// Law.
+    pub law: CreepLaw,
+    /// [-] degree M of the polynomials, of the law that has them.
+    pub degree: Option<usize>,
+    /// With the slip of bent grooves.
+    pub heathcote_slip: bool,
+}
+
+impl CreepModel {
+    /// The most exact there is. Against boundary elements the table is closer than polynomials of degree 7 and than every
+    /// closed form, and with the slip of bent grooves no other law is closer in spin moment and power
+    /// (`docs/rolling-contact.md`).
+    pub const RICHEST: Self = Self { law: CreepLaw::KalkerTable, degree: None, heathcote_slip: true };
+
+    /// That of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        let effects = &scene.effects;
+        let degree = (effects.creep == CreepLaw::Kalker).then_some(effects.kalker_degree);
+        Self { law: effects.creep, degree, heathcote_slip: effects.heathcote_slip }
+    }
+
+    /// Those of the study, from the poorest to the richest. `linear` is left out: it is unbounded, wrong by up to six
+    /// decades where balls spin.
+    pub fn studied() -> Vec<Self> {
+        let laws = CreepLaw::VARIANTS.iter().filter(|law| **law != CreepLaw::Linear);
+        let degrees = |law| if law == CreepLaw::Kalker { DEGREES.map(Some).to_vec() } else { vec![None] };
+        let slips = |law| if law == CreepLaw::Frictionless { &[false][..] } else { &[false, true] };
+        laws.flat_map(|&law| degrees(law).into_iter().map(move |degree| (law, degree)))
+            .flat_map(|(law, degree)| {
+                slips(law).iter().map(move |&heathcote_slip| Self { law, degree, heathcote_slip })
+            })
+            .collect()
+    }
+
+    /// Law, degree and slip as shown.
+    pub fn name(self) -> String {
+        let law: &str = self.law.into();
+        let degree = self.degree.map(|degree| format!(" M={degree}")).unwrap_or_default();
+        format!("{law}{degree}{}", if self.heathcote_slip { " + Heathcote slip" } else { "" })
+    }
+}
+
+/// [-] degrees of the polynomials: odd ones, whose errors fall by steps (`docs/rolling-contact.md`).
+const DEGREES: [usize; 4] = [1, 3, 5, 7];
+/// Name of the richest model at the lever `level`.
+pub const DYNAMIC: &str = "dynamic";
+/// [-] largest tolerance that a scene may have.
+const OPEN_TOLERANCE: f64 = 1e-2;
+/// Halvings of the output interval: fixed steps of the ladder, and the two steps of the reference.
+const FIXED_STEPS: std::ops::RangeInclusive<i32> = 0..=8;
+const REFERENCE_HALVINGS: [i32; 2] = [10, 11];
+const TOLERANCES: [f64; 7] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
+const STEP_CAPS: [f64; 6] = [2e-4, 1e-4, 5e-5, 2e-5, 5e-6, 2e-6];
+const DAMPINGS: [f64; 6] = [0.005, 0.02, 0.05, 0.1, 0.2, 1.0 / 3.0];
+const REUSES: [f64; 5] = [0.0, 0.1, 0.3, 0.6, 1.0];
+/// Communication steps over the output interval.
+const COMMUNICATION: [f64; 7] = [0.125, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
+
+/// [s] the tiny step of the numerical reference, then twice that, which gives its error bar.
+pub fn reference_steps(scene: &Scene) -> [f64; 2] {
+    let [coarse, fine] = REFERENCE_HALVINGS.map(|k| scene.load.output_interval.0 * f64::from(-k).exp2());
+    [fine, coarse]
+}
+
+/// All settings of the levers that change the model, at the scene's own step.
+pub fn model_settings(scene: &Scene) -> Vec<Setting> {
+    let quasi_static =
+        Setting { level: Level::Equilibrium, ..Setting::plain(Lever::Level, "equilibrium", scene.clone()) };
+    let mut richest = Setting::creep(scene, CreepModel::RICHEST);
+    (richest.lever, richest.label) = (Lever::Level, DYNAMIC.to_string());
+    let laws = CreepModel::studied().into_iter().map(|model| Setting::creep(scene, model));
+    [quasi_static, richest].into_iter().chain(laws).collect()
+}
+
+/// All settings of the levers that leave the model as it is.
+pub fn numerical_settings(scene: &Scene) -> Vec<Setting> {
+    let interval = scene.load.output_interval.0;
+    let changed = |lever, label: String, change: &dyn Fn(&mut Scene)| {
+        let mut scene = scene.clone();
+        change(&mut scene);
+        Setting::plain(lever, label, scene)
+    };
+    let goals = Accuracy::VARIANTS
+        .iter()
+        .map(|&goal| changed(Lever::Goal, <&str>::from(goal).to_string(), &|s| s.solver = goal.solver()));
+    let fixed = FIXED_STEPS.map(|k| Setting::fixed_step(scene, interval * f64::from(-k).exp2()));
+    let tolerances = TOLERANCES.iter().map(|&tolerance| {
+        changed(Lever::Tolerance, format!("{tolerance:e}"), &|s| {
+            s.solver.tolerance = tolerance;
+            s.solver.max_step = Time(interval);
+        })
+    });
+    let caps = STEP_CAPS.iter().map(|&cap| {
+        changed(Lever::StepCap, seconds(cap), &|s| {
+            let solver = &mut s.solver;
+            solver.max_step = Time(cap);
+            solver.initial_step = Time(solver.initial_step.0.min(cap));
+        })
+    });
+    let dampings = DAMPINGS
+        .iter()
+        .map(|&alpha_f| changed(Lever::AlphaF, format!("{alpha_f:.3}"), &|s| s.solver.alpha_f = alpha_f));
+    let reuses = REUSES
+        .iter()
+        .map(|&reuse| changed(Lever::MatrixReuse, reuse.to_string(), &|s| s.solver.matrix_reuse = reuse));
+    let importers = [
+        (Lever::CommunicationHeld, Inputs::Held),
+        (Lever::CommunicationDerivatives, Inputs::Derivatives),
+        (Lever::CommunicationAhead, Inputs::Ahead),
+    ];
+    let communication = importers
+        .into_iter()
+        // Derivatives are those of a twist: a race under a wrench has none to give.
+        .filter(|&(_, inputs)| inputs != Inputs::Derivatives || scene.inner.drive == Drive::Pose)
+        .flat_map(|(lever, inputs)| {
+            COMMUNICATION.map(|factor| {
+                let communication = factor * interval;
+                let label = seconds(communication);
+                Setting { communication, inputs, ..Setting::plain(lever, label, scene.clone()) }
+            })
+        })
+        .filter(|setting| setting.communication <= 0.5 * scene.load.duration.0);
+    goals
+        .chain(fixed)
+        .chain(tolerances)
+        .chain(caps)
+        .chain(dampings)
+        .chain(reuses)
+        .chain(communication)
+        .collect()
+}
+
+/// A time as shown: microseconds, four digits.
+pub fn seconds(time: f64) -> String {
+    let microseconds = time * 1e6;
+    let digits = (3.0 - microseconds.log10().floor()).clamp(0.0, 6.0) as usize;
+    let text = format!("{microseconds:.digits$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    format!("{text} us")
+}

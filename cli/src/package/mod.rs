@@ -1,0 +1,141 @@
+//! Packs a scene as an FMU: model description, shared library, scene and documentation in one zip file.
+
+mod library;
+
+use std::fs;
+use std::io::{Cursor, Write};
+use std::path::{Path, PathBuf};
+
+use library::{Platform, platform};
+use thiserror::Error;
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
+
+use roulement::fmi::SCENE_FILE;
+use roulement::interface::documentation;
+use roulement::interface::model_description::{MODEL_IDENTIFIER, render};
+use roulement::scene::Scene;
+use roulement::simulation::{Simulation, SimulationError};
+
+/// Why a package was not written.
+#[derive(Debug, Error)]
+pub enum PackageError {
+    /// The scene cannot be started, so that its package could not either.
+    #[error(transparent)]
+    Start(#[from] SimulationError),
+    /// A file could not be read or written.
+    #[error("{what} {path}: {source}")]
+    File {
+        /// What was tried.
+        what: &'static str,
+        /// File.
+        path: String,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// Something in memory failed.
+    #[error("cannot write the package: {0}")]
+    Write(#[from] std::io::Error),
+    /// The zip writer failed.
+    #[error("cannot write the package: {0}")]
+    Zip(#[from] zip::result::ZipError),
+    /// The shared library is not there.
+    #[error(
+        "the shared library {0} is missing: build it with `cargo build --release`, or name it with --library"
+    )]
+    NoLibrary(String),
+    /// A library of no platform that packages know.
+    #[error(
+        "the shared library {0} ends neither in .so nor in .dll nor in .dylib: its platform is not known"
+    )]
+    Platform(String),
+    /// A library that the platform its name promises does not load.
+    #[error("the library {path} cannot be packed for {folder}: it is {found}; needed is {wanted}")]
+    Library {
+        /// File.
+        path: String,
+        /// Folder of the platform.
+        folder: &'static str,
+        /// What the file is.
+        found: String,
+        /// What the platform loads.
+        wanted: String,
+    },
+    /// Two libraries for one platform.
+    #[error("there are two libraries for {0}")]
+    Twice(&'static str),
+}
+
+/// A library and its platform, after a look at its header.
+///
+/// # Errors
+/// If it cannot be read, its ending is of no platform, or it is not what its ending says.
+fn read_library(path: &Path) -> Result<(Platform, Vec<u8>), PackageError> {
+    let name = || path.display().to_string();
+    let platform = platform(path).ok_or_else(|| PackageError::Platform(name()))?;
+    let library = fs::read(path).map_err(file_error("cannot read", path))?;
+    let refused = |found| PackageError::Library {
+        path: name(),
+        folder: platform.folder,
+        found,
+        wanted: platform.wanted(),
+    };
+    platform.check(&library).map_err(refused)?;
+    Ok((platform, library))
+}
+
+/// What to make of an error of the operating system with a file.
+fn file_error(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> PackageError {
+    let path = path.display().to_string();
+    move |source| PackageError::File { what, path, source }
+}
+
+/// Path of the shared library that was built together with this executable.
+///
+/// # Errors
+/// If it is not there.
+pub fn library_beside_executable() -> Result<PathBuf, PackageError> {
+    let name = format!("{}{MODEL_IDENTIFIER}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let executable = std::env::current_exe()?;
+    let path = executable.with_file_name(name);
+    if path.is_file() { Ok(path) } else { Err(PackageError::NoLibrary(path.display().to_string())) }
+}
+
+/// Writes the package of a scene, with one library per platform, to `output`; an existing file is replaced only by a complete one.
+///
+/// # Errors
+/// See [`PackageError`].
+pub fn write_fmu(scene: &Scene, libraries: &[PathBuf], output: &Path) -> Result<(), PackageError> {
+    if let Some(missing) = libraries.iter().find(|library| !library.is_file()) {
+        return Err(PackageError::NoLibrary(missing.display().to_string()));
+    }
+    let libraries: Vec<_> = libraries.iter().map(|path| read_library(path)).collect::<Result<_, _>>()?;
+    for (index, (platform, _)) in libraries.iter().enumerate() {
+        if libraries[..index].iter().any(|(other, _)| other == platform) {
+            return Err(PackageError::Twice(platform.folder));
+        }
+    }
+    let simulation = Simulation::new(scene)?;
+    let description = render(&simulation)?;
+
+    // Without time stamps: the same scene and library give the same bytes.
+    let options = SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    let mut add = |name: &str, content: &[u8]| -> Result<(), PackageError> {
+        zip.start_file(name, options)?;
+        Ok(zip.write_all(content)?)
+    };
+    add("modelDescription.xml", description.xml.as_bytes())?;
+    for (Platform { folder, ending, .. }, library) in &libraries {
+        add(&format!("binaries/{folder}/{MODEL_IDENTIFIER}.{ending}"), library)?;
+    }
+    add(&format!("resources/{SCENE_FILE}"), scene.source.as_bytes())?;
+    add("model.png", include_bytes!("../../../assets/model.png"))?;
+    add("documentation/licenses/licenses.txt", include_bytes!("../../../assets/licenses.txt"))?;
+    add("documentation/index.html", documentation::page(scene).as_bytes())?;
+    let bytes = zip.finish()?.into_inner();
+
+    let partial = output.with_extension("fmu.part");
+    fs::write(&partial, bytes).map_err(file_error("cannot write", &partial))?;
+    fs::rename(&partial, output).map_err(file_error("cannot write", output))
+}

@@ -1,0 +1,103 @@
+//! How all plots look: fonts, colours, grid, legend; and the files that they become.
+
+use std::error::Error;
+use std::path::Path;
+
+use plotters::chart::MeshStyle;
+use plotters::coord::Shift;
+use plotters::coord::ranged1d::Ranged;
+use plotters::prelude::*;
+use thiserror::Error;
+
+/// Why a plot could not be written.
+#[derive(Debug, Error)]
+#[error("cannot draw {path}: {why}")]
+pub struct PlotError {
+    path: String,
+    why: String,
+}
+
+/// A part of a picture.
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// Outcome of drawing.
+pub type Drawn = Result<(), Box<dyn Error>>;
+/// A font: family and size [pixel].
+pub type Font = (&'static str, u32);
+
+const FAMILY: &str = "sans-serif";
+const TITLE: Font = (FAMILY, 20);
+/// Heading of a panel.
+pub const CAPTION: Font = (FAMILY, 15);
+/// What an axis shows, and words beside panels.
+pub const DESCRIPTION: Font = (FAMILY, 13);
+/// Numbers at the axes, names of curves.
+pub const LABEL: Font = (FAMILY, 12);
+/// [pixel] height of a picture's title.
+const TITLE_HEIGHT: u32 = 40;
+/// [pixel] around a panel.
+pub const MARGIN: u32 = 10;
+/// [pixel] width of a curve.
+pub const LINE: u32 = 2;
+
+/// Colour-blind safe colours (Okabe and Ito).
+pub const COLOURS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(120, 120, 120),
+];
+const GRID: RGBColor = RGBColor(215, 215, 215);
+
+/// Draws a picture of `size` [pixel] below its title.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn picture(
+    path: &Path,
+    size: (u32, u32),
+    title: &str,
+    draw: impl FnOnce(&Area<'_>) -> Drawn,
+) -> Result<(), PlotError> {
+    let draw_all = || -> Drawn {
+        let root = SVGBackend::new(path, (size.0, size.1 + TITLE_HEIGHT)).into_drawing_area();
+        root.fill(&WHITE)?;
+        draw(&root.titled(title, TITLE)?)?;
+        Ok(root.present()?)
+    };
+    draw_all().map_err(|why| PlotError { path: path.display().to_string(), why: why.to_string() })
+}
+
+/// Gives a chart its axes and grid; the caller draws it.
+pub fn axes<'m, 'a, 'b, 'c, X: Ranged, Y: Ranged>(
+    mesh: &'m mut MeshStyle<'a, 'b, X, Y, SVGBackend<'c>>,
+    x: &str,
+    y: &str,
+) -> &'m mut MeshStyle<'a, 'b, X, Y, SVGBackend<'c>> {
+    // Lines between those with a label would be most of the file.
+    mesh.max_light_lines(0)
+        .bold_line_style(GRID)
+        .x_desc(x)
+        .y_desc(y)
+        .axis_desc_style(DESCRIPTION)
+        .label_style(LABEL)
+}
+
+/// Draws the names of a chart's curves into it.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn legend<'a, 'c: 'a, X: Ranged, Y: Ranged>(
+    chart: &mut ChartContext<'a, SVGBackend<'c>, Cartesian2d<X, Y>>,
+    position: SeriesLabelPosition,
+) -> Drawn {
+    chart
+        .configure_series_labels()
+        .background_style(WHITE.mix(0.8))
+        .label_font(LABEL)
+        .position(position)
+        .draw()?;
+    Ok(())
+}

@@ -1,0 +1,267 @@
+//! The command line as a user meets it.
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn roulement(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_roulement")).args(arguments).output().unwrap()
+}
+
+fn scene(name: &str) -> String {
+    format!("{}/../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A directory of its own for a test, removed at the end.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("roulement-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).display().to_string()
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn equilibrium_json_has_the_documented_keys() {
+    for choice in ["outer-race-control", "none", "friction"] {
+        let output = roulement(&["equilibrium", &scene("radial"), "--json", "--gyroscopic", choice]);
+        assert!(output.status.success());
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        for (group, keys) in [
+            ("displacement", &["x", "y", "z", "ry", "rz"][..]),
+            ("load", &["Fx", "Fy", "Fz", "My", "Mz"]),
+            ("balls", &["azimuth", "inner_load", "outer_load", "inner_contact_angle", "outer_contact_angle"]),
+        ] {
+            for key in keys {
+                assert!(!json[group][key].is_null(), "{group}.{key}");
+            }
+        }
+        assert_eq!(json["stiffness"].as_array().unwrap().len(), 5);
+        assert_eq!(json["balls"]["inner_load"].as_array().unwrap().len(), 9);
+        assert!(json["cage_speed"].as_f64().unwrap() > 200.0 && json["residual"].as_f64().unwrap() < 1e-9);
+        assert!((json["load"]["Fy"].as_f64().unwrap() - 1500.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn equilibrium_text_has_units() {
+    let output = roulement(&["equilibrium", &scene("thrust")]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in ["um", "mrad", "N m", "rad/s", "[deg]", "load inner, outer [N]"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+#[test]
+fn run_writes_table_plots_and_summary() {
+    let scratch = Scratch::new("run");
+    let text = std::fs::read_to_string(scene("thrust")).unwrap().replace("\"50 ms\"", "\"2 ms\"");
+    std::fs::write(scratch.path("short.toml"), text).unwrap();
+    let output = roulement(&["run", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+
+    let table = std::fs::read_to_string(scratch.path("out/results.csv")).unwrap();
+    let mut lines = table.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(header[0], "time [s]");
+    for name in ["inner.force.x [N]", "cage.speed [rad/s]", "ball[10].outer.creepage_spin [1/m]"] {
+        assert!(header.contains(&name), "{name}");
+    }
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 21);
+    assert!(rows.iter().all(|row| row.len() == header.len() && row.iter().all(|value| value.is_finite())));
+    assert_eq!(rows[20][0], 0.002);
+
+    for (name, labels) in [
+        ("contacts.svg", &["contact angle [deg]", "spin moment [N mm]", "friction power [W]"][..]),
+        ("bearing.svg", &["cage speed [rad/s]", "inner race position [um]"]),
+        ("balls.svg", &["azimuth [deg]", "peak pressure [MPa]"]),
+    ] {
+        let picture = std::fs::read_to_string(Path::new(&scratch.path("out")).join(name)).unwrap();
+        assert!(picture.starts_with("<svg") && picture.trim_end().ends_with("</svg>"));
+        for label in labels {
+            assert!(picture.contains(label), "{name}: {label}");
+        }
+        assert!(!picture.contains("NaN"));
+    }
+
+    let summary = String::from_utf8(output.stdout).unwrap();
+    for part in [
+        "cage speed",
+        "epicyclic",
+        "friction power",
+        "accepted",
+        "rejected",
+        "Newton",
+        "per simulated second",
+    ] {
+        assert!(summary.contains(part), "{summary}");
+    }
+}
+
+#[test]
+fn cost_writes_table_plots_and_report() {
+    let scratch = Scratch::new("cost");
+    let text = std::fs::read_to_string(scene("cost/thrust")).unwrap().replace("\"40 ms\"", "\"1 ms\"");
+    std::fs::write(scratch.path("short.toml"), text).unwrap();
+    let output = roulement(&["cost", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+
+    let table = std::fs::read_to_string(scratch.path("out/cost.csv")).unwrap();
+    let mut lines = table.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|h| *h == name).unwrap_or_else(|| panic!("{name}"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let of = |reference: &str| rows.iter().filter(|r| r[column("reference")] == reference).count();
+    assert!(of("numerical") > 30 && of("model") > 5 && of("numerical") + of("model") == rows.len());
+    for row in &rows {
+        assert_eq!((row.len(), row[column("status")]), (header.len(), "ok"), "{row:?}");
+        let is_bar = row[column("lever")] == "reference";
+        assert_eq!(row[column("cpu [s/s]")].parse::<f64>().is_ok_and(|cpu| cpu > 0.0), !is_bar, "{row:?}");
+        assert!(row[column("worst [-]")].parse::<f64>().unwrap() >= 0.0);
+    }
+    for name in ["overview", "numerical", "model"] {
+        let picture = std::fs::read_to_string(scratch.path(&format!("out/short-{name}.svg"))).unwrap();
+        assert!(picture.trim_end().ends_with("</svg>") && !picture.contains("NaN"));
+        assert!(picture.contains("CPU seconds per simulated second") && picture.contains("Pareto front"));
+    }
+    let report = std::fs::read_to_string(scratch.path("out/report.md")).unwrap();
+    let page = std::fs::read_to_string(scratch.path("out/report.html")).unwrap();
+    for part in ["Thrust", "fixed step", "creep law", "balanced", "short-overview.svg"] {
+        assert!(report.contains(part) && page.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn wrong_scenes_are_refused_with_key_value_and_range() {
+    let scratch = Scratch::new("wrong");
+    let text = std::fs::read_to_string(scene("thrust")).unwrap();
+    for (from, to, parts) in [
+        ("ball_race = 0.08", "ball_race = -1", &["friction.ball_race = -1", "[0, 2]"][..]),
+        ("\"46 mm\"", "\"4.6 mm\"", &["bearing.pitch_diameter", "0.0046", "m"]),
+        ("[load]", "[lod]", &["lod"]),
+        ("\"1500 N\"", "\"1 MN\"", &["beyond elastic Hertzian contact"]),
+    ] {
+        assert!(text.contains(from));
+        std::fs::write(scratch.path("wrong.toml"), text.replace(from, to)).unwrap();
+        for command in ["run", "equilibrium", "describe"] {
+            let output = roulement(&[command, &scratch.path("wrong.toml")]);
+            let message = String::from_utf8(output.stderr).unwrap();
+            assert!(!output.status.success());
+            for part in parts {
+                assert!(message.contains(part), "{command}: {message}");
+            }
+        }
+    }
+    let output = roulement(&["run", &scratch.path("nowhere.toml")]);
+    assert!(String::from_utf8(output.stderr).unwrap().contains("nowhere.toml"));
+}
+
+#[test]
+fn a_missing_library_is_named() {
+    let scratch = Scratch::new("library");
+    let package = scratch.path("x.fmu");
+    let output = roulement(&["fmu", &scene("thrust"), "-o", &package, "--library", &scratch.path("none.so")]);
+    assert!(!output.status.success());
+    assert!(String::from_utf8(output.stderr).unwrap().contains("none.so"));
+    assert!(!Path::new(&package).exists());
+}
+
+/// Header of an ELF library of 64 bits with a piece to load, for a machine by its number.
+fn elf(machine: u8) -> Vec<u8> {
+    let mut file = vec![0; 120];
+    file[..7].copy_from_slice(b"\x7fELF\x02\x01\x01");
+    // kind, machine, version; where the table of pieces is, its entries' size, their number
+    for (at, value) in [(16, 3), (18, machine), (20, 1), (32, 64), (52, 64), (54, 56), (56, 1)] {
+        file[at] = value;
+    }
+    // a piece to load, from the start to the end of the file
+    (file[64], file[96]) = (1, 120);
+    file
+}
+
+#[test]
+fn only_libraries_of_the_platform_are_packed() {
+    let scratch = Scratch::new("platforms");
+    let (package, library, other) = (scratch.path("x.fmu"), scratch.path("a.so"), scratch.path("b.so"));
+    let pack = |libraries: &[&str]| {
+        let mut arguments = vec!["fmu".to_string(), scene("thrust"), "-o".into(), package.clone()];
+        arguments.extend(libraries.iter().flat_map(|library| ["--library".into(), library.to_string()]));
+        let output = roulement(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(output.status.success(), Path::new(&package).exists());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    std::fs::write(&library, elf(183)).unwrap();
+    let message = pack(&[&library]);
+    for part in ["a.so", "linux64", "Aarch64", "x86-64"] {
+        assert!(message.contains(part), "{message}");
+    }
+    std::fs::write(&library, elf(62)).unwrap();
+    std::fs::write(&other, elf(62)).unwrap();
+    let message = pack(&[&library, &other]);
+    assert!(message.contains("two libraries for linux64"), "{message}");
+    assert_eq!(pack(&[&library]), "");
+}
+
+#[test]
+fn an_interrupted_run_keeps_what_it_has() {
+    let scratch = Scratch::new("interrupted");
+    // A smallest step that contact cannot be resolved with, after a start that it can.
+    let text = std::fs::read_to_string(scene("thrust"))
+        .unwrap()
+        .replace("max_step = \"10 us\"", "max_step = \"10 us\"\nmin_step = \"9 us\"\ntolerance = 1e-12");
+    let text = text.replace("initial_step = \"1 us\"", "initial_step = \"10 us\"");
+    std::fs::write(scratch.path("hard.toml"), text).unwrap();
+    let output = roulement(&["run", &scratch.path("hard.toml"), "-o", &scratch.path("out")]);
+    assert!(!output.status.success());
+    let message = String::from_utf8(output.stderr).unwrap();
+    for part in ["solver.min_step", "ball", "inner load", "tolerance"] {
+        assert!(message.contains(part), "{message}");
+    }
+    assert!(std::fs::read_to_string(scratch.path("out/results.csv")).unwrap().lines().count() >= 2);
+}
+
+#[test]
+fn contact_prints_the_documented_columns_for_any_column_order() {
+    let scratch = Scratch::new("contact");
+    let table = "spin,note,id,creep_y,creep_x,semi_axis_y,semi_axis_x,peak_pressure,friction,shear_modulus,poisson_ratio,rolling_angle\n\
+                 0,x,one,0,1e-3,1e-4,1e-4,1.2e9,0.08,8.1e10,0.3,0\n\
+                 0,y,two,0,1e-1,1e-4,1e-4,1.2e9,0.08,8.1e10,0.3,0\n";
+    std::fs::write(scratch.path("cases.csv"), table).unwrap();
+    for law in ["frictionless", "linear", "regularised", "saturated", "kalker"] {
+        let output = roulement(&["contact", "--law", law, &scratch.path("cases.csv"), "--degree", "3"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+        assert_eq!(lines[0], ["id", "fx", "fy", "mz", "power", "stick"]);
+        assert_eq!((lines[1][0], lines[2][0], lines.len()), ("one", "two", 3));
+        // A stick fraction only where the law has one.
+        assert_eq!(lines[1][5].is_empty(), law != "kalker");
+        let sliding: f64 = lines[2][1].parse().unwrap();
+        if ["regularised", "saturated", "kalker"].contains(&law) {
+            assert!((sliding - 1.0).abs() < 5e-3, "{law}: {sliding}");
+        }
+    }
+    std::fs::write(scratch.path("cases.csv"), table.replace("1.2e9", "-1")).unwrap();
+    let output = roulement(&["contact", "--law", "kalker", &scratch.path("cases.csv")]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        !output.status.success() && message.contains("peak_pressure") && message.contains("one"),
+        "{message}"
+    );
+}

@@ -1,0 +1,222 @@
+//! An instance: its start, its phases, its variables.
+
+use super::log::Log;
+use super::outcome::{Outcome, Status, error};
+use super::resources;
+use super::state::{Phase, State};
+use crate::interface::model_description;
+use crate::interface::variables::{Causality, Kind, Source, Variables};
+use crate::scene::Scene;
+use crate::scene::parameters::Variability;
+use crate::simulation::Simulation;
+use crate::simulation::inputs::Inputs;
+
+/// A slave.
+pub struct Instance {
+    /// Messages to the importer.
+    pub log: Log,
+    /// Identifier of the package, in the model description and in serialised states.
+    pub guid: String,
+    /// The table of variables.
+    pub variables: Variables,
+    /// Start of everything, for a reset.
+    fresh: Box<Simulation>,
+    /// The running bearing.
+    pub simulation: Simulation,
+    /// What else changes from call to call.
+    pub state: State,
+    /// Derivatives of outputs by inputs at this point, if they were asked for.
+    pub columns: Option<Vec<Vec<f64>>>,
+}
+
+impl Instance {
+    /// A slave of the package whose resources are at `location`.
+    ///
+    /// # Errors
+    /// If the scene cannot be read or started, or `guid` is not that of the scene's model description.
+    pub fn new(guid: &str, location: &str, log: Log) -> Outcome<Self> {
+        let path = resources::path(location)?.join(resources::SCENE_FILE);
+        let failed = |why: String| (Status::Error, why);
+        let scene = Scene::load(&path).map_err(|why| failed(why.to_string()))?;
+        let variables = Variables::new(&scene);
+        let own = model_description::guid(&scene, &variables);
+        if guid != own {
+            return error(format!(
+                "the guid {guid} is not that of this package, {own}: model description and library do not belong together"
+            ));
+        }
+        let simulation = Simulation::new(&scene).map_err(|why| failed(why.to_string()))?;
+        let values = variables.values(simulation.inputs(), simulation.outputs());
+        Ok(Self {
+            log,
+            guid: own,
+            variables,
+            fresh: Box::new(simulation.clone()),
+            simulation,
+            state: State::new(values),
+            columns: None,
+        })
+    }
+
+    /// Sets the start time, before the start.
+    ///
+    /// # Errors
+    /// If the start time is not finite or the stop time not after it.
+    pub fn setup_experiment(&mut self, start: f64, stop: Option<f64>) -> Outcome {
+        if !start.is_finite() {
+            return error(format!("the start time {start} s is not a finite number"));
+        }
+        if let Some(stop) = stop.filter(|stop| !(*stop > start && stop.is_finite())) {
+            return error(format!("the stop time {stop} s is not after the start time {start} s"));
+        }
+        self.simulation.set_start_time(start);
+        Ok(())
+    }
+
+    /// Begins initialization.
+    pub fn enter_initialization(&mut self) {
+        self.state.phase = Phase::Initialization;
+    }
+
+    /// Starts from the inputs as set.
+    ///
+    /// # Errors
+    /// If the inputs allow no start.
+    pub fn exit_initialization(&mut self) -> Outcome {
+        self.refresh()?;
+        self.state.previous_outputs =
+            self.variables.values(self.simulation.inputs(), self.simulation.outputs());
+        self.state.phase = Phase::StepComplete;
+        Ok(())
+    }
+
+    /// Starts from inputs and parameters that were set before the start; without any, the start is the scene's own.
+    ///
+    /// # Errors
+    /// If they allow no start.
+    pub fn refresh(&mut self) -> Outcome {
+        if !self.state.changed {
+            return Ok(());
+        }
+        let mut simulation = self.simulation.clone();
+        let mut values = self.state.values.clone();
+        if self.variables.parameters_differ(&self.state.values, &self.state.applied) {
+            simulation = self.with_parameters(&self.state.values)?;
+            simulation.set_start_time(self.simulation.time());
+            let start = self.variables.values(simulation.inputs(), simulation.outputs());
+            for (index, row) in self.variables.rows().iter().enumerate() {
+                if row.causality == Causality::Input && !self.state.given[index] {
+                    values[index] = start[index];
+                }
+            }
+        }
+        if self.state.given.contains(&true) {
+            simulation.set_inputs(self.read_inputs(&values, simulation.inputs())?);
+            simulation.initialise().map_err(|why| (Status::Error, why.to_string()))?;
+        }
+        self.simulation = simulation;
+        self.state.applied.clone_from(&values);
+        self.state.values = values;
+        self.columns = None;
+        self.state.changed = false;
+        Ok(())
+    }
+
+    /// A simulation of the scene with the parameters among these values.
+    pub fn with_parameters(&self, values: &[f64]) -> Outcome<Simulation> {
+        Simulation::new(&self.scene_with(values)?).map_err(|why| (Status::Error, why.to_string()))
+    }
+
+    /// The scene with the parameters among these values.
+    pub fn scene_with(&self, values: &[f64]) -> Outcome<Scene> {
+        let mut scene = self.fresh.scene().clone();
+        self.variables.set_parameters(&mut scene, values);
+        scene.check().map_err(|why| (Status::Error, why.to_string()))?;
+        Ok(scene)
+    }
+
+    pub fn read_inputs(&self, values: &[f64], base: &Inputs) -> Outcome<Inputs> {
+        self.variables.inputs(values, &self.state.rates, base).map_err(|why| (Status::Error, why.to_string()))
+    }
+
+    /// Ends the simulation.
+    pub fn terminate(&mut self) {
+        self.state.phase = Phase::Terminated;
+    }
+
+    /// As freshly instantiated.
+    pub fn reset(&mut self) {
+        self.simulation = (*self.fresh).clone();
+        let values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
+        self.state = State::new(values);
+        self.columns = None;
+    }
+
+    /// Row of a value reference of one type.
+    ///
+    /// # Errors
+    /// If there is no such variable.
+    pub fn row(&self, reference: u32, kind: Kind) -> Outcome<usize> {
+        let index = reference as usize;
+        match self.variables.rows().get(index) {
+            Some(row) if row.kind == kind => Ok(index),
+            Some(row) => error(format!("{} (value reference {reference}) is not of type {kind:?}", row.name)),
+            None => error(format!("there is no variable with value reference {reference}")),
+        }
+    }
+
+    /// Values of variables of one type.
+    ///
+    /// # Errors
+    /// If a reference is not that of such a variable, or the start is not possible.
+    pub fn get(&mut self, references: &[u32], kind: Kind, values: &mut [f64]) -> Outcome {
+        if self.state.phase == Phase::Initialization {
+            self.refresh()?;
+        }
+        for (reference, value) in references.iter().zip(values) {
+            let index = self.row(*reference, kind)?;
+            let row = &self.variables.rows()[index];
+            *value = match row.causality {
+                Causality::Input | Causality::Parameter => self.state.values[index],
+                Causality::Output => {
+                    self.variables.value(row, self.simulation.inputs(), self.simulation.outputs())
+                }
+            };
+        }
+        Ok(())
+    }
+
+    /// Sets inputs.
+    ///
+    /// # Errors
+    /// If a reference is not that of an input or a value not finite; nothing is then set.
+    pub fn set(&mut self, references: &[u32], kind: Kind, values: &[f64]) -> Outcome {
+        for (reference, value) in references.iter().zip(values) {
+            let row = &self.variables.rows()[self.row(*reference, kind)?];
+            if row.causality == Causality::Output {
+                return error(format!("{} is an output and cannot be set", row.name));
+            }
+            if !value.is_finite() {
+                return error(format!("{} = {value} is not a finite number", row.name));
+            }
+            if let Source::Parameter(parameter, _) = row.source {
+                if self.state.phase == Phase::StepComplete && parameter.variability == Variability::Fixed {
+                    return error(format!("{} is fixed: it can be set before the start only", row.name));
+                }
+                parameter.range.check(parameter.key, *value).or_else(|why| error(why.to_string()))?;
+            }
+        }
+        let started = self.state.phase == Phase::StepComplete;
+        for (reference, value) in references.iter().zip(values) {
+            let index = *reference as usize;
+            let input = self.variables.rows()[index].causality == Causality::Input;
+            // Inputs of a running simulation are read by the next step anyway.
+            if !(started && input) {
+                self.state.changed |= self.state.values[index] != *value;
+            }
+            self.state.given[index] |= input && !started;
+            self.state.values[index] = *value;
+        }
+        Ok(())
+    }
+}

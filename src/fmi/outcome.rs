@@ -1,0 +1,22 @@
+//! How calls end, whatever a version of the interface calls it.
+
+/// How a call ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// All well.
+    Ok,
+    /// Not done; the instance is at the last time it reached.
+    Discard,
+    /// Refused.
+    Error,
+    /// A fault of the model: the instance is lost.
+    Fatal,
+}
+
+/// A refusal or failure: its status and why.
+pub type Outcome<T = ()> = Result<T, (Status, String)>;
+
+/// A refusal.
+pub fn error<T>(why: impl Into<String>) -> Outcome<T> {
+    Err((Status::Error, why.into()))
+}

@@ -1,0 +1,104 @@
+//! Communication steps, and derivatives by time: of the inputs within a step, of the outputs over it.
+
+use super::instance::Instance;
+use super::outcome::{Outcome, Status, error};
+use crate::interface::variables::{Causality, Kind};
+
+/// [-] relative disagreement of importer and instance about the time that is still rounding.
+const TIME_TOLERANCE: f64 = 1e-9;
+
+impl Instance {
+    /// Advances by a communication step.
+    ///
+    /// # Errors
+    /// An error for a time that is not the instance's or a step that is not positive; discarded if the step cannot be
+    /// finished: the state is then that of the last time reached.
+    pub fn do_step(&mut self, time: f64, step: f64) -> Outcome {
+        let now = self.simulation.time();
+        if !(step > 0.0 && step.is_finite()) {
+            return error(format!("the communication step {step} s is not positive"));
+        }
+        let scale = now.abs().max(time.abs()).max(step);
+        if time.is_nan() || (time - now).abs() > TIME_TOLERANCE * scale {
+            return error(format!("the communication point {time} s is not the instance's time {now} s"));
+        }
+        if time + step <= now {
+            return error(format!("the communication step {step} s is lost in rounding at {now} s"));
+        }
+        let inputs = self.read_inputs(&self.state.values, self.simulation.inputs())?;
+        if self.state.changed {
+            self.simulation.tune(&self.scene_with(&self.state.values)?);
+            self.state.applied.clone_from(&self.state.values);
+            self.state.changed = false;
+        }
+        self.state.previous_outputs =
+            self.variables.values(self.simulation.inputs(), self.simulation.outputs());
+        let before = self.state.before.insert(self.simulation.snapshot());
+        self.columns = None;
+        self.simulation.set_inputs(inputs);
+        let advanced = self.simulation.advance(time + step);
+        // A derivative belongs to the communication point that it was set for.
+        self.state.rates.fill(0.0);
+        let reached = self.simulation.time();
+        self.state.last_step = reached - now;
+        let values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
+        if !values.iter().all(|value| value.is_finite()) {
+            let restored = self.simulation.restore(before);
+            debug_assert!(restored, "a snapshot of this very simulation fits it");
+            self.state.last_step = 0.0;
+            return Err((Status::Discard, format!("a result is not a number after {now} s")));
+        }
+        advanced.map_err(|why| (Status::Discard, why.to_string()))
+    }
+
+    /// [s] time of the last state that was reached.
+    pub fn time(&self) -> f64 {
+        self.simulation.time()
+    }
+
+    /// First derivatives of inputs by time.
+    ///
+    /// # Errors
+    /// If an order is not 1, a reference not that of an input, or a value not finite; nothing is then set.
+    pub fn set_input_derivatives(&mut self, references: &[u32], orders: &[i32], values: &[f64]) -> Outcome {
+        for ((reference, order), value) in references.iter().zip(orders).zip(values) {
+            let row = &self.variables.rows()[self.row(*reference, Kind::Real)?];
+            if row.causality != Causality::Input {
+                return error(format!("{} is no input: it takes no input derivative", row.name));
+            }
+            if *order != 1 {
+                return error(format!("input derivatives of order {order} are not offered, only of order 1"));
+            }
+            if !value.is_finite() {
+                return error(format!("the derivative of {} = {value} is not a finite number", row.name));
+            }
+        }
+        for (reference, value) in references.iter().zip(values) {
+            self.state.rates[*reference as usize] = *value;
+        }
+        Ok(())
+    }
+
+    /// First derivatives of outputs by time: their change over the last communication step.
+    ///
+    /// # Errors
+    /// If an order is not 1 or a reference not that of an output.
+    pub fn output_derivatives(&self, references: &[u32], orders: &[i32], values: &mut [f64]) -> Outcome {
+        for ((reference, order), value) in references.iter().zip(orders).zip(values) {
+            let index = self.row(*reference, Kind::Real)?;
+            let row = &self.variables.rows()[index];
+            if row.causality != Causality::Output {
+                return error(format!("{} is no output: it has no output derivative", row.name));
+            }
+            if *order != 1 {
+                return error(format!(
+                    "output derivatives of order {order} are not offered, only of order 1"
+                ));
+            }
+            let now = self.variables.value(row, self.simulation.inputs(), self.simulation.outputs());
+            let change = now - self.state.previous_outputs[index];
+            *value = if self.state.last_step > 0.0 { change / self.state.last_step } else { 0.0 };
+        }
+        Ok(())
+    }
+}
