@@ -50,9 +50,3 @@ impl<S: Single> BodyContact<S> {
         }
     }
 }
-
-/// [N] elastic load with Hunt-Crossley dissipation `chi` [s/m], never pulling.
-#[inline(always)]
-pub fn damped<S: Scalar>(elastic: S, approach_rate: S, dissipation: f64) -> S {
-    (elastic * (S::one() + approach_rate.scale(dissipation))).positive_part()
-}

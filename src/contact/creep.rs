@@ -6,6 +6,7 @@
 
 use crate::contact::heathcote::CurvatureEffect;
 use crate::contact::regularised::Parameters;
+use crate::contact::shape::ShapeAt;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
 use crate::scalar::{Scalar, within_limit};
@@ -97,6 +98,23 @@ pub fn saturation<S: Scalar>(q: S) -> S {
 }
 
 impl<S: Scalar> LinearTheory<S> {
+    /// Of a contact of a shape, at a depth [m] with its root, under a load [N] with a friction coefficient, whose rolling
+    /// direction has a cosine against the x axis.
+    #[inline(always)]
+    pub(super) fn new(shape: &ShapeAt<S>, depth: S, root: S, load: S, friction: f64, cosine: S) -> Self {
+        let friction_limit = load.scale(friction);
+        Self {
+            longitudinal: shape.longitudinal * depth,
+            lateral: shape.lateral * depth,
+            coupling: shape.coupling * depth * root * cosine,
+            spin: shape.spin * depth.square(),
+            friction_limit,
+            moment_limit: friction_limit * shape.spin_arm * root,
+            mean_semi_axis: shape.mean_semi_axis * root,
+            half_width: shape.semi_axis_transverse * root,
+        }
+    }
+
     /// Forces of a law.
     #[inline(always)]
     pub fn forces(&self, law: Law<'_>, creepage: &Creepage<S>) -> CreepForces<S> {

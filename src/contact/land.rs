@@ -5,7 +5,8 @@
 
 use nalgebra::Vector3;
 
-use super::body::{BodyContact, BodyMotion, damped};
+use super::body::{BodyContact, BodyMotion};
+use super::normal::NormalLoad;
 use crate::contact::RaceMotion;
 use crate::scalar::{Scalar, Single, cross, dot};
 
@@ -105,18 +106,18 @@ impl LandModel {
             let load = self.stiffness * d.powf(EXPONENT);
             (load, EXPONENT * load / d)
         });
-        let load = damped(elastic, approach_rate, self.damping);
+        let load = NormalLoad::damped(elastic, approach_rate, self.damping);
         let speed = (dot(&sliding, &sliding) + S::constant(SLIDING_FLOOR * SLIDING_FLOOR)).sqrt();
-        let friction = sliding * (load.scale(self.friction) / speed);
-        let force = -(outwards * load + friction);
+        let friction = sliding * (load.total.scale(self.friction) / speed);
+        let force = -(outwards * load.total + friction);
         Some(BodyContact {
             approach,
-            load,
+            load: load.total,
             force,
             moment: cross(&cage_arm, &force),
             other_moment: -cross(&race_arm, &force),
             friction_power: dot(&friction, &sliding),
-            damping_power: (load - elastic) * approach_rate,
+            damping_power: load.damping_power,
         })
     }
 }

@@ -9,10 +9,11 @@
 
 use nalgebra::Vector3;
 
-use super::REGULARISATION_SPEED;
-use super::body::{BodyContact, BodyMotion, damped};
-use super::creep::{Creepage, Law, LinearTheory};
+use super::body::{BodyContact, BodyMotion};
+use super::creep::{Law, LinearTheory};
 use super::hertz::HertzContact;
+use super::kinematics::Surfaces;
+use super::normal::NormalLoad;
 use super::shape::ShapeAt;
 use crate::bearing::Pair;
 use crate::contact::BallMotion;
@@ -105,70 +106,56 @@ impl PocketModel {
         }
         let normal = off_centre.map(|component| component / distance);
 
-        // velocities of both surfaces at the contact point, and of the contact point itself
-        let arm = normal.map(|component| component.scale(self.ball_radius));
-        let cage_arm = offset + arm;
-        let ball_surface = ball.velocity + cross(&ball.angular_velocity, &arm);
-        let cage_surface = cage.velocity + cross(&cage.angular_velocity, &cage_arm);
-        let slip = ball_surface - cage_surface;
-        let approach_rate = dot(&normal, &slip);
-        let seen = ball.velocity - cage.velocity - cross(&cage.angular_velocity, &offset);
-        let mut around = seen - normal * dot(&normal, &seen);
-        if self.sphere_circle.is_none() {
-            around -= axis * dot(&axis, &seen);
-        }
-        let normal_rate =
-            around.map(|component| component / distance) + cross(&cage.angular_velocity, &normal);
-        let contact_point = ball.velocity + normal_rate.map(|component| component.scale(self.ball_radius));
+        let surfaces = Surfaces::new(
+            ball,
+            self.ball_radius,
+            [&cage.velocity, &cage.angular_velocity],
+            &offset,
+            normal,
+            &self.normal_rate(ball, cage, &offset, &axis, &normal, distance),
+        );
 
         // normal load
         let root = approach.sqrt();
-        let shape = &self.shape;
-        let elastic = (approach * root).scale(shape.stiffness);
-        let load = damped(elastic, approach_rate, self.damping);
+        let shape = self.shape.constant::<S>();
+        let load = NormalLoad::hertz(shape.stiffness, approach, root, surfaces.approach_rate, self.damping);
 
-        // creepage in the frame x along the pocket, z from the cage into the ball
+        // creep forces of the ball on the cage, in the contact frame: x along the pocket
         let x = if self.sphere_circle.is_some() { across(&normal, &axis, &cage.axes[0]) } else { axis };
-        let y = cross(&x, &normal);
-        let rolling = contact_point - (ball_surface + cage_surface).map(|c| c.scale(0.5));
-        let (rolling_x, rolling_y) = (dot(&rolling, &x), dot(&rolling, &y));
-        let floor = S::constant(REGULARISATION_SPEED * REGULARISATION_SPEED);
-        let rolling_speed = (rolling_x.square() + rolling_y.square() + floor).sqrt();
-        let per_speed = S::one() / rolling_speed;
-        let (slip_x, slip_y) = (dot(&slip, &x), dot(&slip, &y));
-        let spin = dot(&(cage.angular_velocity - ball.angular_velocity), &normal);
-        let creepage = Creepage {
-            longitudinal: slip_x * per_speed,
-            lateral: slip_y * per_speed,
-            spin: spin * per_speed,
-            curvature: None,
-        };
-        let friction_limit = load.scale(self.friction);
-        let theory = LinearTheory {
-            longitudinal: approach.scale(shape.longitudinal),
-            lateral: approach.scale(shape.lateral),
-            coupling: (approach * root).scale(shape.coupling) * rolling_x * per_speed,
-            spin: approach.square().scale(shape.spin),
-            friction_limit,
-            moment_limit: friction_limit * root.scale(shape.spin_arm),
-            mean_semi_axis: root.scale(shape.mean_semi_axis),
-            half_width: root.scale(shape.semi_axis_transverse),
-        };
-        let creep = theory.forces(Law::Saturated, &creepage);
+        let rolling = surfaces.rolling(x, None);
+        let theory = LinearTheory::new(&shape, approach, root, load.total, self.friction, rolling.cosine);
+        let creep = theory.forces(Law::Saturated, &rolling.creepage);
 
-        // wrenches
-        let tangential = x * creep.longitudinal + y * creep.lateral;
-        let force = -(normal * load + tangential);
-        let contact_moment = normal * creep.spin_moment;
+        let wrench = surfaces.wrench(&rolling, load.total, &creep);
         Some(BodyContact {
             approach,
-            load,
-            force,
-            moment: contact_moment - cross(&arm, &tangential),
-            other_moment: -cross(&cage_arm, &force) - contact_moment,
-            friction_power: creep.longitudinal * slip_x + creep.lateral * slip_y + creep.spin_moment * spin,
-            damping_power: (load - elastic) * approach_rate,
+            load: load.total,
+            force: wrench.force,
+            moment: wrench.ball_moment,
+            other_moment: wrench.other_moment,
+            friction_power: wrench.friction_power,
+            damping_power: load.damping_power,
         })
+    }
+
+    /// [1/s] rate of change of the contact normal.
+    #[inline(always)]
+    fn normal_rate<S: Scalar>(
+        &self,
+        ball: &BallMotion<S>,
+        cage: &BodyMotion<S>,
+        offset: &Vector3<S>,
+        axis: &Vector3<S>,
+        normal: &Vector3<S>,
+        distance: S,
+    ) -> Vector3<S> {
+        // Seen from the cage, the ball centre moves with this velocity.
+        let relative = ball.velocity - cage.velocity - cross(&cage.angular_velocity, offset);
+        let mut around = relative - normal * dot(normal, &relative);
+        if self.sphere_circle.is_none() {
+            around -= axis * dot(axis, &relative);
+        }
+        around.map(|component| component / distance) + cross(&cage.angular_velocity, normal)
     }
 }
 

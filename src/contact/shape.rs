@@ -96,6 +96,12 @@ macro_rules! each_property {
 }
 
 impl ShapeAt<f64> {
+    /// Numbers without derivatives, or the same in all lanes.
+    #[inline(always)]
+    pub(super) fn constant<S: Scalar>(&self) -> ShapeAt<S> {
+        each_property!(property of self => S::constant(*property))
+    }
+
     /// Contact of relative curvatures [1/m] along and transverse to rolling, of materials with a `compliance`
     /// `(1 - nu1^2)/E1 + (1 - nu2^2)/E2` [1/Pa], a combined `shear` modulus [Pa] and Poisson's ratio.
     ///
