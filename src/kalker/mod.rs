@@ -12,9 +12,9 @@
 pub mod half_space;
 pub mod linear;
 pub mod load_displacement;
+mod minimise;
 pub mod nonlinear;
 mod objective;
-pub mod printed;
 pub mod scaled_law;
 pub mod table;
 pub mod table_nodes;
