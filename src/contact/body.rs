@@ -1,4 +1,4 @@
-//! What contacts of the cage have in common: the motion of a body with its axes, and forces of a pair.
+//! Motion of a body with its axes and forces of a pair of bodies, for contacts of the cage.
 
 use nalgebra::Vector3;
 
@@ -37,7 +37,7 @@ pub struct BodyContact<S: Scalar> {
 }
 
 impl<S: Single> BodyContact<S> {
-    /// The same without derivatives.
+    /// Values without derivatives.
     pub fn values(&self) -> BodyContact<f64> {
         BodyContact {
             approach: self.approach.value(),

@@ -26,7 +26,7 @@ pub enum Law<'a> {
     Table(&'a CreepTable),
     /// Kalker's nonlinear theory in polynomials.
     Kalker(&'a ScaledKalker),
-    /// The same in simulations: the table and what the polynomials add to it, frozen.
+    /// Kalker's nonlinear theory in polynomials as simulations have it: the table and the polynomials' frozen difference.
     Frozen(&'a CreepTable, &'a [f64; 4]),
 }
 
@@ -79,10 +79,10 @@ pub struct CreepForces<S> {
 
 /// [N] friction limit below which forces fade to zero, so that an unloaded contact is 0 and not 0/0.
 const FORCE_FLOOR: f64 = 1e-9;
-/// [N m] the same for the spin moment: the force floor on a patch of a micrometre.
+/// [N m] moment limit below which the spin moment fades to zero: the force floor on a patch of a micrometre.
 const MOMENT_FLOOR: f64 = 1e-15;
 
-/// [m] the same for spin stiffness over moment limit, a ten thousandth of a micrometre: nothing where there is load.
+/// [m] spin stiffness over moment limit below which the direction of rolling fades to zero, a ten thousandth of a micrometre: nothing where there is load.
 const ARM_FLOOR: f64 = 1e-10;
 /// [-] cosine of the rolling direction below which the table's two directions are mixed: a third of the circle, and a
 /// rolling speed of half a millimetre a second.
@@ -216,7 +216,7 @@ impl<S: Scalar> LinearTheory<S> {
         (side * spin, side * self.half_width * curvature)
     }
 
-    /// A flat law's forces with what the curvature of the groove changes.
+    /// A flat law's forces with the changes that the curvature of the groove makes.
     #[inline(always)]
     fn bent(&self, [x, y, z]: [S; 3], creepage: &Creepage<S>, curvature: S) -> CreepForces<S> {
         let (per_force, per_moment) = self.per_limits();
@@ -255,7 +255,7 @@ impl<S: Scalar> LinearTheory<S> {
         self.friction_limit * self.half_width.square()
     }
 
-    /// Forces with what the polynomials add for rolling along +x, kept within their limits.
+    /// Forces with the difference of the polynomials for rolling along +x, kept within their limits.
     #[inline(always)]
     fn corrected(&self, forces: &CreepForces<S>, direction: S, difference: &[f64; 4]) -> CreepForces<S> {
         let (per_force, per_moment) = self.per_limits();

@@ -57,7 +57,7 @@ impl<S: Scalar> GrooveContact<S> {
 }
 
 impl<S: Single> GrooveContact<S> {
-    /// The same without derivatives.
+    /// Values without derivatives.
     pub fn values(&self) -> GrooveContact<f64> {
         GrooveContact {
             approach: self.approach.value(),

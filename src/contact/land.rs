@@ -16,7 +16,7 @@ const SLIDING_FLOOR: f64 = 1e-2;
 /// [-] exponent of the approach in Lundberg's law, inverted.
 const EXPONENT: f64 = 1.0 / 0.9;
 
-/// What does not change in the contacts of the cage with the lands.
+/// Constants of the contacts of the cage with the lands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandModel {
     /// Race that guides, 0 inner or 1 outer.

@@ -6,7 +6,7 @@ use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::lanes::Lanes;
 use crate::scalar::{Scalar, constant_vector};
 
-/// What a ball-race contact does, in world axes.
+/// Forces and losses of a ball-race contact, in world axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactEffect<S: Scalar = f64> {
     /// [N] normal load.

@@ -57,7 +57,7 @@ pub struct RaceMotion<S: Scalar> {
     pub angular_velocity: Vector3<S>,
 }
 
-/// What does not change in a ball-race contact during a step.
+/// Constants of a ball-race contact during a step.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactModel<'a> {
     /// The raceway.
@@ -108,7 +108,7 @@ pub struct BallRaceContact<S: Scalar> {
 }
 
 impl<S: Single> BallRaceContact<S> {
-    /// The same without derivatives.
+    /// Values without derivatives.
     #[inline(always)]
     pub fn values(&self) -> BallRaceContact<f64> {
         BallRaceContact {
@@ -184,7 +184,7 @@ impl ContactModel<'_> {
         }
     }
 
-    /// The contact of one ball: with what Kalker's polynomials add there, if they do.
+    /// The contact of one ball, with the difference that Kalker's polynomials make there, where they are simulated.
     pub fn of_ball<'b>(&self, difference: Option<&'b Difference>) -> ContactModel<'b>
     where
         Self: 'b,
@@ -198,8 +198,8 @@ impl ContactModel<'_> {
         }
     }
 
-    /// Renews what Kalker's polynomials add to the table at an evaluated contact, where its creepages have moved by more
-    /// than a share of `1 + |q|` since the last time. Says whether that was so.
+    /// Renews the difference that Kalker's polynomials make to the table at an evaluated contact, where its creepages have moved by more
+    /// than a fraction of `1 + |q|` since the last time. Says whether that was so.
     ///
     /// # Errors
     /// If the nonlinear problem does not converge; the difference then stays what it was.
@@ -207,7 +207,7 @@ impl ContactModel<'_> {
         &self,
         kalker: &ScaledKalker,
         contact: &BallRaceContact<f64>,
-        share: f64,
+        fraction: f64,
         difference: &mut Difference,
     ) -> Result<bool, KalkerError> {
         let Law::Table(table) = self.law else {
@@ -221,7 +221,7 @@ impl ContactModel<'_> {
         let (root, cosine) = (depth.sqrt(), contact.rolling_cosine);
         let theory = LinearTheory::new(&shape, depth, root, contact.load, self.friction, cosine);
         let (q, results) = theory.polynomial_scale(table, &contact.creepage);
-        let old = difference.age(&q) > share;
+        let old = difference.age(&q) > fraction;
         if old {
             kalker.renew(difference, q, results)?;
         }

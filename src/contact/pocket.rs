@@ -24,7 +24,7 @@ use crate::scalar::{Scalar, Single, cross, dot};
 /// takes those of this patch: the ball spins in its pocket and slides completely, where they hardly matter.
 const MOST_SLENDER: f64 = 0.05;
 
-/// What does not change in a ball-pocket contact.
+/// Constants of a ball-pocket contact.
 #[derive(Clone, Copy, Debug)]
 pub struct PocketModel {
     /// [m] half the diametral clearance: how far a ball moves from the pocket's axis before it touches.

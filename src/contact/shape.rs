@@ -96,7 +96,7 @@ macro_rules! each_property {
 }
 
 impl ShapeAt<f64> {
-    /// Numbers without derivatives, or the same in all lanes.
+    /// Properties as constants of a type of numbers.
     #[inline(always)]
     pub(super) fn constant<S: Scalar>(&self) -> ShapeAt<S> {
         each_property!(property of self => S::constant(*property))
@@ -119,7 +119,7 @@ impl ShapeAt<f64> {
         Self::with_creep_of(axis_ratio, &hertz, shear, poisson_ratio)
     }
 
-    /// The same of a Hertz contact, with the creep coefficients of a patch of another axis ratio.
+    /// Properties of a Hertz contact, with the creep coefficients of a patch of another axis ratio.
     ///
     /// # Errors
     /// As [`ShapeAt::new`].

@@ -17,10 +17,12 @@ pub mod nonlinear;
 mod objective;
 pub mod scaled_law;
 pub mod table;
+mod table_evaluation;
 pub mod table_nodes;
 mod table_pieces;
+mod table_stencil;
 
-/// What a rolling contact patch looks like to Kalker's theory.
+/// A rolling contact patch as Kalker's theory knows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
     /// [-] semi-axis along the ellipse's x axis over the one along y, 0.05 to 20.
@@ -36,7 +38,7 @@ pub struct Patch {
 pub struct ScaledCreepage {
     /// [-] slip of body 1 over body 2 along x, over the rolling speed, times `G/(mu p0)`.
     pub x: f64,
-    /// [-] the same along y.
+    /// [-] slip along y over the rolling speed, times `G/(mu p0)`.
     pub y: f64,
     /// [-] normal relative angular velocity over the rolling speed, times `c G/(mu p0)`.
     pub spin: f64,
@@ -53,7 +55,7 @@ pub struct ScaledForces {
     pub fy: f64,
     /// [-] spin moment over `mu Q c`.
     pub mz: f64,
-    /// [-] integral of `y^2` times the traction along x, over `mu Q c^2`: what the curvature slip works against.
+    /// [-] integral of `y^2` times the traction along x, over `mu Q c^2`: the curvature slip works against it.
     pub second_moment: f64,
 }
 

@@ -10,7 +10,7 @@
 //! with f the traction over mu p0, s the slip in the same scale and P the projection on the Coulomb disc: it vanishes
 //! exactly where Coulomb's law holds (stick: s = 0 and |f| below the bound; slip: f at the bound along s). A penalty on
 //! the singular traction at the leading edge takes the place of the condition that fresh material enters unstrained.
-//! Minimised by Levenberg-Marquardt from the linear solution, or from a neighbouring one.
+//! Minimised by Levenberg-Marquardt from the linear solution, or from one at creepages nearby.
 
 use std::f64::consts::{PI, TAU};
 
