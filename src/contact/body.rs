@@ -7,7 +7,7 @@ use crate::scalar::{Scalar, Single, values};
 /// Motion of a rigid body, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyMotion<S: Scalar> {
-    /// [m] origin.
+    /// \[m] origin.
     pub position: Vector3<S>,
     /// [-] unit vectors of the body's own axes.
     pub axes: [Vector3<S>; 3],
@@ -20,19 +20,19 @@ pub struct BodyMotion<S: Scalar> {
 /// Forces between a first and a second body, world axes. The force on the second is the opposite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyContact<S: Scalar> {
-    /// [m] approach.
+    /// \[m] approach.
     pub approach: S,
-    /// [N] normal load.
+    /// \[N] normal load.
     pub load: S,
-    /// [N] force on the first body.
+    /// \[N] force on the first body.
     pub force: Vector3<S>,
     /// [N m] moment on the first body about its origin.
     pub moment: Vector3<S>,
     /// [N m] moment on the second body about its origin.
     pub other_moment: Vector3<S>,
-    /// [W] power lost to friction.
+    /// \[W] power lost to friction.
     pub friction_power: S,
-    /// [W] power lost to contact damping.
+    /// \[W] power lost to contact damping.
     pub damping_power: S,
 }
 

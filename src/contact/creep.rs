@@ -46,30 +46,30 @@ pub struct Creepage<S> {
 /// Kalker's linear theory of the contact in hand, dimensional (paper eq. 14), and its limits.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearTheory<S> {
-    /// [N] `G c^2 C11`.
+    /// \[N] `G c^2 C11`.
     pub longitudinal: S,
-    /// [N] `G c^2 C22`.
+    /// \[N] `G c^2 C22`.
     pub lateral: S,
     /// [N m] `G c^3 C23`.
     pub coupling: S,
     /// [N m2] `G c^4 C33`.
     pub spin: S,
-    /// [N] `mu Q`.
+    /// \[N] `mu Q`.
     pub friction_limit: S,
     /// [N m] spin moment of complete slip.
     pub moment_limit: S,
-    /// [m] `c = sqrt(a b)`.
+    /// \[m] `c = sqrt(a b)`.
     pub mean_semi_axis: S,
-    /// [m] semi-axis transverse to rolling.
+    /// \[m] semi-axis transverse to rolling.
     pub half_width: S,
 }
 
 /// Tangential effect of the ball on the raceway.
 #[derive(Clone, Copy, Debug)]
 pub struct CreepForces<S> {
-    /// [N] along the rolling direction.
+    /// \[N] along the rolling direction.
     pub longitudinal: S,
-    /// [N] transverse to it.
+    /// \[N] transverse to it.
     pub lateral: S,
     /// [N m] about the normal.
     pub spin_moment: S,
@@ -77,12 +77,12 @@ pub struct CreepForces<S> {
     pub second_moment: S,
 }
 
-/// [N] friction limit below which forces fade to zero, so that an unloaded contact is 0 and not 0/0.
+/// \[N] friction limit below which forces fade to zero, so that an unloaded contact is 0 and not 0/0.
 const FORCE_FLOOR: f64 = 1e-9;
 /// [N m] moment limit below which the spin moment fades to zero: the force floor on a patch of a micrometre.
 const MOMENT_FLOOR: f64 = 1e-15;
 
-/// [m] spin stiffness over moment limit below which the direction of rolling fades to zero, a ten thousandth of a micrometre: nothing where there is load.
+/// \[m] spin stiffness over moment limit below which the direction of rolling fades to zero, a ten thousandth of a micrometre: nothing where there is load.
 const ARM_FLOOR: f64 = 1e-10;
 /// [-] cosine of the rolling direction below which the table's two directions are mixed: a third of the circle, and a
 /// rolling speed of half a millimetre a second.
@@ -98,7 +98,7 @@ pub fn saturation<S: Scalar>(q: S) -> S {
 }
 
 impl<S: Scalar> LinearTheory<S> {
-    /// Of a contact of a shape, at a depth [m] with its root, under a load [N] with a friction coefficient, whose rolling
+    /// Of a contact of a shape, at a depth \[m] with its root, under a load \[N] with a friction coefficient, whose rolling
     /// direction has a cosine against the x axis.
     #[inline(always)]
     pub(super) fn new(shape: &ShapeAt<S>, depth: S, root: S, load: S, friction: f64, cosine: S) -> Self {

@@ -16,7 +16,7 @@ const REGULARISATION_SPEED: f64 = 1e-3;
 pub(super) struct Surfaces<S: Scalar> {
     /// [-] unit normal, out of the ball.
     normal: Vector3<S>,
-    /// [m] contact point from the ball's centre and from the other body's origin.
+    /// \[m] contact point from the ball's centre and from the other body's origin.
     arms: [Vector3<S>; 2],
     /// [m/s] velocity of the ball's surface less that of the other one.
     slip: Vector3<S>,
@@ -53,18 +53,18 @@ pub(super) struct Rolling<S: Scalar> {
 /// Forces and moments of a contact, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wrench<S: Scalar> {
-    /// [N] force on the ball; the other body's is the opposite.
+    /// \[N] force on the ball; the other body's is the opposite.
     pub(super) force: Vector3<S>,
     /// [N m] moment on the ball about its centre.
     pub(super) ball_moment: Vector3<S>,
     /// [N m] moment on the other body about its origin.
     pub(super) other_moment: Vector3<S>,
-    /// [W] power lost to friction.
+    /// \[W] power lost to friction.
     pub(super) friction_power: S,
 }
 
 impl<S: Scalar> Surfaces<S> {
-    /// A ball of a radius [m] at an offset [m] from the origin of a body with `[velocity, angular velocity]`, which touch
+    /// A ball of a radius \[m] at an offset \[m] from the origin of a body with `[velocity, angular velocity]`, which touch
     /// in the direction of a normal that changes at a rate [1/s].
     #[inline(always)]
     pub(super) fn new(
@@ -120,7 +120,7 @@ impl<S: Scalar> Surfaces<S> {
         }
     }
 
-    /// Forces and moments of a normal load [N] and of the creep forces of the ball on the other body.
+    /// Forces and moments of a normal load \[N] and of the creep forces of the ball on the other body.
     #[inline(always)]
     pub(super) fn wrench(&self, rolling: &Rolling<S>, load: S, creep: &CreepForces<S>) -> Wrench<S> {
         let ([x, y], [arm, other_arm]) = (rolling.axes, self.arms);

@@ -21,11 +21,11 @@ const EXPONENT: f64 = 1.0 / 0.9;
 pub struct LandModel {
     /// Race that guides, 0 inner or 1 outer.
     pub race: usize,
-    /// [m] half the diametral clearance: how far the cage's centre moves before it touches.
+    /// \[m] half the diametral clearance: how far the cage's centre moves before it touches.
     pub half_clearance: f64,
-    /// [m] radius of the race's land.
+    /// \[m] radius of the race's land.
     radius: f64,
-    /// [m] axial positions of the lands' middles in the cage.
+    /// \[m] axial positions of the lands' middles in the cage.
     pub positions: [f64; 2],
     /// [N/m^(10/9)] `Q = stiffness delta^(10/9)` of one land.
     stiffness: f64,
@@ -40,13 +40,13 @@ pub struct LandModel {
 pub struct Lands {
     /// Race that guides, 0 inner or 1 outer.
     pub race: usize,
-    /// [m] diametral clearance.
+    /// \[m] diametral clearance.
     pub clearance: f64,
-    /// [m] diameter of the race's lands.
+    /// \[m] diameter of the race's lands.
     pub diameter: f64,
-    /// [m] width of each of the two lands.
+    /// \[m] width of each of the two lands.
     pub width: f64,
-    /// [m] distance of the inner edges of the lands from the plane of the pockets.
+    /// \[m] distance of the inner edges of the lands from the plane of the pockets.
     pub edge: f64,
 }
 
@@ -65,17 +65,17 @@ impl LandModel {
         }
     }
 
-    /// [J] elastic energy of one land at an approach [m].
+    /// \[J] elastic energy of one land at an approach \[m].
     pub fn elastic_energy(&self, approach: f64) -> f64 {
         self.stiffness * approach.max(0.0).powf(EXPONENT + 1.0) / (EXPONENT + 1.0)
     }
 
-    /// [m] approach on the land at an axial position [m] of the cage; negative is a gap.
+    /// \[m] approach on the land at an axial position \[m] of the cage; negative is a gap.
     pub fn approach(&self, cage: &BodyMotion<f64>, race: &RaceMotion<f64>, position: f64) -> f64 {
         eccentricity(cage, race, position).1.norm() - self.half_clearance
     }
 
-    /// Forces between cage (first) and race (second) on the land at an axial position [m] of the cage; `None` where
+    /// Forces between cage (first) and race (second) on the land at an axial position \[m] of the cage; `None` where
     /// they do not touch.
     #[inline(always)]
     pub fn evaluate<S: Single>(
@@ -122,7 +122,7 @@ impl LandModel {
     }
 }
 
-/// Centre of the cage's section at an axial position [m] of the cage, seen from the race: along its axis and across.
+/// Centre of the cage's section at an axial position \[m] of the cage, seen from the race: along its axis and across.
 #[inline(always)]
 fn eccentricity<S: Scalar>(cage: &BodyMotion<S>, race: &RaceMotion<S>, position: f64) -> (S, Vector3<S>) {
     let section = cage.position + cage.axes[0].map(|c| c.scale(position)) - race.position;
@@ -130,7 +130,7 @@ fn eccentricity<S: Scalar>(cage: &BodyMotion<S>, race: &RaceMotion<S>, position:
     (axial, section - race.axis * axial)
 }
 
-/// [N/m^(10/9)] of a line of a length [m]: `Q = (delta l^0.8/3.84e-5)^(1/0.9)` in mm and N.
+/// [N/m^(10/9)] of a line of a length \[m]: `Q = (delta l^0.8/3.84e-5)^(1/0.9)` in mm and N.
 fn lundberg_stiffness(length: f64) -> f64 {
     (1e3 * (1e3 * length).powf(0.8) / 3.84e-5).powf(EXPONENT)
 }

@@ -9,19 +9,19 @@ use crate::scalar::{Scalar, constant_vector};
 /// Forces and losses of a ball-race contact, in world axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactEffect<S: Scalar = f64> {
-    /// [N] normal load.
+    /// \[N] normal load.
     pub load: S,
     /// [N/m^1.5] Hertz stiffness.
     pub stiffness: S,
-    /// [N] force on the ball.
+    /// \[N] force on the ball.
     pub force: Vector3<S>,
     /// [N m] moment on the ball about its centre.
     pub ball_moment: Vector3<S>,
     /// [N m] moment on the race about its origin.
     pub race_moment: Vector3<S>,
-    /// [W] power lost to friction.
+    /// \[W] power lost to friction.
     pub friction_power: S,
-    /// [W] power lost to contact damping.
+    /// \[W] power lost to contact damping.
     pub damping_power: S,
 }
 

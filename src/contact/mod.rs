@@ -29,7 +29,7 @@ use shape::ContactShape;
 /// Motion of a ball, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub struct BallMotion<S: Scalar> {
-    /// [m] centre.
+    /// \[m] centre.
     pub position: Vector3<S>,
     /// [m/s] velocity of the centre.
     pub velocity: Vector3<S>,
@@ -47,7 +47,7 @@ impl BallMotion<f64> {
 /// Motion of a race, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub struct RaceMotion<S: Scalar> {
-    /// [m] origin of the race frame.
+    /// \[m] origin of the race frame.
     pub position: Vector3<S>,
     /// [-] unit vector of the race's own axis.
     pub axis: Vector3<S>,
@@ -64,7 +64,7 @@ pub struct ContactModel<'a> {
     pub raceway: &'a Raceway,
     /// Its contacts' shape.
     pub shape: &'a ContactShape,
-    /// [m] ball radius.
+    /// \[m] ball radius.
     pub ball_radius: f64,
     /// Creep law.
     pub law: Law<'a>,
@@ -81,7 +81,7 @@ pub struct ContactModel<'a> {
 pub struct BallRaceContact<S: Scalar> {
     /// Geometry of the contact.
     pub geometry: GrooveContact<S>,
-    /// [N] normal load.
+    /// \[N] normal load.
     pub load: S,
     /// [N/m^1.5] Hertz stiffness.
     pub stiffness: S,
@@ -95,15 +95,15 @@ pub struct BallRaceContact<S: Scalar> {
     pub creep: CreepForces<S>,
     /// [-] cosine of the rolling direction against the circumferential direction, near +-1.
     pub rolling_cosine: S,
-    /// [N] force on the ball, world axes.
+    /// \[N] force on the ball, world axes.
     pub force: Vector3<S>,
     /// [N m] moment on the ball about its centre, world axes.
     pub ball_moment: Vector3<S>,
     /// [N m] moment on the race about its origin, world axes.
     pub race_moment: Vector3<S>,
-    /// [W] power lost to friction.
+    /// \[W] power lost to friction.
     pub friction_power: S,
-    /// [W] power lost to contact damping.
+    /// \[W] power lost to contact damping.
     pub damping_power: S,
 }
 

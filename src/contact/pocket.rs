@@ -27,11 +27,11 @@ const MOST_SLENDER: f64 = 0.05;
 /// Constants of a ball-pocket contact.
 #[derive(Clone, Copy, Debug)]
 pub struct PocketModel {
-    /// [m] half the diametral clearance: how far a ball moves from the pocket's axis before it touches.
+    /// \[m] half the diametral clearance: how far a ball moves from the pocket's axis before it touches.
     pub half_clearance: f64,
-    /// [m] ball radius.
+    /// \[m] ball radius.
     ball_radius: f64,
-    /// [m] radius of the circle of pocket centres, where pockets are spheres.
+    /// \[m] radius of the circle of pocket centres, where pockets are spheres.
     sphere_circle: Option<f64>,
     shape: ShapeAt<f64>,
     /// [-] friction coefficient.
@@ -41,7 +41,7 @@ pub struct PocketModel {
 }
 
 impl PocketModel {
-    /// A pocket of a diametral clearance [m]: a cylinder, or a sphere whose centre is at a radius [m] of the cage.
+    /// A pocket of a diametral clearance \[m]: a cylinder, or a sphere whose centre is at a radius \[m] of the cage.
     ///
     /// # Errors
     /// If Kalker's linear theory has no answer for the materials.
@@ -67,12 +67,12 @@ impl PocketModel {
         Ok(Self { half_clearance, ball_radius, sphere_circle, shape, friction, damping })
     }
 
-    /// [J] elastic energy at an approach [m].
+    /// \[J] elastic energy at an approach \[m].
     pub fn elastic_energy(&self, approach: f64) -> f64 {
         0.4 * self.shape.stiffness * approach.max(0.0).powf(2.5)
     }
 
-    /// [m] approach of a ball and a pocket whose axis has these components [y, z] along the cage's axes; negative is a
+    /// \[m] approach of a ball and a pocket whose axis has these components [y, z] along the cage's axes; negative is a
     /// gap.
     pub fn approach(&self, ball: &BallMotion<f64>, cage: &BodyMotion<f64>, direction: [f64; 2]) -> f64 {
         let axis = pocket_axis(cage, direction);

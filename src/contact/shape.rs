@@ -65,7 +65,7 @@ pub struct ShapeAt<T> {
     pub lateral: T,
     /// [N/m^0.5] `G c^3 C23` over `delta^1.5`.
     pub coupling: T,
-    /// [N] `G c^4 C33` over `delta^2`.
+    /// \[N] `G c^4 C33` over `delta^2`.
     pub spin: T,
     /// [m^0.5] semi-axis along rolling over `sqrt(delta)`.
     pub semi_axis_rolling: T,
@@ -103,7 +103,7 @@ impl ShapeAt<f64> {
     }
 
     /// Contact of relative curvatures [1/m] along and transverse to rolling, of materials with a `compliance`
-    /// `(1 - nu1^2)/E1 + (1 - nu2^2)/E2` [1/Pa], a combined `shear` modulus [Pa] and Poisson's ratio.
+    /// `(1 - nu1^2)/E1 + (1 - nu2^2)/E2` [1/Pa], a combined `shear` modulus \[Pa] and Poisson's ratio.
     ///
     /// # Errors
     /// If Kalker's linear theory has no answer for the axis ratio.

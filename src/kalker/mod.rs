@@ -20,7 +20,6 @@ pub mod table;
 mod table_evaluation;
 pub mod table_nodes;
 mod table_pieces;
-mod table_stencil;
 
 /// A rolling contact patch as Kalker's theory knows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +28,7 @@ pub struct Patch {
     pub axis_ratio: f64,
     /// [-] Poisson's ratio of both bodies, 0 to 0.5.
     pub poisson_ratio: f64,
-    /// [rad] direction of rolling measured from the ellipse's x axis; 0 is rolling along x.
+    /// \[rad] direction of rolling measured from the ellipse's x axis; 0 is rolling along x.
     pub rolling_angle: f64,
 }
 

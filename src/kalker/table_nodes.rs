@@ -11,7 +11,7 @@ use super::{Patch, ScaledCreepage};
 /// Cells of the coarser grid over the geometric mean of the axes: of ellipses wide across rolling, and of those long
 /// along it, whose grids are finer across.
 const CELLS: [usize; 2] = [16, 20];
-/// [rad] distance from an axis or plane of symmetry at which its limits are taken: near enough for an error below
+/// \[rad] distance from an axis or plane of symmetry at which its limits are taken: near enough for an error below
 /// 0.3 %, far enough for the solver's last digits not to count.
 const ASIDE: f64 = 0.05;
 /// Creepage |q| that stands for complete sliding.
