@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-use roulement::kalker::table::{RATIOS, knot};
+use roulement::kalker::table::{RATIOS, axis_ratio};
 use roulement::kalker::table_nodes::build;
 
 fn part(file: &str, index: usize) -> PathBuf {
@@ -22,10 +22,10 @@ fn build_part(file: &str, index: usize, begin: Instant) -> Result<(), String> {
     if path.exists() {
         return Ok(());
     }
-    let nodes = build(knot(index)).map_err(|why| why.to_string())?;
+    let nodes = build(axis_ratio(index)).map_err(|why| why.to_string())?;
     let bytes: Vec<u8> = nodes.into_iter().flatten().flat_map(|value| (value as f32).to_le_bytes()).collect();
     fs::write(&path, bytes).map_err(|why| format!("{}: {why}", path.display()))?;
-    println!("axis ratio {:.4} done after {:.0} s", knot(index), begin.elapsed().as_secs_f64());
+    println!("axis ratio {:.4} done after {:.0} s", axis_ratio(index), begin.elapsed().as_secs_f64());
     Ok(())
 }
 

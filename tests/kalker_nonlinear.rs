@@ -2,14 +2,15 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
+mod printed;
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use common::cases;
+use printed::Printed;
 use roulement::kalker::linear::creep_matrix;
 use roulement::kalker::nonlinear::{Kalker, KalkerError};
-use roulement::kalker::printed;
 use roulement::kalker::{Patch, ScaledCreepage};
 
 /// Mean errors of fx, fy, mz and the largest force error, by kind of case.
@@ -158,17 +159,18 @@ fn full_slip_reaches_the_friction_limit_and_stick_falls_from_one_to_none() {
     assert!(at(10.0).forces.fx > 0.995);
 }
 
-/// The printed objective against the repaired one: what the repair is worth.
+/// What the repair of the objective is worth. A linear traction (M = 1) is too poor for either: both objectives are off by
+/// more than a tenth of the limits on average, the printed one by .174/.252/.308 and the repaired one by .132/.288/.346.
+/// From M = 3 on the repaired one's errors are a third of the printed one's or less.
 #[test]
-#[ignore = "an experiment of some seconds"]
 fn independent_data_printed_objective_by_degree() {
     for degree in [1, 3, 5] {
-        let (mut printed, mut repaired, mut count, mut vanishing) = ([0.0; 3], [0.0; 3], 0.0, 0.0);
+        let (mut printed, mut repaired, mut count, mut vanishing) = ([0.0; 3], [0.0; 3], 0.0, vec![]);
         for case in cases().iter().filter(|case| case.kind == "general") {
+            let (by_printed, objective) = Printed::new(case.patch, degree).solve(&case.creepage);
             let kalker = Kalker::new(case.patch, degree).unwrap();
-            let (solution, objective) = printed::solve(&kalker, &case.creepage);
-            let reference = kalker.solve(&case.creepage, None).unwrap();
-            for (sum, forces) in [(&mut printed, solution.forces), (&mut repaired, reference.forces)] {
+            let by_repaired = kalker.solve(&case.creepage, None).unwrap().forces;
+            for (sum, forces) in [(&mut printed, by_printed), (&mut repaired, by_repaired)] {
                 for (sum, (ours, expected)) in
                     sum.iter_mut().zip([forces.fx, forces.fy, forces.mz].into_iter().zip(case.expected))
                 {
@@ -176,14 +178,23 @@ fn independent_data_printed_objective_by_degree() {
                 }
             }
             count += 1.0;
-            vanishing += if objective < 1e-9 { 1.0 } else { 0.0 };
+            if objective < 1e-9 {
+                let error = (by_printed.fx - case.expected[0]).hypot(by_printed.fy - case.expected[1]);
+                vanishing.push(error);
+            }
         }
-        let mean = |sum: [f64; 3]| sum.map(|s| s / count);
+        let [printed, repaired] = [printed, repaired].map(|sum| sum.map(|s| s / count));
         println!(
-            "M = {degree}: printed {:.3?} ({vanishing} of {count} at objective 0), repaired {:.3?}",
-            mean(printed),
-            mean(repaired)
+            "M = {degree}: printed {printed:.3?}, repaired {repaired:.3?}; of {count}, at a printed objective of 0, with errors {vanishing:.3?}"
         );
-        assert!(mean(printed)[0] > mean(repaired)[0] && mean(printed)[2] > mean(repaired)[2]);
+        for (printed, repaired) in printed.into_iter().zip(repaired) {
+            if degree == 1 {
+                assert!(printed > 0.1 && repaired > 0.1, "{printed} {repaired}");
+            } else {
+                assert!(repaired < 0.34 * printed, "M = {degree}: {repaired} {printed}");
+            }
+        }
+        // The printed objective is zero at tractions that are not the contact's: .342, .369 and .184 off.
+        assert!(vanishing.iter().any(|error| *error > 0.15), "{vanishing:?}");
     }
 }

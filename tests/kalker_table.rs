@@ -9,8 +9,8 @@ use common::cases;
 use roulement::analysis::single_contact::{Law, RollingContact};
 use roulement::kalker::half_space::extrapolated;
 use roulement::kalker::linear::creep_matrix;
-use roulement::kalker::table::{CreepTable, index, knot, shipped};
-use roulement::kalker::table_nodes::Rays;
+use roulement::kalker::table::{CreepTable, axis_ratio, index, shipped};
+use roulement::kalker::table_nodes::NodeSolver;
 use roulement::kalker::{Patch, ScaledCreepage};
 use roulement::scene::CreepLaw;
 
@@ -268,7 +268,7 @@ fn invariant_slopes_are_continuous_from_rest_to_sliding() {
 fn regression_nodes_are_what_the_builder_computes() {
     for (place, j, k) in [(2, 3, 5), (6, 10, 8)] {
         let stored = shipped(place);
-        let computed = Rays::new(knot(place)).unwrap().ray(j, k).unwrap();
+        let computed = NodeSolver::new(axis_ratio(place)).unwrap().from_rest_to_sliding(j, k).unwrap();
         for (i, values) in computed.iter().enumerate().skip(1) {
             for (m, value) in values.iter().enumerate() {
                 let error = (value - f64::from(stored[3 * index(i, j, k) + m])).abs();

@@ -1,4 +1,4 @@
-//! What contacts of the cage have in common: the motion of a body with its axes, and damping.
+//! Motion of a body with its axes, for contacts of the cage.
 
 use nalgebra::Vector3;
 
@@ -7,7 +7,7 @@ use crate::numerics::scalar::Scalar;
 /// Motion of a rigid body, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyMotion<S: Scalar> {
-    /// [m] origin.
+    /// \[m] origin.
     pub position: Vector3<S>,
     /// [-] unit vectors of the body's own axes.
     pub axes: [Vector3<S>; 3],
@@ -15,10 +15,4 @@ pub struct BodyMotion<S: Scalar> {
     pub velocity: Vector3<S>,
     /// [rad/s] angular velocity.
     pub angular_velocity: Vector3<S>,
-}
-
-/// [N] elastic load with Hunt-Crossley dissipation `chi` [s/m], never pulling.
-#[inline(always)]
-pub fn damped<S: Scalar>(elastic: S, approach_rate: S, dissipation: f64) -> S {
-    (elastic * (S::one() + approach_rate.scale(dissipation))).positive_part()
 }

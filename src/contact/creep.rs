@@ -6,6 +6,7 @@
 
 use crate::contact::heathcote::CurvatureEffect;
 use crate::contact::regularised::Parameters;
+use crate::contact::shape::ShapeAt;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
 use crate::numerics::scalar::{Scalar, within_limit};
@@ -25,7 +26,7 @@ pub enum Law<'a> {
     Table(&'a CreepTable),
     /// Kalker's nonlinear theory in polynomials.
     Kalker(&'a ScaledKalker),
-    /// The same in simulations: the table and what the polynomials add to it, frozen.
+    /// Kalker's nonlinear theory in polynomials as simulations have it: the table and the polynomials' frozen difference.
     Frozen(&'a CreepTable, &'a [f64; 4]),
 }
 
@@ -45,30 +46,30 @@ pub struct Creepage<S> {
 /// Kalker's linear theory of the contact in hand, dimensional (paper eq. 14), and its limits.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearTheory<S> {
-    /// [N] `G c^2 C11`.
+    /// \[N] `G c^2 C11`.
     pub longitudinal: S,
-    /// [N] `G c^2 C22`.
+    /// \[N] `G c^2 C22`.
     pub lateral: S,
     /// [N m] `G c^3 C23`.
     pub coupling: S,
     /// [N m2] `G c^4 C33`.
     pub spin: S,
-    /// [N] `mu Q`.
+    /// \[N] `mu Q`.
     pub friction_limit: S,
     /// [N m] spin moment of complete slip.
     pub moment_limit: S,
-    /// [m] `c = sqrt(a b)`.
+    /// \[m] `c = sqrt(a b)`.
     pub mean_semi_axis: S,
-    /// [m] semi-axis transverse to rolling.
+    /// \[m] semi-axis transverse to rolling.
     pub half_width: S,
 }
 
 /// Tangential effect of the ball on the raceway.
 #[derive(Clone, Copy, Debug)]
 pub struct CreepForces<S> {
-    /// [N] along the rolling direction.
+    /// \[N] along the rolling direction.
     pub longitudinal: S,
-    /// [N] transverse to it.
+    /// \[N] transverse to it.
     pub lateral: S,
     /// [N m] about the normal.
     pub spin_moment: S,
@@ -76,12 +77,12 @@ pub struct CreepForces<S> {
     pub second_moment: S,
 }
 
-/// [N] friction limit below which forces fade to zero, so that an unloaded contact is 0 and not 0/0.
+/// \[N] friction limit below which forces fade to zero, so that an unloaded contact is 0 and not 0/0.
 const FORCE_FLOOR: f64 = 1e-9;
-/// [N m] the same for the spin moment: the force floor on a patch of a micrometre.
+/// [N m] moment limit below which the spin moment fades to zero: the force floor on a patch of a micrometre.
 const MOMENT_FLOOR: f64 = 1e-15;
 
-/// [m] the same for spin stiffness over moment limit, a ten thousandth of a micrometre: nothing where there is load.
+/// \[m] spin stiffness over moment limit below which the direction of rolling fades to zero, a ten thousandth of a micrometre: nothing where there is load.
 const ARM_FLOOR: f64 = 1e-10;
 /// [-] cosine of the rolling direction below which the table's two directions are mixed: a third of the circle, and a
 /// rolling speed of half a millimetre a second.
@@ -97,6 +98,23 @@ pub fn saturation<S: Scalar>(q: S) -> S {
 }
 
 impl<S: Scalar> LinearTheory<S> {
+    /// Of a contact of a shape, at a depth \[m] with its root, under a load \[N] with a friction coefficient, whose rolling
+    /// direction has a cosine against the x axis.
+    #[inline(always)]
+    pub(super) fn new(shape: &ShapeAt<S>, depth: S, root: S, load: S, friction: f64, cosine: S) -> Self {
+        let friction_limit = load.scale(friction);
+        Self {
+            longitudinal: shape.longitudinal * depth,
+            lateral: shape.lateral * depth,
+            coupling: shape.coupling * depth * root * cosine,
+            spin: shape.spin * depth.square(),
+            friction_limit,
+            moment_limit: friction_limit * shape.spin_arm * root,
+            mean_semi_axis: shape.mean_semi_axis * root,
+            half_width: shape.semi_axis_transverse * root,
+        }
+    }
+
     /// Forces of a law.
     #[inline(always)]
     pub fn forces(&self, law: Law<'_>, creepage: &Creepage<S>) -> CreepForces<S> {
@@ -198,7 +216,7 @@ impl<S: Scalar> LinearTheory<S> {
         (side * spin, side * self.half_width * curvature)
     }
 
-    /// A flat law's forces with what the curvature of the groove changes.
+    /// A flat law's forces with the changes that the curvature of the groove makes.
     #[inline(always)]
     fn bent(&self, [x, y, z]: [S; 3], creepage: &Creepage<S>, curvature: S) -> CreepForces<S> {
         let (per_force, per_moment) = self.per_limits();
@@ -237,7 +255,7 @@ impl<S: Scalar> LinearTheory<S> {
         self.friction_limit * self.half_width.square()
     }
 
-    /// Forces with what the polynomials add for rolling along +x, kept within their limits.
+    /// Forces with the difference of the polynomials for rolling along +x, kept within their limits.
     #[inline(always)]
     fn corrected(&self, forces: &CreepForces<S>, direction: S, difference: &[f64; 4]) -> CreepForces<S> {
         let (per_force, per_moment) = self.per_limits();

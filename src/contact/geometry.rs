@@ -5,13 +5,13 @@ use nalgebra::Vector3;
 use crate::contact::raceway::Raceway;
 use crate::numerics::scalar::{Scalar, Single, cross, dot, values};
 
-/// [m] distance from the groove centre below which the contact normal fades to zero.
+/// \[m] distance from the groove centre below which the contact normal fades to zero.
 const DISTANCE_FLOOR: f64 = 1e-15;
 
 /// Ball against raceway, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub struct GrooveContact<S: Scalar> {
-    /// [m] approach; positive in contact.
+    /// \[m] approach; positive in contact.
     pub approach: S,
     /// [-] unit normal, from groove centre to ball centre: out of the ball into the raceway.
     pub normal: Vector3<S>,
@@ -19,16 +19,16 @@ pub struct GrooveContact<S: Scalar> {
     pub radial: Vector3<S>,
     /// [-] circumferential direction: race axis x radial.
     pub circumferential: Vector3<S>,
-    /// [m] distance of the ball centre from the race axis.
+    /// \[m] distance of the ball centre from the race axis.
     pub radius: S,
-    /// [m] distance of the ball centre from the groove centre.
+    /// \[m] distance of the ball centre from the groove centre.
     pub distance: S,
     /// [1/m] curvature of the raceway along its circumference at the contact; convex (inner race) positive.
     pub circumferential_curvature: S,
 }
 
 impl<S: Scalar> GrooveContact<S> {
-    /// Contact of a ball of radius `ball_radius` [m] whose centre is at `offset` [m] from the race centre,
+    /// Contact of a ball of radius `ball_radius` \[m] whose centre is at `offset` \[m] from the race centre,
     /// with a race of unit axis `axis`.
     #[inline(always)]
     pub fn new(raceway: &Raceway, ball_radius: f64, offset: &Vector3<S>, axis: &Vector3<S>) -> Self {
@@ -57,7 +57,7 @@ impl<S: Scalar> GrooveContact<S> {
 }
 
 impl<S: Single> GrooveContact<S> {
-    /// The same without derivatives.
+    /// Values without derivatives.
     pub fn values(&self) -> GrooveContact<f64> {
         GrooveContact {
             approach: self.approach.value(),

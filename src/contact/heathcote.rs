@@ -15,7 +15,7 @@ use crate::numerics::scalar::{Scalar, SmoothMap, Values};
 /// Strips across the contact.
 const STRIPS: usize = 24;
 
-/// Places y/b of the strips, in lanes, and their shares of the load, `3/4 (1 - y^2)` integrated: Gauss-Chebyshev
+/// Places y/b of the strips, in lanes, and their parts of the load, `3/4 (1 - y^2)` integrated: Gauss-Chebyshev
 /// quadrature.
 static PLACES: LazyLock<[[Lanes; 2]; STRIPS / WIDTH]> = LazyLock::new(|| {
     let raw: [(f64, f64); STRIPS] = std::array::from_fn(|k| {
@@ -95,7 +95,7 @@ fn total(Lanes([a, b, c, d]): Lanes) -> f64 {
     (a + b) + (c + d)
 }
 
-/// What the curvature of the groove adds to `(F_x/(mu Q), F_y/(mu Q), M_z/(mu Q b))`, and the second moment
+/// Changes by the curvature of the groove of `(F_x/(mu Q), F_y/(mu Q), M_z/(mu Q b))`, and the second moment
 /// `y^2 f_x` over `mu Q b^2` as a whole.
 ///
 /// Arguments are forces of linear theory over mu Q: of the creepages along and across rolling, of the slip
@@ -118,7 +118,7 @@ fn curvature_effect(q: [f64; 4]) -> [f64; 4] {
     changes(&sums(q, None), &sums(flat(q), None))
 }
 
-/// The same creepages without curvature.
+/// Arguments without curvature.
 fn flat([x, y, spin, _]: [f64; 4]) -> [f64; 4] {
     [x, y, spin, 0.0]
 }
@@ -134,7 +134,7 @@ fn changes(curved: &Forces, flat: &Forces) -> [f64; 4] {
     ]
 }
 
-/// The same with its derivatives.
+/// Effect of the curvature with its derivatives.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn curvature_effect_with_gradient(q: [f64; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
     let zero = Lanes::constant(0.0);

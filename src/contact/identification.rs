@@ -43,7 +43,7 @@ impl Identification {
 /// Identifies the parameters of a patch against a nonlinear theory.
 ///
 /// # Errors
-/// Whatever the theory says, and if the patch is out of range.
+/// Errors of the theory, and if the patch is out of range.
 pub fn identify<E: From<LinearError>>(
     patch: &Patch,
     theory: impl Fn(&ScaledCreepage) -> Result<ScaledForces, E>,

@@ -5,7 +5,8 @@
 
 use nalgebra::Vector3;
 
-use super::body::{BodyMotion, damped};
+use super::body::BodyMotion;
+use super::normal::NormalLoad;
 use super::pair::PairForces;
 use crate::contact::RaceMotion;
 use crate::numerics::scalar::{Scalar, Single, cross, dot};
@@ -16,7 +17,7 @@ const SLIDING_FLOOR: f64 = 1e-2;
 /// [-] exponent of the approach in Lundberg's law, inverted.
 const EXPONENT: f64 = 1.0 / 0.9;
 
-/// What does not change in the contacts of the cage with the lands.
+/// Constants of the contacts of the cage with the lands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandModel {
     /// [m] half the diametral clearance: how far the cage's centre moves before it touches.
@@ -24,7 +25,7 @@ pub struct LandModel {
     /// [m] radius of the race's land; negative on an inner race, which is touched on the side that the cage moved away
     /// from.
     radius: f64,
-    /// [m] axial positions of the lands' middles in the cage.
+    /// \[m] axial positions of the lands' middles in the cage.
     pub positions: [f64; 2],
     /// [N/m^(10/9)] `Q = stiffness delta^(10/9)` of one land.
     stiffness: f64,
@@ -41,11 +42,11 @@ pub struct Lands {
     pub inside: bool,
     /// [m] diametral clearance.
     pub clearance: f64,
-    /// [m] diameter of the race's lands.
+    /// \[m] diameter of the race's lands.
     pub diameter: f64,
-    /// [m] width of each of the two lands.
+    /// \[m] width of each of the two lands.
     pub width: f64,
-    /// [m] distance of the inner edges of the lands from the plane of the pockets.
+    /// \[m] distance of the inner edges of the lands from the plane of the pockets.
     pub edge: f64,
 }
 
@@ -63,17 +64,17 @@ impl LandModel {
         }
     }
 
-    /// [J] elastic energy of one land at an approach [m].
+    /// \[J] elastic energy of one land at an approach \[m].
     pub fn elastic_energy(&self, approach: f64) -> f64 {
         self.stiffness * approach.max(0.0).powf(EXPONENT + 1.0) / (EXPONENT + 1.0)
     }
 
-    /// [m] approach on the land at an axial position [m] of the cage; negative is a gap.
+    /// \[m] approach on the land at an axial position \[m] of the cage; negative is a gap.
     pub fn approach(&self, cage: &BodyMotion<f64>, race: &RaceMotion<f64>, position: f64) -> f64 {
         eccentricity(cage, race, position).1.norm() - self.half_clearance
     }
 
-    /// Forces between cage (first) and race (second) on the land at an axial position [m] of the cage; `None` where
+    /// Forces between cage (first) and race (second) on the land at an axial position \[m] of the cage; `None` where
     /// they do not touch.
     #[inline(always)]
     pub fn evaluate<S: Single>(
@@ -102,24 +103,24 @@ impl LandModel {
             let load = self.stiffness * d.powf(EXPONENT);
             (load, EXPONENT * load / d)
         });
-        let load = damped(elastic, approach_rate, self.damping);
+        let load = NormalLoad::damped(elastic, approach_rate, self.damping);
         let speed = (dot(&sliding, &sliding) + S::constant(SLIDING_FLOOR * SLIDING_FLOOR)).sqrt();
-        let friction = sliding * (load.scale(self.friction) / speed);
-        let force = -(outwards * load + friction);
+        let friction = sliding * (load.total.scale(self.friction) / speed);
+        let force = -(outwards * load.total + friction);
         Some(PairForces {
             approach,
-            load,
+            load: load.total,
             stiffness: S::constant(self.stiffness),
             force,
             moment: cross(&cage_arm, &force),
             other_moment: -cross(&race_arm, &force),
             friction_power: dot(&friction, &sliding),
-            damping_power: (load - elastic) * approach_rate,
+            damping_power: load.damping_power,
         })
     }
 }
 
-/// Centre of the cage's section at an axial position [m] of the cage, seen from the race: along its axis and across.
+/// Centre of the cage's section at an axial position \[m] of the cage, seen from the race: along its axis and across.
 #[inline(always)]
 fn eccentricity<S: Scalar>(cage: &BodyMotion<S>, race: &RaceMotion<S>, position: f64) -> (S, Vector3<S>) {
     let section = cage.position + cage.axes[0].map(|c| c.scale(position)) - race.position;
@@ -127,7 +128,7 @@ fn eccentricity<S: Scalar>(cage: &BodyMotion<S>, race: &RaceMotion<S>, position:
     (axial, section - race.axis * axial)
 }
 
-/// [N/m^(10/9)] of a line of a length [m]: `Q = (delta l^0.8/3.84e-5)^(1/0.9)` in mm and N.
+/// [N/m^(10/9)] of a line of a length \[m]: `Q = (delta l^0.8/3.84e-5)^(1/0.9)` in mm and N.
 fn lundberg_stiffness(length: f64) -> f64 {
     (1e3 * (1e3 * length).powf(0.8) / 3.84e-5).powf(EXPONENT)
 }

@@ -6,9 +6,11 @@ pub mod geometry;
 pub mod heathcote;
 pub mod hertz;
 pub mod identification;
+mod kinematics;
 pub mod land;
 pub mod many;
 pub mod materials;
+pub mod normal;
 pub mod pair;
 pub mod pocket;
 pub mod raceway;
@@ -23,16 +25,14 @@ use crate::kalker::scaled_law::{Difference, ScaledKalker};
 use crate::numerics::scalar::{Scalar, Single, cross, dot, values};
 use creep::{CreepForces, Creepage, Law, LinearTheory};
 use geometry::GrooveContact;
-use shape::{ContactShape, ShapeAt};
-
-/// [m/s] rolling speed below which creepages are held finite: `V -> sqrt(V^2 + v^2)`. Forces stay linear in the slip
-/// speed at rest; at 1 m/s it changes creepages by 5e-7.
-const REGULARISATION_SPEED: f64 = 1e-3;
+use kinematics::Surfaces;
+use normal::NormalLoad;
+use shape::ContactShape;
 
 /// Motion of a ball, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub struct BallMotion<S: Scalar> {
-    /// [m] centre.
+    /// \[m] centre.
     pub position: Vector3<S>,
     /// [m/s] velocity of the centre.
     pub velocity: Vector3<S>,
@@ -50,7 +50,7 @@ impl BallMotion<f64> {
 /// Motion of a race, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub struct RaceMotion<S: Scalar> {
-    /// [m] origin of the race frame.
+    /// \[m] origin of the race frame.
     pub position: Vector3<S>,
     /// [-] unit vector of the race's own axis.
     pub axis: Vector3<S>,
@@ -60,14 +60,14 @@ pub struct RaceMotion<S: Scalar> {
     pub angular_velocity: Vector3<S>,
 }
 
-/// What does not change in a ball-race contact during a step.
+/// Constants of a ball-race contact during a step.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactModel<'a> {
     /// The raceway.
     pub raceway: &'a Raceway,
     /// Its contacts' shape.
     pub shape: &'a ContactShape,
-    /// [m] ball radius.
+    /// \[m] ball radius.
     pub ball_radius: f64,
     /// Creep law.
     pub law: Law<'a>,
@@ -84,7 +84,7 @@ pub struct ContactModel<'a> {
 pub struct BallRaceContact<S: Scalar> {
     /// Geometry of the contact.
     pub geometry: GrooveContact<S>,
-    /// [N] normal load.
+    /// \[N] normal load.
     pub load: S,
     /// [N/m^1.5] Hertz stiffness.
     pub stiffness: S,
@@ -98,20 +98,20 @@ pub struct BallRaceContact<S: Scalar> {
     pub creep: CreepForces<S>,
     /// [-] cosine of the rolling direction against the circumferential direction, near +-1.
     pub rolling_cosine: S,
-    /// [N] force on the ball, world axes.
+    /// \[N] force on the ball, world axes.
     pub force: Vector3<S>,
     /// [N m] moment on the ball about its centre, world axes.
     pub ball_moment: Vector3<S>,
     /// [N m] moment on the race about its origin, world axes.
     pub race_moment: Vector3<S>,
-    /// [W] power lost to friction.
+    /// \[W] power lost to friction.
     pub friction_power: S,
-    /// [W] power lost to contact damping.
+    /// \[W] power lost to contact damping.
     pub damping_power: S,
 }
 
 impl<S: Single> BallRaceContact<S> {
-    /// The same without derivatives.
+    /// Values without derivatives.
     #[inline(always)]
     pub fn values(&self) -> BallRaceContact<f64> {
         BallRaceContact {
@@ -154,104 +154,47 @@ impl ContactModel<'_> {
     /// and for exact derivatives.
     #[inline(always)]
     pub fn evaluate<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
-        let radius = self.ball_radius;
         let offset = ball.position - race.position;
-        let geometry = GrooveContact::new(self.raceway, radius, &offset, &race.axis);
-        let normal = geometry.normal;
+        let geometry = GrooveContact::new(self.raceway, self.ball_radius, &offset, &race.axis);
+        let surfaces = Surfaces::new(
+            ball,
+            self.ball_radius,
+            [&race.velocity, &race.angular_velocity],
+            &offset,
+            geometry.normal,
+            &normal_rate(&geometry, &offset, ball, race),
+        );
 
-        // velocities of both surfaces at the contact point, and of the contact point itself
-        let arm = normal.map(|component| component.scale(radius));
-        let ball_surface = ball.velocity + cross(&ball.angular_velocity, &arm);
-        let race_arm = offset + arm;
-        let race_surface = race.velocity + cross(&race.angular_velocity, &race_arm);
-        let slip = ball_surface - race_surface;
-        let approach_rate = dot(&normal, &slip);
-        let contact_point =
-            ball.velocity + normal_rate(&geometry, &offset, ball, race).map(|c| c.scale(radius));
-
-        // normal load: Hertz with Hunt-Crossley dissipation, never pulling
+        // normal load
         let depth = geometry.approach.positive_part();
         let root = depth.sqrt();
         let shape = self.shape.at(geometry.circumferential_curvature);
-        let elastic = shape.stiffness * depth * root;
-        let load = (elastic * (S::one() + approach_rate.scale(self.damping))).positive_part();
+        let load = NormalLoad::hertz(shape.stiffness, depth, root, surfaces.approach_rate, self.damping);
 
-        // contact frame: x along the circumference, z from the raceway into the ball
-        let x = geometry.circumferential;
-        let y = cross(&x, &normal);
-        // the contact moves over the material opposite to the mean material velocity seen from it
-        let rolling = contact_point - (ball_surface + race_surface).map(|c| c.scale(0.5));
-        let (rolling_x, rolling_y) = (dot(&rolling, &x), dot(&rolling, &y));
-        let floor = S::constant(REGULARISATION_SPEED * REGULARISATION_SPEED);
-        let rolling_speed = (rolling_x.square() + rolling_y.square() + floor).sqrt();
-        let rolling_cosine = rolling_x / rolling_speed;
-        let (slip_x, slip_y) = (dot(&slip, &x), dot(&slip, &y));
-        let spin = (race.angular_velocity - ball.angular_velocity).dot(&normal);
-        let relative_rolling = dot(&(ball.angular_velocity - race.angular_velocity), &y);
-        let per_speed = S::one() / rolling_speed;
-        let creepage = Creepage {
-            longitudinal: slip_x * per_speed,
-            lateral: slip_y * per_speed,
-            spin: spin * per_speed,
-            // The common surface lies at z = bend y^2, towards the ball, where the relative rolling speed adds slip.
-            curvature: self.groove_bend.map(|bend| (relative_rolling * per_speed).scale(-bend)),
-        };
+        // creep forces of the ball on the race, in the contact frame: x along the circumference
+        let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
+        let theory = LinearTheory::new(&shape, depth, root, load.total, self.friction, rolling.cosine);
+        let creep = theory.forces(self.law, &rolling.creepage);
 
-        // creep forces of the ball on the race
-        let creep = self.linear_theory(&shape, depth, root, load, rolling_cosine).forces(self.law, &creepage);
-
-        // wrenches
-        let tangential = x * creep.longitudinal + y * creep.lateral;
-        let force = -(normal * load + tangential);
-        // Tractions along x at the height of the bent surface turn about y.
-        let rolling_moment = creep.second_moment.scale(self.groove_bend.unwrap_or(0.0));
-        let contact_moment = normal * creep.spin_moment - y * rolling_moment;
+        let wrench = surfaces.wrench(&rolling, load.total, &creep);
         BallRaceContact {
             geometry,
-            load,
+            load: load.total,
             stiffness: shape.stiffness,
             semi_axes: [shape.semi_axis_rolling, shape.semi_axis_transverse],
-            rolling_speed,
-            creepage,
+            rolling_speed: rolling.speed,
+            creepage: rolling.creepage,
             creep,
-            rolling_cosine,
-            force,
-            ball_moment: contact_moment - cross(&arm, &tangential),
-            race_moment: -cross(&race_arm, &force) - contact_moment,
-            friction_power: creep.longitudinal * slip_x
-                + creep.lateral * slip_y
-                + creep.spin_moment * spin
-                + rolling_moment * relative_rolling,
-            damping_power: (load - elastic) * approach_rate,
-        }
-    }
-}
-
-impl ContactModel<'_> {
-    /// Kalker's linear theory of a contact of depth [m], its root, and load [N] that rolls along or against the circumference.
-    #[inline(always)]
-    fn linear_theory<S: Scalar>(
-        &self,
-        shape: &ShapeAt<S>,
-        depth: S,
-        root: S,
-        load: S,
-        rolling_cosine: S,
-    ) -> LinearTheory<S> {
-        let friction_limit = load.scale(self.friction);
-        LinearTheory {
-            longitudinal: shape.longitudinal * depth,
-            lateral: shape.lateral * depth,
-            coupling: shape.coupling * depth * root * rolling_cosine,
-            spin: shape.spin * depth.square(),
-            friction_limit,
-            moment_limit: friction_limit * shape.spin_arm * root,
-            mean_semi_axis: shape.mean_semi_axis * root,
-            half_width: shape.semi_axis_transverse * root,
+            rolling_cosine: rolling.cosine,
+            force: wrench.force,
+            ball_moment: wrench.ball_moment,
+            race_moment: wrench.other_moment,
+            friction_power: wrench.friction_power,
+            damping_power: load.damping_power,
         }
     }
 
-    /// The contact of one ball: with what Kalker's polynomials add there, if they do.
+    /// The contact of one ball, with the difference that Kalker's polynomials make there, where they are simulated.
     pub fn of_ball<'b>(&self, difference: Option<&'b Difference>) -> ContactModel<'b>
     where
         Self: 'b,
@@ -265,8 +208,8 @@ impl ContactModel<'_> {
         }
     }
 
-    /// Renews what Kalker's polynomials add to the table at an evaluated contact, where its creepages have moved by more
-    /// than a share of `1 + |q|` since the last time. Says whether that was so.
+    /// Renews the difference that Kalker's polynomials make to the table at an evaluated contact, where its creepages have moved by more
+    /// than a fraction of `1 + |q|` since the last time. Says whether that was so.
     ///
     /// # Errors
     /// If the nonlinear problem does not converge; the difference then stays what it was.
@@ -274,7 +217,7 @@ impl ContactModel<'_> {
         &self,
         kalker: &ScaledKalker,
         contact: &BallRaceContact<f64>,
-        share: f64,
+        fraction: f64,
         difference: &mut Difference,
     ) -> Result<bool, KalkerError> {
         let Law::Table(table) = self.law else {
@@ -285,9 +228,10 @@ impl ContactModel<'_> {
         }
         let shape = self.shape.at(contact.geometry.circumferential_curvature);
         let depth = contact.geometry.approach;
-        let theory = self.linear_theory(&shape, depth, depth.sqrt(), contact.load, contact.rolling_cosine);
+        let (root, cosine) = (depth.sqrt(), contact.rolling_cosine);
+        let theory = LinearTheory::new(&shape, depth, root, contact.load, self.friction, cosine);
         let (q, results) = theory.polynomial_scale(table, &contact.creepage);
-        let old = difference.age(&q) > share;
+        let old = difference.age(&q) > fraction;
         if old {
             kalker.renew(difference, q, results)?;
         }

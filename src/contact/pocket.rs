@@ -9,10 +9,11 @@
 
 use nalgebra::Vector3;
 
-use super::REGULARISATION_SPEED;
-use super::body::{BodyMotion, damped};
-use super::creep::{Creepage, Law, LinearTheory};
+use super::body::BodyMotion;
+use super::creep::{Law, LinearTheory};
 use super::hertz::HertzContact;
+use super::kinematics::Surfaces;
+use super::normal::NormalLoad;
 use super::pair::PairForces;
 use super::shape::ShapeAt;
 use crate::contact::BallMotion;
@@ -24,14 +25,14 @@ use crate::numerics::scalar::{Scalar, Single, cross, dot};
 /// takes those of this patch: the ball spins in its pocket and slides completely, where they hardly matter.
 const MOST_SLENDER: f64 = 0.05;
 
-/// What does not change in a ball-pocket contact.
+/// Constants of a ball-pocket contact.
 #[derive(Clone, Copy, Debug)]
 pub struct PocketModel {
-    /// [m] half the diametral clearance: how far a ball moves from the pocket's axis before it touches.
+    /// \[m] half the diametral clearance: how far a ball moves from the pocket's axis before it touches.
     pub half_clearance: f64,
-    /// [m] ball radius.
+    /// \[m] ball radius.
     ball_radius: f64,
-    /// [m] radius of the circle of pocket centres, where pockets are spheres.
+    /// \[m] radius of the circle of pocket centres, where pockets are spheres.
     sphere_circle: Option<f64>,
     shape: ShapeAt<f64>,
     /// [-] friction coefficient.
@@ -41,7 +42,7 @@ pub struct PocketModel {
 }
 
 impl PocketModel {
-    /// A pocket of a diametral clearance [m]: a cylinder, or a sphere whose centre is at a radius [m] of the cage.
+    /// A pocket of a diametral clearance \[m]: a cylinder, or a sphere whose centre is at a radius \[m] of the cage.
     ///
     /// # Errors
     /// If Kalker's linear theory has no answer for the materials.
@@ -67,12 +68,12 @@ impl PocketModel {
         Ok(Self { half_clearance, ball_radius, sphere_circle, shape, friction, damping })
     }
 
-    /// [J] elastic energy at an approach [m].
+    /// \[J] elastic energy at an approach \[m].
     pub fn elastic_energy(&self, approach: f64) -> f64 {
         0.4 * self.shape.stiffness * approach.max(0.0).powf(2.5)
     }
 
-    /// [m] approach of a ball and a pocket whose axis has these components [y, z] along the cage's axes; negative is a
+    /// \[m] approach of a ball and a pocket whose axis has these components [y, z] along the cage's axes; negative is a
     /// gap.
     pub fn approach(&self, ball: &BallMotion<f64>, cage: &BodyMotion<f64>, direction: [f64; 2]) -> f64 {
         let axis = pocket_axis(cage, direction);
@@ -106,71 +107,57 @@ impl PocketModel {
         }
         let normal = off_centre.map(|component| component / distance);
 
-        // velocities of both surfaces at the contact point, and of the contact point itself
-        let arm = normal.map(|component| component.scale(self.ball_radius));
-        let cage_arm = offset + arm;
-        let ball_surface = ball.velocity + cross(&ball.angular_velocity, &arm);
-        let cage_surface = cage.velocity + cross(&cage.angular_velocity, &cage_arm);
-        let slip = ball_surface - cage_surface;
-        let approach_rate = dot(&normal, &slip);
-        let seen = ball.velocity - cage.velocity - cross(&cage.angular_velocity, &offset);
-        let mut around = seen - normal * dot(&normal, &seen);
-        if self.sphere_circle.is_none() {
-            around -= axis * dot(&axis, &seen);
-        }
-        let normal_rate =
-            around.map(|component| component / distance) + cross(&cage.angular_velocity, &normal);
-        let contact_point = ball.velocity + normal_rate.map(|component| component.scale(self.ball_radius));
+        let surfaces = Surfaces::new(
+            ball,
+            self.ball_radius,
+            [&cage.velocity, &cage.angular_velocity],
+            &offset,
+            normal,
+            &self.normal_rate(ball, cage, &offset, &axis, &normal, distance),
+        );
 
         // normal load
         let root = approach.sqrt();
-        let shape = &self.shape;
-        let elastic = (approach * root).scale(shape.stiffness);
-        let load = damped(elastic, approach_rate, self.damping);
+        let shape = self.shape.constant::<S>();
+        let load = NormalLoad::hertz(shape.stiffness, approach, root, surfaces.approach_rate, self.damping);
 
-        // creepage in the frame x along the pocket, z from the cage into the ball
+        // creep forces of the ball on the cage, in the contact frame: x along the pocket
         let x = if self.sphere_circle.is_some() { across(&normal, &axis, &cage.axes[0]) } else { axis };
-        let y = cross(&x, &normal);
-        let rolling = contact_point - (ball_surface + cage_surface).map(|c| c.scale(0.5));
-        let (rolling_x, rolling_y) = (dot(&rolling, &x), dot(&rolling, &y));
-        let floor = S::constant(REGULARISATION_SPEED * REGULARISATION_SPEED);
-        let rolling_speed = (rolling_x.square() + rolling_y.square() + floor).sqrt();
-        let per_speed = S::one() / rolling_speed;
-        let (slip_x, slip_y) = (dot(&slip, &x), dot(&slip, &y));
-        let spin = dot(&(cage.angular_velocity - ball.angular_velocity), &normal);
-        let creepage = Creepage {
-            longitudinal: slip_x * per_speed,
-            lateral: slip_y * per_speed,
-            spin: spin * per_speed,
-            curvature: None,
-        };
-        let friction_limit = load.scale(self.friction);
-        let theory = LinearTheory {
-            longitudinal: approach.scale(shape.longitudinal),
-            lateral: approach.scale(shape.lateral),
-            coupling: (approach * root).scale(shape.coupling) * rolling_x * per_speed,
-            spin: approach.square().scale(shape.spin),
-            friction_limit,
-            moment_limit: friction_limit * root.scale(shape.spin_arm),
-            mean_semi_axis: root.scale(shape.mean_semi_axis),
-            half_width: root.scale(shape.semi_axis_transverse),
-        };
-        let creep = theory.forces(Law::Saturated, &creepage);
+        let rolling = surfaces.rolling(x, None);
+        let theory = LinearTheory::new(&shape, approach, root, load.total, self.friction, rolling.cosine);
+        let creep = theory.forces(Law::Saturated, &rolling.creepage);
 
-        // wrenches
-        let tangential = x * creep.longitudinal + y * creep.lateral;
-        let force = -(normal * load + tangential);
-        let contact_moment = normal * creep.spin_moment;
+        let wrench = surfaces.wrench(&rolling, load.total, &creep);
         Some(PairForces {
             approach,
-            load,
-            stiffness: S::constant(shape.stiffness),
-            force,
-            moment: contact_moment - cross(&arm, &tangential),
-            other_moment: -cross(&cage_arm, &force) - contact_moment,
-            friction_power: creep.longitudinal * slip_x + creep.lateral * slip_y + creep.spin_moment * spin,
-            damping_power: (load - elastic) * approach_rate,
+            load: load.total,
+            stiffness: shape.stiffness,
+            force: wrench.force,
+            moment: wrench.ball_moment,
+            other_moment: wrench.other_moment,
+            friction_power: wrench.friction_power,
+            damping_power: load.damping_power,
         })
+    }
+
+    /// [1/s] rate of change of the contact normal.
+    #[inline(always)]
+    fn normal_rate<S: Scalar>(
+        &self,
+        ball: &BallMotion<S>,
+        cage: &BodyMotion<S>,
+        offset: &Vector3<S>,
+        axis: &Vector3<S>,
+        normal: &Vector3<S>,
+        distance: S,
+    ) -> Vector3<S> {
+        // Seen from the cage, the ball centre moves with this velocity.
+        let relative = ball.velocity - cage.velocity - cross(&cage.angular_velocity, offset);
+        let mut around = relative - normal * dot(normal, &relative);
+        if self.sphere_circle.is_none() {
+            around -= axis * dot(axis, &relative);
+        }
+        around.map(|component| component / distance) + cross(&cage.angular_velocity, normal)
     }
 }
 

@@ -54,32 +54,57 @@ fn node(j: usize) -> f64 {
     (PI * (j as f64 + 0.5) / NODES as f64).cos()
 }
 
-/// Properties of the contacts of one raceway at one curvature; multiply by the named power of the approach.
-#[derive(Clone, Copy, Debug)]
-pub struct ShapeAt<S> {
+/// Properties of one contact that do not depend on its load, each to be multiplied by the named power of the approach;
+/// or whatever else there is one of for each property.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeAt<T> {
     /// [N/m^1.5] `Q = stiffness delta^1.5` (paper eq. 8).
-    pub stiffness: S,
+    pub stiffness: T,
     /// [N/m] `G c^2 C11` over `delta`.
-    pub longitudinal: S,
+    pub longitudinal: T,
     /// [N/m] `G c^2 C22` over `delta`.
-    pub lateral: S,
+    pub lateral: T,
     /// [N/m^0.5] `G c^3 C23` over `delta^1.5`.
-    pub coupling: S,
-    /// [N] `G c^4 C33` over `delta^2`.
-    pub spin: S,
+    pub coupling: T,
+    /// \[N] `G c^4 C33` over `delta^2`.
+    pub spin: T,
     /// [m^0.5] semi-axis along rolling over `sqrt(delta)`.
-    pub semi_axis_rolling: S,
+    pub semi_axis_rolling: T,
     /// [m^0.5] semi-axis transverse to rolling over `sqrt(delta)`.
-    pub semi_axis_transverse: S,
+    pub semi_axis_transverse: T,
     /// [m^0.5] `c = sqrt(a b)` over `sqrt(delta)`.
-    pub mean_semi_axis: S,
+    pub mean_semi_axis: T,
     /// [m^0.5] spin moment of complete slip over `mu Q sqrt(delta)`.
-    pub spin_arm: S,
+    pub spin_arm: T,
+}
+
+/// A [`ShapeAt`], each property of which is an expression in its namesakes of other ones. A macro, as the compiler does not
+/// inline nine calls of a closure where several balls are evaluated at once.
+macro_rules! each_property {
+    ($($property:ident of $shape:expr),+ => $value:expr) => {
+        ShapeAt {
+            stiffness: { $(let $property = &$shape.stiffness;)+ $value },
+            longitudinal: { $(let $property = &$shape.longitudinal;)+ $value },
+            lateral: { $(let $property = &$shape.lateral;)+ $value },
+            coupling: { $(let $property = &$shape.coupling;)+ $value },
+            spin: { $(let $property = &$shape.spin;)+ $value },
+            semi_axis_rolling: { $(let $property = &$shape.semi_axis_rolling;)+ $value },
+            semi_axis_transverse: { $(let $property = &$shape.semi_axis_transverse;)+ $value },
+            mean_semi_axis: { $(let $property = &$shape.mean_semi_axis;)+ $value },
+            spin_arm: { $(let $property = &$shape.spin_arm;)+ $value },
+        }
+    };
 }
 
 impl ShapeAt<f64> {
+    /// Properties as constants of a type of numbers.
+    #[inline(always)]
+    pub(super) fn constant<S: Scalar>(&self) -> ShapeAt<S> {
+        each_property!(property of self => S::constant(*property))
+    }
+
     /// Contact of relative curvatures [1/m] along and transverse to rolling, of materials with a `compliance`
-    /// `(1 - nu1^2)/E1 + (1 - nu2^2)/E2` [1/Pa], a combined `shear` modulus [Pa] and Poisson's ratio.
+    /// `(1 - nu1^2)/E1 + (1 - nu2^2)/E2` [1/Pa], a combined `shear` modulus \[Pa] and Poisson's ratio.
     ///
     /// # Errors
     /// If Kalker's linear theory has no answer for the axis ratio.
@@ -95,7 +120,7 @@ impl ShapeAt<f64> {
         Self::with_creep_of(axis_ratio, &hertz, shear, poisson_ratio)
     }
 
-    /// The same of a Hertz contact, with the creep coefficients of a patch of another axis ratio.
+    /// Properties of a Hertz contact, with the creep coefficients of a patch of another axis ratio.
     ///
     /// # Errors
     /// As [`ShapeAt::new`].
@@ -134,15 +159,7 @@ pub struct ContactShape {
     transverse_curvature: f64,
     ball_curvature: f64,
     compliance: f64,
-    stiffness: Polynomial,
-    longitudinal: Polynomial,
-    lateral: Polynomial,
-    coupling: Polynomial,
-    spin: Polynomial,
-    semi_axis_rolling: Polynomial,
-    semi_axis_transverse: Polynomial,
-    mean_semi_axis: Polynomial,
-    spin_arm: Polynomial,
+    properties: ShapeAt<Polynomial>,
 }
 
 impl ContactShape {
@@ -162,57 +179,33 @@ impl ContactShape {
         let (middle, half_width) = (0.475 * extreme, 0.525 * extreme.abs());
         let ball_curvature = 1.0 / radius;
         let transverse_curvature = ball_curvature - 1.0 / raceway.groove_radius;
-        let mut columns = [[0.0; NODES]; 9];
-        for j in 0..NODES {
-            let curvature = middle + half_width * node(j);
-            let at = ShapeAt::new(
+        let at = |node: f64| {
+            let curvature = middle + half_width * node;
+            ShapeAt::new(
                 ball_curvature + curvature,
                 transverse_curvature,
                 bearing.contact_compliance,
                 bearing.shear_modulus,
                 bearing.poisson_ratio,
-            )?;
-            let row = [
-                at.stiffness,
-                at.longitudinal,
-                at.lateral,
-                at.coupling,
-                at.spin,
-                at.semi_axis_rolling,
-                at.semi_axis_transverse,
-                at.mean_semi_axis,
-                at.spin_arm,
-            ];
-            for (column, value) in columns.iter_mut().zip(row) {
-                column[j] = value;
-            }
+            )
+        };
+        let first = at(node(0))?;
+        let mut columns = each_property!(value of first => [*value; NODES]);
+        for j in 1..NODES {
+            let here = at(node(j))?;
+            columns = each_property!(column of columns, value of here => {
+                let mut column = *column;
+                column[j] = *value;
+                column
+            });
         }
-        let [
-            stiffness,
-            longitudinal,
-            lateral,
-            coupling,
-            spin,
-            semi_axis_rolling,
-            semi_axis_transverse,
-            mean_semi_axis,
-            spin_arm,
-        ] = columns.map(|column| Polynomial::interpolate(&column));
         Ok(Self {
             middle,
             half_width,
             transverse_curvature,
             ball_curvature,
             compliance: bearing.contact_compliance,
-            stiffness,
-            longitudinal,
-            lateral,
-            coupling,
-            spin,
-            semi_axis_rolling,
-            semi_axis_transverse,
-            mean_semi_axis,
-            spin_arm,
+            properties: each_property!(column of columns => Polynomial::interpolate(column)),
         })
     }
 
@@ -232,24 +225,14 @@ impl ContactShape {
     /// [N/m^1.5] Hertz stiffness at a circumferential curvature of the raceway [1/m].
     #[inline(always)]
     pub fn stiffness<S: Scalar>(&self, curvature: S) -> S {
-        self.scaled(curvature).polynomial(&self.stiffness.0)
+        self.scaled(curvature).polynomial(&self.properties.stiffness.0)
     }
 
     /// All properties at a circumferential curvature of the raceway [1/m].
     #[inline(always)]
     pub fn at<S: Scalar>(&self, curvature: S) -> ShapeAt<S> {
         let x = self.scaled(curvature);
-        ShapeAt {
-            stiffness: x.polynomial(&self.stiffness.0),
-            longitudinal: x.polynomial(&self.longitudinal.0),
-            lateral: x.polynomial(&self.lateral.0),
-            coupling: x.polynomial(&self.coupling.0),
-            spin: x.polynomial(&self.spin.0),
-            semi_axis_rolling: x.polynomial(&self.semi_axis_rolling.0),
-            semi_axis_transverse: x.polynomial(&self.semi_axis_transverse.0),
-            mean_semi_axis: x.polynomial(&self.mean_semi_axis.0),
-            spin_arm: x.polynomial(&self.spin_arm.0),
-        }
+        each_property!(property of self.properties => x.polynomial(&property.0))
     }
 
     /// The exact Hertz contact at a circumferential curvature of the raceway [1/m], not interpolated.

@@ -16,12 +16,12 @@ use super::{Patch, ScaledCreepage, ScaledForces};
 
 /// [-] change of a traction over mu p0 in a sweep that counts as none.
 const TOLERANCE: f64 = 1e-5;
-/// [-] share of a cell's change that is taken. With the whole change neighbouring sliding cells turn each other to and
-/// fro for ever; with this share most reference cases come to rest in 15 to 40 sweeps, the slowest in some 200.
+/// [-] factor of relaxation: part of a cell's change that is taken. With the whole change adjacent sliding cells turn
+/// each other to and fro for ever; with this part most reference cases come to rest in 15 to 40 sweeps, the slowest in some 200.
 const RELAXATION: f64 = 0.5;
 /// [-] change of a traction over mu p0 that need not be passed on: the sweeps end at a hundred times it.
 const SILENT: f64 = 1e-7;
-/// Sweeps after which a smaller share is tried.
+/// Sweeps after which a smaller factor is tried.
 const PATIENCE: u32 = 50;
 const MAX_SWEEPS: u32 = 1000;
 
@@ -183,7 +183,7 @@ impl HalfSpace {
         }
     }
 
-    /// Solves for creepages, from zero tractions or from those of neighbouring creepages.
+    /// Solves for creepages, from zero tractions or from those at creepages nearby.
     ///
     /// # Errors
     /// See [`HalfSpaceError`].

@@ -183,11 +183,11 @@ pub fn creep_matrix(patch: &Patch) -> Result<Matrix3<f64>, LinearError> {
 pub struct Scales {
     /// [-] `3 C11/(2 pi)`: longitudinal force over mu Q by scaled creepage.
     pub c11: f64,
-    /// [-] the same of C22.
+    /// [-] `3 C22/(2 pi)`: lateral force over mu Q by scaled creepage.
     pub c22: f64,
-    /// [-] the same of C23.
+    /// [-] `3 C23/(2 pi)`: lateral force over mu Q by scaled spin.
     pub c23: f64,
-    /// [-] the same of C33.
+    /// [-] `3 C33/(2 pi)`: spin moment over mu Q c by scaled spin.
     pub c33: f64,
     /// [-] spin moment of complete sliding over mu Q c.
     pub moment: f64,

@@ -12,22 +12,23 @@
 pub mod half_space;
 pub mod linear;
 pub mod load_displacement;
+mod minimise;
 pub mod nonlinear;
 mod objective;
-pub mod printed;
 pub mod scaled_law;
 pub mod table;
+mod table_evaluation;
 pub mod table_nodes;
 mod table_pieces;
 
-/// What a rolling contact patch looks like to Kalker's theory.
+/// A rolling contact patch as Kalker's theory knows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
     /// [-] semi-axis along the ellipse's x axis over the one along y, 0.05 to 20.
     pub axis_ratio: f64,
     /// [-] Poisson's ratio of both bodies, 0 to 0.5.
     pub poisson_ratio: f64,
-    /// [rad] direction of rolling measured from the ellipse's x axis; 0 is rolling along x.
+    /// \[rad] direction of rolling measured from the ellipse's x axis; 0 is rolling along x.
     pub rolling_angle: f64,
 }
 
@@ -36,7 +37,7 @@ pub struct Patch {
 pub struct ScaledCreepage {
     /// [-] slip of body 1 over body 2 along x, over the rolling speed, times `G/(mu p0)`.
     pub x: f64,
-    /// [-] the same along y.
+    /// [-] slip along y over the rolling speed, times `G/(mu p0)`.
     pub y: f64,
     /// [-] normal relative angular velocity over the rolling speed, times `c G/(mu p0)`.
     pub spin: f64,
@@ -53,7 +54,7 @@ pub struct ScaledForces {
     pub fy: f64,
     /// [-] spin moment over `mu Q c`.
     pub mz: f64,
-    /// [-] integral of `y^2` times the traction along x, over `mu Q c^2`: what the curvature slip works against.
+    /// [-] integral of `y^2` times the traction along x, over `mu Q c^2`: the curvature slip works against it.
     pub second_moment: f64,
 }
 

@@ -10,11 +10,11 @@
 //! with f the traction over mu p0, s the slip in the same scale and P the projection on the Coulomb disc: it vanishes
 //! exactly where Coulomb's law holds (stick: s = 0 and |f| below the bound; slip: f at the bound along s). A penalty on
 //! the singular traction at the leading edge takes the place of the condition that fresh material enters unstrained.
-//! Minimised by Levenberg-Marquardt from the linear solution, or from a neighbouring one.
+//! Minimised by Levenberg-Marquardt from the linear solution, or from one at creepages nearby.
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::linear::{LinearError, adhesion_tractions, leading_edge, resultants};
@@ -26,22 +26,6 @@ use super::{Patch, ScaledCreepage, ScaledForces};
 pub(super) const SLIP_WEIGHT: f64 = 2.0;
 /// [-] weight of the leading-edge rows.
 const EDGE_WEIGHT: f64 = 8.0;
-/// Iterations of one solve; 6 to 10 are usual.
-const MAX_ITERATIONS: u32 = 200;
-/// [-] relative decrease of the objective, promised or reached by Newton's step, that ends the iteration with it.
-const DECREASE: f64 = 1e-11;
-/// [-] share of that decrease below which Newton's step may take the matrix of the step before: a promise of 1e-13 of the
-/// objective is a step of 3e-7 of the solution, of which an old matrix gets a small part wrong.
-const NEARLY_NOTHING: f64 = 1e-2;
-/// [-] objective over the square of creepages (up to sliding) at which Coulomb's law holds to twelve digits of traction.
-const NEGLIGIBLE: f64 = 1e-24;
-/// [-] relative decrease that is enough after `PATIENCE` iterations.
-const IDLE_DECREASE: f64 = 1e-7;
-const PATIENCE: u32 = 30;
-/// [-] scaled creepage beyond which a contact slides as a whole, to within this number's inverse; larger ones are
-/// scaled back to it.
-const LARGEST_CREEPAGE: f64 = 1e5;
-
 /// Why there is no solution.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum KalkerError {
@@ -75,12 +59,10 @@ pub(super) struct Point {
 pub struct Kalker {
     pub(super) patch: Patch,
     pub(super) points: Vec<Point>,
-    /// Traction polynomials at the points: one row a point, one column a monomial.
-    pub(super) values: DMatrix<f64>,
-    /// The same, one column a point.
+    /// Traction polynomials at the points: one row a monomial, one column a point.
     pub(super) monomial_values: DMatrix<f64>,
     /// Slip at the points by all coefficients: rows x of each point, then y.
-    pub(super) slips: DMatrix<f64>,
+    slips: DMatrix<f64>,
     /// Arguments of the projection at the points by all coefficients: one column each of x and y.
     pub(super) arguments: DMatrix<f64>,
     /// Leading-edge rows, and their square.
@@ -89,7 +71,7 @@ pub struct Kalker {
     /// Second derivative of the objective while every point sticks.
     pub(super) stick_curvature: DMatrix<f64>,
     /// Linear solutions of unit creepages.
-    adhesion: DMatrix<f64>,
+    pub(super) adhesion: DMatrix<f64>,
     /// Net forces over mu Q, mu Q c and mu Q c^2 by all coefficients.
     resultants: DMatrix<f64>,
     pub(super) monomials: usize,
@@ -113,6 +95,8 @@ pub struct Solution {
 pub struct LocalState {
     /// [-] X = x/a, Y = y/b.
     pub place: [f64; 2],
+    /// [-] area on the unit disc that the point stands for.
+    pub weight: f64,
     /// [-] traction over mu p0, within the Coulomb bound.
     pub traction: [f64; 2],
     /// [-] slip velocity over V, times G/(mu p0).
@@ -145,6 +129,42 @@ fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
+/// Points on the unit disc, `radial` times `angular`, whose rule gives the sliding force of a whole contact exactly.
+fn quadrature(radial: usize, angular: usize) -> Vec<Point> {
+    let mut points = Vec::with_capacity(radial * angular);
+    for (square, radial_weight) in gauss_legendre(radial) {
+        for k in 0..angular {
+            let (sin, cos) = (TAU * (k as f64 + 0.5) / angular as f64).sin_cos();
+            let r = square.sqrt();
+            let weight = radial_weight * PI / angular as f64;
+            points.push(Point { x: r * cos, y: r * sin, weight, bound: (1.0 - square).sqrt() });
+        }
+    }
+    let sum: f64 = points.iter().map(|p| p.weight * p.bound).sum();
+    for point in &mut points {
+        point.weight *= TAU / 3.0 / sum;
+    }
+    points
+}
+
+/// At the points, one row each, by monomials: tractions, and derivatives of displacements along rolling.
+fn fields_of_monomials(patch: &Patch, basis: &Basis, points: &[Point]) -> [DMatrix<f64>; 2] {
+    let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());
+    let (sin, cos) = patch.rolling_angle.sin_cos();
+    let mut tractions = DMatrix::zeros(points.len(), basis.len());
+    let mut gradients = DMatrix::zeros(points.len(), basis.len());
+    for (row, point) in points.iter().enumerate() {
+        for (column, &(p, q)) in basis.powers.iter().enumerate() {
+            let power = |x: f64, k: usize| x.powi(k as i32);
+            tractions[(row, column)] = power(point.x, p) * power(point.y, q) / point.bound;
+            let by_x = if p > 0 { p as f64 * power(point.x, p - 1) * power(point.y, q) } else { 0.0 };
+            let by_y = if q > 0 { q as f64 * power(point.x, p) * power(point.y, q - 1) } else { 0.0 };
+            gradients[(row, column)] = cos * by_x / a + sin * by_y / b;
+        }
+    }
+    [tractions, gradients]
+}
+
 impl Kalker {
     /// Prepares the problem of a patch for polynomials of a degree (1 to 7; 3 serves most, 5 is accurate).
     ///
@@ -163,37 +183,9 @@ impl Kalker {
         adhesion.rows_mut(0, n).copy_from(&tractions.rows(0, n));
         adhesion.rows_mut(n, n).copy_from(&tractions.rows(start_basis.len(), n));
         let stiffness = load_displacement(&patch, &basis);
-        let (radial, angular) = (degree + 2, 3 * degree + 8);
-        let mut points = Vec::with_capacity(radial * angular);
-        for (square, share) in gauss_legendre(radial) {
-            for k in 0..angular {
-                let (sin, cos) = (TAU * (k as f64 + 0.5) / angular as f64).sin_cos();
-                let r = square.sqrt();
-                let weight = share * PI / angular as f64;
-                points.push(Point { x: r * cos, y: r * sin, weight, bound: (1.0 - square).sqrt() });
-            }
-        }
-        // A quadrature that gives the whole contact's sliding force exactly.
-        let sum: f64 = points.iter().map(|p| p.weight * p.bound).sum();
-        for point in &mut points {
-            point.weight *= TAU / 3.0 / sum;
-        }
-
-        let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());
-        let (sin, cos) = patch.rolling_angle.sin_cos();
+        let points = quadrature(degree + 2, 3 * degree + 8);
         let rows = points.len();
-        let mut values = DMatrix::zeros(rows, n);
-        let mut gradients = DMatrix::zeros(rows, n);
-        for (row, point) in points.iter().enumerate() {
-            for (column, &(p, q)) in basis.powers.iter().enumerate() {
-                let power = |x: f64, k: usize| x.powi(k as i32);
-                values[(row, column)] = power(point.x, p) * power(point.y, q) / point.bound;
-                // derivative along rolling of the displacement monomial
-                let by_x = if p > 0 { p as f64 * power(point.x, p - 1) * power(point.y, q) } else { 0.0 };
-                let by_y = if q > 0 { q as f64 * power(point.x, p) * power(point.y, q - 1) } else { 0.0 };
-                gradients[(row, column)] = cos * by_x / a + sin * by_y / b;
-            }
-        }
+        let [values, gradients] = fields_of_monomials(&patch, &basis, &points);
         let mut slips = DMatrix::zeros(2 * rows, 2 * n);
         slips.rows_mut(0, rows).copy_from(&(&gradients * stiffness.rows(0, n)));
         slips.rows_mut(rows, rows).copy_from(&(&gradients * stiffness.rows(n, n)));
@@ -216,7 +208,6 @@ impl Kalker {
             patch,
             points,
             monomial_values: values.transpose(),
-            values,
             slips,
             arguments,
             stick_curvature: &edge_square + slip_square * (SLIP_WEIGHT * SLIP_WEIGHT),
@@ -241,9 +232,10 @@ impl Kalker {
     }
 
     /// Traction and slip at every point.
-    pub(super) fn fields(&self, z: &DVector<f64>, h: &ScaledCreepage) -> Vec<([f64; 2], [f64; 2])> {
+    fn fields(&self, z: &DVector<f64>, h: &ScaledCreepage) -> Vec<([f64; 2], [f64; 2])> {
         let n = self.monomials;
-        let (fx, fy) = (&self.values * z.rows(0, n), &self.values * z.rows(n, n));
+        let (fx, fy) =
+            (self.monomial_values.tr_mul(&z.rows(0, n)), self.monomial_values.tr_mul(&z.rows(n, n)));
         let elastic = &self.slips * z;
         let rows = self.points.len();
         self.points
@@ -254,110 +246,6 @@ impl Kalker {
                 ([fx[i], fy[i]], [rigid[0] + elastic[i], rigid[1] + elastic[rows + i]])
             })
             .collect()
-    }
-
-    /// Solves for creepages, from the linear solution or from the coefficients of neighbouring creepages.
-    ///
-    /// # Errors
-    /// See [`KalkerError`]; for every finite creepage there is a result or an error, never a NaN.
-    pub fn solve(&self, creepage: &ScaledCreepage, start: Option<&[f64]>) -> Result<Solution, KalkerError> {
-        let components = [creepage.x, creepage.y, creepage.spin, creepage.curvature];
-        if !components.iter().all(|component| component.is_finite()) {
-            return Err(KalkerError::NotFinite(*creepage));
-        }
-        let size = components.iter().fold(0.0f64, |size, component| size.max(component.abs()));
-        let shrink = if size > LARGEST_CREEPAGE { LARGEST_CREEPAGE / size } else { 1.0 };
-        let [x, y, spin, curvature] = components.map(|component| component * shrink);
-        let h = ScaledCreepage { x, y, spin, curvature };
-        // A start of another problem, or none at all, is no start.
-        let usable =
-            |start: &&[f64]| start.len() == self.coefficients() && start.iter().all(|z| z.is_finite());
-        let mut z = match start.filter(usable) {
-            Some(start) => DVector::from_column_slice(start),
-            None => {
-                // The linear solution, brought down where it is far above the bound.
-                // The curvature slip at its mean over the pressure: y^2 = b^2/5.
-                let mean = h.x - h.curvature / (5.0 * self.patch.axis_ratio);
-                let linear = &self.adhesion * DVector::from_column_slice(&[mean, h.y, h.spin]);
-                let excess = linear.amax();
-                linear * if excess > 1.0 { 1.0 / excess } else { 1.0 }
-            }
-        };
-        let mut fields = self.fields_at(&z, &h);
-        let mut objective = self.objective(&z, &fields);
-        let mut damping: f64 = 1e-3;
-        let mut iterations = 0;
-        // Factorised second derivative of the last Newton step.
-        let mut factor: Option<Cholesky<f64, Dyn>> = None;
-        while iterations < MAX_ITERATIONS {
-            let Expansion { gradient, sliding } = self.expand(&z, &fields);
-            let promise = |step: &DVector<f64>| 0.5 * gradient.dot(step);
-            let before = objective;
-            let enough = DECREASE * before + NEGLIGIBLE * size.min(1.0).powi(2);
-            iterations += 1;
-            // Newton's own step where the objective is convex: it ends the iteration at the minimum to rounding, so
-            // that results are a smooth function of the creepages.
-            // Where nearly nothing is left, the last step's matrix serves.
-            let rest = factor.take().map(|factor| factor.solve(&gradient));
-            let step = rest.filter(|step| promise(step) <= NEARLY_NOTHING * enough).or_else(|| {
-                factor = self.curvature(&sliding, true).cholesky();
-                factor.as_ref().map(|factor| factor.solve(&gradient))
-            });
-            if let Some(step) = step {
-                // What the step still promises; below this, rounding decides whether the objective falls.
-                let last = promise(&step) <= enough;
-                let trial = &z - step;
-                let there = self.fields_at(&trial, &h);
-                let reached = self.objective(&trial, &there);
-                if last {
-                    let better = reached <= objective + enough;
-                    let (z, fields) = if better { (trial, there) } else { (z, fields) };
-                    return Ok(self.finish(z, &fields, iterations));
-                }
-                if reached < objective {
-                    (z, fields, objective) = (trial, there, reached);
-                    damping = (damping * 0.1).max(1e-12);
-                    if before - objective <= enough {
-                        return Ok(self.finish(z, &fields, iterations));
-                    }
-                    continue;
-                }
-            }
-            factor = None;
-            let gauss_newton = self.curvature(&sliding, false);
-            loop {
-                let mut damped = gauss_newton.clone();
-                for i in 0..damped.nrows() {
-                    damped[(i, i)] += damping * (gauss_newton[(i, i)] + 1e-12);
-                }
-                let trial = damped.cholesky().map(|factor| {
-                    let trial = &z - factor.solve(&gradient);
-                    let there = self.fields_at(&trial, &h);
-                    (self.objective(&trial, &there), trial, there)
-                });
-                if let Some((reached, trial, there)) = trial
-                    && reached < objective
-                {
-                    (z, fields, objective) = (trial, there, reached);
-                    damping = (damping * 0.1).max(1e-12);
-                    break;
-                }
-                damping *= 10.0;
-                iterations += 1;
-                if damping > 1e12 {
-                    // No direction leads down: this is the minimum to rounding.
-                    return Ok(self.finish(z, &fields, iterations));
-                }
-                if iterations >= MAX_ITERATIONS {
-                    return Err(KalkerError::NoConvergence(*creepage));
-                }
-            }
-            // Where points change between sticking and sliding for ever, the last digits are not worth more steps.
-            if iterations > PATIENCE && before - objective <= IDLE_DECREASE * before {
-                return Ok(self.finish(z, &fields, iterations));
-            }
-        }
-        Err(KalkerError::NoConvergence(*creepage))
     }
 
     pub(super) fn finish(&self, z: DVector<f64>, fields: &Fields, iterations: u32) -> Solution {
@@ -399,6 +287,7 @@ impl Kalker {
             .zip(self.fields(&solution.coefficients, creepage))
             .map(|(point, (f, slip))| LocalState {
                 place: [point.x, point.y],
+                weight: point.weight,
                 traction: project(f, point.bound).0,
                 slip,
                 bound: point.bound,

@@ -9,10 +9,10 @@ use super::linear::Scales;
 use super::nonlinear::{Kalker, KalkerError, Solution};
 use super::{Patch, ScaledCreepage};
 
-/// Change of q over `1 + |q|` beyond which the last solution is no neighbour.
+/// [-] change of q over `1 + |q|` beyond which the last solution is no start for the next.
 const NEAR: f64 = 0.5;
 
-/// What the polynomials add to the table at one contact, frozen between renewals.
+/// Results of the polynomials less those of the table at one contact, frozen between renewals.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
     /// Arguments q of [`ScaledKalker::evaluate`] at the last renewal.

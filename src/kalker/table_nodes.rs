@@ -11,7 +11,7 @@ use super::{Patch, ScaledCreepage};
 /// Cells of the coarser grid over the geometric mean of the axes: of ellipses wide across rolling, and of those long
 /// along it, whose grids are finer across.
 const CELLS: [usize; 2] = [16, 20];
-/// [rad] distance from an axis or plane of symmetry at which its limits are taken: near enough for an error below
+/// \[rad] distance from an axis or plane of symmetry at which its limits are taken: near enough for an error below
 /// 0.3 %, far enough for the solver's last digits not to count.
 const ASIDE: f64 = 0.05;
 /// Creepage |q| that stands for complete sliding.
@@ -19,7 +19,7 @@ const SLIDING: f64 = 1e3;
 
 /// The reference solver of one axis ratio on both grids.
 #[derive(Clone, Debug)]
-pub struct Rays {
+pub struct NodeSolver {
     scales: Scales,
     stretch: Stretch,
     coarse: HalfSpace,
@@ -28,7 +28,7 @@ pub struct Rays {
     peaked: bool,
 }
 
-impl Rays {
+impl NodeSolver {
     /// Prepares both grids.
     ///
     /// # Errors
@@ -53,7 +53,11 @@ impl Rays {
     ///
     /// # Errors
     /// If the reference solver has no answer at a node.
-    pub fn ray(&self, j: usize, k: usize) -> Result<[[f64; 3]; SHAPE[0] + 1], HalfSpaceError> {
+    pub fn from_rest_to_sliding(
+        &self,
+        j: usize,
+        k: usize,
+    ) -> Result<[[f64; 3]; SHAPE[0] + 1], HalfSpaceError> {
         let Self { scales, stretch, coarse, fine, peaked } = self;
         // On the axis and the plane of symmetry what would be divided by zero has its limit: a little beside them.
         let theta = (FRAC_PI_2 * j as f64 / SHAPE[1] as f64).clamp(ASIDE, FRAC_PI_2 - ASIDE);
@@ -100,10 +104,10 @@ impl Rays {
 /// # Errors
 /// If the reference solver has no answer at a node.
 pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
-    let rays = Rays::new(axis_ratio)?;
+    let solver = NodeSolver::new(axis_ratio)?;
     let mut nodes = vec![[0.0; 3]; NODES];
     // On the axis, theta = 0, everything follows from two angles phi.
-    let (along, across) = (rays.ray(0, 0)?, rays.ray(0, SHAPE[2] / 2)?);
+    let (along, across) = (solver.from_rest_to_sliding(0, 0)?, solver.from_rest_to_sliding(0, SHAPE[2] / 2)?);
     for k in 0..SHAPE[2] {
         let (sin, cos) = (PI * k as f64 / SHAPE[2] as f64).sin_cos();
         for (i, (along, across)) in along.iter().zip(&across).enumerate() {
@@ -114,7 +118,7 @@ pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
             ];
         }
         for j in 1..=SHAPE[1] {
-            for (i, value) in rays.ray(j, k)?.into_iter().enumerate() {
+            for (i, value) in solver.from_rest_to_sliding(j, k)?.into_iter().enumerate() {
                 nodes[index(i, j, k)] = value;
             }
         }

@@ -109,7 +109,7 @@ pub(super) fn weights(u: f64, steepness: f64) -> ([f64; 4], [f64; 4]) {
 }
 
 impl Piece {
-    /// The same in a piece of t, whose neighbours may be longer or shorter.
+    /// Weights and their slopes at `u` in [0, 1] of a piece of t, next to which pieces may be longer or shorter.
     #[inline(always)]
     pub(super) fn weights(&self, u: f64) -> ([f64; 4], [f64; 4]) {
         let (u2, u3) = (u * u, u * u * u);
