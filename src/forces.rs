@@ -60,7 +60,7 @@ impl Contacts {
 }
 
 impl BallContacts {
-    /// [J] elastic energy of each contact.
+    /// \[J] elastic energy of each contact.
     pub fn elastic_energies(&self, model: &Model) -> impl Iterator<Item = f64> {
         let pocket = model.cage.as_ref().zip(self.pocket.as_ref());
         let of_pocket = pocket.map(|(cage, pair)| cage.pocket.elastic_energy(pair.approach));
@@ -69,7 +69,7 @@ impl BallContacts {
 }
 
 impl Contacts {
-    /// [J] elastic energy of each contact of cage and lands.
+    /// \[J] elastic energy of each contact of cage and lands.
     pub fn land_energies(&self, model: &Model) -> impl Iterator<Item = f64> {
         let land = model.cage.as_ref().and_then(|cage| cage.land.as_ref());
         let pairs = self.lands.iter().flatten();
@@ -112,9 +112,9 @@ pub fn between_cage_and_lands(
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Totals {
     bodies: [Wrench; 3],
-    /// [W] power lost to friction.
+    /// \[W] power lost to friction.
     pub friction_power: f64,
-    /// [W] power lost to contact damping.
+    /// \[W] power lost to contact damping.
     pub damping_power: f64,
 }
 

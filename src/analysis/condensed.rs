@@ -25,7 +25,7 @@ use crate::model::state::{BallState, State};
 use crate::model::{Conditions, Model};
 use crate::numerics::scalar::{Dual, constant_vector};
 
-/// [s] time in which friction has to be able to change the velocities of a ball so that they follow. Rolling takes
+/// \[s] time in which friction has to be able to change the velocities of a ball so that they follow. Rolling takes
 /// microseconds; a ball that slides freely, or pivots against hardly any friction, does not follow.
 const FOLLOWING_TIME: f64 = 1e-3;
 /// Directions of differentiation, as in steps.
@@ -205,7 +205,7 @@ pub(crate) struct Orbit {
     radial: Vector3<f64>,
     /// [-] direction of growing azimuth.
     pub(crate) tangential: Vector3<f64>,
-    /// [m] distance from the axis.
+    /// \[m] distance from the axis.
     radius: f64,
     /// [rad/s] orbital speed.
     speed: f64,

@@ -24,17 +24,17 @@ pub struct RollingContact {
     pub id: String,
     /// [-] Poisson's ratio of both bodies.
     pub poisson_ratio: f64,
-    /// [Pa] shear modulus of both bodies.
+    /// \[Pa] shear modulus of both bodies.
     pub shear_modulus: f64,
     /// [-] friction coefficient.
     pub friction: f64,
-    /// [Pa] peak of the Hertzian pressure.
+    /// \[Pa] peak of the Hertzian pressure.
     pub peak_pressure: f64,
-    /// [m] semi-axis along the ellipse's x axis.
+    /// \[m] semi-axis along the ellipse's x axis.
     pub semi_axis_x: f64,
-    /// [m] semi-axis along its y axis.
+    /// \[m] semi-axis along its y axis.
     pub semi_axis_y: f64,
-    /// [rad] direction of rolling from the x axis.
+    /// \[rad] direction of rolling from the x axis.
     #[serde(default)]
     pub rolling_angle: f64,
     /// [-] creepage along x.

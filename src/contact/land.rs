@@ -20,9 +20,9 @@ const EXPONENT: f64 = 1.0 / 0.9;
 /// Constants of the contacts of the cage with the lands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandModel {
-    /// [m] half the diametral clearance: how far the cage's centre moves before it touches.
+    /// \[m] half the diametral clearance: how far the cage's centre moves before it touches.
     pub half_clearance: f64,
-    /// [m] radius of the race's land; negative on an inner race, which is touched on the side that the cage moved away
+    /// \[m] radius of the race's land; negative on an inner race, which is touched on the side that the cage moved away
     /// from.
     radius: f64,
     /// \[m] axial positions of the lands' middles in the cage.
@@ -40,7 +40,7 @@ pub struct LandModel {
 pub struct Lands {
     /// Are they those of an inner race, which the cage lies around?
     pub inside: bool,
-    /// [m] diametral clearance.
+    /// \[m] diametral clearance.
     pub clearance: f64,
     /// \[m] diameter of the race's lands.
     pub diameter: f64,

@@ -143,7 +143,7 @@ impl<S: Single> BallRaceContact<S> {
 }
 
 impl BallRaceContact<f64> {
-    /// [J] elastic energy.
+    /// \[J] elastic energy.
     pub fn elastic_energy(&self) -> f64 {
         0.4 * self.stiffness * self.geometry.approach.max(0.0).powf(2.5)
     }

@@ -7,21 +7,21 @@ use crate::numerics::scalar::{Scalar, constant_vector};
 /// Forces between a first and a second body, world axes. The force on the second is the opposite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairForces<S: Scalar = f64> {
-    /// [m] approach; negative is a gap.
+    /// \[m] approach; negative is a gap.
     pub approach: S,
-    /// [N] normal load.
+    /// \[N] normal load.
     pub load: S,
     /// [N/m^1.5] Hertz stiffness; of a line contact [N/m^(10/9)].
     pub stiffness: S,
-    /// [N] force on the first body.
+    /// \[N] force on the first body.
     pub force: Vector3<S>,
     /// [N m] moment on the first body about its origin.
     pub moment: Vector3<S>,
     /// [N m] moment on the second body about its origin.
     pub other_moment: Vector3<S>,
-    /// [W] power lost to friction.
+    /// \[W] power lost to friction.
     pub friction_power: S,
-    /// [W] power lost to contact damping.
+    /// \[W] power lost to contact damping.
     pub damping_power: S,
 }
 

@@ -12,7 +12,7 @@ use crate::model::state::{BallState, BodyState, Powers, State};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
 
-/// [N] residual that is small enough for any bearing (paper section 5).
+/// \[N] residual that is small enough for any bearing (paper section 5).
 const FORCE_TOLERANCE: f64 = 1e-6;
 /// [-] residual over the largest contact load that is small enough: nine digits of the load.
 const RELATIVE_TOLERANCE: f64 = 1e-9;
@@ -75,19 +75,19 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }
 
-/// [W] power of the weight of all balls.
+/// \[W] power of the weight of all balls.
 fn weight_power(model: &Model, balls: &[BallState]) -> f64 {
     let power = |ball: &BallState| model.bearing.ball.mass * model.gravity.dot(&ball.velocity);
     balls.iter().map(power).fold(0.0, |sum, power| sum + power)
 }
 
-/// [m] largest coordinate of a ball to expect: its last digit is what contacts cannot resolve.
+/// \[m] largest coordinate of a ball to expect: its last digit is what contacts cannot resolve.
 fn reach(model: &Model, state: &State) -> f64 {
     let races = Race::BOTH.map(|race| state.race(race).pose.position.amax());
     races[0].max(races[1]) + model.race_length()
 }
 
-/// [N] residual below which nothing but rounding remains: nine digits of the largest load, or a last digit of a
+/// \[N] residual below which nothing but rounding remains: nine digits of the largest load, or a last digit of a
 /// coordinate times the stiffness `dQ/dx` of the stiffest contact.
 fn force_tolerance<'a>(contacts: impl Iterator<Item = &'a PairForces>, reach: f64) -> f64 {
     // `dQ/dx = 1.5 K^(2/3) Q^(1/3)`; the root is taken once, of the largest

@@ -96,7 +96,7 @@ pub struct BallTrial {
     pub pocket: Option<PairForces>,
     /// Total force and moment at the end of the step.
     pub total: Wrench,
-    /// [N] residual; moments over the ball radius.
+    /// \[N] residual; moments over the ball radius.
     pub residual: Vector6<f64>,
     /// Tangent, with its couplings to the bodies.
     pub block: Block,

@@ -28,11 +28,11 @@ pub struct BodyLoad {
 /// Lengths and time that a body's equations are scaled with.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyScales {
-    /// [m] turns moments into forces.
+    /// \[m] turns moments into forces.
     pub length: f64,
-    /// [m] accepted violation of a position constraint.
+    /// \[m] accepted violation of a position constraint.
     pub length_tolerance: f64,
-    /// [s] end of the step.
+    /// \[s] end of the step.
     pub time: f64,
 }
 
@@ -47,7 +47,7 @@ pub struct BodyTrial {
     pub residual: DVector<f64>,
     /// [-] largest constraint violation over its tolerance.
     pub violation: f64,
-    /// [W] power of applied loads and constraints at the end of the step.
+    /// \[W] power of applied loads and constraints at the end of the step.
     pub input_power: f64,
     /// Tangent of the residual by accelerations (angular ones times `length`) and multipliers (moments over `length`).
     pub block: DMatrix<f64>,
@@ -253,7 +253,7 @@ impl BodyTrial {
 }
 
 /// Accelerations and multipliers of a body that follow from its load and the wrench of its pairs, with the
-/// constrained directions at rest or in steady rotation. Returns the power of loads and constraints [W].
+/// constrained directions at rest or in steady rotation. Returns the power of loads and constraints \[W].
 pub fn make_consistent(state: &mut BodyState, body: &RigidBody, load: &BodyLoad) -> f64 {
     let mut force = state.bearing_wrench.force + load.applied.force;
     let to_material = state.pose.orientation.inverse();

@@ -41,7 +41,7 @@ pub struct BearingStep<'a> {
 }
 
 impl<'a> BearingStep<'a> {
-    /// The equations of a step of `h` [s].
+    /// The equations of a step of `h` \[s].
     pub fn new(
         model: &'a Model,
         start: &'a State,
@@ -293,7 +293,7 @@ impl BearingStep<'_> {
         solved
     }
 
-    /// [m] a ball's position seen from the outer race.
+    /// \[m] a ball's position seen from the outer race.
     fn offset(&self, trial: &BallTrial) -> Vector3<f64> {
         trial.motion.position - self.races.outer.position
     }

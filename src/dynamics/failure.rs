@@ -95,7 +95,7 @@ pub fn failure_site(
 struct Change {
     ball: usize,
     contact: Body,
-    /// [N] force and moment over the ball's radius.
+    /// \[N] force and moment over the ball's radius.
     force: f64,
 }
 
@@ -109,7 +109,7 @@ fn before_of(contacts: &Contacts, ball: usize, body: Body) -> Option<PairForces>
     contacts.of_ball(ball).find_map(|(other, pair)| (other == body).then_some(pair))
 }
 
-/// [N] change of the force on a ball, and of its moment over the radius [m]; none where they never touched.
+/// \[N] change of the force on a ball, and of its moment over the radius \[m]; none where they never touched.
 fn change(old: Option<&PairForces>, new: Option<&PairForces>, radius: f64) -> Option<f64> {
     let none = PairForces::none();
     if old.is_none() && new.is_none() {

@@ -37,7 +37,7 @@ const PATIENCE: u64 = 5;
 /// What is imposed at the end of a step.
 #[derive(Clone, Debug)]
 pub struct Boundary {
-    /// [s] end of the step.
+    /// \[s] end of the step.
     pub time: f64,
     /// Pose and twist of races with prescribed motion; not used where forces move the race.
     pub motion: PerRace<(Pose, Twist)>,
@@ -73,7 +73,7 @@ pub enum StepFailure {
     Error(Worst),
 }
 
-/// Tries one step of `h` [s]. On success the state is the new one; otherwise only its statistics, step control, kept
+/// Tries one step of `h` \[s]. On success the state is the new one; otherwise only its statistics, step control, kept
 /// matrix and differences to the table have changed.
 ///
 /// # Errors

@@ -9,7 +9,7 @@ use crate::numerics::scalar::constant_vector;
 /// Force and moment of one or many pairs on a body, world axes, with derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct Reaction {
-    /// [N] force.
+    /// \[N] force.
     pub force: Vector3<D>,
     /// [N m] moment about the body's origin.
     pub moment: Vector3<D>,

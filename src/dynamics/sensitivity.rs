@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::model::state::State;
 use crate::numerics::newton::Equations;
 
-/// Takes perturbed states along a step of `h` [s] from `start` that was `accepted` just now with that workspace; false if
+/// Takes perturbed states along a step of `h` \[s] from `start` that was `accepted` just now with that workspace; false if
 /// the Newton matrix is singular.
 #[must_use]
 pub fn advance_perturbed<'a>(

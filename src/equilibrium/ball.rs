@@ -28,7 +28,7 @@ const MAX_ITERATIONS: u32 = 100;
 /// The inner race as the balls see it: relative to the outer race, with derivatives by the shared directions.
 #[derive(Clone, Copy, Debug)]
 pub struct Shared {
-    /// [m] origin of the inner race.
+    /// \[m] origin of the inner race.
     pub position: Vector3<D>,
     /// [-] axis of the inner race.
     pub axis: Vector3<D>,
@@ -39,15 +39,15 @@ pub struct Shared {
 /// Forces on one ball, all relative to the outer race's frame.
 #[derive(Clone, Copy, Debug)]
 pub struct BallBalance {
-    /// [N] unbalanced force along the two coordinates of [`Place`].
+    /// \[N] unbalanced force along the two coordinates of [`Place`].
     pub residual: [D; 2],
-    /// [N] force of the inner race on the ball.
+    /// \[N] force of the inner race on the ball.
     pub inner_force: Vector3<D>,
     /// [N m] moment on the inner race's origin of the external load that holds it against this ball.
     pub inner_moment: Vector3<D>,
-    /// [N] load on the inner race.
+    /// \[N] load on the inner race.
     pub inner_load: D,
-    /// [N] load on the outer race.
+    /// \[N] load on the outer race.
     pub outer_load: D,
     /// [rad/s] orbital speed that this ball alone would take (outer race control).
     pub own_orbital_speed: D,
@@ -57,26 +57,26 @@ pub struct BallBalance {
     pub outer: GrooveContact<D>,
     /// [N/m^1.5] Hertz stiffness of inner and outer contact.
     pub stiffness: PerRace<D>,
-    /// [N] centrifugal force.
+    /// \[N] centrifugal force.
     pub centrifugal_force: D,
     /// [N m] gyroscopic moment; negative for a positive contact angle, as in Harris.
     pub gyroscopic_moment: D,
     /// [rad/s] angular velocity of the ball, axial and radial component.
     pub angular_velocity: [D; 2],
-    /// [m] centre of the ball, axial and radial.
+    /// \[m] centre of the ball, axial and radial.
     pub centre: [D; 2],
 }
 
-/// Where a ball is in its azimuthal plane, polar about the outer groove centre: arc and distance [m]. A ball that
+/// Where a ball is in its azimuthal plane, polar about the outer groove centre: arc and distance \[m]. A ball that
 /// slides along the outer groove moves along one coordinate, which Newton's method needs to follow a curved groove.
 pub type Place = Vector2<f64>;
 
-/// [m] reference distance that turns the arc of a [`Place`] into an angle.
+/// \[m] reference distance that turns the arc of a [`Place`] into an angle.
 fn arc_radius(model: &Model) -> f64 {
     model.bearing.outer.groove_radius - model.bearing.ball.radius
 }
 
-/// Balance of the ball at `azimuth` [rad].
+/// Balance of the ball at `azimuth` \[rad].
 pub fn balance(
     model: &Model,
     input: &EquilibriumInput,
@@ -204,7 +204,7 @@ pub fn bottom_of_outer_groove(
 /// Finds the place where the ball is in balance, starting from `place`; returns the balance there.
 ///
 /// Newton's method with a Levenberg shift: the forces derive (nearly) from a potential that is convex but flat where
-/// contacts are open. `None` if the residual does not come below `tolerance` [N].
+/// contacts are open. `None` if the residual does not come below `tolerance` \[N].
 pub fn settle(
     model: &Model,
     input: &EquilibriumInput,

@@ -34,9 +34,9 @@ pub enum Gyroscopic {
 /// What is imposed in one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Prescribed {
-    /// External force [N] or moment [N m] on the inner race.
+    /// External force \[N] or moment [N m] on the inner race.
     Load(f64),
-    /// Displacement [m] or rotation vector component [rad] of the inner race.
+    /// Displacement \[m] or rotation vector component \[rad] of the inner race.
     Motion(f64),
 }
 
@@ -98,9 +98,9 @@ pub enum EquilibriumError {
     Overload {
         /// Ball, counted from 1.
         ball: usize,
-        /// [m] approach.
+        /// \[m] approach.
         approach: f64,
-        /// [N] load.
+        /// \[N] load.
         load: f64,
         /// [-] largest approach over ball diameter.
         limit: f64,
@@ -115,7 +115,7 @@ pub enum EquilibriumError {
         ball: usize,
         /// Inner or outer.
         race: &'static str,
-        /// [rad] contact angle.
+        /// \[rad] contact angle.
         angle: f64,
     },
     /// Outer race control asks for more friction than there can be.
@@ -129,7 +129,7 @@ pub enum EquilibriumError {
         ball: usize,
         /// [N m] its gyroscopic moment.
         moment: f64,
-        /// [N] its load on the outer race.
+        /// \[N] its load on the outer race.
         load: f64,
         /// [-] friction coefficient that would hold it.
         friction: f64,
@@ -162,9 +162,9 @@ impl EquilibriumError {
 /// One ball in equilibrium, relative to the outer race.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BallEquilibrium {
-    /// [rad] azimuth.
+    /// \[rad] azimuth.
     pub azimuth: f64,
-    /// [m] centre, in the outer race's frame.
+    /// \[m] centre, in the outer race's frame.
     pub position: Vector3<f64>,
     /// [m/s] velocity of the centre, same frame.
     pub velocity: Vector3<f64>,

@@ -42,15 +42,15 @@ pub struct Found {
 pub struct Problem<'a> {
     model: &'a Model,
     input: &'a EquilibriumInput,
-    /// [m] ball diameter.
+    /// \[m] ball diameter.
     diameter: f64,
     /// [rad/s] mean orbital speed of unloaded balls.
     epicyclic: f64,
     /// [rad/s] larger speed of the races.
     speed_scale: f64,
-    /// [N] forces that are known beforehand: loads, inertia, and the smallest load worth resolving.
+    /// \[N] forces that are known beforehand: loads, inertia, and the smallest load worth resolving.
     known_force: f64,
-    /// [N] the last of these: a ball loaded by an approach of a millionth of its diameter.
+    /// \[N] the last of these: a ball loaded by an approach of a millionth of its diameter.
     smallest: f64,
 }
 
@@ -82,7 +82,7 @@ impl<'a> Problem<'a> {
         problem
     }
 
-    /// [-], [m] what turns a direction's load into a force and its displacement into a length.
+    /// [-], \[m] what turns a direction's load into a force and its displacement into a length.
     fn size(&self, direction: usize) -> f64 {
         if direction < 3 { 1.0 } else { self.model.race_length() }
     }
@@ -115,7 +115,7 @@ impl<'a> Problem<'a> {
         if loads.amax() > 0.0 { self.centred() + way } else { self.centred() }
     }
 
-    /// [N] size of the forces at work.
+    /// \[N] size of the forces at work.
     fn reference(&self, trial: &Trial) -> f64 {
         self.known_force.max(trial.inner_load_sum)
     }
@@ -128,7 +128,7 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// What has to vanish, over a force [N] and a load [N] that the cage speed is weighted with.
+    /// What has to vanish, over a force \[N] and a load \[N] that the cage speed is weighted with.
     fn residual_over(&self, trial: &Trial, scale: f64, weight: f64) -> SharedVector {
         let mut residual = self.unbalanced(trial);
         for i in 0..5 {

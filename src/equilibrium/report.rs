@@ -13,19 +13,19 @@ use crate::numerics::scalar::{Dual, Single, values};
 /// What is reported of a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallReport {
-    /// [N] normal load on the inner race.
+    /// \[N] normal load on the inner race.
     pub inner_load: f64,
-    /// [N] normal load on the outer race.
+    /// \[N] normal load on the outer race.
     pub outer_load: f64,
-    /// [rad] contact angle at the inner race, relative to the tilted ring.
+    /// \[rad] contact angle at the inner race, relative to the tilted ring.
     pub inner_contact_angle: f64,
-    /// [rad] contact angle at the outer race.
+    /// \[rad] contact angle at the outer race.
     pub outer_contact_angle: f64,
-    /// [m] approach at the inner race.
+    /// \[m] approach at the inner race.
     pub inner_approach: f64,
-    /// [m] approach at the outer race.
+    /// \[m] approach at the outer race.
     pub outer_approach: f64,
-    /// [N] centrifugal force.
+    /// \[N] centrifugal force.
     pub centrifugal_force: f64,
     /// [N m] gyroscopic moment.
     pub gyroscopic_moment: f64,

@@ -25,7 +25,7 @@ pub struct Trial {
     pub cage_excess: f64,
     /// Derivatives of load and cage excess by displacements and cage speed, balls eliminated.
     pub tangent: SharedMatrix,
-    /// [N] sum of the inner loads.
+    /// \[N] sum of the inner loads.
     pub inner_load_sum: f64,
     /// Balance of every ball.
     pub balances: Vec<BallBalance>,
@@ -57,7 +57,7 @@ fn sinc_slope(s: f64) -> f64 {
     if s < 1e-6 { -1.0 / 6.0 + s / 60.0 } else { (s.sqrt().cos() - sinc(s)) / (2.0 * s) }
 }
 
-/// Settles all balls at these displacements; `start` is where they were, `tolerance` [N] what balance leaves of each.
+/// Settles all balls at these displacements; `start` is where they were, `tolerance` \[N] what balance leaves of each.
 pub fn evaluate(
     model: &Model,
     input: &EquilibriumInput,

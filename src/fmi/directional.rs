@@ -17,20 +17,20 @@ use crate::simulation::{Simulation, SimulationError};
 /// Sizes of the changes of inputs whose effects are compared: small against what bends the contact laws (an approach of
 /// some micrometres, slip speeds of millimetres per second), large against rounding.
 struct Changes {
-    /// [m] of positions, and of points at the pitch radius by rotations.
+    /// \[m] of positions, and of points at the pitch radius by rotations.
     displacement: f64,
     /// [m/s] of velocities, and of points at the pitch radius by angular velocities.
     velocity: f64,
-    /// [N] of forces, and of moments over the pitch radius.
+    /// \[N] of forces, and of moments over the pitch radius.
     force: f64,
     /// [-] of the friction coefficient.
     friction: f64,
-    /// [m] pitch radius.
+    /// \[m] pitch radius.
     length: f64,
 }
 
 impl Changes {
-    /// [unit] change of an input; not a number for other variables, which are no knowns.
+    /// \[unit] change of an input; not a number for other variables, which are no knowns.
     fn of(&self, row: &Variable) -> f64 {
         match row.input_kind() {
             Some(InputKind::Displacement) => self.displacement,
@@ -47,7 +47,7 @@ impl Changes {
     }
 }
 
-/// Changes for a step of `duration` [s], or for an equilibrium, which is less precise and knows no duration.
+/// Changes for a step of `duration` \[s], or for an equilibrium, which is less precise and knows no duration.
 fn changes(simulation: &Simulation, duration: Option<f64>) -> Changes {
     let contacts = simulation.outputs().balls.iter().flat_map(|ball| [ball.inner.load, ball.outer.load]);
     let load = contacts.fold(1.0, f64::max);

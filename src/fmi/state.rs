@@ -42,7 +42,7 @@ pub struct State {
     pub rates: Vec<f64>,
     /// Outputs at the communication point before the last.
     pub previous_outputs: Vec<f64>,
-    /// [s] duration of the last communication step; 0 before the first.
+    /// \[s] duration of the last communication step; 0 before the first.
     pub last_step: f64,
     /// Were inputs (before the start) or parameters set that the simulation does not know of yet?
     pub changed: bool,

@@ -51,7 +51,7 @@ impl Instance {
         advanced.map_err(|why| (Status::Discard, why.to_string()))
     }
 
-    /// [s] time of the last state that was reached.
+    /// \[s] time of the last state that was reached.
     pub fn time(&self) -> f64 {
         self.simulation.time()
     }

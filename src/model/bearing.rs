@@ -12,9 +12,9 @@ use crate::scene::Scene;
 /// A ball: homogeneous sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// [m] radius.
+    /// \[m] radius.
     pub radius: f64,
-    /// [kg] mass.
+    /// \[kg] mass.
     pub mass: f64,
     /// [kg m2] moment of inertia about any axis through the centre.
     pub inertia: f64,
@@ -27,11 +27,11 @@ pub struct Bearing {
     pub n_balls: usize,
     /// The ball.
     pub ball: Ball,
-    /// [m] pitch diameter dm.
+    /// \[m] pitch diameter dm.
     pub pitch_diameter: f64,
-    /// [rad] azimuth of ball 1, from +y towards +z.
+    /// \[rad] azimuth of ball 1, from +y towards +z.
     pub first_ball_azimuth: f64,
-    /// [rad] free contact angle; 0 for a bearing given by its clearance.
+    /// \[rad] free contact angle; 0 for a bearing given by its clearance.
     pub free_contact_angle: f64,
     /// Inner raceway.
     pub inner: Raceway,
@@ -39,7 +39,7 @@ pub struct Bearing {
     pub outer: Raceway,
     /// [1/Pa] `(1 - nu1^2)/E1 + (1 - nu2^2)/E2` of ball and race.
     pub contact_compliance: f64,
-    /// [Pa] shear modulus G of the rolling contact: `1/G = (1/G1 + 1/G2)/2` (Kalker 1967).
+    /// \[Pa] shear modulus G of the rolling contact: `1/G = (1/G1 + 1/G2)/2` (Kalker 1967).
     pub shear_modulus: f64,
     /// [-] Poisson's ratio of the rolling contact: `nu/G = (nu1/G1 + nu2/G2)/2` (Kalker 1967).
     pub poisson_ratio: f64,
@@ -100,12 +100,12 @@ impl Bearing {
         }
     }
 
-    /// [rad] azimuth of a ball (0 for the first) of the bearing at rest.
+    /// \[rad] azimuth of a ball (0 for the first) of the bearing at rest.
     pub fn ball_azimuth(&self, index: usize) -> f64 {
         self.first_ball_azimuth + TAU * index as f64 / self.n_balls as f64
     }
 
-    /// [-] ratio of cage speed to inner race speed at a contact angle [rad], outer race at rest, pure rolling:
+    /// [-] ratio of cage speed to inner race speed at a contact angle \[rad], outer race at rest, pure rolling:
     /// `(1 - gamma)/2`, `gamma = D cos(alpha)/dm`.
     pub fn epicyclic_ratio(&self, contact_angle: f64) -> f64 {
         0.5 * (1.0 - 2.0 * self.ball.radius * contact_angle.cos() / self.pitch_diameter)
@@ -118,7 +118,7 @@ impl Bearing {
     }
 }
 
-/// Unit vectors at an azimuth [rad]: radial and tangential (direction of growing azimuth).
+/// Unit vectors at an azimuth \[rad]: radial and tangential (direction of growing azimuth).
 pub fn azimuth_directions(azimuth: f64) -> (Vector3<f64>, Vector3<f64>) {
     let (sin, cos) = azimuth.sin_cos();
     (Vector3::new(0.0, cos, sin), Vector3::new(0.0, -sin, cos))

@@ -188,9 +188,9 @@ impl<T> IndexMut<Race> for Bodies<T> {
 /// A constraint on a body (paper eq. 1, 2, 24).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Constraint {
-    /// Holonomic: position along a world axis (0, 1, 2) follows a schedule [m].
+    /// Holonomic: position along a world axis (0, 1, 2) follows a schedule \[m].
     Position(usize, Schedule),
-    /// Holonomic: tilt about world y (1) or z (2) follows a schedule [rad].
+    /// Holonomic: tilt about world y (1) or z (2) follows a schedule \[rad].
     Tilt(usize, Schedule),
     /// Non-holonomic: spin about the body's own axis has the prescribed speed (eq. 24).
     Spin,
@@ -199,7 +199,7 @@ pub enum Constraint {
 /// A body with a mass, which forces move; other bodies have a prescribed motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigidBody {
-    /// [kg] mass.
+    /// \[kg] mass.
     pub mass: f64,
     /// [kg m2] moments of inertia about the body's own axes.
     pub inertia: Vector3<f64>,
@@ -208,7 +208,7 @@ pub struct RigidBody {
 }
 
 impl RigidBody {
-    /// [-] components along world z and y of the body's axis held at a time [s], with the sign of their tilts about y and
+    /// [-] components along world z and y of the body's axis held at a time \[s], with the sign of their tilts about y and
     /// z: the axis of the rotation vector [0, ry, rz] of all scripted tilts.
     pub fn tilt_target(&self, axis: usize, time: f64) -> f64 {
         let mut tilt = [0.0; 2];

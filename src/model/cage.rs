@@ -87,7 +87,7 @@ impl CageModel {
         self.pocket.evaluate(ball, cage, self.directions[index])
     }
 
-    /// [m] approach of a ball and its pocket; negative is a gap.
+    /// \[m] approach of a ball and its pocket; negative is a gap.
     pub fn pocket_approach(&self, index: usize, ball: &BallMotion<f64>, cage: &BodyMotion<f64>) -> f64 {
         self.pocket.approach(ball, cage, self.directions[index])
     }

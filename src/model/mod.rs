@@ -128,7 +128,7 @@ impl Model {
         self.bodies.iter().filter_map(|(_, body)| body.as_ref()).map(RigidBody::rows).sum()
     }
 
-    /// [m] length that turns moments of a body into forces of the size of the others.
+    /// \[m] length that turns moments of a body into forces of the size of the others.
     pub fn race_length(&self) -> f64 {
         0.5 * self.bearing.pitch_diameter
     }

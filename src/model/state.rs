@@ -14,7 +14,7 @@ use crate::numerics::step_control::StepControl;
 /// One ball. It is isotropic, so it has no orientation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BallState {
-    /// [m] centre.
+    /// \[m] centre.
     pub position: Vector3<f64>,
     /// [m/s] velocity of the centre.
     pub velocity: Vector3<f64>,
@@ -58,9 +58,9 @@ pub struct BodyState {
     pub multipliers: Vec<f64>,
     /// What balls and lands exert on the body, world axes, about its origin.
     pub bearing_wrench: Wrench,
-    /// [rad] turned about the own axis since the start, without limit.
+    /// \[rad] turned about the own axis since the start, without limit.
     pub turned: f64,
-    /// [rad] what the last sum left out of `turned`: millions of rounded additions would drift.
+    /// \[rad] what the last sum left out of `turned`: millions of rounded additions would drift.
     pub turned_rest: f64,
 }
 
@@ -81,7 +81,7 @@ impl BodyState {
         }
     }
 
-    /// Goes on counting the turn from before a step in which the body turned by `angle` [rad] (Kahan's summation).
+    /// Goes on counting the turn from before a step in which the body turned by `angle` \[rad] (Kahan's summation).
     pub fn count_turn(&mut self, (turned, rest): (f64, f64), angle: f64) {
         let added = angle + rest;
         self.turned = turned + added;
@@ -120,7 +120,7 @@ pub fn race_motion(pose: &Pose, twist: &Twist) -> RaceMotion<f64> {
     }
 }
 
-/// Powers at one instant [W].
+/// Powers at one instant \[W].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Powers {
     /// Put in by races, applied loads, drives and gravity.
@@ -131,7 +131,7 @@ pub struct Powers {
     pub damping: f64,
 }
 
-/// Energies accumulated since the start [J].
+/// Energies accumulated since the start \[J].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
     /// Work put in.
@@ -143,7 +143,7 @@ pub struct Energies {
 }
 
 impl Energies {
-    /// Adds a step of `h` [s] by the trapezoidal rule.
+    /// Adds a step of `h` \[s] by the trapezoidal rule.
     pub fn add(&mut self, before: &Powers, after: &Powers, h: f64) {
         self.input += 0.5 * h * (before.input + after.input);
         self.friction += 0.5 * h * (before.friction + after.friction);
@@ -201,7 +201,7 @@ impl Statistics {
 /// Everything that changes while the bearing runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    /// [s] time.
+    /// \[s] time.
     pub time: f64,
     /// Balls, by azimuth at the start.
     pub balls: Vec<BallState>,
@@ -212,7 +212,7 @@ pub struct State {
     pub differences: Vec<PerRace<Difference>>,
     /// Step size.
     pub control: StepControl,
-    /// [N] residual that counts as converged in the next step.
+    /// \[N] residual that counts as converged in the next step.
     pub force_tolerance: f64,
     /// Newton matrix of the last steps where it is kept: between prescribed races without a cage.
     pub matrix: KeptMatrix,
@@ -244,7 +244,7 @@ impl State {
 /// The inverted matrix of balls that nothing couples. It is part of the state, as it serves many steps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct KeptMatrix {
-    /// [s] size of the steps that it serves.
+    /// \[s] size of the steps that it serves.
     pub step: f64,
     /// Corrections beyond one a step that it has taken after the step that it was made in.
     pub extra_corrections: u64,
@@ -257,7 +257,7 @@ pub struct KeptMatrix {
 pub struct KeptBlock {
     /// `A^-1`.
     pub inverse: Matrix6<f64>,
-    /// [m] where the ball was, seen from the outer race: the block turns with the orbit of its ball.
+    /// \[m] where the ball was, seen from the outer race: the block turns with the orbit of its ball.
     pub offset: Vector3<f64>,
 }
 

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 /// Coefficients of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HhtStep {
-    /// [s] step size.
+    /// \[s] step size.
     pub h: f64,
     /// [-] damping parameter.
     pub alpha_f: f64,
@@ -19,12 +19,12 @@ pub struct HhtStep {
 }
 
 impl HhtStep {
-    /// A step of size `h` [s].
+    /// A step of size `h` \[s].
     pub fn new(alpha_f: f64, h: f64) -> Self {
         Self { h, alpha_f, beta: 0.25 * (1.0 + alpha_f).powi(2), gamma: 0.5 + alpha_f }
     }
 
-    /// [m] displacement over the step from velocity and the accelerations at start and end.
+    /// \[m] displacement over the step from velocity and the accelerations at start and end.
     #[inline(always)]
     pub fn displacement(&self, v0: &Vector3<f64>, a0: &Vector3<f64>, a1: &Vector3<f64>) -> Vector3<f64> {
         v0 * self.h + (a0 * (0.5 - self.beta) + a1 * self.beta) * (self.h * self.h)
@@ -36,13 +36,13 @@ impl HhtStep {
         v0 + (a0 * (1.0 - self.gamma) + a1 * self.gamma) * self.h
     }
 
-    /// [s2] derivative of the end position by the end acceleration.
+    /// \[s2] derivative of the end position by the end acceleration.
     #[inline(always)]
     pub fn position_gain(&self) -> f64 {
         self.beta * self.h * self.h
     }
 
-    /// [s] derivative of the end velocity by the end acceleration.
+    /// \[s] derivative of the end velocity by the end acceleration.
     #[inline(always)]
     pub fn velocity_gain(&self) -> f64 {
         self.gamma * self.h

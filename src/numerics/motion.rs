@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Position and orientation of a body frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// [m] origin.
+    /// \[m] origin.
     pub position: Vector3<f64>,
     /// [-] rotation from body to world axes.
     pub orientation: UnitQuaternion<f64>,
@@ -24,7 +24,7 @@ pub struct Twist {
 /// Force and moment about a body's origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Wrench {
-    /// [N] force.
+    /// \[N] force.
     pub force: Vector3<f64>,
     /// [N m] moment.
     pub moment: Vector3<f64>,
@@ -37,7 +37,7 @@ impl Default for Pose {
 }
 
 impl Twist {
-    /// Power of a wrench on this motion [W].
+    /// Power of a wrench on this motion \[W].
     pub fn power(&self, wrench: &Wrench) -> f64 {
         self.velocity.dot(&wrench.force) + self.angular_velocity.dot(&wrench.moment)
     }

@@ -32,18 +32,18 @@ pub struct StepControl {
 }
 
 impl StepControl {
-    /// Begins with the largest quantised step not above `initial_step` [s].
+    /// Begins with the largest quantised step not above `initial_step` \[s].
     pub fn new(initial_step: f64, min_step: f64, max_step: f64) -> Self {
         let notch = ((initial_step / max_step).log2() * NOTCHES_PER_OCTAVE + 1e-9).floor().min(0.0) as i32;
         Self { max_step, min_step, notch, last_error: 1.0, growth_blocked: 0 }
     }
 
-    /// [s] present step size.
+    /// \[s] present step size.
     pub fn step(&self) -> f64 {
         self.max_step * (f64::from(self.notch) / NOTCHES_PER_OCTAVE).exp2()
     }
 
-    /// [s] next step on the way to a point `remaining` [s] ahead; the last few steps before it are made even.
+    /// \[s] next step on the way to a point `remaining` \[s] ahead; the last few steps before it are made even.
     pub fn step_within(&self, remaining: f64) -> f64 {
         const EVEN_STEPS: f64 = 4.0;
         let steps = (remaining / self.step() * (1.0 - 1e-9)).ceil().max(1.0);

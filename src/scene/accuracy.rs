@@ -16,11 +16,11 @@ pub struct Solver {
     pub alpha_f: f64,
     /// [-] local error of a step over the ball diameter.
     pub tolerance: f64,
-    /// [s] first step.
+    /// \[s] first step.
     pub initial_step: Time,
-    /// [s] largest step.
+    /// \[s] largest step.
     pub max_step: Time,
-    /// [s] smallest step; needing a smaller one is an error.
+    /// \[s] smallest step; needing a smaller one is an error.
     pub min_step: Time,
     /// [-] a correction that leaves more than this share of the residual asks for a new matrix: 0 is a matrix for every
     /// correction, 1 keeps one until it leads nowhere.

@@ -15,7 +15,7 @@ pub enum Schedule {
 }
 
 impl Schedule {
-    /// Value at a time [s].
+    /// Value at a time \[s].
     pub fn at(&self, time: f64) -> f64 {
         match self {
             Self::Constant(value) => *value,
@@ -30,7 +30,7 @@ impl Schedule {
         }
     }
 
-    /// Value and rate at a time [s] of a smooth motion through the points of a table: monotone cubic (Fritsch and
+    /// Value and rate at a time \[s] of a smooth motion through the points of a table: monotone cubic (Fritsch and
     /// Carlson 1980), at rest at both ends, so that a scripted displacement has no jump in speed.
     pub fn smooth_at(&self, time: f64) -> (f64, f64) {
         let Self::Table(points) = self else {

@@ -13,19 +13,19 @@ use crate::scene::units::*;
 pub struct BearingSection {
     /// [-] number of balls, 1 to 200.
     pub balls: usize,
-    /// [m] ball diameter D.
+    /// \[m] ball diameter D.
     pub ball_diameter: Length,
-    /// [m] pitch diameter dm: circle through the ball centres of the unloaded bearing.
+    /// \[m] pitch diameter dm: circle through the ball centres of the unloaded bearing.
     pub pitch_diameter: Length,
-    /// [rad] free contact angle; exactly one of this and `diametral_clearance` is given.
+    /// \[rad] free contact angle; exactly one of this and `diametral_clearance` is given.
     pub contact_angle: Option<Angle>,
-    /// [m] diametral clearance; negative is interference.
+    /// \[m] diametral clearance; negative is interference.
     pub diametral_clearance: Option<Length>,
     /// [-] inner groove radius over ball diameter.
     pub inner_conformity: f64,
     /// [-] outer groove radius over ball diameter.
     pub outer_conformity: f64,
-    /// [rad] azimuth of ball 1, from +y towards +z.
+    /// \[rad] azimuth of ball 1, from +y towards +z.
     #[serde(default = "zero_angle")]
     pub first_ball_azimuth: Angle,
 }
@@ -38,7 +38,7 @@ fn zero_angle() -> Angle {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Material {
-    /// [Pa] Young's modulus.
+    /// \[Pa] Young's modulus.
     pub youngs_modulus: Pressure,
     /// [-] Poisson's ratio.
     pub poisson_ratio: f64,
@@ -158,21 +158,21 @@ pub enum Guidance {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CageSection {
-    /// [kg] mass.
+    /// \[kg] mass.
     pub mass: Mass,
     /// [kg m2] moments of inertia about the cage's x (bearing axis), y and z axes.
     pub inertia: [Inertia; 3],
-    /// [m] diametral clearance of a ball in its pocket.
+    /// \[m] diametral clearance of a ball in its pocket.
     pub pocket_clearance: Length,
     /// What guides the cage.
     pub guided_by: Guidance,
-    /// [m] diametral clearance of the cage on the lands of the race that guides it.
+    /// \[m] diametral clearance of the cage on the lands of the race that guides it.
     pub guidance_clearance: Option<Length>,
-    /// [m] diameter of those lands.
+    /// \[m] diameter of those lands.
     pub land_diameter: Option<Length>,
-    /// [m] width of each of the two lands, which begin beside the pockets.
+    /// \[m] width of each of the two lands, which begin beside the pockets.
     pub land_width: Option<Length>,
-    /// [Pa] Young's modulus in the pockets; that of the races if not given.
+    /// \[Pa] Young's modulus in the pockets; that of the races if not given.
     pub youngs_modulus: Option<Pressure>,
     /// [-] Poisson's ratio in the pockets; that of the races if not given.
     pub poisson_ratio: Option<f64>,
@@ -202,7 +202,7 @@ pub enum Drive {
 pub struct RaceSection {
     /// How the race gets its motion.
     pub drive: Drive,
-    /// [kg] mass; needed when the race is a body.
+    /// \[kg] mass; needed when the race is a body.
     pub mass: Option<Mass>,
     /// [kg m2] moments of inertia about the race's x, y and z axes; needed when the race is a body.
     pub inertia: Option<[Inertia; 3]>,
@@ -214,10 +214,10 @@ pub struct RaceSection {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Misalignment {
-    /// [rad] about y.
+    /// \[rad] about y.
     #[serde(deserialize_with = "schedule::deserialize::<Angle, _>")]
     pub ry: Schedule,
-    /// [rad] about z.
+    /// \[rad] about z.
     #[serde(deserialize_with = "schedule::deserialize::<Angle, _>")]
     pub rz: Schedule,
 }
@@ -241,10 +241,10 @@ pub struct Start {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Translation {
-    /// [N] external force on the inner race.
+    /// \[N] external force on the inner race.
     #[serde(deserialize_with = "some_schedule::<Force, _>")]
     pub force: Option<Schedule>,
-    /// [m] displacement of the inner race from the bearing centre.
+    /// \[m] displacement of the inner race from the bearing centre.
     #[serde(deserialize_with = "some_schedule::<Length, _>")]
     pub displacement: Option<Schedule>,
 }
@@ -256,7 +256,7 @@ pub struct Tilt {
     /// [N m] external moment on the inner race.
     #[serde(deserialize_with = "some_schedule::<Moment, _>")]
     pub moment: Option<Schedule>,
-    /// [rad] component of the rotation vector.
+    /// \[rad] component of the rotation vector.
     #[serde(deserialize_with = "some_schedule::<Angle, _>")]
     pub rotation: Option<Schedule>,
 }
@@ -271,10 +271,10 @@ fn some_schedule<'de, Q: Quantity + for<'a> Deserialize<'a>, D: serde::Deseriali
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
-    /// [s] simulated time.
+    /// \[s] simulated time.
     #[serde(default = "default_duration")]
     pub duration: Time,
-    /// [s] distance of two rows of results, and communication step of a native run.
+    /// \[s] distance of two rows of results, and communication step of a native run.
     #[serde(default = "default_output_interval")]
     pub output_interval: Time,
     /// [rad/s] spin of the inner race about its own axis.
@@ -311,9 +311,9 @@ fn default_output_interval() -> Time {
 /// What is asked of one of the five directions x, y, z, ry, rz of the inner race.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Condition {
-    /// External force [N] or moment [N m].
+    /// External force \[N] or moment [N m].
     Load(Schedule),
-    /// Imposed displacement [m] or rotation vector component [rad].
+    /// Imposed displacement \[m] or rotation vector component \[rad].
     Motion(Schedule),
 }
 

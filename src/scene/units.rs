@@ -98,21 +98,21 @@ pub trait Quantity: Copy {
 }
 
 quantities! {
-    /// [m]
+    /// \[m]
     Length = "m";
-    /// [rad]
+    /// \[rad]
     Angle = "rad";
-    /// [Pa]
+    /// \[Pa]
     Pressure = "Pa";
     /// [kg/m3]
     Density = "kg/m^3";
-    /// [kg]
+    /// \[kg]
     Mass = "kg";
     /// [kg m2]
     Inertia = "kg m^2";
-    /// [s]
+    /// \[s]
     Time = "s";
-    /// [N]
+    /// \[N]
     Force = "N";
     /// [N m]
     Moment = "N m";

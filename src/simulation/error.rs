@@ -21,17 +21,17 @@ pub enum SimulationError {
          (inner load {inner_load} N, outer load {outer_load} N)"
     )]
     StepTooSmall {
-        /// [s] time reached.
+        /// \[s] time reached.
         time: f64,
-        /// [s] smallest step allowed.
+        /// \[s] smallest step allowed.
         min_step: f64,
         /// What made the last step fail.
         cause: &'static str,
         /// Body, ball and contact where the residual or the local error is largest.
         site: FailureSite,
-        /// [N] load of that ball on the inner race.
+        /// \[N] load of that ball on the inner race.
         inner_load: f64,
-        /// [N] its load on the outer race.
+        /// \[N] its load on the outer race.
         outer_load: f64,
     },
     /// A contact is deeper than Hertz's theory reaches.
@@ -40,13 +40,13 @@ pub enum SimulationError {
          diameter, far beyond elastic Hertzian contact; the load is too large or the imposed motion is"
     )]
     Overload {
-        /// [s] time.
+        /// \[s] time.
         time: f64,
         /// Ball, counted from 1.
         ball: usize,
         /// Inner or outer.
         race: &'static str,
-        /// [m] approach.
+        /// \[m] approach.
         approach: f64,
     },
     /// A contact lies where no groove is.
@@ -55,13 +55,13 @@ pub enum SimulationError {
          race has come past its balls; the load, the clearance or the motion is too large, or a cage is missing"
     )]
     LeftGroove {
-        /// [s] time.
+        /// \[s] time.
         time: f64,
         /// Ball, counted from 1.
         ball: usize,
         /// Inner or outer.
         race: &'static str,
-        /// [m] approach.
+        /// \[m] approach.
         approach: f64,
     },
     /// The Newton matrix of a step whose sensitivities were asked for is singular.
@@ -70,17 +70,17 @@ pub enum SimulationError {
     /// So late that a step no longer changes the time.
     #[error("at {time} s a step of {step} s is lost in rounding: begin nearer to time 0")]
     LostInRounding {
-        /// [s] time reached.
+        /// \[s] time reached.
         time: f64,
-        /// [s] step.
+        /// \[s] step.
         step: f64,
     },
     /// A step end that is not a time after the present one.
     #[error("cannot advance from {from} s to {to} s")]
     Backwards {
-        /// [s] present time.
+        /// \[s] present time.
         from: f64,
-        /// [s] asked for.
+        /// \[s] asked for.
         to: f64,
     },
 }

@@ -21,7 +21,7 @@ pub struct InputPaths {
 }
 
 impl InputPaths {
-    /// What they impose at a time [s].
+    /// What they impose at a time \[s].
     pub fn boundary(&self, time: f64, conditions: Conditions) -> Boundary {
         Boundary {
             time,

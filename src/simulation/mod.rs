@@ -46,7 +46,7 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// [s] time.
+    /// \[s] time.
     pub fn time(&self) -> f64 {
         self.state.time
     }
@@ -108,7 +108,7 @@ impl Simulation {
         self.state.matrix = KeptMatrix::default();
     }
 
-    /// Sets the time of a simulation that has not moved yet [s].
+    /// Sets the time of a simulation that has not moved yet \[s].
     pub fn set_start_time(&mut self, time: f64) {
         self.state.time = time;
         self.paths = InputPaths::steady(&self.inputs, &self.state);
@@ -122,7 +122,7 @@ impl Simulation {
         self.outputs = Outputs::new(&self.model, &self.state, &self.inputs.conditions());
     }
 
-    /// [s] time.
+    /// \[s] time.
     pub fn time(&self) -> f64 {
         self.state.time
     }
@@ -187,7 +187,7 @@ impl Simulation {
         &self.outputs
     }
 
-    /// Inputs of the scene's own script at a time [s]: loads, speeds and scripted motions.
+    /// Inputs of the scene's own script at a time \[s]: loads, speeds and scripted motions.
     pub fn scripted_inputs(&self, time: f64) -> Inputs {
         let mut inputs = self.inputs;
         let load = &self.scene.load;
@@ -209,7 +209,7 @@ impl Simulation {
         inputs
     }
 
-    /// Runs its own steps to exactly `end` [s]. The inputs are taken as valid now, at the start.
+    /// Runs its own steps to exactly `end` \[s]. The inputs are taken as valid now, at the start.
     ///
     /// # Errors
     /// See [`SimulationError`]; the state is then that of the last converged step, at [`Simulation::time`]. Depth and place of

@@ -28,16 +28,16 @@ pub struct RaceOutput {
     /// What the constraints of a race that forces move exert on it, about its origin, world axes: reactions of held directions and
     /// the drive torque. Zero for other races.
     pub reaction: Wrench,
-    /// [rad] turned about the own axis since the start, without limit.
+    /// \[rad] turned about the own axis since the start, without limit.
     pub turned: f64,
 }
 
 /// A ball-race contact. Longitudinal is along the rolling direction, lateral transverse to it (frame C).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactOutput {
-    /// [N] normal load.
+    /// \[N] normal load.
     pub load: f64,
-    /// [rad] contact angle relative to the race; positive under axial load of the inner race along +x.
+    /// \[rad] contact angle relative to the race; positive under axial load of the inner race along +x.
     pub contact_angle: f64,
     /// [-] longitudinal creepage.
     pub creepage_longitudinal: f64,
@@ -45,32 +45,32 @@ pub struct ContactOutput {
     pub creepage_lateral: f64,
     /// [1/m] spin creepage.
     pub creepage_spin: f64,
-    /// [N] longitudinal creep force on the ball.
+    /// \[N] longitudinal creep force on the ball.
     pub force_longitudinal: f64,
-    /// [N] lateral creep force on the ball.
+    /// \[N] lateral creep force on the ball.
     pub force_lateral: f64,
     /// [N m] spin moment on the ball.
     pub spin_moment: f64,
-    /// [W] power lost to friction.
+    /// \[W] power lost to friction.
     pub power: f64,
-    /// [m] semi-axis of the contact ellipse along rolling.
+    /// \[m] semi-axis of the contact ellipse along rolling.
     pub semi_axis_rolling: f64,
-    /// [m] semi-axis of the contact ellipse transverse to rolling.
+    /// \[m] semi-axis of the contact ellipse transverse to rolling.
     pub semi_axis_transverse: f64,
-    /// [Pa] peak pressure.
+    /// \[Pa] peak pressure.
     pub peak_pressure: f64,
 }
 
 /// A ball's contact with its cage pocket.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PocketOutput {
-    /// [N] normal load; 0 while they do not touch.
+    /// \[N] normal load; 0 while they do not touch.
     pub load: f64,
-    /// [N] force of the pocket on the ball, world axes.
+    /// \[N] force of the pocket on the ball, world axes.
     pub force: Vector3<f64>,
-    /// [m] approach; negative is a gap.
+    /// \[m] approach; negative is a gap.
     pub approach: f64,
-    /// [W] power lost to friction.
+    /// \[W] power lost to friction.
     pub power: f64,
 }
 
@@ -81,33 +81,33 @@ pub struct CageOutput {
     pub pose: Pose,
     /// Twist.
     pub twist: Twist,
-    /// [m] centre relative to the race that guides the cage (the outer race if the balls do), along that race's axis
+    /// \[m] centre relative to the race that guides the cage (the outer race if the balls do), along that race's axis
     /// (x) and across it (y, z of the frame that tilts with the race but does not spin).
     pub eccentricity: Vector3<f64>,
-    /// [rad] turned about the own axis since the start, without limit.
+    /// \[rad] turned about the own axis since the start, without limit.
     pub turned: f64,
-    /// [N] force of all pockets on the cage, world axes.
+    /// \[N] force of all pockets on the cage, world axes.
     pub pocket_force: Vector3<f64>,
-    /// [N] force of the lands on the cage, world axes.
+    /// \[N] force of the lands on the cage, world axes.
     pub land_force: Vector3<f64>,
-    /// [N] normal load on the lands at the cage's -x and +x side.
+    /// \[N] normal load on the lands at the cage's -x and +x side.
     pub land_loads: [f64; 2],
-    /// [m] deepest approach on the lands; negative is a gap. Minus infinity where the balls guide.
+    /// \[m] deepest approach on the lands; negative is a gap. Minus infinity where the balls guide.
     pub land_approach: f64,
-    /// [W] power lost to friction in the pockets.
+    /// \[W] power lost to friction in the pockets.
     pub pocket_power: f64,
-    /// [W] power lost to friction on the lands.
+    /// \[W] power lost to friction on the lands.
     pub land_power: f64,
 }
 
 /// A ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallOutput {
-    /// [rad] azimuth about the outer race's axis, in (-pi, pi].
+    /// \[rad] azimuth about the outer race's axis, in (-pi, pi].
     pub azimuth: f64,
     /// [rad/s] orbital speed about the outer race's axis.
     pub orbital_speed: f64,
-    /// [m] centre, world axes.
+    /// \[m] centre, world axes.
     pub position: Vector3<f64>,
     /// [rad/s] angular velocity, world axes.
     pub angular_velocity: Vector3<f64>,
@@ -122,7 +122,7 @@ pub struct BallOutput {
 /// Everything that is reported of a state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outputs {
-    /// [s] time.
+    /// \[s] time.
     pub time: f64,
     /// Inner race.
     pub inner: RaceOutput,
@@ -138,17 +138,17 @@ pub struct Outputs {
     pub cage_speed: f64,
     /// [-] 1 - cage speed over its epicyclic value; 0 where that is 0.
     pub cage_slip: f64,
-    /// [W] power lost to friction in all contacts.
+    /// \[W] power lost to friction in all contacts.
     pub friction_power: f64,
-    /// [W] power lost to contact damping.
+    /// \[W] power lost to contact damping.
     pub damping_power: f64,
     /// [N m] friction torque of the bearing: against the inner race's rotation about its own axis.
     pub friction_torque: f64,
-    /// [J] kinetic and elastic energy.
+    /// \[J] kinetic and elastic energy.
     pub stored_energy: f64,
-    /// [J] work put in since the start.
+    /// \[J] work put in since the start.
     pub work: f64,
-    /// [J] energy lost since the start to friction and contact damping.
+    /// \[J] energy lost since the start to friction and contact damping.
     pub dissipated: f64,
     /// Work of the integrator since the start.
     pub statistics: Statistics,
@@ -230,7 +230,7 @@ impl Index<Race> for BallOutput {
     }
 }
 
-/// [J] kinetic energy of balls and of the bodies that forces move, and elastic energy of all contacts.
+/// \[J] kinetic energy of balls and of the bodies that forces move, and elastic energy of all contacts.
 fn stored_energy(model: &Model, state: &State, contacts: &Contacts) -> f64 {
     let ball_model = &model.bearing.ball;
     let mut energy = 0.0;
@@ -249,7 +249,7 @@ fn stored_energy(model: &Model, state: &State, contacts: &Contacts) -> f64 {
     energy
 }
 
-/// [rad] contact angle of the mean of all contacts with the races, weighted by their loads; none without load.
+/// \[rad] contact angle of the mean of all contacts with the races, weighted by their loads; none without load.
 fn mean_contact_angle(contacts: &Contacts) -> Option<f64> {
     let (mut cosine, mut loaded) = (0.0, 0.0);
     for contact in contacts.balls.iter().flat_map(|ball| ball.raceways.iter()) {

@@ -11,7 +11,7 @@ use crate::numerics::rotation::{from_quaternion, rotate, tangent, tangent_invers
 struct Cubic([Vector3<f64>; 4]);
 
 impl Cubic {
-    /// From `x0`, rate `v0` to `x1`, rate `v1` within `duration` [s].
+    /// From `x0`, rate `v0` to `x1`, rate `v1` within `duration` \[s].
     fn hermite(
         x0: Vector3<f64>,
         v0: Vector3<f64>,
@@ -28,7 +28,7 @@ impl Cubic {
         ])
     }
 
-    /// Value and rate after `t` [s].
+    /// Value and rate after `t` \[s].
     fn at(&self, t: f64) -> (Vector3<f64>, Vector3<f64>) {
         let [x0, v0, c2, c3] = self.0;
         (x0 + (v0 + (c2 + c3 * t) * t) * t, v0 + (c2 * 2.0 + c3 * (3.0 * t)) * t)
@@ -63,8 +63,8 @@ impl RacePath {
         }
     }
 
-    /// From `start` to where the inputs `pose`, `twist` and `twist_rate` [m/s2, rad/s2], valid at `start_time` [s],
-    /// lead within `duration` [s].
+    /// From `start` to where the inputs `pose`, `twist` and `twist_rate` [m/s2, rad/s2], valid at `start_time` \[s],
+    /// lead within `duration` \[s].
     pub fn towards(
         start_time: f64,
         start: (&Pose, &Twist),
@@ -100,7 +100,7 @@ impl RacePath {
         }
     }
 
-    /// Pose and twist at a time [s].
+    /// Pose and twist at a time \[s].
     pub fn at(&self, time: f64) -> (Pose, Twist) {
         let t = time - self.start_time;
         let (position, velocity) = self.position.at(t);
@@ -131,12 +131,12 @@ impl Ramp {
         Self { start_time: 0.0, duration: 1.0, from: value, to: value }
     }
 
-    /// From the value of `self` at `start_time` [s] to `value` after `duration` [s].
+    /// From the value of `self` at `start_time` \[s] to `value` after `duration` \[s].
     pub fn towards(&self, start_time: f64, value: SVector<f64, RAMP_WIDTH>, duration: f64) -> Self {
         Self { start_time, duration, from: self.at(start_time), to: value }
     }
 
-    /// Value at a time [s].
+    /// Value at a time \[s].
     pub fn at(&self, time: f64) -> SVector<f64, RAMP_WIDTH> {
         let t = ((time - self.start_time) / self.duration).clamp(0.0, 1.0);
         self.from + (self.to - self.from) * t

@@ -12,7 +12,7 @@ use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::model::Model;
 use crate::model::bodies::{PerRace, Race};
 
-/// [s] first step in time: rolling takes microseconds.
+/// \[s] first step in time: rolling takes microseconds.
 const FIRST_STEP: f64 = 1e-6;
 /// [-] residual that is left over the friction that the contacts can carry.
 const TOLERANCE: f64 = 1e-9;

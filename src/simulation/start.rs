@@ -185,7 +185,7 @@ fn given_velocities(scene: &Scene, ball: &BallEquilibrium) -> (Vector3<f64>, Vec
     (velocity, angular_velocity)
 }
 
-/// Sets the pose and twist of a race from the scene's script at a time [s]. `now` is where the race is: its angle
+/// Sets the pose and twist of a race from the scene's script at a time \[s]. `now` is where the race is: its angle
 /// about its own axis goes on from there, as a script does not prescribe it.
 pub fn script_motion(scene: &Scene, race: Race, time: f64, now: &Pose, input: &mut RaceInput) {
     let section = match race {

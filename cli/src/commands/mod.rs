@@ -59,8 +59,8 @@ enum Command {
     },
     /// Evaluate single rolling contacts of a CSV table; prints CSV.
     Contact {
-        /// Table of cases: id, poisson_ratio, shear_modulus [Pa], friction, peak_pressure [Pa], semi_axis_x [m],
-        /// semi_axis_y [m], rolling_angle [rad], creep_x, creep_y, spin [1/m]; other columns are ignored.
+        /// Table of cases: id, poisson_ratio, shear_modulus \[Pa], friction, peak_pressure \[Pa], semi_axis_x \[m],
+        /// semi_axis_y \[m], rolling_angle \[rad], creep_x, creep_y, spin [1/m]; other columns are ignored.
         cases: PathBuf,
         /// Creep law.
         #[arg(long, value_enum)]

@@ -18,7 +18,7 @@ const LEAST_ERROR: f64 = 1e-12;
 /// [-] a quantity whose errors are all below this is given, not computed: the displacement of a driven race.
 const WORTH_SHOWING: f64 = 1e-6;
 const FRONT: ShapeStyle = ShapeStyle { color: RGBAColor(0, 0, 0, 1.0), filled: false, stroke_width: 2 };
-/// [pixel] dash and gap.
+/// \[pixel] dash and gap.
 const FRONT_DASH: (i32, i32) = (6, 4);
 const BAR_DASH: (i32, i32) = (2, 3);
 const BAR: ShapeStyle = ShapeStyle { color: RGBAColor(90, 90, 90, 1.0), filled: false, stroke_width: 1 };

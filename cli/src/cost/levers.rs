@@ -99,7 +99,7 @@ pub struct Setting {
     pub scene: Scene,
     /// Quasi-static or dynamic.
     pub level: Level,
-    /// [s] communication step.
+    /// \[s] communication step.
     pub communication: f64,
     /// What the importer knows.
     pub inputs: Inputs,
@@ -113,7 +113,7 @@ impl Setting {
         Self { lever, label: label.into(), scene, level, communication, inputs }
     }
 
-    /// The scene at a fixed step [s]: error control is opened so far that only Newton's method could ask for less.
+    /// The scene at a fixed step \[s]: error control is opened so far that only Newton's method could ask for less.
     pub fn fixed_step(scene: &Scene, step: f64) -> Self {
         let mut scene = scene.clone();
         let solver = &mut scene.solver;
@@ -195,7 +195,7 @@ const REUSES: [f64; 5] = [0.0, 0.1, 0.3, 0.6, 1.0];
 /// Communication steps over the output interval.
 const COMMUNICATION: [f64; 7] = [0.125, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
-/// [s] the tiny step of the numerical reference, then twice that, which gives its error bar.
+/// \[s] the tiny step of the numerical reference, then twice that, which gives its error bar.
 pub fn reference_steps(scene: &Scene) -> [f64; 2] {
     let [coarse, fine] = REFERENCE_HALVINGS.map(|k| scene.load.output_interval.0 * f64::from(-k).exp2());
     [fine, coarse]

@@ -5,7 +5,7 @@ use cpu_time::ThreadTime;
 /// Cost of a stretch of work.
 #[derive(Clone, Copy, Debug)]
 pub struct Cost {
-    /// [s] CPU time of this thread.
+    /// \[s] CPU time of this thread.
     pub cpu: f64,
     /// Instructions in user mode, where the machine counts them and lets us read it.
     pub instructions: Option<f64>,

@@ -83,7 +83,7 @@ pub struct SceneStudy {
     pub comparison: Comparison,
     /// [-] difference of trajectories of the two finest runs, which decides that.
     pub divergence: f64,
-    /// [s] tiny step of the numerical reference.
+    /// \[s] tiny step of the numerical reference.
     pub reference_step: f64,
     /// Error bars of the numerical and of the model reference.
     pub error_bars: [Errors; 2],

@@ -64,7 +64,7 @@ pub enum Comparison {
     WindowMeans,
 }
 
-/// Errors of a run against a reference from `window_start` [s] on, at the times that both have.
+/// Errors of a run against a reference from `window_start` \[s] on, at the times that both have.
 ///
 /// Differences are over the root mean square of the reference, of a vector as a whole.
 pub fn errors(record: &Record, reference: &Record, how: Comparison, window_start: f64) -> Errors {
@@ -90,7 +90,7 @@ pub fn errors(record: &Record, reference: &Record, how: Comparison, window_start
 
 /// Samples of both runs at equal times in the window.
 fn common<'a>(record: &'a Record, reference: &'a Record, from: f64) -> Vec<(&'a Sample, &'a Sample)> {
-    /// [s] times closer than this are equal: communication points differ by rounding alone.
+    /// \[s] times closer than this are equal: communication points differ by rounding alone.
     const SAME_TIME: f64 = 1e-10;
     let mut others = reference.samples.iter().peekable();
     let mut pairs = Vec::new();
@@ -122,7 +122,7 @@ fn relative_distance(
     Some((square / size).sqrt())
 }
 
-/// [W] mean power lost from a time on: by the energy lost, or of an equilibrium by its friction power.
+/// \[W] mean power lost from a time on: by the energy lost, or of an equilibrium by its friction power.
 fn mean_power(record: &Record, from: f64) -> f64 {
     let window = record.samples.partition_point(|sample| sample.time < from * (1.0 - 1e-9));
     let window = &record.samples[window..];

@@ -12,32 +12,32 @@ use roulement::simulation::inputs;
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::{Simulation, SimulationError};
 
-/// [s] CPU time after which a run is not repeated any more, and the largest number of runs.
+/// \[s] CPU time after which a run is not repeated any more, and the largest number of runs.
 const ENOUGH_TIME: f64 = 0.4;
 const MOST_RUNS: u32 = 3;
-/// [s] how far ahead the rate of a scripted twist is taken.
+/// \[s] how far ahead the rate of a scripted twist is taken.
 const RATE_STEP: f64 = 1e-7;
 
 /// What a run showed at a communication point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
-    /// [s] time.
+    /// \[s] time.
     pub time: f64,
-    /// [N] force of the bearing on the inner race, then its moments about y and z over the pitch radius.
+    /// \[N] force of the bearing on the inner race, then its moments about y and z over the pitch radius.
     pub wrench: [f64; 5],
-    /// [m] displacement of the inner race, then its tilts about y and z times the pitch radius.
+    /// \[m] displacement of the inner race, then its tilts about y and z times the pitch radius.
     pub displacement: [f64; 5],
     /// [N m] friction torque.
     pub friction_torque: f64,
-    /// [W] friction power.
+    /// \[W] friction power.
     pub friction_power: f64,
     /// [rad/s] orbital speed of every ball.
     pub orbital_speed: Vec<f64>,
     /// [rad/s] cage speed.
     pub cage_speed: f64,
-    /// [J] lost since the start.
+    /// \[J] lost since the start.
     pub dissipated: f64,
-    /// [J] work put in less what was lost and what is stored.
+    /// \[J] work put in less what was lost and what is stored.
     pub unaccounted: f64,
 }
 
@@ -118,7 +118,7 @@ fn run(setting: &Setting, mut simulation: Simulation) -> Result<Record, Simulati
     Ok(Record { samples, cost, work: simulation.state().statistics, level: setting.level })
 }
 
-/// Inputs that an importer sets at the start of a step to `end` [s].
+/// Inputs that an importer sets at the start of a step to `end` \[s].
 fn inputs_of_step(simulation: &Simulation, knows: Inputs, end: f64) -> inputs::Inputs {
     let now = simulation.time();
     let mut inputs = simulation.scripted_inputs(now);

@@ -22,7 +22,7 @@ struct Panel {
     x_label: &'static str,
     y_label: &'static str,
     curves: Vec<Curve>,
-    /// [y] smallest range worth magnifying: less is rounding.
+    /// \[y] smallest range worth magnifying: less is rounding.
     least: f64,
     /// Points instead of lines.
     scattered: bool,

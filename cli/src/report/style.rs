@@ -21,7 +21,7 @@ pub struct PlotError {
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Outcome of drawing.
 pub type Drawn = Result<(), Box<dyn Error>>;
-/// A font: family and size [pixel].
+/// A font: family and size \[pixel].
 pub type Font = (&'static str, u32);
 
 const FAMILY: &str = "sans-serif";
@@ -32,11 +32,11 @@ pub const CAPTION: Font = (FAMILY, 15);
 pub const DESCRIPTION: Font = (FAMILY, 13);
 /// Numbers at the axes, names of curves.
 pub const LABEL: Font = (FAMILY, 12);
-/// [pixel] height of a picture's title.
+/// \[pixel] height of a picture's title.
 const TITLE_HEIGHT: u32 = 40;
-/// [pixel] around a panel.
+/// \[pixel] around a panel.
 pub const MARGIN: u32 = 10;
-/// [pixel] width of a curve.
+/// \[pixel] width of a curve.
 pub const LINE: u32 = 2;
 
 /// Colour-blind safe colours (Okabe and Ito).
@@ -51,7 +51,7 @@ pub const COLOURS: [RGBColor; 7] = [
 ];
 const GRID: RGBColor = RGBColor(215, 215, 215);
 
-/// Draws a picture of `size` [pixel] below its title.
+/// Draws a picture of `size` \[pixel] below its title.
 ///
 /// # Errors
 /// If the file cannot be written.

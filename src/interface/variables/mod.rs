@@ -84,9 +84,9 @@ pub struct Variable {
     pub kind: Kind,
     /// Input or output.
     pub causality: Causality,
-    /// [unit] typical size.
+    /// \[unit] typical size.
     pub nominal: f64,
-    /// [unit] smallest and largest value, where there are some.
+    /// \[unit] smallest and largest value, where there are some.
     pub limits: [Option<f64>; 2],
     /// One sentence.
     pub description: String,

@@ -18,15 +18,15 @@ pub struct RaceVariable {
     pub components: &'static [&'static str],
     /// Unit.
     pub unit: Unit,
-    /// [unit] typical size.
+    /// \[unit] typical size.
     pub nominal: f64,
-    /// [unit] smallest and largest value, where there are some.
+    /// \[unit] smallest and largest value, where there are some.
     pub limits: [Option<f64>; 2],
     /// One sentence, with `{race}` and `{component}` in it.
     description: &'static str,
     /// What it is, by the drive of the race and how orientations are given; none where there is no such variable.
     pub causality: fn(Drive, Orientation) -> Option<Causality>,
-    /// [unit] component as an output.
+    /// \[unit] component as an output.
     pub read: fn(&RaceOutput, usize) -> f64,
     /// As an input, where it can be one.
     pub input: Option<InputAccess>,
@@ -35,7 +35,7 @@ pub struct RaceVariable {
 /// How a quantity of a race is an input.
 #[derive(Clone, Copy, Debug)]
 pub struct InputAccess {
-    /// [unit] component as set last.
+    /// \[unit] component as set last.
     pub get: fn(&RaceInput, usize) -> f64,
     /// Sets a component and its rate [unit, unit/s].
     pub set: fn(&mut RaceSetting, usize, f64, f64),
@@ -48,17 +48,17 @@ pub struct InputAccess {
 /// Kinds of inputs: what a small change of one is measured by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputKind {
-    /// [m] a translation.
+    /// \[m] a translation.
     Displacement,
     /// [-] a component of a unit quaternion.
     Quaternion,
-    /// [rad] an angle.
+    /// \[rad] an angle.
     Angle,
     /// [m/s] a velocity.
     Velocity,
     /// [rad/s] an angular velocity.
     AngularVelocity,
-    /// [N] a force.
+    /// \[N] a force.
     Force,
     /// [N m] a moment.
     Moment,
@@ -340,7 +340,7 @@ fn from_cardan(x: f64, y: f64, z: f64) -> UnitQuaternion<f64> {
     about(Vector3::x(), x) * about(Vector3::y(), y) * about(Vector3::z(), z)
 }
 
-/// Cardan angles of an orientation; the first is the one nearest to `turned` [rad].
+/// Cardan angles of an orientation; the first is the one nearest to `turned` \[rad].
 fn to_cardan(orientation: &UnitQuaternion<f64>, turned: f64) -> [f64; 3] {
     let m = orientation.to_rotation_matrix();
     let y = m[(0, 2)].clamp(-1.0, 1.0).asin();
