@@ -611,6 +611,11 @@ fn closed_form_work_and_losses_by_quadrature() {
         input += bodies.iter().zip(MASSES).map(|(v, mass)| mass * gravity.dot(v)).sum::<f64>();
         [input, o.friction_power + o.damping_power, o.cage_speed]
     };
+    // What is put in at the start, and there the same by the state itself.
+    let start = self::simulation(&scene(Guide::Outer));
+    close("input at the start", start.state().powers.input, powers(&start)[0], 1e-10, 0.0);
+    close("losses at the start", start.state().powers.friction, start.outputs().friction_power, 1e-12, 0.0);
+    close("damping at the start", start.state().powers.damping, start.outputs().damping_power, 1e-9, 1e-6);
     let first = simulation.outputs().clone();
     let (mut before, mut sums) = (powers(&simulation), [0.0; 3]);
     for point in 1..=500 {
