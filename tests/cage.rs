@@ -269,16 +269,19 @@ fn identity_derivatives_of_both_contacts_agree_with_differences() {
 #[test]
 fn closed_form_pocket_forces_from_rolling_to_sliding() {
     // A ball that rolls in its pocket with little slip and spin, and one that slides, against own formulas.
-    let materials = [(310e9, 0.26), (105e9, 0.3)];
+    // In brass, and in a polymer on which friction is high: there creepages are large before all slides.
     let (mut rolling, mut coupled) = (0, 0);
-    for (k, sphere) in (0..24).map(|k| (k, if k % 2 == 0 { None } else { Some(23e-3) })) {
+    for (k, sphere) in (0..48).map(|k| (k, if k % 2 == 0 { None } else { Some(23e-3) })) {
+        let (cage_material, friction) = if k < 24 { ((105e9, 0.3), 0.05) } else { ((2e9, 0.3), 0.8) };
+        let materials = [(310e9, 0.26), cage_material];
         let clearance = 2.0 * HALF_CLEARANCE;
-        let model = PocketModel::new(4.7625e-3, clearance, sphere, &Pair::new(materials), 0.05, 0.5).unwrap();
+        let model =
+            PocketModel::new(4.7625e-3, clearance, sphere, &Pair::new(materials), friction, 0.5).unwrap();
         let dimensions = CageDimensions {
             ball_radius: 4.7625e-3,
             materials,
             pocket_clearance: clearance,
-            ball_friction: 0.05,
+            ball_friction: friction,
             land_friction: 0.05,
             damping: 0.5,
             sphere,
@@ -308,7 +311,7 @@ fn closed_form_pocket_forces_from_rolling_to_sliding() {
         ];
         let expected = dimensions.pocket(DIRECTION[1].atan2(DIRECTION[0]), &bodies[0], &bodies[1]).unwrap();
         let contact = model.evaluate(&ball, &cage, DIRECTION).unwrap();
-        let limit = 0.05 * expected.load;
+        let limit = friction * expected.load;
         assert!((contact.load / expected.load - 1.0).abs() < 1e-6, "{} {}", contact.load, expected.load);
         assert!((contact.force - expected.force).norm() < 5e-3 * limit, "{contact:?} {expected:?}");
         assert!((contact.moment - expected.moment).norm() < 5e-3 * limit * 4.7625e-3);

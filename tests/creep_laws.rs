@@ -5,7 +5,8 @@
 mod laws;
 
 use laws::{Laws, theory};
-use roulement::contact::creep::{CreepForces, Creepage, Law};
+use roulement::contact::creep::{CreepForces, Creepage, Law, LinearTheory};
+use roulement::numerics::scalar::{Dual, Scalar};
 
 /// Creepages over many magnitudes and all signs, rest and extremes included; fewer of them for slow laws.
 fn creepages(curved: bool, few: bool) -> Vec<Creepage<f64>> {
@@ -129,5 +130,53 @@ fn closed_form_regularised_pure_creep_is_equation_15() {
         let phi = if share <= 1.0 { (2.0 - share) * share } else { 1.0 };
         let ours = theory.forces(Law::Regularised(&laws.parameters), &c).longitudinal;
         assert!((ours / (theory.friction_limit * phi) - 1.0).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn invariant_tangents_where_a_contact_hardly_rolls_along_its_axis() {
+    // The coupling carries the cosine of the rolling direction: from along the axis to against it, by central differences.
+    fn turned<S: Scalar>(cosine: S, load: S) -> LinearTheory<S> {
+        let theory = theory();
+        LinearTheory {
+            longitudinal: S::constant(theory.longitudinal),
+            lateral: S::constant(theory.lateral),
+            coupling: cosine.scale(theory.coupling),
+            spin: S::constant(theory.spin),
+            friction_limit: load.scale(theory.friction_limit),
+            moment_limit: load.scale(theory.moment_limit),
+            mean_semi_axis: S::constant(theory.mean_semi_axis),
+            half_width: S::constant(theory.half_width),
+        }
+    }
+    let laws = Laws::new();
+    let difference = [0.1, -0.05, 0.02, 0.0];
+    let (x, y, spin) = (4e-4, -2e-4, 1.5);
+    for (name, law) in [("table", Law::Table(&laws.table)), ("frozen", Law::Frozen(&laws.table, &difference))]
+    {
+        for cosine in [1.0, 0.8, 0.45, 0.2, 0.0, -0.1, -0.4, -0.9] {
+            let forces = |step: f64| {
+                let creepage = Creepage { longitudinal: x, lateral: y, spin, curvature: None };
+                let f = turned(cosine + step, 1.0 + 0.3 * step).forces(law, &creepage);
+                [f.longitudinal, f.lateral, f.spin_moment]
+            };
+            let constant = Dual::<1>::constant;
+            let creepage = Creepage {
+                longitudinal: constant(x),
+                lateral: constant(y),
+                spin: constant(spin),
+                curvature: None,
+            };
+            let variable = Dual::variable;
+            let f = turned(variable(cosine, 0, 1.0), variable(1.0, 0, 0.3)).forces(law, &creepage);
+            let h = 1e-6;
+            let (after, before) = (forces(h), forces(-h));
+            let scales = [theory().friction_limit, theory().friction_limit, theory().moment_limit];
+            for (i, exact) in [f.longitudinal, f.lateral, f.spin_moment].into_iter().enumerate() {
+                let slope = (after[i] - before[i]) / (2.0 * h);
+                let error = (exact.derivatives[0] - slope).abs() / scales[i];
+                assert!(error < 1e-6, "{name} {cosine} row {i}: {} {slope}", exact.derivatives[0]);
+            }
+        }
     }
 }

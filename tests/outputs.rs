@@ -611,19 +611,26 @@ fn closed_form_work_and_losses_by_quadrature() {
         input += state.balls.iter().map(|ball| mass * gravity.dot(&ball.velocity)).sum::<f64>();
         let bodies = [&o.inner.twist.velocity, &o.outer.twist.velocity, &o.cage.unwrap().twist.velocity];
         input += bodies.iter().zip(MASSES).map(|(v, mass)| mass * gravity.dot(v)).sum::<f64>();
-        [input, o.friction_power + o.damping_power]
+        [input, o.friction_power + o.damping_power, o.cage_speed]
     };
+    // What is put in at the start, and there the same by the state itself.
+    let start = self::simulation(&scene(Guide::Outer));
+    close("input at the start", start.state().powers.input, powers(&start)[0], 1e-10, 0.0);
+    close("losses at the start", start.state().powers.friction, start.outputs().friction_power, 1e-12, 0.0);
+    close("damping at the start", start.state().powers.damping, start.outputs().damping_power, 1e-9, 1e-6);
     let first = simulation.outputs().clone();
-    let (mut before, mut sums) = (powers(&simulation), [0.0; 2]);
+    let (mut before, mut sums) = (powers(&simulation), [0.0; 3]);
     for point in 1..=500 {
         simulation.advance(1e-3 + f64::from(point) * 1e-6).unwrap();
         let after = powers(&simulation);
-        sums = [0, 1].map(|i: usize| sums[i] + 0.5e-6 * (before[i] + after[i]));
+        sums = [0, 1, 2].map(|i: usize| sums[i] + 0.5e-6 * (before[i] + after[i]));
         before = after;
     }
     let last = simulation.outputs();
     close("work", last.work - first.work, sums[0], 1e-3, 0.0);
     close("dissipated", last.dissipated - first.dissipated, sums[1], 1e-6, 0.0);
+    let turned = |outputs: &Outputs| outputs.cage.unwrap().turned;
+    close("cage turned", turned(last) - turned(&first), sums[2], 1e-9, 0.0);
     let stored = last.stored_energy - first.stored_energy;
     close("balance", last.work - first.work, last.dissipated - first.dissipated + stored, 1e-3, 0.0);
 }

@@ -101,7 +101,7 @@ fn invariant_both_drives_agree_on_the_steady_loads() {
 }
 
 #[test]
-fn independent_solver_dynamic_loads_lie_near_the_quasi_static_ones() {
+fn invariant_dynamic_loads_lie_near_the_quasi_static_ones() {
     for text in [THRUST, RADIAL] {
         let (simulation, history) = run(text, 300);
         let scene = simulation.scene();

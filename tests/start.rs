@@ -122,6 +122,12 @@ fn a_step_that_cannot_be_finished_names_ball_and_contact() {
         {
             let why = simulation.advance(20e-6).unwrap_err();
             println!("{why}");
+            let statistics = simulation.state().statistics;
+            let rejected = statistics.rejected_newton + statistics.rejected_error;
+            assert!(rejected > 0, "{statistics:?}");
+            // Newton's method tries twice before it gives up; an error is found once per step.
+            assert!(statistics.second_guesses >= statistics.rejected_newton, "{statistics:?}");
+            assert_eq!(statistics.rejected_newton > 0, why.to_string().contains("Newton"), "{statistics:?}");
             let SimulationError::StepTooSmall { site, .. } = why else { panic!("{why}") };
             assert_eq!((site.ball as f64, site.contact), (ball, expected));
             // A force flings the race body; a pose that moves has only the balls to upset.

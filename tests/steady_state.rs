@@ -152,7 +152,7 @@ fn percent_from_statics(simulation: &Simulation, friction_share: f64, least: f64
 }
 
 #[test]
-fn independent_data_rest_thrust_and_radial_cases_lie_in_the_band() {
+fn invariant_cases_at_rest_under_thrust_and_radial_load_lie_in_the_band() {
     // Under their loads, friction 0.08. The other eight do not: the next two tests say why.
     let steady =
         ["P-01", "P-02", "P-03", "P-05", "P-06", "P-09", "P-10", "P-12", "P-13", "P-16", "P-17", "P-18"];
@@ -163,7 +163,7 @@ fn independent_data_rest_thrust_and_radial_cases_lie_in_the_band() {
 }
 
 #[test]
-fn independent_data_all_but_one_lie_in_the_band_at_the_pose_of_the_data_under_light_friction() {
+fn invariant_all_but_one_lie_in_the_band_at_the_pose_of_the_data_under_light_friction() {
     // Under a load the race follows all balls, which do not stay evenly spaced without a cage; held where the data say,
     // it leaves each ball to itself. P-04 is 26 % outside at 0.01, by its most lightly loaded balls.
     for case in cases() {
@@ -174,7 +174,7 @@ fn independent_data_all_but_one_lie_in_the_band_at_the_pose_of_the_data_under_li
 }
 
 #[test]
-fn closed_form_loads_are_those_of_statics_with_the_lateral_friction_of_the_run() {
+fn invariant_loads_are_those_of_statics_with_the_lateral_friction_of_the_run() {
     // What neither hypothesis has is friction across rolling, up to 7 % of the load at a friction coefficient of 0.08. With
     // it statics give the loads; balls that carry less than 2 % of the largest load are thrown about and left out.
     // P-04 and P-15: 1.5 and 1.1 %, from balls that enter the load.

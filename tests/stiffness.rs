@@ -51,7 +51,7 @@ fn difference(ours: &Matrix6<f64>, theirs: &SMatrix<f64, 5, 5>) -> f64 {
 }
 
 #[test]
-fn closed_form_central_differences_of_the_equilibrium_at_rest() {
+fn invariant_stiffness_at_rest_is_that_of_the_equilibrium() {
     for case in cases() {
         let simulation = start(&case, 0.0, "creep = \"frictionless\"");
         let ours = simulation.outputs().condensed.unwrap().stiffness;
