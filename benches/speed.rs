@@ -7,8 +7,7 @@ mod fmi2_abi;
 
 use divan::{Bencher, counter::ItemsCount};
 use nalgebra::Vector3;
-use roulement::contact::many::evaluate_group;
-use roulement::contact::pair::PairForces;
+use roulement::contact::many::ContactGroup;
 use roulement::contact::{BallMotion, RaceMotion};
 use roulement::dynamics::{Boundary, make_consistent};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
@@ -54,10 +53,10 @@ fn contact_values_together(bencher: Bencher, law: &str) {
     let contact = simulation.model().contact(Race::Inner, &Conditions { friction: 0.08 });
     let race = simulation.state().race(Race::Inner).motion();
     let balls: [_; WIDTH] = std::array::from_fn(|lane| simulation.state().balls[lane].motion());
-    let mut effects = [PairForces::none(); WIDTH];
+    let mut group = ContactGroup::filled(&contact.evaluate(&balls[0], &race));
     bencher.counter(ItemsCount::new(WIDTH)).bench_local(|| {
-        evaluate_group(&contact, divan::black_box(&race), divan::black_box(&balls), &mut effects);
-        effects[0].load
+        group.evaluate(&contact, divan::black_box(&race), divan::black_box(&balls));
+        group.forces(0).load
     });
 }
 

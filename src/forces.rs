@@ -28,6 +28,11 @@ pub struct Contacts {
 }
 
 impl Contacts {
+    /// Contacts that were evaluated elsewhere.
+    pub fn from_parts(model: &Model, balls: Vec<BallContacts>, lands: [Option<PairForces>; 2]) -> Self {
+        Self { balls, lands, guide: model.cage_guide() }
+    }
+
     /// Evaluates the contacts of a state.
     pub fn new(model: &Model, state: &State, conditions: &Conditions) -> Self {
         let contacts = model.contacts(conditions);
@@ -42,20 +47,22 @@ impl Contacts {
                 pocket: cage.as_ref().and_then(|(cage, seen)| cage.pocket_contact(index, &motion, seen)),
             }
         };
-        Self {
-            balls: state.balls.iter().enumerate().map(of_ball).collect(),
-            guide: model.cage_guide(),
-            lands: cage
-                .as_ref()
-                .map_or([None; 2], |(cage, seen)| cage.land_contacts(seen, |race| races[race])),
-        }
+        let lands =
+            cage.as_ref().map_or([None; 2], |(cage, seen)| cage.land_contacts(seen, |race| races[race]));
+        Self::from_parts(model, state.balls.iter().enumerate().map(of_ball).collect(), lands)
     }
-}
 
-impl Contacts {
     /// Forces between all balls and races.
     pub fn raceway_pairs(&self) -> impl Iterator<Item = PairForces> {
         self.balls.iter().flat_map(|ball| ball.raceways.iter().map(PairForces::from))
+    }
+
+    /// \[J] elastic energy of each contact of cage and lands.
+    pub fn land_energies(&self, model: &Model) -> impl Iterator<Item = f64> {
+        let land = model.cage.as_ref().and_then(|cage| cage.land.as_ref());
+        let pairs = self.lands.iter().flatten();
+        land.into_iter()
+            .flat_map(move |(_, land)| pairs.clone().map(|pair| land.elastic_energy(pair.approach)))
     }
 }
 
@@ -65,16 +72,6 @@ impl BallContacts {
         let pocket = model.cage.as_ref().zip(self.pocket.as_ref());
         let of_pocket = pocket.map(|(cage, pair)| cage.pocket.elastic_energy(pair.approach));
         self.raceways.iter().map(BallRaceContact::elastic_energy).chain(of_pocket)
-    }
-}
-
-impl Contacts {
-    /// \[J] elastic energy of each contact of cage and lands.
-    pub fn land_energies(&self, model: &Model) -> impl Iterator<Item = f64> {
-        let land = model.cage.as_ref().and_then(|cage| cage.land.as_ref());
-        let pairs = self.lands.iter().flatten();
-        land.into_iter()
-            .flat_map(move |(_, land)| pairs.clone().map(|pair| land.elastic_energy(pair.approach)))
     }
 }
 

@@ -7,9 +7,8 @@ mod laws;
 use laws::Laws;
 use nalgebra::Vector3;
 use roulement::contact::creep::Law;
-use roulement::contact::many::evaluate_group;
+use roulement::contact::many::ContactGroup;
 use roulement::contact::materials::Pair;
-use roulement::contact::pair::PairForces;
 use roulement::contact::{BallMotion, BallRaceContact, RaceMotion};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::model::bodies::Race;
@@ -199,15 +198,21 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             let axis = Vector3::new(1.0, x[13], -x[12]).normalize();
             let (position, velocity) = (vector(&x, 9), Vector3::repeat(x[14]));
             let race_motion = RaceMotion { position, axis, velocity, angular_velocity: vector(&x, 15) };
-            let alone = motions.each_ref().map(|m| PairForces::from(&contact.evaluate(m, &race_motion)));
+            let alone = motions.each_ref().map(|m| contact.evaluate(m, &race_motion));
             assert!(alone[0].load > 50.0 && alone[3].load == 0.0);
 
             // With the vectors that this processor has.
             for count in 1..=WIDTH {
-                let mut together = [PairForces::none(); WIDTH];
-                evaluate_group(&contact, &race_motion, &motions[..count], &mut together[..count]);
-                assert_eq!(together[..count], alone[..count], "{name}");
+                let mut together = ContactGroup::filled(&alone[3]);
+                together.evaluate(&contact, &race_motion, &motions[..count]);
+                for (lane, alone) in alone[..count].iter().enumerate() {
+                    assert_eq!(together.contact(lane), *alone, "{name}");
+                }
             }
+            // One by one.
+            let mut together = ContactGroup::filled(&alone[3]);
+            (0..WIDTH).for_each(|lane| together.set(lane, &alone[lane]));
+            assert!((0..WIDTH).all(|lane| together.contact(lane) == alone[lane]), "{name}");
             // With those that every processor has.
             let ball = BallMotion {
                 position: Lanes::vector(|lane| motions[lane].position),
@@ -223,7 +228,7 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             let contacts = contact.evaluate(&ball, &race);
             assert_eq!(contacts.load, Lanes::from_fn(|lane| alone[lane].load), "{name}");
             assert_eq!(contacts.force, Lanes::vector(|lane| alone[lane].force), "{name}");
-            assert_eq!(contacts.ball_moment, Lanes::vector(|lane| alone[lane].moment), "{name}");
+            assert_eq!(contacts.ball_moment, Lanes::vector(|lane| alone[lane].ball_moment), "{name}");
         }
     }
 }

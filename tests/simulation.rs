@@ -213,3 +213,20 @@ fn start_from_rest_reaches_the_epicyclic_speed_without_failures() {
     let balance = last.work - last.dissipated - (last.stored_energy - history[0].stored_energy);
     assert!(balance.abs() < 1e-2 * last.work, "{balance} of {}", last.work);
 }
+
+#[test]
+fn invariant_outputs_of_the_last_step_are_those_of_its_state() {
+    let kalker = THRUST.replace("creep = \"saturated\"", "creep = \"kalker\"");
+    let slip = RADIAL.replace("creep = \"saturated\"", "creep = \"kalker_table\"\nheathcote_slip = true");
+    let cage = include_str!("../scenes/cage.toml");
+    for text in [THRUST, RADIAL, cage, &kalker, &slip, include_str!("../scenes/misalignment.toml")] {
+        let mut simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+        for point in 1..=3 {
+            simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
+            simulation.advance(f64::from(point) * 1.3e-4).unwrap();
+            let (model, state) = (simulation.model(), simulation.state());
+            let afresh = Outputs::new(model, state, &simulation.inputs().conditions());
+            assert_eq!(*simulation.outputs(), afresh, "{}", simulation.scene().title);
+        }
+    }
+}

@@ -31,7 +31,7 @@ pub enum Law<'a> {
 }
 
 /// Creepages of a contact.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Creepage<S> {
     /// [-] longitudinal slip over rolling speed.
     pub longitudinal: S,
@@ -41,6 +41,19 @@ pub struct Creepage<S> {
     pub spin: S,
     /// [1/m2] kappa of the slip `-kappa y^2` of a bent groove over rolling speed; none if that effect is off.
     pub curvature: Option<S>,
+}
+
+impl<S: Scalar> Creepage<S> {
+    /// Number by number from two creepages.
+    #[inline(always)]
+    pub fn zip_with<U: Scalar, T>(&self, other: &Creepage<U>, mut f: impl FnMut(S, U) -> T) -> Creepage<T> {
+        Creepage {
+            longitudinal: f(self.longitudinal, other.longitudinal),
+            lateral: f(self.lateral, other.lateral),
+            spin: f(self.spin, other.spin),
+            curvature: self.curvature.zip(other.curvature).map(|(a, b)| f(a, b)),
+        }
+    }
 }
 
 /// Kalker's linear theory of the contact in hand, dimensional (paper eq. 14), and its limits.
@@ -65,7 +78,7 @@ pub struct LinearTheory<S> {
 }
 
 /// Tangential effect of the ball on the raceway.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CreepForces<S> {
     /// \[N] along the rolling direction.
     pub longitudinal: S,
@@ -75,6 +88,23 @@ pub struct CreepForces<S> {
     pub spin_moment: S,
     /// [N m2] integral of `y^2` times the longitudinal traction; 0 where the groove counts as flat.
     pub second_moment: S,
+}
+
+impl<S: Scalar> CreepForces<S> {
+    /// Number by number from two forces.
+    #[inline(always)]
+    pub fn zip_with<U: Scalar, T>(
+        &self,
+        other: &CreepForces<U>,
+        mut f: impl FnMut(S, U) -> T,
+    ) -> CreepForces<T> {
+        CreepForces {
+            longitudinal: f(self.longitudinal, other.longitudinal),
+            lateral: f(self.lateral, other.lateral),
+            spin_moment: f(self.spin_moment, other.spin_moment),
+            second_moment: f(self.second_moment, other.second_moment),
+        }
+    }
 }
 
 /// \[N] friction limit below which forces fade to zero, so that an unloaded contact is 0 and not 0/0.

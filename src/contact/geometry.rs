@@ -3,13 +3,13 @@
 use nalgebra::Vector3;
 
 use crate::contact::raceway::Raceway;
-use crate::numerics::scalar::{Scalar, Single, cross, dot, values};
+use crate::numerics::scalar::{Scalar, cross, dot};
 
 /// \[m] distance from the groove centre below which the contact normal fades to zero.
 const DISTANCE_FLOOR: f64 = 1e-15;
 
 /// Ball against raceway, in world axes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrooveContact<S: Scalar> {
     /// \[m] approach; positive in contact.
     pub approach: S,
@@ -56,17 +56,22 @@ impl<S: Scalar> GrooveContact<S> {
     }
 }
 
-impl<S: Single> GrooveContact<S> {
-    /// Values without derivatives.
-    pub fn values(&self) -> GrooveContact<f64> {
+impl<S: Scalar> GrooveContact<S> {
+    /// Number by number from two contacts.
+    #[inline(always)]
+    pub fn zip_with<U: Scalar, T: Scalar>(
+        &self,
+        other: &GrooveContact<U>,
+        mut f: impl FnMut(S, U) -> T,
+    ) -> GrooveContact<T> {
         GrooveContact {
-            approach: self.approach.value(),
-            normal: values(&self.normal),
-            radial: values(&self.radial),
-            circumferential: values(&self.circumferential),
-            radius: self.radius.value(),
-            distance: self.distance.value(),
-            circumferential_curvature: self.circumferential_curvature.value(),
+            approach: f(self.approach, other.approach),
+            normal: self.normal.zip_map(&other.normal, &mut f),
+            radial: self.radial.zip_map(&other.radial, &mut f),
+            circumferential: self.circumferential.zip_map(&other.circumferential, &mut f),
+            radius: f(self.radius, other.radius),
+            distance: f(self.distance, other.distance),
+            circumferential_curvature: f(self.circumferential_curvature, other.circumferential_curvature),
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Contacts of many balls with a race at once: values alone, several balls in the lanes of one vector.
 
-use nalgebra::Vector3;
-
 use super::pair::PairForces;
 use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::numerics::lanes::Lanes;
+#[cfg(doc)]
+use crate::numerics::lanes::WIDTH;
 use crate::numerics::scalar::{Scalar, constant_vector};
 
 impl<S: Scalar> From<&BallRaceContact<S>> for PairForces<S> {
@@ -23,44 +23,55 @@ impl<S: Scalar> From<&BallRaceContact<S>> for PairForces<S> {
     }
 }
 
-impl PairForces<Lanes> {
-    fn lane(&self, lane: usize) -> PairForces {
-        let vector = |v: &Vector3<Lanes>| v.map(|component| component.0[lane]);
-        PairForces {
-            approach: self.approach.0[lane],
-            load: self.load.0[lane],
-            stiffness: self.stiffness.0[lane],
-            force: vector(&self.force),
-            moment: vector(&self.moment),
-            other_moment: vector(&self.other_moment),
-            friction_power: self.friction_power.0[lane],
-            damping_power: self.damping_power.0[lane],
-        }
-    }
-}
+/// Contacts of up to [`WIDTH`] balls with a race, lane by lane.
+#[derive(Clone, Debug)]
+pub struct ContactGroup(BallRaceContact<Lanes>);
 
-/// Evaluates the contacts of up to [`WIDTH`](crate::numerics::lanes::WIDTH) balls with a race, to the same bits as
-/// [`ContactModel::evaluate`].
-pub fn evaluate_group(
-    contact: &ContactModel<'_>,
-    race: &RaceMotion<f64>,
-    balls: &[BallMotion<f64>],
-    effects: &mut [PairForces],
-) {
-    let Some(last) = balls.len().checked_sub(1) else {
-        return;
-    };
-    // Lanes without a ball repeat the last.
-    let ball = |lane: usize| &balls[lane.min(last)];
-    let motion = BallMotion {
-        position: Lanes::vector(|lane| ball(lane).position),
-        velocity: Lanes::vector(|lane| ball(lane).velocity),
-        angular_velocity: Lanes::vector(|lane| ball(lane).angular_velocity),
-    };
-    let mut together = PairForces::none();
-    evaluate_lanes(contact, race, &motion, &mut together);
-    for (lane, effect) in effects.iter_mut().enumerate().take(balls.len()) {
-        *effect = together.lane(lane);
+impl ContactGroup {
+    /// All lanes with one contact.
+    pub fn filled(contact: &BallRaceContact<f64>) -> Self {
+        Self(contact.zip_with(contact, |x, _| Lanes::constant(x)))
+    }
+
+    /// Evaluates the contacts of up to [`WIDTH`] balls, to the same bits as [`ContactModel::evaluate`].
+    pub fn evaluate(
+        &mut self,
+        contact: &ContactModel<'_>,
+        race: &RaceMotion<f64>,
+        balls: &[BallMotion<f64>],
+    ) {
+        let Some(last) = balls.len().checked_sub(1) else {
+            return;
+        };
+        // Lanes without a ball repeat the last.
+        let ball = |lane: usize| &balls[lane.min(last)];
+        let motion = BallMotion {
+            position: Lanes::vector(|lane| ball(lane).position),
+            velocity: Lanes::vector(|lane| ball(lane).velocity),
+            angular_velocity: Lanes::vector(|lane| ball(lane).angular_velocity),
+        };
+        evaluate_lanes(contact, race, &motion, &mut self.0);
+    }
+
+    /// Puts a contact into its lane; that of the first lane goes into all.
+    pub fn set(&mut self, lane: usize, contact: &BallRaceContact<f64>) {
+        *self = if lane == 0 {
+            Self::filled(contact)
+        } else {
+            Self(self.0.zip_with(contact, |lanes, x| lanes.with(lane, x)))
+        };
+    }
+
+    /// The contact in a lane.
+    #[inline(always)]
+    pub fn contact(&self, lane: usize) -> BallRaceContact<f64> {
+        self.0.zip_with(&self.0, |lanes, _| lanes.0[lane])
+    }
+
+    /// The forces in a lane.
+    #[inline(always)]
+    pub fn forces(&self, lane: usize) -> PairForces {
+        PairForces::from(&self.contact(lane))
     }
 }
 
@@ -72,7 +83,7 @@ fn evaluate_lanes(
     contact: &ContactModel<'_>,
     race: &RaceMotion<f64>,
     balls: &BallMotion<Lanes>,
-    effects: &mut PairForces<Lanes>,
+    contacts: &mut BallRaceContact<Lanes>,
 ) {
     let race = RaceMotion {
         position: constant_vector(&race.position),
@@ -80,5 +91,5 @@ fn evaluate_lanes(
         velocity: constant_vector(&race.velocity),
         angular_velocity: constant_vector(&race.angular_velocity),
     };
-    *effects = PairForces::from(&contact.evaluate(balls, &race));
+    *contacts = contact.evaluate(balls, &race);
 }

@@ -22,7 +22,7 @@ use nalgebra::Vector3;
 use crate::contact::raceway::Raceway;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::{Difference, ScaledKalker};
-use crate::numerics::scalar::{Scalar, Single, cross, dot, values};
+use crate::numerics::scalar::{Scalar, Single, cross, dot};
 use creep::{CreepForces, Creepage, Law, LinearTheory};
 use geometry::GrooveContact;
 use kinematics::Surfaces;
@@ -80,7 +80,7 @@ pub struct ContactModel<'a> {
 }
 
 /// Forces of one ball-race contact and the quantities they came from.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallRaceContact<S: Scalar> {
     /// Geometry of the contact.
     pub geometry: GrooveContact<S>,
@@ -110,35 +110,37 @@ pub struct BallRaceContact<S: Scalar> {
     pub damping_power: S,
 }
 
+impl<S: Scalar> BallRaceContact<S> {
+    /// Number by number from two contacts.
+    #[inline(always)]
+    pub fn zip_with<U: Scalar, T: Scalar>(
+        &self,
+        other: &BallRaceContact<U>,
+        mut f: impl FnMut(S, U) -> T,
+    ) -> BallRaceContact<T> {
+        BallRaceContact {
+            geometry: self.geometry.zip_with(&other.geometry, &mut f),
+            load: f(self.load, other.load),
+            stiffness: f(self.stiffness, other.stiffness),
+            semi_axes: [0, 1].map(|i: usize| f(self.semi_axes[i], other.semi_axes[i])),
+            rolling_speed: f(self.rolling_speed, other.rolling_speed),
+            creepage: self.creepage.zip_with(&other.creepage, &mut f),
+            creep: self.creep.zip_with(&other.creep, &mut f),
+            rolling_cosine: f(self.rolling_cosine, other.rolling_cosine),
+            force: self.force.zip_map(&other.force, &mut f),
+            ball_moment: self.ball_moment.zip_map(&other.ball_moment, &mut f),
+            race_moment: self.race_moment.zip_map(&other.race_moment, &mut f),
+            friction_power: f(self.friction_power, other.friction_power),
+            damping_power: f(self.damping_power, other.damping_power),
+        }
+    }
+}
+
 impl<S: Single> BallRaceContact<S> {
     /// Values without derivatives.
     #[inline(always)]
     pub fn values(&self) -> BallRaceContact<f64> {
-        BallRaceContact {
-            geometry: self.geometry.values(),
-            load: self.load.value(),
-            stiffness: self.stiffness.value(),
-            semi_axes: self.semi_axes.map(S::value),
-            rolling_speed: self.rolling_speed.value(),
-            creepage: Creepage {
-                longitudinal: self.creepage.longitudinal.value(),
-                lateral: self.creepage.lateral.value(),
-                spin: self.creepage.spin.value(),
-                curvature: self.creepage.curvature.map(S::value),
-            },
-            creep: CreepForces {
-                longitudinal: self.creep.longitudinal.value(),
-                lateral: self.creep.lateral.value(),
-                spin_moment: self.creep.spin_moment.value(),
-                second_moment: self.creep.second_moment.value(),
-            },
-            rolling_cosine: self.rolling_cosine.value(),
-            force: values(&self.force),
-            ball_moment: values(&self.ball_moment),
-            race_moment: values(&self.race_moment),
-            friction_power: self.friction_power.value(),
-            damping_power: self.damping_power.value(),
-        }
+        self.zip_with(self, |x, _| x.value())
     }
 }
 

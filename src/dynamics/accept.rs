@@ -8,9 +8,10 @@ use crate::contact::pair::PairForces;
 use crate::forces::{Contacts, Pairs, Totals, between_cage_and_lands, on_ball};
 use crate::model::Model;
 use crate::model::bodies::{Body, Race};
-use crate::model::state::{BallState, BodyState, Powers, State};
+use crate::model::state::{BallState, BodyState, Powers, State, axes_of};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
+use crate::numerics::scalar::values;
 
 /// \[N] residual that is small enough for any bearing (paper section 5).
 const FORCE_TOLERANCE: f64 = 1e-6;
@@ -56,11 +57,20 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
         match (body, trial) {
             (_, Some(trial)) => {
                 state.clone_from(&trial.end);
+                state.angular_velocity = values(&trial.motion.angular_velocity);
+                state.axes = match (body, &workspace.cage) {
+                    (Body::Cage, Some(cage)) => cage.value.axes,
+                    _ => {
+                        let [_, y, z] = axes_of(&trial.end.pose.orientation);
+                        [values(&trial.motion.axis), y, z]
+                    }
+                };
                 powers.input += trial.input_power;
             }
             (Body::Race(race), None) => {
                 let (pose, twist) = &boundary.motion[race];
                 *state = BodyState::new(*pose, twist, 0);
+                state.angular_velocity = twist.angular_velocity;
                 state.bearing_wrench = totals.on(body);
                 powers.input -= state.twist().power(&state.bearing_wrench);
             }

@@ -6,7 +6,7 @@ use super::body::BodyTrial;
 use super::cage::CageTrial;
 use super::directions::{D, DIRECTIONS, by_first, by_second, constant_race, scale_moments, seed};
 use super::reaction::Reaction;
-use crate::contact::many::evaluate_group;
+use crate::contact::many::ContactGroup;
 use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::forces::on_ball;
@@ -17,7 +17,6 @@ use crate::model::cage::CageModel;
 use crate::model::state::{BallState, stack};
 use crate::numerics::arrowhead::{Block, SLOTS};
 use crate::numerics::hht::HhtStep;
-use crate::numerics::lanes::WIDTH;
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::Dual;
 
@@ -62,21 +61,22 @@ pub struct Surroundings<'a> {
 }
 
 impl Surroundings<'_> {
-    /// Evaluates the contacts of up to [`WIDTH`] balls with a race, the first of them ball `first`.
+    /// Evaluates the contacts of some balls, the first of them ball `first`, with both races.
     pub fn evaluate_group(
         &self,
-        race: Race,
         first: usize,
         motions: &[BallMotion<f64>],
-        forces: &mut [PairForces; WIDTH],
+        group: &mut PerRace<ContactGroup>,
     ) {
-        let (contact, seen) = (&self.contacts[race], self.races[race].motion);
-        match self.differences.get(first..first + motions.len()) {
-            None => evaluate_group(contact, seen, motions, forces),
-            Some(differences) => {
-                for (lane, (motion, of_ball)) in motions.iter().zip(differences).enumerate() {
-                    let contact = contact.of_ball(Some(&of_ball[race]));
-                    forces[lane] = PairForces::from(&contact.evaluate(motion, seen));
+        for race in Race::BOTH {
+            let (contact, seen) = (&self.contacts[race], self.races[race].motion);
+            match self.differences.get(first..first + motions.len()) {
+                None => group[race].evaluate(contact, seen, motions),
+                Some(differences) => {
+                    for (lane, (motion, of_ball)) in motions.iter().zip(differences).enumerate() {
+                        let contact = contact.of_ball(Some(&of_ball[race]));
+                        group[race].set(lane, &contact.evaluate(motion, seen));
+                    }
                 }
             }
         }
@@ -153,12 +153,13 @@ impl BallTrial {
         self.reactions[body.index()].unwrap_or_else(|| Reaction::constant_on_second(pair))
     }
 
-    /// Evaluates the contacts with the races and returns their derivatives.
+    /// Evaluates the contacts with the races into a lane of a group and returns their derivatives.
     pub fn contacts_with_tangent(
         &mut self,
         index: usize,
         around: &Surroundings<'_>,
         step: &HhtStep,
+        (group, lane): (&mut PerRace<ContactGroup>, usize),
     ) -> Matrix6<f64> {
         let Surroundings { model, contacts, differences, races, .. } = around;
         let radius = model.bearing.ball.radius;
@@ -166,28 +167,30 @@ impl BallTrial {
         self.reactions = [None; SLOTS];
         for race in Race::BOTH {
             let contact = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));
-            self.raceways[race] = match races[race].moved {
+            let value = match races[race].moved {
                 None => {
                     let seeded = seed(&self.motion, step, radius);
-                    let (forces, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);
+                    let (value, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);
                     tangent += by_ball;
-                    forces
+                    value
                 }
                 Some(motion) => {
                     let seeded = seed(&self.motion, step, radius);
                     let contact = by_ball_and_race(&contact, &seeded, motion);
                     let forces = PairForces::from(&contact);
                     tangent += self.couple(race.into(), &forces, step, radius);
-                    PairForces::from(&contact.values())
+                    contact.values()
                 }
             };
+            self.raceways[race] = PairForces::from(&value);
+            group[race].set(lane, &value);
         }
         tangent
     }
 
-    /// Takes over contacts with the races that were evaluated without derivatives.
-    pub fn take_contacts(&mut self, raceways: PerRace<PairForces>) {
-        self.raceways = raceways;
+    /// Takes over contacts with the races that were evaluated without derivatives, from a lane of a group.
+    pub fn take_contacts(&mut self, group: &PerRace<ContactGroup>, lane: usize) {
+        self.raceways = PerRace::new(|race| group[race].forces(lane));
         self.reactions = [None; SLOTS];
     }
 
@@ -261,9 +264,9 @@ fn by_ball_alone(
     contact: &ContactModel<'_>,
     ball: &BallMotion<Dual<6>>,
     race: &RaceMotion<f64>,
-) -> (PairForces, Matrix6<f64>) {
+) -> (BallRaceContact<f64>, Matrix6<f64>) {
     let contact = contact.evaluate(ball, &constant_race(race));
-    (PairForces::from(&contact.values()), by_first(&contact.force, &contact.ball_moment))
+    (contact.values(), by_first(&contact.force, &contact.ball_moment))
 }
 
 /// A contact with a race that forces move, with derivatives by the unknowns of both.

@@ -8,10 +8,10 @@ use super::cage::CageTrial;
 use super::orbit_turn::OrbitTurn;
 use super::reaction::Reaction;
 use super::{Boundary, Workspace};
-use crate::contact::pair::PairForces;
+use crate::contact::many::ContactGroup;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::model::Model;
-use crate::model::bodies::{Bodies, Body, PerRace, Race, RigidBody};
+use crate::model::bodies::{Bodies, Body, PerRace, RigidBody};
 use crate::model::state::{BodyState, KeptBlock, KeptMatrix, State, race_motion};
 use crate::numerics::arrowhead::{BLOCK, Block, Offsets, SLOTS};
 use crate::numerics::hht::HhtStep;
@@ -51,15 +51,24 @@ impl<'a> BearingStep<'a> {
     ) -> Self {
         if workspace.balls.len() != start.balls.len() {
             workspace.balls = start.balls.iter().map(BallTrial::new).collect();
+            workspace.groups.clear();
         }
         workspace.prepare_bodies(model, start);
+        let contacts = model.contacts(&boundary.conditions);
+        let races = PerRace::new(|race| race_motion(&boundary.motion[race].0, &boundary.motion[race].1));
+        if let (true, Some(ball)) = (workspace.groups.is_empty(), start.balls.first()) {
+            let group = PerRace::new(|race| {
+                ContactGroup::filled(&contacts[race].evaluate(&ball.motion(), &races[race]))
+            });
+            workspace.groups = vec![group; start.balls.len().div_ceil(WIDTH)];
+        }
         Self {
             model,
-            contacts: model.contacts(&boundary.conditions),
+            contacts,
             start,
             step: HhtStep::new(model.solver.alpha_f, h),
             boundary,
-            races: PerRace::new(|race| race_motion(&boundary.motion[race].0, &boundary.motion[race].1)),
+            races,
             force_tolerance: start.force_tolerance,
             workspace,
             contact_values: 0,
@@ -103,10 +112,10 @@ impl<'a> BearingStep<'a> {
             cage: self.model.cage.as_ref().zip(workspace.cage.as_ref()),
         };
         let radius = self.model.bearing.ball.radius;
-        let mut forces = PerRace::new(|_| [PairForces::none(); WIDTH]);
         let mut motions = [BallMotion::at_rest(); WIDTH];
-        for (group, trials) in workspace.balls.chunks_mut(WIDTH).enumerate() {
-            let first = WIDTH * group;
+        let groups = workspace.balls.chunks_mut(WIDTH).zip(&mut workspace.groups);
+        for (index, (trials, group)) in groups.enumerate() {
+            let first = WIDTH * index;
             let mut changed = [all; WIDTH];
             for (lane, trial) in trials.iter_mut().enumerate() {
                 let at = BLOCK * (first + lane);
@@ -121,18 +130,16 @@ impl<'a> BearingStep<'a> {
                 continue;
             }
             if !with_tangent {
-                for race in Race::BOTH {
-                    around.evaluate_group(race, first, &motions[..trials.len()], &mut forces[race]);
-                }
+                around.evaluate_group(first, &motions[..trials.len()], group);
             }
             for (lane, trial) in trials.iter_mut().enumerate() {
                 let index = first + lane;
                 let mut tangent = if with_tangent {
                     self.contact_tangents += 2;
-                    Some(trial.contacts_with_tangent(index, &around, &self.step))
+                    Some(trial.contacts_with_tangent(index, &around, &self.step, (&mut *group, lane)))
                 } else if changed[lane] {
                     self.contact_values += 2;
-                    trial.take_contacts(PerRace { inner: forces.inner[lane], outer: forces.outer[lane] });
+                    trial.take_contacts(group, lane);
                     None
                 } else {
                     continue;

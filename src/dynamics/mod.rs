@@ -15,10 +15,13 @@ mod sensitivity;
 
 use nalgebra::{DMatrix, DVector, Vector6};
 
+use crate::contact::many::ContactGroup;
+use crate::forces::{BallContacts, Contacts};
 use crate::model::bodies::{Bodies, PerRace};
 use crate::model::state::{KeptMatrix, State};
 use crate::model::{Conditions, Model};
 use crate::numerics::arrowhead::Arrowhead;
+use crate::numerics::lanes::WIDTH;
 use crate::numerics::motion::{Pose, Twist};
 use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure};
 pub use accept::make_consistent;
@@ -51,6 +54,8 @@ pub struct Boundary {
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     balls: Vec<BallTrial>,
+    /// Contacts of the balls with the races, as evaluated last: those of [`WIDTH`] balls in each.
+    groups: Vec<PerRace<ContactGroup>>,
     /// The state's matrix during a step.
     kept: KeptMatrix,
     /// Those that forces move; empty before the first step.
@@ -62,6 +67,21 @@ pub struct Workspace {
     border_correction: DVector<f64>,
     unknowns: Vec<f64>,
     newton: NewtonBuffers,
+}
+
+impl Workspace {
+    /// All contacts at the end of the step that was accepted last with this workspace.
+    pub fn contacts(&self, model: &Model) -> Contacts {
+        let of_ball = |(index, trial): (usize, &BallTrial)| {
+            let group = &self.groups[index / WIDTH];
+            BallContacts {
+                raceways: PerRace::new(|race| group[race].contact(index % WIDTH)),
+                pocket: trial.pocket,
+            }
+        };
+        let lands = self.cage.as_ref().map_or([None; 2], |cage| cage.lands);
+        Contacts::from_parts(model, self.balls.iter().enumerate().map(of_ball).collect(), lands)
+    }
 }
 
 /// Why a step was not taken.

@@ -58,6 +58,10 @@ pub struct BodyState {
     pub multipliers: Vec<f64>,
     /// What balls and lands exert on the body, world axes, about its origin.
     pub bearing_wrench: Wrench,
+    /// [-] unit vectors of its own axes, as its pairs saw them.
+    pub axes: [Vector3<f64>; 3],
+    /// [rad/s] angular velocity in world axes, as its pairs saw it: that of `rate` but for rounding.
+    pub angular_velocity: Vector3<f64>,
     /// \[rad] turned about the own axis since the start, without limit.
     pub turned: f64,
     /// \[rad] what the last sum left out of `turned`: millions of rounded additions would drift.
@@ -67,10 +71,13 @@ pub struct BodyState {
 impl BodyState {
     /// A body with a pose and a twist, free of forces.
     pub fn new(pose: Pose, twist: &Twist, n_constraints: usize) -> Self {
+        let rate = pose.orientation.inverse() * twist.angular_velocity;
         Self {
             pose,
             velocity: twist.velocity,
-            rate: pose.orientation.inverse() * twist.angular_velocity,
+            rate,
+            axes: axes_of(&pose.orientation),
+            angular_velocity: pose.orientation * rate,
             acceleration: Vector3::zeros(),
             rate_derivative: Vector3::zeros(),
             total: Wrench::default(),
@@ -95,19 +102,28 @@ impl BodyState {
 
     /// The motion that contacts depend on.
     pub fn motion(&self) -> RaceMotion<f64> {
-        race_motion(&self.pose, &self.twist())
+        RaceMotion {
+            position: self.pose.position,
+            axis: self.axes[0],
+            velocity: self.velocity,
+            angular_velocity: self.angular_velocity,
+        }
     }
 
     /// The motion with all axes, for contacts of the cage.
     pub fn body_motion(&self) -> BodyMotion<f64> {
-        let orientation = self.pose.orientation;
         BodyMotion {
             position: self.pose.position,
-            axes: [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| orientation * axis),
+            axes: self.axes,
             velocity: self.velocity,
-            angular_velocity: orientation * self.rate,
+            angular_velocity: self.angular_velocity,
         }
     }
+}
+
+/// [-] unit vectors of the axes of a frame.
+pub fn axes_of(orientation: &UnitQuaternion<f64>) -> [Vector3<f64>; 3] {
+    [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| orientation * axis)
 }
 
 /// The motion of a race that contacts depend on.

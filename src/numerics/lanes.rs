@@ -24,6 +24,13 @@ impl Lanes {
         Self(std::array::from_fn(number))
     }
 
+    /// With another number in one lane.
+    #[inline(always)]
+    pub fn with(mut self, lane: usize, number: f64) -> Self {
+        self.0[lane] = number;
+        self
+    }
+
     /// Vectors of several lanes as one; `number` gives that of a lane.
     #[inline(always)]
     pub fn vector(number: impl Fn(usize) -> Vector3<f64>) -> Vector3<Self> {

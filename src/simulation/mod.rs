@@ -15,11 +15,11 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::geometry::GrooveContact;
 use crate::dynamics::{
     Boundary, StepFailure, Workspace, advance_perturbed, failure_site, make_consistent, try_step,
 };
 use crate::equilibrium::MAX_APPROACH;
+use crate::forces::Contacts;
 use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::model::state::{KeptMatrix, State};
@@ -248,9 +248,14 @@ impl Simulation {
             })
             .collect();
         self.paths = self.paths.towards(&self.inputs, begin, end - begin);
-        let result = self.step_to(end, &mut perturbed).and_then(|()| self.check_contacts());
-        self.outputs = Outputs::new(&self.model, &self.state, &self.inputs.conditions());
-        result?;
+        let result = self.step_to(end, &mut perturbed);
+        // The last step's own evaluation, where it was accepted.
+        let contacts = match &result {
+            Ok(()) => self.workspace.contacts(&self.model),
+            Err(_) => Contacts::new(&self.model, &self.state, &self.inputs.conditions()),
+        };
+        self.outputs = Outputs::of(&self.model, &self.state, &contacts, &self.inputs.conditions());
+        result.and_then(|()| self.check_contacts(&contacts))?;
         let outputs = |p: &Perturbed| Outputs::new(&self.model, &p.state, &p.inputs.conditions());
         Ok(perturbed.iter().map(outputs).collect())
     }
@@ -331,21 +336,18 @@ impl Simulation {
     }
 
     /// Refuses contacts that no material takes, or where no groove is.
-    fn check_contacts(&self) -> Result<(), SimulationError> {
-        let radius = self.model.bearing.ball.radius;
+    fn check_contacts(&self, contacts: &Contacts) -> Result<(), SimulationError> {
+        let diameter = 2.0 * self.model.bearing.ball.radius;
         for race in Race::BOTH {
-            let motion = self.state.race(race).motion();
-            for (index, ball) in self.state.balls.iter().enumerate() {
-                let offset = ball.position - motion.position;
-                let contact =
-                    GrooveContact::new(self.model.bearing.raceway(race), radius, &offset, &motion.axis);
+            for (index, ball) in contacts.balls.iter().enumerate() {
+                let contact = &ball.raceways[race].geometry;
                 let (time, ball, approach) = (self.state.time, index + 1, contact.approach);
                 // The groove of the inner race opens away from its axis, that of the outer race towards it.
                 let out = if race == Race::Inner { -1.0 } else { 1.0 };
                 if approach > 0.0 && out * contact.normal.dot(&contact.radial) < 0.0 {
                     return Err(SimulationError::LeftGroove { time, ball, race: race.name(), approach });
                 }
-                if approach > MAX_APPROACH * 2.0 * radius {
+                if approach > MAX_APPROACH * diameter {
                     return Err(SimulationError::Overload { time, ball, race: race.name(), approach });
                 }
             }

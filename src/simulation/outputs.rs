@@ -155,10 +155,14 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Evaluates the outputs of a state.
+    /// Outputs of a state.
     pub fn new(model: &Model, state: &State, conditions: &Conditions) -> Self {
-        let contacts = Contacts::new(model, state, conditions);
-        let totals = Totals::of(&contacts, state.balls.len());
+        Self::of(model, state, &Contacts::new(model, state, conditions), conditions)
+    }
+
+    /// Outputs of a state whose contacts were evaluated already.
+    pub fn of(model: &Model, state: &State, contacts: &Contacts, conditions: &Conditions) -> Self {
+        let totals = Totals::of(contacts, state.balls.len());
         let cage = model.cage.as_ref().zip(state.cage());
         let outer = state.race(Race::Outer);
         let races = Race::BOTH.map(|race| state.race(race).motion());
@@ -183,11 +187,11 @@ impl Outputs {
             }
         };
         let balls: Vec<_> = state.balls.iter().zip(&contacts.balls).enumerate().map(of_ball).collect();
-        let cage_output = cage.map(|(model, cage)| CageOutput::new(model, state, &balls, &contacts, cage));
+        let cage_output = cage.map(|(model, cage)| CageOutput::new(model, state, &balls, contacts, cage));
         let mean_orbit = balls.iter().map(|ball| ball.orbital_speed).sum::<f64>() / balls.len() as f64;
         let cage_speed = cage.map_or(mean_orbit, |(_, state)| state.rate.x);
         let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
-        let angle = mean_contact_angle(&contacts).unwrap_or(model.bearing.free_contact_angle);
+        let angle = mean_contact_angle(contacts).unwrap_or(model.bearing.free_contact_angle);
         let epicyclic = model.bearing.epicyclic_speed(angle, speeds[0], speeds[1]);
         let [inner, outer] = Race::BOTH.map(|race| race_output(state.race(race), model, race));
         Self {
@@ -202,7 +206,7 @@ impl Outputs {
             cage_slip: if epicyclic == 0.0 { 0.0 } else { 1.0 - cage_speed / epicyclic },
             friction_power: totals.friction_power,
             damping_power: totals.damping_power,
-            stored_energy: stored_energy(model, state, &contacts),
+            stored_energy: stored_energy(model, state, contacts),
             work: state.energies.input,
             dissipated: state.energies.friction + state.energies.damping,
             statistics: state.statistics,
