@@ -1,9 +1,12 @@
 //! Whole runs: energy, steady loads, symmetry, determinism.
 #![allow(clippy::unwrap_used)]
 
+use std::ops::ControlFlow;
+
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::scene::Scene;
 use roulement::simulation::outputs::Outputs;
+use roulement::simulation::play::{Rows, play};
 use roulement::simulation::{Simulation, SimulationError};
 
 const THRUST: &str = include_str!("../scenes/thrust.toml");
@@ -11,14 +14,15 @@ const RADIAL: &str = include_str!("../scenes/radial.toml");
 
 /// Runs a scene by its own script and returns its outputs at every communication point.
 fn run(text: &str, points: u32) -> (Simulation, Vec<Outputs>) {
-    let scene = Scene::parse(text).unwrap();
-    let mut simulation = Simulation::new(&scene).unwrap();
-    let mut history = vec![simulation.outputs().clone()];
-    for point in 1..=points {
-        simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
-        simulation.advance(f64::from(point) * scene.load.output_interval.0).unwrap();
+    let mut simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+    let interval = simulation.scene().load.output_interval.0;
+    let rows = Rows { interval, duration: f64::from(points) * interval };
+    let mut history = vec![];
+    let _: ControlFlow<()> = play(&mut simulation, rows, |simulation| {
         history.push(simulation.outputs().clone());
-    }
+        ControlFlow::Continue(())
+    })
+    .unwrap();
     (simulation, history)
 }
 

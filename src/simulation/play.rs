@@ -1,40 +1,72 @@
-//! Playing a scene's own script from start to end.
+//! Playing a simulation from start to end, row by row: the one loop of runs, studies and tests.
 
 use std::ops::ControlFlow;
 
 use super::{Simulation, SimulationError};
-use crate::scene::Scene;
 
-/// Plays the script of a scene: advances from one row of results to the next, the last at the scene's duration.
-///
-/// `row` is called with the simulation at every row, that of the start included, and breaks the play off if it says so. A
-/// run that cannot go on ends with a row of where it came to, and the error.
-///
-/// # Errors
-/// See [`SimulationError`].
-pub fn play<B>(
-    simulation: &mut Simulation,
-    mut row: impl FnMut(&Simulation) -> ControlFlow<B>,
-) -> Result<ControlFlow<B>, SimulationError> {
-    let rows = rows(simulation.scene());
-    let (interval, duration) =
-        (simulation.scene().load.output_interval.0, simulation.scene().load.duration.0);
-    if let ControlFlow::Break(why) = row(simulation) {
-        return Ok(ControlFlow::Break(why));
-    }
-    for index in 1..=rows {
-        let end = if index == rows { duration } else { index as f64 * interval };
-        simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
-        let advanced = simulation.advance(end);
-        if let ControlFlow::Break(why) = row(simulation) {
-            return Ok(ControlFlow::Break(why));
-        }
-        advanced?;
-    }
-    Ok(ControlFlow::Continue(()))
+/// Rows of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rows {
+    /// \[s] from one row to the next.
+    pub interval: f64,
+    /// \[s] time of the last row, even if that is no multiple of the interval.
+    pub duration: f64,
 }
 
-/// [-] rows of results after that of the start. The last interval ends with the duration, even if that is no multiple.
-pub fn rows(scene: &Scene) -> u64 {
-    (scene.load.duration.0 / scene.load.output_interval.0 * (1.0 - 1e-9)).ceil().max(1.0) as u64
+impl Rows {
+    /// Those that the scene of a simulation asks for.
+    pub fn of(simulation: &Simulation) -> Self {
+        let load = &simulation.scene().load;
+        Self { interval: load.output_interval.0, duration: load.duration.0 }
+    }
+
+    /// [-] number of rows after that of the start.
+    pub fn count(&self) -> u64 {
+        (self.duration / self.interval * (1.0 - 1e-9)).ceil().max(1.0) as u64
+    }
+
+    /// \[s] times of these rows.
+    pub fn times(self) -> impl Iterator<Item = f64> {
+        let count = self.count();
+        (1..=count).map(move |row| if row == count { self.duration } else { row as f64 * self.interval })
+    }
+}
+
+/// Plays the scene's own script: its inputs at the start of every interval hold for the interval.
+///
+/// # Errors
+/// See [`play_with`].
+pub fn play<B>(
+    simulation: &mut Simulation,
+    rows: Rows,
+    row: impl FnMut(&Simulation) -> ControlFlow<B>,
+) -> Result<ControlFlow<B>, SimulationError> {
+    let advance = |simulation: &mut Simulation, end: f64| {
+        simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
+        simulation.advance(end)
+    };
+    play_with(simulation, rows, advance, row)
+}
+
+/// Plays a simulation: `advance` takes it to the time \[s] of the next row, `row` sees it at every row, that of the start
+/// included, and may end the play.
+///
+/// # Errors
+/// That of an `advance` which could not go on; `row` has then seen where it came to.
+pub fn play_with<B>(
+    simulation: &mut Simulation,
+    rows: Rows,
+    mut advance: impl FnMut(&mut Simulation, f64) -> Result<(), SimulationError>,
+    mut row: impl FnMut(&Simulation) -> ControlFlow<B>,
+) -> Result<ControlFlow<B>, SimulationError> {
+    let mut flow = row(simulation);
+    for end in rows.times() {
+        if flow.is_break() {
+            break;
+        }
+        let advanced = advance(simulation, end);
+        flow = row(simulation);
+        advanced?;
+    }
+    Ok(flow)
 }

@@ -2,12 +2,14 @@
 
 use std::error::Error;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
+use roulement::simulation::play::{Rows, play};
 use roulement_cli::report::plots::write_plots;
 use roulement_cli::report::results::ResultsWriter;
 
@@ -21,29 +23,24 @@ pub fn run(scene: &Scene, directory: &Path) -> Result<(), Box<dyn Error>> {
     let mut simulation = Simulation::new(scene)?;
     fs::create_dir_all(directory).map_err(|why| format!("cannot make {}: {why}", directory.display()))?;
     let mut results = ResultsWriter::create(&directory.join("results.csv"), scene)?;
-    results.write(simulation.inputs(), simulation.outputs())?;
-
-    let interval = scene.load.output_interval.0;
-    // The last interval ends with the duration, even if that is no multiple.
-    let points = (scene.load.duration.0 / interval * (1.0 - 1e-9)).ceil().max(1.0) as u64;
-    let progress = progress_bar(points);
+    let rows = Rows::of(&simulation);
+    let progress = progress_bar(rows.count());
     let begin = Instant::now();
-    let mut history = vec![simulation.outputs().clone()];
-    let mut interrupted = None;
-    for point in 1..=points {
-        let end = if point == points { scene.load.duration.0 } else { point as f64 * interval };
-        simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
-        let advanced = simulation.advance(end);
-        results.write(simulation.inputs(), simulation.outputs())?;
-        history.push(simulation.outputs().clone());
-        if let Err(why) = advanced {
-            interrupted = Some(why);
-            break;
+    let mut history = Vec::new();
+    let played = play(&mut simulation, rows, |simulation| {
+        if let Err(why) = results.write(simulation.inputs(), simulation.outputs()) {
+            return ControlFlow::Break(why);
         }
-        progress.set_message(format!("{:.3} of {} ms", end * 1e3, scene.load.duration.0 * 1e3));
-        progress.inc(1);
-    }
+        let time = simulation.time();
+        progress.set_message(format!("{:.3} of {} ms", time * 1e3, rows.duration * 1e3));
+        progress.set_position(history.len() as u64);
+        history.push(simulation.outputs().clone());
+        ControlFlow::Continue(())
+    });
     progress.finish_and_clear();
+    if let Ok(ControlFlow::Break(why)) = played {
+        return Err(why.into());
+    }
     let wall = begin.elapsed();
     results.finish()?;
     let plots = write_plots(scene, simulation.model(), &history, directory)?;
@@ -52,7 +49,7 @@ pub fn run(scene: &Scene, directory: &Path) -> Result<(), Box<dyn Error>> {
     for plot in plots {
         println!("plot             {}", plot.display());
     }
-    interrupted.map_or(Ok(()), |why| Err(why.into()))
+    Ok(played.map(drop)?)
 }
 
 /// A bar with simulated time and an estimate of what is left.

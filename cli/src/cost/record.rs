@@ -1,5 +1,7 @@
 //! One run of one setting: what it showed, and what it cost.
 
+use std::ops::ControlFlow;
+
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::levers::{Inputs, Level, Setting};
@@ -10,6 +12,7 @@ use roulement::numerics::motion::{Pose, Twist};
 use roulement::scene::Drive;
 use roulement::simulation::inputs;
 use roulement::simulation::outputs::Outputs;
+use roulement::simulation::play::{Rows, play_with};
 use roulement::simulation::{Simulation, SimulationError};
 
 /// \[s] CPU time after which a run is not repeated any more, and the largest number of runs.
@@ -93,27 +96,25 @@ pub fn record(setting: &Setting) -> Result<Record, SimulationError> {
 }
 
 fn run(setting: &Setting, mut simulation: Simulation) -> Result<Record, SimulationError> {
-    let duration = setting.scene.load.duration.0;
+    let rows = Rows { interval: setting.communication, duration: setting.scene.load.duration.0 };
     let pitch_radius = 0.5 * simulation.model().bearing.pitch_diameter;
-    let points = (duration / setting.communication * (1.0 - 1e-9)).ceil().max(1.0) as u64;
-    let mut samples = Vec::with_capacity(points as usize + 1);
-    samples.push(Sample::new(simulation.outputs(), pitch_radius));
-    let meter = Meter::start();
-    for point in 1..=points {
-        let end = if point == points { duration } else { point as f64 * setting.communication };
-        match setting.level {
-            Level::Dynamic => {
-                simulation.set_inputs(inputs_of_step(&simulation, setting.inputs, end));
-                simulation.advance(end)?;
-            }
-            Level::Equilibrium => {
-                simulation.set_start_time(end);
-                simulation.set_inputs(simulation.scripted_inputs(end));
-                simulation.initialise()?;
-            }
+    let mut samples = Vec::with_capacity(rows.count() as usize + 1);
+    let advance = |simulation: &mut Simulation, end: f64| match setting.level {
+        Level::Dynamic => {
+            simulation.set_inputs(inputs_of_step(simulation, setting.inputs, end));
+            simulation.advance(end)
         }
+        Level::Equilibrium => {
+            simulation.set_start_time(end);
+            simulation.set_inputs(simulation.scripted_inputs(end));
+            simulation.initialise()
+        }
+    };
+    let meter = Meter::start();
+    let _: ControlFlow<()> = play_with(&mut simulation, rows, advance, |simulation| {
         samples.push(Sample::new(simulation.outputs(), pitch_radius));
-    }
+        ControlFlow::Continue(())
+    })?;
     let cost = meter.stop();
     Ok(Record { samples, cost, work: simulation.state().statistics, level: setting.level })
 }
