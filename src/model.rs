@@ -149,8 +149,11 @@ impl Model {
     /// If creep coefficients cannot be computed for the bearing's contacts.
     pub fn new(scene: &Scene) -> Result<Self, KalkerError> {
         let bearing = Bearing::new(scene);
-        let shapes =
-            [ContactShape::new(&bearing, &bearing.inner)?, ContactShape::new(&bearing, &bearing.outer)?];
+        let shape = |raceway| match scene.effects.creep {
+            CreepLaw::Frictionless => Ok(ContactShape::without_creep(&bearing, raceway)),
+            _ => ContactShape::new(&bearing, raceway),
+        };
+        let shapes = [shape(&bearing.inner)?, shape(&bearing.outer)?];
         let law = |race: usize| RacewayLaw::new(scene, &shapes[race], &bearing, race);
         let laws = [law(INNER)?, law(OUTER)?];
         let bend = |raceway: &Raceway| 0.25 * (1.0 / bearing.ball.radius + 1.0 / raceway.groove_radius);
