@@ -37,6 +37,17 @@ fn simulation(law: &str) -> Simulation {
     Simulation::new(&Scene::parse(&text).unwrap()).unwrap()
 }
 
+/// The model of a scene: tables of its contacts and of its creep law.
+#[divan::bench(args = LAWS.iter().chain(&["kalker", "cage"]))]
+fn model_new(bencher: Bencher, law: &str) {
+    let text = match law {
+        "cage" => include_str!("../scenes/cage.toml").to_string(),
+        law => THRUST.replace("\"saturated\"", &format!("\"{law}\"")),
+    };
+    let scene = Scene::parse(&text).unwrap();
+    bencher.bench_local(|| Model::new(divan::black_box(&scene)).unwrap());
+}
+
 /// One contact, value only.
 #[divan::bench(args = LAWS)]
 fn contact_value(bencher: Bencher, law: &str) {

@@ -3,6 +3,7 @@
 //! The transverse curvature of a groove contact is constant; the one along rolling varies with the contact angle.
 //! Everything that Hertz and Kalker need then is a function of that one curvature, tabulated once per raceway.
 
+use std::convert::Infallible;
 use std::f64::consts::PI;
 
 use crate::contact::hertz::{HertzContact, complete_elliptic_integrals};
@@ -103,49 +104,44 @@ impl ShapeAt<f64> {
         each_property!(property of self => S::constant(*property))
     }
 
-    /// Contact of relative curvatures [1/m] along and transverse to rolling, of materials with a `compliance`
-    /// `(1 - nu1^2)/E1 + (1 - nu2^2)/E2` [1/Pa], a combined `shear` modulus \[Pa] and Poisson's ratio.
+    /// Properties of a Hertz contact without creep: its coefficients are 0.
+    fn without_creep(hertz: &HertzContact) -> Self {
+        let (along, across) = (hertz.semi_axis_rolling, hertz.semi_axis_transverse);
+        let (long, short) = (along.max(across), along.min(across));
+        let (_, second) = complete_elliptic_integrals(1.0 - (short / long).powi(2));
+        Self {
+            stiffness: hertz.stiffness,
+            longitudinal: 0.0,
+            lateral: 0.0,
+            coupling: 0.0,
+            spin: 0.0,
+            semi_axis_rolling: along,
+            semi_axis_transverse: across,
+            mean_semi_axis: (along * across).sqrt(),
+            // Hertzian pressure times distance from the centre, integrated: 3/8 of the long axis times E(m).
+            spin_arm: 0.375 * long * second,
+        }
+    }
+
+    /// Properties of a Hertz contact with the creep coefficients of a patch of an axis ratio, of materials with a combined
+    /// `shear` modulus [Pa] and Poisson's ratio.
     ///
     /// # Errors
     /// If Kalker's linear theory has no answer for the axis ratio.
-    pub fn new(
-        curvature_rolling: f64,
-        curvature_transverse: f64,
-        compliance: f64,
-        shear: f64,
-        poisson_ratio: f64,
-    ) -> Result<Self, LinearError> {
-        let hertz = HertzContact::new(curvature_rolling, curvature_transverse, compliance);
-        let axis_ratio = hertz.semi_axis_rolling / hertz.semi_axis_transverse;
-        Self::with_creep_of(axis_ratio, &hertz, shear, poisson_ratio)
-    }
-
-    /// Properties of a Hertz contact, with the creep coefficients of a patch of another axis ratio.
-    ///
-    /// # Errors
-    /// As [`ShapeAt::new`].
     pub fn with_creep_of(
         axis_ratio: f64,
         hertz: &HertzContact,
         shear: f64,
         poisson_ratio: f64,
     ) -> Result<Self, LinearError> {
-        let (along, across) = (hertz.semi_axis_rolling, hertz.semi_axis_transverse);
         let creep = creep_matrix(&Patch { axis_ratio, poisson_ratio, rolling_angle: 0.0 })?;
-        let area = along * across;
-        let (long, short) = (along.max(across), along.min(across));
-        let (_, second) = complete_elliptic_integrals(1.0 - (short / long).powi(2));
+        let area = hertz.semi_axis_rolling * hertz.semi_axis_transverse;
         Ok(Self {
-            stiffness: hertz.stiffness,
             longitudinal: shear * area * creep[(0, 0)],
             lateral: shear * area * creep[(1, 1)],
             coupling: shear * area.powf(1.5) * creep[(1, 2)],
             spin: shear * area.powi(2) * creep[(2, 2)],
-            semi_axis_rolling: along,
-            semi_axis_transverse: across,
-            mean_semi_axis: area.sqrt(),
-            // Hertzian pressure times distance from the centre, integrated: 3/8 of the long axis times E(m).
-            spin_arm: 0.375 * long * second,
+            ..Self::without_creep(hertz)
         })
     }
 }
@@ -168,6 +164,25 @@ impl ContactShape {
     /// # Errors
     /// If Kalker's linear theory has no answer for an axis ratio that occurs.
     pub fn new(bearing: &Bearing, raceway: &Raceway) -> Result<Self, LinearError> {
+        Self::tabulated(bearing, raceway, |hertz| {
+            let axis_ratio = hertz.semi_axis_rolling / hertz.semi_axis_transverse;
+            ShapeAt::with_creep_of(axis_ratio, hertz, bearing.shear_modulus, bearing.poisson_ratio)
+        })
+    }
+
+    /// Tabulates the contacts of a raceway of the bearing for forces without creep.
+    pub fn without_creep(bearing: &Bearing, raceway: &Raceway) -> Self {
+        let properties = |hertz: &HertzContact| Ok::<_, Infallible>(ShapeAt::without_creep(hertz));
+        let Ok(shape) = Self::tabulated(bearing, raceway, properties);
+        shape
+    }
+
+    /// Interpolates the properties of Hertz contacts over the curvatures that occur.
+    fn tabulated<E>(
+        bearing: &Bearing,
+        raceway: &Raceway,
+        properties: impl Fn(&HertzContact) -> Result<ShapeAt<f64>, E>,
+    ) -> Result<Self, E> {
         let radius = bearing.ball.radius;
         // Curvature at contact angle 0; beyond a right angle the contact has left any real groove.
         let contact_radius = if raceway.groove_circle_radius > bearing.pitch_diameter / 2.0 {
@@ -180,14 +195,8 @@ impl ContactShape {
         let ball_curvature = 1.0 / radius;
         let transverse_curvature = ball_curvature - 1.0 / raceway.groove_radius;
         let at = |node: f64| {
-            let curvature = middle + half_width * node;
-            ShapeAt::new(
-                ball_curvature + curvature,
-                transverse_curvature,
-                bearing.contact_compliance,
-                bearing.shear_modulus,
-                bearing.poisson_ratio,
-            )
+            let curvature = ball_curvature + (middle + half_width * node);
+            properties(&HertzContact::new(curvature, transverse_curvature, bearing.contact_compliance))
         };
         let first = at(node(0))?;
         let mut columns = each_property!(value of first => [*value; NODES]);

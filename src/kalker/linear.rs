@@ -4,13 +4,14 @@
 //! rolling direction r (paper eq. 11). That leaves a polynomial in the transverse coordinate free, as in Kalker (1967)
 //! chosen such that the singular traction at the leading edge is least.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
+use std::sync::LazyLock;
 
 use nalgebra::{DMatrix, Matrix3};
 use thiserror::Error;
 
 use super::Patch;
-use super::load_displacement::{Basis, disc_moment, load_displacement};
+use super::load_displacement::{Basis, LoadDisplacement, disc_moment};
 use crate::contact::hertz::complete_elliptic_integrals;
 
 /// Degree of the polynomials: odd ones converge faster. Coefficients are within 0.3 % of higher degrees from axis
@@ -70,12 +71,9 @@ fn times_line(basis: &Basis, polynomial: &[f64], alpha: f64, beta: f64) -> Polyn
     product
 }
 
-/// Traction polynomials (x components, then y) over G of unit creepages c_x, c_y and spin phi (times c): three columns.
-///
-/// # Errors
-/// See [`LinearError`].
-pub fn adhesion_tractions(patch: &Patch, basis: &Basis) -> Result<DMatrix<f64>, LinearError> {
-    patch.check()?;
+/// Displacement polynomials, column by column: those that undo the rigid slips of unit creepages c_x, c_y and spin phi, then
+/// those that do not change along rolling.
+fn displacements(patch: &Patch, basis: &Basis) -> DMatrix<f64> {
     let n = basis.len();
     let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());
     let (sin, cos) = patch.rolling_angle.sin_cos();
@@ -97,7 +95,6 @@ pub fn adhesion_tractions(patch: &Patch, basis: &Basis) -> Result<DMatrix<f64>, 
     let integral_y = combine(&half_square, sin, &cross, cos);
     let integral_x = combine(&half_square, cos, &cross, -sin);
 
-    // displacements that undo the rigid slips, and those that no derivative along rolling sees
     let mut displacements = DMatrix::zeros(2 * n, 3 + 2 * (basis.degree + 1));
     let mut set = |column: usize, row: usize, polynomial: &[f64], factor: f64| {
         for (i, value) in polynomial.iter().enumerate() {
@@ -116,34 +113,61 @@ pub fn adhesion_tractions(patch: &Patch, basis: &Basis) -> Result<DMatrix<f64>, 
             power = across(&power);
         }
     }
+    displacements
+}
 
+/// Traction polynomials (x components, then y) over G of unit creepages c_x, c_y and spin phi (times c): three columns.
+///
+/// # Errors
+/// See [`LinearError`].
+pub fn adhesion_tractions(patch: &Patch, theory: &LoadDisplacement) -> Result<DMatrix<f64>, LinearError> {
+    patch.check()?;
+    let basis = theory.basis();
+    let n = basis.len();
     // tractions of all of them, and the singular traction on the leading edge
     let tractions =
-        load_displacement(patch, basis).lu().solve(&displacements).ok_or(LinearError::Singular(*patch))?;
-    let edge = leading_edge(patch, basis) * &tractions;
-    let (fixed, free) = (edge.columns(0, 3).into_owned(), edge.columns(3, edge.ncols() - 3).into_owned());
-    let amounts = free.svd(true, true).solve(&-fixed, 1e-13).map_err(|_| LinearError::Singular(*patch))?;
+        theory.tractions(patch, &displacements(patch, basis)).ok_or(LinearError::Singular(*patch))?;
+    let rows = leading_edge_rows(patch, basis);
+    let mut edge = DMatrix::zeros(2 * rows.nrows(), tractions.ncols());
+    for component in 0..2 {
+        let part = &rows * tractions.rows(component * n, n);
+        edge.rows_mut(component * rows.nrows(), rows.nrows()).copy_from(&part);
+    }
+    let (mut right, free) = (-edge.columns(0, 3), edge.columns(3, edge.ncols() - 3).into_owned());
+    // Least squares; over the range of patches the condition number of the free polynomials stays below 1e8.
+    let factors = free.qr();
+    factors.q_tr_mul(&mut right);
+    let count = edge.ncols() - 3;
+    let amounts =
+        factors.r().solve_upper_triangular(&right.rows(0, count)).ok_or(LinearError::Singular(*patch))?;
     Ok(tractions.columns(0, 3) + tractions.columns(3, amounts.nrows()) * amounts)
 }
 
-/// Rows that give the singular traction `sum d X^p Y^q` (x, then y) on the leading edge, weighted by how squarely the
+/// Rows that give one component `sum d X^p Y^q` of the singular traction on the leading edge, weighted by how squarely the
 /// edge meets the rolling direction.
-pub fn leading_edge(patch: &Patch, basis: &Basis) -> DMatrix<f64> {
-    let n = basis.len();
+fn leading_edge_rows(patch: &Patch, basis: &Basis) -> DMatrix<f64> {
     let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());
     let (sin, cos) = patch.rolling_angle.sin_cos();
-    let mut rows = DMatrix::zeros(2 * EDGE_POINTS, 2 * n);
-    for point in 0..EDGE_POINTS {
-        let angle = std::f64::consts::TAU * (point as f64 + 0.5) / EDGE_POINTS as f64;
-        let (y, x) = angle.sin_cos();
-        let normal = (x / a, y / b);
-        let facing = (normal.0 * cos + normal.1 * sin) / normal.0.hypot(normal.1);
-        let weight = (facing.max(0.0) / EDGE_POINTS as f64).sqrt();
-        for (i, &(p, q)) in basis.powers.iter().enumerate() {
-            let value = weight * x.powi(p as i32) * y.powi(q as i32);
-            rows[(point, i)] = value;
-            rows[(EDGE_POINTS + point, n + i)] = value;
-        }
+    let places: Vec<[f64; 3]> = (0..EDGE_POINTS)
+        .filter_map(|point| {
+            let (y, x) = (TAU * (point as f64 + 0.5) / EDGE_POINTS as f64).sin_cos();
+            let normal = (x / a, y / b);
+            let facing = (normal.0 * cos + normal.1 * sin) / normal.0.hypot(normal.1);
+            (facing > 0.0).then_some([x, y, (facing / EDGE_POINTS as f64).sqrt()])
+        })
+        .collect();
+    DMatrix::from_fn(places.len(), basis.len(), |i, k| {
+        let ([x, y, weight], (p, q)) = (places[i], basis.powers[k]);
+        weight * x.powi(p as i32) * y.powi(q as i32)
+    })
+}
+
+/// Rows that give the singular traction (x, then y) on the leading edge, see [`adhesion_tractions`].
+pub fn leading_edge(patch: &Patch, basis: &Basis) -> DMatrix<f64> {
+    let (part, n) = (leading_edge_rows(patch, basis), basis.len());
+    let mut rows = DMatrix::zeros(2 * part.nrows(), 2 * n);
+    for component in 0..2 {
+        rows.view_mut((component * part.nrows(), component * n), part.shape()).copy_from(&part);
     }
     rows
 }
@@ -171,9 +195,9 @@ pub fn resultants(patch: &Patch, basis: &Basis) -> DMatrix<f64> {
 /// # Errors
 /// See [`LinearError`].
 pub fn creep_matrix(patch: &Patch) -> Result<Matrix3<f64>, LinearError> {
-    let basis = Basis::new(DEGREE);
-    let tractions = adhesion_tractions(patch, &basis)?;
-    let matrix = resultants(patch, &basis) * tractions;
+    static THEORY: LazyLock<LoadDisplacement> = LazyLock::new(|| LoadDisplacement::new(DEGREE));
+    let tractions = adhesion_tractions(patch, &THEORY)?;
+    let matrix = resultants(patch, THEORY.basis()) * tractions;
     Ok(Matrix3::from_fn(|i, k| matrix[(i, k)]))
 }
 

@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::linear::{LinearError, adhesion_tractions, leading_edge, resultants};
-use super::load_displacement::{Basis, load_displacement};
+use super::load_displacement::{Basis, LoadDisplacement};
 use super::objective::{Expansion, Fields, norm, project};
 use super::{Patch, ScaledCreepage, ScaledForces};
 
@@ -174,18 +174,19 @@ impl Kalker {
         if !(1..=7).contains(&degree) {
             return Err(KalkerError::Degree(degree));
         }
-        let basis = Basis::new(degree);
+        let theory = LoadDisplacement::new(degree);
+        let basis = theory.basis();
         let n = basis.len();
         // Spin needs a quadratic; what a lower degree cannot hold of the start is dropped.
-        let start_basis = Basis::new(degree.max(2));
-        let tractions = adhesion_tractions(&patch, &start_basis)?;
+        let start = LoadDisplacement::new(degree.max(2));
+        let tractions = adhesion_tractions(&patch, &start)?;
         let mut adhesion = DMatrix::zeros(2 * n, 3);
         adhesion.rows_mut(0, n).copy_from(&tractions.rows(0, n));
-        adhesion.rows_mut(n, n).copy_from(&tractions.rows(start_basis.len(), n));
-        let stiffness = load_displacement(&patch, &basis);
+        adhesion.rows_mut(n, n).copy_from(&tractions.rows(start.basis().len(), n));
+        let stiffness = theory.matrix(&patch);
         let points = quadrature(degree + 2, 3 * degree + 8);
         let rows = points.len();
-        let [values, gradients] = fields_of_monomials(&patch, &basis, &points);
+        let [values, gradients] = fields_of_monomials(&patch, basis, &points);
         let mut slips = DMatrix::zeros(2 * rows, 2 * n);
         slips.rows_mut(0, rows).copy_from(&(&gradients * stiffness.rows(0, n)));
         slips.rows_mut(rows, rows).copy_from(&(&gradients * stiffness.rows(n, n)));
@@ -198,7 +199,7 @@ impl Kalker {
             }
         }
         // As many rows as coefficients have the same sum of squares as one for every point of the edge.
-        let edge = (leading_edge(&patch, &basis) * EDGE_WEIGHT).qr().r();
+        let edge = (leading_edge(&patch, basis) * EDGE_WEIGHT).qr().r();
         let edge_square = edge.transpose() * &edge;
         let slip_square = {
             let weighted = DMatrix::from_fn(2 * rows, 2 * n, |i, k| slips[(i, k)] * points[i % rows].weight);
@@ -214,7 +215,7 @@ impl Kalker {
             edge_square,
             edge,
             adhesion,
-            resultants: resultants(&patch, &basis) * (1.5 / PI),
+            resultants: resultants(&patch, basis) * (1.5 / PI),
             monomials: n,
         })
     }

@@ -73,7 +73,10 @@ impl RacewayContacts {
     /// If creep coefficients cannot be computed.
     pub fn new(scene: &Scene, bearing: &Bearing, race: Race) -> Result<Self, KalkerError> {
         let raceway = bearing.raceway(race);
-        let shape = ContactShape::new(bearing, raceway)?;
+        let shape = match scene.effects.creep {
+            CreepLaw::Frictionless => ContactShape::without_creep(bearing, raceway),
+            _ => ContactShape::new(bearing, raceway)?,
+        };
         let bend = 0.25 * (1.0 / bearing.ball.radius + 1.0 / raceway.groove_radius);
         let law = RacewayLaw::new(scene, &shape, bearing, race)?;
         Ok(Self { shape, law, groove_bend: scene.effects.heathcote_slip.then_some(bend) })
