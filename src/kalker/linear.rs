@@ -126,8 +126,8 @@ pub fn adhesion_tractions(patch: &Patch, basis: &Basis) -> Result<DMatrix<f64>, 
     Ok(tractions.columns(0, 3) + tractions.columns(3, amounts.nrows()) * amounts)
 }
 
-/// Rows that give the singular traction `sum d X^p Y^q` (x, then y) on the leading edge, weighted by how squarely the
-/// edge meets the rolling direction.
+/// Rows that give the singular traction `sum d X^p Y^q` (x, then y) on the leading edge, weighted by the cosine between the
+/// edge's normal and the rolling direction.
 pub fn leading_edge(patch: &Patch, basis: &Basis) -> DMatrix<f64> {
     let n = basis.len();
     let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());

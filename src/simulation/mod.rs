@@ -330,7 +330,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Refuses contacts that no material takes, or where no groove is.
+    /// Refuses contacts deeper than Hertz's theory reaches, or outside of the groove.
     fn check_contacts(&self) -> Result<(), SimulationError> {
         let radius = self.model.bearing.ball.radius;
         for race in Race::BOTH {
