@@ -43,7 +43,7 @@ pub struct Creepage<S> {
     pub curvature: Option<S>,
 }
 
-/// Kalker's linear theory of one contact, dimensional (paper eq. 14), and its limits.
+/// Kalker's linear theory of the contact in hand, dimensional (paper eq. 14), and its limits.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearTheory<S> {
     /// \[N] `G c^2 C11`.

@@ -51,7 +51,7 @@ pub struct Boundary {
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     balls: Vec<BallTrial>,
-    /// The kept matrix of the state, held here during a step.
+    /// The state's matrix during a step.
     kept: KeptMatrix,
     /// Trials of the bodies that forces move; empty before the first step.
     bodies: Bodies<Option<BodyTrial>>,

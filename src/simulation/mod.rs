@@ -330,7 +330,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Refuses contacts deeper than Hertz's theory reaches, or outside of the groove.
+    /// Refuses contacts that no material takes, or where no groove is.
     fn check_contacts(&self) -> Result<(), SimulationError> {
         let radius = self.model.bearing.ball.radius;
         for race in Race::BOTH {

@@ -7,8 +7,8 @@ use crate::scene::Scene;
 
 /// Plays the script of a scene: advances from one row of results to the next, the last at the scene's duration.
 ///
-/// `row` is called with the simulation at every row, that of the start included, and can end the run. A run that cannot go
-/// on ends with a row at the last time reached, and the error.
+/// `row` is called with the simulation at every row, that of the start included, and breaks the play off if it says so. A
+/// run that cannot go on ends with a row of where it came to, and the error.
 ///
 /// # Errors
 /// See [`SimulationError`].
