@@ -20,11 +20,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         let contact: RollingContact = contact?;
         let c = (contact.semi_axis_x * contact.semi_axis_y).sqrt();
         let scale = contact.shear_modulus / (contact.friction * contact.peak_pressure);
-        let creepage = |share: f64| ScaledCreepage {
-            x: share * scale * contact.creep_x,
-            y: share * scale * contact.creep_y,
-            spin: share * scale * c * contact.spin,
-            curvature: share * scale * c * c * contact.curvature,
+        let creepage = |fraction: f64| ScaledCreepage {
+            x: fraction * scale * contact.creep_x,
+            y: fraction * scale * contact.creep_y,
+            spin: fraction * scale * c * contact.spin,
+            curvature: fraction * scale * c * c * contact.curvature,
         };
         let patch = Patch {
             axis_ratio: contact.semi_axis_x / contact.semi_axis_y,
@@ -32,11 +32,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             rolling_angle: contact.rolling_angle,
         };
         let kalker = Kalker::new(patch, degree)?;
-        let neighbour = match start.as_str() {
+        let nearby = match start.as_str() {
             "warm" => Some(kalker.solve(&creepage(0.99), None)?),
             _ => None,
         };
-        let start = neighbour.as_ref().map(|solution| solution.coefficients.as_slice());
+        let start = nearby.as_ref().map(|solution| solution.coefficients.as_slice());
         let begin = Instant::now();
         for _ in 0..count {
             iterations += kalker.solve(&creepage(1.0), start)?.iterations;

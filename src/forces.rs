@@ -1,4 +1,4 @@
-//! Forces of all pairs of a bearing: what touches what, and the sums over it.
+//! Forces of all pairs of bodies that touch, and their sums.
 
 use crate::contact::BallRaceContact;
 use crate::contact::pair::PairForces;
@@ -10,20 +10,20 @@ use crate::numerics::motion::Wrench;
 /// The contacts of one ball.
 #[derive(Clone, Copy, Debug)]
 pub struct BallContacts {
-    /// With the races.
+    /// Contacts with the races.
     pub raceways: PerRace<BallRaceContact<f64>>,
-    /// With its pocket of the cage, where they touch.
+    /// Contact with its pocket of the cage, where they touch.
     pub pocket: Option<PairForces>,
 }
 
 /// All contacts of a bearing in a state.
 #[derive(Clone, Debug)]
 pub struct Contacts {
-    /// Of every ball.
+    /// Contacts of every ball.
     pub balls: Vec<BallContacts>,
-    /// Of the cage with the lands at its -x and +x side, where they touch.
+    /// Contacts of the cage with the lands at its -x and +x side, where they touch.
     pub lands: [Option<PairForces>; 2],
-    /// The race of these lands, where there are some.
+    /// The race that these lands are on, where there are some.
     guide: Option<Race>,
 }
 
@@ -116,7 +116,7 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// Over the pairs of this many balls and those between bodies.
+    /// Sums over the pairs of `n_balls` balls and those between bodies.
     pub fn of(pairs: &impl Pairs, n_balls: usize) -> Self {
         let mut totals = Self::default();
         for ball in 0..n_balls {

@@ -16,8 +16,11 @@ use roulement::simulation::outputs::{CageOutput, Outputs, PocketOutput};
 
 #[path = "common/mechanics.rs"]
 mod mechanics;
+#[path = "common/random.rs"]
+mod random;
 
 use mechanics::{Body, CageDimensions};
+use random::{number, vector};
 
 const THRUST: &str = include_str!("../scenes/thrust.toml");
 const CAGE: &str = include_str!("../scenes/cage.toml");
@@ -100,15 +103,6 @@ fn pocket_models() -> [PocketModel; 2] {
 fn lands(inside: bool) -> LandModel {
     let lands = Lands { inside, clearance: 0.2e-3, diameter: 52e-3, width: 2e-3, edge: 4.9e-3 };
     LandModel::new(&lands, 0.05, 0.5)
-}
-
-/// Number k of a fixed table of values in [-1, 1].
-fn number(k: usize) -> f64 {
-    (12.9898 * (k as f64 + 1.0)).sin()
-}
-
-fn vector(k: usize) -> Vector3<f64> {
-    Vector3::new(number(3 * k), number(3 * k + 1), number(3 * k + 2))
 }
 
 /// A rigid body somewhere in general motion.

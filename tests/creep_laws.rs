@@ -106,16 +106,16 @@ fn closed_form_saturated_is_tangent_to_linear_theory_with_and_without_spin() {
 #[test]
 fn closed_form_saturated_pure_creep_is_the_cubic_of_vermeulen_and_johnson() {
     let theory = theory();
-    for share in [0.3, 1.0, 2.0, 2.9] {
+    for ratio in [0.3, 1.0, 2.0, 2.9] {
         let c = Creepage {
-            longitudinal: share * theory.friction_limit / theory.longitudinal,
+            longitudinal: ratio * theory.friction_limit / theory.longitudinal,
             lateral: 0.0,
             spin: 0.0,
             curvature: None,
         };
-        let expected = theory.friction_limit * (1.0 - (1.0 - share / 3.0).powi(3));
+        let expected = theory.friction_limit * (1.0 - (1.0 - ratio / 3.0).powi(3));
         let ours = theory.forces(Law::Saturated, &c).longitudinal;
-        assert!((ours / expected - 1.0).abs() < 1e-8, "{share}: {ours} {expected}");
+        assert!((ours / expected - 1.0).abs() < 1e-8, "{ratio}: {ours} {expected}");
     }
 }
 
@@ -125,9 +125,9 @@ fn closed_form_regularised_pure_creep_is_equation_15() {
     let laws = Laws::new();
     // eps = 2 mu Q/(C11 G c^2) (eq. A.3)
     let eps = 2.0 * theory.friction_limit / theory.longitudinal;
-    for share in [0.1, 0.5, 0.99, 1.5] {
-        let c = Creepage { longitudinal: share * eps, lateral: 0.0, spin: 0.0, curvature: None };
-        let phi = if share <= 1.0 { (2.0 - share) * share } else { 1.0 };
+    for ratio in [0.1, 0.5, 0.99, 1.5] {
+        let c = Creepage { longitudinal: ratio * eps, lateral: 0.0, spin: 0.0, curvature: None };
+        let phi = if ratio <= 1.0 { (2.0 - ratio) * ratio } else { 1.0 };
         let ours = theory.forces(Law::Regularised(&laws.parameters), &c).longitudinal;
         assert!((ours / (theory.friction_limit * phi) - 1.0).abs() < 1e-8);
     }

@@ -1,4 +1,4 @@
-//! What the library of a package is linked from.
+//! Crates that the library of a package is linked from.
 #![allow(clippy::unwrap_used)]
 
 use std::process::Command;

@@ -319,8 +319,8 @@ fn closed_form_balance_of_a_ball_that_both_races_keep_from_turning() {
             let direction = normals[race].cross(&tangent) * -needed.dot(&tangent).signum();
             sum += direction * (carried * loads[race] / (loads[0] + loads[1])) - normals[race] * loads[race];
         }
-        let share = (loads[1] - loads[0]) / (loads[0] + loads[1]);
-        assert!(share > 0.05 && carried * share > 1e-3 * loads[0], "{share} {carried} {loads:?}");
+        let imbalance = (loads[1] - loads[0]) / (loads[0] + loads[1]);
+        assert!(imbalance > 0.05 && carried * imbalance > 1e-3 * loads[0], "{imbalance} {carried} {loads:?}");
         assert!(sum.norm() < 1e-3 * carried, "{friction}: {sum}, {carried} N of friction");
     }
 }

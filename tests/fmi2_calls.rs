@@ -3,6 +3,7 @@
 #![allow(clippy::undocumented_unsafe_blocks)] // every pointer in here lives through its call
 
 mod fmi2_abi;
+#[path = "common/random.rs"]
 mod random;
 
 use std::ffi::{CStr, c_char, c_int};

@@ -3,6 +3,7 @@
 
 mod fmi2_abi;
 mod hostile;
+#[path = "common/random.rs"]
 mod random;
 
 use std::time::{Duration, Instant};

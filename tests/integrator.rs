@@ -37,13 +37,13 @@ impl Equations for Step<'_> {
         let v = self.step.velocity(&v0, &a0, &a);
         let g = self.oscillator.force(&x, &v);
         self.end = [x, v, a, g];
-        let share = 1.0 - self.step.alpha_f;
-        self.residual = a - g * share - g0 * self.step.alpha_f;
+        let weight = 1.0 - self.step.alpha_f;
+        self.residual = a - g * weight - g0 * self.step.alpha_f;
         if with_tangent {
             let o = self.oscillator;
             self.tangent = x.map(|x| {
                 let stiffness = o.stiffness + 3.0 * o.cubic * x * x;
-                1.0 + share * (stiffness * self.step.position_gain() + o.damping * self.step.velocity_gain())
+                1.0 + weight * (stiffness * self.step.position_gain() + o.damping * self.step.velocity_gain())
             });
         }
         // Twelve digits of the largest term.

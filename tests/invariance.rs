@@ -1,4 +1,4 @@
-//! What must not change results: turning the scene, the numbering of balls, units; and cost linear in the balls.
+//! Invariance of results under turning the scene, the numbering of balls, units; and cost linear in the balls.
 #![allow(clippy::unwrap_used)]
 
 use std::f64::consts::{PI, TAU};

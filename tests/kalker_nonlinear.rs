@@ -159,7 +159,7 @@ fn full_slip_reaches_the_friction_limit_and_stick_falls_from_one_to_none() {
     assert!(at(10.0).forces.fx > 0.995);
 }
 
-/// What the repair of the objective is worth. A linear traction (M = 1) is too poor for either: both objectives are off by
+/// Effect of the corrected objective. A linear traction (M = 1) is too poor for either: both objectives are off by
 /// more than a tenth of the limits on average, the printed one by .174/.252/.308 and the repaired one by .132/.288/.346.
 /// From M = 3 on the repaired one's errors are a third of the printed one's or less.
 #[test]

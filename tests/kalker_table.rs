@@ -275,7 +275,7 @@ fn regression_nodes_are_what_the_builder_computes() {
                 println!("{place} {j} {k} {i} {m} {value} {error:.1e}");
                 assert!(
                     error < 1e-3,
-                    "knot {place}, node {i} {j} {k}, force {m}: {value} off by {error:.1e}"
+                    "axis ratio {place}, node {i} {j} {k}, force {m}: {value} off by {error:.1e}"
                 );
             }
         }

@@ -15,8 +15,11 @@ use roulement::simulation::outputs::{ContactOutput, Outputs};
 
 #[path = "common/mechanics.rs"]
 mod mechanics;
+#[path = "common/random.rs"]
+mod random;
 
 use mechanics::{Body, CageDimensions, Contact, Dimensions, Land, V, grooves};
+use random::vector;
 
 const DIAMETER: f64 = 9.525e-3;
 const RADIUS: f64 = 0.5 * DIAMETER;
@@ -138,15 +141,6 @@ fn body_of(race: &BodyState) -> Body {
 /// [rad] of a ball's pocket in the cage.
 fn azimuth(j: usize) -> f64 {
     FIRST + TAU * j as f64 / BALLS as f64
-}
-
-/// Number k of a fixed table of values in [-1, 1].
-fn number(k: usize) -> f64 {
-    (12.9898 * (k as f64 + 1.0)).sin()
-}
-
-fn vector(k: usize) -> V {
-    V::new(number(3 * k), number(3 * k + 1), number(3 * k + 2))
 }
 
 /// A state in general motion, and everything that the mechanics say of it.

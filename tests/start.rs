@@ -66,14 +66,14 @@ fn closed_form_accelerations_and_multipliers_are_consistent_at_the_start() {
 
 #[test]
 fn closed_form_moments_are_in_balance_at_a_start_that_asks_for_it() {
-    let share = |simulation: &Simulation| {
+    let excess = |simulation: &Simulation| {
         let of_ball = |j| {
             let (moment, limit) = unbalanced(simulation, j);
             moment.norm() / limit
         };
         (0..simulation.outputs().balls.len()).map(of_ball).fold(0.0, f64::max)
     };
-    let (rolling, balanced) = (share(&combined("")), share(&combined("spin_balance = true")));
+    let (rolling, balanced) = (excess(&combined("")), excess(&combined("spin_balance = true")));
     println!("unbalanced moment over friction's limit: rolling {rolling:.2e}, balanced {balanced:.2e}");
     assert!(balanced < 1e-8 && rolling > 1e-3, "{balanced:e} {rolling:e}");
     // What is in balance stays as it is: friction power after 20 ms against that at the start, pure thrust.

@@ -92,8 +92,8 @@ fn distance_in_bands(simulation: &Simulation) -> f64 {
 }
 
 /// Loads of a ball on inner and outer race by statics alone: in its azimuthal plane Hertz's forces balance the
-/// centrifugal force and a share of the lateral friction. Races, speed and friction are those of the run.
-fn static_loads(simulation: &Simulation, index: usize, share: f64) -> [f64; 2] {
+/// centrifugal force and a fraction of the lateral friction. Races, speed and friction are those of the run.
+fn static_loads(simulation: &Simulation, index: usize, fraction: f64) -> [f64; 2] {
     let (model, ball) = (simulation.model(), &simulation.state().balls[index]);
     let contacts = Race::BOTH.map(|race| model.contact(race, &simulation.inputs().conditions()));
     let races = Race::BOTH.map(|race| simulation.state().race(race).motion());
@@ -107,7 +107,7 @@ fn static_loads(simulation: &Simulation, index: usize, share: f64) -> [f64; 2] {
     let friction = [0, 1].map(|race: usize| {
         let contact = contacts[race].evaluate(&ball.motion(), &races[race]);
         let tangential = contact.force + contact.geometry.normal * contact.load;
-        share * tangential.dot(&transverse(&contact.geometry))
+        fraction * tangential.dot(&transverse(&contact.geometry))
     });
     let forces = |place: &Vector2<f64>| {
         let position = races[1].position + axis * place.x + radial * place.y;
@@ -138,14 +138,14 @@ fn static_loads(simulation: &Simulation, index: usize, share: f64) -> [f64; 2] {
     forces(&place).1
 }
 
-/// Largest difference of a ball's loads from statics in percent of them, over the balls that a share of the bearing's
+/// Largest difference of a ball's loads from statics in percent of them, over the balls that a given fraction of the bearing's
 /// largest load presses on the inner race.
-fn percent_from_statics(simulation: &Simulation, friction_share: f64, least: f64) -> f64 {
+fn percent_from_statics(simulation: &Simulation, friction_fraction: f64, least: f64) -> f64 {
     let balls = &simulation.outputs().balls;
     let largest = balls.iter().map(|ball| ball.inner.load).fold(0.0, f64::max);
     let loaded = balls.iter().enumerate().filter(|(_, ball)| ball.inner.load > least * largest);
     loaded.fold(0.0, |worst: f64, (j, ball)| {
-        let [inner, outer] = static_loads(simulation, j, friction_share);
+        let [inner, outer] = static_loads(simulation, j, friction_fraction);
         let [inner, outer] = [ball.inner.load / inner - 1.0, ball.outer.load / outer - 1.0];
         worst.max(100.0 * inner.abs().max(outer.abs()))
     })

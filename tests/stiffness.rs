@@ -26,7 +26,7 @@ const THRUST: &str = include_str!("../scenes/thrust.toml");
 /// Rows and columns x, y, z, ry, rz of six.
 const FIVE: [usize; 5] = [0, 1, 2, 4, 5];
 
-/// A reference case at a share of its speeds, starting in its quasi-static equilibrium.
+/// A reference case at a fraction of its speeds, starting in its quasi-static equilibrium.
 fn start(case: &Value, speed: f64, effects: &str) -> Simulation {
     let mut case = case.clone();
     for key in ["inner_speed", "outer_speed"] {
@@ -109,7 +109,7 @@ fn closed_form_stiffness_at_speed_with_the_centrifugal_force_of_held_orbits() {
     let pose = simulation.outputs().inner.pose;
     let outer = still(V::zeros(), simulation.outputs().outer.pose.orientation);
     let axis = outer.axis();
-    let mut share = 0.0f64;
+    let mut ratio = 0.0f64;
     let mut load = |change: Vector6<f64>| {
         let turn = UnitQuaternion::new(change.fixed_rows::<3>(3).into_owned());
         let inner = still(pose.position + change.fixed_rows::<3>(0), turn * pose.orientation);
@@ -138,7 +138,7 @@ fn closed_form_stiffness_at_speed_with_the_centrifugal_force_of_held_orbits() {
             }
             let (rest, contacts, centrifugal) = at(&place);
             assert!(rest.norm() < 1e-7 * contacts[1].load, "{rest} {contacts:?}");
-            share = share.max(centrifugal / contacts[0].load);
+            ratio = ratio.max(centrifugal / contacts[0].load);
             load.fixed_rows_mut::<3>(0).add_assign(contacts[0].force);
             load.fixed_rows_mut::<3>(3).add_assign(-contacts[0].other_moment);
         }
@@ -150,7 +150,7 @@ fn closed_form_stiffness_at_speed_with_the_centrifugal_force_of_held_orbits() {
         let slope = (load(Vector6::ith(k, h)) - load(Vector6::ith(k, -h))) / (2.0 * h);
         differences.set_column(k, &slope);
     }
-    assert!(share > 0.5, "centrifugal force over load {share}");
+    assert!(ratio > 0.5, "centrifugal force over load {ratio}");
     // About the axis nothing resists but what tilts the moment.
     let scale = |i: usize| if i == 3 { differences[(4, 4)] } else { differences[(i, i)] }.abs();
     for i in 0..6 {

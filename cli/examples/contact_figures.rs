@@ -32,7 +32,7 @@ struct Case {
     result: Reference,
 }
 
-/// What the boundary elements give for it.
+/// Result of the boundary elements for it.
 #[derive(Clone, Deserialize)]
 struct Reference {
     kind: String,
@@ -97,8 +97,8 @@ fn chart(panel: &Panel, area: &Area<'_>) -> Drawn {
 }
 
 /// Light where nothing is used of the friction limit, dark where all is.
-fn shade(share: f64) -> RGBColor {
-    let mix = |light: f64, dark: f64| (light + (dark - light) * share.min(1.0)) as u8;
+fn shade(fraction: f64) -> RGBColor {
+    let mix = |light: f64, dark: f64| (light + (dark - light) * fraction.min(1.0)) as u8;
     RGBColor(mix(240.0, 0.0), mix(245.0, 60.0), mix(255.0, 140.0))
 }
 
@@ -128,15 +128,15 @@ fn adhesion_map(case: &Case, area: &Area<'_>) -> Drawn {
         .build_cartesian_2d(-1.6f64..1.6, -1.05f64..1.05)?;
     axes(&mut chart.configure_mesh(), "x/a (rolling to the right)", "y/b").disable_mesh().draw()?;
     chart.draw_series(kalker.local_states(&solution, &creepage).iter().map(|state| {
-        let share = state.traction[0].hypot(state.traction[1]) / state.bound;
-        let colour = shade(share);
+        let fraction = state.traction[0].hypot(state.traction[1]) / state.bound;
+        let colour = shade(fraction);
         Circle::new((state.place[0], state.place[1]), 7, colour.filled())
     }))?;
-    for (k, share) in [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().enumerate() {
+    for (k, fraction) in [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().enumerate() {
         let y = -0.6 + 0.3 * k as f64;
-        let colour = shade(share);
+        let colour = shade(fraction);
         chart.draw_series([Rectangle::new([(1.2, y - 0.1), (1.3, y + 0.1)], colour.filled())])?;
-        chart.draw_series([Text::new(format!("{share}"), (1.35, y + 0.04), LABEL)])?;
+        chart.draw_series([Text::new(format!("{fraction}"), (1.35, y + 0.04), LABEL)])?;
     }
     Ok(())
 }

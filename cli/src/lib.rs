@@ -1,4 +1,4 @@
-//! What the command line is made of: packages, results of runs, and the study of what accuracy costs.
+//! Parts of the command line: packages, results of runs, and the study of accuracy against CPU time.
 
 pub mod cost;
 pub mod package;

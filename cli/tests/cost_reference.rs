@@ -61,7 +61,7 @@ impl Balls<'_> {
         races.map(|(race, motion)| self.model.contact(race, &conditions).evaluate(ball, &motion))
     }
 
-    /// What the study compares, of a state. The energy is not integrated.
+    /// Sample of a state, as the study compares them. The energy is not integrated.
     fn sample(&self, time: f64, y: &[f64]) -> Sample {
         let pitch_radius = self.model.race_length();
         let (mut force, mut moment, mut friction_power) = (Vector3::zeros(), Vector3::zeros(), 0.0);

@@ -1,20 +1,20 @@
 //! Stiffness and damping of the running bearing, balls condensed out.
 //!
-//! Of each ball follow its place in its azimuthal plane `q` (along the axis, radial) and its velocities `u` (along the
-//! orbit, and angular). Its azimuth is held, and the orbital
-//! speed of its centrifugal force. Stiffness is that of the
-//! normal contacts: with the wrench `w` on the inner race at pose `r`, and the forces `f` on the ball in its plane,
+//! Two sets of quantities of each ball follow the race: its place in its azimuthal plane `q` (along the axis, radial) and
+//! its velocities `u` (along the orbit, and angular). Held are its azimuth and the orbital speed that gives the
+//! centrifugal force. The stiffness is that of the normal contacts: with the wrench `w` on the inner race at pose `r`, and
+//! the forces `f` on the ball in its plane,
 //!
 //! `K = -(w_r + w_q Q)`,   `f_q Q = -f_r`   (the ball stays in balance).
 //!
-//! Damping is that of the normal contacts and of creep while the places follow as `Q r'`: velocities are those at
-//! which force along the orbit and moments `g` do not change, and what the velocities change in the plane shifts the ball,
+//! The damping is that of the normal contacts and of creep while the places follow as `Q r'`: the velocities are those at
+//! which the force along the orbit and the moments `g` do not change, and their effect in the plane shifts the ball,
 //!
 //! `C = -(w_r' + w_q' Q + w_u U + Q^T (f_r' + f_q' Q + f_u U))`,   `(g_u - M/tau) U = -(g_r' + g_q' Q)`.
 //!
 //! K is symmetric where no centrifugal force acts (but for the moment that turns with the race), and C never drives.
-//! What friction adds to the stiffness is left out: it takes its time, and is not that of a spring. All derivatives are
-//! exact.
+//! The derivatives of friction by places are left out of the stiffness: friction acts with a delay, not as a spring. All
+//! derivatives are exact.
 
 use nalgebra::{Matrix2, Matrix2x6, Matrix4, Matrix4x6, Matrix6, Matrix6x2, Matrix6x4, Vector3, Vector4};
 
@@ -32,9 +32,9 @@ const FOLLOWING_TIME: f64 = 1e-3;
 const DIRECTIONS: usize = 9;
 type D = Dual<DIRECTIONS>;
 
-/// What an external load on the inner race has to overcome, by components: rows force x, y, z and moment x, y, z,
-/// columns translation x, y, z and rotation x, y, z of the inner race relative to the outer one; world axes, about the
-/// inner race's origin. The race's own rotation turns with it.
+/// Derivatives of the external load that holds the inner race. Rows are force x, y, z and moment x, y, z, columns
+/// translation x, y, z and rotation x, y, z of the inner race relative to the outer one; world axes, about the inner
+/// race's origin. The race's own angular velocity turns with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condensed {
     /// [N/m, N/rad; N m/m, N m/rad] load by displacement.
@@ -44,15 +44,14 @@ pub struct Condensed {
 }
 
 impl Condensed {
-    /// Of a state. Contacts of a cage are left out; so is a ball that does not touch both
-    /// races.
+    /// Stiffness and damping in a state. Contacts of a cage are left out, and so are balls that do not touch both races.
     pub fn new(model: &Model, state: &State, conditions: &Conditions) -> Self {
         let contacts = model.contacts(conditions);
         let races = PerRace::new(|race| state.race(race).motion());
         let zero = Self { stiffness: Matrix6::zeros(), damping: Matrix6::zeros() };
         let add = |sum: Self, (index, ball): (usize, &BallState)| {
             let contacts = PerRace::new(|race| contacts[race].of_ball(state.difference(index, race)));
-            share(model, &contacts, &races, ball).map_or(sum, |one| Self {
+            contribution(model, &contacts, &races, ball).map_or(sum, |one| Self {
                 stiffness: sum.stiffness + one.stiffness,
                 damping: sum.damping + one.damping,
             })
@@ -63,31 +62,31 @@ impl Condensed {
 
 /// Derivatives of force and moment (rows) by translation and rotation, or their rates (columns), of ball and race.
 struct Derivatives {
-    /// Of the ball's.
+    /// Derivatives by the ball's.
     by_ball: Matrix6<f64>,
-    /// Of the race's.
+    /// Derivatives by the race's.
     by_race: Matrix6<f64>,
 }
 
 /// Derivatives of the forces in one contact.
 pub(crate) struct Linear {
-    /// Of force and moment on the ball by places; a ball has no orientation.
+    /// Force and moment on the ball by places; a ball has no orientation.
     ball_by_place: Derivatives,
-    /// Of force and moment on the ball by velocities.
+    /// Force and moment on the ball by velocities.
     ball_by_rate: Derivatives,
-    /// Of force and moment on the race by places.
+    /// Force and moment on the race by places.
     race_by_place: Derivatives,
-    /// Of force and moment on the race by velocities.
+    /// Force and moment on the race by velocities.
     race_by_rate: Derivatives,
 }
 
 impl Linear {
-    /// Of force and moment on the ball (rows) by its velocity and angular velocity (columns).
+    /// Force and moment on the ball (rows) by its velocity and angular velocity (columns).
     pub(crate) fn ball_by_rate(&self) -> Matrix6<f64> {
         self.ball_by_rate.by_ball
     }
 
-    /// Of a contact in motion.
+    /// Derivatives of a contact in motion.
     pub(crate) fn new(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<f64>) -> Self {
         let fixed = |v: &Vector3<f64>| constant_vector::<D>(v);
         let variable =
@@ -146,8 +145,8 @@ fn derivatives(force: &Vector3<D>, moment: &Vector3<D>) -> Derivatives {
     }
 }
 
-/// The share of one ball; none if it does not touch both races.
-fn share(
+/// Contribution of one ball; none if it does not touch both races.
+fn contribution(
     model: &Model,
     contacts: &PerRace<ContactModel<'_>>,
     races: &PerRace<RaceMotion<f64>>,
@@ -192,7 +191,7 @@ fn share(
     let g_u = g * by_rate * rolling - Matrix4::from_diagonal(&inertia);
     let by_race = inner.ball_by_rate.by_race + by_rate * plane * follow;
     let rates: Matrix4x6<f64> = g_u.lu().solve(&-(g * by_race))?;
-    // In a potential w_q f_q^-1 is the transpose of -Q: written so, C is a sum of squares.
+    // Where the forces have a potential, w_q f_q^-1 is the transpose of -Q: written so, C is a sum of squares.
     let shift = follow.transpose() * (f * (by_race + by_rate * rolling * rates));
     let w_rate = inner.race_by_rate.by_ball;
     let damping = -(inner.race_by_rate.by_race + w_rate * (plane * follow + rolling * rates) + shift);
@@ -212,7 +211,7 @@ pub(crate) struct Orbit {
 }
 
 impl Orbit {
-    /// Of a ball about the outer race.
+    /// The orbit of a ball about the outer race.
     pub(crate) fn new(ball: &BallMotion<f64>, outer: &RaceMotion<f64>) -> Self {
         let offset = ball.position - outer.position;
         let across = offset - outer.axis * offset.dot(&outer.axis);
@@ -223,7 +222,7 @@ impl Orbit {
         Self { axis: outer.axis, radial, tangential, radius, speed }
     }
 
-    /// [N m] gyroscopic moment: what turning the ball's spin with its orbit costs, as a moment on it.
+    /// [N m] gyroscopic moment: the moment on the ball that its spin, turning with the orbit, asks for.
     pub(crate) fn gyroscopic_moment(&self, model: &Model, ball: &BallMotion<f64>) -> Vector3<f64> {
         self.axis.cross(&ball.angular_velocity) * (-model.bearing.ball.inertia * self.speed)
     }

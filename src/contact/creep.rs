@@ -11,7 +11,7 @@ use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
 use crate::numerics::scalar::{Scalar, within_limit};
 
-/// A law with what it needs beside the contact's linear theory; chosen once per step.
+/// A creep law with its tables or parameters; chosen once per step.
 #[derive(Clone, Copy, Debug)]
 pub enum Law<'a> {
     /// No tangential force.
@@ -26,7 +26,7 @@ pub enum Law<'a> {
     Table(&'a CreepTable),
     /// Kalker's nonlinear theory in polynomials.
     Kalker(&'a ScaledKalker),
-    /// Kalker's nonlinear theory in polynomials as simulations have it: the table and the polynomials' frozen difference.
+    /// Kalker's nonlinear theory in polynomials as simulations use it: the table plus a difference that is frozen in a step.
     Frozen(&'a CreepTable, &'a [f64; 4]),
 }
 
@@ -112,7 +112,8 @@ const FORCE_FLOOR: f64 = 1e-9;
 /// [N m] moment limit below which the spin moment fades to zero: the force floor on a patch of a micrometre.
 const MOMENT_FLOOR: f64 = 1e-15;
 
-/// \[m] spin stiffness over moment limit below which the direction of rolling fades to zero, a ten thousandth of a micrometre: nothing where there is load.
+/// \[m] ratio of spin stiffness to moment limit below which the direction of rolling fades to zero: a ten thousandth of a
+/// micrometre, without effect under load.
 const ARM_FLOOR: f64 = 1e-10;
 /// [-] cosine of the rolling direction below which the table's two directions are mixed: a third of the circle, and a
 /// rolling speed of half a millimetre a second.
@@ -128,8 +129,8 @@ pub fn saturation<S: Scalar>(q: S) -> S {
 }
 
 impl<S: Scalar> LinearTheory<S> {
-    /// Of a contact of a shape, at a depth \[m] with its root, under a load \[N] with a friction coefficient, whose rolling
-    /// direction has a cosine against the x axis.
+    /// Linear theory of a contact: its shape, its depth \[m] and the root of it, load \[N], friction coefficient, and the
+    /// cosine of the rolling direction against the x axis.
     #[inline(always)]
     pub(super) fn new(shape: &ShapeAt<S>, depth: S, root: S, load: S, friction: f64, cosine: S) -> Self {
         let friction_limit = load.scale(friction);
@@ -303,7 +304,7 @@ impl<S: Scalar> LinearTheory<S> {
     ///
     /// With `q = (F_x/(mu Q), F_y/(mu Q), M_z/M_max)` of linear theory, all three are multiplied by the same
     /// `g(|q|)`, the cubic of Vermeulen and Johnson (1964): `g = 1 - q/3 + q^2/27` up to `q = 3`, then `1/q`.
-    /// Tangent to linear theory at zero with and without spin, `|F| <= mu Q`, `|M_z| <= M_max`; and dissipative for
+    /// The law is tangent to linear theory at zero with and without spin, `|F| <= mu Q`, `|M_z| <= M_max`; and dissipative for
     /// every creepage, since one factor scales a linear law whose coupling is skew (C32 = -C23). The moment is
     /// part of the norm because large spin must take the lateral force away, not saturate it.
     #[inline(always)]

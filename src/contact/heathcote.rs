@@ -2,8 +2,8 @@
 //!
 //! A ball rolling in a groove touches it on a surface `z = y^2/(2 R)` with the mean curvature of both, so that the
 //! relative rolling speed makes particles at the sides slip differently from those in the middle: `-kappa y^2` beside
-//! the creepage `c_x - phi y` (Johnson 1985, section 8.5). What that changes is taken from strips along rolling, each
-//! under its own creepage: with `u` the linear force of a strip over twice its limit, `f = u (2 - |u|)`, from
+//! the creepage `c_x - phi y` (Johnson 1985, section 8.5). The change of the forces is computed on strips along rolling,
+//! each under its own creepage: with `u` the linear force of a strip over twice its limit, `f = u (2 - |u|)`, from
 //! `|u| = 1` on `u/|u|` (Carter 1926; exact for a line contact). The flat law's own forces are kept; only the difference
 //! of the strips with and without the curvature is added.
 
@@ -47,7 +47,7 @@ struct Slopes {
     yy: Lanes,
 }
 
-/// Sums over the strips; those of derivatives are written where they are asked for.
+/// Sums over the strips; sums of derivatives only if asked for.
 #[inline(always)]
 fn sums(q: [f64; 4], mut slopes: Option<&mut Slopes>) -> Forces {
     let zero = Lanes::constant(0.0);

@@ -64,8 +64,8 @@ pub(super) struct Wrench<S: Scalar> {
 }
 
 impl<S: Scalar> Surfaces<S> {
-    /// A ball of a radius \[m] at an offset \[m] from the origin of a body with `[velocity, angular velocity]`, which touch
-    /// in the direction of a normal that changes at a rate [1/s].
+    /// A ball that touches another body: ball radius \[m], `[velocity, angular velocity]` of the body, offset \[m] of the ball
+    /// from the body's origin, contact normal and its rate of change [1/s].
     #[inline(always)]
     pub(super) fn new(
         ball: &BallMotion<S>,

@@ -75,9 +75,9 @@ impl ContactGroup {
     }
 }
 
-/// One version for processors with vectors of four numbers, one for those without; the running one is chosen at run time.
+/// Compiled twice, for processors with vectors of four numbers and for those without; the version is chosen at run time.
 ///
-/// Arguments and result lie in memory lane by lane: compilers begin to build vectors where numbers are stored.
+/// Arguments and result lie in memory lane by lane, because compilers vectorise from the stores backwards.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn evaluate_lanes(
     contact: &ContactModel<'_>,

@@ -65,7 +65,7 @@ pub struct RaceMotion<S: Scalar> {
 pub struct ContactModel<'a> {
     /// The raceway.
     pub raceway: &'a Raceway,
-    /// Its contacts' shape.
+    /// Shape of its contacts: stiffness, ellipse and creep coefficients over the approach.
     pub shape: &'a ContactShape,
     /// \[m] ball radius.
     pub ball_radius: f64,
@@ -196,7 +196,7 @@ impl ContactModel<'_> {
         }
     }
 
-    /// The contact of one ball, with the difference that Kalker's polynomials make there, where they are simulated.
+    /// The contact of one ball, with its difference of Kalker's polynomials from the table, where they are simulated.
     pub fn of_ball<'b>(&self, difference: Option<&'b Difference>) -> ContactModel<'b>
     where
         Self: 'b,
@@ -210,8 +210,8 @@ impl ContactModel<'_> {
         }
     }
 
-    /// Renews the difference that Kalker's polynomials make to the table at an evaluated contact, where its creepages have moved by more
-    /// than a fraction of `1 + |q|` since the last time. Says whether that was so.
+    /// Renews the difference of Kalker's polynomials from the table at an evaluated contact if its scaled creepages q have
+    /// moved by more than a fraction of `1 + |q|` since the last time. Returns whether they had.
     ///
     /// # Errors
     /// If the nonlinear problem does not converge; the difference then stays what it was.

@@ -21,7 +21,7 @@ impl<S: Scalar> NormalLoad<S> {
         Self { elastic, total, damping_power: (total - elastic) * approach_rate }
     }
 
-    /// Hertz's point contact of a stiffness [N/m^1.5] at a depth \[m] with its root (paper eq. 8), damped.
+    /// Hertz's point contact: stiffness [N/m^1.5], depth \[m] and the root of it (paper eq. 8), damped.
     #[inline(always)]
     pub fn hertz(stiffness: S, depth: S, root: S, approach_rate: S, dissipation: f64) -> Self {
         Self::damped(stiffness * depth * root, approach_rate, dissipation)

@@ -1,4 +1,4 @@
-//! What any pair of bodies that touch exert on each other.
+//! Forces and moments between two bodies that touch.
 
 use nalgebra::Vector3;
 
@@ -26,7 +26,7 @@ pub struct PairForces<S: Scalar = f64> {
 }
 
 impl<S: Scalar> PairForces<S> {
-    /// Those of bodies that do not touch.
+    /// No forces: the bodies do not touch.
     pub fn none() -> Self {
         let (zero, vector) = (S::zero(), constant_vector(&Vector3::zeros()));
         Self {

@@ -1,6 +1,6 @@
 //! The paper's regularised law with full spin coupling (eq. 15-17 and appendix A).
 //!
-//! Where the printed formulas leave a choice:
+//! The printed formulas leave choices, made as follows:
 //! * `c_i/c_0` and `c_i/c_*` are 0/0 at rest; both denominators get a floor, so that the products take their limit 0.
 //! * eps_z of A.5 has the dimension wrong and the 3/2 spoils the slope: `eps_z = M_max/(C33 G c^4)` makes phi_z
 //!   tangent to linear theory.

@@ -55,8 +55,8 @@ fn node(j: usize) -> f64 {
     (PI * (j as f64 + 0.5) / NODES as f64).cos()
 }
 
-/// Properties of one contact that do not depend on its load, each to be multiplied by the named power of the approach;
-/// or whatever else there is one of for each property.
+/// Properties of one contact that do not depend on its load, each to be multiplied by the named power of the approach. `T`
+/// is a number, or a polynomial that gives the number at any curvature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeAt<T> {
     /// [N/m^1.5] `Q = stiffness delta^1.5` (paper eq. 8).
@@ -79,8 +79,8 @@ pub struct ShapeAt<T> {
     pub spin_arm: T,
 }
 
-/// A [`ShapeAt`], each property of which is an expression in its namesakes of other ones. A macro, as the compiler does not
-/// inline nine calls of a closure where several balls are evaluated at once.
+/// Computes every property of a [`ShapeAt`] by one expression from the same property of others. It is a macro because the
+/// compiler does not inline nine calls of a closure where several balls are evaluated at once.
 macro_rules! each_property {
     ($($property:ident of $shape:expr),+ => $value:expr) => {
         ShapeAt {

@@ -91,7 +91,7 @@ fn weight_power(model: &Model, balls: &[BallState]) -> f64 {
     balls.iter().map(power).fold(0.0, |sum, power| sum + power)
 }
 
-/// \[m] largest coordinate of a ball to expect: its last digit is what contacts cannot resolve.
+/// \[m] largest coordinate of a ball to expect: contacts cannot resolve less than its last digit.
 fn reach(model: &Model, state: &State) -> f64 {
     let races = Race::BOTH.map(|race| state.race(race).pose.position.amax());
     races[0].max(races[1]) + model.race_length()

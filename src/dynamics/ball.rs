@@ -30,7 +30,7 @@ pub struct RaceSeen<'a> {
 }
 
 impl<'a> RaceSeen<'a> {
-    /// A race of motions and of those that forces move.
+    /// A race from the motions of all races and the trials of those that forces move.
     pub fn new(
         race: Race,
         motions: &'a PerRace<RaceMotion<f64>>,
@@ -45,14 +45,14 @@ impl<'a> RaceSeen<'a> {
     }
 }
 
-/// What a ball may touch in a trial step.
+/// Everything that a ball may touch in a trial step.
 #[derive(Clone, Copy, Debug)]
 pub struct Surroundings<'a> {
     /// The model.
     pub model: &'a Model,
     /// Contact with each race.
     pub contacts: &'a PerRace<ContactModel<'a>>,
-    /// What Kalker's polynomials add at each ball.
+    /// Differences of Kalker's polynomials from the table, by ball.
     pub differences: &'a [PerRace<Difference>],
     /// Motion of each race.
     pub races: PerRace<RaceSeen<'a>>,
@@ -238,10 +238,10 @@ impl BallTrial {
         tangent: Option<Matrix6<f64>>,
     ) {
         let ball = &model.bearing.ball;
-        let share = 1.0 - step.alpha_f;
+        let fraction = 1.0 - step.alpha_f;
         let weight = Wrench { force: model.gravity * ball.mass, moment: Vector3::zeros() };
         self.total = on_ball(self.pairs().map(|(_, pair)| *pair), weight);
-        let blended = start.total.blend(&self.total, share);
+        let blended = start.total.blend(&self.total, fraction);
         let acceleration = Vector3::new(self.unknowns[0], self.unknowns[1], self.unknowns[2]);
         let angular_acceleration =
             Vector3::new(self.unknowns[3], self.unknowns[4], self.unknowns[5]) / ball.radius;
@@ -253,7 +253,7 @@ impl BallTrial {
             let rotational = ball.inertia / (ball.radius * ball.radius);
             let inertia = stack(&Vector3::repeat(ball.mass), &Vector3::repeat(rotational));
             self.block.diagonal =
-                Matrix6::from_diagonal(&inertia) - scale_moments(tangent, ball.radius) * share;
+                Matrix6::from_diagonal(&inertia) - scale_moments(tangent, ball.radius) * fraction;
         }
     }
 }

@@ -16,7 +16,7 @@ use crate::numerics::scalar::{Scalar, constant_vector, values};
 /// [rad/s] accepted violation of a speed constraint (paper section 5).
 const SPEED_TOLERANCE: f64 = 1e-8;
 
-/// What acts on a body from outside the bearing at the end of a step.
+/// Load and drive on a body from outside the bearing at the end of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BodyLoad {
     /// Applied wrench and weight, world axes.
@@ -93,7 +93,7 @@ impl BodyTrial {
             start.pose.position + step.displacement(&start.velocity, &start.acceleration, &acceleration);
         // Newmark's formulas on the material rate, whose increment is a rotation vector of the step (Bruls, Cardona and
         // Arnold 2012): a steady spin is then an exact solution. With c'' as the unknown it is not, since c' grows
-        // with c although the speed is constant; at 6000 rpm and 10 us that put 2 % on the drive torque.
+        // with c although the speed is constant; at 6000 rpm and 10 us that made the drive torque 2 % too low.
         let turn_vector = step.displacement(&start.rate, &start.rate_derivative, &angular);
         let rate = step.velocity(&start.rate, &start.rate_derivative, &angular);
         let variable = |v: &Vector3<f64>, gain: f64| {
@@ -136,7 +136,7 @@ impl BodyTrial {
         step: &HhtStep,
         scales: &BodyScales,
     ) {
-        let (share, length) = (1.0 - step.alpha_f, scales.length);
+        let (fraction, length) = (1.0 - step.alpha_f, scales.length);
         let motion = &self.motion;
         let mut force = pairs.force + constant_vector(&load.applied.force);
         let mut world_moment = pairs.moment + constant_vector(&load.applied.moment);
@@ -199,8 +199,8 @@ impl BodyTrial {
             self.input_power += power * multiplier.value;
             // The unknown is the multiplier over `scale`; the moment rows are divided by `length`.
             for i in 0..3 {
-                self.block[(i, row)] = -share * column.0[i] * scale;
-                self.block[(3 + i, row)] = -share * column.1[i] * scale / length;
+                self.block[(i, row)] = -fraction * column.0[i] * scale;
+                self.block[(3 + i, row)] = -fraction * column.1[i] * scale / length;
             }
         }
 
@@ -213,20 +213,21 @@ impl BodyTrial {
 
         for i in 0..3 {
             let translation = self.end.acceleration[i] * body.mass
-                - share * force[i].value
+                - fraction * force[i].value
                 - step.alpha_f * start.total.force[i];
-            let rotation = self.rate_derivative[i].scale(body.inertia[i]) - material_moment[i].scale(share);
+            let rotation =
+                self.rate_derivative[i].scale(body.inertia[i]) - material_moment[i].scale(fraction);
             self.residual[i] = translation;
             self.residual[3 + i] = (rotation.value - step.alpha_f * start.total.moment[i]) / length;
             for k in 0..6 {
                 let inertia = if i == k { body.mass } else { 0.0 };
-                self.block[(i, k)] = inertia - share * by_second_unknown(&force[i], k);
+                self.block[(i, k)] = inertia - fraction * by_second_unknown(&force[i], k);
                 self.block[(3 + i, k)] = by_second_unknown(&rotation, k) / length;
             }
         }
     }
 
-    /// Motion with all axes, with derivatives by the rotation, as what touches a cage sees it.
+    /// Motion with all axes, with derivatives by the rotation, for contacts of a cage.
     pub fn body_motion(&self) -> BodyMotion<D> {
         let axis = |axis: Vector3<f64>| {
             turn(&self.start_orientation, &rotate(&self.rotation, &constant_vector(&axis)))
@@ -242,11 +243,11 @@ impl BodyTrial {
 
     /// Derivatives of this body's residual by the unknowns of the other body of a pair, from the reaction on this one.
     pub fn coupling(&self, reaction: &Reaction, step: &HhtStep, length: f64) -> Matrix6<f64> {
-        let share = 1.0 - step.alpha_f;
+        let fraction = 1.0 - step.alpha_f;
         let world = by_first(&reaction.force, &reaction.moment);
         let to_material = self.end.pose.orientation.inverse().to_rotation_matrix();
-        let mut rows = world * -share;
-        let moments = to_material.matrix() * world.fixed_rows::<3>(3) * (-share / length);
+        let mut rows = world * -fraction;
+        let moments = to_material.matrix() * world.fixed_rows::<3>(3) * (-fraction / length);
         rows.fixed_rows_mut::<3>(3).copy_from(&moments);
         rows
     }
@@ -289,7 +290,7 @@ pub fn make_consistent(state: &mut BodyState, body: &RigidBody, load: &BodyLoad)
     power
 }
 
-/// What a constraint acts along.
+/// Direction of the reaction of a constraint.
 #[allow(clippy::large_enum_variant)]
 enum Along {
     /// World direction of a force.

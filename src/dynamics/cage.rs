@@ -28,7 +28,7 @@ pub struct CageTrial {
     pub cage_by_race: Matrix6<f64>,
 }
 
-/// What one land exerts on the cage and on its race.
+/// Reactions of one land contact on the cage and on the race.
 #[derive(Clone, Copy, Debug)]
 pub struct LandReactions {
     /// On the cage.

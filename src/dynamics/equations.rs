@@ -77,7 +77,7 @@ impl<'a> BearingStep<'a> {
         }
     }
 
-    /// Are the balls without influence on each other, because no body has unknowns?
+    /// Are the balls independent of each other, because no body has unknowns?
     pub fn balls_are_independent(&self) -> bool {
         self.model.border_offsets() == [None; SLOTS]
     }
@@ -151,7 +151,7 @@ impl<'a> BearingStep<'a> {
         self.fresh = false;
     }
 
-    /// Sums what all pairs exert on the bodies that forces move and, with a tangent, sets their couplings.
+    /// Sums the reactions of all pairs on the bodies that forces move and, with a tangent, sets their couplings.
     fn scatter(&mut self, with_tangent: bool) -> [Reaction; SLOTS] {
         let length = self.model.race_length();
         let mut sums = [Reaction::zero(); SLOTS];
@@ -370,7 +370,7 @@ impl Workspace {
 }
 
 impl Boundary {
-    /// What acts on a body from outside: applied loads and its weight.
+    /// Load on a body from outside: applied wrench and weight.
     pub fn load_on(&self, body: Body, moved: &RigidBody, gravity: &Vector3<f64>) -> BodyLoad {
         let mut load = match body {
             Body::Race(race) => self.loads[race],

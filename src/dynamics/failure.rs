@@ -14,12 +14,12 @@ use crate::model::state::State;
 pub struct Worst {
     /// Index of the worst ball.
     pub ball: usize,
-    /// The body that is worse than every ball.
+    /// The body whose norm is larger than that of every ball.
     pub body: Option<Body>,
 }
 
 impl Worst {
-    /// The first of the largest norms of balls, and of bodies. What is not a number is largest.
+    /// Ball and body of the largest norms, the first of equals; NaN counts as largest.
     pub fn of(balls: impl Iterator<Item = f64>, bodies: impl Iterator<Item = (Body, f64)>) -> Self {
         let worse = |norm: f64, than: f64| !than.is_nan() && (norm.is_nan() || norm > than);
         let (mut ball, mut worst) = (0, f64::NEG_INFINITY);
@@ -117,6 +117,6 @@ fn change(old: Option<&PairForces>, new: Option<&PairForces>, radius: f64) -> Op
     }
     let (old, new) = (old.unwrap_or(&none), new.unwrap_or(&none));
     let force = (new.force - old.force).norm().hypot(((new.moment - old.moment) / radius).norm());
-    // What is not a number has changed most.
+    // NaN counts as the largest change.
     Some(if force.is_nan() { f64::INFINITY } else { force })
 }

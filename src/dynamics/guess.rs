@@ -10,8 +10,8 @@ use crate::numerics::arrowhead::BLOCK;
 impl BearingStep<'_> {
     /// First guess: accelerations and multipliers stay as they are; under prescribed races those of a ball turn with its orbit.
     ///
-    /// That saves the second correction, which would take the residual far inside its tolerance: between bodies, where
-    /// what is left adds up over many steps, it is not spared.
+    /// This saves a second correction. Where bodies have unknowns that correction is still made: it takes the residual far
+    /// inside its tolerance, and what is left of it would add up over many steps.
     pub fn guess_steady_orbit(&self, unknowns: &mut Vec<f64>) {
         self.guess_steady_acceleration(unknowns);
         if !self.balls_are_independent() {
@@ -45,8 +45,8 @@ impl BearingStep<'_> {
         }
     }
 
-    /// Second guess, where the first led nowhere: everything keeps its velocity over the step, but for the spin of
-    /// race bodies, which is prescribed.
+    /// Second guess, where Newton's method failed from the first: everything keeps its velocity over the step, except for
+    /// the spin of race bodies, which is prescribed.
     ///
     /// An acceleration that lasts for less than a step throws contacts far into sliding, where friction hardly depends
     /// on the velocity and Newton's method finds no way back.

@@ -37,7 +37,7 @@ pub use sensitivity::advance_perturbed;
 /// Corrections beyond one a step that a kept matrix may take: they cost about as much as a new one (benches/speed.rs).
 const PATIENCE: u64 = 5;
 
-/// What is imposed at the end of a step.
+/// Motions, loads and conditions imposed at the end of a step.
 #[derive(Clone, Debug)]
 pub struct Boundary {
     /// \[s] end of the step.
@@ -46,7 +46,7 @@ pub struct Boundary {
     pub motion: PerRace<(Pose, Twist)>,
     /// Load and speed of races that forces move; not used for the others.
     pub loads: PerRace<BodyLoad>,
-    /// What is the same in every contact.
+    /// Conditions of every contact.
     pub conditions: Conditions,
 }
 
@@ -58,7 +58,7 @@ pub struct Workspace {
     groups: Vec<PerRace<ContactGroup>>,
     /// The state's matrix during a step.
     kept: KeptMatrix,
-    /// Those that forces move; empty before the first step.
+    /// Trials of the bodies that forces move; empty before the first step.
     bodies: Bodies<Option<BodyTrial>>,
     cage: Option<CageTrial>,
     arrowhead: Arrowhead,

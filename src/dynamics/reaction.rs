@@ -16,33 +16,33 @@ pub struct Reaction {
 }
 
 impl Reaction {
-    /// On the first body of a pair.
+    /// Reaction on the first body of a pair.
     pub fn on_first(pair: &PairForces<D>) -> Self {
         Self { force: pair.force, moment: pair.moment }
     }
 
-    /// On the second body of a pair.
+    /// Reaction on the second body of a pair.
     pub fn on_second(pair: &PairForces<D>) -> Self {
         Self { force: -pair.force, moment: pair.other_moment }
     }
 
-    /// On the first body, without derivatives.
+    /// Reaction on the first body, without derivatives.
     pub fn constant_on_first(pair: &PairForces) -> Self {
         Self { force: constant_vector(&pair.force), moment: constant_vector(&pair.moment) }
     }
 
-    /// On the second body, without derivatives.
+    /// Reaction on the second body, without derivatives.
     pub fn constant_on_second(pair: &PairForces) -> Self {
         Self { force: constant_vector(&-pair.force), moment: constant_vector(&pair.other_moment) }
     }
 
-    /// None.
+    /// No force and no moment.
     pub fn zero() -> Self {
         let zero = constant_vector(&Vector3::zeros());
         Self { force: zero, moment: zero }
     }
 
-    /// Adds another.
+    /// Adds another reaction.
     pub fn add(&mut self, other: &Self) {
         self.force += other.force;
         self.moment += other.moment;

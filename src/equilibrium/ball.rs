@@ -11,9 +11,9 @@ use crate::numerics::scalar::{Dual, Scalar, constant_vector};
 
 /// Directions of differentiation: ball axial and radial, inner race x, y, z, ry, rz, cage speed.
 pub const DIRECTIONS: usize = 8;
-/// First direction of the quantities that all balls share.
+/// First direction of the shared unknowns: those of all balls together.
 pub const SHARED: usize = 2;
-/// Number of shared directions.
+/// Number of shared unknowns.
 pub const N_SHARED: usize = 6;
 type D = Dual<DIRECTIONS>;
 
@@ -25,7 +25,7 @@ const ROUND_OFF_UNITS: f64 = 4.0;
 /// Iterations of one ball.
 const MAX_ITERATIONS: u32 = 100;
 
-/// The inner race as the balls see it: relative to the outer race, with derivatives by the shared directions.
+/// The inner race as the balls see it: relative to the outer race, with derivatives by the shared unknowns.
 #[derive(Clone, Copy, Debug)]
 pub struct Shared {
     /// \[m] origin of the inner race.
@@ -43,7 +43,7 @@ pub struct BallBalance {
     pub residual: [D; 2],
     /// \[N] force of the inner race on the ball.
     pub inner_force: Vector3<D>,
-    /// [N m] moment on the inner race's origin of the external load that holds it against this ball.
+    /// [N m] moment, about the inner race's origin, of the external load that holds it against this ball.
     pub inner_moment: Vector3<D>,
     /// \[N] load on the inner race.
     pub inner_load: D,

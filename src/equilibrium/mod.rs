@@ -31,7 +31,7 @@ pub enum Gyroscopic {
     Friction,
 }
 
-/// What is imposed in one direction.
+/// Load or displacement imposed in one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Prescribed {
     /// External force \[N] or moment [N m] on the inner race.
@@ -143,7 +143,7 @@ pub enum EquilibriumError {
     NoConvergence {
         /// [-] residual over the load's size.
         residual: f64,
-        /// Direction with the largest share.
+        /// Direction with the largest component of the residual.
         direction: &'static str,
         /// Iterations spent.
         iterations: u32,
@@ -153,7 +153,7 @@ pub enum EquilibriumError {
 }
 
 impl EquilibriumError {
-    /// Does it say what the bearing cannot do, not just where the search ended?
+    /// Is it a limit of the bearing, and not just where the search ended?
     fn is_physical(&self) -> bool {
         !matches!(self, Self::Ball { .. } | Self::NoConvergence { .. })
     }
@@ -170,7 +170,7 @@ pub struct BallEquilibrium {
     pub velocity: Vector3<f64>,
     /// [rad/s] angular velocity of rolling, same frame.
     pub angular_velocity: Vector3<f64>,
-    /// What is reported.
+    /// Reported quantities.
     pub report: BallReport,
 }
 
@@ -242,25 +242,25 @@ fn beyond_outer_race_control(model: &Model, input: &EquilibriumInput) -> Option<
 /// Follows the equilibrium from the bearing at rest to its speeds.
 fn through_speeds(model: &Model, input: &EquilibriumInput) -> Result<Found, EquilibriumError> {
     const SMALLEST_INCREMENT: f64 = 1e-3;
-    let at = |share: f64| EquilibriumInput {
-        inner_speed: share * input.inner_speed,
-        outer_speed: share * input.outer_speed,
+    let at = |fraction: f64| EquilibriumInput {
+        inner_speed: fraction * input.inner_speed,
+        outer_speed: fraction * input.outer_speed,
         ..input.clone()
     };
     let resting = at(0.0);
     let problem = Problem::new(model, &resting);
     let mut found = problem.search(problem.centred(), None, Progress::Work)?;
-    let (mut share, mut increment) = (0.0, 0.25);
-    while share < 1.0 {
-        let next = f64::min(share + increment, 1.0);
+    let (mut fraction, mut increment) = (0.0, 0.25);
+    while fraction < 1.0 {
+        let next = f64::min(fraction + increment, 1.0);
         let slower = at(next);
         let problem = Problem::new(model, &slower);
         let mut start = found.unknowns;
-        start[5] = if share > 0.0 { start[5] * next / share } else { problem.centred()[5] };
+        start[5] = if fraction > 0.0 { start[5] * next / fraction } else { problem.centred()[5] };
         match problem.search(start, Some(&found.trial.places), Progress::Residual) {
             Ok(further) => {
                 found = further;
-                share = next;
+                fraction = next;
                 increment *= 2.0;
             }
             Err(_) if increment > SMALLEST_INCREMENT => increment *= 0.25,

@@ -10,14 +10,14 @@ use crate::model::{Conditions, Model};
 
 /// [-] accepted residual over the size of the forces at work.
 const TOLERANCE: f64 = 1e-11;
-/// [-] residual below which it is what falls, even where the potential leads.
+/// [-] residual below which steps must lower the residual, even where the search follows the potential.
 const NEAR: f64 = 1e-4;
 /// Iterations on the displacements; a typical solve takes 5 to 15.
 const MAX_ITERATIONS: u32 = 400;
 /// Names of the five directions.
 const DIRECTION_NAMES: [&str; 5] = ["x", "y", "z", "ry", "rz"];
 
-/// What a step of the search has to achieve.
+/// Quantity that a step of the search must lower.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Progress {
     /// A smaller residual: quick, but a residual can have minima where there is no balance.
@@ -82,7 +82,7 @@ impl<'a> Problem<'a> {
         problem
     }
 
-    /// [-], \[m] what turns a direction's load into a force and its displacement into a length.
+    /// [-], \[m] length that turns a moment into a force and an angle into a displacement; 1 for translations.
     fn size(&self, direction: usize) -> f64 {
         if direction < 3 { 1.0 } else { self.model.race_length() }
     }
@@ -128,7 +128,7 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// What has to vanish, over a force \[N] and a load \[N] that the cage speed is weighted with.
+    /// [-] residual: unbalanced loads over a force `scale` \[N], excess of the cage speed over a load `weight` \[N].
     fn residual_over(&self, trial: &Trial, scale: f64, weight: f64) -> SharedVector {
         let mut residual = self.unbalanced(trial);
         for i in 0..5 {
@@ -140,7 +140,7 @@ impl<'a> Problem<'a> {
         residual
     }
 
-    /// The same over the forces at work.
+    /// [-] residual over the size of the forces at work.
     fn residual(&self, trial: &Trial) -> SharedVector {
         self.residual_over(trial, self.reference(trial), trial.inner_load_sum.max(1e-9 * self.smallest))
     }
@@ -233,7 +233,7 @@ impl<'a> Problem<'a> {
         if size == 0.0 { smaller } else { work > 1e-6 * size }
     }
 
-    /// Newton step of the free directions and the cage speed, shifted by a share of a typical stiffness.
+    /// Newton step of the free directions and the cage speed, its matrix shifted by `shift` typical stiffnesses.
     fn newton_step(&self, here: &Trial, shift: f64) -> Option<SharedVector> {
         // [N/m] of a steel bearing's order; only its order matters.
         const TYPICAL_STIFFNESS: f64 = 1e7;

@@ -10,7 +10,7 @@ use super::ball::BallBalance;
 use crate::contact::geometry::GrooveContact;
 use crate::numerics::scalar::{Dual, Single, values};
 
-/// What is reported of a ball.
+/// Reported quantities of a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallReport {
     /// \[N] normal load on the inner race.

@@ -124,19 +124,19 @@ impl Instance {
             .filter(|&i| rows[i].causality == Causality::Input && rows[i].kind == Kind::Real)
             .collect();
 
-        // Two neighbours per input, on opposite sides.
+        // Two perturbations per input, of opposite sign.
         let values = self.variables.values(base, self.simulation.outputs());
-        let neighbour = |index: usize, sign: f64| -> Outcome<Inputs> {
+        let perturbed = |index: usize, sign: f64| -> Outcome<Inputs> {
             let mut values = values.clone();
             values[index] += sign * changes.of(&rows[index]);
             self.variables
                 .inputs(&values, &self.variables.rates(base), base)
                 .or_else(|why| error(why.to_string()))
         };
-        let mut neighbours = Vec::with_capacity(2 * inputs.len());
+        let mut perturbations = Vec::with_capacity(2 * inputs.len());
         for &index in &inputs {
-            neighbours.push(neighbour(index, 1.0)?);
-            neighbours.push(neighbour(index, -1.0)?);
+            perturbations.push(perturbed(index, 1.0)?);
+            perturbations.push(perturbed(index, -1.0)?);
         }
         let mut central = self.simulation.clone();
         let outputs: Vec<Outputs> = match &self.state.before {
@@ -145,7 +145,7 @@ impl Instance {
                     return error("the start of the last step is of another scene");
                 }
                 central.set_inputs(*base);
-                central.advance_perturbed(self.simulation.time(), &neighbours).or_else(failed)?
+                central.advance_perturbed(self.simulation.time(), &perturbations).or_else(failed)?
             }
             None => {
                 let start = |inputs: &Inputs| {
@@ -153,7 +153,7 @@ impl Instance {
                     central.initialise()?;
                     Ok(central.outputs().clone())
                 };
-                neighbours.iter().map(start).collect::<Result<_, _>>().or_else(failed)?
+                perturbations.iter().map(start).collect::<Result<_, _>>().or_else(failed)?
             }
         };
 

@@ -15,7 +15,7 @@ static HELD: Mutex<BTreeMap<usize, Held>> = Mutex::new(BTreeMap::new());
 static NEXT: AtomicUsize = AtomicUsize::new(1);
 
 fn held() -> MutexGuard<'static, BTreeMap<usize, Held>> {
-    // The list is sound even if a thread panicked while it held the lock.
+    // The list is valid even if a thread panicked while it held the lock.
     HELD.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -23,7 +23,7 @@ pub struct Instance {
     fresh: Box<Simulation>,
     /// The running bearing.
     pub simulation: Simulation,
-    /// What else changes from call to call.
+    /// State of the interface, beside that of the simulation.
     pub state: State,
     /// Derivatives of outputs by inputs at this point, if they were asked for.
     pub columns: Option<Vec<Vec<f64>>>,

@@ -4,11 +4,11 @@
 //! instance.rs     an instance: its start, its phases, its variables
 //! step.rs         communication steps and derivatives by time
 //! directional.rs  derivatives of the outputs by the inputs
-//! state.rs        what changes between two calls: saved, restored, as bytes
+//! state.rs        the changing part of an instance: saved, restored, as bytes
 //! resources.rs    the folder that a package was unpacked to
 //! handles.rs      instances and states held by importers
 //! log.rs          messages to the importer
-//! outcome.rs      how calls end
+//! outcome.rs      outcome of a call
 //! v2/             FMI 2.0: its C functions, its types, what it allows when
 //! ```
 //!

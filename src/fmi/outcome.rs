@@ -1,4 +1,4 @@
-//! How calls end, whatever a version of the interface calls it.
+//! Outcome of a call, independent of the version of the interface.
 
 /// How a call ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

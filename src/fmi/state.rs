@@ -1,4 +1,4 @@
-//! What changes in an instance between two calls: saved, restored, and written as bytes.
+//! The changing part of an instance: saved, restored, and written as bytes.
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -31,7 +31,7 @@ pub enum Phase {
     Fatal,
 }
 
-/// What an instance knows of its calls; what the bearing does is the simulation's.
+/// State of the interface: phase and values as set. The state of the bearing is the simulation's.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct State {
     /// Phase.
@@ -75,7 +75,7 @@ impl State {
         [&self.values, &self.rates, &self.previous_outputs, &self.applied]
     }
 
-    /// Could it be that of a live instance with that many variables?
+    /// Can an instance with that many variables be in this state?
     fn fits(&self, n_variables: usize) -> bool {
         self.phase != Phase::Fatal
             && self.given.len() == n_variables

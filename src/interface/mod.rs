@@ -1,4 +1,4 @@
-//! What a bearing shows to the outside: the table of variables, the model description and the page made of it.
+//! Interface of a package: the table of variables, and the model description and documentation page made of it.
 
 pub mod documentation;
 pub mod model_description;

@@ -1,5 +1,5 @@
 //! Reference solution of one steadily rolling contact: tractions constant on the cells of a grid, half-space influence
-//! functions, Coulomb's bound in every cell. Slow and plain: the yardstick for all other laws.
+//! functions, Coulomb's bound in every cell. Slow and simple: the reference for all other laws.
 //!
 //! Scaled as everything in [`crate::kalker`]: tractions over mu p0, slip times G/(mu p0), lengths over `c`. In steady
 //! rolling the slip of a particle is its rigid slip plus the change of its elastic displacement from the place one
@@ -16,8 +16,8 @@ use super::{Patch, ScaledCreepage, ScaledForces};
 
 /// [-] change of a traction over mu p0 in a sweep that counts as none.
 const TOLERANCE: f64 = 1e-5;
-/// [-] factor of relaxation: part of a cell's change that is taken. With the whole change adjacent sliding cells turn
-/// each other to and fro for ever; with this part most reference cases come to rest in 15 to 40 sweeps, the slowest in some 200.
+/// [-] relaxation factor: fraction of a cell's change that is applied. With the whole change adjacent sliding cells
+/// oscillate for ever; with this fraction most reference cases converge in 15 to 40 sweeps, the slowest in some 200.
 const RELAXATION: f64 = 0.5;
 /// [-] change of a traction over mu p0 that need not be passed on: the sweeps end at a hundred times it.
 const SILENT: f64 = 1e-7;
@@ -37,7 +37,7 @@ pub enum HalfSpaceError {
     /// A creepage that is NaN or infinite.
     #[error("the creepages {0:?} are not finite")]
     NotFinite(ScaledCreepage),
-    /// The sweeps do not come to rest.
+    /// The sweeps do not converge.
     #[error("the tractions still change by {change:.1e} of mu p0 after {sweeps} sweeps")]
     NoConvergence {
         /// [-] largest change in the last sweep.

@@ -143,8 +143,8 @@ pub fn adhesion_tractions(patch: &Patch, theory: &LoadDisplacement) -> Result<DM
     Ok(tractions.columns(0, 3) + tractions.columns(3, amounts.nrows()) * amounts)
 }
 
-/// Rows that give one component `sum d X^p Y^q` of the singular traction on the leading edge, weighted by how squarely the
-/// edge meets the rolling direction.
+/// Rows that give one component `sum d X^p Y^q` of the singular traction on the leading edge, weighted by the cosine between
+/// the edge's normal and the rolling direction.
 fn leading_edge_rows(patch: &Patch, basis: &Basis) -> DMatrix<f64> {
     let (a, b) = (patch.axis_ratio.sqrt(), 1.0 / patch.axis_ratio.sqrt());
     let (sin, cos) = patch.rolling_angle.sin_cos();

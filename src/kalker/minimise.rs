@@ -29,7 +29,7 @@ enum Step {
     Lower,
     /// At the minimum to rounding.
     Minimum,
-    /// Where it began.
+    /// Without progress.
     Failed,
 }
 
@@ -143,7 +143,7 @@ impl Kalker {
         let shrink = if size > LARGEST_CREEPAGE { LARGEST_CREEPAGE / size } else { 1.0 };
         let [x, y, spin, curvature] = components.map(|component| component * shrink);
         let scaled = ScaledCreepage { x, y, spin, curvature };
-        // A start of another problem, or none at all, is no start.
+        // A start that belongs to another problem, or is not finite, is not used.
         let usable =
             |start: &&[f64]| start.len() == self.coefficients() && start.iter().all(|z| z.is_finite());
         let z = match start.filter(usable) {

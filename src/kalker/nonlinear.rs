@@ -10,7 +10,8 @@
 //! with f the traction over mu p0, s the slip in the same scale and P the projection on the Coulomb disc: it vanishes
 //! exactly where Coulomb's law holds (stick: s = 0 and |f| below the bound; slip: f at the bound along s). A penalty on
 //! the singular traction at the leading edge takes the place of the condition that fresh material enters unstrained.
-//! Minimised by Levenberg-Marquardt from the linear solution, or from one at creepages nearby.
+//! The minimum is found by Newton's and Levenberg and Marquardt's methods from the linear solution, or from a solution at
+//! nearby creepages.
 
 use std::f64::consts::{PI, TAU};
 
@@ -22,10 +23,11 @@ use super::load_displacement::{Basis, LoadDisplacement};
 use super::objective::{Expansion, Fields, norm, project};
 use super::{Patch, ScaledCreepage, ScaledForces};
 
-/// [-] slip against traction in the projection.
+/// [-] weight k of slip against traction in the projection.
 pub(super) const SLIP_WEIGHT: f64 = 2.0;
 /// [-] weight of the leading-edge rows.
 const EDGE_WEIGHT: f64 = 8.0;
+
 /// Why there is no solution.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum KalkerError {

@@ -24,7 +24,7 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Could this have come from these polynomials? For states that come from outside.
+    /// Can these polynomials have this difference? A check for states that come from outside.
     pub fn fits(&self, kalker: Option<&ScaledKalker>) -> bool {
         let number = kalker.map_or(0, |kalker| kalker.kalker.coefficients());
         (self.coefficients.is_empty() || self.coefficients.len() == number)

@@ -59,7 +59,7 @@ impl NodeSolver {
         k: usize,
     ) -> Result<[[f64; 3]; SHAPE[0] + 1], HalfSpaceError> {
         let Self { scales, stretch, coarse, fine, peaked } = self;
-        // On the axis and the plane of symmetry what would be divided by zero has its limit: a little beside them.
+        // On the axis and the plane of symmetry the stored quotients are 0/0: their limits are taken a little beside them.
         let theta = (FRAC_PI_2 * j as f64 / SHAPE[1] as f64).clamp(ASIDE, FRAC_PI_2 - ASIDE);
         let phi = PI * k as f64 / SHAPE[2] as f64;
         let d = stretch.unscaled([theta.cos(), theta.sin() * phi.cos(), theta.sin() * phi.sin()]);

@@ -68,23 +68,23 @@ impl fmt::Display for Body {
     }
 }
 
-/// Something that each race has.
+/// A value for each race.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PerRace<T> {
-    /// Of the inner race.
+    /// Value of the inner race.
     pub inner: T,
-    /// Of the outer race.
+    /// Value of the outer race.
     pub outer: T,
 }
 
 impl<T> PerRace<T> {
-    /// From a function of the race.
+    /// Values given by a function of the race.
     #[inline(always)]
     pub fn new(mut of: impl FnMut(Race) -> T) -> Self {
         Self { inner: of(Race::Inner), outer: of(Race::Outer) }
     }
 
-    /// From a function of the race that may fail.
+    /// Values given by a function of the race that may fail.
     ///
     /// # Errors
     /// The first failure.
@@ -120,17 +120,17 @@ impl<T> IndexMut<Race> for PerRace<T> {
     }
 }
 
-/// Something that each body of a bearing has: inner race, outer race, and the cage where it is simulated.
+/// A value for each body of a bearing: inner race, outer race, and the cage where it is simulated.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bodies<T>(Vec<T>);
 
 impl<T> Bodies<T> {
-    /// Of both races and, where there is one, of the cage.
+    /// Values of both races and, where there is one, of the cage.
     pub fn new(races: PerRace<T>, cage: Option<T>) -> Self {
         Self([races.inner, races.outer].into_iter().chain(cage).collect())
     }
 
-    /// One for each body of another list, from a function of the body and what it has there.
+    /// Values for the same bodies, each given by a function of the body and its present value.
     pub fn map<U>(&self, mut of: impl FnMut(Body, &T) -> U) -> Bodies<U> {
         Bodies(self.iter().map(|(body, one)| of(body, one)).collect())
     }

@@ -1,6 +1,6 @@
-//! What the cage touches: a pocket for each ball and, where a race guides it, two lands.
+//! Contacts of the cage: a pocket for each ball and, where a race guides the cage, two lands.
 //!
-//! Its frame has x along its own axis and its origin in the plane of the pockets.
+//! The cage frame has x along its own axis and its origin in the plane of the pockets.
 
 use super::bearing::Bearing;
 use super::bodies::Race;

@@ -1,4 +1,4 @@
-//! The immutable model of a run: bearing, bodies, and what touches what.
+//! The immutable model of a run: bearing, bodies, and the constants of their contacts.
 
 pub mod bearing;
 pub mod bodies;
@@ -18,7 +18,7 @@ use bodies::{Bodies, PerRace, Race, RigidBody};
 use cage::CageModel;
 use raceways::RacewayContacts;
 
-/// What may change from step to step and is the same in every contact.
+/// Conditions that may change from step to step and are the same in every contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
     /// [-] friction coefficient of the ball-race contacts.
@@ -73,7 +73,7 @@ impl Model {
         })
     }
 
-    /// Takes over the numbers of a scene that each step reads.
+    /// Takes over the tunable numbers of a scene, those that each step reads.
     pub fn tune(&mut self, scene: &Scene) {
         self.damping = scene.effects.damping.0;
         self.gravity = Vector3::from(scene.effects.gravity.map(|component| component.0));

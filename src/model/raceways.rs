@@ -11,7 +11,7 @@ use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
 use crate::scene::{CreepLaw, Scene};
 
-/// Creep law of a raceway with what it needs.
+/// Creep law of a raceway with its tables or parameters.
 #[derive(Clone, Debug)]
 enum RacewayLaw {
     Frictionless,
@@ -56,7 +56,7 @@ impl RacewayLaw {
     }
 }
 
-/// What does not change in the contacts of all balls with one raceway.
+/// Constants of the contacts of all balls with one raceway.
 #[derive(Clone, Debug)]
 pub struct RacewayContacts {
     /// Contact tables.
@@ -67,7 +67,7 @@ pub struct RacewayContacts {
 }
 
 impl RacewayContacts {
-    /// Of a race in a scene.
+    /// Contacts with a race of a scene.
     ///
     /// # Errors
     /// If creep coefficients cannot be computed.

@@ -56,7 +56,7 @@ pub struct BodyState {
     pub total: Wrench,
     /// Lagrange multipliers of its constraints [N, N m].
     pub multipliers: Vec<f64>,
-    /// What balls and lands exert on the body, world axes, about its origin.
+    /// Force and moment of balls and lands on the body, about its origin, world axes.
     pub bearing_wrench: Wrench,
     /// [-] unit vectors of its own axes, as its pairs saw them.
     pub axes: [Vector3<f64>; 3],
@@ -64,7 +64,7 @@ pub struct BodyState {
     pub angular_velocity: Vector3<f64>,
     /// \[rad] turned about the own axis since the start, without limit.
     pub turned: f64,
-    /// \[rad] what the last sum left out of `turned`: millions of rounded additions would drift.
+    /// \[rad] rounding error of `turned` so far (compensated summation): millions of rounded additions would drift.
     pub turned_rest: f64,
 }
 
@@ -186,12 +186,12 @@ pub struct Statistics {
     pub contact_tangents: u64,
     /// Solutions of Kalker's polynomials.
     pub polynomials: u64,
-    /// Solutions of Kalker's polynomials that did not converge; what they add to the table then stayed what it was.
+    /// Solutions of Kalker's polynomials that did not converge; the difference to the table then stayed as it was.
     pub polynomial_failures: u64,
 }
 
 impl Statistics {
-    /// Have these been counted, and can they be counted on? For states that come from outside.
+    /// Are these counts that a run can have? A check for states that come from outside.
     pub fn plausible(&self) -> bool {
         // Results show them as exact floating-point numbers.
         const MOST: u64 = 1 << f64::MANTISSA_DIGITS;
@@ -223,8 +223,8 @@ pub struct State {
     pub balls: Vec<BallState>,
     /// Races, and the cage where it is simulated.
     pub bodies: Bodies<BodyState>,
-    /// By ball, what Kalker's polynomials add to the table at its contacts with the races; empty where they are not
-    /// simulated.
+    /// By ball, the differences of Kalker's polynomials from the table at its contacts with the races; empty where they
+    /// are not simulated.
     pub differences: Vec<PerRace<Difference>>,
     /// Step size.
     pub control: StepControl,
@@ -251,18 +251,18 @@ impl State {
         self.bodies.get(Body::Cage)
     }
 
-    /// What Kalker's polynomials add to the table at a ball's contact with a race, where they are simulated.
+    /// Difference of Kalker's polynomials from the table at a ball's contact with a race, where they are simulated.
     pub fn difference(&self, ball: usize, race: Race) -> Option<&Difference> {
         self.differences.get(ball).map(|differences| &differences[race])
     }
 }
 
-/// The inverted matrix of balls that nothing couples. It is part of the state, as it serves many steps.
+/// Inverted Newton matrix of balls that nothing couples. It is part of the state, as many steps use it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct KeptMatrix {
-    /// \[s] size of the steps that it serves.
+    /// \[s] size of the steps that it is for.
     pub step: f64,
-    /// Corrections beyond one a step that it has taken after the step that it was made in.
+    /// Newton corrections beyond one per step, since the step in which it was computed.
     pub extra_corrections: u64,
     /// By ball; empty while there is none.
     pub balls: Vec<KeptBlock>,

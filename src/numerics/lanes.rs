@@ -1,4 +1,4 @@
-//! Several numbers in one: the contact kernel for four balls at a time.
+//! Vectors of several numbers, for the contact kernel of four balls at a time.
 //!
 //! Every operation is that of `f64`, lane by lane, so that results are those of one ball at a time to the bit, with or
 //! without vector instructions.
@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use crate::numerics::scalar::{Scalar, SmoothMap, Values};
 
-/// Numbers in one: what a vector register of 256 bits holds.
+/// Numbers per vector: as many as a register of 256 bits holds.
 pub const WIDTH: usize = 4;
 
 /// Numbers that are computed with together.

@@ -1,4 +1,4 @@
-//! Numerical methods without a bearing in them: numbers with derivatives, rigid-body motion, Newton's method, HHT steps.
+//! Numerical methods that know nothing of bearings: numbers with derivatives, rigid-body motion, Newton's method, HHT steps.
 
 pub mod arrowhead;
 pub mod hht;

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Largest number of residual evaluations of one solve; a well-behaved step takes two or three.
 const MAX_EVALUATIONS: u32 = 25;
-/// [-] a correction that leaves more than this share of the residual asks for a new tangent, by default.
+/// [-] default of [`Equations::refactor_contraction`].
 pub const REFACTOR_CONTRACTION: f64 = 0.3;
 /// Halvings of one line search.
 const MAX_HALVINGS: u32 = 6;
@@ -24,7 +24,7 @@ pub trait Equations {
     /// Writes the Newton correction of the last residual with the last tangent; false if that is singular.
     fn correction(&mut self, correction: &mut [f64]) -> bool;
 
-    /// [-] a correction that leaves more than this share of the residual asks for a new tangent.
+    /// [-] a correction that leaves more than this fraction of the residual asks for a new tangent.
     fn refactor_contraction(&self) -> f64 {
         REFACTOR_CONTRACTION
     }
@@ -98,7 +98,7 @@ pub fn solve(
             if trial_norm <= 1.0 || descends {
                 break Some(trial_norm);
             }
-            // No descent along an old tangent's direction says little: no use in going less far.
+            // No descent along an old tangent's direction says little: shorter steps are not tried.
             if halvings == MAX_HALVINGS || evaluations >= MAX_EVALUATIONS || !tangent_is_here {
                 break None;
             }
@@ -136,7 +136,7 @@ mod tests {
         target: f64,
         residual: f64,
         slope: f64,
-        /// Is the slope one of earlier?
+        /// Is the slope that of an earlier solve?
         old: bool,
     }
 
@@ -184,7 +184,8 @@ mod tests {
         };
         // 12 is the slope at the root: each correction leaves some percent.
         assert_eq!(run(12.0), (Ok(()), true, 0));
-        // Too steep converges too slowly, too flat and backwards lead away: a new one then, of which one or two do.
+        // A slope that is too steep converges too slowly, one too flat or of the wrong sign diverges: then a new tangent is
+        // computed, and one or two are enough.
         for useless in [120.0, 1.0, -12.0] {
             let (result, solved, factorisations) = run(useless);
             assert_eq!((result, solved), (Ok(()), true));

@@ -5,7 +5,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 use nalgebra::Vector3;
 
-/// What the contact kernel needs of a number. Branch-free on purpose, so that lanes of numbers can implement it.
+/// Arithmetic of the contact kernel. It has no branches, so that vectors of several numbers can implement it.
 pub trait Scalar:
     Copy
     + Debug
@@ -41,7 +41,7 @@ pub trait Scalar:
         function: impl FnMut([f64; K]) -> ([f64; M], [[f64; K]; M]),
     ) -> [Self; M];
 
-    /// The same of functions whose values alone are cheaper than with their gradients.
+    /// Smooth functions of several numbers whose values alone are cheaper than with their gradients.
     fn apply<const K: usize, const M: usize>(map: &impl SmoothMap<K, M>, x: [Self; K]) -> [Self; M];
 
     /// A polynomial of this number, coefficients by ascending powers.
@@ -75,10 +75,10 @@ pub trait Scalar:
 
 /// Smooth functions of several numbers.
 pub trait SmoothMap<const K: usize, const M: usize> {
-    /// Their values.
+    /// Values of the functions.
     fn values<V: Values>(&self, x: [V; K]) -> [V; M];
 
-    /// Their values and gradients, row by function.
+    /// Values and gradients of the functions, row by function.
     fn with_gradient(&self, x: [f64; K]) -> ([f64; M], [[f64; K]; M]);
 }
 

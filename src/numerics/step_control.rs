@@ -2,19 +2,19 @@
 
 use serde::{Deserialize, Serialize};
 
-/// [-] aim below the tolerance.
+/// [-] error aimed at, over the tolerance.
 const SAFETY: f64 = 0.9;
 /// Exponents of the PI controller for a second-order method (local error of order 3; Gustafsson 1991).
 const PROPORTIONAL: f64 = 0.4 / 3.0;
 const INTEGRAL: f64 = 0.7 / 3.0;
-/// Notches per factor of 2.
+/// Step sizes (notches) per factor of 2.
 const NOTCHES_PER_OCTAVE: f64 = 4.0;
 /// Largest growth and shrinkage of one step, in notches.
 const MAX_GROWTH: i32 = 4;
 const MAX_SHRINKAGE: i32 = 12;
-/// [-] an accepted step with an error below this keeps its size or grows. When a contact closes the error jumps from next
-/// to nothing, which the proportional part takes for the beginning of worse. A step cut in the middle of a blow breaks the
-/// symmetry between its two halves: a bearing with bouncing balls gained 2.7 % of energy in 1e5 steps.
+/// [-] an accepted step with an error below this keeps its size or grows. When a contact closes the error jumps from almost
+/// zero, and the proportional part would cut the step. A step cut in the middle of an impact breaks the symmetry between
+/// approach and rebound: a bearing with bouncing balls gained 2.7 % of energy in 1e5 steps.
 const KEPT_BELOW: f64 = 0.3;
 /// A step whose Newton iteration failed is tried again this many notches smaller (a factor of 4).
 const FAILURE_NOTCHES: i32 = 8;

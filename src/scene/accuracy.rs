@@ -1,6 +1,6 @@
-//! Time integration: by its knobs, or by the goal that the scene states.
+//! Settings of the time integration: given one by one, or by the goal that the scene states.
 //!
-//! What a goal stands for was chosen by measurement: `roulement cost`, written up in `docs/accuracy-cost.md`.
+//! The settings of each goal were chosen by measurement: `roulement cost`, written up in `docs/accuracy-cost.md`.
 
 use serde::Deserialize;
 use strum::{IntoStaticStr, VariantArray};
@@ -22,8 +22,8 @@ pub struct Solver {
     pub max_step: Time,
     /// \[s] smallest step; needing a smaller one is an error.
     pub min_step: Time,
-    /// [-] a correction that leaves more than this share of the residual asks for a new matrix: 0 is a matrix for every
-    /// correction, 1 keeps one until it leads nowhere.
+    /// [-] a Newton correction that leaves more than this fraction of the residual asks for a new matrix: 0 computes a
+    /// matrix for every correction, 1 keeps one until it no longer lowers the residual.
     pub matrix_reuse: f64,
 }
 
@@ -40,7 +40,7 @@ impl Default for Solver {
     }
 }
 
-/// What the scene wants from the time integration.
+/// Goal that a scene sets for the time integration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, IntoStaticStr, VariantArray)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
@@ -49,7 +49,7 @@ pub enum Accuracy {
     Fast,
     /// For most work, and the least for impacts.
     Balanced,
-    /// To judge others by.
+    /// Reference to judge other settings by.
     Reference,
 }
 

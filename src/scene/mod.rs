@@ -27,7 +27,7 @@ pub enum SceneError {
     Read {
         /// Path as given.
         path: String,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// Not TOML, an unknown or missing key, or a value of the wrong kind or dimension.
@@ -50,7 +50,7 @@ pub enum SceneError {
     Conflict {
         /// Key with its section.
         key: String,
-        /// What is wrong, and what would be right.
+        /// The conflict, and a way out of it.
         why: String,
     },
 }

@@ -8,7 +8,7 @@ use crate::scene::units::{Quantity, Time};
 /// A value over time: constant, or piecewise linear through `(time [s], value)`, held before and after the table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Schedule {
-    /// The same at all times.
+    /// One value at all times.
     Constant(f64),
     /// Points with strictly growing times; at least one.
     Table(Vec<(f64, f64)>),
@@ -40,7 +40,7 @@ impl Schedule {
         let (Some(&(t1, v1)), Some(&(t0, v0))) = (points.get(next), points.get(next.wrapping_sub(1))) else {
             return (self.at(time), 0.0);
         };
-        // Harmonic mean of the neighbouring secants; 0 at extrema and at the ends.
+        // Harmonic mean of the secants on both sides; 0 at extrema and at the ends.
         let slope = |i: usize| -> f64 {
             if i == 0 || i + 1 == points.len() {
                 return 0.0;

@@ -25,7 +25,7 @@ pub enum SimulationError {
         time: f64,
         /// \[s] smallest step allowed.
         min_step: f64,
-        /// What made the last step fail.
+        /// Cause of the last failure.
         cause: &'static str,
         /// Body, ball and contact where the residual or the local error is largest.
         site: FailureSite,

@@ -1,4 +1,4 @@
-//! How everything that is given from outside moves during a communication step.
+//! Motion of all inputs during a communication step.
 
 use nalgebra::{SVector, Vector3};
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use crate::model::bodies::PerRace;
 use crate::model::state::State;
 use crate::numerics::motion::Wrench;
 
-/// How inputs move during a communication step.
+/// Paths of all inputs during a communication step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InputPaths {
     /// Pose and twist of races with prescribed motion.
@@ -21,7 +21,7 @@ pub struct InputPaths {
 }
 
 impl InputPaths {
-    /// What they impose at a time \[s].
+    /// Boundary conditions at a time \[s].
     pub fn boundary(&self, time: f64, conditions: Conditions) -> Boundary {
         Boundary {
             time,

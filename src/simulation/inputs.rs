@@ -1,4 +1,4 @@
-//! What a bearing is given from outside.
+//! Inputs of a bearing: motions, loads, speeds and friction.
 
 use std::ops::{Index, IndexMut};
 
@@ -8,7 +8,7 @@ use crate::model::Conditions;
 use crate::model::bodies::Race;
 use crate::numerics::motion::{Pose, Twist, Wrench};
 
-/// What a race is given from outside, valid at the last communication point.
+/// Inputs of a race, valid at the last communication point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RaceInput {
     /// Pose of a race with given motion.
@@ -23,7 +23,7 @@ pub struct RaceInput {
     pub speed: f64,
 }
 
-/// Everything that is given from outside.
+/// All inputs of a bearing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// Inner race.
@@ -35,7 +35,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// What is the same in every contact.
+    /// Conditions of every contact.
     pub fn conditions(&self) -> Conditions {
         Conditions { friction: self.friction }
     }

@@ -1,4 +1,4 @@
-//! What a bearing shows of its state at a communication point.
+//! Outputs of a bearing at a communication point.
 
 use std::ops::Index;
 
@@ -20,13 +20,13 @@ pub struct RaceOutput {
     pub pose: Pose,
     /// Twist.
     pub twist: Twist,
-    /// What the bearing exerts on the race, about its origin, world axes.
+    /// Force and moment of the bearing on the race, about its origin, world axes.
     pub wrench: Wrench,
     /// [N m] torque that keeps a race that forces move at its prescribed speed; for other races, the torque that balances
     /// the bearing's.
     pub drive_torque: f64,
-    /// What the constraints of a race that forces move exert on it, about its origin, world axes: reactions of held directions and
-    /// the drive torque. Zero for other races.
+    /// Force and moment of the constraints on a race that forces move, about its origin, world axes: reactions of held
+    /// directions and the drive torque. Zero for other races.
     pub reaction: Wrench,
     /// \[rad] turned about the own axis since the start, without limit.
     pub turned: f64,

@@ -38,8 +38,8 @@ impl Cubic {
 /// Path of a race whose motion is given from outside, over one communication step.
 ///
 /// It begins with the pose and twist where the last path ended and ends with those that the inputs announce. The
-/// position is a cubic. The orientation is a turn at the announced angular velocity `w`, on which a small cubic
-/// conformal rotation vector `e(t)` is laid: `R(t) = exp(w t) R(e(t)) R(0)`; a steady turn of any number of
+/// position is a cubic. The orientation is a turn at the announced angular velocity `w` times a small correction, whose
+/// conformal rotation vector `e(t)` is a cubic: `R(t) = exp(w t) R(e(t)) R(0)`; a steady turn of any number of
 /// revolutions per step is exact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RacePath {

@@ -139,7 +139,7 @@ pub struct Friction {
     pub power: f64,
 }
 
-/// What rolls: semi-axes along and across rolling [m], load [N], friction, shear modulus [Pa], coefficients.
+/// A rolling contact: semi-axes along and across rolling [m], load [N], friction, shear modulus [Pa], coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Patch {
     pub semi: [f64; 2],

@@ -123,7 +123,7 @@ fn balls_braked_below_the_cage() {
     assert!(run.last().cage_slip.abs() < 0.03, "{}", run.last().cage_slip);
 }
 
-/// [rad/s] mean speed at which the cage's centre goes round, over the second half.
+/// [rad/s] mean whirl speed of the cage's centre, over the second half.
 fn whirl_speed(run: &Run) -> f64 {
     let late = &run.history[run.history.len() / 2..];
     let angle = |o: &Outputs| cage(o).eccentricity.z.atan2(cage(o).eccentricity.y);
@@ -139,7 +139,7 @@ fn whirl_speed(run: &Run) -> f64 {
 
 #[test]
 fn whirl() {
-    // A load that goes round takes along the pattern of fast and slow balls, and with it the cage.
+    // A rotating load takes along the pattern of fast and slow balls, and with it the cage.
     let inner = "guided_by = \"inner\"\nguidance_clearance = \"0.2 mm\"\n\
                  land_diameter = \"40 mm\"\nland_width = \"2 mm\"";
     for (name, section, speed) in [
@@ -158,7 +158,7 @@ fn whirl() {
         let mut case = Case::new(name, scene(CAGE, &changes), limits(2300, 20, 10, 4.0));
         case.importer = Some(&importer);
         let run = case.pass();
-        // It goes round with the load, and as far out as the lands let it.
+        // The cage whirls with the load, as far out as the lands let it.
         let whirl = whirl_speed(&run);
         assert!((whirl / speed - 1.0).abs() < 0.05, "{name}: {whirl} rad/s");
         for o in &run.history[run.history.len() / 2..] {

@@ -112,21 +112,21 @@ fn bounded_dissipative_and_odd() {
 fn polynomials_are_bounded_and_odd(count: usize) {
     let laws = Laws::new();
     let mut random = Random::new(9);
-    let (mut force_share, mut uneven) = (0.0f64, 0.0f64);
+    let (mut force_ratio, mut uneven) = (0.0f64, 0.0f64);
     for _ in 0..count {
         let (theory, creepage) = case(&mut random);
         let forces = |creepage: [f64; 3]| list(&theory, Law::Kalker(&laws.kalker), &creepage);
         let (f, back) = (forces(creepage), forces(creepage.map(|c| -c)));
         assert!(f.iter().all(|x| x.is_finite()), "{theory:?} {creepage:?} {f:?}");
         let limit = theory.friction_limit.max(f64::MIN_POSITIVE);
-        force_share = force_share.max(f[0].hypot(f[1]) / limit);
+        force_ratio = force_ratio.max(f[0].hypot(f[1]) / limit);
         let arm = [1.0, 1.0, theory.mean_semi_axis];
         uneven = (0..3).fold(uneven, |worst, i| worst.max((f[i] + back[i]).abs() / (limit * arm[i])));
     }
     println!(
-        "\n| {count} random contacts, polynomials | largest force over its limit {force_share} | uneven {uneven:.0e} of the limit |"
+        "\n| {count} random contacts, polynomials | largest force over its limit {force_ratio} | uneven {uneven:.0e} of the limit |"
     );
-    assert!(force_share > 0.99 && force_share <= 1.0 + 1e-12 && uneven < 1e-5);
+    assert!(force_ratio > 0.99 && force_ratio <= 1.0 + 1e-12 && uneven < 1e-5);
 }
 
 #[test]

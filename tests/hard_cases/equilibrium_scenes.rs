@@ -188,10 +188,10 @@ fn residual(scene: &Scene, solution: &Equilibrium, input: &EquilibriumInput) -> 
     }
     let (force, moment) = (-(input.outer_orientation * force), -(input.outer_orientation * moment));
     let held = [force.x, force.y, force.z, moment.y, moment.z];
-    let lever = 0.5 * scene.bearing.pitch_diameter.0;
+    let arm = 0.5 * scene.bearing.pitch_diameter.0;
     let scale = solution.balls.iter().map(|b| b.report.outer_load).sum::<f64>().max(sum).max(1.0);
     for (direction, condition) in input.conditions.iter().enumerate() {
-        let length = if direction < 3 { 1.0 } else { lever };
+        let length = if direction < 3 { 1.0 } else { arm };
         worst = worst.max((held[direction] - solution.load[direction]).abs() / length);
         match condition {
             Prescribed::Load(load) => worst = worst.max((held[direction] - load).abs() / length),

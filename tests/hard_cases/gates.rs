@@ -19,7 +19,7 @@ const ENERGY: f64 = 0.01;
 /// (c) largest change of a window mean when the step cap is halved.
 const CAP: f64 = 0.02;
 
-/// What is set at the start of communication step `i`, and its end [s].
+/// Inputs at the start of communication step `i`, and the end of the step [s].
 pub type Importer<'a> = dyn Fn(&Simulation, u32) -> (Inputs, f64) + 'a;
 
 /// (g) what a run may cost: a regression of robustness shows here although the result may still pass.
@@ -54,7 +54,7 @@ pub struct Case<'a> {
     pub points: u32,
     /// Of how many communication points one is looked at.
     pub every: u32,
-    /// Window of the means, as shares of the points.
+    /// Window of the means, as fractions of the points.
     pub window: [f64; 2],
     /// (g).
     pub limits: Limits,
@@ -189,7 +189,7 @@ impl<'a> Case<'a> {
 
     /// (c) over the window.
     fn change(&self, one: &[Outputs], other: &[Outputs]) -> (f64, String) {
-        let index = |share: f64| (share * (one.len() - 1) as f64).round() as usize;
+        let index = |fraction: f64| (fraction * (one.len() - 1) as f64).round() as usize;
         let [from, to] = self.window.map(index);
         change(&one[from..=to], &other[from..=to], 0.5 * self.scene.bearing.pitch_diameter.0)
     }
@@ -247,10 +247,10 @@ pub fn energy_residual(history: &[Outputs]) -> f64 {
     worst / reference.max(1e-9)
 }
 
-/// (c) largest change of a window mean over the size of what it is a mean of, and which; `lever` [m] is that of the
-/// balls.
-pub fn change(one: &[Outputs], other: &[Outputs], lever: f64) -> (f64, String) {
-    let (a, b) = (means(one, lever), means(other, lever));
+/// (c) largest change of a window mean over the size of what it is a mean of, and which; `arm` [m] is the
+/// radius of the pitch circle.
+pub fn change(one: &[Outputs], other: &[Outputs], arm: f64) -> (f64, String) {
+    let (a, b) = (means(one, arm), means(other, arm));
     let change = |i: usize| (a[i].mean - b[i].mean).abs() / a[i].size;
     let largest = (0..a.len()).max_by(|&i, &k| change(i).total_cmp(&change(k))).unwrap();
     let (name, was, is) = (a[largest].name, a[largest].mean, b[largest].mean);
@@ -264,7 +264,7 @@ struct Mean {
 }
 
 /// Means of what a user reads off a run, each with the mean size that a change is compared with.
-fn means(window: &[Outputs], lever: f64) -> Vec<Mean> {
+fn means(window: &[Outputs], arm: f64) -> Vec<Mean> {
     let n = window.len() as f64;
     let mean = |get: &dyn Fn(&Outputs) -> f64| window.iter().map(get).sum::<f64>() / n;
     let load = |get: fn(&roulement::simulation::outputs::BallOutput) -> f64| {
@@ -275,7 +275,7 @@ fn means(window: &[Outputs], lever: f64) -> Vec<Mean> {
     let outer = load(|ball| ball.outer.load);
     // Floors: what is smaller than a millionth of a newton, of a rad/s, of a watt is zero.
     // The turning of a cage is compared with all its motion: one that falls at standstill hardly turns.
-    let falling = mean(&|o| o.cage.as_ref().map_or(0.0, |cage| cage.twist.velocity.norm())) / lever;
+    let falling = mean(&|o| o.cage.as_ref().map_or(0.0, |cage| cage.twist.velocity.norm())) / arm;
     let speed_size = (mean(&|o| o.cage_speed.abs()) + falling).max(1e-6);
     let force_size = force.max(1e-6);
     let (first, last) = (&window[0], &window[window.len() - 1]);
@@ -287,7 +287,7 @@ fn means(window: &[Outputs], lever: f64) -> Vec<Mean> {
         Mean { name: "mean power lost", mean: lost, size: lost.abs().max(1e-6) },
     ];
     // A moment is compared with that of the forces at the pitch circle, where the balls are.
-    let moment_size = force_size * lever;
+    let moment_size = force_size * arm;
     for (i, name) in ["mean moment x", "mean moment y", "mean moment z"].into_iter().enumerate() {
         list.push(Mean { name, mean: mean(&|o| o.inner.wrench.moment[i]), size: moment_size });
     }
@@ -356,7 +356,7 @@ pub fn converged(name: &str, simulation: &Simulation) {
 /// [N] largest residual of `m a1 = (1 - alpha_f) g1 + alpha_f g0` with forces evaluated afresh at the end.
 fn residual(end: &Simulation, before: &State) -> f64 {
     let (model, state) = (end.model(), end.state());
-    let share = 1.0 - model.solver.alpha_f;
+    let weight = 1.0 - model.solver.alpha_f;
     let contacts = model.contacts(&end.inputs().conditions());
     let races = Race::BOTH.map(|race| state.race(race).motion());
     let ball = &model.bearing.ball;
@@ -381,19 +381,19 @@ fn residual(end: &Simulation, before: &State) -> f64 {
             on_cage.force -= pocket.force;
             on_cage.moment += pocket.other_moment;
         }
-        let linear = now.acceleration * ball.mass - force * share - old.total.force * (1.0 - share);
+        let linear = now.acceleration * ball.mass - force * weight - old.total.force * (1.0 - weight);
         let angular =
-            now.angular_acceleration * ball.inertia - moment * share - old.total.moment * (1.0 - share);
+            now.angular_acceleration * ball.inertia - moment * weight - old.total.moment * (1.0 - weight);
         worst = worst.max(linear.amax()).max(angular.amax() / ball.radius);
     }
     for race in Race::BOTH {
         let (now, old) = (state.race(race), before.race(race));
         if let Some(body) = &model.bodies[race] {
             let linear =
-                now.acceleration * body.mass - now.total.force * share - old.total.force * (1.0 - share);
+                now.acceleration * body.mass - now.total.force * weight - old.total.force * (1.0 - weight);
             let angular = now.rate_derivative.component_mul(&body.inertia)
-                - now.total.moment * share
-                - old.total.moment * (1.0 - share);
+                - now.total.moment * weight
+                - old.total.moment * (1.0 - weight);
             worst = worst.max(linear.amax()).max(angular.amax() / model.race_length());
         }
     }
@@ -406,10 +406,10 @@ fn residual(end: &Simulation, before: &State) -> f64 {
         let force = on_cage.force + model.gravity * body.mass;
         let momentum = now.rate.component_mul(&body.inertia);
         let moment = now.pose.orientation.inverse() * on_cage.moment - now.rate.cross(&momentum);
-        let linear = now.acceleration * body.mass - force * share - old.total.force * (1.0 - share);
+        let linear = now.acceleration * body.mass - force * weight - old.total.force * (1.0 - weight);
         let angular = now.rate_derivative.component_mul(&body.inertia)
-            - moment * share
-            - old.total.moment * (1.0 - share);
+            - moment * weight
+            - old.total.moment * (1.0 - weight);
         worst = worst.max(linear.amax()).max(angular.amax() / model.race_length());
     }
     worst

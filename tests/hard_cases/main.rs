@@ -16,6 +16,7 @@ mod gates;
 #[path = "../common/laws.rs"]
 mod laws;
 mod loads;
+#[path = "../common/random.rs"]
 mod random;
 mod refusals;
 mod rolling_laws;

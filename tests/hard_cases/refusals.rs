@@ -1,4 +1,4 @@
-//! What cannot be simulated is refused with its cause, its time, the ball and its contacts; never a wrong answer.
+//! Refusals: a run that cannot go on ends with its cause, its time, the ball and its contacts; never with a wrong answer.
 
 use roulement::simulation::Simulation;
 

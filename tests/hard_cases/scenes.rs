@@ -10,7 +10,7 @@ pub const GROOVE: &str = include_str!("../../scenes/radial.toml");
 /// The angular-contact bearing with a brass cage on lands of the outer race.
 pub const CAGE: &str = include_str!("../../scenes/cage.toml");
 
-/// The same angular-contact bearing with its inner race moved by the importer.
+/// Angular-contact bearing as above, with its inner race moved by the importer.
 pub const POSE: &str = "[inner]\ndrive = \"pose\"";
 
 /// Directions in which a bearing cannot hold its inner race by itself are held at 0.

@@ -133,10 +133,10 @@ fn two_bearings_share_the_load_of_a_shaft() {
     // half the step cap
     let finer = Shaft::new(0.5e-5).run(0..STEPS, |_, _| {});
     let window = 200..=300;
-    let lever = 0.023;
+    let arm = 0.023;
     for k in 0..2 {
         let energy = energy_residual(&history[k]);
-        let (largest, what) = change(&history[k][window.clone()], &finer[k][window.clone()], lever);
+        let (largest, what) = change(&history[k][window.clone()], &finer[k][window.clone()], arm);
         let s = shaft.bearings[k].state().statistics;
         println!(
             "\n| shaft, bearing {} | 60.0000 ms | {} | {:.2} | {} | {} | {:.2} | {energy:.0e} | {largest:.0e} |",

@@ -49,7 +49,7 @@ const EXTREMES: [&str; 24] = [
 /// One random alteration of bytes: a bit, a piece left out, a piece twice, a cut, or nonsense in between.
 pub fn alter(random: &mut Random, bytes: &mut Vec<u8>) {
     if bytes.is_empty() {
-        bytes.push(random.next() as u8);
+        bytes.push(random.byte());
         return;
     }
     let at = random.below(bytes.len());
@@ -66,7 +66,7 @@ pub fn alter(random: &mut Random, bytes: &mut Vec<u8>) {
         5 => bytes.truncate(at),
         6 => bytes[at..end].fill(random.pick(&[0, 1, 0x7f, 0x80, 0xff])),
         _ => {
-            let nonsense: Vec<u8> = (0..end - at).map(|_| random.next() as u8).collect();
+            let nonsense: Vec<u8> = (0..end - at).map(|_| random.byte()).collect();
             bytes.splice(at..at, nonsense);
         }
     }

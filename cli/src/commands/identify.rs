@@ -13,7 +13,7 @@ use roulement::kalker::nonlinear::Kalker;
 use roulement::model::bearing::Bearing;
 use roulement::scene::Scene;
 
-/// What to identify for.
+/// Options of `roulement identify`.
 #[derive(Args)]
 pub struct Options {
     /// Scene whose raceways are meant; without one, give --axis-ratio.

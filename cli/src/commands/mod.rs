@@ -74,7 +74,7 @@ enum Command {
     },
     /// Identify the spin coupling of the regularised creep law against Kalker's nonlinear theory.
     Identify(identify::Options),
-    /// Measure what accuracy costs in time: every lever, its error and its CPU time.
+    /// Measure error against CPU time of every setting that trades accuracy for speed.
     Cost {
         /// Scene file; the six standard scenes if not given.
         scene: Option<PathBuf>,

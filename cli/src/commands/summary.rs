@@ -1,4 +1,4 @@
-//! What `roulement run` prints at the end.
+//! Summary that `roulement run` prints at the end.
 
 use std::fmt::Write;
 use std::time::Duration;

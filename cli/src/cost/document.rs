@@ -20,7 +20,7 @@ pub enum Block {
     Figure {
         /// File name.
         file: String,
-        /// What it shows.
+        /// Caption.
         caption: String,
     },
     /// Parts between comments with a name, by which `scripts/study` finds them.

@@ -173,7 +173,7 @@ impl Look {
     }
 }
 
-/// What the marks of one kind of error mean.
+/// Meaning of the marks of one kind of error.
 fn key(kind: ReferenceKind) -> Vec<(String, Option<Look>)> {
     let heading = (kind_name(kind).to_string(), None);
     let entries: Vec<_> = match kind {

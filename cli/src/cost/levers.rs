@@ -1,11 +1,11 @@
-//! What a user can turn: every lever with its settings, as changed copies of a scene.
+//! Levers (see [`crate::cost`]) and their settings, as changed copies of a scene.
 
 use strum::{IntoStaticStr, VariantArray};
 
 use roulement::scene::units::Time;
 use roulement::scene::{Accuracy, CreepLaw, Drive, Scene};
 
-/// A lever of accuracy and speed; one curve in the plots.
+/// A setting that trades accuracy for speed; one curve in the plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, IntoStaticStr, VariantArray)]
 pub enum Lever {
     /// Quasi-static or dynamic.
@@ -49,7 +49,7 @@ impl Lever {
         self.into()
     }
 
-    /// What the lever's error is measured against.
+    /// Reference of the lever's error.
     pub fn reference(self) -> ReferenceKind {
         match self {
             Self::Level | Self::CreepLaw => ReferenceKind::Model,
@@ -58,13 +58,13 @@ impl Lever {
     }
 }
 
-/// What an error is measured against; the two are never mixed.
+/// Kind of reference of an error; the two are never mixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
 pub enum ReferenceKind {
-    /// The same model at a tiny step.
+    /// Numerical error: against the scene's own model at a tiny step.
     Numerical,
-    /// The richest model at the scene's own step.
+    /// Model error: against the richest model at the scene's own step.
     Model,
 }
 
@@ -77,12 +77,12 @@ pub enum Level {
     Dynamic,
 }
 
-/// What an importer knows when it sets the inputs of a communication step.
+/// Knowledge of the importer when it sets the inputs of a communication step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inputs {
     /// Pose, twist and loads at the start of the step.
     Held,
-    /// The same, and the rate of the twist.
+    /// Pose, twist, rate of the twist and loads at the start of the step.
     Derivatives,
     /// Pose, twist and loads at the end of the step.
     Ahead,
@@ -93,7 +93,7 @@ pub enum Inputs {
 pub struct Setting {
     /// Lever it belongs to.
     pub lever: Lever,
-    /// What the lever is set to, as shown.
+    /// Value of the lever, as shown.
     pub label: String,
     /// Scene as changed by the lever.
     pub scene: Scene,
@@ -101,7 +101,7 @@ pub struct Setting {
     pub level: Level,
     /// \[s] communication step.
     pub communication: f64,
-    /// What the importer knows.
+    /// Knowledge of the importer.
     pub inputs: Inputs,
 }
 
@@ -151,14 +151,14 @@ impl CreepModel {
     /// (`docs/rolling-contact.md`).
     pub const RICHEST: Self = Self { law: CreepLaw::KalkerTable, degree: None, heathcote_slip: true };
 
-    /// That of a scene.
+    /// Creep model of a scene.
     pub fn of(scene: &Scene) -> Self {
         let effects = &scene.effects;
         let degree = (effects.creep == CreepLaw::Kalker).then_some(effects.kalker_degree);
         Self { law: effects.creep, degree, heathcote_slip: effects.heathcote_slip }
     }
 
-    /// Those of the study, from the poorest to the richest. `linear` is left out: it is unbounded, wrong by up to six
+    /// Creep models of the study, from the poorest to the richest. `linear` is left out: it is unbounded, wrong by up to six
     /// decades where balls spin.
     pub fn studied() -> Vec<Self> {
         let laws = CreepLaw::VARIANTS.iter().filter(|law| **law != CreepLaw::Linear);

@@ -1,4 +1,4 @@
-//! What a stretch of this thread's work costs.
+//! CPU time and instructions of a stretch of this thread's work.
 
 use cpu_time::ThreadTime;
 

@@ -1,8 +1,9 @@
-//! What accuracy costs in time: a work-precision study of a scene (`roulement cost`).
+//! Work-precision study of a scene: error against CPU time (`roulement cost`).
 //!
-//! Every lever that a user can turn is run at several settings. Errors have two references that are never mixed:
-//! the same model at a tiny step gives the numerical error of levers that leave the model as it is, the richest model
-//! gives the model error of those that change it. Each reference has an error bar from a run at half its step.
+//! A *lever* is a setting that trades accuracy for speed, such as the creep law, the tolerance or the largest step. The
+//! study runs every lever at several values. Errors have two references that are never mixed: the same model at a tiny
+//! step gives the numerical error of levers that leave the model as it is, the richest model gives the model error of
+//! those that change it. Each reference has an error bar from a run at another step.
 
 mod document;
 pub mod figures;
@@ -32,7 +33,7 @@ pub const SCENES: [(&str, &str); 6] = [
     ("misalignment", include_str!("../../../scenes/cost/misalignment.toml")),
 ];
 
-/// [-] the errors are of the run from this share of its duration on.
+/// [-] fraction of the duration from which on errors are measured.
 const WINDOW_START: f64 = 0.25;
 /// [-] a scene is smooth if its two finest runs differ by less than this in every quantity at equal times.
 const SMOOTH: f64 = 1e-4;
@@ -49,7 +50,7 @@ struct Reference {
 pub struct Point {
     /// Lever.
     pub lever: Lever,
-    /// What it was set to.
+    /// Value of the lever.
     pub label: String,
     /// Creep model.
     pub creep: CreepModel,

@@ -1,4 +1,4 @@
-//! One run of one setting: what it showed, and what it cost.
+//! One run of one setting: its samples and its cost.
 
 use std::ops::ControlFlow;
 
@@ -21,7 +21,7 @@ const MOST_RUNS: u32 = 3;
 /// \[s] how far ahead the rate of a scripted twist is taken.
 const RATE_STEP: f64 = 1e-7;
 
-/// What a run showed at a communication point.
+/// Sample of a run at a communication point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// \[s] time.

@@ -24,7 +24,7 @@ pub enum ReportError {
     Table {
         /// File.
         path: String,
-        /// What went wrong.
+        /// Cause.
         source: csv::Error,
     },
     /// A text.
@@ -32,7 +32,7 @@ pub enum ReportError {
     Text {
         /// File.
         path: String,
-        /// What went wrong.
+        /// Cause.
         source: std::io::Error,
     },
 }
@@ -92,16 +92,14 @@ fn report(studies: &[SceneStudy]) -> Vec<Block> {
         text("The goals of `solver.accuracy` over all scenes:"),
         Block::Section("goals".into(), vec![goals(&smooth, &impacts)]),
     ];
-    for (group, name, heading, how) in [
+    for (group, heading, how) in [
         (
             smooth,
-            "smooth",
             "Smooth scenes",
             "The two finest runs stay together: errors are root mean squares of differences at equal times.",
         ),
         (
             impacts,
-            "impacts",
             "Scenes with impacts",
             "Trajectories diverge, whatever the step: errors are differences of means over the window.",
         ),
@@ -109,17 +107,14 @@ fn report(studies: &[SceneStudy]) -> Vec<Block> {
         if group.is_empty() {
             continue;
         }
-        let section = |part: &str, blocks| Block::Section(format!("{name} {part}"), blocks);
         let plot = |study: &&SceneStudy| figure(study, "overview", "largest error against CPU time");
+        blocks.extend([Block::Heading(2, heading.into()), text(how), goals_by_scene(&group)]);
+        blocks.extend(group.iter().map(plot));
         blocks.extend([
-            Block::Heading(2, heading.into()),
-            text(how),
-            section("goals", vec![goals_by_scene(&group)]),
-            section("plots", group.iter().map(plot).collect()),
             text(CHEAPEST),
-            section("cheapest", vec![cheapest(&group)]),
+            cheapest(&group),
             text("Error of every model against the richest, at the scene's own step, and its CPU time:"),
-            section("models", vec![models(&group)]),
+            models(&group),
         ]);
         group.iter().for_each(|study| scene(study, &mut blocks));
     }

@@ -1,4 +1,4 @@
-//! What a shared library says of itself in its header: whether a platform of packages can load it.
+//! Header check of shared libraries: can a platform of packages load this file?
 
 use std::path::Path;
 
@@ -44,7 +44,7 @@ fn machine_name(architecture: Architecture, bits: u32) -> String {
 }
 
 impl Platform {
-    /// What its loader loads, in words.
+    /// Kind of library that its loader loads, in words.
     pub fn wanted(&self) -> String {
         format!("a shared library, {} for x86-64", format_name(self.format))
     }
@@ -52,7 +52,7 @@ impl Platform {
     /// Checks that a library is one that this platform's loader loads.
     ///
     /// # Errors
-    /// What it is instead, in words.
+    /// Kind of the file if it is another one, in words.
     pub fn check(&self, library: &[u8]) -> Result<(), String> {
         match FileKind::parse(library) {
             Ok(FileKind::MachOFat32 | FileKind::MachOFat64) => {

@@ -26,11 +26,11 @@ pub enum PackageError {
     /// A file could not be read or written.
     #[error("{what} {path}: {source}")]
     File {
-        /// What was tried.
+        /// The operation that failed.
         what: &'static str,
         /// File.
         path: String,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// Something in memory failed.
@@ -56,9 +56,9 @@ pub enum PackageError {
         path: String,
         /// Folder of the platform.
         folder: &'static str,
-        /// What the file is.
+        /// Kind of the file.
         found: String,
-        /// What the platform loads.
+        /// Kind of file that the platform loads.
         wanted: String,
     },
     /// Two libraries for one platform.
@@ -84,7 +84,7 @@ fn read_library(path: &Path) -> Result<(Platform, Vec<u8>), PackageError> {
     Ok((platform, library))
 }
 
-/// What to make of an error of the operating system with a file.
+/// Turns an error of the operating system with a file into a [`PackageError`].
 fn file_error(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> PackageError {
     let path = path.display().to_string();
     move |source| PackageError::File { what, path, source }

@@ -1,4 +1,4 @@
-//! What a run leaves behind: its table and its plots; and how all plots look.
+//! Results of a run: its table and its plots; and the style of all plots.
 
 pub mod plots;
 pub mod results;

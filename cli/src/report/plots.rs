@@ -201,7 +201,7 @@ fn draw(panel: &Panel, area: &Area<'_>) -> Drawn {
     legend(&mut chart, SeriesLabelPosition::UpperRight)
 }
 
-/// Decimals that tell neighbouring tick labels of a range apart.
+/// Decimals that tell adjacent tick labels of a range apart.
 fn digits(span: f64) -> usize {
     if span > 0.0 { (1.5 - span.log10()).ceil().clamp(0.0, 9.0) as usize } else { 0 }
 }

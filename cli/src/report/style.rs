@@ -1,4 +1,4 @@
-//! How all plots look: fonts, colours, grid, legend; and the files that they become.
+//! Style of all plots: fonts, colours, grid, legend; and writing them as files.
 
 use std::error::Error;
 use std::path::Path;
@@ -28,7 +28,7 @@ const FAMILY: &str = "sans-serif";
 const TITLE: Font = (FAMILY, 20);
 /// Heading of a panel.
 pub const CAPTION: Font = (FAMILY, 15);
-/// What an axis shows, and words beside panels.
+/// Quantities of the axes, and words beside panels.
 pub const DESCRIPTION: Font = (FAMILY, 13);
 /// Numbers at the axes, names of curves.
 pub const LABEL: Font = (FAMILY, 12);

@@ -135,7 +135,7 @@ impl Variables {
         table
     }
 
-    /// What can change in a run, with or without every ball.
+    /// The variables that can change in a run, with or without those of every ball.
     pub fn moving(scene: &Scene, per_ball: bool) -> Self {
         let mut table = Self { rows: vec![] };
         table.add_race(Race::Inner, scene.inner.drive, scene.interface.orientation);
@@ -188,10 +188,10 @@ impl Variables {
     /// Writes the parameters among the values of all rows into a scene.
     pub fn set_parameters(&self, scene: &mut Scene, values: &[f64]) {
         for (row, value) in self.rows.iter().zip(values) {
-            if let Source::Parameter(parameter, _) = row.source {
-                if let Some(place) = parameter.place(scene) {
-                    *place = *value;
-                }
+            if let Source::Parameter(parameter, _) = row.source
+                && let Some(place) = parameter.place(scene)
+            {
+                *place = *value;
             }
         }
     }
@@ -247,7 +247,7 @@ impl Variables {
 }
 
 impl Variable {
-    /// What kind of input this is; none of other variables.
+    /// Kind of an input; none for other variables.
     pub fn input_kind(&self) -> Option<InputKind> {
         match self.source {
             _ if self.causality != Causality::Input => None,

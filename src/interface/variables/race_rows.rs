@@ -24,7 +24,7 @@ pub struct RaceVariable {
     pub limits: [Option<f64>; 2],
     /// One sentence, with `{race}` and `{component}` in it.
     description: &'static str,
-    /// What it is, by the drive of the race and how orientations are given; none where there is no such variable.
+    /// Causality by the drive of the race and the form of its orientation; none where there is no such variable.
     pub causality: fn(Drive, Orientation) -> Option<Causality>,
     /// \[unit] component as an output.
     pub read: fn(&RaceOutput, usize) -> f64,
@@ -41,7 +41,7 @@ pub struct InputAccess {
     pub set: fn(&mut RaceSetting, usize, f64, f64),
     /// [unit/s] rate of a component as set last.
     pub rate: fn(&RaceInput, usize) -> f64,
-    /// What kind of quantity it is.
+    /// Kind of the quantity.
     pub kind: InputKind,
 }
 
@@ -79,7 +79,7 @@ pub struct RaceSetting {
 pub const NORM_TOLERANCE: f64 = 1e-3;
 
 impl RaceSetting {
-    /// On top of these inputs.
+    /// Begins with the inputs of `base`.
     pub fn new(base: &RaceInput) -> Self {
         Self { input: *base, quaternion: [None; 4], angles: [None; 3] }
     }
@@ -126,7 +126,7 @@ fn motion(drive: Drive) -> Option<Causality> {
     }
 }
 
-/// No rate of its own: that of a pose is its twist.
+/// Rate of a pose, which has none of its own: it is the twist.
 fn no_rate(_: &RaceInput, _: usize) -> f64 {
     0.0
 }

@@ -5,7 +5,7 @@
 pub struct Unit {
     /// Name as written in the model description.
     pub name: &'static str,
-    /// What is measured in it: the name of the FMI type.
+    /// Quantity measured in it: the name of the FMI type.
     pub quantity: &'static str,
     /// Exponents of kg, m, s, rad.
     pub exponents: [i8; 4],
@@ -18,7 +18,7 @@ const fn unit(name: &'static str, quantity: &'static str, exponents: [i8; 4]) ->
 }
 
 impl Unit {
-    /// The same with a display unit, of which `factor` make one.
+    /// This unit with a display unit, `factor` of which make one.
     const fn shown(mut self, display: &'static str, factor: f64) -> Self {
         self.display = Some((display, factor));
         self

@@ -12,7 +12,7 @@ use crate::fmi::v2::pointers::{list, list_mut, place};
 use crate::fmi::v2::state_machine::Call;
 use crate::fmi::v2::types::Status;
 
-/// What a call does with a state, or a refusal if it is none.
+/// Runs a call on a saved state; a refusal if the handle is not that of one.
 fn with_state<T>(state: *mut c_void, work: impl FnOnce(&mut FmuState) -> Outcome<T>) -> Outcome<T> {
     handles::with(state, work).unwrap_or_else(refuse_state)
 }
