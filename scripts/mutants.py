@@ -9,6 +9,7 @@ faults planted by hand (option --planted) in scripts/mutants-planted.csv.
 import argparse
 import concurrent.futures
 import csv
+import hashlib
 import json
 import os
 import random
@@ -52,6 +53,9 @@ pub fn active(id: u32) -> bool {
 #[cold]
 #[inline(never)]
 fn slow(id: u32) -> bool {
+    if ON.load(Ordering::Relaxed) == RECORDING && SEEN[id as usize].load(Ordering::Relaxed) {
+        return false;
+    }
     let record = std::env::var("MUTANT_RECORD").ok();
     if ON.load(Ordering::Relaxed) == UNREAD {
         let on = std::env::var("MUTANT").ok().and_then(|text| text.parse().ok()).unwrap_or(0);
@@ -364,35 +368,37 @@ class Workshop:
 
 
 def survey(workshop, mutants, jobs, slowest):
-    """Runs all tests without a fault: which pass, how long each takes, and which faults it reaches. Tests known to be slow
-    from an earlier run are not run again."""
+    """Runs all tests without a fault: which pass, how long each takes, and which faults it reaches. What an earlier run with
+    the same programs and faults found is not run again; nor are tests that took too long in any earlier run."""
     tests = [test for test in workshop.tests() if not SKIPPED.match("::".join(test))]
-    known_file = workshop.folder / "times.json"
-    known = json.loads(known_file.read_text()) if known_file.exists() else {}
     records = workshop.folder / "records"
     shutil.rmtree(records, ignore_errors=True)
     records.mkdir()
+    known_file = workshop.folder / "survey.json"
+    known = json.loads(known_file.read_text()) if known_file.exists() else {}
+    faults = hashlib.sha256("".join(f"{m.id} {m.path} {m.start} {m.new}\n" for m in mutants).encode()).hexdigest()
+    programs = {name: hashlib.sha256(Path(path).read_bytes()).hexdigest() for name, path in workshop.programs.items()}
     times, reached, left_out = {}, defaultdict(list), []
 
     def one(item):
         number, test = item
-        before = known.get("::".join(test), 0.0)
-        if before > slowest:
-            return test, True, before, set()
+        mark = [faults, programs[test[0]]]
+        before = known.get("::".join(test))
+        if before and (before["mark"] == mark or before["seconds"] > slowest):
+            return test, before
         record = records / str(number)
-        passed, seconds = workshop.run(test, 120, MUTANT_RECORD=str(record))
-        seen = {int(line) for line in record.read_text().split()} if record.exists() else set()
-        return test, passed, seconds, seen
+        passed, seconds = workshop.run(test, 4.0 * slowest, MUTANT_RECORD=str(record))
+        seen = sorted({int(line) for line in record.read_text().split()}) if record.exists() else []
+        return test, {"mark": mark, "passed": passed, "seconds": seconds, "seen": seen}
 
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        for test, passed, seconds, seen in pool.map(one, enumerate(tests)):
-            if passed:
-                known["::".join(test)] = seconds
-            if not passed or seconds > slowest:
-                left_out.append((test, "slow" if passed else "fails without a fault"))
+        for test, found in pool.map(one, enumerate(tests)):
+            known["::".join(test)] = found
+            if not found["passed"] or found["seconds"] > slowest:
+                left_out.append((test, "fails without a fault" if found["passed"] is False else "slow"))
                 continue
-            times[test] = seconds
-            for id in seen:
+            times[test] = found["seconds"]
+            for id in found["seen"]:
                 reached[id].append(test)
     for mutant in mutants:
         mutant.reached_by = reached[mutant.id]
@@ -492,7 +498,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1, help="of the sample (1)")
     parser.add_argument("--planted", action="store_true", help="the faults of scripts/mutants-planted.csv instead")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="tests at a time (processors)")
-    parser.add_argument("--slowest", type=float, default=10.0, help="[s] longest test that is used (10)")
+    parser.add_argument("--slowest", type=float, default=60.0, help="[s] longest test that is used (60)")
     parser.add_argument("--scratch", type=Path, default=ROOT / "target/mutants", help="scratch folder (target/mutants)")
     parser.add_argument("--resume", action="store_true",
                         help="faults caught before stay caught: after tests were added, with src unchanged")

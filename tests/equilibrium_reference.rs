@@ -251,6 +251,8 @@ fn a_load_that_no_bearing_takes_is_refused_with_its_reason() {
     let input = EquilibriumInput::from_scene(&scene, Gyroscopic::None);
     let refusal = equilibrium::solve(&Model::new(&scene).unwrap(), &input);
     let message = refusal.map(|solution| solution.displacement).unwrap_err().to_string();
+    // The first ball is the one under the load.
+    assert!(message.starts_with("ball 1 would be pressed in"), "{message}");
     assert!(message.contains("beyond elastic Hertzian contact"), "{message}");
 }
 

@@ -93,6 +93,52 @@ fn closed_form_small_creepages_give_linear_theory() {
 }
 
 #[test]
+fn invariant_derivatives_agree_with_differences() {
+    // From nearly all sticking to nearly all sliding; by creepages and the curvature of the groove.
+    for (ratio, degree) in [(0.15, 3), (2.0, 2)] {
+        let kalker = kalker(ratio, degree);
+        for [x, y, spin, curvature] in
+            [[0.1, -0.05, 0.1, 0.02], [0.4, 0.3, -0.5, 0.1], [0.9, 0.6, 0.8, -0.2], [-0.3, 1.2, 2.0, 0.3]]
+        {
+            let creepage = |k: usize, step: f64| {
+                let mut h = [x, y, spin, curvature];
+                h[k] += step;
+                ScaledCreepage { x: h[0], y: h[1], spin: h[2], curvature: h[3] }
+            };
+            let solution = kalker.solve(&creepage(0, 0.0), None).unwrap();
+            let exact = kalker.derivatives(&solution, &creepage(0, 0.0)).unwrap();
+            let size = exact.iter().flatten().fold(0.0f64, |size, d| size.max(d.abs()));
+            for k in 0..4 {
+                let step = 1e-5;
+                let start = Some(solution.coefficients.as_slice());
+                let at = |step: f64| {
+                    let f = kalker.solve(&creepage(k, step), start).unwrap().forces;
+                    [f.fx, f.fy, f.mz, f.second_moment]
+                };
+                let (after, before) = (at(step), at(-step));
+                for i in 0..4 {
+                    let slope = (after[i] - before[i]) / (2.0 * step);
+                    let error = (slope - exact[i][k]).abs();
+                    assert!(error < 1e-4 * size, "{ratio} force {i} by {k}: {slope} {}", exact[i][k]);
+                }
+            }
+        }
+    }
+    // Nothing to do at rest: one step finds it.
+    let rest = kalker(1.0, 3).solve(&ScaledCreepage::default(), None).unwrap();
+    assert_eq!((rest.forces.fx, rest.forces.fy, rest.forces.mz, rest.iterations), (0.0, 0.0, 0.0, 1));
+}
+
+#[test]
+fn closed_form_printed_objective_vanishes_in_full_adhesion() {
+    // Eq. 13 as printed is zero for every traction that takes all slip away, bounded or not.
+    for [x, y, spin] in [[0.02, 0.0, 0.0], [0.01, -0.02, 0.0], [0.01, 0.02, 0.03]] {
+        let (_, objective) = printed::solve(&kalker(0.5, 4), &ScaledCreepage { x, y, spin, curvature: 0.0 });
+        assert!(objective < 1e-16 * (x * x + y * y + spin * spin), "{x} {y} {spin}: {objective:e}");
+    }
+}
+
+#[test]
 fn invariant_symmetries() {
     for ratio in [0.15, 1.0, 3.0] {
         let kalker = kalker(ratio, 3);

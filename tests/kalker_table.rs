@@ -322,3 +322,25 @@ fn invariant_directions_of_rolling_are_mixed_smoothly() {
         }
     }
 }
+
+#[test]
+fn invariant_the_table_goes_on_to_its_first_and_last_axis_ratio() {
+    // Within 5 % of an end, forces change with ln(axis ratio) as they do beside it: as from the last node to the one before.
+    let h = [[0.3, 0.1, 0.4], [0.1, -0.4, 1.0], [0.8, 0.5, -0.7]];
+    for (end, next) in [(0, 1), (12, 11)] {
+        let (at, inwards) = (knot(end), (knot(next) / knot(end)).ln());
+        for [x, y, spin] in h {
+            let creepage = ScaledCreepage { x, y, spin, curvature: 0.0 };
+            let seen = |share: f64| {
+                let ratio = (at * (share * inwards).exp()).clamp(0.05, 20.0);
+                forces(&patch(ratio), &creepage)
+            };
+            let [here, near, far] = [0.0, 0.05, 1.0].map(seen);
+            for i in 0..3 {
+                let (slope, mean) = ((near[i] - here[i]) / 0.05, far[i] - here[i]);
+                println!("{at} {x} {i}: {slope:.4} {mean:.4}");
+                assert!((slope - mean).abs() < 0.25 * mean.abs() + 0.01, "{at} {i}: {slope} {mean}");
+            }
+        }
+    }
+}
