@@ -54,8 +54,8 @@ def product(p, q):
 def turn(x, y, z):
     """Quaternion of a rotation vector."""
     angle = math.sqrt(x * x + y * y + z * z)
-    share = 0.5 * np.sinc(angle / (2 * math.pi))
-    return np.array([math.cos(angle / 2), share * x, share * y, share * z])
+    factor = 0.5 * np.sinc(angle / (2 * math.pi))
+    return np.array([math.cos(angle / 2), factor * x, factor * y, factor * z])
 
 
 class Bearing:
