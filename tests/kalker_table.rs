@@ -328,7 +328,7 @@ fn invariant_the_table_goes_on_to_its_first_and_last_axis_ratio() {
     // Within 5 % of an end, forces change with ln(axis ratio) as they do beside it: as from the last node to the one before.
     let h = [[0.3, 0.1, 0.4], [0.1, -0.4, 1.0], [0.8, 0.5, -0.7]];
     for (end, next) in [(0, 1), (12, 11)] {
-        let (at, inwards) = (knot(end), (knot(next) / knot(end)).ln());
+        let (at, inwards) = (axis_ratio(end), (axis_ratio(next) / axis_ratio(end)).ln());
         for [x, y, spin] in h {
             let creepage = ScaledCreepage { x, y, spin, curvature: 0.0 };
             let seen = |share: f64| {
