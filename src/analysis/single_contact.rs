@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::contact::creep::{self, Creepage, LinearTheory, saturation};
-use crate::contact::hertz::complete_elliptic_integrals;
 use crate::contact::identification::identify_by_table;
 use crate::kalker::half_space::{HalfSpaceError, extrapolated};
 use crate::kalker::linear::{LinearError, creep_matrix};
 use crate::kalker::nonlinear::{Kalker, KalkerError};
 use crate::kalker::table::CreepTable;
 use crate::kalker::{Patch, ScaledCreepage};
+use crate::numerics::elliptic::complete_elliptic_integrals;
 use crate::scene::CreepLaw;
 
 /// Degree of the nonlinear theory's polynomials in simulations, where nothing else is said.

@@ -4,9 +4,10 @@
 //! ball; velocity of the ball minus that of the raceway) and forces of the ball ON THE RACEWAY, which point along the
 //! creepage (paper eq. 14). The force on the ball is the opposite.
 
-use crate::contact::heathcote::CurvatureEffect;
-use crate::contact::regularised::Parameters;
-use crate::contact::shape::ShapeAt;
+use super::heathcote::CurvatureEffect;
+pub use super::linear_theory::{CreepForces, Creepage, LinearTheory};
+use super::regularised::Parameters;
+use super::shape::ShapeAt;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
 use crate::numerics::scalar::{Scalar, within_limit};
@@ -28,83 +29,6 @@ pub enum Law<'a> {
     Kalker(&'a ScaledKalker),
     /// Kalker's nonlinear theory in polynomials as simulations use it: the table plus a difference that is frozen in a step.
     Frozen(&'a CreepTable, &'a [f64; 4]),
-}
-
-/// Creepages of a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Creepage<S> {
-    /// [-] longitudinal slip over rolling speed.
-    pub longitudinal: S,
-    /// [-] lateral slip over rolling speed.
-    pub lateral: S,
-    /// [1/m] spin over rolling speed.
-    pub spin: S,
-    /// [1/m2] kappa of the slip `-kappa y^2` of a bent groove over rolling speed; none if that effect is off.
-    pub curvature: Option<S>,
-}
-
-impl<S: Scalar> Creepage<S> {
-    /// Number by number from two creepages.
-    #[inline(always)]
-    pub fn zip_with<U: Scalar, T>(&self, other: &Creepage<U>, mut f: impl FnMut(S, U) -> T) -> Creepage<T> {
-        Creepage {
-            longitudinal: f(self.longitudinal, other.longitudinal),
-            lateral: f(self.lateral, other.lateral),
-            spin: f(self.spin, other.spin),
-            curvature: self.curvature.zip(other.curvature).map(|(a, b)| f(a, b)),
-        }
-    }
-}
-
-/// Kalker's linear theory of the contact in hand, dimensional (paper eq. 14), and its limits.
-#[derive(Clone, Copy, Debug)]
-pub struct LinearTheory<S> {
-    /// \[N] `G c^2 C11`.
-    pub longitudinal: S,
-    /// \[N] `G c^2 C22`.
-    pub lateral: S,
-    /// [N m] `G c^3 C23`.
-    pub coupling: S,
-    /// [N m2] `G c^4 C33`.
-    pub spin: S,
-    /// \[N] `mu Q`.
-    pub friction_limit: S,
-    /// [N m] spin moment of complete slip.
-    pub moment_limit: S,
-    /// \[m] `c = sqrt(a b)`.
-    pub mean_semi_axis: S,
-    /// \[m] semi-axis transverse to rolling.
-    pub half_width: S,
-}
-
-/// Tangential effect of the ball on the raceway.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CreepForces<S> {
-    /// \[N] along the rolling direction.
-    pub longitudinal: S,
-    /// \[N] transverse to it.
-    pub lateral: S,
-    /// [N m] about the normal.
-    pub spin_moment: S,
-    /// [N m2] integral of `y^2` times the longitudinal traction; 0 where the groove counts as flat.
-    pub second_moment: S,
-}
-
-impl<S: Scalar> CreepForces<S> {
-    /// Number by number from two forces.
-    #[inline(always)]
-    pub fn zip_with<U: Scalar, T>(
-        &self,
-        other: &CreepForces<U>,
-        mut f: impl FnMut(S, U) -> T,
-    ) -> CreepForces<T> {
-        CreepForces {
-            longitudinal: f(self.longitudinal, other.longitudinal),
-            lateral: f(self.lateral, other.lateral),
-            spin_moment: f(self.spin_moment, other.spin_moment),
-            second_moment: f(self.second_moment, other.second_moment),
-        }
-    }
 }
 
 /// \[N] friction limit below which forces fade to zero, so that an unloaded contact is 0 and not 0/0.

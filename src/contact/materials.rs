@@ -1,7 +1,7 @@
 //! Elastic constants of two bodies in contact.
 
 /// Elastic constants of a pair of materials.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     /// [1/Pa] `(1 - nu1^2)/E1 + (1 - nu2^2)/E2`.
     pub compliance: f64,

@@ -8,6 +8,7 @@ pub mod hertz;
 pub mod identification;
 mod kinematics;
 pub mod land;
+pub mod linear_theory;
 pub mod many;
 pub mod materials;
 pub mod normal;

@@ -13,7 +13,7 @@
 //! In combined creepage the slope at rest is below linear theory's (`c_x/c_0` is a direction cosine), and with spin
 //! F_x has none at all at c_x = 0: the law is kept as the paper's reference, not as the default.
 
-use super::creep::{Creepage, LinearTheory};
+use super::linear_theory::{Creepage, LinearTheory};
 use crate::numerics::scalar::{Scalar, within_limit};
 
 /// [-] creepages below this count as zero where a printed formula is 0/0 there.

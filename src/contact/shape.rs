@@ -6,11 +6,12 @@
 use std::convert::Infallible;
 use std::f64::consts::PI;
 
-use crate::contact::hertz::{HertzContact, complete_elliptic_integrals};
-use crate::contact::raceway::Raceway;
+use super::hertz::HertzContact;
+use super::materials::Pair;
+use super::raceway::Raceway;
 use crate::kalker::Patch;
 use crate::kalker::linear::{LinearError, creep_matrix};
-use crate::model::bearing::Bearing;
+use crate::numerics::elliptic::complete_elliptic_integrals;
 use crate::numerics::scalar::Scalar;
 
 /// Nodes per polynomial. The interval of curvatures is short, so that they converge at about two digits a node:
@@ -159,44 +160,50 @@ pub struct ContactShape {
 }
 
 impl ContactShape {
-    /// Tabulates the contacts of a raceway of the bearing.
+    /// Tabulates the contacts of balls of a radius \[m] on a pitch circle of a diameter \[m] with a raceway.
     ///
     /// # Errors
     /// If Kalker's linear theory has no answer for an axis ratio that occurs.
-    pub fn new(bearing: &Bearing, raceway: &Raceway) -> Result<Self, LinearError> {
-        Self::tabulated(bearing, raceway, |hertz| {
+    pub fn new(
+        ball_radius: f64,
+        pitch_diameter: f64,
+        materials: &Pair,
+        raceway: &Raceway,
+    ) -> Result<Self, LinearError> {
+        Self::tabulated(ball_radius, pitch_diameter, materials, raceway, |hertz| {
             let axis_ratio = hertz.semi_axis_rolling / hertz.semi_axis_transverse;
-            ShapeAt::with_creep_of(axis_ratio, hertz, bearing.shear_modulus, bearing.poisson_ratio)
+            ShapeAt::with_creep_of(axis_ratio, hertz, materials.shear_modulus, materials.poisson_ratio)
         })
     }
 
-    /// Tabulates the contacts of a raceway of the bearing for forces without creep.
-    pub fn without_creep(bearing: &Bearing, raceway: &Raceway) -> Self {
+    /// Tabulates the contacts of balls of a radius \[m] on a pitch circle of a diameter \[m] with a raceway for forces without creep.
+    pub fn without_creep(ball_radius: f64, pitch_diameter: f64, materials: &Pair, raceway: &Raceway) -> Self {
         let properties = |hertz: &HertzContact| Ok::<_, Infallible>(ShapeAt::without_creep(hertz));
-        let Ok(shape) = Self::tabulated(bearing, raceway, properties);
+        let Ok(shape) = Self::tabulated(ball_radius, pitch_diameter, materials, raceway, properties);
         shape
     }
 
     /// Interpolates the properties of Hertz contacts over the curvatures that occur.
     fn tabulated<E>(
-        bearing: &Bearing,
+        ball_radius: f64,
+        pitch_diameter: f64,
+        materials: &Pair,
         raceway: &Raceway,
         properties: impl Fn(&HertzContact) -> Result<ShapeAt<f64>, E>,
     ) -> Result<Self, E> {
-        let radius = bearing.ball.radius;
         // Curvature at contact angle 0; beyond a right angle the contact has left any real groove.
-        let contact_radius = if raceway.groove_circle_radius > bearing.pitch_diameter / 2.0 {
+        let contact_radius = if raceway.groove_circle_radius > pitch_diameter / 2.0 {
             raceway.groove_circle_radius - raceway.groove_radius
         } else {
             -(raceway.groove_circle_radius + raceway.groove_radius)
         };
         let extreme = 1.05 / contact_radius;
         let (middle, half_width) = (0.475 * extreme, 0.525 * extreme.abs());
-        let ball_curvature = 1.0 / radius;
+        let ball_curvature = 1.0 / ball_radius;
         let transverse_curvature = ball_curvature - 1.0 / raceway.groove_radius;
         let at = |node: f64| {
             let curvature = ball_curvature + (middle + half_width * node);
-            properties(&HertzContact::new(curvature, transverse_curvature, bearing.contact_compliance))
+            properties(&HertzContact::new(curvature, transverse_curvature, materials.compliance))
         };
         let first = at(node(0))?;
         let mut columns = each_property!(value of first => [*value; NODES]);
@@ -213,7 +220,7 @@ impl ContactShape {
             half_width,
             transverse_curvature,
             ball_curvature,
-            compliance: bearing.contact_compliance,
+            compliance: materials.compliance,
             properties: each_property!(column of columns => Polynomial::interpolate(column)),
         })
     }
@@ -253,17 +260,16 @@ impl ContactShape {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
 
     #[test]
     fn interpolated_stiffness_is_exact_to_1e_10() {
-        let text = include_str!("../../scenes/thrust.toml");
-        for pitch in ["24 mm", "46 mm", "300 mm"] {
-            let text =
-                text.replace("\"46 mm\"", &format!("\"{pitch}\"")).replace("balls = 10 ", "balls = 7 ");
-            let bearing = Bearing::new(&Scene::parse(&text).unwrap());
-            for raceway in [&bearing.inner, &bearing.outer] {
-                let shape = ContactShape::new(&bearing, raceway).unwrap();
+        let steel = Pair::new([(206e9, 0.3); 2]);
+        let (radius, groove_radius) = (4.7625e-3, 4.953e-3);
+        for pitch in [24e-3, 46e-3, 300e-3] {
+            // Groove centres a fifth of a millimetre beyond and within the pitch circle.
+            for groove_circle_radius in [0.5 * pitch + 1.7e-4, 0.5 * pitch - 1.7e-4] {
+                let raceway = Raceway { groove_radius, groove_circle_radius, groove_offset: 0.0 };
+                let shape = ContactShape::new(radius, pitch, &steel, &raceway).unwrap();
                 for i in 0..=50 {
                     let curvature = shape.middle + shape.half_width * (f64::from(i) / 25.0 - 1.0);
                     let exact = shape.hertz(curvature).stiffness;

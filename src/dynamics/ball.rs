@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-use super::body::BodyTrial;
+use super::body::RaceSeen;
 use super::cage::CageTrial;
 use super::directions::{D, DIRECTIONS, by_first, by_second, constant_race, scale_moments, seed};
 use super::reaction::Reaction;
@@ -12,38 +12,13 @@ use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::forces::on_ball;
 use crate::kalker::scaled_law::Difference;
 use crate::model::Model;
-use crate::model::bodies::{Bodies, Body, PerRace, Race};
+use crate::model::bodies::{Body, PerRace, Race};
 use crate::model::cage::CageModel;
 use crate::model::state::{BallState, stack};
 use crate::numerics::arrowhead::{Block, SLOTS};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::Dual;
-
-/// A race as the balls see it in a trial step.
-#[derive(Clone, Copy, Debug)]
-pub struct RaceSeen<'a> {
-    /// Its motion.
-    pub motion: &'a RaceMotion<f64>,
-    /// Its motion with derivatives by the rotation, where forces move it.
-    pub moved: Option<&'a RaceMotion<D>>,
-}
-
-impl<'a> RaceSeen<'a> {
-    /// A race from the motions of all races and the trials of those that forces move.
-    pub fn new(
-        race: Race,
-        motions: &'a PerRace<RaceMotion<f64>>,
-        bodies: &'a Bodies<Option<BodyTrial>>,
-    ) -> Self {
-        Self { motion: &motions[race], moved: bodies[race].as_ref().map(|trial| &trial.motion) }
-    }
-
-    /// Motion with derivatives by the rotation, all zero where it is prescribed.
-    pub fn with_derivatives(&self) -> RaceMotion<D> {
-        self.moved.copied().unwrap_or_else(|| constant_race(self.motion))
-    }
-}
 
 /// Everything that a ball may touch in a trial step.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,7 @@ use super::directions::{D, SECOND_ROTATION, by_first, by_second_unknown, constan
 use super::reaction::Reaction;
 use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
-use crate::model::bodies::{Constraint, RigidBody, tilt_component, tilt_direction};
+use crate::model::bodies::{Bodies, Constraint, PerRace, Race, RigidBody, tilt_component, tilt_direction};
 use crate::model::state::{BodyState, normalised};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::{Pose, Wrench};
@@ -250,6 +250,31 @@ impl BodyTrial {
         let moments = to_material.matrix() * world.fixed_rows::<3>(3) * (-fraction / length);
         rows.fixed_rows_mut::<3>(3).copy_from(&moments);
         rows
+    }
+}
+
+/// A race as the balls see it in a trial step.
+#[derive(Clone, Copy, Debug)]
+pub struct RaceSeen<'a> {
+    /// Its motion.
+    pub motion: &'a RaceMotion<f64>,
+    /// Its motion with derivatives by the rotation, where forces move it.
+    pub moved: Option<&'a RaceMotion<D>>,
+}
+
+impl<'a> RaceSeen<'a> {
+    /// A race from the motions of all races and the trials of those that forces move.
+    pub fn new(
+        race: Race,
+        motions: &'a PerRace<RaceMotion<f64>>,
+        bodies: &'a Bodies<Option<BodyTrial>>,
+    ) -> Self {
+        Self { motion: &motions[race], moved: bodies[race].as_ref().map(|trial| &trial.motion) }
+    }
+
+    /// Motion with derivatives by the rotation, all zero where it is prescribed.
+    pub fn with_derivatives(&self) -> RaceMotion<D> {
+        self.moved.copied().unwrap_or_else(|| constant_race(self.motion))
     }
 }
 

@@ -2,8 +2,7 @@
 
 use nalgebra::{Matrix6, Vector3};
 
-use super::ball::RaceSeen;
-use super::body::BodyTrial;
+use super::body::{BodyTrial, RaceSeen};
 use super::directions::{D, exchange_bodies};
 use super::reaction::Reaction;
 use crate::contact::body::BodyMotion;

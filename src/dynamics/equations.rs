@@ -2,8 +2,8 @@
 
 use nalgebra::{Vector3, Vector6};
 
-use super::ball::{BallTrial, RaceSeen, Surroundings};
-use super::body::{BodyLoad, BodyScales, BodyTrial};
+use super::ball::{BallTrial, Surroundings};
+use super::body::{BodyLoad, BodyScales, BodyTrial, RaceSeen};
 use super::cage::CageTrial;
 use super::orbit_turn::OrbitTurn;
 use super::reaction::Reaction;

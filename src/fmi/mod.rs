@@ -20,6 +20,7 @@ mod instance;
 mod log;
 mod outcome;
 mod resources;
+mod saved_state;
 mod state;
 mod step;
 #[allow(non_snake_case)]

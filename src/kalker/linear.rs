@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use super::Patch;
 use super::load_displacement::{Basis, LoadDisplacement, disc_moment};
-use crate::contact::hertz::complete_elliptic_integrals;
+use crate::numerics::elliptic::complete_elliptic_integrals;
 
 /// Degree of the polynomials: odd ones converge faster. Coefficients are within 0.3 % of higher degrees from axis
 /// ratio 0.05 to 20 (tested).

@@ -4,8 +4,9 @@
 use nalgebra::{Cholesky, DVector, Dyn};
 
 use super::ScaledCreepage;
-use super::nonlinear::{Kalker, KalkerError, Solution};
+use super::nonlinear::{Kalker, KalkerError};
 use super::objective::{Expansion, Fields};
+use super::solution::Solution;
 
 /// Iterations of one solve; 6 to 10 are usual.
 const MAX_ITERATIONS: u32 = 200;

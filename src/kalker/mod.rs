@@ -16,6 +16,7 @@ mod minimise;
 pub mod nonlinear;
 mod objective;
 pub mod scaled_law;
+pub mod solution;
 pub mod table;
 mod table_evaluation;
 pub mod table_nodes;

@@ -15,13 +15,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use thiserror::Error;
 
 use super::linear::{LinearError, adhesion_tractions, leading_edge, resultants};
 use super::load_displacement::{Basis, LoadDisplacement};
-use super::objective::{Expansion, Fields, norm, project};
-use super::{Patch, ScaledCreepage, ScaledForces};
+use super::{Patch, ScaledCreepage};
 
 /// [-] weight k of slip against traction in the projection.
 pub(super) const SLIP_WEIGHT: f64 = 2.0;
@@ -64,7 +63,7 @@ pub struct Kalker {
     /// Traction polynomials at the points: one row a monomial, one column a point.
     pub(super) monomial_values: DMatrix<f64>,
     /// Slip at the points by all coefficients: rows x of each point, then y.
-    slips: DMatrix<f64>,
+    pub(super) slips: DMatrix<f64>,
     /// Arguments of the projection at the points by all coefficients: one column each of x and y.
     pub(super) arguments: DMatrix<f64>,
     /// Leading-edge rows, and their square.
@@ -75,36 +74,8 @@ pub struct Kalker {
     /// Linear solutions of unit creepages.
     pub(super) adhesion: DMatrix<f64>,
     /// Net forces over mu Q, mu Q c and mu Q c^2 by all coefficients.
-    resultants: DMatrix<f64>,
+    pub(super) resultants: DMatrix<f64>,
     pub(super) monomials: usize,
-}
-
-/// The solution at one creepage.
-#[derive(Clone, Debug)]
-pub struct Solution {
-    /// Coefficients of the traction polynomials over mu p0: x components, then y.
-    pub coefficients: DVector<f64>,
-    /// Net forces; never above 1.
-    pub forces: ScaledForces,
-    /// [-] adhesion area over contact area.
-    pub stick: f64,
-    /// Iterations spent.
-    pub iterations: u32,
-}
-
-/// Local state at a point of the grid, for pictures.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LocalState {
-    /// [-] X = x/a, Y = y/b.
-    pub place: [f64; 2],
-    /// [-] area on the unit disc that the point stands for.
-    pub weight: f64,
-    /// [-] traction over mu p0, within the Coulomb bound.
-    pub traction: [f64; 2],
-    /// [-] slip velocity over V, times G/(mu p0).
-    pub slip: [f64; 2],
-    /// [-] Coulomb bound over mu p0.
-    pub bound: f64,
 }
 
 /// Nodes and weights of Gauss-Legendre quadrature on [0, 1].
@@ -232,69 +203,5 @@ impl Kalker {
         let (a, b) = (self.patch.axis_ratio.sqrt(), 1.0 / self.patch.axis_ratio.sqrt());
         let y = b * point.y;
         [h.x - (h.spin + h.curvature * y) * y, h.y + h.spin * a * point.x]
-    }
-
-    /// Traction and slip at every point.
-    fn fields(&self, z: &DVector<f64>, h: &ScaledCreepage) -> Vec<([f64; 2], [f64; 2])> {
-        let n = self.monomials;
-        let (fx, fy) =
-            (self.monomial_values.tr_mul(&z.rows(0, n)), self.monomial_values.tr_mul(&z.rows(n, n)));
-        let elastic = &self.slips * z;
-        let rows = self.points.len();
-        self.points
-            .iter()
-            .enumerate()
-            .map(|(i, point)| {
-                let rigid = self.rigid(h, point);
-                ([fx[i], fy[i]], [rigid[0] + elastic[i], rigid[1] + elastic[rows + i]])
-            })
-            .collect()
-    }
-
-    pub(super) fn finish(&self, z: DVector<f64>, fields: &Fields, iterations: u32) -> Solution {
-        let net = &self.resultants * &z;
-        let mut forces = ScaledForces { fx: net[0], fy: net[1], mz: net[2], second_moment: net[3] };
-        // A polynomial may overstep the bound by its own error: a sliding contact stays at the friction limit.
-        let size = forces.fx.hypot(forces.fy);
-        if size > 1.0 {
-            forces.fx /= size * (1.0 + f64::EPSILON);
-            forces.fy /= size * (1.0 + f64::EPSILON);
-        }
-        let (mut stick, mut area) = (0.0, 0.0);
-        let v = &fields.arguments;
-        for (i, point) in self.points.iter().enumerate() {
-            area += point.weight;
-            if norm([v[2 * i], v[2 * i + 1]]) <= point.bound {
-                stick += point.weight;
-            }
-        }
-        Solution { coefficients: z, forces, stick: stick / area, iterations }
-    }
-
-    /// Derivatives of the forces (fx, fy, mz, second moment) by the scaled creepages (x, y, spin, curvature).
-    ///
-    /// By implicit differentiation of the minimum: where its gradient stays zero, the coefficients follow.
-    /// None where the minimum is not isolated.
-    pub fn derivatives(&self, solution: &Solution, creepage: &ScaledCreepage) -> Option<[[f64; 4]; 4]> {
-        let z = &solution.coefficients;
-        let Expansion { sliding, .. } = self.expand(z, &self.fields_at(z, creepage));
-        let follow = self.curvature(&sliding, true).lu().solve(&-self.by_creepage(&sliding))?;
-        let net = &self.resultants * follow;
-        Some(std::array::from_fn(|i| std::array::from_fn(|k| net[(i, k)])))
-    }
-
-    /// Traction and slip at the points of the grid.
-    pub fn local_states(&self, solution: &Solution, creepage: &ScaledCreepage) -> Vec<LocalState> {
-        self.points
-            .iter()
-            .zip(self.fields(&solution.coefficients, creepage))
-            .map(|(point, (f, slip))| LocalState {
-                place: [point.x, point.y],
-                weight: point.weight,
-                traction: project(f, point.bound).0,
-                slip,
-                bound: point.bound,
-            })
-            .collect()
     }
 }

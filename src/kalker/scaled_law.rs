@@ -6,7 +6,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::linear::Scales;
-use super::nonlinear::{Kalker, KalkerError, Solution};
+use super::nonlinear::{Kalker, KalkerError};
+use super::solution::Solution;
 use super::{Patch, ScaledCreepage};
 
 /// [-] change of q over `1 + |q|` beyond which the last solution is no start for the next.

@@ -37,12 +37,8 @@ pub struct Bearing {
     pub inner: Raceway,
     /// Outer raceway.
     pub outer: Raceway,
-    /// [1/Pa] `(1 - nu1^2)/E1 + (1 - nu2^2)/E2` of ball and race.
-    pub contact_compliance: f64,
-    /// \[Pa] shear modulus G of the rolling contact: `1/G = (1/G1 + 1/G2)/2` (Kalker 1967).
-    pub shear_modulus: f64,
-    /// [-] Poisson's ratio of the rolling contact: `nu/G = (nu1/G1 + nu2/G2)/2` (Kalker 1967).
-    pub poisson_ratio: f64,
+    /// Materials of ball and race together.
+    pub materials: Pair,
 }
 
 impl Bearing {
@@ -69,7 +65,6 @@ impl Bearing {
         let radius = diameter / 2.0;
         let mass = scene.ball.density.0 * 4.0 / 3.0 * PI * radius.powi(3);
         let materials = [&scene.ball, &scene.race].map(|m| (m.youngs_modulus.0, m.poisson_ratio));
-        let pair = Pair::new(materials);
         Self {
             n_balls: section.balls,
             ball: Ball { radius, mass, inertia: 0.4 * mass * radius * radius },
@@ -86,9 +81,7 @@ impl Bearing {
                 groove_circle_radius: outer_circle,
                 groove_offset: outer_offset,
             },
-            contact_compliance: pair.compliance,
-            shear_modulus: pair.shear_modulus,
-            poisson_ratio: pair.poisson_ratio,
+            materials: Pair::new(materials),
         }
     }
 

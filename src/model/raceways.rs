@@ -24,7 +24,7 @@ enum RacewayLaw {
 
 impl RacewayLaw {
     fn new(scene: &Scene, shape: &ContactShape, bearing: &Bearing, race: Race) -> Result<Self, KalkerError> {
-        let patch = shape.typical_patch(bearing.poisson_ratio);
+        let patch = shape.typical_patch(bearing.materials.poisson_ratio);
         let given = match race {
             Race::Inner => scene.regularised.inner,
             Race::Outer => scene.regularised.outer,
@@ -73,9 +73,10 @@ impl RacewayContacts {
     /// If creep coefficients cannot be computed.
     pub fn new(scene: &Scene, bearing: &Bearing, race: Race) -> Result<Self, KalkerError> {
         let raceway = bearing.raceway(race);
+        let (radius, pitch, materials) = (bearing.ball.radius, bearing.pitch_diameter, &bearing.materials);
         let shape = match scene.effects.creep {
-            CreepLaw::Frictionless => ContactShape::without_creep(bearing, raceway),
-            _ => ContactShape::new(bearing, raceway)?,
+            CreepLaw::Frictionless => ContactShape::without_creep(radius, pitch, materials, raceway),
+            _ => ContactShape::new(radius, pitch, materials, raceway)?,
         };
         let bend = 0.25 * (1.0 / bearing.ball.radius + 1.0 / raceway.groove_radius);
         let law = RacewayLaw::new(scene, &shape, bearing, race)?;

@@ -6,7 +6,8 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, DVector};
 use roulement::kalker::linear::resultants;
 use roulement::kalker::load_displacement::Basis;
-use roulement::kalker::nonlinear::{Kalker, LocalState, Solution};
+use roulement::kalker::nonlinear::Kalker;
+use roulement::kalker::solution::{LocalState, Solution};
 use roulement::kalker::{Patch, ScaledCreepage, ScaledForces};
 
 /// Iterations after which the experiment ends wherever it is.

@@ -51,7 +51,10 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
             let scene = Scene::load(path)?;
             let bearing = Bearing::new(&scene);
             for (race, raceway) in [("inner", &bearing.inner), ("outer", &bearing.outer)] {
-                let patch = ContactShape::new(&bearing, raceway)?.typical_patch(bearing.poisson_ratio);
+                let materials = &bearing.materials;
+                let shape =
+                    ContactShape::new(bearing.ball.radius, bearing.pitch_diameter, materials, raceway)?;
+                let patch = shape.typical_patch(materials.poisson_ratio);
                 write_parameters(&mut section, race, &patch, options.degree)?;
             }
         }

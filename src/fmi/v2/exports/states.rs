@@ -7,7 +7,7 @@ use std::ffi::c_void;
 use super::guard;
 use crate::fmi::handles;
 use crate::fmi::outcome::{Outcome, error};
-use crate::fmi::state::FmuState;
+use crate::fmi::saved_state::FmuState;
 use crate::fmi::v2::pointers::{list, list_mut, place};
 use crate::fmi::v2::state_machine::Call;
 use crate::fmi::v2::types::Status;

@@ -1,0 +1,106 @@
+//! States of instances: saved, restored, and written as bytes.
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::instance::Instance;
+use super::outcome::{Outcome, Status, error};
+use super::state::State;
+use crate::simulation::Snapshot;
+
+/// First bytes of a serialised state: what it is, and the version of its form.
+const MAGIC: &[u8; 8] = b"rlmtFMU4";
+/// Bytes of the checksum.
+const CHECKSUM: usize = 32;
+
+/// A saved instance.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct FmuState {
+    state: State,
+    simulation: Snapshot,
+}
+
+impl Instance {
+    /// The instance as it is.
+    pub fn save(&self) -> FmuState {
+        FmuState { state: self.state.clone(), simulation: self.simulation.snapshot() }
+    }
+
+    /// Goes back to a state of this package.
+    ///
+    /// # Errors
+    /// If the state is of another scene.
+    pub fn restore(&mut self, saved: &FmuState) -> Outcome {
+        let FmuState { state, simulation: snapshot } = saved;
+        if !state.fits(self.state.values.len()) {
+            return error("the FMU state is of another scene");
+        }
+        let no_number = "the FMU state holds a value that is not a number";
+        if !state.is_finite() {
+            return error(no_number);
+        }
+        let mut rebuilt = None;
+        if self.variables.parameters_differ(&state.applied, &self.state.applied) {
+            rebuilt = Some(self.with_parameters(&state.applied)?);
+        }
+        let simulation = rebuilt.as_mut().unwrap_or(&mut self.simulation);
+        let here = simulation.snapshot();
+        if !simulation.restore(snapshot) {
+            return error("the FMU state is of another scene");
+        }
+        let values = self.variables.values(simulation.inputs(), simulation.outputs());
+        if !values.iter().all(|value| value.is_finite()) {
+            let restored = simulation.restore(&here);
+            debug_assert!(restored, "a snapshot of this very simulation fits it");
+            return error(no_number);
+        }
+        if let Some(rebuilt) = rebuilt {
+            self.simulation = rebuilt;
+        }
+        self.state = state.clone();
+        self.columns = None;
+        Ok(())
+    }
+
+    /// A state as bytes: magic, guid, length of the content, checksum, content.
+    ///
+    /// # Errors
+    /// If the content cannot be written, which would be a fault of this library.
+    pub fn serialise(&self, state: &FmuState) -> Outcome<Vec<u8>> {
+        let content = postcard::to_allocvec(state).map_err(|why| (Status::Error, why.to_string()))?;
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(self.guid.as_bytes());
+        bytes.extend((content.len() as u64).to_le_bytes());
+        bytes.extend(Sha256::digest(&content));
+        bytes.extend(content);
+        Ok(bytes)
+    }
+
+    /// A state from bytes.
+    ///
+    /// # Errors
+    /// If the bytes are not a whole and unaltered state of this very package.
+    pub fn deserialise(&self, bytes: &[u8]) -> Outcome<FmuState> {
+        let refuse = |why: &str| error(format!("the serialised FMU state is refused: {why}"));
+        let Some(rest) = bytes.strip_prefix(MAGIC) else {
+            return refuse("it was not written by this version of roulement");
+        };
+        let Some(rest) = rest.strip_prefix(self.guid.as_bytes()) else {
+            return refuse("it is of another package");
+        };
+        let Some((length, rest)) = rest.split_first_chunk::<8>() else {
+            return refuse("it is cut off");
+        };
+        let Some((checksum, content)) = rest.split_first_chunk::<CHECKSUM>() else {
+            return refuse("it is cut off");
+        };
+        // Before the content is looked at: the importer's size may be wrong.
+        if content.len() as u64 != u64::from_le_bytes(*length) {
+            return refuse("its length is wrong");
+        }
+        if Sha256::digest(content).as_slice() != checksum {
+            return refuse("its checksum is wrong");
+        }
+        postcard::from_bytes(content).or_else(|why| refuse(&why.to_string()))
+    }
+}
