@@ -3,6 +3,7 @@
 pub mod analysis;
 pub mod contact;
 pub mod dynamics;
+pub mod effects;
 pub mod equilibrium;
 pub mod fmi;
 pub mod forces;
@@ -11,4 +12,5 @@ pub mod kalker;
 pub mod model;
 pub mod numerics;
 pub mod scene;
+pub mod schema;
 pub mod simulation;
