@@ -136,6 +136,7 @@
 pub mod analysis;
 pub mod contact;
 pub mod dynamics;
+pub mod effects;
 pub mod equilibrium;
 pub mod fmi;
 pub mod forces;
@@ -144,6 +145,7 @@ pub mod kalker;
 pub mod model;
 pub mod numerics;
 pub mod scene;
+pub mod schema;
 pub mod simulation;
 
 pub use model::Model;

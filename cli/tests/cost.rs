@@ -26,7 +26,7 @@ fn short_study() -> &'static SceneStudy {
             text = text.replace(from, to);
         }
         let mut scene = Scene::parse(&text).unwrap();
-        (scene.effects.cage, scene.cage) = (false, None);
+        scene.effects.cage = roulement::effects::cage::Settings::default();
         study("short", &scene, &ProgressBar::hidden()).unwrap()
     })
 }
@@ -150,7 +150,7 @@ fn invariant_the_cage_of_the_misalignment_scene_is_measured() {
     };
     assert!(apart(&caged) > 0.1, "{}", apart(&caged));
     assert!(error(Norm::CageSpeed) > 0.0 && error(Norm::CageSpeed) != error(Norm::Orbit));
-    (scene.effects.cage, scene.cage) = (false, None);
+    scene.effects.cage = roulement::effects::cage::Settings::default();
     assert!(apart(&fixed(&scene, 1e-5)) < 1e-9);
 }
 

@@ -181,7 +181,7 @@ fn compare(scene: &Scene) -> [[f64; 2]; 4] {
 /// The misalignment scene without its cage, whose impacts let every two integrators part.
 fn tilting(text: &str) -> Scene {
     let mut scene = Scene::parse(text).unwrap();
-    (scene.effects.cage, scene.cage) = (false, None);
+    scene.effects.cage = roulement::effects::cage::Settings::default();
     scene
 }
 

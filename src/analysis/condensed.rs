@@ -20,6 +20,7 @@ use nalgebra::{Matrix2, Matrix2x6, Matrix4, Matrix4x6, Matrix6, Matrix6x2, Matri
 
 use crate::contact::creep::Law;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
+pub use crate::effects::reports::Condensed;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::state::{BallState, State};
 use crate::model::{Conditions, Model};
@@ -31,17 +32,6 @@ const FOLLOWING_TIME: f64 = 1e-3;
 /// Directions of differentiation, as in steps.
 const DIRECTIONS: usize = 9;
 type D = Dual<DIRECTIONS>;
-
-/// Derivatives of the external load that holds the inner race. Rows are force x, y, z and moment x, y, z, columns
-/// translation x, y, z and rotation x, y, z of the inner race relative to the outer one; world axes, about the inner
-/// race's origin. The race's own angular velocity turns with it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Condensed {
-    /// [N/m, N/rad; N m/m, N m/rad] load by displacement.
-    pub stiffness: Matrix6<f64>,
-    /// [N s/m, N s/rad; N m s/m, N m s/rad] load by velocity.
-    pub damping: Matrix6<f64>,
-}
 
 impl Condensed {
     /// Stiffness and damping in a state. Contacts of a cage are left out, and so are balls that do not touch both races.

@@ -7,7 +7,7 @@ use super::state::{Phase, State};
 use crate::interface::model_description;
 use crate::interface::variables::{Causality, Kind, Source, Variables};
 use crate::scene::Scene;
-use crate::scene::parameters::Variability;
+use crate::schema::numbers::Variability;
 use crate::simulation::Simulation;
 use crate::simulation::inputs::Inputs;
 
@@ -199,7 +199,7 @@ impl Instance {
             if !value.is_finite() {
                 return error(format!("{} = {value} is not a finite number", row.name));
             }
-            if let Source::Parameter(parameter, _) = row.source {
+            if let Source::Parameter(parameter) = &row.source {
                 if self.state.phase == Phase::StepComplete && parameter.variability == Variability::Fixed {
                     return error(format!("{} is fixed: it can be set before the start only", row.name));
                 }

@@ -1,8 +1,9 @@
 //! The page that a package brings along: interface, frames, effects, limits, parameters.
 
+use crate::effects::AnyEffect;
 use crate::interface::variables::{Causality, Source, Variable, Variables};
-use crate::scene::parameters::Variability;
 use crate::scene::{Drive, Scene};
+use crate::schema::numbers::Variability;
 
 const STYLE: &str = "body{font:16px sans-serif;max-width:64em;margin:2em auto;padding:0 1em}\
     td,th{text-align:left;padding:.2em .6em;vertical-align:top}tr:nth-child(even){background:#f3f5f7}\
@@ -23,6 +24,14 @@ fn drive(drive: Drive) -> &'static str {
     }
 }
 
+/// The row of an effect, on or off.
+fn effect(effect: &dyn AnyEffect) -> String {
+    let (info, setting) = (effect.info(), effect.setting().unwrap_or_else(|| "off".into()));
+    let cells =
+        [&setting, info.adds, info.states, info.source].map(|text| format!("<td>{}</td>", escape(text)));
+    format!("<tr><td><code>{}</code></td>{}</tr>\n", escape(info.key), cells.concat())
+}
+
 /// The page of a scene's package.
 pub fn page(scene: &Scene) -> String {
     let title = if scene.title.is_empty() { "Ball bearing" } else { &scene.title };
@@ -41,20 +50,17 @@ pub fn page(scene: &Scene) -> String {
         if row.causality == Causality::Input { "input".into() } else { "output".into() }
     });
     let parameters = rows(&|row| row.causality == Causality::Parameter, &|row| {
-        let Source::Parameter(parameter, start) = row.source else {
+        let Source::Parameter(parameter) = &row.source else {
             return String::new();
         };
         let when = match parameter.variability {
             Variability::Fixed => "before the start",
             Variability::Tunable => "between steps too",
         };
-        format!("{start} ({} to {}), {when}", parameter.range.low, parameter.range.high)
+        let (start, range) = (parameter.start, parameter.range);
+        format!("{start} ({} to {}), {when}", range.low, range.high)
     });
-    let effects = &scene.effects;
-    let off_or = |off: bool, text: String| if off { "off".to_string() } else { text };
-    let damping = off_or(effects.damping.0 == 0.0, format!("{} s/m", effects.damping.0));
-    let gravity = effects.gravity.map(|component| component.0);
-    let gravity = off_or(gravity == [0.0; 3], format!("{gravity:?} m/s2"));
+    let effects: String = scene.effects.each().into_iter().map(effect).collect();
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
          <style>{STYLE}</style></head><body>\n<h1>{title}</h1>\n\
@@ -73,10 +79,8 @@ pub fn page(scene: &Scene) -> String {
          control. A step that cannot be finished ends with fmi2Discard at the last time reached. The FMU state holds \
          everything: a replay gives the same bits. fmi2GetDirectionalDerivative gives the derivatives of all real outputs \
          by all inputs over the last step.</p>\n\
-         <h2>Effects</h2>\n<table>\
-         <tr><td>creep law of the contacts</td><td>{creep:?}</td></tr>\n\
-         <tr><td>contact damping</td><td>{damping}</td></tr>\n\
-         <tr><td>gravity</td><td>{gravity}</td></tr></table>\n\
+         <h2>Effects</h2>\n<table><tr><th>key</th><th>here</th><th>adds</th><th>states</th><th>source</th></tr>\n\
+         {effects}</table>\n\
          <h2>Limits</h2>\n<ul><li>Rigid rings: the raceways do not bend; no thermal growth, no lubricant film.</li>\n\
          <li>A wrench held over a communication step makes a stiff coupling unstable unless the step is far below the \
          period of the shaft on the bearing (about 1 us for a shaft of 1 kg); save and restore the state, or use the \
@@ -95,7 +99,6 @@ pub fn page(scene: &Scene) -> String {
         version = env!("CARGO_PKG_VERSION"),
         inner = drive(scene.inner.drive),
         outer = drive(scene.outer.drive),
-        creep = effects.creep,
         scene = escape(&scene.source),
         title = escape(title),
     )

@@ -6,10 +6,10 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
 
-use crate::interface::variables::units::{self, Unit};
 use crate::interface::variables::{Causality, Kind, Source, Variable, Variables};
 use crate::scene::Scene;
-use crate::scene::parameters::Variability;
+use crate::schema::numbers::Variability;
+use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::Simulation;
 
 /// Model identifier: the name of the shared library in a package.
@@ -259,7 +259,7 @@ fn scalar_variable(xml: &mut Xml, reference: usize, row: &Variable, start: f64) 
 
 fn variability(row: &Variable) -> &'static str {
     match row.source {
-        Source::Parameter(parameter, _) if parameter.variability == Variability::Tunable => "tunable",
+        Source::Parameter(parameter) if parameter.variability == Variability::Tunable => "tunable",
         _ => "fixed",
     }
 }

@@ -6,8 +6,9 @@ use std::ops::{Index, IndexMut};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use crate::effects::cage::CageSection;
 use crate::numerics::scalar::Scalar;
-use crate::scene::{CageSection, Condition, Drive, RaceSection, Scene, Schedule};
+use crate::scene::{Condition, Drive, RaceSection, Scene, Schedule};
 
 /// A race.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

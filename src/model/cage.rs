@@ -10,9 +10,10 @@ use crate::contact::materials::Pair;
 use crate::contact::pair::PairForces;
 use crate::contact::pocket::PocketModel;
 use crate::contact::{BallMotion, RaceMotion};
+use crate::effects::cage::{CageSection, Guidance};
 use crate::kalker::linear::LinearError;
 use crate::numerics::scalar::Single;
-use crate::scene::{CageSection, Guidance, Scene};
+use crate::scene::Scene;
 
 /// A cage.
 #[derive(Clone, Debug)]
@@ -35,7 +36,7 @@ impl CageModel {
         let poisson = section.poisson_ratio.unwrap_or(scene.race.poisson_ratio);
         let materials = [(scene.ball.youngs_modulus.0, scene.ball.poisson_ratio), (youngs, poisson)];
         let friction = |given: Option<f64>| given.unwrap_or(scene.friction.ball_race);
-        let damping = section.damping.unwrap_or(scene.effects.damping).0;
+        let damping = section.damping.unwrap_or(scene.effects.damping.factor).0;
         let clearance = section.pocket_clearance.0;
         let pocket = PocketModel::new(
             bearing.ball.radius,

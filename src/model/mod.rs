@@ -55,28 +55,29 @@ impl Model {
     /// If creep coefficients cannot be computed for the bearing's contacts.
     pub fn new(scene: &Scene) -> Result<Self, KalkerError> {
         let bearing = Bearing::new(scene);
-        let cage = scene.cage.as_ref().map(|section| CageModel::new(section, scene, &bearing)).transpose()?;
+        let section = scene.effects.cage.section.as_ref();
+        let cage = section.map(|section| CageModel::new(section, scene, &bearing)).transpose()?;
         let races = PerRace {
             inner: RigidBody::under_wrench(&scene.inner, scene),
             outer: RigidBody::on_hinge(&scene.outer),
         };
         Ok(Self {
-            bodies: Bodies::new(races, scene.cage.as_ref().map(|section| Some(RigidBody::cage(section)))),
+            bodies: Bodies::new(races, section.map(|section| Some(RigidBody::cage(section)))),
             raceways: PerRace::try_new(|race| RacewayContacts::new(scene, &bearing, race))?,
             cage,
             bearing,
-            epsilon_switch: scene.effects.epsilon_switch,
-            damping: scene.effects.damping.0,
-            gravity: Vector3::from(scene.effects.gravity.map(|component| component.0)),
-            stiffness_outputs: scene.effects.stiffness_outputs,
+            epsilon_switch: scene.effects.creep.epsilon_switch,
+            damping: scene.effects.damping.factor.0,
+            gravity: scene.effects.gravity.vector(),
+            stiffness_outputs: scene.effects.stiffness.on,
             solver: scene.solver,
         })
     }
 
     /// Takes over the tunable numbers of a scene, those that each step reads.
     pub fn tune(&mut self, scene: &Scene) {
-        self.damping = scene.effects.damping.0;
-        self.gravity = Vector3::from(scene.effects.gravity.map(|component| component.0));
+        self.damping = scene.effects.damping.factor.0;
+        self.gravity = scene.effects.gravity.vector();
         self.solver = scene.solver;
     }
 

@@ -26,10 +26,10 @@ impl RacewayLaw {
     fn new(scene: &Scene, shape: &ContactShape, bearing: &Bearing, race: Race) -> Result<Self, KalkerError> {
         let patch = shape.typical_patch(bearing.materials.poisson_ratio);
         let given = match race {
-            Race::Inner => scene.regularised.inner,
-            Race::Outer => scene.regularised.outer,
+            Race::Inner => scene.effects.creep.regularised.inner,
+            Race::Outer => scene.effects.creep.regularised.outer,
         };
-        Ok(match scene.effects.creep {
+        Ok(match scene.effects.creep.law {
             CreepLaw::Frictionless => Self::Frictionless,
             CreepLaw::Linear => Self::Linear,
             CreepLaw::Regularised => Self::Regularised(match given {
@@ -39,7 +39,7 @@ impl RacewayLaw {
             CreepLaw::Saturated => Self::Saturated,
             CreepLaw::KalkerTable => Self::Table(CreepTable::new(&patch)?),
             CreepLaw::Kalker => {
-                let kalker = ScaledKalker::new(&patch, scene.effects.kalker_degree)?;
+                let kalker = ScaledKalker::new(&patch, scene.effects.creep.kalker_degree)?;
                 Self::Kalker(CreepTable::new(&patch)?, Box::new(kalker))
             }
         })
@@ -74,13 +74,13 @@ impl RacewayContacts {
     pub fn new(scene: &Scene, bearing: &Bearing, race: Race) -> Result<Self, KalkerError> {
         let raceway = bearing.raceway(race);
         let (radius, pitch, materials) = (bearing.ball.radius, bearing.pitch_diameter, &bearing.materials);
-        let shape = match scene.effects.creep {
+        let shape = match scene.effects.creep.law {
             CreepLaw::Frictionless => ContactShape::without_creep(radius, pitch, materials, raceway),
             _ => ContactShape::new(radius, pitch, materials, raceway)?,
         };
-        let bend = 0.25 * (1.0 / bearing.ball.radius + 1.0 / raceway.groove_radius);
         let law = RacewayLaw::new(scene, &shape, bearing, race)?;
-        Ok(Self { shape, law, groove_bend: scene.effects.heathcote_slip.then_some(bend) })
+        let groove_bend = scene.effects.groove_slip.bend(bearing.ball.radius, raceway.groove_radius);
+        Ok(Self { shape, law, groove_bend })
     }
 
     /// Creep law; Kalker's polynomials give their table.

@@ -3,57 +3,21 @@
 //! A scene is TOML; every number is SI or text with a unit ([`crate::scene::units`]). Unknown keys, missing keys and values
 //! out of range are errors that name the key, the value and the allowed range.
 
-mod accuracy;
-pub mod parameters;
-mod schedule;
-mod sections;
-pub mod units;
+mod numbers;
 mod validate;
 
 use std::path::Path;
 
 use serde::Deserialize;
-use thiserror::Error;
 
-pub use accuracy::{Accuracy, Solver};
-pub use schedule::Schedule;
-pub use sections::*;
-
-/// Why a scene was refused.
-#[derive(Debug, Error)]
-pub enum SceneError {
-    /// The file could not be read.
-    #[error("cannot read the scene file {path}: {source}")]
-    Read {
-        /// Path as given.
-        path: String,
-        /// Error of the operating system.
-        source: std::io::Error,
-    },
-    /// Not TOML, an unknown or missing key, or a value of the wrong kind or dimension.
-    #[error("{0}")]
-    Format(#[from] toml::de::Error),
-    /// A value outside its range.
-    #[error("{key} = {value} {unit} is out of range: allowed is {range}")]
-    Range {
-        /// Key with its section.
-        key: String,
-        /// Value in SI.
-        value: f64,
-        /// SI unit.
-        unit: &'static str,
-        /// Allowed range in words.
-        range: String,
-    },
-    /// Keys that do not go together.
-    #[error("{key}: {why}")]
-    Conflict {
-        /// Key with its section.
-        key: String,
-        /// The conflict, and a way out of it.
-        why: String,
-    },
-}
+use crate::effects;
+pub use crate::effects::Effects;
+pub use crate::effects::cage::{CageSection, Guidance};
+pub use crate::effects::creep::{CreepLaw, Regularised};
+pub use crate::schema::{
+    Accuracy, BearingSection, Condition, Drive, Friction, Interface, Load, Material, Misalignment,
+    Orientation, RaceSection, SceneError, Schedule, Solver, Start, Tilt, Translation, units,
+};
 
 /// A bearing, its load and its simulation, as described by a scene file.
 #[derive(Clone, Debug, Deserialize)]
@@ -76,11 +40,11 @@ pub struct Scene {
     /// Which effects are simulated.
     #[serde(default)]
     pub effects: Effects,
-    /// Parameters of the regularised creep law.
+    /// The section of the creep law `regularised`, until it joins its effect.
     #[serde(default)]
-    pub regularised: Regularised,
-    /// The cage; exactly with `effects.cage`.
-    pub cage: Option<CageSection>,
+    regularised: Regularised,
+    /// The section of the cage, until it joins its effect.
+    cage: Option<CageSection>,
     /// Inner race.
     #[serde(default)]
     pub inner: RaceSection,
@@ -111,6 +75,8 @@ impl Scene {
     pub fn parse(text: &str) -> Result<Self, SceneError> {
         let mut scene: Self = toml::from_str(text)?;
         scene.source = text.to_string();
+        scene.effects.creep.regularised = std::mem::take(&mut scene.regularised);
+        scene.effects.cage.section = scene.cage.take();
         scene.check()?;
         Ok(scene)
     }
@@ -121,6 +87,12 @@ impl Scene {
     /// See [`SceneError`].
     pub fn check(&self) -> Result<(), SceneError> {
         validate::validate(self)
+    }
+
+    /// What effects may have to agree with.
+    fn setup(&self) -> effects::Setup<'_> {
+        let saturates = self.effects.creep.law.saturates();
+        effects::Setup { bearing: &self.bearing, friction: &self.friction, saturates }
     }
 
     /// Reads a scene file.

@@ -4,8 +4,9 @@ use std::ops::Index;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::analysis::condensed::Condensed;
 use crate::contact::BallRaceContact;
+use crate::effects::Reports;
+pub use crate::effects::reports::{BallOutput, CageOutput, Condensed, ContactOutput, PocketOutput};
 use crate::forces::{BallContacts, Contacts, Totals};
 use crate::model::bodies::{Constraint, Race, RigidBody, tilt_direction};
 use crate::model::cage::CageModel;
@@ -30,93 +31,6 @@ pub struct RaceOutput {
     pub reaction: Wrench,
     /// \[rad] turned about the own axis since the start, without limit.
     pub turned: f64,
-}
-
-/// A ball-race contact. Longitudinal is along the rolling direction, lateral transverse to it (frame C).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactOutput {
-    /// \[N] normal load.
-    pub load: f64,
-    /// \[rad] contact angle relative to the race; positive under axial load of the inner race along +x.
-    pub contact_angle: f64,
-    /// [-] longitudinal creepage.
-    pub creepage_longitudinal: f64,
-    /// [-] lateral creepage.
-    pub creepage_lateral: f64,
-    /// [1/m] spin creepage.
-    pub creepage_spin: f64,
-    /// \[N] longitudinal creep force on the ball.
-    pub force_longitudinal: f64,
-    /// \[N] lateral creep force on the ball.
-    pub force_lateral: f64,
-    /// [N m] spin moment on the ball.
-    pub spin_moment: f64,
-    /// \[W] power lost to friction.
-    pub power: f64,
-    /// \[m] semi-axis of the contact ellipse along rolling.
-    pub semi_axis_rolling: f64,
-    /// \[m] semi-axis of the contact ellipse transverse to rolling.
-    pub semi_axis_transverse: f64,
-    /// \[Pa] peak pressure.
-    pub peak_pressure: f64,
-}
-
-/// A ball's contact with its cage pocket.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PocketOutput {
-    /// \[N] normal load; 0 while they do not touch.
-    pub load: f64,
-    /// \[N] force of the pocket on the ball, world axes.
-    pub force: Vector3<f64>,
-    /// \[m] approach; negative is a gap.
-    pub approach: f64,
-    /// \[W] power lost to friction.
-    pub power: f64,
-}
-
-/// The cage.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CageOutput {
-    /// Pose.
-    pub pose: Pose,
-    /// Twist.
-    pub twist: Twist,
-    /// \[m] centre relative to the race that guides the cage (the outer race if the balls do), along that race's axis
-    /// (x) and across it (y, z of the frame that tilts with the race but does not spin).
-    pub eccentricity: Vector3<f64>,
-    /// \[rad] turned about the own axis since the start, without limit.
-    pub turned: f64,
-    /// \[N] force of all pockets on the cage, world axes.
-    pub pocket_force: Vector3<f64>,
-    /// \[N] force of the lands on the cage, world axes.
-    pub land_force: Vector3<f64>,
-    /// \[N] normal load on the lands at the cage's -x and +x side.
-    pub land_loads: [f64; 2],
-    /// \[m] deepest approach on the lands; negative is a gap. Minus infinity where the balls guide.
-    pub land_approach: f64,
-    /// \[W] power lost to friction in the pockets.
-    pub pocket_power: f64,
-    /// \[W] power lost to friction on the lands.
-    pub land_power: f64,
-}
-
-/// A ball.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BallOutput {
-    /// \[rad] azimuth about the outer race's axis, in (-pi, pi].
-    pub azimuth: f64,
-    /// [rad/s] orbital speed about the outer race's axis.
-    pub orbital_speed: f64,
-    /// \[m] centre, world axes.
-    pub position: Vector3<f64>,
-    /// [rad/s] angular velocity, world axes.
-    pub angular_velocity: Vector3<f64>,
-    /// Contact with the inner race.
-    pub inner: ContactOutput,
-    /// Contact with the outer race.
-    pub outer: ContactOutput,
-    /// Contact with the cage, where there is one.
-    pub pocket: Option<PocketOutput>,
 }
 
 /// Everything that is reported of a state.
@@ -211,6 +125,13 @@ impl Outputs {
             dissipated: state.energies.friction + state.energies.damping,
             statistics: state.statistics,
         }
+    }
+}
+
+impl Outputs {
+    /// What effects report.
+    pub fn reports(&self) -> Reports<'_> {
+        Reports { balls: &self.balls, cage: self.cage.as_ref(), condensed: self.condensed.as_ref() }
     }
 }
 

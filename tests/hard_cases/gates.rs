@@ -307,7 +307,7 @@ pub fn possible(name: &str, simulation: &Simulation, variables: &Variables) {
     for (row, value) in variables.rows().iter().zip(variables.values(inputs, outputs)) {
         assert!(value.is_finite(), "{name}: {} = {value} at {} s", row.name, outputs.time);
     }
-    let bounded = simulation.scene().effects.creep != CreepLaw::Linear;
+    let bounded = simulation.scene().effects.creep.law != CreepLaw::Linear;
     let holds = |contact: &ContactOutput| {
         let force = contact.force_longitudinal.hypot(contact.force_lateral);
         let limit = inputs.friction * contact.load;

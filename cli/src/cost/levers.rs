@@ -127,9 +127,9 @@ impl Setting {
     pub fn creep(scene: &Scene, model: CreepModel) -> Self {
         let mut scene = scene.clone();
         let effects = &mut scene.effects;
-        effects.creep = model.law;
-        effects.kalker_degree = model.degree.unwrap_or(effects.kalker_degree);
-        effects.heathcote_slip = model.heathcote_slip;
+        effects.creep.law = model.law;
+        effects.creep.kalker_degree = model.degree.unwrap_or(effects.creep.kalker_degree);
+        effects.groove_slip.on = model.heathcote_slip;
         Self::plain(Lever::CreepLaw, model.name(), scene)
     }
 }
@@ -153,9 +153,9 @@ impl CreepModel {
 
     /// Creep model of a scene.
     pub fn of(scene: &Scene) -> Self {
-        let effects = &scene.effects;
-        let degree = (effects.creep == CreepLaw::Kalker).then_some(effects.kalker_degree);
-        Self { law: effects.creep, degree, heathcote_slip: effects.heathcote_slip }
+        let creep = &scene.effects.creep;
+        let degree = (creep.law == CreepLaw::Kalker).then_some(creep.kalker_degree);
+        Self { law: creep.law, degree, heathcote_slip: scene.effects.groove_slip.on }
     }
 
     /// Creep models of the study, from the poorest to the richest. `linear` is left out: it is unbounded, wrong by up to six

@@ -4,18 +4,18 @@
 
 mod race_rows;
 mod rows;
-pub mod units;
 
 use thiserror::Error;
 
+use crate::effects::Getter;
 use crate::model::bodies::{PerRace, Race};
 use crate::scene::Scene;
-use crate::scene::parameters::Parameter;
+use crate::schema::numbers::{FRICTION, Parameter};
+use crate::schema::variable_units::Unit;
 use crate::simulation::inputs::Inputs;
-use crate::simulation::outputs::{BallOutput, CageOutput, ContactOutput, Outputs};
+use crate::simulation::outputs::Outputs;
 pub use race_rows::InputKind;
 use race_rows::{RaceSetting, RaceVariable};
-use units::Unit;
 
 /// FMI causality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,23 +37,10 @@ pub enum Kind {
     Integer,
 }
 
-/// A component of the condensed stiffness or damping: row of the load, column of the displacement or velocity; force
-/// or translation x, y, z first, then moment or rotation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coefficient {
-    /// Load by displacement.
-    Stiffness(usize, usize),
-    /// Load by velocity.
-    Damping(usize, usize),
-}
-
 type FromOutputs = fn(&Outputs) -> f64;
-type FromCage = fn(&CageOutput) -> f64;
-type FromBall = fn(&BallOutput) -> f64;
-type FromContact = fn(&ContactOutput) -> f64;
 
 /// Where a variable's value comes from.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Source {
     /// A component of a quantity of a race.
     Race(Race, &'static RaceVariable, usize),
@@ -61,16 +48,10 @@ pub enum Source {
     Friction,
     /// The bearing as a whole.
     Bearing(FromOutputs),
-    /// Stiffness or damping of the running bearing.
-    Condensed(Coefficient),
-    /// The cage.
-    Cage(FromCage),
-    /// A ball.
-    Ball(usize, FromBall),
-    /// A ball's contact with a race.
-    Contact(usize, Race, FromContact),
-    /// A number of the scene, and its value there.
-    Parameter(&'static Parameter, f64),
+    /// What an effect reports.
+    Effect(Getter),
+    /// A number of the scene.
+    Parameter(Parameter),
 }
 
 /// One variable.
@@ -114,12 +95,9 @@ pub enum InputError {
         norm: f64,
     },
     /// A negative friction coefficient, or one that no surface has.
-    #[error("friction = {0} is out of range: allowed is [0, 2]")]
+    #[error("friction = {0} is out of range: allowed is {FRICTION}")]
     Friction(f64),
 }
-
-/// [-] largest friction coefficient that an importer may give.
-const MAX_FRICTION: f64 = 2.0;
 
 /// The table of a scene.
 #[derive(Clone, Debug)]
@@ -130,7 +108,7 @@ pub struct Variables {
 impl Variables {
     /// The variables of a scene's package.
     pub fn new(scene: &Scene) -> Self {
-        let mut table = Self::moving(scene, scene.effects.per_ball_outputs);
+        let mut table = Self::moving(scene, scene.effects.per_ball.on);
         table.add_parameters(scene);
         table
     }
@@ -141,17 +119,7 @@ impl Variables {
         table.add_race(Race::Inner, scene.inner.drive, scene.interface.orientation);
         table.add_race(Race::Outer, scene.outer.drive, scene.interface.orientation);
         table.add_bearing();
-        if scene.effects.stiffness_outputs {
-            table.add_condensed();
-        }
-        if let Some(cage) = &scene.cage {
-            table.add_cage(cage.guided_by);
-        }
-        if per_ball {
-            for ball in 0..scene.bearing.balls {
-                table.add_ball(ball, scene.effects.cage);
-            }
-        }
+        table.add_effects(scene, per_ball);
         table
     }
 
@@ -162,20 +130,14 @@ impl Variables {
 
     /// Value of a row: inputs from the inputs as set, outputs from the outputs.
     pub fn value(&self, row: &Variable, inputs: &Inputs, outputs: &Outputs) -> f64 {
-        match row.source {
+        match &row.source {
             Source::Friction => inputs.friction,
-            Source::Parameter(_, value) => value,
+            Source::Parameter(parameter) => parameter.start,
             Source::Bearing(get) => get(outputs),
-            Source::Condensed(coefficient) => outputs.condensed.as_ref().map_or(0.0, |c| match coefficient {
-                Coefficient::Stiffness(i, k) => c.stiffness[(i, k)],
-                Coefficient::Damping(i, k) => c.damping[(i, k)],
-            }),
-            Source::Cage(get) => outputs.cage.as_ref().map_or(0.0, get),
-            Source::Ball(ball, get) => outputs.balls.get(ball).map_or(0.0, get),
-            Source::Contact(ball, race, get) => outputs.balls.get(ball).map_or(0.0, |ball| get(&ball[race])),
+            Source::Effect(getter) => getter.get(&outputs.reports()),
             Source::Race(race, quantity, component) => match (row.causality, &quantity.input) {
-                (Causality::Input, Some(access)) => (access.get)(&inputs[race], component),
-                _ => (quantity.read)(&outputs[race], component),
+                (Causality::Input, Some(access)) => (access.get)(&inputs[*race], *component),
+                _ => (quantity.read)(&outputs[*race], *component),
             },
         }
     }
@@ -188,10 +150,8 @@ impl Variables {
     /// Writes the parameters among the values of all rows into a scene.
     pub fn set_parameters(&self, scene: &mut Scene, values: &[f64]) {
         for (row, value) in self.rows.iter().zip(values) {
-            if let Source::Parameter(parameter, _) = row.source
-                && let Some(place) = parameter.place(scene)
-            {
-                *place = *value;
+            if let Source::Parameter(parameter) = &row.source {
+                scene.set_number(parameter.key, *value);
             }
         }
     }
@@ -206,9 +166,9 @@ impl Variables {
 
     /// Rates of all rows that inputs were given with: those of a twist.
     pub fn rates(&self, inputs: &Inputs) -> Vec<f64> {
-        let rate = |row: &Variable| match (row.causality, row.source) {
+        let rate = |row: &Variable| match (row.causality, &row.source) {
             (Causality::Input, Source::Race(race, RaceVariable { input: Some(access), .. }, component)) => {
-                (access.rate)(&inputs[race], component)
+                (access.rate)(&inputs[*race], *component)
             }
             _ => 0.0,
         };
@@ -231,11 +191,11 @@ impl Variables {
                     return Err(InputError::NotFinite { name: row.name.clone(), value: number });
                 }
             }
-            match row.source {
-                Source::Friction if (0.0..=MAX_FRICTION).contains(&value) => inputs.friction = value,
+            match &row.source {
+                Source::Friction if FRICTION.contains(value) => inputs.friction = value,
                 Source::Friction => return Err(InputError::Friction(value)),
                 Source::Race(race, RaceVariable { input: Some(access), .. }, component) => {
-                    (access.set)(&mut races[race], component, value, rate);
+                    (access.set)(&mut races[*race], *component, value, rate);
                 }
                 _ => {}
             }
@@ -249,7 +209,7 @@ impl Variables {
 impl Variable {
     /// Kind of an input; none for other variables.
     pub fn input_kind(&self) -> Option<InputKind> {
-        match self.source {
+        match &self.source {
             _ if self.causality != Causality::Input => None,
             Source::Friction => Some(InputKind::Friction),
             Source::Race(_, RaceVariable { input, .. }, _) => input.map(|access| access.kind),

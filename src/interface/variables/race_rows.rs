@@ -2,10 +2,10 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::units::{self, Unit};
 use super::{Causality, InputError};
 use crate::model::bodies::Race;
 use crate::scene::{Drive, Orientation};
+use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::inputs::RaceInput;
 use crate::simulation::outputs::RaceOutput;
 

@@ -1,11 +1,9 @@
 //! The sections of a scene file, one struct each; defaults stand beside their fields.
 
 use serde::Deserialize;
-use strum::{IntoStaticStr, VariantArray};
 
 use super::schedule::{self, Schedule};
-use crate::contact::regularised::Parameters;
-use crate::scene::units::*;
+use super::units::*;
 
 /// Internal geometry of the bearing.
 #[derive(Clone, Debug, Deserialize)]
@@ -69,115 +67,6 @@ impl Default for Friction {
         // The paper's dry estimate (section 5).
         Self { ball_race: 0.08, ball_cage: None, cage_race: None }
     }
-}
-
-/// Creep law of the ball-race contacts (see [`crate::contact::creep`]), from the poorest to the richest.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, IntoStaticStr, VariantArray)]
-#[serde(rename_all = "snake_case")]
-#[strum(serialize_all = "snake_case")]
-pub enum CreepLaw {
-    /// No tangential force.
-    Frictionless,
-    /// Kalker's linear theory, unbounded.
-    Linear,
-    /// The paper's regularised law with spin coupling.
-    Regularised,
-    /// Linear theory, saturated as a vector.
-    #[default]
-    Saturated,
-    /// Kalker's nonlinear theory in polynomials of degree `kalker_degree`: slow.
-    Kalker,
-    /// Kalker's nonlinear theory as a smooth table.
-    KalkerTable,
-}
-
-/// Effects, each off unless asked for; one that is off has no state and costs nothing.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Effects {
-    /// Creep law of the ball-race contacts.
-    pub creep: CreepLaw,
-    /// [-] degree of the traction polynomials of the law `kalker`, 1 to 7.
-    pub kalker_degree: usize,
-    /// [-] change of a contact's creepages, over those of sliding, after which the law `kalker` solves its polynomials
-    /// anew; between, what they add to the table is frozen.
-    pub epsilon_switch: f64,
-    /// Slip of grooves that bend across rolling (Heathcote), with the laws that saturate.
-    pub heathcote_slip: bool,
-    /// [s/m] Hunt-Crossley dissipation factor of the ball-race contacts; 0 is off.
-    pub damping: DissipationFactor,
-    /// A cage: a rigid body with pockets, described in the section `cage`.
-    pub cage: bool,
-    /// [m/s2] acceleration of gravity, components along x, y, z.
-    pub gravity: [Acceleration; 3],
-    /// Report every ball in the FMU (`ball[j].*`).
-    pub per_ball_outputs: bool,
-    /// Report stiffness and damping of the running bearing, balls condensed out (`stiffness.*`, `damping.*`).
-    pub stiffness_outputs: bool,
-}
-
-impl Default for Effects {
-    fn default() -> Self {
-        Self {
-            creep: CreepLaw::default(),
-            kalker_degree: 3,
-            epsilon_switch: 0.01,
-            heathcote_slip: false,
-            damping: DissipationFactor(0.0),
-            cage: false,
-            gravity: [Acceleration(0.0); 3],
-            per_ball_outputs: false,
-            stiffness_outputs: false,
-        }
-    }
-}
-
-/// Parameters of the law `regularised` on each raceway; identified for its axis ratio where not given.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Regularised {
-    /// On the inner raceway.
-    pub inner: Option<Parameters>,
-    /// On the outer raceway.
-    pub outer: Option<Parameters>,
-}
-
-/// What guides the cage radially.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Guidance {
-    /// Lands of the inner race, inside the cage.
-    Inner,
-    /// Lands of the outer race, around the cage.
-    Outer,
-    /// The balls, by their pockets.
-    Balls,
-}
-
-/// The cage: only with `effects.cage`.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CageSection {
-    /// \[kg] mass.
-    pub mass: Mass,
-    /// [kg m2] moments of inertia about the cage's x (bearing axis), y and z axes.
-    pub inertia: [Inertia; 3],
-    /// \[m] diametral clearance of a ball in its pocket.
-    pub pocket_clearance: Length,
-    /// What guides the cage.
-    pub guided_by: Guidance,
-    /// \[m] diametral clearance of the cage on the lands of the race that guides it.
-    pub guidance_clearance: Option<Length>,
-    /// \[m] diameter of those lands.
-    pub land_diameter: Option<Length>,
-    /// \[m] width of each of the two lands, which begin beside the pockets.
-    pub land_width: Option<Length>,
-    /// \[Pa] Young's modulus in the pockets; that of the races if not given.
-    pub youngs_modulus: Option<Pressure>,
-    /// [-] Poisson's ratio in the pockets; that of the races if not given.
-    pub poisson_ratio: Option<f64>,
-    /// [s/m] Hunt-Crossley dissipation factor of the cage's contacts; `effects.damping` if not given.
-    pub damping: Option<DissipationFactor>,
 }
 
 /// How a race gets its motion.

@@ -5,8 +5,8 @@
 use serde::Deserialize;
 use strum::{IntoStaticStr, VariantArray};
 
+use super::units::{Quantity, Time};
 use crate::numerics::newton::REFACTOR_CONTRACTION;
-use crate::scene::units::{Quantity, Time};
 
 /// Time integration.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]

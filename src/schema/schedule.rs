@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 
-use crate::scene::units::{Quantity, Time};
+use super::units::{Quantity, Time};
 
 /// A value over time: constant, or piecewise linear through `(time [s], value)`, held before and after the table.
 #[derive(Clone, Debug, PartialEq)]

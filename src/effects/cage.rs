@@ -1,0 +1,294 @@
+//! The cage: a rigid body with pockets, and lands of a race that guide it ([`crate::model::cage`]).
+
+use serde::Deserialize;
+
+use super::effect::{Effect, Getter, Info, Row, Setup};
+use super::keys::keys;
+use super::per_ball::ball_row;
+use super::reports::{BallOutput, CageOutput, PocketOutput};
+use crate::schema::numbers::{DISSIPATION, Number, POISSON_RATIO, Place, Range, YOUNGS_MODULUS};
+use crate::schema::units::{DissipationFactor, Inertia, Length, Mass, Pressure};
+use crate::schema::variable_units::{
+    METRE, METRE_PER_SECOND, NEWTON, ONE, RADIAN, RADIAN_PER_SECOND, Unit, WATT,
+};
+use crate::schema::{BearingSection, SceneError};
+
+/// What guides the cage radially.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Guidance {
+    /// Lands of the inner race, inside the cage.
+    Inner,
+    /// Lands of the outer race, around the cage.
+    Outer,
+    /// The balls, by their pockets.
+    Balls,
+}
+
+/// The cage: only with `effects.cage`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CageSection {
+    /// \[kg] mass.
+    pub mass: Mass,
+    /// [kg m2] moments of inertia about the cage's x (bearing axis), y and z axes.
+    pub inertia: [Inertia; 3],
+    /// \[m] diametral clearance of a ball in its pocket.
+    pub pocket_clearance: Length,
+    /// What guides the cage.
+    pub guided_by: Guidance,
+    /// \[m] diametral clearance of the cage on the lands of the race that guides it.
+    pub guidance_clearance: Option<Length>,
+    /// \[m] diameter of those lands.
+    pub land_diameter: Option<Length>,
+    /// \[m] width of each of the two lands, which begin beside the pockets.
+    pub land_width: Option<Length>,
+    /// \[Pa] Young's modulus in the pockets; that of the races if not given.
+    pub youngs_modulus: Option<Pressure>,
+    /// [-] Poisson's ratio in the pockets; that of the races if not given.
+    pub poisson_ratio: Option<f64>,
+    /// [s/m] Hunt-Crossley dissipation factor of the cage's contacts; `effects.damping` if not given.
+    pub damping: Option<DissipationFactor>,
+}
+
+keys! {
+    /// Is there a cage?
+    "cage" => on: bool = false,
+    ;
+    /// The section `[cage]`: there with the effect only.
+    section: Option<CageSection> = None,
+}
+
+/// [-] smallest diametral clearance of a pocket over the ball diameter.
+const SMALLEST_POCKET_CLEARANCE: f64 = 0.005;
+
+impl Effect for Settings {
+    const INFO: &'static Info = &Info {
+        key: "effects.cage",
+        adds: "a rigid cage that the balls touch in its pockets, guided by lands of a race or by the balls",
+        states: "pose, velocity and angular velocity of the cage",
+        source: "Bovet et al. 2013, section 4.2; lands after Gupta 1984 and Lundberg",
+        example: "[effects]\ncage = true\n[cage]\nmass = \"20 g\"\ninertia = [1.1e-5, 6e-6, 6e-6]\n\
+                  pocket_clearance = \"0.2 mm\"\nguided_by = \"balls\"\n",
+    };
+
+    const NUMBERS: &'static [Number<Self>] = &[
+        Number::checked("cage.mass", Range::above(0.0, 1e4, "kg"), |s| {
+            Place::Value(s.section.as_mut().map(|cage| &mut cage.mass.0))
+        }),
+        Number::checked("cage.inertia", Range::above(0.0, 1e4, "kg m2"), |s| {
+            Place::Read(s.section.iter().flat_map(|cage| cage.inertia.map(|moment| moment.0)).collect())
+        }),
+        Number::checked("cage.youngs_modulus", YOUNGS_MODULUS, |s| {
+            Place::Value(s.section.as_mut().and_then(|cage| cage.youngs_modulus.as_mut()).map(|e| &mut e.0))
+        }),
+        Number::checked("cage.poisson_ratio", POISSON_RATIO, |s| {
+            Place::Value(s.section.as_mut().and_then(|cage| cage.poisson_ratio.as_mut()))
+        }),
+        Number::checked("cage.damping", DISSIPATION, |s| {
+            Place::Value(
+                s.section.as_mut().and_then(|cage| cage.damping.as_mut()).map(|factor| &mut factor.0),
+            )
+        }),
+    ];
+
+    fn setting(&self) -> Option<String> {
+        self.section.map(|section| match section.guided_by {
+            Guidance::Inner => "guided by the inner race".into(),
+            Guidance::Outer => "guided by the outer race".into(),
+            Guidance::Balls => "guided by the balls".into(),
+        })
+    }
+
+    fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {
+        let friction = [("ball_cage", setup.friction.ball_cage), ("cage_race", setup.friction.cage_race)];
+        match (self.on, &self.section) {
+            (true, Some(cage)) => {
+                pockets(cage, setup.bearing)?;
+                lands(cage, setup.friction.cage_race.is_some(), setup.bearing)
+            }
+            (true, None) => {
+                let why = "give the cage's mass, inertia and clearances in [cage]";
+                Err(SceneError::conflict("effects.cage", why))
+            }
+            (false, Some(_)) => Err(SceneError::conflict("cage", "allowed with effects.cage = true only")),
+            (false, None) => match friction.into_iter().find(|(_, given)| given.is_some()) {
+                Some((key, _)) => {
+                    let why = "allowed with effects.cage = true only";
+                    Err(SceneError::conflict(format!("friction.{key}"), why))
+                }
+                None => Ok(()),
+            },
+        }
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        self.section.map(|section| cage_rows(section.guided_by)).unwrap_or_default()
+    }
+
+    fn ball_rows(&self, ball: usize) -> Vec<Row> {
+        if self.on { pocket_rows(ball) } else { vec![] }
+    }
+}
+
+/// Pockets that hold their balls, and do not overlap.
+fn pockets(cage: &CageSection, bearing: &BearingSection) -> Result<(), SceneError> {
+    let (ball, pitch) = (bearing.ball_diameter.0, bearing.pitch_diameter.0);
+    // Below, ball and pocket fit so closely that they are no half-spaces any more, which Hertz takes them for.
+    Range::closed(SMALLEST_POCKET_CLEARANCE * ball, 0.5 * ball, "m")
+        .check("cage.pocket_clearance", cage.pocket_clearance.0)?;
+    let spacing = pitch * (std::f64::consts::PI / bearing.balls as f64).sin();
+    if bearing.balls > 1 && spacing <= ball + cage.pocket_clearance.0 {
+        let why = format!("pockets overlap: balls are {spacing} m apart and pockets wider");
+        return Err(SceneError::conflict("cage.pocket_clearance", why));
+    }
+    Ok(())
+}
+
+/// Lands that guide have all their dimensions; without lands there are none.
+fn lands(cage: &CageSection, friction: bool, bearing: &BearingSection) -> Result<(), SceneError> {
+    let (ball, pitch) = (bearing.ball_diameter.0, bearing.pitch_diameter.0);
+    let given = [
+        ("cage.guidance_clearance", cage.guidance_clearance.map(|length| length.0)),
+        ("cage.land_diameter", cage.land_diameter.map(|length| length.0)),
+        ("cage.land_width", cage.land_width.map(|length| length.0)),
+    ];
+    let diameters = match cage.guided_by {
+        Guidance::Inner => Range::closed((pitch - 2.0 * ball).max(0.0), pitch, "m"),
+        Guidance::Outer => Range::closed(pitch, pitch + 2.0 * ball, "m"),
+        Guidance::Balls => {
+            let keys = given.iter().filter(|(_, value)| value.is_some()).map(|(key, _)| *key);
+            let keys = keys.chain(friction.then_some("friction.cage_race"));
+            return keys.into_iter().next().map_or(Ok(()), |key| {
+                let why = "allowed with cage.guided_by = \"inner\" or \"outer\" only";
+                Err(SceneError::conflict(key, why))
+            });
+        }
+    };
+    for ((key, value), range) in
+        given.into_iter().zip([Range::above(0.0, ball, "m"), diameters, Range::above(0.0, 2.0 * ball, "m")])
+    {
+        let Some(value) = value else {
+            let why = "needed where lands guide the cage: guided_by = \"inner\" or \"outer\"";
+            return Err(SceneError::conflict(key, why));
+        };
+        range.check(key, value)?;
+    }
+    Ok(())
+}
+
+type FromCage = fn(&CageOutput) -> f64;
+type FromPocket = fn(&PocketOutput) -> f64;
+
+/// A row of the cage.
+fn row(name: &str, unit: Unit, nominal: f64, description: String, get: FromCage) -> Row {
+    let name = format!("cage.{name}");
+    Row { name, unit, nominal, description, get: Getter::new(move |reports| reports.cage.map_or(0.0, get)) }
+}
+
+/// Motion of the cage, and what pockets and lands do to it.
+fn cage_rows(guided_by: Guidance) -> Vec<Row> {
+    let guide = match guided_by {
+        Guidance::Inner => "inner",
+        Guidance::Outer | Guidance::Balls => "outer",
+    };
+    let centre = format!("cage centre relative to the {guide} race");
+    let mut rows: Vec<(&str, Unit, f64, String, FromCage)> = vec![
+        ("orientation.w", ONE, 1.0, "orientation of the cage, quaternion component w".into(), |c| {
+            c.pose.orientation.w
+        }),
+        ("turned", RADIAN, 100.0, "turns of the cage about its axis since the start".into(), |c| c.turned),
+        ("eccentricity.axial", METRE, 1e-4, format!("{centre}, along its axis"), |c| c.eccentricity.x),
+        ("eccentricity.radius", METRE, 1e-4, format!("{centre}, distance from its axis"), |c| {
+            c.eccentricity.yz().norm()
+        }),
+        ("eccentricity.angle", RADIAN, 1.0, format!("{centre}, angle from +y towards +z"), |c| {
+            c.eccentricity.z.atan2(c.eccentricity.y)
+        }),
+        ("pocket_power", WATT, 1.0, "power lost to friction in all pockets".into(), |c| c.pocket_power),
+    ];
+    let vectors: [(&str, Unit, f64, &str, [FromCage; 3]); 6] = [
+        (
+            "position",
+            METRE,
+            1e-4,
+            "position of the cage's centre",
+            [|c| c.pose.position.x, |c| c.pose.position.y, |c| c.pose.position.z],
+        ),
+        (
+            "orientation",
+            ONE,
+            1.0,
+            "orientation of the cage, imaginary part of the quaternion",
+            [|c| c.pose.orientation.i, |c| c.pose.orientation.j, |c| c.pose.orientation.k],
+        ),
+        (
+            "velocity",
+            METRE_PER_SECOND,
+            1e-2,
+            "velocity of the cage's centre",
+            [|c| c.twist.velocity.x, |c| c.twist.velocity.y, |c| c.twist.velocity.z],
+        ),
+        (
+            "angular_velocity",
+            RADIAN_PER_SECOND,
+            100.0,
+            "angular velocity of the cage",
+            [|c| c.twist.angular_velocity.x, |c| c.twist.angular_velocity.y, |c| c.twist.angular_velocity.z],
+        ),
+        (
+            "pocket_force",
+            NEWTON,
+            10.0,
+            "force of all pockets on the cage",
+            [|c| c.pocket_force.x, |c| c.pocket_force.y, |c| c.pocket_force.z],
+        ),
+        (
+            "land_force",
+            NEWTON,
+            10.0,
+            "force of the lands on the cage",
+            [|c| c.land_force.x, |c| c.land_force.y, |c| c.land_force.z],
+        ),
+    ];
+    if guided_by != Guidance::Balls {
+        let (left, right) = ("normal load on the land at the cage's -x side", "at the cage's +x side");
+        rows.push(("land_load.left", NEWTON, 10.0, left.into(), |c| c.land_loads[0]));
+        let right = format!("normal load on the land {right}");
+        rows.push(("land_load.right", NEWTON, 10.0, right, |c| c.land_loads[1]));
+        let power = "power lost to friction on the lands".to_string();
+        rows.push(("land_power", WATT, 1.0, power, |c| c.land_power));
+    }
+    let mut table: Vec<Row> = rows
+        .into_iter()
+        .map(|(name, unit, nominal, description, get)| row(name, unit, nominal, description, get))
+        .collect();
+    for (name, unit, nominal, what, components) in vectors {
+        if name == "land_force" && guided_by == Guidance::Balls {
+            continue;
+        }
+        for (axis, get) in ["x", "y", "z"].into_iter().zip(components) {
+            let description = format!("{what}, {axis} component");
+            table.push(row(&format!("{name}.{axis}"), unit, nominal, description, get));
+        }
+    }
+    table
+}
+
+/// Contact of a ball with its pocket.
+fn pocket_rows(ball: usize) -> Vec<Row> {
+    let pocket: [(&str, Unit, f64, &str, FromPocket); 6] = [
+        ("load", NEWTON, 10.0, "normal load", |p| p.load),
+        ("force.x", NEWTON, 10.0, "force on the ball, x component, world axes,", |p| p.force.x),
+        ("force.y", NEWTON, 10.0, "force on the ball, y component, world axes,", |p| p.force.y),
+        ("force.z", NEWTON, 10.0, "force on the ball, z component, world axes,", |p| p.force.z),
+        ("approach", METRE, 1e-4, "approach (negative is a gap)", |p| p.approach),
+        ("power", WATT, 0.1, "power lost to friction", |p| p.power),
+    ];
+    let row = |(quantity, unit, nominal, what, get): (&str, Unit, f64, &str, FromPocket)| {
+        let description = format!("{what} of ball {} and its cage pocket", ball + 1);
+        let of_ball = move |b: &BallOutput| b.pocket.as_ref().map_or(0.0, get);
+        ball_row(ball, &format!("pocket.{quantity}"), unit, nominal, description, of_ball)
+    };
+    pocket.into_iter().map(row).collect()
+}

@@ -1,0 +1,163 @@
+//! What an effect is: its keys, what is told about it, its numbers, checks and variables.
+
+use std::fmt;
+use std::sync::Arc;
+
+use super::reports::Reports;
+use crate::schema::numbers::{Number, Parameter};
+use crate::schema::variable_units::Unit;
+use crate::schema::{BearingSection, Friction, SceneError};
+
+/// What is told about an effect.
+#[derive(Clone, Copy, Debug)]
+pub struct Info {
+    /// Key that switches it, with its section.
+    pub key: &'static str,
+    /// What it adds, in one sentence.
+    pub adds: &'static str,
+    /// Which states it has.
+    pub states: &'static str,
+    /// Author and year, or section of the paper.
+    pub source: &'static str,
+    /// Part of a scene that switches it on.
+    pub example: &'static str,
+}
+
+/// What the keys of an effect may have to agree with.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup<'a> {
+    /// Internal geometry.
+    pub bearing: &'a BearingSection,
+    /// Friction coefficients.
+    pub friction: &'a Friction,
+    /// Does the creep law of the ball-race contacts saturate?
+    pub saturates: bool,
+}
+
+/// How the value of a variable is found in what is reported.
+#[derive(Clone)]
+pub struct Getter(Arc<dyn Fn(&Reports<'_>) -> f64 + Send + Sync>);
+
+impl Getter {
+    /// By a function.
+    pub fn new(get: impl Fn(&Reports<'_>) -> f64 + Send + Sync + 'static) -> Self {
+        Self(Arc::new(get))
+    }
+
+    /// The value.
+    pub fn get(&self, reports: &Reports<'_>) -> f64 {
+        (self.0)(reports)
+    }
+}
+
+impl fmt::Debug for Getter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Getter")
+    }
+}
+
+/// An output that an effect adds to the table of variables.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Structured name.
+    pub name: String,
+    /// Unit.
+    pub unit: Unit,
+    /// \[unit] typical size.
+    pub nominal: f64,
+    /// One sentence.
+    pub description: String,
+    /// Its value.
+    pub get: Getter,
+}
+
+/// An effect, by the struct of its keys; by default without numbers, checks and variables.
+pub trait Effect: Clone + 'static {
+    /// What is told about it.
+    const INFO: &'static Info;
+    /// Numbers among its keys.
+    const NUMBERS: &'static [Number<Self>] = &[];
+
+    /// How it is set, such as "0.02 s/m"; none if it is off.
+    fn setting(&self) -> Option<String>;
+
+    /// Checks keys against one another; their ranges were checked before.
+    ///
+    /// # Errors
+    /// Names the key.
+    fn agree(&self, _setup: &Setup<'_>) -> Result<(), SceneError> {
+        Ok(())
+    }
+
+    /// Outputs of the bearing as a whole.
+    fn rows(&self) -> Vec<Row> {
+        vec![]
+    }
+
+    /// Outputs of a ball (0 is the first), where every ball is reported.
+    fn ball_rows(&self, _ball: usize) -> Vec<Row> {
+        vec![]
+    }
+}
+
+/// Any effect: [`Effect`] as the list has it.
+pub trait AnyEffect {
+    /// See [`Effect::INFO`].
+    fn info(&self) -> &'static Info;
+    /// See [`Effect::setting`].
+    fn setting(&self) -> Option<String>;
+    /// Checks its numbers against their ranges.
+    ///
+    /// # Errors
+    /// Names the key, the value and the range.
+    fn check_numbers(&self) -> Result<(), SceneError>;
+    /// See [`Effect::agree`].
+    ///
+    /// # Errors
+    /// Names the key.
+    fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError>;
+    /// Its numbers that a package offers.
+    fn parameters(&self) -> Vec<Parameter>;
+    /// Place of the number of a key, if it is one of its own.
+    fn number(&mut self, key: &str) -> Option<&mut f64>;
+    /// See [`Effect::rows`].
+    fn rows(&self) -> Vec<Row>;
+    /// See [`Effect::ball_rows`].
+    fn ball_rows(&self, ball: usize) -> Vec<Row>;
+}
+
+impl<T: Effect> AnyEffect for T {
+    fn info(&self) -> &'static Info {
+        T::INFO
+    }
+
+    fn setting(&self) -> Option<String> {
+        Effect::setting(self)
+    }
+
+    fn check_numbers(&self) -> Result<(), SceneError> {
+        let mut copy = self.clone();
+        T::NUMBERS.iter().try_for_each(|number| number.check(&mut copy))
+    }
+
+    fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {
+        Effect::agree(self, setup)
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let mut copy = self.clone();
+        T::NUMBERS.iter().filter_map(|number| number.parameter(&mut copy)).collect()
+    }
+
+    fn number(&mut self, key: &str) -> Option<&mut f64> {
+        T::NUMBERS.iter().find(|number| number.key == key)?.value(self)
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        Effect::rows(self)
+    }
+
+    fn ball_rows(&self, ball: usize) -> Vec<Row> {
+        Effect::ball_rows(self, ball)
+    }
+}

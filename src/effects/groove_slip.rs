@@ -1,0 +1,39 @@
+//! Slip of grooves that bend across rolling ([`crate::contact::heathcote`]), with the laws that saturate.
+
+use super::effect::{Effect, Info, Setup};
+use super::keys::keys;
+use crate::schema::SceneError;
+
+keys! {
+    /// Is it simulated?
+    "heathcote_slip" => on: bool = false,
+}
+
+impl Settings {
+    /// [1/m] mean transverse curvature of a ball and its groove over 2, from their radii \[m], where the slip is simulated.
+    pub fn bend(&self, ball_radius: f64, groove_radius: f64) -> Option<f64> {
+        self.on.then_some(0.25 * (1.0 / ball_radius + 1.0 / groove_radius))
+    }
+}
+
+impl Effect for Settings {
+    const INFO: &'static Info = &Info {
+        key: "effects.heathcote_slip",
+        adds: "slip across contacts that are bent with the groove, and its friction",
+        states: "none",
+        source: "Heathcote 1921; Johnson 1985, section 8.5",
+        example: "[effects]\nheathcote_slip = true\n",
+    };
+
+    fn setting(&self) -> Option<String> {
+        self.on.then(|| "on".into())
+    }
+
+    fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {
+        if self.on && !setup.saturates {
+            let why = "needs a creep law that saturates: regularised, saturated, kalker_table or kalker";
+            return Err(SceneError::conflict("effects.heathcote_slip", why));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,144 @@
+//! Effects on demand. One that is off has no state and no variables, and costs nothing in a step.
+//!
+//! Each has a file: the struct of its keys with units and defaults, what is told about it ([`Info`]), its
+//! numbers with their ranges, its checks, its outputs, and what the model takes from it. To add one:
+//!
+//! 1. Write `src/effects/NAME.rs`: its keys of `[effects]` by the macro `keys!` (a section of many keys is one key whose type
+//!    is a struct: `[effects.NAME]` in a scene), and `impl Effect for Settings`.
+//! 2. `INFO` says what it adds, which states it has and where it is from; its `example` must start (`tests/effects.rs`).
+//! 3. `NUMBERS` has a row per number: the range stands there alone, and makes it an FMI parameter if a package offers it.
+//! 4. `agree` refuses keys that do not go together. What it has to know of the rest of the scene is in [`Setup`].
+//! 5. `rows` and `ball_rows` are its outputs, empty while it is off; what they read joins [`Reports`].
+//! 6. Add `pub mod NAME;` and the word `NAME` to the list below. Validation, variables, parameters and the page of a
+//!    package come from that list. Value references follow its order: add at the end.
+//! 7. The physics hangs on at most one hook: `Model` takes from `scene.effects.NAME` what a step reads, as an `Option`.
+//! 8. Everything that moves the balls must be in the equilibrium too, or a run starts with a bounce.
+
+pub mod cage;
+pub mod creep;
+pub mod damping;
+mod effect;
+pub mod gravity;
+pub mod groove_slip;
+pub mod keys;
+pub mod per_ball;
+pub mod reports;
+pub mod stiffness;
+
+use std::fmt;
+use std::sync::LazyLock;
+
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
+
+use crate::schema::SceneError;
+use crate::schema::numbers::Parameter;
+pub use effect::{AnyEffect, Effect, Getter, Info, Row, Setup};
+use keys::Keys;
+pub use reports::Reports;
+
+/// Makes [`Effects`] of a list of modules.
+macro_rules! effects {
+    ($($effect:ident),* $(,)?) => {
+        /// All effects as a scene has them; the section `[effects]`, and sections of their own.
+        #[derive(Clone, Debug, Default)]
+        pub struct Effects {
+            $(#[doc = concat!("See [`", stringify!($effect), "`].")] pub $effect: $effect::Settings,)*
+        }
+
+        /// All keys of `[effects]`.
+        static NAMES: LazyLock<Vec<&'static str>> =
+            LazyLock::new(|| [$($effect::Settings::NAMES),*].concat());
+
+        impl Effects {
+            /// All of them, in the order of the list.
+            pub fn each(&self) -> Vec<&dyn AnyEffect> {
+                vec![$(&self.$effect),*]
+            }
+
+            fn each_mut(&mut self) -> Vec<&mut dyn AnyEffect> {
+                vec![$(&mut self.$effect),*]
+            }
+
+            fn read<'de, A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error> {
+                $(if $effect::Settings::NAMES.contains(&key) {
+                    self.$effect.read(key, map)?;
+                })*
+                Ok(())
+            }
+        }
+    };
+}
+
+effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball }
+
+impl Effects {
+    /// Checks all numbers against their ranges.
+    ///
+    /// # Errors
+    /// Names the key, the value and the range.
+    pub fn check_numbers(&self) -> Result<(), SceneError> {
+        self.each().into_iter().try_for_each(AnyEffect::check_numbers)
+    }
+
+    /// Checks keys against one another and against the rest of the scene.
+    ///
+    /// # Errors
+    /// Names the key.
+    pub fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {
+        self.each().into_iter().try_for_each(|effect| effect.agree(setup))
+    }
+
+    /// Numbers that a package offers.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        self.each().into_iter().flat_map(AnyEffect::parameters).collect()
+    }
+
+    /// Place of the number of a key, if it is one of an effect.
+    pub fn number(&mut self, key: &str) -> Option<&mut f64> {
+        self.each_mut().into_iter().find_map(|effect| effect.number(key))
+    }
+
+    /// Outputs of a bearing with a number of balls, with or without every ball.
+    pub fn rows(&self, balls: usize, every_ball: bool) -> Vec<Row> {
+        let mut rows: Vec<Row> = self.each().into_iter().flat_map(AnyEffect::rows).collect();
+        for ball in 0..if every_ball { balls } else { 0 } {
+            rows.extend(per_ball::motion_rows(ball));
+            rows.extend(self.each().into_iter().flat_map(|effect| effect.ball_rows(ball)));
+            rows.extend(per_ball::contact_rows(ball));
+        }
+        rows
+    }
+}
+
+/// A key of `[effects]`.
+struct Key(&'static str);
+
+impl<'de> Deserialize<'de> for Key {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let written = String::deserialize(deserializer)?;
+        let known = NAMES.iter().find(|name| **name == written);
+        known.map(|name| Self(name)).ok_or_else(|| D::Error::unknown_field(&written, &NAMES))
+    }
+}
+
+impl<'de> Deserialize<'de> for Effects {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Table;
+        impl<'de> Visitor<'de> for Table {
+            type Value = Effects;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a table of effects")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Effects, A::Error> {
+                let mut effects = Effects::default();
+                while let Some(Key(key)) = map.next_key()? {
+                    effects.read(key, &mut map)?;
+                }
+                Ok(effects)
+            }
+        }
+        deserializer.deserialize_map(Table)
+    }
+}

@@ -1,0 +1,46 @@
+//! Why a scene is refused.
+
+use thiserror::Error;
+
+/// Why a scene was refused.
+#[derive(Debug, Error)]
+pub enum SceneError {
+    /// The file could not be read.
+    #[error("cannot read the scene file {path}: {source}")]
+    Read {
+        /// Path as given.
+        path: String,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// Not TOML, an unknown or missing key, or a value of the wrong kind or dimension.
+    #[error("{0}")]
+    Format(#[from] toml::de::Error),
+    /// A value outside its range.
+    #[error("{key} = {value} {unit} is out of range: allowed is {range}")]
+    Range {
+        /// Key with its section.
+        key: String,
+        /// Value in SI.
+        value: f64,
+        /// SI unit.
+        unit: &'static str,
+        /// Allowed range in words.
+        range: String,
+    },
+    /// Keys that do not go together.
+    #[error("{key}: {why}")]
+    Conflict {
+        /// Key with its section.
+        key: String,
+        /// What is wrong, and what would be right.
+        why: String,
+    },
+}
+
+impl SceneError {
+    /// Keys that do not go together: the one to change, and what would be right.
+    pub fn conflict(key: impl Into<String>, why: impl Into<String>) -> Self {
+        Self::Conflict { key: key.into(), why: why.into() }
+    }
+}

@@ -1,0 +1,14 @@
+//! What scenes are made of: quantities with units, schedules, sections, ranges of numbers, and why a scene is refused.
+
+mod accuracy;
+mod error;
+pub mod numbers;
+mod schedule;
+mod sections;
+pub mod units;
+pub mod variable_units;
+
+pub use accuracy::{Accuracy, Solver};
+pub use error::SceneError;
+pub use schedule::Schedule;
+pub use sections::*;
