@@ -259,9 +259,9 @@ mod tests {
     fn interpolated_stiffness_is_exact_to_1e_10() {
         let text = include_str!("../../scenes/thrust.toml");
         for pitch in ["24 mm", "46 mm", "300 mm"] {
-            let text =
-                text.replace("\"46 mm\"", &format!("\"{pitch}\"")).replace("balls = 10 ", "balls = 7 ");
-            let bearing = Bearing::new(&Scene::parse(&text).unwrap());
+            let pitch_diameter = format!("\"{pitch}\"");
+            let changes = [("bearing.pitch_diameter", &*pitch_diameter), ("bearing.balls", "7")];
+            let bearing = Bearing::new(&Scene::edited(text, changes).unwrap());
             for raceway in [&bearing.inner, &bearing.outer] {
                 let shape = ContactShape::new(&bearing, raceway).unwrap();
                 for i in 0..=50 {
