@@ -25,26 +25,24 @@ fn main() {
     divan::main();
 }
 
-fn prescribed() -> String {
-    THRUST.replace("drive = \"wrench\"", "drive = \"pose\"")
-}
+const PRESCRIBED: (&str, &str) = ("inner.drive", "\"pose\"");
 
 const LAWS: [&str; 5] = ["frictionless", "linear", "regularised", "saturated", "kalker_table"];
 
 /// The thrust case with a creep law, at its start.
 fn simulation(law: &str) -> Simulation {
-    let text = prescribed().replace("\"saturated\"", &format!("\"{law}\""));
-    Simulation::new(&Scene::parse(&text).unwrap()).unwrap()
+    let law = format!("\"{law}\"");
+    Simulation::new(&Scene::edited(THRUST, [PRESCRIBED, ("effects.creep", &law)]).unwrap()).unwrap()
 }
 
 /// The model of a scene: tables of its contacts and of its creep law.
 #[divan::bench(args = LAWS.iter().chain(&["kalker", "cage"]))]
 fn model_new(bencher: Bencher, law: &str) {
-    let text = match law {
-        "cage" => include_str!("../scenes/cage.toml").to_string(),
-        law => THRUST.replace("\"saturated\"", &format!("\"{law}\"")),
-    };
-    let scene = Scene::parse(&text).unwrap();
+    let scene = match law {
+        "cage" => Scene::parse(include_str!("../scenes/cage.toml")),
+        law => Scene::edited(THRUST, [("effects.creep", format!("\"{law}\""))]),
+    }
+    .unwrap();
     bencher.bench_local(|| Model::new(divan::black_box(&scene)).unwrap());
 }
 
@@ -127,7 +125,7 @@ fn accepted_step(bencher: Bencher, law: &str) {
 /// bounce has gone.
 #[divan::bench]
 fn fmu_step(bencher: Bencher) {
-    let package = fmi2_abi::Package::new("speed", &prescribed());
+    let package = fmi2_abi::Package::new("speed", &Scene::edited(THRUST, [PRESCRIBED]).unwrap().source);
     let component = package.start();
     let mut point = 0u32;
     let mut step = || {
@@ -154,8 +152,8 @@ fn equilibrium_solve(bencher: Bencher) {
 /// 10 ms of the thrust case at a step cap of 1e-5 s: 1000 steps an iteration, so 1 ms here is 0.1 s per simulated s.
 #[divan::bench(args = ["wrench", "pose"], sample_count = 20)]
 fn ten_milliseconds(bencher: Bencher, drive: &str) {
-    let text = if drive == "wrench" { THRUST.to_string() } else { prescribed() };
-    let mut start = Simulation::new(&Scene::parse(&text).unwrap()).unwrap();
+    let scene = Scene::edited(THRUST, [("inner.drive", format!("\"{drive}\""))]).unwrap();
+    let mut start = Simulation::new(&scene).unwrap();
     start.advance(5e-3).unwrap();
     bencher.counter(ItemsCount::new(1000u32)).with_inputs(|| start.clone()).bench_local_values(
         |mut simulation| {

@@ -29,9 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [law, heathcote, count] = &arguments[..] else {
         return Err("usage: contact_evaluations LAW HEATHCOTE COUNT".into());
     };
-    let effects = format!("creep = \"{law}\"\nheathcote_slip = {heathcote}");
-    let scene =
-        Scene::parse(&include_str!("../scenes/thrust.toml").replace("creep = \"saturated\"", &effects))?;
+    let effects = [("effects.creep", &format!("\"{law}\"")), ("effects.heathcote_slip", heathcote)];
+    let scene = Scene::edited(include_str!("../scenes/thrust.toml"), effects)?;
     let simulation = Simulation::new(&scene)?;
     let contact = simulation.model().contact(Race::Inner, &Conditions { friction: 0.08 });
     let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().race(Race::Inner).motion());

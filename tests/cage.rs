@@ -10,7 +10,7 @@ use roulement::contact::pocket::PocketModel;
 use roulement::contact::{BallMotion, RaceMotion};
 use roulement::interface::variables::Variables;
 use roulement::numerics::scalar::{Dual, Scalar, constant_vector};
-use roulement::scene::Scene;
+use roulement::scene::{Guidance, Scene};
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::{CageOutput, Outputs, PocketOutput};
 
@@ -18,9 +18,12 @@ use roulement::simulation::outputs::{CageOutput, Outputs, PocketOutput};
 mod mechanics;
 #[path = "common/random.rs"]
 mod random;
+#[path = "common/scenes.rs"]
+mod scenes;
 
 use mechanics::{Body, CageDimensions};
 use random::{number, vector};
+use scenes::scene;
 
 const THRUST: &str = include_str!("../scenes/thrust.toml");
 const CAGE: &str = include_str!("../scenes/cage.toml");
@@ -40,37 +43,34 @@ fn go_on(simulation: &mut Simulation, points: u32) -> Vec<Outputs> {
     history
 }
 
-fn run(text: &str, points: u32) -> (Simulation, Vec<Outputs>) {
-    let mut simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+fn run(scene: &Scene, points: u32) -> (Simulation, Vec<Outputs>) {
+    let mut simulation = Simulation::new(scene).unwrap();
     let history = go_on(&mut simulation, points);
     (simulation, history)
 }
 
+/// Changes of keys.
+type Changes = [(&'static str, &'static str)];
+
 /// The cage carried by the balls instead of the outer race.
-fn ball_guided() -> String {
-    let keep = |line: &&str| !["guidance", "land_", "cage_race"].iter().any(|key| line.starts_with(key));
-    let lines: Vec<&str> = CAGE.lines().filter(keep).collect();
-    lines.join("\n").replace("\"outer\"", "\"balls\"")
-}
+const BALL_GUIDED: &Changes = &[
+    ("cage.guided_by", "\"balls\""),
+    ("cage.guidance_clearance", ""),
+    ("cage.land_diameter", ""),
+    ("cage.land_width", ""),
+    ("friction.cage_race", ""),
+];
 
 /// The cage on lands of the inner race, which is a body.
-fn inner_guided() -> String {
-    CAGE.replace("\"outer\"", "\"inner\"").replace("\"52 mm\"", "\"40 mm\"")
-}
+const INNER_GUIDED: &Changes = &[("cage.guided_by", "\"inner\""), ("cage.land_diameter", "\"40 mm\"")];
 
 /// Without the radial load.
-fn pure_thrust(text: &str) -> String {
-    let line = "z = { force = \"-300 N\" }";
-    assert!(text.contains(line));
-    text.replace(line, "")
-}
+const PURE_THRUST: &Changes = &[("load.z", "")];
 
 /// The inner race braked from 6000 to 3000 rpm between two times [s], so that the cage runs into slower balls.
-fn braked(text: &str, from: f64, to: f64) -> String {
-    let line = "inner_speed = \"6000 rpm\"";
-    assert!(text.contains(line));
+fn braked(changes: &Changes, from: f64, to: f64) -> Scene {
     let ramp = format!("[[0.0, \"6000 rpm\"], [{from}, \"6000 rpm\"], [{to}, \"3000 rpm\"]]");
-    text.replace(line, &format!("inner_speed = {ramp}"))
+    scene(CAGE, &[changes, &[("load.inner_speed", &ramp)]].concat())
 }
 
 fn cage(outputs: &Outputs) -> CageOutput {
@@ -342,8 +342,8 @@ fn closed_form_friction_is_bounded_and_nothing_acts_across_a_gap() {
 
 #[test]
 fn invariant_pocket_and_land_forces_accelerate_the_cage() {
-    for text in [CAGE.to_string(), inner_guided(), ball_guided()] {
-        let (mut simulation, _) = run(&braked(&text, 1e-3, 8e-3), 50);
+    for guidance in [&[][..], INNER_GUIDED, BALL_GUIDED] {
+        let (mut simulation, _) = run(&braked(guidance, 1e-3, 8e-3), 50);
         let (mass, alpha_f) = (0.02, 0.05);
         let weight = Vector3::z() * (-9.81 * mass);
         let total = |o: &Outputs| cage(o).pocket_force + cage(o).land_force + weight;
@@ -369,8 +369,8 @@ fn invariant_pocket_and_land_forces_accelerate_the_cage() {
 
 #[test]
 fn closed_form_cage_runs_at_the_epicyclic_speed_under_thrust() {
-    for text in [CAGE.to_string(), inner_guided(), ball_guided()] {
-        let (_, history) = run(&pure_thrust(&text), 300);
+    for guidance in [&[][..], INNER_GUIDED, BALL_GUIDED] {
+        let (_, history) = run(&scene(CAGE, &[guidance, PURE_THRUST].concat()), 300);
         for outputs in &history[100..] {
             assert!(outputs.cage_slip.abs() < 1e-2, "{} at {} s", outputs.cage_slip, outputs.time);
         }
@@ -385,9 +385,9 @@ fn closed_form_cage_runs_at_the_epicyclic_speed_under_thrust() {
 
 #[test]
 fn invariant_energy_balance_with_every_guidance() {
-    for text in [CAGE.to_string(), inner_guided(), ball_guided()] {
-        let lands = !text.contains("\"balls\"");
-        let (_, history) = run(&braked(&text, 10e-3, 20e-3), 300);
+    for guidance in [&[][..], INNER_GUIDED, BALL_GUIDED] {
+        let (simulation, history) = run(&braked(guidance, 10e-3, 20e-3), 300);
+        let lands = simulation.scene().effects.cage.section.unwrap().guided_by != Guidance::Balls;
         // Asked for: 1 % of work plus friction.
         assert!(imbalance(&history) < 1e-3, "{}", imbalance(&history));
         for outputs in &history {
@@ -402,9 +402,8 @@ fn invariant_energy_balance_with_every_guidance() {
 
 #[test]
 fn start_from_rest_takes_the_cage_along() {
-    let line = "inner_speed = \"6000 rpm\"";
-    let text = CAGE.replace(line, "inner_speed = [[0.0, 0.0], [0.02, \"6000 rpm\"]]");
-    let (_, history) = run(&text, 300);
+    let speed = "[[0.0, 0.0], [0.02, \"6000 rpm\"]]";
+    let (_, history) = run(&scene(CAGE, &[("load.inner_speed", speed)]), 300);
     assert_eq!(history[0].cage_speed, 0.0);
     let last = &history[300];
     assert!(last.cage_slip.abs() < 0.02, "{}", last.cage_slip);
@@ -415,8 +414,7 @@ fn start_from_rest_takes_the_cage_along() {
 
 #[test]
 fn invariant_balls_that_jump_in_their_pockets_stay_in_them() {
-    let text = braked(CAGE, 1e-3, 3e-3);
-    let (simulation, history) = run(&text, 150);
+    let (simulation, history) = run(&braked(&[], 1e-3, 3e-3), 150);
     let touched = |o: &Outputs, j: usize| o.balls[j].pocket.unwrap().load > 0.0;
     let changes: usize =
         (0..10).map(|j| history.windows(2).filter(|w| touched(&w[0], j) != touched(&w[1], j)).count()).sum();
@@ -434,8 +432,8 @@ fn invariant_balls_that_jump_in_their_pockets_stay_in_them() {
 #[test]
 fn invariant_whirl_is_bounded_by_the_land_clearance() {
     // A cage under its weight and the friction of the land, in a bearing with radial load.
-    for text in [CAGE.to_string(), inner_guided()] {
-        let (_, history) = run(&text, 500);
+    for guidance in [&[][..], INNER_GUIDED] {
+        let (_, history) = run(&scene(CAGE, guidance), 500);
         let mut touched = 0;
         for outputs in &history {
             let cage = cage(outputs);
@@ -450,7 +448,7 @@ fn invariant_whirl_is_bounded_by_the_land_clearance() {
 
 #[test]
 fn invariant_spherical_pockets_carry_a_cage_without_lands() {
-    let (_, history) = run(&ball_guided(), 500);
+    let (_, history) = run(&scene(CAGE, BALL_GUIDED), 500);
     // The balls themselves run up to 20 um off the pitch circle under this load.
     let largest = history.iter().map(|o| cage(o).eccentricity.yz().norm()).fold(0.0, f64::max);
     assert!(largest > 0.5 * HALF_CLEARANCE && largest < HALF_CLEARANCE + 20e-6, "{largest}");
@@ -460,9 +458,8 @@ fn invariant_spherical_pockets_carry_a_cage_without_lands() {
 
 #[test]
 fn invariant_refined_steps_give_the_same_statistics() {
-    let fine = CAGE.replace("max_step = \"10 us\"", "max_step = \"2.5 us\"");
-    let statistics = [CAGE, &fine].map(|text| {
-        let (simulation, history) = run(text, 400);
+    let statistics = ["\"10 us\"", "\"2.5 us\""].map(|max_step| {
+        let (simulation, history) = run(&scene(CAGE, &[("solver.max_step", max_step)]), 400);
         // Exact tangents: few corrections a step, and no step given up.
         let s = &simulation.state().statistics;
         assert!(s.newton.iterations as f64 <= 3.0 * s.steps as f64 && s.rejected_newton == 0, "{s:?}");
@@ -481,22 +478,16 @@ fn invariant_refined_steps_give_the_same_statistics() {
 
 #[test]
 fn invariant_hard_cases_run_through_within_the_clearances() {
-    let speed = "inner_speed = \"6000 rpm\"";
-    let reversed = "inner_speed = [[0, \"6000 rpm\"], [0.02, \"-6000 rpm\"]]";
-    let cases: [&[(&str, &str)]; 6] = [
-        &[("damping = \"0.5 s/m\"", "damping = 0")],
-        &[("ball_cage = 0.05", "ball_cage = 0.3"), ("cage_race = 0.05", "cage_race = 0.3")],
-        &[("z = { force = \"-300 N\" }", "ry = { rotation = \"0.5 deg\" }")],
-        &[("20 g", "1 g"), ("1.1e-5", "5.5e-7"), ("6e-6", "3e-7")],
-        &[("\"1500 N\"", "\"20 N\""), ("\"-300 N\"", "\"-3000 N\"")],
-        &[(speed, reversed)],
+    let cases: [&Changes; 6] = [
+        &[("cage.damping", "0")],
+        &[("friction.ball_cage", "0.3"), ("friction.cage_race", "0.3")],
+        &[("load.z", ""), ("load.ry.rotation", "\"0.5 deg\"")],
+        &[("cage.mass", "\"1 g\""), ("cage.inertia", "[5.5e-7, 3e-7, 3e-7]")],
+        &[("load.x.force", "\"20 N\""), ("load.z.force", "\"-3000 N\"")],
+        &[("load.inner_speed", "[[0, \"6000 rpm\"], [0.02, \"-6000 rpm\"]]")],
     ];
     for case in cases {
-        let text = case.iter().fold(CAGE.to_string(), |text, (from, to)| {
-            assert!(text.contains(from), "{from}");
-            text.replace(from, to)
-        });
-        let (_, history) = run(&text, 300);
+        let (_, history) = run(&scene(CAGE, case), 300);
         let pocket = deepest_pocket(&history) / HALF_CLEARANCE;
         let land = history.iter().map(|o| cage(o).land_approach).fold(f64::NEG_INFINITY, f64::max);
         assert!(pocket < 0.1 && land < 0.1 * HALF_CLEARANCE, "{case:?}: {pocket} {land}");
@@ -507,8 +498,7 @@ fn invariant_hard_cases_run_through_within_the_clearances() {
 
 #[test]
 fn invariant_misaligned_inner_race_keeps_excursions_within_the_pockets() {
-    let text = CAGE.replace("x = {", "ry = { rotation = \"0.1 deg\" }\nx = {");
-    let (_, history) = run(&text, 400);
+    let (_, history) = run(&scene(CAGE, &[("load.ry.rotation", "\"0.1 deg\"")]), 400);
     // Balls run ahead and behind once per orbit: they use up the clearance and push the cage.
     let last = &history[200..];
     let largest = last.iter().flat_map(pockets).map(|pocket| pocket.load).fold(0.0, f64::max);
@@ -540,11 +530,11 @@ fn invariant_without_the_effect_there_is_no_cage() {
 
 #[test]
 fn invariant_a_snapshot_in_mid_contact_goes_on_to_the_same_bits() {
-    let text = braked(CAGE, 1e-3, 12e-3);
-    let (mut simulation, _) = run(&text, 60);
+    let scene = braked(&[], 1e-3, 12e-3);
+    let (mut simulation, _) = run(&scene, 60);
     let snapshot = simulation.snapshot();
     let first = go_on(&mut simulation, 40);
-    let mut other = Simulation::new(&Scene::parse(&text).unwrap()).unwrap();
+    let mut other = Simulation::new(&scene).unwrap();
     assert!(other.restore(&snapshot));
     let second = go_on(&mut other, 40);
     assert!(first == second && simulation.snapshot() == other.snapshot());
@@ -558,12 +548,13 @@ fn invariant_work_of_a_step_is_linear_in_the_number_of_balls() {
     // A ring of balls on a pitch circle that grows with their number: evaluations of contacts and corrections a step, counted.
     // Instructions are counted by scripts/ball-cost.
     let work = |balls: u32| {
-        let text = CAGE
-            .replace("balls = 10", &format!("balls = {balls}"))
-            .replace("\"46 mm\"", &format!("\"{} mm\"", 5 * balls))
-            .replace("\"52 mm\"", &format!("\"{} mm\"", 5 * balls + 6))
-            .replace("\"1500 N\"", &format!("\"{} N\"", 150 * balls));
-        let (simulation, _) = run(&text, 10);
+        let changes = [
+            ("bearing.balls", &*balls.to_string()),
+            ("bearing.pitch_diameter", &format!("\"{} mm\"", 5 * balls)),
+            ("cage.land_diameter", &format!("\"{} mm\"", 5 * balls + 6)),
+            ("load.x.force", &format!("\"{} N\"", 150 * balls)),
+        ];
+        let (simulation, _) = run(&scene(CAGE, &changes), 10);
         let s = simulation.state().statistics;
         let contacts = (s.contact_values + s.contact_tangents) as f64 / f64::from(balls);
         [contacts / s.steps as f64, s.newton.iterations as f64 / s.steps as f64, s.steps as f64]
@@ -578,30 +569,28 @@ fn invariant_work_of_a_step_is_linear_in_the_number_of_balls() {
 #[test]
 fn wrong_sections_are_refused_by_name() {
     let cases = [
-        ("cage = true", "", &["cage", "effects.cage = true"][..]),
-        ("mass = \"20 g\"", "", &["missing field", "mass"]),
-        ("mass = \"20 g\"", "mass = 0", &["cage.mass = 0", "(0, 10000]"]),
-        ("mass = \"20 g\"", "mass = \"20 mm\"", &["20 mm", "incompatible"]),
-        ("inertia = [\"1.1e-5 kg m^2\",", "inertia = [-1.0,", &["cage.inertia = -1"]),
-        ("pocket_clearance = \"0.2 mm\"", "pocket_clearance = 0", &["cage.pocket_clearance = 0"]),
-        ("pocket_clearance = \"0.2 mm\"", "pocket_clearance = \"4.75 mm\"", &["pockets overlap"]),
-        ("guided_by = \"outer\"", "guided_by = \"left\"", &["left", "inner"]),
-        ("guided_by = \"outer\"", "guided_by = \"balls\"", &["cage.guidance_clearance", "guided_by"]),
-        ("guidance_clearance = \"0.2 mm\"", "", &["cage.guidance_clearance", "needed"]),
-        ("land_width = \"2 mm\"", "", &["cage.land_width", "needed"]),
-        ("land_diameter = \"52 mm\"", "land_diameter = \"20 mm\"", &["cage.land_diameter = 0.02"]),
-        ("ball_cage = 0.05", "ball_cage = -1", &["friction.ball_cage = -1", "[0, 2]"]),
-        ("[cage]", "[cage]\ncolour = 1", &["colour", "unknown field"]),
+        ("effects.cage", "", &["cage", "effects.cage = true"][..]),
+        ("cage.mass", "", &["missing field", "mass"]),
+        ("cage.mass", "0", &["cage.mass = 0", "(0, 10000]"]),
+        ("cage.mass", "\"20 mm\"", &["20 mm", "incompatible"]),
+        ("cage.inertia", "[-1.0, 6e-6, 6e-6]", &["cage.inertia = -1"]),
+        ("cage.pocket_clearance", "0", &["cage.pocket_clearance = 0"]),
+        ("cage.pocket_clearance", "\"4.75 mm\"", &["pockets overlap"]),
+        ("cage.guided_by", "\"left\"", &["left", "inner"]),
+        ("cage.guided_by", "\"balls\"", &["cage.guidance_clearance", "guided_by"]),
+        ("cage.guidance_clearance", "", &["cage.guidance_clearance", "needed"]),
+        ("cage.land_width", "", &["cage.land_width", "needed"]),
+        ("cage.land_diameter", "\"20 mm\"", &["cage.land_diameter = 0.02"]),
+        ("friction.ball_cage", "-1", &["friction.ball_cage = -1", "[0, 2]"]),
+        ("cage.colour", "1", &["colour", "unknown field"]),
     ];
-    for (from, to, parts) in cases {
-        assert!(CAGE.contains(from), "{from}");
-        let message = Scene::parse(&CAGE.replacen(from, to, 1)).unwrap_err().to_string();
+    let refusal = |text, key, value| Scene::edited(text, [(key, value)]).unwrap_err().to_string();
+    for (key, value, parts) in cases {
+        let message = refusal(CAGE, key, value);
         for part in parts {
             assert!(message.contains(part), "{message}\nshould name {part}");
         }
     }
-    let text = THRUST.replace("[effects]", "[effects]\ncage = true");
-    assert!(Scene::parse(&text).unwrap_err().to_string().contains("effects.cage"));
-    let text = THRUST.replace("ball_race = 0.08", "ball_race = 0.08\nball_cage = 0.1");
-    assert!(Scene::parse(&text).unwrap_err().to_string().contains("friction.ball_cage"));
+    assert!(refusal(THRUST, "effects.cage", "true").contains("effects.cage"));
+    assert!(refusal(THRUST, "friction.ball_cage", "0.1").contains("friction.ball_cage"));
 }

@@ -5,6 +5,8 @@
 mod fmi2_abi;
 #[path = "common/random.rs"]
 mod random;
+#[path = "common/scenes.rs"]
+mod scenes;
 
 use std::ffi::{CStr, c_char, c_int};
 use std::ptr;
@@ -13,6 +15,7 @@ use fmi2_abi::*;
 use random::Random;
 use roulement::fmi::v2::Status;
 use roulement::interface::variables::Causality;
+use scenes::scene;
 
 /// One importer that knows no manners.
 struct Hooligan<'a> {
@@ -370,8 +373,9 @@ fn invariant_eight_instances_in_eight_threads_equal_serial_runs() {
 #[test]
 fn invariant_a_step_that_cannot_be_finished_is_left_at_the_last_time_reached() {
     // No step below 8 us is allowed.
-    let solver = "[solver]\ninitial_step = \"10 us\"\nmin_step = \"8 us\"\ntolerance = 1e-3\n[load]";
-    let package = Package::new("discard", &scene_text("wrench").replace("[load]", solver));
+    let steps =
+        [("solver.initial_step", "\"10 us\""), ("solver.min_step", "\"8 us\""), ("solver.tolerance", "1e-3")];
+    let package = Package::new("discard", &scene(&scene_text("wrench"), &steps).source);
     let c = package.start();
     let outputs: Vec<u32> = package
         .references(Causality::Output)

@@ -3,6 +3,8 @@
 
 #[path = "common/laws.rs"]
 mod laws;
+#[path = "common/scenes.rs"]
+mod scenes;
 
 use std::f64::consts::PI;
 
@@ -12,8 +14,8 @@ use roulement::kalker::half_space::extrapolated;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::kalker::table::CreepTable;
 use roulement::kalker::{Patch, ScaledCreepage};
-use roulement::scene::Scene;
 use roulement::simulation::Simulation;
+use scenes::scene;
 
 /// Ball of 6.35 mm radius in an inner groove of conformity 0.52 (tests/data/contact/heathcote.csv): [m], [Pa].
 const A: f64 = 0.13119e-3;
@@ -155,9 +157,10 @@ fn closed_form_free_rolling_in_complete_sliding() {
 }
 
 /// A radially loaded deep-groove bearing after 10 ms: friction torque [N m], and energy balance over what was lost.
-fn radial(effects: &str) -> (f64, f64) {
-    let text = include_str!("../scenes/radial.toml").replace("creep = \"saturated\"", effects);
-    let scene = Scene::parse(&text).unwrap();
+fn radial(law: &str, heathcote_slip: bool) -> (f64, f64) {
+    let changes =
+        [("effects.creep", &*format!("\"{law}\"")), ("effects.heathcote_slip", &heathcote_slip.to_string())];
+    let scene = scene(include_str!("../scenes/radial.toml"), &changes);
     let mut simulation = Simulation::new(&scene).unwrap();
     let start = simulation.outputs().clone();
     simulation.advance(10e-3).unwrap();
@@ -169,8 +172,8 @@ fn radial(effects: &str) -> (f64, f64) {
 #[test]
 fn invariant_energy_and_torque_of_a_radial_bearing() {
     for law in ["saturated", "kalker_table"] {
-        let (flat, _) = radial(&format!("creep = \"{law}\""));
-        let (bent, balance) = radial(&format!("creep = \"{law}\"\nheathcote_slip = true"));
+        let (flat, _) = radial(law, false);
+        let (bent, balance) = radial(law, true);
         println!("{law}: friction torque {flat:.2e} N m flat, {bent:.4} N m bent, balance {balance:.1e}");
         assert!(bent > 5e-3 && flat.abs() < 0.2 * bent, "{law}: {flat} {bent}");
         assert!(balance.abs() < 1e-2, "{law}: {balance}");

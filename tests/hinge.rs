@@ -6,22 +6,27 @@ use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::Outputs;
 
+#[path = "common/scenes.rs"]
+mod scenes;
+
+use scenes::{HELD, scene};
+
 const THRUST: &str = include_str!("../scenes/thrust.toml");
 
-/// The thrust scene with another section of the outer race, the inner race held across the axis.
-fn scene(outer: &str) -> String {
-    THRUST.replace("drive = \"fixed\"", outer)
-        + "y = { displacement = 0.0 }\nz = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n"
+/// The thrust scene with the outer race on a hinge, the inner race held across the axis.
+fn hinge(misalignment: &str, outer_speed: &str) -> Scene {
+    let hinge = [
+        ("outer.drive", "\"hinge\""),
+        ("outer.mass", "0.3"),
+        ("outer.inertia", "[3e-4, 2e-4, 2e-4]"),
+        ("outer.misalignment", misalignment),
+        ("load.outer_speed", outer_speed),
+    ];
+    scene(THRUST, &[&hinge[..], &HELD].concat())
 }
 
-fn hinge(misalignment: &str) -> String {
-    scene(&format!(
-        "drive = \"hinge\"\nmass = 0.3\ninertia = [3e-4, 2e-4, 2e-4]\nmisalignment = {misalignment}"
-    ))
-}
-
-fn run(text: &str, points: u32) -> Vec<Outputs> {
-    let mut simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+fn run(scene: &Scene, points: u32) -> Vec<Outputs> {
+    let mut simulation = Simulation::new(scene).unwrap();
     let mut history = vec![simulation.outputs().clone()];
     for point in 1..=points {
         simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
@@ -34,8 +39,8 @@ fn run(text: &str, points: u32) -> Vec<Outputs> {
 #[test]
 fn invariant_a_hinged_race_runs_like_a_fixed_one() {
     let tilt = "{ ry = 2e-4, rz = -1e-4 }";
-    let hinged = run(&hinge(tilt), 50);
-    let fixed = run(&scene(&format!("drive = \"fixed\"\nmisalignment = {tilt}")), 50);
+    let hinged = run(&hinge(tilt, "0.0"), 50);
+    let fixed = run(&scene(THRUST, &[&[("outer.misalignment", tilt)][..], &HELD].concat()), 50);
     let (a, b) = (hinged.last().unwrap(), fixed.last().unwrap());
     for (one, other) in a.balls.iter().zip(&b.balls) {
         assert!((one.inner.load / other.inner.load - 1.0).abs() < 1e-5);
@@ -55,9 +60,8 @@ fn invariant_a_hinged_race_runs_like_a_fixed_one() {
 
 #[test]
 fn invariant_a_hinge_follows_its_script_and_spins() {
-    let text = hinge("{ ry = [[0.0, 0.0], [\"2 ms\", 3e-4]], rz = 1e-4 }")
-        .replace("[load]", "[load]\nouter_speed = \"-1000 rpm\"");
-    let history = run(&text, 30);
+    let script = "{ ry = [[0.0, 0.0], [\"2 ms\", 3e-4]], rz = 1e-4 }";
+    let history = run(&hinge(script, "\"-1000 rpm\""), 30);
     for outputs in &history {
         let s = (outputs.time / 2e-3).min(1.0);
         let ry = 3e-4 * s * s * (3.0 - 2.0 * s);
@@ -73,9 +77,12 @@ fn invariant_a_hinge_follows_its_script_and_spins() {
 
 #[test]
 fn invariant_given_velocities_are_those_of_the_start() {
-    let text = THRUST.to_string()
-        + "[start]\norbital_speed = 100.0\nball_angular_velocity = [-300.0, 20.0, 5.0]\ninner_velocity = [0.01, 0.0, 0.0]\n";
-    let history = run(&text, 100);
+    let start = [
+        ("start.orbital_speed", "100.0"),
+        ("start.ball_angular_velocity", "[-300.0, 20.0, 5.0]"),
+        ("start.inner_velocity", "[0.01, 0.0, 0.0]"),
+    ];
+    let history = run(&scene(THRUST, &start), 100);
     assert_eq!(history[0].inner.twist.velocity.x, 0.01);
     for ball in &history[0].balls {
         assert!((ball.orbital_speed - 100.0).abs() < 1e-9);

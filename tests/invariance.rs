@@ -98,10 +98,8 @@ fn invariant_turning_the_whole_scene_about_its_axis() {
 /// The scene with both races moved by the importer.
 fn given_races() -> Simulation {
     let text = scene(SI, 9, 46e-3, 0.3, 0.1);
-    let (from, to) = (text.find("[inner]").unwrap(), text.find("[solver]").unwrap());
-    let given = "[inner]\ndrive = \"pose\"\n[outer]\ndrive = \"pose\"\n";
-    let text = format!("{}{given}{}", &text[..from], &text[to..]);
-    Simulation::new(&Scene::parse(&text).unwrap()).unwrap()
+    let given = "{ drive = \"pose\" }";
+    Simulation::new(&Scene::edited(&text, [("inner", given), ("outer", given)]).unwrap()).unwrap()
 }
 
 /// Runs a simulation beside one that starts from and follows its inputs as `changed` makes them; its forces and places

@@ -17,6 +17,8 @@ use roulement::simulation::outputs::{ContactOutput, Outputs};
 mod mechanics;
 #[path = "common/random.rs"]
 mod random;
+#[path = "common/scenes.rs"]
+mod scenes;
 
 use mechanics::{Body, CageDimensions, Contact, Dimensions, Land, V, grooves};
 use random::vector;
@@ -507,10 +509,9 @@ fn closed_form_races_of_a_run() {
 fn closed_form_friction_torque_turns_with_the_speed() {
     // Against the inner race's rotation: positive either way round.
     for speed in [600.0, -600.0] {
-        let text = scene(Guide::Outer)
-            .replace("inner_speed = 600.0", &format!("inner_speed = {speed:?}"))
-            .replace("outer_speed = -150.0", "outer_speed = 0.0");
-        let mut simulation = simulation(&text);
+        let speeds = [("load.inner_speed", &*format!("{speed:?}")), ("load.outer_speed", "0.0")];
+        let scene = scenes::scene(&scene(Guide::Outer), &speeds);
+        let mut simulation = Simulation::new(&scene).unwrap();
         simulation.advance(3e-3).unwrap();
         let outputs = simulation.outputs();
         let torque = outputs.inner.wrench.moment.dot(&(outputs.inner.pose.orientation * V::x()));
@@ -522,12 +523,10 @@ fn closed_form_friction_torque_turns_with_the_speed() {
 #[test]
 fn closed_form_drive_torque_and_reactions_balance_a_race() {
     // Consistent at the start and after settling: Newton's and Euler's laws about each race's own origin.
-    let mut text = scene(Guide::Outer);
     for ramp in [false, true] {
-        if ramp {
-            text = text.replace("inner_speed = 600.0", "inner_speed = [[0.0, 600.0], [0.1, 1600.0]]");
-        }
-        let mut simulation = simulation(&text);
+        let speed = if ramp { "[[0.0, 600.0], [0.1, 1600.0]]" } else { "600.0" };
+        let scene = scenes::scene(&scene(Guide::Outer), &[("load.inner_speed", speed)]);
+        let mut simulation = Simulation::new(&scene).unwrap();
         for point in 1..=60 {
             simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
             simulation.advance(f64::from(point) * 1e-4).unwrap();
@@ -655,15 +654,15 @@ fn closed_form_without_a_cage_the_mean_orbit_is_the_cage_speed() {
     let still = simulation.outputs();
     assert!(still.stored_energy > 0.0 && still.time == 1e-3);
     // Races at rest have no speed to compare with.
-    let rest = text.replace("inner_speed = \"6000 rpm\"", "inner_speed = 0.0");
-    assert_eq!(Simulation::new(&Scene::parse(&rest).unwrap()).unwrap().outputs().cage_slip, 0.0);
+    let rest = scenes::scene(text, &[("load.inner_speed", "0.0")]);
+    assert_eq!(Simulation::new(&rest).unwrap().outputs().cage_slip, 0.0);
 }
 
 #[test]
 fn closed_form_counters_of_equal_steps() {
-    let text =
-        include_str!("../scenes/thrust.toml").replace("initial_step = \"1 us\"", "initial_step = \"10 us\"");
-    let mut simulation = simulation(&text);
+    let equal = [("solver.initial_step", "\"10 us\"")];
+    let scene = scenes::scene(include_str!("../scenes/thrust.toml"), &equal);
+    let mut simulation = Simulation::new(&scene).unwrap();
     simulation.advance(2e-3).unwrap();
     let s = simulation.outputs().statistics;
     // The last step may leave a rounded rest.

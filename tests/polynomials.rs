@@ -13,14 +13,25 @@ use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 
+#[path = "common/scenes.rs"]
+mod scenes;
+
+use scenes::scene;
+
+const THRUST: &str = include_str!("../scenes/thrust.toml");
+
 /// The thrust case with polynomials of a degree, renewed after a change of creepages.
-fn polynomials(degree: usize, epsilon_switch: f64) -> String {
-    let effects = format!("creep = \"kalker\"\nkalker_degree = {degree}\nepsilon_switch = {epsilon_switch}");
-    include_str!("../scenes/thrust.toml").replace("creep = \"saturated\"", &effects)
+fn polynomials(degree: usize, epsilon_switch: f64) -> Scene {
+    let changes = [
+        ("effects.creep", "\"kalker\""),
+        ("effects.kalker_degree", &degree.to_string()),
+        ("effects.epsilon_switch", &epsilon_switch.to_string()),
+    ];
+    scene(THRUST, &changes)
 }
 
-fn run(text: &str, duration: f64) -> Simulation {
-    let mut simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+fn run(scene: &Scene, duration: f64) -> Simulation {
+    let mut simulation = Simulation::new(scene).unwrap();
     simulation.advance(duration).unwrap();
     simulation
 }
@@ -89,7 +100,7 @@ fn invariant_rare_renewals_change_little_and_cost_less() {
 
 #[test]
 fn invariant_polynomials_and_table_run_alike() {
-    let table = run(&polynomials(5, 0.01).replace("creep = \"kalker\"", "creep = \"kalker_table\""), 0.2e-3);
+    let table = run(&scene(THRUST, &[("effects.creep", "\"kalker_table\"")]), 0.2e-3);
     let kalker = run(&polynomials(5, 0.01), 0.2e-3);
     let [a, b] = [&table, &kalker].map(|simulation| simulation.outputs().friction_power);
     println!("friction power {a:.4} W by the table, {b:.4} W by polynomials");

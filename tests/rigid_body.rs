@@ -14,6 +14,11 @@ use roulement::numerics::rotation;
 use roulement::numerics::step_control::StepControl;
 use roulement::scene::Scene;
 
+#[path = "common/scenes.rs"]
+mod scenes;
+
+use scenes::scene;
+
 const THRUST: &str = include_str!("../scenes/thrust.toml");
 
 /// A bearing whose inner race is a free body, in equal steps.
@@ -26,9 +31,9 @@ struct Flight {
 }
 
 impl Flight {
-    /// `scene` is its text; the balls are those given.
-    fn new(scene: &str, body: RigidBody, pose: Pose, twist: &Twist, balls: Vec<BallState>, h: f64) -> Self {
-        let mut model = Model::new(&Scene::parse(scene).unwrap()).unwrap();
+    /// The balls are those given.
+    fn new(scene: &Scene, body: RigidBody, pose: Pose, twist: &Twist, balls: Vec<BallState>, h: f64) -> Self {
+        let mut model = Model::new(scene).unwrap();
         let constraints = body.constraints.len();
         model.bodies = Bodies::new(PerRace { inner: Some(body), outer: None }, None);
         // Steps are given here: their local error is not asked.
@@ -63,10 +68,10 @@ impl Flight {
 
     /// A free body without any ball.
     fn free(inertia: Vector3<f64>, rate: Vector3<f64>, alpha_f: f64, h: f64) -> Self {
-        let text = THRUST.replace("alpha_f = 0.05", &format!("alpha_f = {alpha_f:?}"));
+        let scene = scene(THRUST, &[("solver.alpha_f", &format!("{alpha_f:?}"))]);
         let body = RigidBody { mass: 1.0, inertia, constraints: vec![] };
         let twist = Twist { velocity: Vector3::zeros(), angular_velocity: rate };
-        Self::new(&text, body, Pose::default(), &twist, vec![], h)
+        Self::new(&scene, body, Pose::default(), &twist, vec![], h)
     }
 
     fn step(&mut self) {
@@ -179,7 +184,7 @@ fn spun(revolutions: u32) -> [f64; 3] {
     let body = RigidBody { mass: 0.2, inertia, constraints: vec![Constraint::Spin] };
     let pose = Pose { position: Vector3::zeros(), orientation: start };
     let twist = Twist { velocity: Vector3::zeros(), angular_velocity: start * Vector3::x() * speed };
-    let mut flight = Flight::new(THRUST, body, pose, &twist, vec![], h);
+    let mut flight = Flight::new(&scene(THRUST, &[]), body, pose, &twist, vec![], h);
     flight.boundary.loads.inner.speed = speed;
     for _ in 0..8 * revolutions {
         flight.step();
@@ -276,17 +281,19 @@ fn ball(position: Vector3<f64>, velocity: Vector3<f64>, angular_velocity: Vector
     }
 }
 
-const GAP: &str = "contact_angle = \"25 deg\"        # chosen";
+/// The thrust case with a clearance instead of a contact angle.
+fn with_gap() -> Scene {
+    let gap = [("bearing.contact_angle", ""), ("bearing.diametral_clearance", "\"0.7 mm\"")];
+    scene(THRUST, &gap)
+}
 
 #[test]
 fn invariant_a_ball_in_free_flight_keeps_its_momentum() {
-    let text = THRUST.replace(GAP, "diametral_clearance = \"0.7 mm\"");
-    assert_ne!(text, THRUST);
     let body = RigidBody { mass: 0.2, inertia: Vector3::new(6e-5, 4e-5, 4e-5), constraints: vec![] };
     let (velocity, spin) = (Vector3::new(0.01, -0.05, 0.3), Vector3::new(300.0, -40.0, 5.0));
     let start = ball(Vector3::new(0.0, 23e-3, 0.0), velocity, spin);
     let twist = Twist { velocity: Vector3::zeros(), angular_velocity: Vector3::x() * 600.0 };
-    let mut flight = Flight::new(&text, body, Pose::default(), &twist, vec![start], 1e-5);
+    let mut flight = Flight::new(&with_gap(), body, Pose::default(), &twist, vec![start], 1e-5);
     for _ in 0..100 {
         flight.step();
     }
@@ -297,11 +304,10 @@ fn invariant_a_ball_in_free_flight_keeps_its_momentum() {
 
 #[test]
 fn invariant_a_ball_that_bounces_off_a_free_race_keeps_the_sum_of_momenta() {
-    let text = THRUST.replace(GAP, "diametral_clearance = \"0.7 mm\"");
     let body = RigidBody { mass: 0.2, inertia: Vector3::new(6e-5, 4e-5, 4e-5), constraints: vec![] };
     let start = ball(Vector3::new(0.0, 22.9e-3, 0.0), Vector3::new(0.0, -0.5, 0.1), Vector3::zeros());
     let twist = Twist { velocity: Vector3::zeros(), angular_velocity: Vector3::x() * 600.0 };
-    let mut flight = Flight::new(&text, body, Pose::default(), &twist, vec![start], 1e-6);
+    let mut flight = Flight::new(&with_gap(), body, Pose::default(), &twist, vec![start], 1e-6);
     let momenta = |flight: &Flight| {
         let (ball, mass) = (&flight.state.balls[0], flight.model.bearing.ball.mass);
         let inertia = flight.model.bearing.ball.inertia;

@@ -9,12 +9,25 @@ use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::{Rows, play};
 use roulement::simulation::{Simulation, SimulationError};
 
+#[path = "common/scenes.rs"]
+mod scenes;
+
+use scenes::{HELD, scene};
+
 const THRUST: &str = include_str!("../scenes/thrust.toml");
 const RADIAL: &str = include_str!("../scenes/radial.toml");
 
+fn thrust() -> Scene {
+    Scene::parse(THRUST).unwrap()
+}
+
+fn radial() -> Scene {
+    Scene::parse(RADIAL).unwrap()
+}
+
 /// Runs a scene by its own script and returns its outputs at every communication point.
-fn run(text: &str, points: u32) -> (Simulation, Vec<Outputs>) {
-    let mut simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+fn run(scene: &Scene, points: u32) -> (Simulation, Vec<Outputs>) {
+    let mut simulation = Simulation::new(scene).unwrap();
     let interval = simulation.scene().load.output_interval.0;
     let rows = Rows { interval, duration: f64::from(points) * interval };
     let mut history = vec![];
@@ -28,7 +41,7 @@ fn run(text: &str, points: u32) -> (Simulation, Vec<Outputs>) {
 
 #[test]
 fn invariant_energy_balance_and_work_of_the_thrust_case() {
-    let (simulation, history) = run(THRUST, 500);
+    let (simulation, history) = run(&thrust(), 500);
     let (first, last) = (&history[0], &history[500]);
     let balance = last.work - last.dissipated - (last.stored_energy - first.stored_energy);
     // Asked for: 1 % of the work; the scheme does far better.
@@ -48,7 +61,7 @@ fn invariant_energy_balance_and_work_of_the_thrust_case() {
 
 #[test]
 fn invariant_all_balls_are_alike_under_pure_thrust() {
-    let (_, history) = run(THRUST, 100);
+    let (_, history) = run(&thrust(), 100);
     let balls = &history[100].balls;
     for ball in balls {
         assert!((ball.inner.load / balls[0].inner.load - 1.0).abs() < 1e-9);
@@ -59,9 +72,9 @@ fn invariant_all_balls_are_alike_under_pure_thrust() {
 
 #[test]
 fn invariant_kept_matrices_change_costs_and_not_results() {
-    let text = THRUST.replace("\"wrench\"", "\"pose\"");
-    let (kept, history) = run(&text, 50);
-    let (new, reference) = run(&text.replace("[solver]", "[solver]\nmatrix_reuse = 0.0"), 50);
+    let pose = ("inner.drive", "\"pose\"");
+    let (kept, history) = run(&scene(THRUST, &[pose]), 50);
+    let (new, reference) = run(&scene(THRUST, &[pose, ("solver.matrix_reuse", "0.0")]), 50);
     let (last, expected) = (&history[50], &reference[50]);
     // Both solve to nine digits of the load in every step.
     assert!((last.inner.wrench.force - expected.inner.wrench.force).norm() < 1e-7 * 1500.0);
@@ -75,7 +88,7 @@ fn invariant_kept_matrices_change_costs_and_not_results() {
 
 #[test]
 fn closed_form_steady_thrust_load_and_race_speed() {
-    let (_, history) = run(THRUST, 500);
+    let (_, history) = run(&thrust(), 500);
     let last = &history[500];
     assert!((last.inner.wrench.force.x + 1500.0).abs() < 1e-3, "{}", last.inner.wrench.force.x);
     assert!((last.inner.twist.angular_velocity.x - 200.0 * std::f64::consts::PI).abs() < 1e-8);
@@ -86,13 +99,11 @@ fn closed_form_steady_thrust_load_and_race_speed() {
 
 #[test]
 fn invariant_both_drives_agree_on_the_steady_loads() {
-    let (_, wrench) = run(THRUST, 300);
+    let (_, wrench) = run(&thrust(), 300);
     let last = &wrench[300];
     // The same bearing held where the wrench-driven one settled.
-    let held = THRUST.replace("drive = \"wrench\"", "drive = \"pose\"").replace(
-        "x = { force = \"1500 N\" }",
-        &format!("x = {{ displacement = {:e} }}", last.inner.pose.position.x),
-    );
+    let place = format!("{{ displacement = {:e} }}", last.inner.pose.position.x);
+    let held = scene(THRUST, &[("inner.drive", "\"pose\""), ("load.x", &place)]);
     let (_, pose) = run(&held, 300);
     let other = &pose[300];
     let relative = |a: f64, b: f64| (a / b - 1.0).abs();
@@ -106,11 +117,10 @@ fn invariant_both_drives_agree_on_the_steady_loads() {
 
 #[test]
 fn invariant_dynamic_loads_lie_near_the_quasi_static_ones() {
-    for text in [THRUST, RADIAL] {
-        let (simulation, history) = run(text, 300);
-        let scene = simulation.scene();
+    for scene in [thrust(), radial()] {
+        let (simulation, history) = run(&scene, 300);
         let solve = |gyroscopic| {
-            let input = EquilibriumInput::from_scene(scene, gyroscopic);
+            let input = EquilibriumInput::from_scene(&scene, gyroscopic);
             equilibrium::solve(simulation.model(), &input).unwrap()
         };
         let (control, none) = (solve(Gyroscopic::OuterRaceControl), solve(Gyroscopic::None));
@@ -126,7 +136,7 @@ fn invariant_dynamic_loads_lie_near_the_quasi_static_ones() {
 
 #[test]
 fn closed_form_cage_speed_of_the_radial_case() {
-    let (simulation, history) = run(RADIAL, 300);
+    let (simulation, history) = run(&radial(), 300);
     let expected = simulation.model().bearing.epicyclic_speed(0.0, 200.0 * std::f64::consts::PI, 0.0);
     let mean = history[100..].iter().map(|o| o.cage_speed).sum::<f64>() / 201.0;
     assert!((mean / expected - 1.0).abs() < 1e-3, "{mean} {expected}");
@@ -134,8 +144,8 @@ fn closed_form_cage_speed_of_the_radial_case() {
 
 #[test]
 fn invariant_reruns_and_snapshots_give_the_same_bits() {
-    let (mut one, history) = run(RADIAL, 40);
-    let (_, again) = run(RADIAL, 40);
+    let (mut one, history) = run(&radial(), 40);
+    let (_, again) = run(&radial(), 40);
     assert_eq!(history, again);
     let snapshot = one.snapshot();
     let interval = one.scene().load.output_interval.0;
@@ -154,7 +164,8 @@ fn invariant_reruns_and_snapshots_give_the_same_bits() {
 fn all_creep_laws_run_both_scenes() {
     for law in ["frictionless", "regularised", "saturated", "linear"] {
         for text in [THRUST, RADIAL] {
-            let (simulation, history) = run(&text.replace("\"saturated\"", &format!("\"{law}\"")), 50);
+            let scene = scene(text, &[("effects.creep", &format!("\"{law}\""))]);
+            let (simulation, history) = run(&scene, 50);
             let last = &history[50];
             assert!(last.inner.wrench.force.norm() > 1000.0, "{law}");
             let s = &simulation.state().statistics;
@@ -165,9 +176,8 @@ fn all_creep_laws_run_both_scenes() {
 
 #[test]
 fn misaligned_outer_race_changes_the_ball_speeds_once_per_orbit() {
-    let text = THRUST.replace("drive = \"fixed\"", "drive = \"fixed\"\nmisalignment = { ry = \"0.01 deg\" }")
-        + "y = { displacement = 0.0 }\nz = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";
-    let (_, history) = run(&text, 200);
+    let changes = [&[("outer.misalignment.ry", "\"0.01 deg\"")][..], &HELD].concat();
+    let (_, history) = run(&scene(THRUST, &changes), 200);
     let last = &history[200];
     let loads: Vec<f64> = last.balls.iter().map(|b| b.inner.load).collect();
     let (low, high) = loads.iter().fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(*v), h.max(*v)));
@@ -184,7 +194,7 @@ fn misaligned_outer_race_changes_the_ball_speeds_once_per_orbit() {
 
 #[test]
 fn steps_that_make_no_sense_are_refused() {
-    let mut simulation = Simulation::new(&Scene::parse(THRUST).unwrap()).unwrap();
+    let mut simulation = Simulation::new(&thrust()).unwrap();
     for end in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(simulation.advance(end), Err(SimulationError::Backwards { .. })));
     }
@@ -193,8 +203,7 @@ fn steps_that_make_no_sense_are_refused() {
 
 #[test]
 fn closed_form_counter_rotating_rings_leave_the_cage_nearly_at_rest() {
-    let text = THRUST.replace("[load]", "[load]\nouter_speed = \"-6000 rpm\"");
-    let (simulation, history) = run(&text, 200);
+    let (simulation, history) = run(&scene(THRUST, &[("load.outer_speed", "\"-6000 rpm\"")]), 200);
     let last = &history[200];
     let speed = 200.0 * std::f64::consts::PI;
     let angle = 0.5 * (last.balls[0].inner.contact_angle + last.balls[0].outer.contact_angle);
@@ -205,9 +214,8 @@ fn closed_form_counter_rotating_rings_leave_the_cage_nearly_at_rest() {
 
 #[test]
 fn start_from_rest_reaches_the_epicyclic_speed_without_failures() {
-    let line = THRUST.lines().find(|line| line.starts_with("inner_speed")).unwrap();
-    let text = THRUST.replace(line, "inner_speed = [[0.0, 0.0], [0.02, \"6000 rpm\"]]");
-    let (_, history) = run(&text, 300);
+    let speed = "[[0.0, 0.0], [0.02, \"6000 rpm\"]]";
+    let (_, history) = run(&scene(THRUST, &[("load.inner_speed", speed)]), 300);
     assert_eq!(history[0].cage_speed, 0.0);
     let last = &history[300];
     assert!(last.cage_slip.abs() < 0.02, "{}", last.cage_slip);
@@ -220,11 +228,13 @@ fn start_from_rest_reaches_the_epicyclic_speed_without_failures() {
 
 #[test]
 fn invariant_outputs_of_the_last_step_are_those_of_its_state() {
-    let kalker = THRUST.replace("creep = \"saturated\"", "creep = \"kalker\"");
-    let slip = RADIAL.replace("creep = \"saturated\"", "creep = \"kalker_table\"\nheathcote_slip = true");
-    let cage = include_str!("../scenes/cage.toml");
-    for text in [THRUST, RADIAL, cage, &kalker, &slip, include_str!("../scenes/misalignment.toml")] {
-        let mut simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+    let kalker = scene(THRUST, &[("effects.creep", "\"kalker\"")]);
+    let slip = scene(RADIAL, &[("effects.creep", "\"kalker_table\""), ("effects.heathcote_slip", "true")]);
+    let [cage, misalignment] =
+        [include_str!("../scenes/cage.toml"), include_str!("../scenes/misalignment.toml")]
+            .map(|text| Scene::parse(text).unwrap());
+    for scene in [thrust(), radial(), cage, kalker, slip, misalignment] {
+        let mut simulation = Simulation::new(&scene).unwrap();
         for point in 1..=3 {
             simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
             simulation.advance(f64::from(point) * 1.3e-4).unwrap();

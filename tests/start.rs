@@ -8,13 +8,17 @@ use roulement::model::bodies::{Body, Race};
 use roulement::scene::Scene;
 use roulement::simulation::{Simulation, SimulationError};
 
+#[path = "common/scenes.rs"]
+mod scenes;
+
+use scenes::scene;
+
 const THRUST: &str = include_str!("../scenes/thrust.toml");
 
-/// The thrust case with a radial load as well, and additions to its sections.
-fn combined(start: &str) -> Simulation {
-    let text =
-        THRUST.replace("[solver]", &format!("[start]\n{start}\n[solver]")) + "y = { force = \"300 N\" }\n";
-    Simulation::new(&Scene::parse(&text).unwrap()).unwrap()
+/// The thrust case with a radial load as well, its balls rolling or with their moments in balance.
+fn combined(spin_balance: &str) -> Simulation {
+    let changes = [("start.spin_balance", spin_balance), ("load.y.force", "\"300 N\"")];
+    Simulation::new(&scene(THRUST, &changes)).unwrap()
 }
 
 /// Moment of all friction on a ball that its gyroscopic moment does not ask for [N m], and friction's limit there.
@@ -34,8 +38,8 @@ fn unbalanced(simulation: &Simulation, index: usize) -> (Vector3<f64>, f64) {
 
 #[test]
 fn closed_form_accelerations_and_multipliers_are_consistent_at_the_start() {
-    for start in ["", "spin_balance = true"] {
-        let simulation = combined(start);
+    for spin_balance in ["false", "true"] {
+        let simulation = combined(spin_balance);
         let (model, state) = (simulation.model(), simulation.state());
         let mut on_race = Vector3::zeros();
         let mut about_axis = 0.0;
@@ -73,24 +77,24 @@ fn closed_form_moments_are_in_balance_at_a_start_that_asks_for_it() {
         };
         (0..simulation.outputs().balls.len()).map(of_ball).fold(0.0, f64::max)
     };
-    let (rolling, balanced) = (excess(&combined("")), excess(&combined("spin_balance = true")));
+    let (rolling, balanced) = (excess(&combined("false")), excess(&combined("true")));
     println!("unbalanced moment over friction's limit: rolling {rolling:.2e}, balanced {balanced:.2e}");
     assert!(balanced < 1e-8 && rolling > 1e-3, "{balanced:e} {rolling:e}");
     // What is in balance stays as it is: friction power after 20 ms against that at the start, pure thrust.
-    let drift = |start: &str| {
-        let text = THRUST.replace("[solver]", &format!("[start]\n{start}\n[solver]"));
-        let mut simulation = Simulation::new(&Scene::parse(&text).unwrap()).unwrap();
+    let drift = |spin_balance: &str| {
+        let scene = scene(THRUST, &[("start.spin_balance", spin_balance)]);
+        let mut simulation = Simulation::new(&scene).unwrap();
         let power = |s: &Simulation| [s.outputs().balls[0].inner.power, s.outputs().balls[0].outer.power];
         let before = power(&simulation);
         simulation.advance(20e-3).unwrap();
         let after = power(&simulation);
-        println!("{start}: {before:?} W at the start, {after:?} W after 20 ms");
+        println!("balance {spin_balance}: {before:?} W at the start, {after:?} W after 20 ms");
         (after[0] / before[0] - 1.0).abs()
     };
-    let (rolling, balanced) = (drift(""), drift("spin_balance = true"));
+    let (rolling, balanced) = (drift("false"), drift("true"));
     assert!(balanced < 0.02 && balanced < 0.3 * rolling, "{balanced} {rolling}");
-    let text = THRUST.replace("[solver]", "[start]\nspin_balance = true\norbital_speed = 100.0\n[solver]");
-    assert!(Scene::parse(&text).unwrap_err().to_string().contains("start.spin_balance"));
+    let both = [("start.spin_balance", "true"), ("start.orbital_speed", "100.0")];
+    assert!(Scene::edited(THRUST, both).unwrap_err().to_string().contains("start.spin_balance"));
 }
 
 #[test]

@@ -14,19 +14,17 @@ use serde_json::{Value, json};
 
 #[path = "common/reference.rs"]
 mod reference;
+#[path = "common/scenes.rs"]
+mod scenes;
 
 use reference::{cases, scene_text};
+use scenes::{HELD, scene};
 
-/// The thrust scene at another speed and friction coefficient.
-fn thrust(speed: &str, friction: f64) -> String {
-    include_str!("../scenes/thrust.toml")
-        .replace("6000 rpm", speed)
-        .replace("ball_race = 0.08", &format!("ball_race = {friction}"))
-}
+const THRUST: &str = include_str!("../scenes/thrust.toml");
 
 /// Runs a scene for a time [s], with outputs every `interval` [s].
-fn run(text: &str, duration: f64, interval: f64) -> (Simulation, Vec<Outputs>) {
-    let mut simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+fn run(scene: &Scene, duration: f64, interval: f64) -> (Simulation, Vec<Outputs>) {
+    let mut simulation = Simulation::new(scene).unwrap();
     let mut history = vec![simulation.outputs().clone()];
     for point in 1..=(duration / interval).round() as u32 {
         simulation.advance(f64::from(point) * interval).unwrap();
@@ -196,7 +194,8 @@ fn invariant_loads_are_those_of_statics_with_the_lateral_friction_of_the_run() {
 
 #[test]
 fn closed_form_cage_and_ball_speed_under_light_friction() {
-    let (simulation, history) = run(&thrust("600 rpm", 0.01), 20e-3, 1e-3);
+    let slow = scene(THRUST, &[("load.inner_speed", "\"600 rpm\""), ("friction.ball_race", "0.01")]);
+    let (simulation, history) = run(&slow, 20e-3, 1e-3);
     let (last, bearing) = (history.last().unwrap(), &simulation.model().bearing);
     let speed = last.inner.twist.angular_velocity.x;
     let ball = &last.balls[0];
@@ -212,10 +211,8 @@ fn closed_form_cage_and_ball_speed_under_light_friction() {
 
 #[test]
 fn invariant_ball_speed_varies_once_per_orbit_under_thrust_and_tilt() {
-    let held = "y = { displacement = 0.0 }\nz = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";
-    let tilted = "drive = \"fixed\"\nmisalignment = { ry = \"0.01 deg\" }";
-    let text = thrust("6000 rpm", 0.08).replace("drive = \"fixed\"", tilted) + held;
-    let (_, history) = run(&text, 30e-3, 0.1e-3);
+    let changes = [&[("outer.misalignment.ry", "\"0.01 deg\"")][..], &HELD].concat();
+    let (_, history) = run(&scene(THRUST, &changes), 30e-3, 0.1e-3);
     // Harmonics of one ball's orbital speed over its azimuth during its last orbit.
     let speeds: Vec<(f64, f64)> =
         history.iter().map(|o| (o.balls[0].azimuth, o.balls[0].orbital_speed)).collect();
@@ -234,8 +231,9 @@ fn invariant_ball_speed_varies_once_per_orbit_under_thrust_and_tilt() {
 
 #[test]
 fn invariant_drive_power_is_dissipated_power_in_steady_state() {
-    let text = thrust("3000 rpm", 0.05).replace("1500 N", "800 N");
-    let (_, history) = run(&text, 50e-3, 1e-3);
+    let changes =
+        [("load.inner_speed", "\"3000 rpm\""), ("friction.ball_race", "0.05"), ("load.x.force", "\"800 N\"")];
+    let (_, history) = run(&scene(THRUST, &changes), 50e-3, 1e-3);
     let late = &history[40..];
     let drive: f64 = late.iter().map(|o| o.inner.drive_torque * o.inner.twist.angular_velocity.x).sum();
     let lost: f64 = late.iter().map(|o| o.friction_power + o.damping_power).sum();

@@ -18,9 +18,12 @@ use serde_json::Value;
 mod mechanics;
 #[path = "common/reference.rs"]
 mod reference;
+#[path = "common/scenes.rs"]
+mod scenes;
 
 use mechanics::{Body, Dimensions, V, grooves};
 use reference::{cases, number, scene_text};
+use scenes::{HELD, scene};
 
 const THRUST: &str = include_str!("../scenes/thrust.toml");
 /// Rows and columns x, y, z, ry, rz of six.
@@ -223,12 +226,12 @@ fn invariant_stiffness_is_symmetric_without_friction_and_damping_never_drives() 
 
 /// The thrust case with the inner race's motion given, after 20 ms.
 fn running() -> Simulation {
-    let text = THRUST
-        .replace("[effects]", "[effects]\nstiffness_outputs = true")
-        .replace("drive = \"wrench\"\nmass = \"0.2 kg\"                 # chosen\n", "drive = \"pose\"\n")
-        .replace("inertia =", "# inertia =")
-        .replace("x = { force = \"1500 N\" }", "x = { displacement = \"25 um\" }\ny = { displacement = 0.0 }\nz = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }");
-    let mut simulation = Simulation::new(&Scene::parse(&text).unwrap()).unwrap();
+    let given = [
+        ("effects.stiffness_outputs", "true"),
+        ("inner", "{ drive = \"pose\" }"),
+        ("load.x", "{ displacement = \"25 um\" }"),
+    ];
+    let mut simulation = Simulation::new(&scene(THRUST, &[&given[..], &HELD].concat())).unwrap();
     simulation.advance(20e-3).unwrap();
     simulation
 }
@@ -293,7 +296,7 @@ fn closed_form_damping_of_one_ball_between_two_contacts() {
 #[test]
 fn only_scenes_that_ask_for_it_have_it() {
     let plain = Scene::parse(THRUST).unwrap();
-    let asked = Scene::parse(&THRUST.replace("[effects]", "[effects]\nstiffness_outputs = true")).unwrap();
+    let asked = scene(THRUST, &[("effects.stiffness_outputs", "true")]);
     let names = |scene: &Scene| -> Vec<String> {
         Variables::new(scene).rows().iter().map(|row| format!("{} {}", row.name, row.unit.name)).collect()
     };

@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use roulement::scene::Scene;
 use serde_json::Value;
 
 fn roulement(arguments: &[&str]) -> Output {
@@ -12,6 +13,12 @@ fn roulement(arguments: &[&str]) -> Output {
 
 fn scene(name: &str) -> String {
     format!("{}/../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Text of a scene with keys changed.
+fn edited(name: &str, changes: &[(&str, &str)]) -> String {
+    let text = std::fs::read_to_string(scene(name)).unwrap();
+    Scene::edited(&text, changes.iter().copied()).unwrap().source
 }
 
 /// A directory of its own for a test, removed at the end.
@@ -69,7 +76,7 @@ fn equilibrium_text_has_units() {
 #[test]
 fn run_writes_table_plots_and_summary() {
     let scratch = Scratch::new("run");
-    let text = std::fs::read_to_string(scene("thrust")).unwrap().replace("\"50 ms\"", "\"2 ms\"");
+    let text = edited("thrust", &[("load.duration", "\"2 ms\"")]);
     std::fs::write(scratch.path("short.toml"), text).unwrap();
     let output = roulement(&["run", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -117,7 +124,7 @@ fn run_writes_table_plots_and_summary() {
 #[test]
 fn cost_writes_table_plots_and_report() {
     let scratch = Scratch::new("cost");
-    let text = std::fs::read_to_string(scene("cost/thrust")).unwrap().replace("\"40 ms\"", "\"1 ms\"");
+    let text = edited("cost/thrust", &[("load.duration", "\"1 ms\"")]);
     std::fs::write(scratch.path("short.toml"), text).unwrap();
     let output = roulement(&["cost", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -222,11 +229,12 @@ fn only_libraries_of_the_platform_are_packed() {
 fn an_interrupted_run_keeps_what_it_has() {
     let scratch = Scratch::new("interrupted");
     // A smallest step that contact cannot be resolved with, after a start that it can.
-    let text = std::fs::read_to_string(scene("thrust"))
-        .unwrap()
-        .replace("max_step = \"10 us\"", "max_step = \"10 us\"\nmin_step = \"9 us\"\ntolerance = 1e-12");
-    let text = text.replace("initial_step = \"1 us\"", "initial_step = \"10 us\"");
-    std::fs::write(scratch.path("hard.toml"), text).unwrap();
+    let steps = [
+        ("solver.initial_step", "\"10 us\""),
+        ("solver.min_step", "\"9 us\""),
+        ("solver.tolerance", "1e-12"),
+    ];
+    std::fs::write(scratch.path("hard.toml"), edited("thrust", &steps)).unwrap();
     let output = roulement(&["run", &scratch.path("hard.toml"), "-o", &scratch.path("out")]);
     assert!(!output.status.success());
     let message = String::from_utf8(output.stderr).unwrap();

@@ -3,6 +3,7 @@
 //! A scene is TOML; every number is SI or text with a unit ([`crate::scene::units`]). Unknown keys, missing keys and values
 //! out of range are errors that name the key, the value and the allowed range.
 
+mod edit;
 mod numbers;
 mod validate;
 
@@ -150,10 +151,9 @@ mod tests {
 
     #[test]
     fn schedules_interpolate_and_hold() {
-        let text = THRUST.replace("\"1500 N\"", "[[0.0, 0.0], [\"1 ms\", \"1 kN\"], [0.003, 0.0]]");
-        let Condition::Load(force) = Scene::parse(&text).unwrap().load.conditions()[0].clone() else {
-            panic!("a load was written")
-        };
+        let table = "[[0.0, 0.0], [\"1 ms\", \"1 kN\"], [0.003, 0.0]]";
+        let scene = Scene::edited(THRUST, [("load.x.force", table)]).unwrap();
+        let Condition::Load(force) = scene.load.conditions()[0].clone() else { panic!("a load was written") };
         assert_eq!([force.at(-1.0), force.at(0.0005), force.at(0.001)], [0.0, 500.0, 1000.0]);
         assert_eq!([force.at(0.002), force.at(0.003), force.at(9.0)], [500.0, 0.0, 0.0]);
         // The smooth path passes the points, rests at the ends and does not overshoot.

@@ -28,6 +28,14 @@ pub enum SceneError {
         /// Allowed range in words.
         range: String,
     },
+    /// A key that cannot be set or taken out ([`Scene::edited`](crate::scene::Scene::edited)).
+    #[error("{key} cannot be changed: {why}")]
+    Change {
+        /// Key with its section.
+        key: String,
+        /// What stands against it.
+        why: String,
+    },
     /// Keys that do not go together.
     #[error("{key}: {why}")]
     Conflict {

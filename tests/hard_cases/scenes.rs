@@ -17,31 +17,11 @@ pub const POSE: &str = "[inner]\ndrive = \"pose\"";
 pub const HELD: &str = "y = { displacement = 0.0 }\nz = { displacement = 0.0 }\n\
                         ry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";
 
-/// Header and text of every section; what stands before the first header has none.
-fn sections(text: &str) -> Vec<(String, String)> {
-    let mut sections = vec![];
-    for line in text.lines() {
-        if line.starts_with('[') {
-            sections.push((line.to_string(), String::new()));
-        } else if let Some((_, body)) = sections.last_mut() {
-            *body += line;
-            *body += "\n";
-        }
-    }
-    sections
-}
-
 /// A scene of `base` in which every section of `changes` takes the place of the one with its name.
 pub fn scene(base: &str, changes: &str) -> Scene {
-    let mut all = sections(base);
-    for (header, body) in sections(changes) {
-        match all.iter_mut().find(|(name, _)| *name == header) {
-            Some((_, old)) => *old = body,
-            None => all.push((header, body)),
-        }
-    }
-    let text: String = all.iter().map(|(header, body)| format!("{header}\n{body}\n")).collect();
-    Scene::parse(&text).unwrap_or_else(|why| panic!("{why}\n{text}"))
+    let sections: toml::Table = changes.parse().unwrap_or_else(|why| panic!("{why}\n{changes}"));
+    let sections = sections.iter().map(|(name, section)| (name, section.to_string()));
+    Scene::edited(base, sections).unwrap_or_else(|why| panic!("{why}\n{changes}"))
 }
 
 /// Section `[load]` with `rows` after the usual duration [ms] and speed of the inner race [rpm].

@@ -1,0 +1,169 @@
+//! Scenes from a text and changes of its keys.
+
+use toml::{Table, Value};
+
+use super::{Scene, SceneError};
+
+impl Scene {
+    /// Reads a scene from text after some of its keys have been changed, one after another.
+    ///
+    /// A change is a key with its sections, `load.y.force`, and its value as a scene file has it: `"300 N"` in quotes, or
+    /// `0.3` in SI, `true`, `[[0, 1], [1, 2]]`, `{ force = 300 }`. Sections that are not there are made. An empty value
+    /// takes the key, or the whole section, out of the scene.
+    ///
+    /// [`Scene::source`] is the changed text: the same keys and values in alphabetical order, without comments.
+    ///
+    /// # Errors
+    /// [`SceneError::Change`] with the key, if a part of its path is no section, its value is no TOML, or there is nothing
+    /// to take out; else as [`Scene::parse`].
+    ///
+    /// # Example
+    /// ```
+    /// use roulement::scene::Scene;
+    ///
+    /// let text = std::fs::read_to_string("scenes/thrust.toml")?;
+    /// let changes = [("friction.ball_race", "0.05"), ("load.y.force", "\"0.3 kN\""), ("solver.alpha_f", "")];
+    /// let scene = Scene::edited(&text, changes)?;
+    /// assert_eq!(scene.friction.ball_race, 0.05);
+    /// assert!(scene.source.contains("force = \"0.3 kN\"") && !scene.source.contains("alpha_f"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn edited<K: AsRef<str>, V: AsRef<str>>(
+        text: &str,
+        changes: impl IntoIterator<Item = (K, V)>,
+    ) -> Result<Self, SceneError> {
+        let mut table: Table = toml::from_str(text)?;
+        for (key, value) in changes {
+            let (key, value) = (key.as_ref(), value.as_ref());
+            change(&mut table, key, value).map_err(|why| SceneError::Change { key: key.to_string(), why })?;
+        }
+        Self::parse(&table.to_string())
+    }
+}
+
+/// Sets a key, or takes it out where the value is empty; why that cannot be done.
+fn change(table: &mut Table, key: &str, value: &str) -> Result<(), String> {
+    let mut section = table;
+    let mut names = key.split('.').peekable();
+    while let Some(name) = names.next() {
+        if name.is_empty() {
+            return Err("a key is names with dots between them".to_string());
+        }
+        if names.peek().is_some() {
+            let inner = section.entry(name).or_insert_with(|| Value::Table(Table::new()));
+            section = inner.as_table_mut().ok_or_else(|| format!("{name} is no section"))?;
+        } else if value.is_empty() {
+            section.remove(name).ok_or("it is not in the scene")?;
+        } else {
+            // The parser's own message is of several lines with a marker; here it stands in one.
+            let value =
+                value.parse().map_err(|why: toml::de::Error| format!("{value}: {}", why.message()))?;
+            section.insert(name.to_string(), value);
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Condition, Schedule};
+
+    const THRUST: &str = include_str!("../../scenes/thrust.toml");
+    const CAGE: &str = include_str!("../../scenes/cage.toml");
+
+    fn refusal(changes: &[(&str, &str)]) -> String {
+        Scene::edited(THRUST, changes.iter().copied()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn values_of_every_kind_are_set() {
+        let changes = [
+            ("title", "\"a \\\"title\\\"\""),
+            ("bearing.balls", "12"),
+            ("friction.ball_race", "0.1"),
+            ("bearing.pitch_diameter", "\"60 mm\""),
+            ("effects.heathcote_slip", "true"),
+            ("effects.gravity", "[0, 0, -9.81]"),
+            ("load.inner_speed", "[[0, 0], [\"1 ms\", \"60 rpm\"]]"),
+            ("load.x", "{ displacement = 1e-6 }"),
+        ];
+        let scene = Scene::edited(THRUST, changes).unwrap();
+        assert_eq!((scene.title.as_str(), scene.bearing.balls), ("a \"title\"", 12));
+        assert_eq!((scene.friction.ball_race, scene.bearing.pitch_diameter.0), (0.1, 0.06));
+        assert!(scene.effects.groove_slip.on);
+        assert_eq!(scene.effects.gravity.acceleration.map(|g| g.0), [0.0, 0.0, -9.81]);
+        assert!((scene.load.inner_speed.at(5e-4) - std::f64::consts::PI).abs() < 1e-12);
+        assert_eq!(scene.load.conditions()[0], Condition::Motion(Schedule::Constant(1e-6)));
+        // What was not named is as it was.
+        let plain = Scene::parse(THRUST).unwrap();
+        assert_eq!(format!("{:?}", scene.solver), format!("{:?}", plain.solver));
+        assert_eq!(format!("{:?}", scene.inner), format!("{:?}", plain.inner));
+    }
+
+    #[test]
+    fn sections_are_made_and_changes_follow_one_another() {
+        let changes = [
+            ("start.orbital_speed", "10.0"),
+            ("load.y.force", "\"1 N\""),
+            ("load.y.force", "\"300 N\""),
+            ("outer.misalignment.ry", "[[0.0, 0.0], [\"2 ms\", 3e-4]]"),
+        ];
+        let scene = Scene::edited(THRUST, changes).unwrap();
+        assert_eq!(scene.start.orbital_speed.map(|speed| speed.0), Some(10.0));
+        assert_eq!(scene.load.conditions()[1], Condition::Load(Schedule::Constant(300.0)));
+    }
+
+    #[test]
+    fn an_empty_value_takes_a_key_or_a_section_out() {
+        let keys = ["cage", "effects.cage", "friction.ball_cage", "friction.cage_race", "load.z"];
+        let scene = Scene::edited(CAGE, keys.map(|key| (key, ""))).unwrap();
+        assert!(!scene.effects.cage.on);
+        assert_eq!(scene.load.conditions()[2], Scene::parse(THRUST).unwrap().load.conditions()[2]);
+        let scene =
+            Scene::edited(THRUST, [("bearing.contact_angle", ""), ("bearing.diametral_clearance", "1e-5")]);
+        assert_eq!(scene.unwrap().bearing.diametral_clearance.map(|clearance| clearance.0), Some(1e-5));
+        // Needed keys are missed.
+        assert!(refusal(&[("bearing.balls", "")]).contains("missing field `balls`"));
+    }
+
+    #[test]
+    fn the_source_is_the_changed_text_and_gives_the_same_scene() {
+        for text in [THRUST, CAGE, include_str!("../../scenes/radial.toml")] {
+            let same = Scene::edited(text, [("title", "\"other\""); 0]).unwrap();
+            let again = Scene::parse(&same.source).unwrap();
+            assert_eq!(format!("{same:?}"), format!("{again:?}"));
+            let mut written = Scene::parse(text).unwrap();
+            written.source = same.source.clone();
+            assert_eq!(format!("{same:?}"), format!("{written:?}"));
+        }
+        let scene = Scene::edited(THRUST, [("solver.max_step", "0.1e-5")]).unwrap();
+        assert_eq!(Scene::parse(&scene.source).unwrap().solver.max_step.0, 0.1e-5);
+    }
+
+    #[test]
+    fn errors_name_the_key() {
+        for (key, value, parts) in [
+            ("title.text", "1", &["title.text", "title is no section"][..]),
+            ("load.inner_speed.at.start", "1", &["load.inner_speed.at.start", "inner_speed is no section"]),
+            ("load.x.force", "1500 N", &["load.x.force", "1500 N"]),
+            ("load.x.force", "1\ny = 2", &["load.x.force"]),
+            ("load.x.force", " ", &["load.x.force"]),
+            ("load.z", "", &["load.z", "not in the scene"]),
+            ("strat.spin_balance", "", &["strat.spin_balance", "not in the scene"]),
+            ("", "1", &["names"]),
+            ("load..force", "1", &["load..force", "names"]),
+            // Known to be wrong only by the scene.
+            ("load.duraton", "1", &["duraton", "unknown field"]),
+            ("friction.ball_race", "-1", &["friction.ball_race = -1", "[0, 2]"]),
+            ("load.x.displacement", "0", &["load.x", "at most one"]),
+        ] {
+            let message = refusal(&[(key, value)]);
+            for part in parts {
+                assert!(message.contains(part), "{message}\nshould name {part}");
+            }
+        }
+        let message = Scene::edited("[load", [("title", "\"other\"")]).unwrap_err().to_string();
+        assert!(message.contains("[load"), "{message}");
+    }
+}
