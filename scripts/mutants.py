@@ -445,16 +445,18 @@ def judge(workshop, mutants, times, jobs, resume):
 
 
 def accepted_reasons():
+    """Reasons by file name, line of source and fault; folders and line numbers may change."""
     if not ACCEPTED.exists():
         return {}
     rows = csv.DictReader(ACCEPTED.open())
-    return {(row["file"], row["old"], row["new"]): row["reason"] for row in rows}
+    return {(Path(row["file"]).name, row["line"], row["old"], row["new"]): row["reason"] for row in rows}
 
 
 def report(path, mutants, left_out, options, seconds):
     reasons = accepted_reasons()
     for mutant in mutants:
-        key = (mutant.path, squeeze(mutant.old), squeeze(mutant.new))
+        line = (ROOT / mutant.path).read_text().splitlines()[mutant.line - 1].strip()
+        key = (Path(mutant.path).name, line, squeeze(mutant.old), squeeze(mutant.new))
         if mutant.verdict in ("survived", "not reached") and key in reasons:
             mutant.verdict, mutant.note = "accepted", reasons[key]
     folders = defaultdict(lambda: defaultdict(int))

@@ -117,6 +117,15 @@ fn a_step_that_cannot_be_finished_names_ball_and_contact() {
         let mut inputs = *shaken.inputs();
         inputs.inner.applied.force.y = 3e3;
         shaken.set_inputs(inputs);
+        // A force without end has no solution: one step, with both first guesses, at the smallest size.
+        let mut nowhere = scene(ball, body, "", "y = { force = 300.0 }");
+        let mut inputs = *nowhere.inputs();
+        inputs.inner.applied.force.y = f64::INFINITY;
+        nowhere.set_inputs(inputs);
+        let why = nowhere.advance(1e-6).unwrap_err().to_string();
+        assert!(why.contains("Newton"), "{why}");
+        let s = nowhere.state().statistics;
+        assert_eq!((s.steps, s.rejected_newton, s.second_guesses, s.rejected_error), (0, 1, 1, 0), "{s:?}");
         let mut struck = scene(ball, "drive = \"pose\"", "drive = \"pose\"", "y = { displacement = 1e-5 }");
         let mut inputs = *struck.inputs();
         inputs.outer.pose.position.y -= 20e-6;
