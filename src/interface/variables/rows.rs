@@ -73,9 +73,9 @@ impl Variables {
             let source = Source::Bearing(get);
             self.add(name.into(), unit, Causality::Output, nominal, description.into(), source);
         };
-        output("cage.speed", units::RADIAN_PER_SECOND, 100.0, "mean orbital speed of the balls", |o| {
-            o.cage_speed
-        });
+        let speed =
+            "spin of the cage about its own axis where there is a cage, else mean orbital speed of the balls";
+        output("cage.speed", units::RADIAN_PER_SECOND, 100.0, speed, |o| o.cage_speed);
         let slip = "1 - cage speed over its epicyclic value";
         output("cage.slip", units::ONE, 1e-2, slip, |o| o.cage_slip);
         let power = "power lost to friction in all contacts";
