@@ -1,7 +1,7 @@
 //! Hard cases: each tries to break the model; its physics and the gates of `gates.rs` are the assertion.
 //!
-//! `cargo test --release --test hard_cases -- --nocapture --test-threads 1 | grep '^|'` prints the figures of
-//! `docs/stability.md`.
+//! `scripts/stability` runs them and writes the figures that they print to `docs/figures/stability`; `docs/stability.md` is
+//! about them.
 #![allow(clippy::unwrap_used)]
 
 mod cage;
