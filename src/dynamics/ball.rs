@@ -24,9 +24,9 @@ use crate::numerics::scalar::Dual;
 /// A race as the balls see it in a trial step.
 #[derive(Clone, Copy, Debug)]
 pub struct RaceSeen<'a> {
-    /// Its motion.
+    /// Motion of the race.
     pub motion: &'a RaceMotion<f64>,
-    /// Its motion with derivatives by the rotation, where forces move it.
+    /// Motion with derivatives by the rotation, where forces move the race.
     pub moved: Option<&'a RaceMotion<D>>,
 }
 
