@@ -24,9 +24,9 @@ use crate::numerics::scalar::Dual;
 /// A race as the balls see it in a trial step.
 #[derive(Clone, Copy, Debug)]
 pub struct RaceSeen<'a> {
-    /// Motion of the race.
+    /// Its motion.
     pub motion: &'a RaceMotion<f64>,
-    /// Motion with derivatives by the rotation, where forces move the race.
+    /// Its motion with derivatives by the rotation, where forces move it.
     pub moved: Option<&'a RaceMotion<D>>,
 }
 

@@ -272,8 +272,8 @@ impl Kalker {
 
     /// Derivatives of the forces (fx, fy, mz, second moment) by the scaled creepages (x, y, spin, curvature).
     ///
-    /// They follow from implicit differentiation of the minimum, whose gradient stays zero. None where the minimum is not
-    /// isolated.
+    /// By implicit differentiation of the minimum: where its gradient stays zero, the coefficients follow.
+    /// None where the minimum is not isolated.
     pub fn derivatives(&self, solution: &Solution, creepage: &ScaledCreepage) -> Option<[[f64; 4]; 4]> {
         let z = &solution.coefficients;
         let Expansion { sliding, .. } = self.expand(z, &self.fields_at(z, creepage));
