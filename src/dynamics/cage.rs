@@ -30,9 +30,9 @@ pub struct CageTrial {
 /// Reactions of one land contact on the cage and on the race.
 #[derive(Clone, Copy, Debug)]
 pub struct LandReactions {
-    /// On the cage.
+    /// Reaction on the cage.
     pub on_cage: Reaction,
-    /// On the race.
+    /// Reaction on the race.
     pub on_race: Reaction,
 }
 

@@ -46,7 +46,7 @@ pub struct FailureSite {
     /// Ball, counted from 1: of that body's balls the one whose contact force changed most in the step, else the ball
     /// with the largest residual or local error.
     pub ball: usize,
-    /// Its contact whose force changed most in the step.
+    /// Second body of that ball's contact whose force changed most in the step.
     pub contact: Body,
 }
 

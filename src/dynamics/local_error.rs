@@ -65,7 +65,7 @@ impl BearingStep<'_> {
         })
     }
 
-    /// From linear and angular accelerations [m/s2] at both ends of the step.
+    /// Square of the local error, from linear and angular accelerations [m/s2] at both ends of the step.
     fn square(&self, linear: Ends<'_>, angular: Ends<'_>) -> f64 {
         let scale = self.model.solver.tolerance * 2.0 * self.model.bearing.ball.radius;
         let error = |ends: Ends<'_>| self.step.local_error(ends.0, ends.1).norm_squared();

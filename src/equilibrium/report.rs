@@ -36,7 +36,7 @@ pub struct BallReport {
 }
 
 impl BallReport {
-    /// From the balance of a settled ball; `inner_axis` is the inner race's axis relative to the outer race.
+    /// Report of a settled ball; `inner_axis` is the inner race's axis relative to the outer race.
     pub(super) fn new(balance: &BallBalance, inner_axis: &Vector3<f64>) -> Self {
         // atan2(axial, radial) of the force on the ball for the inner race, of the opposite for the outer.
         let angle = |contact: &GrooveContact<Dual<8>>, axis: &Vector3<f64>, sign: f64| {

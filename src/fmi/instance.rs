@@ -144,7 +144,7 @@ impl Instance {
         self.state.phase = Phase::Terminated;
     }
 
-    /// As freshly instantiated.
+    /// Puts the instance back to how it was when freshly instantiated.
     pub fn reset(&mut self) {
         self.simulation = (*self.fresh).clone();
         let values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());

@@ -17,7 +17,7 @@ pub(super) struct Sliding {
     point: usize,
     /// Slope of the projection (symmetric: xx, xy, yy).
     slope: [f64; 3],
-    /// Its bend under the weighted residual.
+    /// Second derivative of the projection, times the weighted residual (symmetric: xx, xy, yy).
     bend: [f64; 3],
 }
 

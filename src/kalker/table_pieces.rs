@@ -15,7 +15,8 @@ pub(super) fn size(node: usize) -> f64 {
     f64::from(SIZES[node]) / PARTS as f64
 }
 
-/// Of a node between the even steps of t: the four nodes at even steps around it, and its place between the inner two.
+/// Stencil of a node between the even steps of t: the four nodes at even steps around it, and its place between the inner
+/// two. None for a node at an even step.
 pub(super) fn between_steps(node: usize) -> Option<([usize; 4], f64)> {
     let (before, rest) = (SIZES[node] / STEP, SIZES[node] % STEP);
     let at = |offset: u8| SIZES.iter().position(|size| size + STEP == STEP * (before + offset)).unwrap_or(0);

@@ -45,7 +45,7 @@ impl Body {
     /// All, in the order of every list.
     pub const ALL: [Self; 3] = [Self::Race(Race::Inner), Self::Race(Race::Outer), Self::Cage];
 
-    /// Its place in every list.
+    /// Index of the body in every list.
     pub fn index(self) -> usize {
         match self {
             Self::Race(race) => race as usize,

@@ -264,7 +264,7 @@ pub struct KeptMatrix {
     pub step: f64,
     /// Newton corrections beyond one per step, since the step in which it was computed.
     pub extra_corrections: u64,
-    /// By ball; empty while there is none.
+    /// Blocks of all balls; empty while there is no matrix.
     pub balls: Vec<KeptBlock>,
 }
 

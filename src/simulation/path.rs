@@ -11,7 +11,7 @@ use crate::numerics::rotation::{from_quaternion, rotate, tangent, tangent_invers
 struct Cubic([Vector3<f64>; 4]);
 
 impl Cubic {
-    /// From `x0`, rate `v0` to `x1`, rate `v1` within `duration` \[s].
+    /// Cubic from `x0`, rate `v0` to `x1`, rate `v1` within `duration` \[s].
     fn hermite(
         x0: Vector3<f64>,
         v0: Vector3<f64>,
@@ -63,7 +63,7 @@ impl RacePath {
         }
     }
 
-    /// From `start` to where the inputs `pose`, `twist` and `twist_rate` [m/s2, rad/s2], valid at `start_time` \[s],
+    /// Path from `start` to where the inputs `pose`, `twist` and `twist_rate` [m/s2, rad/s2], valid at `start_time` \[s],
     /// lead within `duration` \[s].
     pub fn towards(
         start_time: f64,
@@ -131,7 +131,7 @@ impl Ramp {
         Self { start_time: 0.0, duration: 1.0, from: value, to: value }
     }
 
-    /// From the value of `self` at `start_time` \[s] to `value` after `duration` \[s].
+    /// Ramp from the value of `self` at `start_time` \[s] to `value` after `duration` \[s].
     pub fn towards(&self, start_time: f64, value: SVector<f64, RAMP_WIDTH>, duration: f64) -> Self {
         Self { start_time, duration, from: self.at(start_time), to: value }
     }

@@ -1,6 +1,6 @@
 //! Velocities of a ball at which friction is in balance: the start of a bearing that has run for long.
 //!
-//! Of a ball that stays where it is, the velocity along the orbit and the angular velocity `u` are sought at which
+//! For a ball that stays where it is, the velocity along the orbit and the angular velocity `u` are sought at which
 //! friction along the orbit vanishes and the moments of both contacts, spin moments among them, give the gyroscopic
 //! moment. From the velocities of rolling, where one contact carries all spin, `(M/tau - g_u) du = g` goes with growing
 //! `tau` from implicit steps in time, which friction keeps stable, to Newton's method.

@@ -93,7 +93,7 @@ mod tests {
 
     const X86_64: u16 = 62;
     const AARCH64: u16 = 183;
-    /// Of a PE file.
+    /// Machine number of a PE file.
     const AMD64: u16 = 0x8664;
     const DLL: u16 = 0x2022;
 

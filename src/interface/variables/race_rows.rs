@@ -28,7 +28,7 @@ pub struct RaceVariable {
     pub causality: fn(Drive, Orientation) -> Option<Causality>,
     /// \[unit] component as an output.
     pub read: fn(&RaceOutput, usize) -> f64,
-    /// As an input, where it can be one.
+    /// Access to the quantity as an input, where it can be one.
     pub input: Option<InputAccess>,
 }
 

@@ -142,7 +142,7 @@ pub extern "C" fn fmi2Terminate(component: *mut c_void) -> Status {
     })
 }
 
-/// As freshly instantiated.
+/// Puts an instance back to how it was when freshly instantiated.
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2Reset(component: *mut c_void) -> Status {
     guard(component, Call::Reset, |instance| {
