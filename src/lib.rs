@@ -78,8 +78,9 @@
 //! | [`numerics`] | methods that know nothing of bearings: numbers with derivatives, rotations, Newton's method, HHT steps |
 //! | [`kalker`] | rolling contact theories of one scaled patch: linear, polynomials, table, half-space reference |
 //! | [`contact`] | one contact of a ball with a race, of a ball with its pocket, or of the cage with a land: from motion to forces |
-//! | [`scene`] | the scene file: sections, units, ranges |
-//! | `effects` | effects that a scene can switch on, a file each |
+//! | [`schema`] | the parts of a scene: sections, units, schedules, ranges, errors |
+//! | [`effects`] | effects that a scene can switch on, a file each |
+//! | [`scene`] | the whole scene file: what its parts have to agree on |
 //! | [`model`] | the constants of a run, built from the scene, and the plain data of its state |
 //! | [`forces`] | all pairs of bodies that touch, and the sums of their forces |
 //! | [`equilibrium`] | quasi-static solution, where every simulation starts |

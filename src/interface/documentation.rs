@@ -9,7 +9,8 @@ const STYLE: &str = "body{font:16px sans-serif;max-width:64em;margin:2em auto;pa
     td,th{text-align:left;padding:.2em .6em;vertical-align:top}tr:nth-child(even){background:#f3f5f7}\
     pre{background:#f3f5f7;padding:1em;overflow:auto}";
 
-fn escape(text: &str) -> String {
+/// Text as it stands in a page: characters that mean something in HTML are written out.
+pub fn escape(text: &str) -> String {
     quick_xml::escape::escape(text).into_owned()
 }
 

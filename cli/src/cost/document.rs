@@ -1,5 +1,6 @@
 //! A short document, written once and shown as Markdown and as HTML.
 
+use roulement::interface::documentation::escape;
 use std::fmt::Write;
 
 /// A part of a document.
@@ -100,10 +101,6 @@ const STYLE: &str = "body { font: 15px/1.5 sans-serif; max-width: 75em; margin: 
     table { border-collapse: collapse; font-size: 13px; margin: 1em 0 } \
     th, td { padding: 2px 9px; border-bottom: 1px solid #ddd; text-align: right; white-space: nowrap } \
     th:nth-child(-n+2), td:nth-child(-n+2) { text-align: left } figure { margin: 1em 0 } img { max-width: 100% }";
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
 
 #[cfg(test)]
 mod tests {
