@@ -125,7 +125,7 @@ impl ShapeAt<f64> {
     }
 
     /// Properties of a Hertz contact with the creep coefficients of a patch of an axis ratio, of materials with a combined
-    /// `shear` modulus [Pa] and Poisson's ratio.
+    /// `shear` modulus \[Pa] and Poisson's ratio.
     ///
     /// # Errors
     /// If Kalker's linear theory has no answer for the axis ratio.
