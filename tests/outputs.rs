@@ -227,6 +227,7 @@ fn cases() -> Vec<Case> {
             cage.velocity += vector(seed + 40) * 0.1;
             cage.rate += vector(seed + 41) * 5.0;
             cage.turned = 7.0;
+            state.bodies.iter_mut().for_each(|(_, body)| body.refresh_motion());
             cases.push(Case::of(simulation.model(), &state, guide));
         }
     }

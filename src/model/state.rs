@@ -88,6 +88,12 @@ impl BodyState {
         }
     }
 
+    /// Takes axes and angular velocity, as pairs see them, from pose and rate: after these were changed from outside.
+    pub fn refresh_motion(&mut self) {
+        self.axes = axes_of(&self.pose.orientation);
+        self.angular_velocity = self.pose.orientation * self.rate;
+    }
+
     /// Goes on counting the turn from before a step in which the body turned by `angle` \[rad] (Kahan's summation).
     pub fn count_turn(&mut self, (turned, rest): (f64, f64), angle: f64) {
         let added = angle + rest;
