@@ -240,7 +240,7 @@ def rewrite(source, mutants):
 class Workshop:
     """A copy of the checkout with the faults in it, and its test programs."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, mutants):
         self.folder, self.checkout = folder, folder / "checkout"
         self.environment = dict(os.environ, CARGO_TARGET_DIR=str(folder / "target"))
         self.environment.pop("MUTANT", None)
@@ -249,9 +249,11 @@ class Workshop:
                                 capture_output=True).stdout.decode()
         names = {name for name in listed.split("\0") if name and (ROOT / name).is_file()}
         for old in self.checkout.rglob("*"):
-            if old.is_file() and str(old.relative_to(self.checkout)) not in names:
+            if old.is_file() and str(old.relative_to(self.checkout)) not in names | {"src/mutant.rs"}:
                 old.unlink()
-        for name in names:
+        # Files with faults are written once, with them: a build that is there already stays.
+        later = {m.path for m in mutants} | {"src/lib.rs"}
+        for name in names - later:
             self.put(name, (ROOT / name).read_bytes())
 
     def put(self, name, content):
@@ -282,7 +284,10 @@ class Workshop:
 
     def build(self, mutants):
         """Builds; faults that do not compile are left out. Returns those that do."""
-        left = list(mutants)
+        known_file = self.folder / "not-compiling.json"
+        known = json.loads(known_file.read_text()) if known_file.exists() else []
+        keys = {m.id: f"{m.path} {m.start} {m.old} {m.new}" for m in mutants}
+        left = [m for m in mutants if keys[m.id] not in known]
         while True:
             for path in {m.path for m in mutants}:
                 if not any(m.path == path for m in left):
@@ -295,6 +300,7 @@ class Workshop:
             if not wrong:
                 sys.exit(f"error: the copy does not compile and no fault is to blame:\n{errors[-3000:]}")
             left = [m for m in left if m.id not in wrong]
+            known_file.write_text(json.dumps(known := known + [keys[id] for id in wrong]))
             print(f"{len(wrong)} faults do not compile and are left out, {len(left)} left", flush=True)
         code, messages, errors = self.cargo("test", "--no-run", "--lib", "--bins", "--tests")
         if code != 0:
@@ -406,44 +412,6 @@ def survey(workshop, mutants, jobs, slowest):
     return times, left_out
 
 
-def judge(workshop, mutants, times, jobs, resume):
-    """Runs the tests that reach each fault until one fails; `resume`: not for those that were caught before."""
-    verdicts_file = workshop.folder / "verdicts.json"
-    before = json.loads(verdicts_file.read_text()) if resume and verdicts_file.exists() else {}
-    kills, tries, lock = defaultdict(int), defaultdict(int), threading.Lock()
-
-    def promise(test):
-        return -(kills[test] + 0.3) / (tries[test] + 1.0) / (times[test] + 0.05)
-
-    def one(mutant):
-        waiting = list(mutant.reached_by)
-        key = f"{mutant.path} {mutant.start} {mutant.old} {mutant.new}"
-        if key in before:
-            mutant.verdict, mutant.killer = before[key]
-            return mutant
-        mutant.verdict = "survived" if waiting else "not reached"
-        while waiting:
-            with lock:
-                test = min(waiting, key=promise)
-                tries[test] += 1
-            waiting.remove(test)
-            passed, _ = workshop.run(test, 10.0 + 8.0 * times[test], MUTANT=str(mutant.id))
-            if not passed:
-                with lock:
-                    kills[test] += 1
-                mutant.verdict, mutant.killer = "timeout" if passed is None else "caught", "::".join(test)
-                with lock:
-                    before[key] = [mutant.verdict, mutant.killer]
-                    verdicts_file.write_text(json.dumps(before))
-                break
-        return mutant
-
-    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        for done, mutant in enumerate(pool.map(one, mutants), 1):
-            print(f"{done}/{len(mutants)} {mutant.verdict:12} {mutant.path}:{mutant.line} {mutant.text()[:90]}"
-                  f"  [{mutant.killer}]", flush=True)
-
-
 def accepted_reasons():
     """Reasons by file name, line of source and fault; folders and line numbers may change."""
     if not ACCEPTED.exists():
@@ -452,13 +420,65 @@ def accepted_reasons():
     return {(Path(row["file"]).name, row["line"], row["old"], row["new"]): row["reason"] for row in rows}
 
 
-def report(path, mutants, left_out, options, seconds):
+def accept(mutants):
+    """Marks faults that are accepted as equal in effect, or of performance alone."""
     reasons = accepted_reasons()
     for mutant in mutants:
         line = (ROOT / mutant.path).read_text().splitlines()[mutant.line - 1].strip()
         key = (Path(mutant.path).name, line, squeeze(mutant.old), squeeze(mutant.new))
-        if mutant.verdict in ("survived", "not reached") and key in reasons:
+        if key in reasons:
             mutant.verdict, mutant.note = "accepted", reasons[key]
+
+
+def judge(workshop, mutants, times, jobs, resume):
+    """Runs the tests that reach each fault until one fails; `resume`: a fault that was caught stays so, and one that survived
+    meets only tests whose programs are new."""
+    verdicts_file = workshop.folder / "verdicts.json"
+    before = json.loads(verdicts_file.read_text()) if resume and verdicts_file.exists() else {}
+    programs = {name: hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16] for name, path in workshop.programs.items()}
+    kills, tries, lock = defaultdict(int), defaultdict(int), threading.Lock()
+
+    def promise(test):
+        return -(kills[test] + 0.3) / (tries[test] + 1.0) / (times[test] + 0.05)
+
+    def mark(test):
+        return f"{'::'.join(test)} {programs[test[0]]}"
+
+    def one(mutant):
+        key = f"{mutant.path} {mutant.start} {mutant.old} {mutant.new}"
+        if mutant.verdict == "accepted":
+            return mutant
+        known = before.get(key, {"verdict": "", "killer": "", "passed": []})
+        if known["killer"]:
+            mutant.verdict, mutant.killer = known["verdict"], known["killer"]
+            return mutant
+        passed = set(known["passed"])
+        waiting = [test for test in mutant.reached_by if mark(test) not in passed]
+        mutant.verdict = "survived" if mutant.reached_by else "not reached"
+        while waiting:
+            with lock:
+                test = min(waiting, key=promise)
+                tries[test] += 1
+            waiting.remove(test)
+            outcome, _ = workshop.run(test, 10.0 + 8.0 * times[test], MUTANT=str(mutant.id))
+            if not outcome:
+                with lock:
+                    kills[test] += 1
+                mutant.verdict, mutant.killer = "timeout" if outcome is None else "caught", "::".join(test)
+                break
+            passed.add(mark(test))
+        with lock:
+            before[key] = {"verdict": mutant.verdict, "killer": mutant.killer, "passed": sorted(passed)}
+            verdicts_file.write_text(json.dumps(before))
+        return mutant
+
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        for done, mutant in enumerate(pool.map(one, mutants), 1):
+            print(f"{done}/{len(mutants)} {mutant.verdict:12} {mutant.path}:{mutant.line} {mutant.text()[:90]}"
+                  f"  [{mutant.killer}]", flush=True)
+
+
+def report(path, mutants, left_out, options, seconds):
     folders = defaultdict(lambda: defaultdict(int))
     for mutant in mutants:
         parts = Path(mutant.path).parts
@@ -504,6 +524,7 @@ def main():
     parser.add_argument("--scratch", type=Path, default=ROOT / "target/mutants", help="scratch folder (target/mutants)")
     parser.add_argument("--resume", action="store_true",
                         help="faults caught before stay caught: after tests were added, with src unchanged")
+    parser.add_argument("--accepted", action="store_true", help="run the tests against accepted faults too")
     parser.add_argument("--list", action="store_true", help="only list the sample")
     options = parser.parse_args()
     begin = time.monotonic()
@@ -521,7 +542,7 @@ def main():
         for mutant in mutants:
             print(f"{mutant.path}:{mutant.line} {mutant.text()}")
         return
-    workshop = Workshop(options.scratch)
+    workshop = Workshop(options.scratch, mutants)
     mutants = workshop.build(mutants)
     print(f"built in {time.monotonic() - begin:.0f} s", flush=True)
     if not options.planted:
@@ -529,7 +550,11 @@ def main():
         mutants = [m for m in mutants if m.id in keep]
     times, left_out = survey(workshop, mutants, options.jobs, options.slowest)
     print(f"{len(times)} tests, {sum(times.values()):.0f} s; {time.monotonic() - begin:.0f} s so far", flush=True)
+    if not options.accepted:
+        accept(mutants)
     judge(workshop, mutants, times, options.jobs, options.resume)
+    if options.accepted:
+        accept([m for m in mutants if m.verdict in ("survived", "not reached")])
     given = [a for a in sys.argv[2:] if not a.startswith("/")]
     report(options.report, mutants, left_out, given, time.monotonic() - begin)
     print(Path(options.report).read_text())
