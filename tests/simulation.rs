@@ -244,3 +244,24 @@ fn invariant_outputs_of_the_last_step_are_those_of_its_state() {
         }
     }
 }
+
+#[test]
+fn invariant_what_is_not_a_number_is_never_a_solution() {
+    let mut simulation = Simulation::new(&Scene::parse(THRUST).unwrap()).unwrap();
+    for direction in 0..3 {
+        let before = simulation.state().clone();
+        let mut inputs = *simulation.inputs();
+        inputs.inner.applied.force[direction] = f64::NAN;
+        simulation.set_inputs(inputs);
+        assert!(simulation.advance(simulation.time() + 1e-5).is_err(), "force {direction}");
+        let state = simulation.state();
+        assert_eq!((state.time, &state.balls), (before.time, &before.balls));
+        simulation = Simulation::new(&Scene::parse(THRUST).unwrap()).unwrap();
+    }
+    // Far beyond what contacts can carry no residual is a number.
+    let scene = Scene::edited(RADIAL, [("load.y.force", "\"1000 kN\"")]).unwrap();
+    let model = roulement::model::Model::new(&scene).unwrap();
+    let input = EquilibriumInput::from_scene(&scene, Gyroscopic::OuterRaceControl);
+    let answer = equilibrium::solve(&model, &input);
+    assert!(answer.is_err(), "{:?}", answer.map(|found| found.residual));
+}

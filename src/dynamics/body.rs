@@ -12,6 +12,7 @@ use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::{Pose, Wrench};
 use crate::numerics::rotation::{from_rotation_vector, rotate, to_quaternion, turn};
 use crate::numerics::scalar::{Scalar, constant_vector, values};
+use crate::numerics::size::larger;
 
 /// [rad/s] accepted violation of a speed constraint (paper section 5).
 const SPEED_TOLERANCE: f64 = 1e-8;
@@ -181,18 +182,19 @@ impl BodyTrial {
             let (column, power) = match &direction {
                 Along::Force(direction) => {
                     force += direction.map(D::constant) * multiplier;
-                    self.violation = self.violation.max(value.value.abs() / scales.length_tolerance);
+                    self.violation = larger(self.violation, value.value.abs() / scales.length_tolerance);
                     ((*direction, Vector3::zeros()), direction.dot(&self.end.velocity))
                 }
                 Along::Moment(direction) => {
                     world_moment += direction * multiplier;
-                    self.violation = self.violation.max(value.value.abs() * length / scales.length_tolerance);
+                    self.violation =
+                        larger(self.violation, value.value.abs() * length / scales.length_tolerance);
                     let material = self.end.pose.orientation.inverse() * values(direction);
                     ((Vector3::zeros(), material), values(direction).dot(&values(&motion.angular_velocity)))
                 }
                 Along::Drive => {
                     material_moment[0] += multiplier;
-                    self.violation = self.violation.max(value.value.abs() / SPEED_TOLERANCE);
+                    self.violation = larger(self.violation, value.value.abs() / SPEED_TOLERANCE);
                     ((Vector3::zeros(), Vector3::x()), self.end.rate[0])
                 }
             };

@@ -17,6 +17,7 @@ use crate::numerics::arrowhead::{BLOCK, Block, Offsets, SLOTS};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::lanes::WIDTH;
 use crate::numerics::newton::Equations;
+use crate::numerics::size::{larger, largest};
 
 /// [-] accepted violation of position constraints over the ball diameter (paper section 5: 1e-8).
 const CONSTRAINT_TOLERANCE: f64 = 1e-8;
@@ -202,17 +203,12 @@ impl<'a> BearingStep<'a> {
             if let (Some(model), Some(trial)) = (model, trial) {
                 let load = self.boundary.load_on(body, model, &self.model.gravity);
                 trial.assemble(model, start, &load, &sums[body.index()], &self.step, &scales);
-                norm = worse(norm, trial.residual.rows(0, 6).amax() / self.force_tolerance);
-                norm = worse(norm, trial.violation);
+                norm = larger(norm, largest(&trial.residual.rows(0, 6)) / self.force_tolerance);
+                norm = larger(norm, trial.violation);
             }
         }
         norm
     }
-}
-
-/// The larger of two norms; `max` would drop a NaN.
-fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
 impl Equations for BearingStep<'_> {
@@ -222,11 +218,11 @@ impl Equations for BearingStep<'_> {
         self.evaluate_balls(unknowns, with_tangent);
         let mut norm = 0.0f64;
         for trial in &self.workspace.balls {
-            norm = worse(norm, trial.residual.amax() / self.force_tolerance);
+            norm = larger(norm, largest(&trial.residual) / self.force_tolerance);
         }
         if !self.balls_are_independent() {
             let sums = self.scatter(with_tangent);
-            norm = worse(norm, self.assemble_bodies(&sums));
+            norm = larger(norm, self.assemble_bodies(&sums));
         }
         if with_tangent {
             self.factorise();
@@ -264,7 +260,7 @@ impl BearingStep<'_> {
         let Workspace { balls, kept, .. } = &*self.workspace;
         let mut regular = kept.balls.len() == balls.len();
         for ((trial, block), x) in balls.iter().zip(&kept.balls).zip(correction.chunks_exact_mut(BLOCK)) {
-            if trial.residual.amax() <= self.force_tolerance {
+            if largest(&trial.residual) <= self.force_tolerance {
                 x.fill(0.0);
                 continue;
             }

@@ -7,6 +7,7 @@ use super::equations::BearingStep;
 use super::failure::Worst;
 use crate::model::bodies::Body;
 use crate::model::state::BodyState;
+use crate::numerics::size::largest;
 
 /// A vector at start and end of a step.
 type Ends<'a> = (&'a Vector3<f64>, &'a Vector3<f64>);
@@ -21,10 +22,10 @@ impl BearingStep<'_> {
     /// Where the residual is largest.
     pub fn worst_residual(&self) -> Worst {
         let tolerance = self.force_tolerance;
-        let balls = self.workspace.balls.iter().map(|ball| ball.residual.amax() / tolerance);
+        let balls = self.workspace.balls.iter().map(|ball| largest(&ball.residual) / tolerance);
         // A sum that is not a number wins over any violation.
         let bodies = self.moved().map(|(body, _, trial)| {
-            let residual = trial.residual.rows(0, 6).amax() / tolerance;
+            let residual = largest(&trial.residual.rows(0, 6)) / tolerance;
             (body, if trial.violation > residual { trial.violation } else { residual })
         });
         Worst::of(balls, bodies)

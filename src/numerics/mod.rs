@@ -8,4 +8,5 @@ pub mod motion;
 pub mod newton;
 pub mod rotation;
 pub mod scalar;
+pub mod size;
 pub mod step_control;

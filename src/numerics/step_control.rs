@@ -53,8 +53,8 @@ impl StepControl {
     /// After a converged step with this local error in units of its tolerance: is it accepted? Sets the next step.
     pub fn judge(&mut self, error: f64) -> bool {
         // An error of exactly zero must not ask for an infinite step.
-        let error = error.max(1e-10);
-        if error > 1.0 {
+        let error = if error < 1e-10 { 1e-10 } else { error };
+        if error.is_nan() || error > 1.0 {
             let notches = NOTCHES_PER_OCTAVE * (SAFETY * error.powf(-1.0 / 3.0)).log2();
             self.shrink((-notches).ceil() as i32);
             return false;

@@ -11,6 +11,7 @@ use crate::analysis::condensed::{Linear, Orbit};
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::model::Model;
 use crate::model::bodies::{PerRace, Race};
+use crate::numerics::size::largest;
 
 /// \[s] first step in time: rolling takes microseconds.
 const FIRST_STEP: f64 = 1e-6;
@@ -46,7 +47,7 @@ pub fn balanced(
     }
     let mut step = FIRST_STEP;
     for _ in 0..MAX_ITERATIONS {
-        if here.amax() <= TOLERANCE * limit {
+        if largest(&here) <= TOLERANCE * limit {
             return Some(motion);
         }
         let contact = |race: Race| Linear::new(&contacts[race], &motion, &races[race]).ball_by_rate();
