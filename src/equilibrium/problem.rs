@@ -7,7 +7,6 @@ use super::trial::{SharedMatrix, SharedVector, Trial, evaluate, finish};
 use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
 use crate::model::bodies::Race;
 use crate::model::{Conditions, Model};
-use crate::numerics::size::largest;
 
 /// [-] accepted residual over the size of the forces at work.
 const TOLERANCE: f64 = 1e-11;
@@ -163,8 +162,7 @@ impl<'a> Problem<'a> {
         let mut residual = self.residual(&here);
         let mut shift = 0.0;
         let mut iterations = 0;
-        let converged = |residual: &SharedVector| largest(residual) <= TOLERANCE;
-        while !converged(&residual) {
+        while residual.amax() > TOLERANCE {
             iterations += 1;
             let trial = self.newton_step(&here, shift).and_then(|mut step| {
                 // At most a hundredth of a ball diameter at a time.
@@ -187,7 +185,7 @@ impl<'a> Problem<'a> {
             }
             // Round-off of the balls' places bounds what can be reached.
             let stalled = shift > 1e12;
-            if stalled && largest(&residual) < 100.0 * TOLERANCE {
+            if stalled && residual.amax() < 100.0 * TOLERANCE {
                 break;
             }
             if stalled && progress == Progress::Work {
@@ -195,20 +193,20 @@ impl<'a> Problem<'a> {
                 progress = Progress::Residual;
                 shift = 0.0;
             } else if stalled || iterations == MAX_ITERATIONS {
-                let found = Found { unknowns, trial: here, residual: largest(&residual), iterations };
+                let found = Found { unknowns, trial: here, residual: residual.amax(), iterations };
                 // Downhill all the way to where no bearing is: that is the reason.
                 if downhill {
                     self.check(self.finish(&found))?;
                 }
                 return Err(EquilibriumError::NoConvergence {
-                    residual: largest(&residual),
+                    residual: residual.amax(),
                     direction: DIRECTION_NAMES[residual.rows(0, 5).iamax()],
                     iterations,
                     displacement: std::array::from_fn(|i| unknowns[i]),
                 });
             }
         }
-        Ok(Found { unknowns, trial: here, residual: largest(&residual), iterations })
+        Ok(Found { unknowns, trial: here, residual: residual.amax(), iterations })
     }
 
     /// Is a step progress?
@@ -225,7 +223,7 @@ impl<'a> Problem<'a> {
         let falls = |now: f64, before: f64| now < before * (1.0 - 1e-6);
         let smaller = falls(self.residual(trial).norm(), self.residual(here).norm())
             || falls(merit(trial), merit(here));
-        if progress == Progress::Residual || largest(&self.residual(here)) < NEAR {
+        if progress == Progress::Residual || self.residual(here).amax() < NEAR {
             return smaller;
         }
         // Work of the unbalanced loads by the trapezoidal rule; the cage speed takes no part in it.
