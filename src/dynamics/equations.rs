@@ -203,7 +203,7 @@ impl<'a> BearingStep<'a> {
             if let (Some(model), Some(trial)) = (model, trial) {
                 let load = self.boundary.load_on(body, model, &self.model.gravity);
                 trial.assemble(model, start, &load, &sums[body.index()], &self.step, &scales);
-                norm = larger(norm, largest(&trial.residual.rows(0, 6)) / self.force_tolerance);
+                norm = larger(norm, largest(trial.residual.rows(0, 6).iter()) / self.force_tolerance);
                 norm = larger(norm, trial.violation);
             }
         }

@@ -25,7 +25,7 @@ impl BearingStep<'_> {
         let balls = self.workspace.balls.iter().map(|ball| largest(&ball.residual) / tolerance);
         // A sum that is not a number wins over any violation.
         let bodies = self.moved().map(|(body, _, trial)| {
-            let residual = largest(&trial.residual.rows(0, 6)) / tolerance;
+            let residual = largest(trial.residual.rows(0, 6).iter()) / tolerance;
             (body, if trial.violation > residual { trial.violation } else { residual })
         });
         Worst::of(balls, bodies)
