@@ -164,5 +164,7 @@ def test_the_model_description_is_complete(packages, drive):
     assert float(experiment.get("stepSize")) == 5e-5
     for section in ("Frames", "Effects", "Interface", "Limits", "Parameters"):
         assert f"<h2>{section}</h2>" in page
-    for crate in ("nalgebra", "serde", "quick-xml", "zlib-rs"):
+    for crate in ("nalgebra", "serde", "quick-xml", "toml"):
         assert f"\n{crate} " in licences
+    # What packs it is not in it.
+    assert "\nzip " not in licences and "\nclap " not in licences
