@@ -518,7 +518,7 @@ def main():
     parser.add_argument("sources", nargs="*", default=DEFAULT, help=f"folders and files ({' '.join(DEFAULT)})")
     parser.add_argument("--count", type=int, default=200, help="size of the sample (200)")
     parser.add_argument("--seed", type=int, default=1, help="of the sample (1)")
-    parser.add_argument("--planted", action="store_true", help="the faults of scripts/mutants-planted.csv instead")
+    parser.add_argument("--planted", action="store_true", help="the faults of scripts/mutants-planted.csv as well")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="tests at a time (processors)")
     parser.add_argument("--slowest", type=float, default=60.0, help="[s] longest test that is used (60)")
     parser.add_argument("--scratch", type=Path, default=ROOT / "target/mutants", help="scratch folder (target/mutants)")
@@ -529,13 +529,12 @@ def main():
     options = parser.parse_args()
     begin = time.monotonic()
     rust = Parser(Language(tree_sitter_rust.language()))
+    found = [m for path in files_of(options.sources) for m in Finder(path, rust).mutants]
+    # A fifth does not compile (types without that operator); what is left over is cut.
+    mutants = choose(found, int(options.count * 1.3), options.seed)
+    print(f"{len(found)} expressions, {len(mutants)} sampled", flush=True)
     if options.planted:
-        mutants = list(planted_mutants())
-    else:
-        found = [m for path in files_of(options.sources) for m in Finder(path, rust).mutants]
-        # A fifth does not compile (types without that operator); what is left over is cut.
-        mutants = choose(found, int(options.count * 1.3), options.seed)
-        print(f"{len(found)} expressions, {len(mutants)} sampled", flush=True)
+        mutants += planted_mutants()
     for number, mutant in enumerate(mutants, 1):
         mutant.id = number
     if options.list:
@@ -545,9 +544,8 @@ def main():
     workshop = Workshop(options.scratch, mutants)
     mutants = workshop.build(mutants)
     print(f"built in {time.monotonic() - begin:.0f} s", flush=True)
-    if not options.planted:
-        keep = set(m.id for m in choose(mutants, options.count, options.seed))
-        mutants = [m for m in mutants if m.id in keep]
+    sampled, planted = [m for m in mutants if not m.note], [m for m in mutants if m.note]
+    mutants = choose(sampled, options.count, options.seed) + planted
     times, left_out = survey(workshop, mutants, options.jobs, options.slowest)
     print(f"{len(times)} tests, {sum(times.values()):.0f} s; {time.monotonic() - begin:.0f} s so far", flush=True)
     if not options.accepted:
