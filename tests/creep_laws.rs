@@ -6,6 +6,7 @@ mod laws;
 
 use laws::{Laws, theory};
 use roulement::contact::creep::{CreepForces, Creepage, Law, LinearTheory};
+use roulement::contact::regularised::{lateral_by_spin, moment_by_lateral, moment_by_spin};
 use roulement::numerics::scalar::{Dual, Scalar};
 
 /// Creepages over many magnitudes and all signs, rest and extremes included; fewer of them for slow laws.
@@ -130,6 +131,45 @@ fn closed_form_regularised_pure_creep_is_equation_15() {
         let phi = if ratio <= 1.0 { (2.0 - ratio) * ratio } else { 1.0 };
         let ours = theory.forces(Law::Regularised(&laws.parameters), &c).longitudinal;
         assert!((ours / (theory.friction_limit * phi) - 1.0).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn closed_form_regularised_couplings_are_equations_a4_to_a6() {
+    // Lateral creepage alone gives the moment of A.6, spin alone the force of A.4 and a moment of its own, each at the
+    // ratio of linear theory's force or moment to its limit; signs as in linear theory (eq. 14).
+    let theory = theory();
+    let Laws { parameters, .. } = Laws::new();
+    let forces = |lateral: f64, spin: f64| {
+        let creepage = Creepage { longitudinal: 0.0, lateral, spin, curvature: None };
+        theory.forces(Law::Regularised(&parameters), &creepage)
+    };
+    let (force, moment, coupling) = (theory.friction_limit, theory.moment_limit, theory.coupling);
+    for size in [-3.0f64, -0.5, 0.1, 1.0] {
+        let by_lateral = forces(size * moment / coupling.abs(), 0.0).spin_moment;
+        let expected = -(coupling * size).signum() * moment * moment_by_lateral(parameters.alpha, size.abs());
+        assert!((by_lateral / expected - 1.0).abs() < 1e-6, "{size}: {by_lateral} for {expected}");
+
+        let spun = forces(0.0, size * 2.0 * force / coupling.abs());
+        let expected = (coupling * size).signum() * force * lateral_by_spin(parameters.eta, size.abs());
+        assert!((spun.lateral / expected - 1.0).abs() < 1e-6, "{size}: {} for {expected}", spun.lateral);
+
+        let own = forces(0.0, size * moment / theory.spin).spin_moment;
+        let expected = size.signum() * moment * moment_by_spin(parameters.beta, size.abs());
+        assert!((own / expected - 1.0).abs() < 1e-6, "{size}: {own} for {expected}");
+    }
+}
+
+#[test]
+fn invariant_frozen_differences_never_leave_coulombs_limits() {
+    let (theory, laws) = (theory(), Laws::new());
+    for sign in [-1.0, 1.0] {
+        // Complete sliding by spin: the table's moment is at its limit already.
+        let creepage = Creepage { longitudinal: 0.0, lateral: 0.0, spin: sign * 1e6, curvature: None };
+        let difference = [0.3, 0.9, sign * 0.5, 0.0];
+        let forces = theory.forces(Law::Frozen(&laws.table, &difference), &creepage);
+        assert!((forces.spin_moment / theory.moment_limit - sign).abs() < 1e-9);
+        assert!(forces.longitudinal.hypot(forces.lateral) <= theory.friction_limit * (1.0 + 1e-12));
     }
 }
 

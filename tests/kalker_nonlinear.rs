@@ -3,15 +3,18 @@
 
 mod common;
 mod printed;
+#[path = "common/random.rs"]
+mod random;
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use common::cases;
 use printed::Printed;
+use random::Random;
 use roulement::kalker::linear::creep_matrix;
 use roulement::kalker::nonlinear::{Kalker, KalkerError};
-use roulement::kalker::{Patch, ScaledCreepage};
+use roulement::kalker::{Patch, ScaledCreepage, ScaledForces};
 
 /// Mean errors of fx, fy, mz and the largest force error, by kind of case.
 fn errors(degree: usize) -> BTreeMap<String, ([f64; 3], f64, f64, f64)> {
@@ -196,6 +199,46 @@ fn invariant_warm_start_finds_the_cold_solution() {
     assert!((warm.forces.fx - cold.forces.fx).abs() < 2e-3);
     assert!((warm.forces.fy - cold.forces.fy).abs() < 2e-3);
     assert!(warm.iterations < cold.iterations);
+}
+
+#[test]
+fn invariant_a_solution_is_its_own_solution_from_rest_to_sliding() {
+    // What is called a minimum has none below it: solved again from there it stays, for creepages of all sizes and directions.
+    let mut random = Random::new(11);
+    let mut worst = 0.0f64;
+    for ratio in [0.05, 0.2, 1.0] {
+        let kalker = kalker(ratio, 3);
+        for _ in 0..150 {
+            let size = 10f64.powf(random.between(-2.0, 1.5));
+            let [x, y, spin] = [(); 3].map(|()| size * random.between(-1.0, 1.0));
+            let creepage = ScaledCreepage { x, y, spin, curvature: 0.0 };
+            let first = kalker.solve(&creepage, None).unwrap();
+            let again = kalker.solve(&creepage, Some(first.coefficients.as_slice())).unwrap();
+            let change = (again.forces.fx - first.forces.fx).hypot(again.forces.fy - first.forces.fy);
+            worst = worst.max(change);
+        }
+    }
+    println!("largest change {worst:.1e}");
+    assert!(worst < 1e-5, "{worst:e}");
+}
+
+#[test]
+fn invariant_a_start_that_is_none_changes_nothing() {
+    let kalker = kalker(0.2, 3);
+    let creepage = ScaledCreepage { x: 0.2, y: 0.1, spin: 0.8, curvature: 0.0 };
+    let cold = kalker.solve(&creepage, None).unwrap();
+    let number = cold.coefficients.len();
+    for start in [vec![f64::NAN; number], vec![f64::INFINITY; number], vec![0.1; number - 1], vec![]] {
+        assert_eq!(kalker.solve(&creepage, Some(&start)).unwrap().coefficients, cold.coefficients);
+    }
+}
+
+#[test]
+fn closed_form_power_of_forces() {
+    // fx h_x + fy h_y + mz h_phi - second h_kappa
+    let forces = ScaledForces { fx: 0.3, fy: -0.5, mz: 0.7, second_moment: 0.2 };
+    let creepage = ScaledCreepage { x: 1.0, y: -2.0, spin: 3.0, curvature: 4.0 };
+    assert!((forces.power(&creepage) - (0.3 + 1.0 + 2.1 - 0.8)).abs() < 1e-15);
 }
 
 #[test]

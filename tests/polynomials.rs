@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use roulement::contact::creep::Law;
 use roulement::kalker::linear::Scales;
 use roulement::kalker::nonlinear::Kalker;
+use roulement::kalker::scaled_law::{Difference, ScaledKalker};
 use roulement::kalker::table::CreepTable;
 use roulement::kalker::{Patch, ScaledCreepage};
 use roulement::model::Conditions;
@@ -87,6 +88,18 @@ fn invariant_the_wrench_on_a_race_is_the_sum_of_the_reported_contact_forces() {
         }
         assert!(sum.norm() < 1e-6, "{race:?}: {} N are missing", sum.norm());
     }
+}
+
+#[test]
+fn a_difference_belongs_to_its_polynomials_or_to_none() {
+    let patch = Patch { axis_ratio: 0.2, poisson_ratio: 0.3, rolling_angle: 0.0 };
+    let kalker = ScaledKalker::new(&patch, 3).unwrap();
+    let number = Kalker::new(patch, 3).unwrap().coefficients();
+    let of = |number: usize| Difference { coefficients: vec![0.1; number], ..Difference::default() };
+    assert!(of(0).fits(None) && of(0).fits(Some(&kalker)) && of(number).fits(Some(&kalker)));
+    assert!(!of(1).fits(None) && !of(number).fits(None) && !of(number - 1).fits(Some(&kalker)));
+    let spoilt = Difference { value: [f64::NAN; 4], ..of(number) };
+    assert!(!spoilt.fits(Some(&kalker)));
 }
 
 #[test]

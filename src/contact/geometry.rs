@@ -75,3 +75,18 @@ impl<S: Scalar> GrooveContact<S> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limit_a_ball_on_the_groove_centre_touches_nothing() {
+        let raceway = Raceway { groove_radius: 6.6e-3, groove_circle_radius: 0.0625, groove_offset: 0.0 };
+        let centre = Vector3::new(0.0, raceway.groove_circle_radius, 0.0);
+        let contact = GrooveContact::new(&raceway, 6.35e-3, &centre, &Vector3::x());
+        assert!((contact.approach - (6.35e-3 - raceway.groove_radius)).abs() < 2.0 * DISTANCE_FLOOR);
+        let numbers = contact.normal.iter().chain([&contact.circumferential_curvature]);
+        assert!(numbers.into_iter().all(|number| number.is_finite()), "{contact:?}");
+    }
+}

@@ -322,3 +322,22 @@ pub fn limit(coarse: &Tractions, fine: &Tractions) -> ScaledForces {
         second_moment: limit(|f| f.second_moment),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_form_a_sliding_cell_has_the_slip_that_remains_along_its_traction() {
+        // Just above the bound, far above it, and with unlike flexibilities: |f| = bound and (slip - L f) x f = 0.
+        let flexibility = [0.02, 0.035];
+        for (slip, bound) in [([0.003, 0.002], 0.15), ([0.0301, 0.0402], 1.88), ([-5.0, 2.0], 0.4)] {
+            let (f, sticks) = solve_cell(slip, flexibility, bound);
+            let rest = [0, 1].map(|k| slip[k] - flexibility[k] * f[k]);
+            assert!(!sticks && (f[0].hypot(f[1]) / bound - 1.0).abs() < 1e-14);
+            let sine = (rest[0] * f[1] - rest[1] * f[0]) / (slip[0].hypot(slip[1]) * bound);
+            assert!(sine.abs() < 1e-12 && rest[0] * f[0] + rest[1] * f[1] >= 0.0, "{slip:?}: {sine:e}");
+        }
+        assert_eq!(solve_cell([0.002, 0.0], flexibility, 0.2), ([0.1, 0.0], true));
+    }
+}
