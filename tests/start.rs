@@ -4,6 +4,8 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
+use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
+use roulement::model::Model;
 use roulement::model::bodies::{Body, Race};
 use roulement::scene::Scene;
 use roulement::simulation::{Simulation, SimulationError};
@@ -154,4 +156,75 @@ fn a_step_that_cannot_be_finished_names_ball_and_contact() {
             assert!(message.contains(&names), "{message}");
         }
     }
+}
+
+const RADIAL: &str = include_str!("../scenes/radial.toml");
+
+/// A rotor whose weight is all that loads the bearing: across its axis, or along it.
+fn heavy(direction: usize, mass: f64) -> Simulation {
+    let mut gravity = [0.0; 3];
+    gravity[direction] = -9.81;
+    let changes = [
+        ("effects.gravity", format!("{gravity:?}")),
+        ("inner.mass", format!("{mass}")),
+        ("load.inner_speed", "\"1500 rpm\"".into()),
+        ("load.y", "{ force = 0.0 }".into()),
+        ("load.x", if direction == 0 { "{ force = 0.0 }" } else { "{ displacement = 0.0 }" }.into()),
+    ];
+    let changes: Vec<(&str, &str)> = changes.iter().map(|(key, value)| (*key, value.as_str())).collect();
+    Simulation::new(&scene(RADIAL, &changes)).unwrap()
+}
+
+#[test]
+fn closed_form_a_rotor_rests_on_the_bearing_at_the_start() {
+    for (direction, mass) in [(1, 50.0), (0, 50.0), (1, 5.0)] {
+        let mut simulation = heavy(direction, mass);
+        let weight = -9.81 * mass;
+        let carried = |simulation: &Simulation| -simulation.outputs().inner.wrench.force[direction];
+        // Balls start on circles, so that damping adds its share where their approach changes along the orbit.
+        assert!(
+            (carried(&simulation) / weight - 1.0).abs() < 0.05,
+            "at the start {} N",
+            carried(&simulation)
+        );
+        let start = simulation.state().race(Race::Inner).pose.position[direction];
+        let mut largest = 0.0f64;
+        for step in 1..=200 {
+            simulation.advance(f64::from(step) * 1e-4).unwrap();
+            largest = largest.max((carried(&simulation) / weight - 1.0).abs());
+        }
+        // What is left is the change of stiffness as balls pass under the load.
+        assert!(largest < 0.1, "{direction} {mass} kg: off by {largest}");
+        let moved = simulation.state().race(Race::Inner).pose.position[direction] - start;
+        assert!(moved.abs() < 2e-6, "{direction} {mass} kg: fell by {moved} m");
+    }
+}
+
+#[test]
+fn closed_form_weight_of_rotor_and_balls_in_the_equilibrium() {
+    // The outer race carries what the inner one does and the balls' weight besides.
+    let simulation = heavy(1, 50.0);
+    let (scene, model) = (simulation.scene(), simulation.model());
+    let solution =
+        equilibrium::solve(model, &EquilibriumInput::from_scene(scene, Gyroscopic::Friction)).unwrap();
+    assert!((solution.load[1] / (-9.81 * 50.0) - 1.0).abs() < 1e-9, "{:?}", solution.load);
+    let bottom =
+        solution.balls.iter().max_by(|a, b| a.report.outer_load.total_cmp(&b.report.outer_load)).unwrap();
+    let down = -bottom.azimuth.cos();
+    let report = &bottom.report;
+    let weight = 9.81 * model.bearing.ball.mass * down;
+    let surplus = report.outer_load - report.inner_load - report.centrifugal_force;
+    assert!((surplus / weight - 1.0).abs() < 1e-3, "{surplus} N for {weight} N");
+}
+
+#[test]
+fn regression_a_load_beyond_every_bearing_has_no_equilibrium() {
+    let scene = scene(RADIAL, &[("load.y", "{ force = \"1000 kN\" }")]);
+    let model = Model::new(&scene).unwrap();
+    let why = equilibrium::solve(&model, &EquilibriumInput::from_scene(&scene, Gyroscopic::None))
+        .map(|solution| solution.residual)
+        .unwrap_err()
+        .to_string();
+    assert!(why.contains("beyond elastic") || why.contains("does not converge"), "{why}");
+    assert!(!why.contains("NaN"), "{why}");
 }

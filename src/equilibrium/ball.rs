@@ -34,6 +34,8 @@ pub struct Shared {
     pub axis: Vector3<D>,
     /// [rad/s] cage speed.
     pub cage_speed: D,
+    /// [m/s2] gravity on the balls; what it does along the orbit is left to friction.
+    pub gravity: Vector3<f64>,
 }
 
 /// Forces on one ball, all relative to the outer race's frame.
@@ -141,7 +143,7 @@ pub fn balance(
     let tangent = constant_vector(&tangential);
     let inner_force = -inner.normal * inner_load + inner.normal.cross(&tangent) * inner_friction;
     let outer_force = -outer.normal * outer_load + outer.normal.cross(&tangent) * outer_friction;
-    let total = inner_force + outer_force;
+    let total = inner_force + outer_force + constant_vector(&(shared.gravity * ball.mass));
     let (axial, radial_force) = (total.x, total.dot(&constant_vector(&radial)) + centrifugal_force);
     let mut residual = [axial * cosine - radial_force * sine, axial * sine + radial_force * cosine];
     if shared.cage_speed.value == 0.0 {

@@ -2,11 +2,14 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use nalgebra::Vector3;
+
 use super::ball::Place;
 use super::trial::{SharedMatrix, SharedVector, Trial, evaluate, finish};
 use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
 use crate::model::bodies::Race;
 use crate::model::{Conditions, Model};
+use crate::numerics::size::{larger, largest};
 
 /// [-] accepted residual over the size of the forces at work.
 const TOLERANCE: f64 = 1e-11;
@@ -42,6 +45,8 @@ pub struct Found {
 pub struct Problem<'a> {
     model: &'a Model,
     input: &'a EquilibriumInput,
+    /// \[N] weight of the inner race and what is fixed to it, where forces move it.
+    weight: Vector3<f64>,
     /// \[m] ball diameter.
     diameter: f64,
     /// [rad/s] mean orbital speed of unloaded balls.
@@ -65,9 +70,12 @@ impl<'a> Problem<'a> {
         let smallest = model.contact(Race::Inner, &Conditions { friction: 0.0 }).shape.stiffness(0.0)
             * (1e-6 * diameter).powf(1.5);
         let inertia_force = bearing.ball.mass * epicyclic * epicyclic * length;
+        let weight =
+            model.bodies[Race::Inner].as_ref().map_or_else(Vector3::zeros, |body| model.gravity * body.mass);
         let mut problem = Self {
             model,
             input,
+            weight,
             diameter,
             epicyclic,
             speed_scale: input.inner_speed.abs().max(input.outer_speed.abs()),
@@ -75,8 +83,8 @@ impl<'a> Problem<'a> {
             smallest,
         };
         for i in 0..5 {
-            if let Prescribed::Load(load) = input.conditions[i] {
-                problem.known_force = problem.known_force.max(load.abs() / problem.size(i));
+            if let Some(load) = problem.imposed_load(i) {
+                problem.known_force = larger(problem.known_force, load.abs() / problem.size(i));
             }
         }
         problem
@@ -85,6 +93,14 @@ impl<'a> Problem<'a> {
     /// [-], \[m] length that turns a moment into a force and an angle into a displacement; 1 for translations.
     fn size(&self, direction: usize) -> f64 {
         if direction < 3 { 1.0 } else { self.model.race_length() }
+    }
+
+    /// [N, N m] load on the inner race in a direction, its weight included; none where its motion is imposed.
+    fn imposed_load(&self, direction: usize) -> Option<f64> {
+        match self.input.conditions.get(direction) {
+            Some(Prescribed::Load(load)) => Some(load + self.weight.iter().nth(direction).unwrap_or(&0.0)),
+            _ => None,
+        }
     }
 
     /// The race in the middle but for what is imposed on it.
@@ -102,10 +118,8 @@ impl<'a> Problem<'a> {
     /// The race a thousandth of a ball diameter off the centre, where its loads push it.
     pub fn pushed(&self) -> SharedVector {
         let mut loads = SharedVector::zeros();
-        for (i, condition) in self.input.conditions.iter().enumerate() {
-            if let Prescribed::Load(load) = condition {
-                loads[i] = load / self.size(i);
-            }
+        for i in 0..5 {
+            loads[i] = self.imposed_load(i).unwrap_or(0.0) / self.size(i);
         }
         let mut way = loads.normalize() * (1e-3 * self.diameter);
         for i in 0..5 {
@@ -122,10 +136,7 @@ impl<'a> Problem<'a> {
 
     /// Unbalanced load of every free direction.
     fn unbalanced(&self, trial: &Trial) -> SharedVector {
-        SharedVector::from_fn(|i, _| match self.input.conditions.get(i) {
-            Some(Prescribed::Load(load)) => load - trial.load[i],
-            _ => 0.0,
-        })
+        SharedVector::from_fn(|i, _| self.imposed_load(i).map_or(0.0, |load| load - trial.load[i]))
     }
 
     /// [-] residual: unbalanced loads over a force `scale` \[N], excess of the cage speed over a load `weight` \[N].
@@ -162,7 +173,7 @@ impl<'a> Problem<'a> {
         let mut residual = self.residual(&here);
         let mut shift = 0.0;
         let mut iterations = 0;
-        while residual.amax() > TOLERANCE {
+        while !(largest(&residual) <= TOLERANCE) {
             iterations += 1;
             let trial = self.newton_step(&here, shift).and_then(|mut step| {
                 // At most a hundredth of a ball diameter at a time.
@@ -185,7 +196,7 @@ impl<'a> Problem<'a> {
             }
             // Round-off of the balls' places bounds what can be reached.
             let stalled = shift > 1e12;
-            if stalled && residual.amax() < 100.0 * TOLERANCE {
+            if stalled && largest(&residual) < 100.0 * TOLERANCE {
                 break;
             }
             if stalled && progress == Progress::Work {
@@ -193,20 +204,20 @@ impl<'a> Problem<'a> {
                 progress = Progress::Residual;
                 shift = 0.0;
             } else if stalled || iterations == MAX_ITERATIONS {
-                let found = Found { unknowns, trial: here, residual: residual.amax(), iterations };
+                let found = Found { unknowns, trial: here, residual: largest(&residual), iterations };
                 // Downhill all the way to where no bearing is: that is the reason.
                 if downhill {
                     self.check(self.finish(&found))?;
                 }
                 return Err(EquilibriumError::NoConvergence {
-                    residual: residual.amax(),
+                    residual: largest(&residual),
                     direction: DIRECTION_NAMES[residual.rows(0, 5).iamax()],
                     iterations,
                     displacement: std::array::from_fn(|i| unknowns[i]),
                 });
             }
         }
-        Ok(Found { unknowns, trial: here, residual: residual.amax(), iterations })
+        Ok(Found { unknowns, trial: here, residual: largest(&residual), iterations })
     }
 
     /// Is a step progress?
@@ -223,7 +234,7 @@ impl<'a> Problem<'a> {
         let falls = |now: f64, before: f64| now < before * (1.0 - 1e-6);
         let smaller = falls(self.residual(trial).norm(), self.residual(here).norm())
             || falls(merit(trial), merit(here));
-        if progress == Progress::Residual || self.residual(here).amax() < NEAR {
+        if progress == Progress::Residual || largest(&self.residual(here)) < NEAR {
             return smaller;
         }
         // Work of the unbalanced loads by the trapezoidal rule; the cage speed takes no part in it.

@@ -34,7 +34,7 @@ pub struct Trial {
 }
 
 /// The inner race relative to the outer one, with derivatives.
-fn shared(input: &EquilibriumInput, unknowns: &SharedVector) -> Shared {
+fn shared(model: &Model, input: &EquilibriumInput, unknowns: &SharedVector) -> Shared {
     let variable = |i: usize| D::variable(unknowns[i], SHARED + i, 1.0);
     let (ry, rz) = (variable(3), variable(4));
     let square = ry.square() + rz.square();
@@ -44,7 +44,8 @@ fn shared(input: &EquilibriumInput, unknowns: &SharedVector) -> Shared {
     let axis = Vector3::new(cosine, sine * rz, -(sine * ry));
     let position = Vector3::new(variable(0), variable(1), variable(2));
     let seen = |v: &Vector3<D>| turn(&input.outer_orientation.inverse(), v);
-    Shared { position: seen(&position), axis: seen(&axis), cage_speed: variable(5) }
+    let gravity = input.outer_orientation.inverse() * model.gravity;
+    Shared { position: seen(&position), axis: seen(&axis), cage_speed: variable(5), gravity }
 }
 
 /// `sin(t)/t` with `s = t^2`.
@@ -65,7 +66,7 @@ pub fn evaluate(
     start: Option<&[Place]>,
     tolerance: f64,
 ) -> Result<Trial, EquilibriumError> {
-    let shared = shared(input, unknowns);
+    let shared = shared(model, input, unknowns);
     let n = model.bearing.n_balls;
     let mut trial = Trial {
         load: SVector::zeros(),
@@ -82,10 +83,16 @@ pub fn evaluate(
         let fresh: [&dyn Fn() -> Place; 2] = [&|| middle_of_gap(model, &shared, azimuth), &|| {
             bottom_of_outer_groove(model, input, &shared, azimuth)
         }];
-        let starts = kept.into_iter().chain(fresh.iter().map(|place| place()));
-        let settled = starts.into_iter().find_map(|mut place| {
-            settle(model, input, &shared, azimuth, &mut place, tolerance).map(|balance| (balance, place))
-        });
+        let settled = |shared: &Shared| {
+            let starts = kept.into_iter().chain(fresh.iter().map(|place| place()));
+            starts.into_iter().find_map(|mut place| {
+                settle(model, input, shared, azimuth, &mut place, tolerance).map(|balance| (balance, place))
+            })
+        };
+        // A free ball that would fall off the side of a groove stays where it is, as if without weight.
+        let weightless = Shared { gravity: Vector3::zeros(), ..shared };
+        let fallen = || if shared.gravity == weightless.gravity { None } else { settled(&weightless) };
+        let settled = settled(&shared).or_else(fallen);
         let Some((balance, place)) = settled else {
             return Err(EquilibriumError::Ball {
                 ball: j + 1,
@@ -95,7 +102,12 @@ pub fn evaluate(
         // rows in the bearing frame: external load and cage excess
         let force = turn(&input.outer_orientation, &balance.inner_force);
         let moment = turn(&input.outer_orientation, &balance.inner_moment);
-        let excess = balance.inner_load * (balance.own_orbital_speed - shared.cage_speed);
+        // A free ball has no speed of its own: where its contact normals are opposite, it would be 0/0.
+        let excess = if balance.inner_load.value > 0.0 {
+            balance.inner_load * (balance.own_orbital_speed - shared.cage_speed)
+        } else {
+            D::constant(0.0)
+        };
         let rows = [force.x, force.y, force.z, moment.y, moment.z, excess];
         // eliminate the ball: place' = -(dr/dplace)^-1 dr/dshared
         let by_place = Matrix2::from_fn(|i, k| balance.residual[i].derivatives[k]);
@@ -142,7 +154,7 @@ pub fn finish(
                 position: Vector3::x() * axial + radial * radius,
                 velocity: tangential * (cage_speed * radius),
                 angular_velocity: Vector3::x() * spin[0] + radial * spin[1],
-                report: BallReport::new(balance, &shared(input, unknowns).axis.map(D::value)),
+                report: BallReport::new(balance, &shared(model, input, unknowns).axis.map(D::value)),
             }
         })
         .collect();

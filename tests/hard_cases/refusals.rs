@@ -91,7 +91,7 @@ fn a_load_that_crushes_while_it_runs() {
 #[test]
 fn a_race_that_falls_between_its_balls() {
     // A millimetre of clearance under a radial load, and no cage that would keep the balls apart.
-    let rows = format!("y = {{ force = 1500.0 }}\n{FLAT}");
+    let rows = format!("y = {{ force = 5000.0 }}\n{FLAT}");
     let why = refusal(GROOVE, &(groove(1000.0, 0.56) + &load(200.0, 6000.0, &rows)));
     refuses(
         "radial load, clearance 1 mm, no cage",
