@@ -60,21 +60,26 @@ pub struct EquilibriumInput {
 impl EquilibriumInput {
     /// The problem of a scene at time 0.
     pub fn from_scene(scene: &Scene, gyroscopic: Gyroscopic) -> Self {
+        Self::at(scene, gyroscopic, 0.0)
+    }
+
+    /// The problem of a scene at a time \[s] of its script.
+    pub fn at(scene: &Scene, gyroscopic: Gyroscopic, time: f64) -> Self {
         let misalignment = &scene.outer.misalignment;
         Self {
             conditions: scene.load.conditions().map(|condition| match condition {
-                Condition::Load(schedule) => Prescribed::Load(schedule.at(0.0)),
-                Condition::Motion(schedule) => Prescribed::Motion(schedule.at(0.0)),
+                Condition::Load(schedule) => Prescribed::Load(schedule.at(time)),
+                Condition::Motion(schedule) => Prescribed::Motion(schedule.at(time)),
             }),
-            inner_speed: scene.load.inner_speed.at(0.0),
-            outer_speed: scene.load.outer_speed.at(0.0),
+            inner_speed: scene.load.inner_speed.at(time),
+            outer_speed: scene.load.outer_speed.at(time),
             outer_orientation: UnitQuaternion::new(Vector3::new(
                 0.0,
-                misalignment.ry.at(0.0),
-                misalignment.rz.at(0.0),
+                misalignment.ry.at(time),
+                misalignment.rz.at(time),
             )),
             gyroscopic,
-            friction: scene.friction.ball_race,
+            friction: scene.friction.ball_race.at(time),
         }
     }
 }

@@ -10,6 +10,7 @@ use super::instance::Instance;
 use super::outcome::{Outcome, error};
 use super::state::Phase;
 use crate::interface::variables::{Causality, InputKind, Kind, Variable};
+use crate::scene::Groups;
 use crate::simulation::inputs::Inputs;
 use crate::simulation::outputs::Outputs;
 use crate::simulation::{Simulation, SimulationError};
@@ -145,7 +146,9 @@ impl Instance {
                     return error("the start of the last step is of another scene");
                 }
                 central.set_inputs(*base);
-                central.advance_perturbed(self.simulation.time(), &perturbations).or_else(failed)?
+                central
+                    .advance_perturbed(self.simulation.time(), &perturbations, Groups::default())
+                    .or_else(failed)?
             }
             None => {
                 let start = |inputs: &Inputs| {

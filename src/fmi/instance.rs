@@ -8,8 +8,8 @@ use crate::interface::model_description;
 use crate::interface::variables::{Causality, Kind, Source, Variables};
 use crate::scene::Scene;
 use crate::schema::numbers::Variability;
-use crate::simulation::Simulation;
 use crate::simulation::inputs::Inputs;
+use crate::simulation::{Simulation, follows_time};
 
 /// A slave.
 pub struct Instance {
@@ -69,8 +69,27 @@ impl Instance {
         if let Some(stop) = stop.filter(|stop| !(*stop > start && stop.is_finite())) {
             return error(format!("the stop time {stop} s is not after the start time {start} s"));
         }
-        self.simulation.set_start_time(start);
+        if follows_time(self.simulation.scene()) && start != self.simulation.time() {
+            // Where the script puts the bearing at that time; inputs that were set already stay as set.
+            let scene = self.scene_with(&self.state.values)?;
+            self.simulation =
+                Simulation::starting_at(&scene, start).map_err(|why| (Status::Error, why.to_string()))?;
+            self.state.applied.clone_from(&self.state.values);
+            self.take_start_values();
+        } else {
+            self.simulation.set_start_time(start);
+        }
         Ok(())
+    }
+
+    /// Takes the start of the simulation for the inputs that the importer did not set.
+    fn take_start_values(&mut self) {
+        let start = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
+        for (index, row) in self.variables.rows().iter().enumerate() {
+            if row.causality == Causality::Input && !self.state.given[index] {
+                self.state.values[index] = start[index];
+            }
+        }
     }
 
     /// Begins initialization.
@@ -101,8 +120,9 @@ impl Instance {
         let mut simulation = self.simulation.clone();
         let mut values = self.state.values.clone();
         if self.variables.parameters_differ(&self.state.values, &self.state.applied) {
-            simulation = self.with_parameters(&self.state.values)?;
-            simulation.set_start_time(self.simulation.time());
+            let scene = self.scene_with(&self.state.values)?;
+            simulation = Simulation::starting_at(&scene, self.simulation.time())
+                .map_err(|why| (Status::Error, why.to_string()))?;
             let start = self.variables.values(simulation.inputs(), simulation.outputs());
             for (index, row) in self.variables.rows().iter().enumerate() {
                 if row.causality == Causality::Input && !self.state.given[index] {

@@ -24,7 +24,7 @@ impl Scene {
     /// let text = std::fs::read_to_string("scenes/thrust.toml")?;
     /// let changes = [("friction.ball_race", "0.05"), ("load.y.force", "\"0.3 kN\""), ("solver.alpha_f", "")];
     /// let scene = Scene::edited(&text, changes)?;
-    /// assert_eq!(scene.friction.ball_race, 0.05);
+    /// assert_eq!(scene.friction.ball_race.at(0.0), 0.05);
     /// assert!(scene.source.contains("force = \"0.3 kN\"") && !scene.source.contains("alpha_f"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -90,7 +90,7 @@ mod tests {
         ];
         let scene = Scene::edited(THRUST, changes).unwrap();
         assert_eq!((scene.title.as_str(), scene.bearing.balls), ("a \"title\"", 12));
-        assert_eq!((scene.friction.ball_race, scene.bearing.pitch_diameter.0), (0.1, 0.06));
+        assert_eq!((scene.friction.ball_race.at(0.0), scene.bearing.pitch_diameter.0), (0.1, 0.06));
         assert!(scene.effects.groove_slip.on);
         assert_eq!(scene.effects.gravity.acceleration.map(|g| g.0), [0.0, 0.0, -9.81]);
         assert!((scene.load.inner_speed.at(5e-4) - std::f64::consts::PI).abs() < 1e-12);

@@ -44,7 +44,7 @@ static BEARING: [Number<Scene>; 15] = [
         |s| Place::Value(Some(&mut s.race.poisson_ratio))),
     Number::checked("race.density", DENSITY, |s| Place::Value(Some(&mut s.race.density.0))),
     // A package has it as an input.
-    Number::checked("friction.ball_race", FRICTION, |s| Place::Value(Some(&mut s.friction.ball_race))),
+    Number::checked("friction.ball_race", FRICTION, |s| Place::Schedule(&mut s.friction.ball_race)),
 ];
 
 /// Cage friction, races, start, time integration and load: those after the effects.

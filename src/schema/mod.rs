@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod error;
+mod inputs;
 pub mod numbers;
 mod schedule;
 mod sections;
@@ -10,5 +11,6 @@ pub mod variable_units;
 
 pub use accuracy::{Accuracy, Solver};
 pub use error::SceneError;
+pub use inputs::{Giver, Group, Groups, InputGivers};
 pub use schedule::Schedule;
 pub use sections::*;

@@ -57,6 +57,29 @@ impl Schedule {
         (value, rate / duration)
     }
 
+    /// Integral of the value from one time \[s] to another, exact for the straight pieces of a table.
+    pub fn integral(&self, from: f64, to: f64) -> f64 {
+        match self {
+            Self::Constant(value) => value * (to - from),
+            Self::Table(points) => area(points, to) - area(points, from),
+        }
+    }
+
+    /// Does the value come from a table?
+    pub fn is_table(&self) -> bool {
+        matches!(self, Self::Table(_))
+    }
+
+    /// \[s] times after `from` and before `to` at which a table bends.
+    pub fn knots(&self, from: f64, to: f64) -> impl Iterator<Item = f64> {
+        let points: &[(f64, f64)] = match self {
+            Self::Constant(_) => &[],
+            Self::Table(points) => points,
+        };
+        let first = points.partition_point(|&(time, _)| time <= from);
+        points[first..].iter().map(|&(time, _)| time).take_while(move |&time| time < to)
+    }
+
     /// The value, to be changed, of a schedule that is the same at all times.
     pub fn constant_mut(&mut self) -> Option<&mut f64> {
         match self {
@@ -78,6 +101,22 @@ impl Default for Schedule {
     fn default() -> Self {
         Self::Constant(0.0)
     }
+}
+
+/// Area below a table from its first point to a time \[s]; negative before that point.
+fn area(points: &[(f64, f64)], time: f64) -> f64 {
+    let (first, last) = (points[0], points[points.len() - 1]);
+    let mut sum = first.1 * (time.min(first.0) - first.0);
+    for pair in points.windows(2) {
+        let ((t0, v0), (t1, v1)) = (pair[0], pair[1]);
+        if time <= t0 {
+            break;
+        }
+        let end = time.min(t1);
+        let value = v0 + (v1 - v0) * ((end - t0) / (t1 - t0));
+        sum += 0.5 * (v0 + value) * (end - t0);
+    }
+    sum + last.1 * (time.max(last.0) - last.0)
 }
 
 /// Reads a schedule whose values are quantities of dimension `Q`, numbers in SI or text with units.

@@ -51,21 +51,22 @@ impl Default for Material {
 }
 
 /// Coulomb friction coefficients.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Friction {
-    /// [-] ball on race.
-    pub ball_race: f64,
-    /// [-] ball on cage; that of `ball_race` if not given.
+    /// [-] ball on race, constant or a table.
+    #[serde(deserialize_with = "schedule::deserialize::<Ratio, _>")]
+    pub ball_race: Schedule,
+    /// [-] ball on cage; that of `ball_race` at time 0 if not given.
     pub ball_cage: Option<f64>,
-    /// [-] cage on the race that guides it; that of `ball_race` if not given.
+    /// [-] cage on the race that guides it; that of `ball_race` at time 0 if not given.
     pub cage_race: Option<f64>,
 }
 
 impl Default for Friction {
     fn default() -> Self {
         // The paper's dry estimate (section 5).
-        Self { ball_race: 0.08, ball_cage: None, cage_race: None }
+        Self { ball_race: Schedule::Constant(0.08), ball_cage: None, cage_race: None }
     }
 }
 
@@ -163,7 +164,7 @@ pub struct Load {
     /// \[s] simulated time.
     #[serde(default = "default_duration")]
     pub duration: Time,
-    /// \[s] distance of two rows of results, and communication step of a native run.
+    /// \[s] distance of two rows of results; the motion does not depend on it.
     #[serde(default = "default_output_interval")]
     pub output_interval: Time,
     /// [rad/s] spin of the inner race about its own axis.

@@ -98,6 +98,8 @@ pub trait Quantity: Copy {
 }
 
 quantities! {
+    /// [-]
+    Ratio = "1";
     /// \[m]
     Length = "m";
     /// \[rad]

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::inputs::{Inputs, RaceInput};
 use super::path::{RAMP_WIDTH, RacePath, Ramp};
+use super::script::Anchor;
 use crate::dynamics::{BodyLoad, Boundary};
 use crate::model::Conditions;
 use crate::model::bodies::PerRace;
@@ -18,6 +19,8 @@ pub struct InputPaths {
     pub races: PerRace<RacePath>,
     /// Applied force, applied moment, speed.
     loads: PerRace<Ramp>,
+    /// Where scripted motions of races began; none where there is no script or it is not played.
+    pub anchors: PerRace<Option<Anchor>>,
 }
 
 impl InputPaths {
@@ -42,7 +45,13 @@ impl InputPaths {
                 RacePath::steady(state.time, &state.race(race).pose, &state.race(race).twist())
             }),
             loads: PerRace::new(|race| Ramp::constant(load_components(&inputs[race]))),
+            anchors: PerRace::new(|_| None),
         }
+    }
+
+    /// Paths that go on as these end, once a script has moved the state to where it is.
+    pub fn after_script(&self, inputs: &Inputs, state: &State) -> Self {
+        Self { anchors: self.anchors, ..Self::steady(inputs, state) }
     }
 
     /// Paths from here on, over a communication step.
@@ -57,6 +66,7 @@ impl InputPaths {
             loads: PerRace::new(|race| {
                 self.loads[race].towards(time, load_components(&inputs[race]), duration)
             }),
+            anchors: self.anchors,
         }
     }
 }

@@ -6,13 +6,13 @@ pub mod inputs;
 pub mod outputs;
 mod path;
 pub mod play;
+mod script;
 mod spin_balance;
 mod start;
 
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::{
@@ -23,12 +23,13 @@ use crate::forces::Contacts;
 use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::model::state::{KeptMatrix, State};
-use crate::numerics::motion::Wrench;
-use crate::scene::{Condition, Drive, Scene};
+use crate::scene::{Drive, Groups, Scene};
 pub use error::SimulationError;
 use input_paths::InputPaths;
 use inputs::Inputs;
 use outputs::Outputs;
+use script::Script;
+pub use script::{follows_time, scripted_groups};
 
 /// A simulation beside the running one, under slightly different inputs.
 struct Perturbed {
@@ -70,8 +71,16 @@ impl Simulation {
     /// # Errors
     /// See [`SimulationError`].
     pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
+        Self::starting_at(scene, 0.0)
+    }
+
+    /// Prepares a scene and starts it at a time \[s], from the equilibrium under what its script says then.
+    ///
+    /// # Errors
+    /// See [`SimulationError`].
+    pub fn starting_at(scene: &Scene, time: f64) -> Result<Self, SimulationError> {
         let model = Arc::new(Model::new(scene)?);
-        let (inputs, state) = start::from_equilibrium(scene, &model)?;
+        let (inputs, state) = start::from_equilibrium(scene, &model, time)?;
         let paths = InputPaths::steady(&inputs, &state);
         let outputs = Outputs::new(&model, &state, &inputs.conditions());
         let mut simulation = Self {
@@ -93,9 +102,7 @@ impl Simulation {
     /// # Errors
     /// See [`SimulationError`].
     pub fn initialise(&mut self) -> Result<(), SimulationError> {
-        let time = self.state.time;
-        self.state = start::from_inputs(&self.scene, &self.model, &mut self.inputs)?;
-        self.state.time = time;
+        self.state = start::from_inputs(&self.scene, &self.model, &mut self.inputs, self.state.time)?;
         self.paths = InputPaths::steady(&self.inputs, &self.state);
         self.settle();
         Ok(())
@@ -108,7 +115,8 @@ impl Simulation {
         self.state.matrix = KeptMatrix::default();
     }
 
-    /// Sets the time of a simulation that has not moved yet \[s].
+    /// Sets the time \[s] of a simulation that has not moved yet, and leaves it where it is: its start does not follow the
+    /// scene's script, as that of [`Simulation::starting_at`] does.
     pub fn set_start_time(&mut self, time: f64) {
         self.state.time = time;
         self.paths = InputPaths::steady(&self.inputs, &self.state);
@@ -187,26 +195,41 @@ impl Simulation {
         &self.outputs
     }
 
-    /// Inputs of the scene's own script at a time \[s]: loads, speeds and scripted motions.
+    /// Inputs of the scene's own script at a time \[s]: loads, speeds, scripted motions and friction.
     pub fn scripted_inputs(&self, time: f64) -> Inputs {
         let mut inputs = self.inputs;
-        let load = &self.scene.load;
-        let conditions = load.conditions();
-        let value = |direction: usize| match &conditions[direction] {
-            Condition::Load(schedule) => schedule.at(time),
-            Condition::Motion(_) => 0.0,
-        };
-        inputs.inner.applied = Wrench {
-            force: Vector3::new(value(0), value(1), value(2)),
-            moment: Vector3::new(0.0, value(3), value(4)),
-        };
-        inputs.inner.speed = load.inner_speed.at(time);
-        inputs.outer.speed = load.outer_speed.at(time);
+        let scene = &self.scene;
+        inputs.inner.applied = script::applied(scene, time);
+        inputs.inner.speed = scene.load.inner_speed.at(time);
+        inputs.outer.speed = scene.load.outer_speed.at(time);
+        if scene.friction.ball_race.is_table() {
+            inputs.friction = scene.friction.ball_race.at(time);
+        }
         for race in Race::BOTH {
             let now = self.paths.races[race].at(time).0;
-            start::script_motion(&self.scene, race, time, &now, &mut inputs[race]);
+            script::script_motion(scene, race, time, &now, &mut inputs[race]);
         }
         inputs
+    }
+
+    /// Runs its own steps to exactly `end` \[s] by the scene's script, which every step follows exactly; where it ends
+    /// does not matter to the motion. The inputs are then those of the time reached.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn advance_scripted(&mut self, end: f64) -> Result<(), SimulationError> {
+        self.inputs = self.scripted_inputs(self.state.time);
+        let advanced = self.advance_perturbed(end, &[], Groups::ALL);
+        let scripted = self.scripted_inputs(self.state.time);
+        let followed = self.inputs;
+        self.inputs = scripted;
+        // Poses to the last bit as the steps had them.
+        for race in Race::BOTH {
+            if self.paths.anchors[race].is_some() {
+                self.inputs[race] = followed[race];
+            }
+        }
+        advanced.map(drop)
     }
 
     /// Runs its own steps to exactly `end` \[s]. The inputs are taken as valid now, at the start.
@@ -215,10 +238,10 @@ impl Simulation {
     /// See [`SimulationError`]; the state is then that of the last converged step, at [`Simulation::time`]. Depth and place of
     /// contacts are looked at where the step ends.
     pub fn advance(&mut self, end: f64) -> Result<(), SimulationError> {
-        self.advance_perturbed(end, &[]).map(drop)
+        self.advance_perturbed(end, &[], Groups::default()).map(drop)
     }
 
-    /// Like [`Simulation::advance`]; also gives the outputs that slightly different inputs would have led to, in the same
+    /// Like [`Simulation::advance`], with some groups of inputs given by the scene's script where it has one; also gives the outputs that slightly different inputs would have led to, in the same
     /// steps. They are exact to first order: take differences between perturbations of opposite sign.
     ///
     /// # Errors
@@ -227,12 +250,15 @@ impl Simulation {
         &mut self,
         end: f64,
         inputs: &[Inputs],
+        scripted: Groups,
     ) -> Result<Vec<Outputs>, SimulationError> {
         let begin = self.state.time;
         if !(end > begin && end.is_finite()) {
             return Err(SimulationError::Backwards { from: begin, to: end });
         }
+        let script = Script::new(&self.scene, scripted);
         self.script_fixed_races(begin);
+        script.begin(&mut self.paths, begin);
         let mut perturbed: Vec<Perturbed> = inputs
             .iter()
             .map(|inputs| {
@@ -248,15 +274,23 @@ impl Simulation {
             })
             .collect();
         self.paths = self.paths.towards(&self.inputs, begin, end - begin);
-        let result = self.step_to(end, &mut perturbed);
+        let result = self.follow(&script, end, &mut perturbed);
+        script.set_inputs(&self.scene, &self.paths, self.state.time, &mut self.inputs);
         // The last step's own evaluation, where it was accepted.
         let contacts = match &result {
             Ok(()) => self.workspace.contacts(&self.model),
             Err(_) => Contacts::new(&self.model, &self.state, &self.inputs.conditions()),
         };
         self.outputs = Outputs::of(&self.model, &self.state, &contacts, &self.inputs.conditions());
+        if script.gives_inputs() {
+            self.paths = self.paths.after_script(&self.inputs, &self.state);
+        }
         result.and_then(|()| self.check_contacts(&contacts))?;
-        let outputs = |p: &Perturbed| Outputs::new(&self.model, &p.state, &p.inputs.conditions());
+        let outputs = |p: &Perturbed| {
+            let mut inputs = p.inputs;
+            script.set_inputs(&self.scene, &p.paths, p.state.time, &mut inputs);
+            Outputs::new(&self.model, &p.state, &inputs.conditions())
+        };
         Ok(perturbed.iter().map(outputs).collect())
     }
 
@@ -271,12 +305,29 @@ impl Simulation {
                 let now = self.paths.races[race].at(time).0;
                 let input = &mut self.inputs[race];
                 input.speed = speed.at(time);
-                start::script_motion(&self.scene, race, time, &now, input);
+                script::script_motion(&self.scene, race, time, &now, input);
             }
         }
     }
 
-    fn step_to(&mut self, end: f64, perturbed: &mut [Perturbed]) -> Result<(), SimulationError> {
+    /// Steps to `end` \[s] and to the knots of the script on the way.
+    fn follow(
+        &mut self,
+        script: &Script,
+        end: f64,
+        perturbed: &mut [Perturbed],
+    ) -> Result<(), SimulationError> {
+        let least = self.model.solver.min_step.0;
+        let knots = script.knots(&self.scene, self.state.time, end, least);
+        knots.into_iter().chain([end]).try_for_each(|stop| self.step_to(script, stop, perturbed))
+    }
+
+    fn step_to(
+        &mut self,
+        script: &Script,
+        end: f64,
+        perturbed: &mut [Perturbed],
+    ) -> Result<(), SimulationError> {
         // The perturbed steps leave the running simulation as it is.
         let mut aside = Workspace::default();
         while self.state.time < end {
@@ -288,7 +339,8 @@ impl Simulation {
             if next.partial_cmp(&self.state.time) != Some(Ordering::Greater) {
                 return Err(SimulationError::LostInRounding { time: self.state.time, step: h });
             }
-            let boundary = self.boundary(next);
+            let mut boundary = self.boundary(next);
+            script.impose(&self.scene, &self.paths, &mut boundary);
             let start = (!perturbed.is_empty()).then(|| self.state.clone());
             let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
             let (cause, worst) = match tried {
@@ -296,8 +348,10 @@ impl Simulation {
                     if let Some(mut start) = start {
                         // Renewed by the step itself.
                         start.differences.clone_from(&self.state.differences);
+                        let scene = &self.scene;
                         let perturbed = perturbed.iter_mut().map(|p| {
-                            let boundary = p.paths.boundary(boundary.time, p.inputs.conditions());
+                            let mut boundary = p.paths.boundary(boundary.time, p.inputs.conditions());
+                            script.impose(scene, &p.paths, &mut boundary);
                             (&mut p.state, boundary)
                         });
                         let accepted = &self.workspace;

@@ -32,7 +32,7 @@ impl Rows {
     }
 }
 
-/// Plays the scene's own script: its inputs at the start of every interval hold for the interval.
+/// Plays the scene's own script, exactly in every step: the distance of rows has no part in the motion.
 ///
 /// # Errors
 /// See [`play_with`].
@@ -41,11 +41,7 @@ pub fn play<B>(
     rows: Rows,
     row: impl FnMut(&Simulation) -> ControlFlow<B>,
 ) -> Result<ControlFlow<B>, SimulationError> {
-    let advance = |simulation: &mut Simulation, end: f64| {
-        simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
-        simulation.advance(end)
-    };
-    play_with(simulation, rows, advance, row)
+    play_with(simulation, rows, Simulation::advance_scripted, row)
 }
 
 /// Plays a simulation: `advance` takes it to the time \[s] of the next row, `row` sees it at every row, that of the start

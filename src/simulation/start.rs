@@ -9,17 +9,21 @@ use crate::model::bodies::{Bodies, Body, PerRace, Race};
 use crate::model::state::{BallState, BodyState, Energies, KeptMatrix, Powers, State, Statistics};
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::step_control::StepControl;
-use crate::scene::{Condition, Drive, Scene, Schedule};
+use crate::scene::Scene;
 use crate::simulation::inputs::{Inputs, RaceInput};
 use crate::simulation::spin_balance::balanced;
 
-/// Inputs and state of a scene at time 0: the equilibrium under the scene's load, every race spinning about its own
+/// Inputs and state of a scene at a time \[s] of its script: the equilibrium under the scene's load, every race spinning about its own
 /// axis at its scripted speed.
 ///
 /// # Errors
 /// If there is no equilibrium under the scene's load.
-pub fn from_equilibrium(scene: &Scene, model: &Model) -> Result<(Inputs, State), EquilibriumError> {
-    let problem = EquilibriumInput::from_scene(scene, Gyroscopic::Friction);
+pub fn from_equilibrium(
+    scene: &Scene,
+    model: &Model,
+    time: f64,
+) -> Result<(Inputs, State), EquilibriumError> {
+    let problem = EquilibriumInput::at(scene, Gyroscopic::Friction, time);
     let solution = equilibrium::solve(model, &problem)?;
     let [x, y, z, ry, rz] = solution.displacement;
     let inner_pose =
@@ -37,23 +41,28 @@ pub fn from_equilibrium(scene: &Scene, model: &Model) -> Result<(Inputs, State),
     let mut inputs = Inputs {
         inner: spinning(inner_pose, problem.inner_speed, applied),
         outer: spinning(outer_pose, problem.outer_speed, Wrench::default()),
-        friction: scene.friction.ball_race,
+        friction: problem.friction,
     };
     if let Some(velocity) = scene.start.inner_velocity {
         inputs.inner.twist.velocity = Vector3::from(velocity.map(|component| component.0));
     }
-    let state = state(scene, model, &inputs, &solution);
+    let state = State { time, ..state(scene, model, &inputs, &solution) };
     Ok((inputs, state))
 }
 
 /// State for given inputs: races with given motion are where the inputs put them, a race body is in equilibrium under
-/// its applied wrench.
+/// its applied wrench, in the directions that the scene does not hold where its script is at `time` \[s].
 ///
 /// # Errors
 /// If there is no equilibrium.
-pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<State, EquilibriumError> {
+pub fn from_inputs(
+    scene: &Scene,
+    model: &Model,
+    inputs: &mut Inputs,
+    time: f64,
+) -> Result<State, EquilibriumError> {
     let outer = &inputs.outer.pose;
-    let mut problem = EquilibriumInput::from_scene(scene, Gyroscopic::Friction);
+    let mut problem = EquilibriumInput::at(scene, Gyroscopic::Friction, time);
     problem.friction = inputs.friction;
     problem.outer_orientation = spin_free(&outer.orientation);
     problem.outer_speed = own_spin(&inputs.outer);
@@ -83,7 +92,7 @@ pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<
         let spin = inputs.inner.pose.orientation * Vector3::x() * inputs.inner.speed;
         inputs.inner.twist = Twist { velocity: Vector3::zeros(), angular_velocity: spin };
     }
-    Ok(state(scene, model, inputs, &solution))
+    Ok(State { time, ..state(scene, model, inputs, &solution) })
 }
 
 /// A race that spins about its own axis.
@@ -185,49 +194,7 @@ fn given_velocities(scene: &Scene, ball: &BallEquilibrium) -> (Vector3<f64>, Vec
     (velocity, angular_velocity)
 }
 
-/// Sets the pose and twist of a race from the scene's script at a time \[s]. `now` is where the race is: its angle
-/// about its own axis goes on from there, as a script does not prescribe it.
-pub fn script_motion(scene: &Scene, race: Race, time: f64, now: &Pose, input: &mut RaceInput) {
-    let section = match race {
-        Race::Inner => &scene.inner,
-        Race::Outer => &scene.outer,
-    };
-    let speed = input.speed;
-    let (mut position, mut rates) = (input.pose.position, [0.0; 3]);
-    let mut tilt = tilt_of(&input.pose);
-    let mut tilt_rate = Vector3::zeros();
-    if race == Race::Outer && section.drive == Drive::Fixed {
-        for (axis, schedule) in [(1, &section.misalignment.ry), (2, &section.misalignment.rz)] {
-            if let Schedule::Table(_) = schedule {
-                (tilt[axis], tilt_rate[axis]) = schedule.smooth_at(time);
-            }
-        }
-    }
-    if race == Race::Inner && section.drive == Drive::Pose {
-        for (direction, condition) in scene.load.conditions().iter().enumerate() {
-            if let Condition::Motion(schedule) = condition {
-                let (value, rate) = schedule.smooth_at(time);
-                if direction < 3 {
-                    (position[direction], rates[direction]) = (value, rate);
-                } else {
-                    (tilt[direction - 2], tilt_rate[direction - 2]) = (value, rate);
-                }
-            }
-        }
-    }
-    let tilted = UnitQuaternion::new(tilt);
-    // What is left of the present orientation beyond its tilt is the turn about the race's own axis.
-    let spin = UnitQuaternion::new(tilt_of(now)).inverse() * now.orientation;
-    let orientation = tilted * spin;
-    input.pose = Pose { position, orientation: UnitQuaternion::new_normalize(orientation.into_inner()) };
-    input.twist = Twist {
-        velocity: Vector3::from(rates),
-        // The rotation vector's rate is the angular velocity to first order in the tilt.
-        angular_velocity: tilted * Vector3::x() * speed + tilt_rate,
-    };
-}
-
 /// Rotation vector [0, ry, rz] that carries the x axis to a pose's axis.
-fn tilt_of(pose: &Pose) -> Vector3<f64> {
+pub fn tilt_of(pose: &Pose) -> Vector3<f64> {
     spin_free(&pose.orientation).scaled_axis()
 }

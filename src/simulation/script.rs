@@ -1,0 +1,336 @@
+//! The scene's own script: what its tables say at a time, and which inputs they give in a step.
+//!
+//! A quantity whose schedule is a table is evaluated where an internal step ends, and internal steps end where a table
+//! bends. A constant is no script: it is an input that stays as it is.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::input_paths::InputPaths;
+use super::inputs::{Inputs, RaceInput};
+use super::start::tilt_of;
+use crate::dynamics::Boundary;
+use crate::model::bodies::{PerRace, Race};
+use crate::numerics::motion::{Pose, Twist, Wrench};
+use crate::scene::{Drive, Group, Groups, RaceSection, Scene, Schedule};
+
+/// Where a race was when its scripted motion began.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Anchor {
+    /// \[s] when.
+    pub time: f64,
+    /// Its pose then: what no table gives stays so, and its own turn is counted from there.
+    pub pose: Pose,
+}
+
+/// What the script of a scene gives in a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Script {
+    loads: bool,
+    friction: bool,
+    /// Speeds of races that forces move.
+    speeds: PerRace<bool>,
+    /// Motions of races that forces do not move.
+    pub motions: PerRace<bool>,
+}
+
+/// Section and scripted speed of a race.
+fn of_race(scene: &Scene, race: Race) -> (&RaceSection, &Schedule) {
+    match race {
+        Race::Inner => (&scene.inner, &scene.load.inner_speed),
+        Race::Outer => (&scene.outer, &scene.load.outer_speed),
+    }
+}
+
+/// Applied forces and moments, in the order x, y, z, ry, rz; none where a direction is free or held.
+fn load_schedules(scene: &Scene) -> [Option<&Schedule>; 5] {
+    let load = &scene.load;
+    [&load.x.force, &load.y.force, &load.z.force, &load.ry.moment, &load.rz.moment].map(Option::as_ref)
+}
+
+/// Displacements and rotations of the inner race, in the same order.
+fn held_schedules(scene: &Scene) -> [Option<&Schedule>; 5] {
+    let load = &scene.load;
+    [&load.x.displacement, &load.y.displacement, &load.z.displacement, &load.ry.rotation, &load.rz.rotation]
+        .map(Option::as_ref)
+}
+
+/// Displacements and tilts, in the order x, y, z, ry, rz, that the scene gives a race without a body.
+fn motion_schedules(scene: &Scene, race: Race) -> [Option<&Schedule>; 5] {
+    let section = of_race(scene, race).0;
+    match (race, section.drive) {
+        (Race::Inner, Drive::Pose) => held_schedules(scene),
+        (Race::Outer, Drive::Fixed | Drive::Pose) => {
+            let misalignment = &section.misalignment;
+            let [ry, rz] =
+                [&misalignment.ry, &misalignment.rz].map(|tilt| Some(tilt).filter(|tilt| tilt.is_table()));
+            [None, None, None, ry, rz]
+        }
+        _ => [None; 5],
+    }
+}
+
+/// Does a table move this race, one without a body?
+fn moves(scene: &Scene, race: Race) -> bool {
+    let tables = motion_schedules(scene, race).into_iter().flatten().any(Schedule::is_table);
+    tables || of_race(scene, race).1.is_table()
+}
+
+/// Does anything in a scene change by itself with time?
+pub fn follows_time(scene: &Scene) -> bool {
+    let load = &scene.load;
+    let misalignment =
+        [&scene.inner, &scene.outer].map(|race| [&race.misalignment.ry, &race.misalignment.rz]);
+    let always = [&load.inner_speed, &load.outer_speed, &scene.friction.ball_race];
+    let given = load_schedules(scene).into_iter().chain(held_schedules(scene)).flatten();
+    given.chain(always).chain(misalignment.into_iter().flatten()).any(Schedule::is_table)
+}
+
+/// Groups of inputs for which a scene has a script; what has no input in a package, such as the speed of a race on a
+/// hinge, is in none.
+pub fn scripted_groups(scene: &Scene) -> Groups {
+    let table = |schedule: &Option<&Schedule>| schedule.is_some_and(Schedule::is_table);
+    let race = |race: Race| {
+        let (section, speed) = of_race(scene, race);
+        (
+            section.drive == Drive::Pose && moves(scene, race),
+            section.drive == Drive::Wrench && speed.is_table(),
+        )
+    };
+    let [inner, outer] = Race::BOTH.map(race);
+    Groups::default()
+        .with(Group::Loads, scene.inner.drive == Drive::Wrench && load_schedules(scene).iter().any(table))
+        .with(Group::Speeds, inner.1 || outer.1)
+        .with(Group::Tilts, inner.0 || outer.0)
+        .with(Group::Friction, scene.friction.ball_race.is_table())
+}
+
+impl Script {
+    /// What the script gives where it may give these groups of inputs. A race that is fixed in its frame or hinged to it
+    /// has no inputs: the script moves it anyway.
+    pub fn new(scene: &Scene, groups: Groups) -> Self {
+        let given = |group| groups.contains(group) && scripted_groups(scene).contains(group);
+        let speed = |race| {
+            let (section, speed) = of_race(scene, race);
+            let played = section.drive == Drive::Hinge
+                || section.drive == Drive::Wrench && groups.contains(Group::Speeds);
+            played && speed.is_table()
+        };
+        let motion = |race| {
+            let section = of_race(scene, race).0;
+            let played = section.drive == Drive::Fixed
+                || section.drive == Drive::Pose && groups.contains(Group::Tilts);
+            played && moves(scene, race)
+        };
+        Self {
+            loads: given(Group::Loads),
+            friction: given(Group::Friction),
+            speeds: PerRace::new(speed),
+            motions: PerRace::new(motion),
+        }
+    }
+
+    /// Does it give anything that an importer could have given, or a motion of a race without a body?
+    pub fn gives_inputs(&self) -> bool {
+        let of_race = |race: Race| self.speeds[race] || self.motions[race];
+        self.loads || self.friction || Race::BOTH.into_iter().any(of_race)
+    }
+
+    /// \[s] times within a step at which a table bends, growing, not closer to one another or to the ends than `least`.
+    pub fn knots(&self, scene: &Scene, from: f64, to: f64, least: f64) -> Vec<f64> {
+        let mut playing: Vec<&Schedule> = vec![];
+        if self.loads {
+            playing.extend(load_schedules(scene).into_iter().flatten());
+        }
+        if self.friction {
+            playing.push(&scene.friction.ball_race);
+        }
+        for race in Race::BOTH {
+            let (section, speed) = of_race(scene, race);
+            if self.speeds[race] || self.motions[race] {
+                playing.push(speed);
+            }
+            if self.motions[race] {
+                playing.extend(motion_schedules(scene, race).into_iter().flatten());
+            }
+            // Tables of constraints are played by the body itself.
+            match section.drive {
+                Drive::Wrench => playing.extend(held_schedules(scene).into_iter().flatten()),
+                Drive::Hinge => playing.extend([&section.misalignment.ry, &section.misalignment.rz]),
+                Drive::Fixed | Drive::Pose => {}
+            }
+        }
+        let mut knots: Vec<f64> = playing.into_iter().flat_map(|schedule| schedule.knots(from, to)).collect();
+        knots.sort_by(f64::total_cmp);
+        let mut last = from;
+        knots.retain(|&knot| {
+            let apart = knot - last >= least && to - knot >= least;
+            if apart {
+                last = knot;
+            }
+            apart
+        });
+        knots
+    }
+
+    /// Marks where scripted motions begin, and ends those that are none any more.
+    pub fn begin(&self, paths: &mut InputPaths, time: f64) {
+        for race in Race::BOTH {
+            let pose = paths.races[race].at(time).0;
+            let anchor = &mut paths.anchors[race];
+            *anchor = self.motions[race].then(|| anchor.unwrap_or(Anchor { time, pose }));
+        }
+    }
+
+    /// Puts what the script gives at the end of a step into its boundary conditions.
+    pub fn impose(&self, scene: &Scene, paths: &InputPaths, boundary: &mut Boundary) {
+        let time = boundary.time;
+        for race in Race::BOTH {
+            if let Some(anchor) = &paths.anchors[race] {
+                boundary.motion[race] = motion(scene, race, anchor, time);
+            }
+            if self.speeds[race] {
+                boundary.loads[race].speed = of_race(scene, race).1.at(time);
+            }
+        }
+        if self.loads {
+            boundary.loads.inner.applied = applied(scene, time);
+        }
+        if self.friction {
+            boundary.conditions.friction = scene.friction.ball_race.at(time);
+        }
+    }
+
+    /// Puts what the script gives at a time \[s] into the inputs.
+    pub fn set_inputs(&self, scene: &Scene, paths: &InputPaths, time: f64, inputs: &mut Inputs) {
+        for race in Race::BOTH {
+            let speed = of_race(scene, race).1;
+            if let Some(anchor) = &paths.anchors[race] {
+                let (pose, twist) = motion(scene, race, anchor, time);
+                let speed = speed.at(time);
+                inputs[race] = RaceInput { pose, twist, speed, ..inputs[race] };
+            }
+            if self.speeds[race] {
+                inputs[race].speed = speed.at(time);
+            }
+        }
+        if self.loads {
+            inputs.inner.applied = applied(scene, time);
+        }
+        if self.friction {
+            inputs.friction = scene.friction.ball_race.at(time);
+        }
+    }
+}
+
+/// External wrench on the inner race at a time \[s].
+pub fn applied(scene: &Scene, time: f64) -> Wrench {
+    let [x, y, z, ry, rz] =
+        load_schedules(scene).map(|schedule| schedule.map_or(0.0, |schedule| schedule.at(time)));
+    Wrench { force: Vector3::new(x, y, z), moment: Vector3::new(0.0, ry, rz) }
+}
+
+/// Displacement and tilt of a race with their rates.
+struct Imposed {
+    position: Vector3<f64>,
+    velocity: Vector3<f64>,
+    tilt: Vector3<f64>,
+    tilt_rate: Vector3<f64>,
+}
+
+impl Imposed {
+    /// Those of the tables at a time \[s]; what no table gives rests at that of `pose`.
+    fn at(scene: &Scene, race: Race, time: f64, pose: &Pose) -> Self {
+        let (position, tilt) = (pose.position, tilt_of(pose));
+        let mut imposed = Self { position, velocity: Vector3::zeros(), tilt, tilt_rate: Vector3::zeros() };
+        for (direction, schedule) in motion_schedules(scene, race).into_iter().enumerate() {
+            let Some((value, rate)) = schedule.map(|schedule| schedule.smooth_at(time)) else {
+                continue;
+            };
+            if direction < 3 {
+                (imposed.position[direction], imposed.velocity[direction]) = (value, rate);
+            } else {
+                (imposed.tilt[direction - 2], imposed.tilt_rate[direction - 2]) = (value, rate);
+            }
+        }
+        imposed
+    }
+}
+
+/// Pose and twist of a race at a time \[s] of its scripted motion: displaced and tilted as the tables say, turned about
+/// its own axis by the integral of its speed.
+fn motion(scene: &Scene, race: Race, anchor: &Anchor, time: f64) -> (Pose, Twist) {
+    let speed = of_race(scene, race).1;
+    let Imposed { position, velocity, tilt, tilt_rate } = Imposed::at(scene, race, time, &anchor.pose);
+    let tilted = UnitQuaternion::new(tilt);
+    // What is left of the orientation beyond its tilt is the turn about the race's own axis.
+    let turned = UnitQuaternion::new(tilt_of(&anchor.pose)).inverse() * anchor.pose.orientation;
+    let turn = UnitQuaternion::new(Vector3::x() * speed.integral(anchor.time, time));
+    let orientation = UnitQuaternion::new_normalize((tilted * turn * turned).into_inner());
+    let angular_velocity = tilted * Vector3::x() * speed.at(time) + rate_of_rotation(&tilt, &tilt_rate);
+    (Pose { position, orientation }, Twist { velocity, angular_velocity })
+}
+
+/// [rad/s] angular velocity in world axes of a rotation vector that changes at `rate`.
+fn rate_of_rotation(vector: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64> {
+    let square = vector.norm_squared();
+    // (1 - cos)/angle^2 and (angle - sin)/angle^3, by their series where these are 0/0
+    let (first, second) = if square < 1e-4 {
+        (0.5 - square / 24.0 + square * square / 720.0, 1.0 / 6.0 - square / 120.0)
+    } else {
+        let angle = square.sqrt();
+        ((1.0 - angle.cos()) / square, (angle - angle.sin()) / (square * angle))
+    };
+    let across = vector.cross(rate);
+    rate + across * first + vector.cross(&across) * second
+}
+
+/// Sets the pose and twist of a race from the scene's script at a time \[s], as an importer does that reads the script at
+/// its communication points. `now` is where the race is: its turn about its own axis goes on from there.
+pub fn script_motion(scene: &Scene, race: Race, time: f64, now: &Pose, input: &mut RaceInput) {
+    let speed = input.speed;
+    let Imposed { position, velocity, tilt, tilt_rate } = Imposed::at(scene, race, time, &input.pose);
+    let tilted = UnitQuaternion::new(tilt);
+    let turned = UnitQuaternion::new(tilt_of(now)).inverse() * now.orientation;
+    let orientation = UnitQuaternion::new_normalize((tilted * turned).into_inner());
+    input.pose = Pose { position, orientation };
+    let angular_velocity = tilted * Vector3::x() * speed + rate_of_rotation(&tilt, &tilt_rate);
+    input.twist = Twist { velocity, angular_velocity };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn invariant_scripted_twist_is_the_rate_of_the_scripted_pose() {
+        let scene = Scene::edited(
+            include_str!("../../scenes/misalignment.toml"),
+            [
+                ("load.ry.rotation", "[[0, 0], [\"2 ms\", 0.15], [\"5 ms\", -0.1]]"),
+                ("load.rz.rotation", "[[0, 0.1], [\"3 ms\", -0.05]]"),
+                ("load.y.displacement", "[[0, 0], [\"4 ms\", 1e-5]]"),
+                ("load.inner_speed", "[[0, 100], [\"1 ms\", 700], [\"4 ms\", 200]]"),
+            ],
+        )
+        .unwrap_or_else(|why| panic!("{why}"));
+        let pose = Pose {
+            position: Vector3::new(1e-5, 0.0, 2e-5),
+            orientation: UnitQuaternion::new(Vector3::new(0.0, 0.0, 0.1))
+                * UnitQuaternion::new(Vector3::x() * 0.7),
+        };
+        let anchor = Anchor { time: 0.0, pose };
+        let d = 1e-8;
+        for time in [3e-4, 1.3e-3, 2.4e-3, 4.6e-3, 6e-3] {
+            let [(before, _), (_, twist), (after, _)] =
+                [time - d, time, time + d].map(|time| motion(&scene, Race::Inner, &anchor, time));
+            let turn = (after.orientation * before.orientation.inverse()).scaled_axis() / (2.0 * d);
+            assert!((turn - twist.angular_velocity).norm() < 1e-5 * turn.norm(), "{time}: {turn} {twist:?}");
+            let velocity = (after.position - before.position) / (2.0 * d);
+            assert!((velocity - twist.velocity).norm() < 1e-9);
+            assert_eq!((after.position.x, after.position.z), (1e-5, 2e-5));
+        }
+        let (start, _) = motion(&scene, Race::Inner, &anchor, 0.0);
+        assert!(start.orientation.angle_to(&pose.orientation) < 1e-15);
+    }
+}
