@@ -2,9 +2,11 @@
 
 mod accuracy;
 mod error;
+pub mod explain;
 pub mod numbers;
 mod schedule;
 mod sections;
+mod spelling;
 pub mod units;
 pub mod variable_units;
 
