@@ -570,9 +570,9 @@ fn invariant_work_of_a_step_is_linear_in_the_number_of_balls() {
 fn wrong_sections_are_refused_by_name() {
     let cases = [
         ("effects.cage", "", &["cage", "effects.cage = true"][..]),
-        ("cage.mass", "", &["missing field", "mass"]),
+        ("cage.mass", "", &["cage.mass is missing", "20 g"]),
         ("cage.mass", "0", &["cage.mass = 0", "(0, 10000]"]),
-        ("cage.mass", "\"20 mm\"", &["20 mm", "incompatible"]),
+        ("cage.mass", "\"20 mm\"", &["cage.mass", "20 mm", "mm measures something else"]),
         ("cage.inertia", "[-1.0, 6e-6, 6e-6]", &["cage.inertia = -1"]),
         ("cage.pocket_clearance", "0", &["cage.pocket_clearance = 0"]),
         ("cage.pocket_clearance", "\"4.75 mm\"", &["pockets overlap"]),
@@ -582,7 +582,7 @@ fn wrong_sections_are_refused_by_name() {
         ("cage.land_width", "", &["cage.land_width", "needed"]),
         ("cage.land_diameter", "\"20 mm\"", &["cage.land_diameter = 0.02"]),
         ("friction.ball_cage", "-1", &["friction.ball_cage = -1", "[0, 2]"]),
-        ("cage.colour", "1", &["colour", "unknown field"]),
+        ("cage.colour", "1", &["cage.colour is no known key", "guided_by"]),
     ];
     let refusal = |text, key, value| Scene::edited(text, [(key, value)]).unwrap_err().to_string();
     for (key, value, parts) in cases {

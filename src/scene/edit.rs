@@ -3,6 +3,7 @@
 use toml::{Table, Value};
 
 use super::{Scene, SceneError};
+use crate::schema::explain;
 
 impl Scene {
     /// Reads a scene from text after some of its keys have been changed, one after another.
@@ -32,12 +33,16 @@ impl Scene {
         text: &str,
         changes: impl IntoIterator<Item = (K, V)>,
     ) -> Result<Self, SceneError> {
-        let mut table: Table = toml::from_str(text)?;
+        let mut table: Table = toml::from_str(text).map_err(|why| {
+            let spot = why.span().map(|span| span.start);
+            explain::with_place(explain::format_error(text, &why), text, spot, None)
+        })?;
         for (key, value) in changes {
             let (key, value) = (key.as_ref(), value.as_ref());
             change(&mut table, key, value).map_err(|why| SceneError::Change { key: key.to_string(), why })?;
         }
-        Self::parse(&table.to_string())
+        // Lines of the changed text are not those that the reader of a message has.
+        Self::read(&table.to_string()).map_err(|(error, _)| error)
     }
 }
 
@@ -124,7 +129,7 @@ mod tests {
             Scene::edited(THRUST, [("bearing.contact_angle", ""), ("bearing.diametral_clearance", "1e-5")]);
         assert_eq!(scene.unwrap().bearing.diametral_clearance.map(|clearance| clearance.0), Some(1e-5));
         // Needed keys are missed.
-        assert!(refusal(&[("bearing.balls", "")]).contains("missing field `balls`"));
+        assert!(refusal(&[("bearing.balls", "")]).contains("bearing.balls is missing"));
     }
 
     #[test]
@@ -154,7 +159,7 @@ mod tests {
             ("", "1", &["names"]),
             ("load..force", "1", &["load..force", "names"]),
             // Known to be wrong only by the scene.
-            ("load.duraton", "1", &["duraton", "unknown field"]),
+            ("load.duraton", "1", &["load.duraton", "did you mean duration?"]),
             ("friction.ball_race", "-1", &["friction.ball_race = -1", "[0, 2]"]),
             ("load.x.displacement", "0", &["load.x", "at most one"]),
         ] {

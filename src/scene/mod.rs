@@ -15,6 +15,7 @@ use crate::effects;
 pub use crate::effects::Effects;
 pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
+use crate::schema::explain;
 pub use crate::schema::{
     Accuracy, BearingSection, Condition, Drive, Friction, Giver, Group, Groups, InputGivers, Interface, Load,
     Material, Misalignment, Orientation, RaceSection, SceneError, Schedule, Solver, Start, Tilt, Translation,
@@ -73,13 +74,24 @@ impl Scene {
     /// Reads a scene from its text.
     ///
     /// # Errors
-    /// See [`SceneError`].
+    /// See [`SceneError`]; with the line.
     pub fn parse(text: &str) -> Result<Self, SceneError> {
-        let mut scene: Self = toml::from_str(text)?;
+        Self::parse_of(text, None)
+    }
+
+    /// Reads a scene from the text of a file.
+    fn parse_of(text: &str, file: Option<&str>) -> Result<Self, SceneError> {
+        Self::read(text).map_err(|(error, spot)| explain::with_place(error, text, spot, file))
+    }
+
+    /// Reads a scene; an error with the spot \[bytes] where the text cannot be read.
+    fn read(text: &str) -> Result<Self, (SceneError, Option<usize>)> {
+        let mut scene: Self = toml::from_str(text)
+            .map_err(|why| (explain::format_error(text, &why), why.span().map(|span| span.start)))?;
         scene.source = text.to_string();
         scene.effects.creep.regularised = std::mem::take(&mut scene.regularised);
         scene.effects.cage.section = scene.cage.take();
-        scene.check()?;
+        scene.check().map_err(|why| (why, None))?;
         Ok(scene)
     }
 
@@ -104,7 +116,7 @@ impl Scene {
     pub fn load(path: &Path) -> Result<Self, SceneError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| SceneError::Read { path: path.display().to_string(), source })?;
-        Self::parse(&text)
+        Self::parse_of(&text, Some(&path.display().to_string()))
     }
 }
 
@@ -126,12 +138,20 @@ mod tests {
     fn errors_name_key_value_and_allowed_range() {
         let cases = [
             ("balls = 10 ", "balls = 0 ", &["bearing.balls = 0", "[1, 200]"][..]),
-            ("balls = 10 ", "bals = 10 ", &["bals", "expected"]),
-            ("balls = 10 ", "", &["missing field", "balls"]),
-            ("\"9.525 mm\"", "\"9.525 kg\"", &["9.525 kg", "incompatible"]),
+            ("balls = 10 ", "bals = 10 ", &["bearing.bals", "did you mean balls?", "line 6"]),
+            ("balls = 10 ", "", &["bearing.balls is missing", "balls = 10", "line 5"]),
+            (
+                "\"9.525 mm\"",
+                "\"9.525 kg\"",
+                &["bearing.ball_diameter", "9.525 kg", "kg measures something else", "9.525 mm", "line 7"],
+            ),
             ("alpha_f = 0.05", "alpha_f = 0.4", &["solver.alpha_f = 0.4", "(0, 0.3333333333333333]"]),
             ("alpha_f = 0.05", "alpha_f = nan", &["solver.alpha_f", "NaN"]),
-            ("x = { force = \"1500 N\" }", "x = { force = \"1 mm\" }", &["1 mm", "incompatible"]),
+            (
+                "x = { force = \"1500 N\" }",
+                "x = { force = \"1 mm\" }",
+                &["load.x.force", "1 mm", "mm measures something else", "1.5 kN"],
+            ),
             (
                 "x = { force = \"1500 N\" }",
                 "x = { force = 1.0, displacement = 0.0 }",

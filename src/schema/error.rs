@@ -15,7 +15,15 @@ pub enum SceneError {
     },
     /// Not TOML, an unknown or missing key, or a value of the wrong kind or dimension.
     #[error("{0}")]
-    Format(#[from] toml::de::Error),
+    Format(String),
+    /// Any of these, with its place.
+    #[error("{place}: {source}")]
+    At {
+        /// File and line, or one of them.
+        place: String,
+        /// What is wrong there.
+        source: Box<SceneError>,
+    },
     /// A value outside its range.
     #[error("{key} = {value} {unit} is out of range: allowed is {range}")]
     Range {

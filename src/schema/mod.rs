@@ -2,10 +2,12 @@
 
 mod accuracy;
 mod error;
+pub mod explain;
 mod inputs;
 pub mod numbers;
 mod schedule;
 mod sections;
+mod spelling;
 pub mod units;
 pub mod variable_units;
 

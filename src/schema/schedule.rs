@@ -119,6 +119,13 @@ fn area(points: &[(f64, f64)], time: f64) -> f64 {
     sum + last.1 * (time.max(last.0) - last.0)
 }
 
+const PAIRS: &str = "a table over time is a list of pairs [time, value], such as [[0, 0], [\"10 ms\", 1]]";
+
+/// A quantity in SI; errors in one sentence, without the parser's marks.
+fn read<Q: Quantity + for<'a> Deserialize<'a>, E: Error>(value: toml::Value) -> Result<f64, E> {
+    Q::deserialize(value).map(Quantity::si).map_err(|why| E::custom(why.message()))
+}
+
 /// Reads a schedule whose values are quantities of dimension `Q`, numbers in SI or text with units.
 ///
 /// # Errors
@@ -128,21 +135,21 @@ pub fn deserialize<'de, Q: Quantity + for<'a> Deserialize<'a>, D: Deserializer<'
 ) -> Result<Schedule, D::Error> {
     let value = toml::Value::deserialize(deserializer)?;
     let toml::Value::Array(rows) = value else {
-        return Ok(Schedule::Constant(Q::deserialize(value).map_err(Error::custom)?.si()));
+        return Ok(Schedule::Constant(read::<Q, D::Error>(value)?));
     };
     let mut points: Vec<(f64, f64)> = Vec::with_capacity(rows.len());
     for row in rows {
         let toml::Value::Array(mut row) = row else {
-            return Err(Error::custom("a table is a list of [time, value] pairs"));
+            return Err(Error::custom(PAIRS));
         };
         let (Some(value), Some(time), true) = (row.pop(), row.pop(), row.is_empty()) else {
-            return Err(Error::custom("a table is a list of [time, value] pairs"));
+            return Err(Error::custom(PAIRS));
         };
-        let time = Time::deserialize(time).map_err(Error::custom)?.si();
+        let time = read::<Time, D::Error>(time)?;
         if points.last().is_some_and(|&(last, _)| last >= time) {
             return Err(Error::custom(format!("table times must grow, but {time} s does not")));
         }
-        points.push((time, Q::deserialize(value).map_err(Error::custom)?.si()));
+        points.push((time, read::<Q, D::Error>(value)?));
     }
     if points.is_empty() { Err(Error::custom("the table is empty")) } else { Ok(Schedule::Table(points)) }
 }

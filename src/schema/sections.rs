@@ -19,9 +19,11 @@ pub struct BearingSection {
     pub contact_angle: Option<Angle>,
     /// \[m] diametral clearance; negative is interference.
     pub diametral_clearance: Option<Length>,
-    /// [-] inner groove radius over ball diameter.
+    /// [-] inner groove radius over ball diameter; that of most catalogue bearings if not given.
+    #[serde(default = "default_inner_conformity")]
     pub inner_conformity: f64,
-    /// [-] outer groove radius over ball diameter.
+    /// [-] outer groove radius over ball diameter; that of most catalogue bearings if not given.
+    #[serde(default = "default_outer_conformity")]
     pub outer_conformity: f64,
     /// \[rad] azimuth of ball 1, from +y towards +z.
     #[serde(default = "zero_angle")]
@@ -30,6 +32,14 @@ pub struct BearingSection {
 
 fn zero_angle() -> Angle {
     Angle(0.0)
+}
+
+fn default_inner_conformity() -> f64 {
+    0.52
+}
+
+fn default_outer_conformity() -> f64 {
+    0.53
 }
 
 /// An elastic material; bearing steel by default.
@@ -102,7 +112,7 @@ pub struct RaceSection {
 
 /// Rotation vector [0, ry, rz] of a race's frame, constant or a scripted motion.
 #[derive(Clone, Debug, Default, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default, deny_unknown_fields, expecting = "a table { ry = ..., rz = ... }")]
 pub struct Misalignment {
     /// \[rad] about y.
     #[serde(deserialize_with = "schedule::deserialize::<Angle, _>")]
@@ -129,7 +139,7 @@ pub struct Start {
 
 /// One translational direction of the inner race: a force or a displacement.
 #[derive(Clone, Debug, Default, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default, deny_unknown_fields, expecting = "a table { force = ... } or { displacement = ... }")]
 pub struct Translation {
     /// \[N] external force on the inner race.
     #[serde(deserialize_with = "some_schedule::<Force, _>")]
@@ -141,7 +151,7 @@ pub struct Translation {
 
 /// One tilt direction of the inner race: a moment or a rotation.
 #[derive(Clone, Debug, Default, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default, deny_unknown_fields, expecting = "a table { moment = ... } or { rotation = ... }")]
 pub struct Tilt {
     /// [N m] external moment on the inner race.
     #[serde(deserialize_with = "some_schedule::<Moment, _>")]

@@ -1,81 +1,127 @@
 //! Numbers with units in scene files: a plain number in SI, or text such as `"9.525 mm"` or `"6000 rpm"`.
 //!
 //! Conversion and dimension check are done exactly by `fend-core`; this module only names the SI unit that each
-//! field wants and turns the answer into an `f64`.
+//! field wants, and turns the answer into an `f64`. `spelling` has the ways in which units are written.
+
+use std::fmt;
 
 use serde::Deserialize;
-use serde::de::{Deserializer, Error};
+use serde::de::{Deserializer, Error, Visitor};
+
+use super::spelling;
 
 /// Longest accepted text; anything longer is not a number with a unit.
 const MAX_TEXT: usize = 48;
 /// [-] largest decimal exponent accepted, so that an exact calculator is not asked for a million digits.
 const MAX_EXPONENT: i32 = 99;
 
-/// A value as written: a number in SI or text with a unit.
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "expected a number in SI or text with a unit, such as \"9.525 mm\"")]
-enum Written {
-    Number(f64),
-    Text(String),
+/// What a number measures, for conversions and messages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dimension {
+    /// What it is called, with its article.
+    pub name: &'static str,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Two texts that a scene may have.
+    pub examples: [&'static str; 2],
 }
 
-/// Converts text such as `"9.525 mm"` to the SI unit `unit` (`"1"` for a pure number).
-///
-/// # Errors
-/// A sentence naming the text and what was expected.
-pub fn parse(text: &str, unit: &str) -> Result<f64, String> {
-    let refuse = |why: &str| Err(format!("\"{text}\" is not a quantity in {unit}: {why}"));
-    let allowed = |c: char| c.is_ascii_alphanumeric() || " .+-*/^()_µ°".contains(c);
-    if text.len() > MAX_TEXT || !text.chars().all(allowed) || text.contains("^^") {
-        return refuse("write a number and a unit, such as \"9.525 mm\"");
+impl Dimension {
+    /// What to write.
+    fn wanted(&self) -> String {
+        let Self { name, unit, examples: [first, second] } = self;
+        format!("{name} is a number in {unit} or text with a unit, such as \"{first}\" or \"{second}\"")
     }
-    let mut parts = text.trim().splitn(2, |c: char| c.is_whitespace());
-    let number = parts.next().unwrap_or_default();
-    let Ok(number) = number.parse::<f64>() else {
-        return refuse("it must begin with a number, then a space and a unit");
-    };
-    if !number.is_finite() || (number != 0.0 && number.abs().log10().abs() > f64::from(MAX_EXPONENT)) {
-        return refuse("the number is out of range");
-    }
-    // "N.m" is the SI way to write a product; the calculator wants a star.
-    let written_unit = parts.next().unwrap_or("").trim().replace('.', "*");
-    if written_unit.is_empty() {
-        return refuse("the unit is missing (a bare number in SI is written without quotes)");
-    }
-    if written_unit.chars().any(|c| c.is_ascii_digit() && !"123456".contains(c)) {
-        return refuse("the unit is not known");
-    }
-    let question = format!("(1 {written_unit}) to 20 sf to {unit}");
-    let answer = match fend_core::evaluate(&question, &mut fend_core::Context::new()) {
-        Ok(answer) => answer.get_main_result().trim_start_matches("approx. ").to_string(),
-        Err(why) => return refuse(&why),
-    };
-    // The calculator answers "factor unit", exactly for all units but those with pi.
-    let factor = answer.split_whitespace().next().and_then(|word| word.parse::<f64>().ok());
-    match factor {
-        // A power of ten that divides exactly is divided by: 9.525 mm is then the f64 nearest to 0.009525.
-        Some(factor) if factor < 1.0 && (1.0 / factor).fract() == 0.0 => Ok(number / (1.0 / factor)),
-        Some(factor) => Ok(number * factor),
-        None => refuse("the unit is not known"),
+
+    /// Converts text such as `"9.525 mm"` to the SI unit.
+    ///
+    /// # Errors
+    /// A sentence naming the text, what is wrong with it, and what was expected.
+    pub fn parse(&self, text: &str) -> Result<f64, String> {
+        let refuse = |why: &str| Err(format!("\"{text}\" is not {}: {why}; {}", self.name, self.wanted()));
+        if text.len() > MAX_TEXT {
+            return refuse("it is too long");
+        }
+        let (number, written) = match spelling::split(text) {
+            Ok(parts) => parts,
+            Err(why) => return refuse(why),
+        };
+        if !number.is_finite() || (number != 0.0 && number.abs().log10().abs() > f64::from(MAX_EXPONENT)) {
+            return refuse("the number is out of range");
+        }
+        if written.is_empty() {
+            return refuse("the unit is missing (a bare number in SI is written without quotes)");
+        }
+        let unknown = format!("{written} is not known as a unit");
+        let Some(mut unit) = spelling::plain(written) else {
+            return refuse(&unknown);
+        };
+        if self.unit == AngularVelocity::DIMENSION.unit {
+            match spelling::of_angular_velocity(&unit) {
+                Some(angular) => unit = angular,
+                None => {
+                    return refuse(&format!(
+                        "{written} does not say through which angle: write rpm, rad/s or deg/s"
+                    ));
+                }
+            }
+        }
+        let question = format!("(1 {}) to 20 sf to {}", spelling::calculable(&unit), self.unit);
+        let answer = match fend_core::evaluate(&question, &mut fend_core::Context::new()) {
+            Ok(answer) => answer.get_main_result().trim_start_matches("approx. ").to_string(),
+            Err(why) if why.contains("incompatible") => {
+                return refuse(&format!("{written} measures something else"));
+            }
+            Err(_) => return refuse(&unknown),
+        };
+        // The calculator answers "factor unit", exactly for all units but those with pi.
+        let factor = answer.split_whitespace().next().and_then(|word| word.parse::<f64>().ok());
+        match factor {
+            // A power of ten that divides exactly is divided by: 9.525 mm is then the f64 nearest to 0.009525.
+            Some(factor) if factor < 1.0 && (1.0 / factor).fract() == 0.0 => Ok(number / (1.0 / factor)),
+            Some(factor) => Ok(number * factor),
+            None => refuse(&unknown),
+        }
     }
 }
 
-fn convert<E: Error>(written: &Written, unit: &str) -> Result<f64, E> {
-    match written {
-        Written::Number(value) => Ok(*value),
-        Written::Text(text) => parse(text, unit).map_err(E::custom),
+/// Reads a number in SI, or text with a unit.
+struct Written(&'static Dimension);
+
+impl Visitor<'_> for Written {
+    type Value = f64;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Dimension { name, unit, examples: [first, second] } = self.0;
+        write!(f, "{name}, a number in {unit} or text with a unit such as \"{first}\" or \"{second}\"")
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<f64, E> {
+        Ok(value)
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<f64, E> {
+        Ok(value as f64)
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<f64, E> {
+        Ok(value as f64)
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<f64, E> {
+        self.0.parse(text).map_err(E::custom)
     }
 }
 
 /// Defines one newtype per physical dimension, `f64` in the SI unit, deserialised from number or text.
 macro_rules! quantities {
-    ($($(#[$doc:meta])* $name:ident = $unit:literal;)*) => {$(
+    ($($(#[$doc:meta])* $name:ident = $unit:literal, $called:literal, $examples:expr;)*) => {$(
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
         pub struct $name(pub f64);
 
         impl Quantity for $name {
-            const UNIT: &'static str = $unit;
+            const DIMENSION: Dimension = Dimension { name: $called, unit: $unit, examples: $examples };
             fn si(self) -> f64 {
                 self.0
             }
@@ -83,7 +129,7 @@ macro_rules! quantities {
 
         impl<'de> Deserialize<'de> for $name {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                Ok(Self(convert(&Written::deserialize(deserializer)?, $unit)?))
+                deserializer.deserialize_any(Written(&Self::DIMENSION)).map(Self)
             }
         }
     )*};
@@ -91,72 +137,141 @@ macro_rules! quantities {
 
 /// A number of one physical dimension, in SI.
 pub trait Quantity: Copy {
-    /// Name of the SI unit.
-    const UNIT: &'static str;
+    /// What it measures.
+    const DIMENSION: Dimension;
     /// Value in that unit.
     fn si(self) -> f64;
 }
 
 quantities! {
     /// [-]
-    Ratio = "1";
+    Ratio = "1", "a number without unit", ["0.08", "0.1"];
     /// \[m]
-    Length = "m";
+    Length = "m", "a length", ["9.525 mm", "10 um"];
     /// \[rad]
-    Angle = "rad";
+    Angle = "rad", "an angle", ["25 deg", "0.5 mrad"];
     /// \[Pa]
-    Pressure = "Pa";
+    Pressure = "Pa", "a pressure", ["206 GPa", "1500 MPa"];
     /// [kg/m3]
-    Density = "kg/m^3";
+    Density = "kg/m^3", "a density", ["7800 kg/m^3", "7.8 g/cm^3"];
     /// \[kg]
-    Mass = "kg";
+    Mass = "kg", "a mass", ["0.2 kg", "200 g"];
     /// [kg m2]
-    Inertia = "kg m^2";
+    Inertia = "kg m^2", "a moment of inertia", ["6e-5 kg m^2", "60 kg mm^2"];
     /// \[s]
-    Time = "s";
+    Time = "s", "a time", ["50 ms", "100 us"];
     /// \[N]
-    Force = "N";
+    Force = "N", "a force", ["1500 N", "1.5 kN"];
     /// [N m]
-    Moment = "N m";
+    Moment = "N m", "a moment", ["2 N m", "500 N mm"];
     /// [rad/s]
-    AngularVelocity = "rad/s";
+    AngularVelocity = "rad/s", "an angular velocity", ["6000 rpm", "36000 deg/s"];
     /// [m/s]
-    Velocity = "m/s";
+    Velocity = "m/s", "a velocity", ["2 m/s", "500 mm/s"];
     /// [m/s2]
-    Acceleration = "m/s^2";
+    Acceleration = "m/s^2", "an acceleration", ["9.81 m/s^2", "9810 mm/s^2"];
     /// [s/m]
-    DissipationFactor = "s/m";
+    DissipationFactor = "s/m", "a dissipation factor", ["0.02 s/m", "20 s/km"];
 }
 
 #[cfg(test)]
 mod tests {
-    use super::parse;
+    use super::*;
+
+    fn parse<Q: Quantity>(text: &str) -> Result<f64, String> {
+        Q::DIMENSION.parse(text)
+    }
 
     #[test]
     fn closed_form_conversions_are_exact() {
-        assert_eq!(parse("9.525 mm", "m"), Ok(9.525e-3));
-        assert_eq!(parse("10 um", "m"), Ok(1e-5));
-        assert_eq!(parse("206 GPa", "Pa"), Ok(206e9));
-        assert_eq!(parse("1.5 kN", "N"), Ok(1500.0));
-        assert_eq!(parse("2 N.m", "N m"), Ok(2.0));
-        assert_eq!(parse("25 deg", "rad"), Ok(25.0 * (std::f64::consts::PI / 180.0)));
-        let speed = parse("6000 rpm", "rad/s").unwrap();
+        assert_eq!(parse::<Length>("9.525 mm"), Ok(9.525e-3));
+        assert_eq!(parse::<Length>("10 um"), Ok(1e-5));
+        assert_eq!(parse::<Pressure>("206 GPa"), Ok(206e9));
+        assert_eq!(parse::<Force>("1.5 kN"), Ok(1500.0));
+        assert_eq!(parse::<Moment>("2 N.m"), Ok(2.0));
+        assert_eq!(parse::<Angle>("25 deg"), Ok(25.0 * (std::f64::consts::PI / 180.0)));
+        let speed = parse::<AngularVelocity>("6000 rpm").unwrap();
         assert!((speed / (200.0 * std::f64::consts::PI) - 1.0).abs() < 1e-15);
     }
 
     #[test]
-    fn wrong_text_is_refused_with_its_reason() {
-        for (text, unit, part) in [
-            ("10 um", "N", "incompatible"),
-            ("mm", "m", "begin with a number"),
-            ("10", "m", "unit is missing"),
-            ("1e999 m", "m", "out of range"),
-            ("NaN m", "m", "out of range"),
-            ("10 florps", "m", "florps"),
-            ("2 @plain", "m", "write a number"),
+    fn closed_form_units_as_catalogues_write_them() {
+        for text in ["0.01mm", "10 \u{b5}m", "10 \u{3bc}m", "10\u{b5}m", "1e-5 m", "1e-5m"] {
+            assert_eq!(parse::<Length>(text), Ok(1e-5), "{text}");
+        }
+        for text in
+            ["2 Nm", "2 N\u{b7}m", "2 N\u{22c5}m", "2 N m", "2 N*m", "2000 Nmm", "2000 N mm", "0.002 kNm"]
+        {
+            assert_eq!(parse::<Moment>(text), Ok(2.0), "{text}");
+        }
+        for text in ["3 mrad", "3mrad", "3000 urad", "3000 \u{b5}rad", "3000 \u{3bc}rad", "0.003 rad"] {
+            assert_eq!(parse::<Angle>(text), Ok(0.003), "{text}");
+        }
+        for text in ["0.25 kg m\u{b2}", "0.25 kg\u{b7}m\u{b2}", "0.25 kg m^2", "0.25 kg m2", "0.25 kg.m2"] {
+            assert_eq!(parse::<Inertia>(text), Ok(0.25), "{text}");
+        }
+        for text in ["7800 kg/m\u{b3}", "7800 kg/m^3", "7800 kg/m3"] {
+            assert_eq!(parse::<Density>(text), Ok(7800.0), "{text}");
+        }
+        assert_eq!(parse::<Angle>("25\u{b0}"), parse::<Angle>("25 deg"));
+        for text in ["10 mm/s", "10 mm s^-1", "10 mm s\u{207b}\u{b9}", "10 mm s-1"] {
+            assert_eq!(parse::<Velocity>(text), Ok(0.01), "{text}");
+        }
+    }
+
+    #[test]
+    fn regression_a_number_per_minute_is_a_speed_and_a_frequency_is_none() {
+        let speed = parse::<AngularVelocity>("3000 rpm").unwrap();
+        assert!((speed / (100.0 * std::f64::consts::PI) - 1.0).abs() < 1e-15);
+        for text in [
+            "3000 min^-1",
+            "3000 /min",
+            "3000/min",
+            "3000 1/min",
+            "3000 1 / min",
+            "3000 min-1",
+            "3000 min\u{207b}\u{b9}",
+            "3000 r/min",
+            "3000 rev/min",
         ] {
-            let message = parse(text, unit).unwrap_err();
-            assert!(message.contains(part) && message.contains(text), "{message}");
+            assert_eq!(parse::<AngularVelocity>(text), Ok(speed), "{text}");
+        }
+        assert!((parse::<AngularVelocity>("18000 deg/s").unwrap() / speed - 1.0).abs() < 1e-15);
+        assert_eq!(parse::<AngularVelocity>("2 krad/s").ok(), None);
+        assert_eq!(parse::<AngularVelocity>("314 rad/s"), Ok(314.0));
+        assert_eq!(parse::<AngularVelocity>("314 rad s^-1"), Ok(314.0));
+        for text in ["50 Hz", "50 1/s", "50 /s", "50 s^-1", "3000 1/(60 s)", "3 kHz", "50 rad^2/s"] {
+            let message = parse::<AngularVelocity>(text).unwrap_err();
+            assert!(message.contains(text), "{message}");
+            assert!(text == "3000 1/(60 s)" || message.contains("rpm, rad/s or deg/s"), "{message}");
+        }
+    }
+
+    #[test]
+    fn wrong_text_is_refused_with_its_reason_and_examples() {
+        let length = parse::<Length>;
+        for (message, text, part) in [
+            (parse::<Force>("10 um"), "10 um", "um measures something else"),
+            (length("mm"), "mm", "begin with a number"),
+            (length("10"), "10", "unit is missing"),
+            (length("1e999 m"), "1e999 m", "out of range"),
+            (length("NaN m"), "NaN m", "begin with a number"),
+            (length("10 florps"), "10 florps", "florps is not known"),
+            (length("2 @plain"), "2 @plain", "@plain is not known"),
+            (length("2 m^^3"), "2 m^^3", "not known"),
+            (length("2 m^66"), "2 m^66", "not known"),
+            (length("2 (m"), "2 (m", "not known"),
+            (length("2 to mm"), "2 to mm", "something else"),
+        ] {
+            let message = message.unwrap_err();
+            let example = if message.contains("force") { "1.5 kN" } else { "9.525 mm" };
+            for part in [part, text, example] {
+                assert!(message.contains(part), "{message}\nshould name {part}");
+            }
+            // Nothing of the calculator.
+            for word in ["base units", "identifier", "parse", "expected", "evaluat"] {
+                assert!(!message.contains(word), "{message}");
+            }
         }
     }
 }
