@@ -29,7 +29,7 @@ from tree_sitter import Language, Parser
 # What is mutated if nothing is named: edit here when files move.
 DEFAULT = ["src/contact", "src/kalker", "src/forces.rs", "src/dynamics", "src/equilibrium", "src/simulation/outputs.rs"]
 # Tests that measure clocks or run long without looking at forces.
-SKIPPED = re.compile(r"^(cost|cost_reference|fmi2_leaks|hostile_files)::|^lib::cost::")
+SKIPPED = re.compile(r"^(cost|cost_reference|fmi2_leaks|hostile_files)::|^roulement_cli::cost::")
 ROOT = Path(__file__).resolve().parent.parent
 ACCEPTED = ROOT / "scripts/mutants-accepted.csv"
 PLANTED = ROOT / "scripts/mutants-planted.csv"
@@ -312,8 +312,7 @@ class Workshop:
         for message in messages:
             if message.get("reason") == "compiler-artifact" and message.get("executable") and message["profile"]["test"]:
                 kind = message["target"]["kind"][0]
-                name = "lib" if kind in ("lib", "cdylib", "rlib") else message["target"]["name"]
-                programs[name if kind != "bin" else "bin"] = message["executable"]
+                programs["bin" if kind == "bin" else message["target"]["name"]] = message["executable"]
         self.programs = programs
         return left
 

@@ -15,6 +15,19 @@ pub enum SimulationError {
     /// No quasi-static equilibrium to start from.
     #[error("no equilibrium to start from: {0}")]
     Start(#[from] EquilibriumError),
+    /// A cage for which there is no room among tilted or displaced races.
+    #[error(
+        "no start: the cage does not fit among the balls: wherever it is, it is pressed {overlap:.3e} m into {contact}, which \
+         has a clearance of {clearance:.3e} m; the tilt of the races is too large for it"
+    )]
+    CageDoesNotFit {
+        /// Contact that is pressed most.
+        contact: String,
+        /// \[m] overlap there.
+        overlap: f64,
+        /// \[m] diametral clearance there.
+        clearance: f64,
+    },
     /// The step size fell below its minimum.
     #[error(
         "at {time} s the step fell below solver.min_step = {min_step} s: {cause}, worst at {site} \

@@ -1,5 +1,6 @@
 //! A running bearing: model, state, inputs, and the one function that advances it.
 
+mod cage_start;
 mod error;
 mod input_paths;
 pub mod inputs;

@@ -2,14 +2,16 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::equilibrium::{self, BallEquilibrium, EquilibriumError, EquilibriumInput, Gyroscopic, Prescribed};
+use crate::equilibrium::{self, BallEquilibrium, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
-use crate::model::bodies::{Bodies, Body, PerRace, Race};
+use crate::model::bodies::{Bodies, PerRace, Race};
 use crate::model::state::{BallState, BodyState, Energies, KeptMatrix, Powers, State, Statistics};
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::step_control::StepControl;
 use crate::scene::Scene;
+use crate::simulation::cage_start;
+use crate::simulation::error::SimulationError;
 use crate::simulation::inputs::{Inputs, RaceInput};
 use crate::simulation::spin_balance::balanced;
 
@@ -18,11 +20,7 @@ use crate::simulation::spin_balance::balanced;
 ///
 /// # Errors
 /// If there is no equilibrium under the scene's load.
-pub fn from_equilibrium(
-    scene: &Scene,
-    model: &Model,
-    time: f64,
-) -> Result<(Inputs, State), EquilibriumError> {
+pub fn from_equilibrium(scene: &Scene, model: &Model, time: f64) -> Result<(Inputs, State), SimulationError> {
     let problem = EquilibriumInput::at(scene, Gyroscopic::Friction, time);
     let solution = equilibrium::solve(model, &problem)?;
     let [x, y, z, ry, rz] = solution.displacement;
@@ -46,7 +44,7 @@ pub fn from_equilibrium(
     if let Some(velocity) = scene.start.inner_velocity {
         inputs.inner.twist.velocity = Vector3::from(velocity.map(|component| component.0));
     }
-    let state = State { time, ..state(scene, model, &inputs, &solution) };
+    let state = State { time, ..state(scene, model, &inputs, &solution)? };
     Ok((inputs, state))
 }
 
@@ -60,7 +58,7 @@ pub fn from_inputs(
     model: &Model,
     inputs: &mut Inputs,
     time: f64,
-) -> Result<State, EquilibriumError> {
+) -> Result<State, SimulationError> {
     let outer = &inputs.outer.pose;
     let mut problem = EquilibriumInput::at(scene, Gyroscopic::Friction, time);
     problem.friction = inputs.friction;
@@ -92,7 +90,7 @@ pub fn from_inputs(
         let spin = inputs.inner.pose.orientation * Vector3::x() * inputs.inner.speed;
         inputs.inner.twist = Twist { velocity: Vector3::zeros(), angular_velocity: spin };
     }
-    Ok(State { time, ..state(scene, model, inputs, &solution) })
+    Ok(State { time, ..state(scene, model, inputs, &solution)? })
 }
 
 /// A race that spins about its own axis.
@@ -112,7 +110,15 @@ fn spin_free(race: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
 }
 
 /// The state of a solution: balls roll, races move as the inputs say.
-fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::Equilibrium) -> State {
+///
+/// # Errors
+/// If a cage does not fit.
+fn state(
+    scene: &Scene,
+    model: &Model,
+    inputs: &Inputs,
+    solution: &equilibrium::Equilibrium,
+) -> Result<State, SimulationError> {
     let outer = &inputs.outer;
     let frame = spin_free(&outer.pose.orientation);
     let races = PerRace::new(|race| {
@@ -144,9 +150,16 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
             }
         }
     }
-    let cage = model.bodies.get(Body::Cage).map(|_| centred_cage(&balls, outer, &frame, solution.cage_speed));
+    let cage = match &model.cage {
+        Some(cage) => {
+            let centred = among(&balls, outer.pose.position, frame);
+            let radius = 0.5 * model.bearing.pitch_diameter;
+            Some(cage_start::place(cage, &balls, &races, centred, radius, solution.cage_speed)?)
+        }
+        None => None,
+    };
     let solver = &scene.solver;
-    State {
+    Ok(State {
         time: 0.0,
         bodies: Bodies::new(races, cage),
         differences: if model.polynomials(Race::Inner).is_some() {
@@ -161,24 +174,15 @@ fn state(scene: &Scene, model: &Model, inputs: &Inputs, solution: &equilibrium::
         powers: Powers::default(),
         energies: Energies::default(),
         statistics: Statistics::default(),
-    }
+    })
 }
 
-/// The cage at the start: centred among the balls and turning with them at the speed of the equilibrium (the mean of
-/// the epicyclic speeds of all balls, weighted by their loads); it touches nothing.
-fn centred_cage(
-    balls: &[BallState],
-    outer: &RaceInput,
-    frame: &UnitQuaternion<f64>,
-    speed: f64,
-) -> BodyState {
+/// Pose in the middle of the balls, with the axes of a frame.
+fn among(balls: &[BallState], origin: Vector3<f64>, frame: UnitQuaternion<f64>) -> Pose {
     let axis = frame * Vector3::x();
-    let origin = outer.pose.position;
     let axial =
         balls.iter().map(|ball| axis.dot(&(ball.position - origin))).sum::<f64>() / balls.len() as f64;
-    let pose = Pose { position: origin + axis * axial, orientation: *frame };
-    let twist = Twist { velocity: outer.twist.velocity, angular_velocity: axis * speed };
-    BodyState::new(pose, &twist, 0)
+    Pose { position: origin + axis * axial, orientation: frame }
 }
 
 /// Velocity of a ball's centre and its angular velocity in the outer race's frame: the scene's, or those of rolling.
