@@ -10,7 +10,6 @@ use super::instance::Instance;
 use super::outcome::{Outcome, error};
 use super::state::Phase;
 use crate::interface::variables::{Causality, InputKind, Kind, Variable};
-use crate::scene::Groups;
 use crate::simulation::inputs::Inputs;
 use crate::simulation::outputs::Outputs;
 use crate::simulation::{Simulation, SimulationError};
@@ -147,7 +146,7 @@ impl Instance {
                 }
                 central.set_inputs(*base);
                 central
-                    .advance_perturbed(self.simulation.time(), &perturbations, Groups::default())
+                    .advance_perturbed(self.simulation.time(), &perturbations, self.state.played)
                     .or_else(failed)?
             }
             None => {

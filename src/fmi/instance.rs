@@ -1,15 +1,17 @@
 //! An instance: its start, its phases, its variables.
 
+use strum::VariantArray;
+
 use super::log::Log;
 use super::outcome::{Outcome, Status, error};
 use super::resources;
 use super::state::{Phase, State};
 use crate::interface::model_description;
 use crate::interface::variables::{Causality, Kind, Source, Variables};
-use crate::scene::Scene;
+use crate::scene::{Giver, Group, Groups, Scene};
 use crate::schema::numbers::Variability;
 use crate::simulation::inputs::Inputs;
-use crate::simulation::{Simulation, follows_time};
+use crate::simulation::{Simulation, follows_time, scripted_groups};
 
 /// A slave.
 pub struct Instance {
@@ -25,6 +27,8 @@ pub struct Instance {
     pub simulation: Simulation,
     /// State of the interface, beside that of the simulation.
     pub state: State,
+    /// \[s] defined end of the experiment.
+    pub stop: Option<f64>,
     /// Derivatives of outputs by inputs at this point, if they were asked for.
     pub columns: Option<Vec<Vec<f64>>>,
 }
@@ -54,6 +58,7 @@ impl Instance {
             fresh: Box::new(simulation.clone()),
             simulation,
             state: State::new(values),
+            stop: None,
             columns: None,
         })
     }
@@ -79,7 +84,56 @@ impl Instance {
         } else {
             self.simulation.set_start_time(start);
         }
+        self.stop = stop;
         Ok(())
+    }
+
+    /// Groups of inputs that the scene's script gives.
+    pub fn played(&self) -> Groups {
+        let scene = self.simulation.scene();
+        let scripted = scripted_groups(scene);
+        Group::VARIANTS.iter().fold(Groups::default(), |groups, &group| {
+            let scene_gives = scene.interface.inputs.of(group) == Giver::Scene;
+            groups.with(group, scripted.contains(group) && scene_gives && !self.state.set.contains(group))
+        })
+    }
+
+    /// Tells which scripts of the scene are played.
+    fn announce_scripts(&self) {
+        let scene = self.simulation.scene();
+        let scripted = scripted_groups(scene);
+        for &group in Group::VARIANTS.iter().filter(|group| scripted.contains(**group)) {
+            if scene.interface.inputs.of(group) == Giver::Master {
+                let why = format!(
+                    "the scene's script of {group} is not played: interface.inputs.{group} = \"master\""
+                );
+                self.log.write(Status::Ok, &why);
+            } else if self.state.set.contains(group) {
+                self.log.write(
+                    Status::Warning,
+                    &format!("the scene's script of {group} is not played: they were set"),
+                );
+            } else {
+                let played =
+                    format!("the scene's script of {group} is played until one of these inputs is set");
+                self.log.write(Status::Ok, &played);
+            }
+        }
+    }
+
+    /// From now on the importer gives the group of an input; a script of it ends.
+    pub fn take_over(&mut self, index: usize) {
+        let row = &self.variables.rows()[index];
+        let Some(group) = row.group().filter(|group| !self.state.set.contains(*group)) else {
+            return;
+        };
+        let ends = self.state.phase == Phase::StepComplete && self.played().contains(group);
+        self.state.set = self.state.set.with(group, true);
+        if ends {
+            let (name, time) = (&row.name, self.simulation.time());
+            let why = format!("the scene's script of {group} ends at {time} s: {name} was set");
+            self.log.write(Status::Warning, &why);
+        }
     }
 
     /// Takes the start of the simulation for the inputs that the importer did not set.
@@ -106,6 +160,7 @@ impl Instance {
         self.state.previous_outputs =
             self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         self.state.phase = Phase::StepComplete;
+        self.announce_scripts();
         Ok(())
     }
 
@@ -169,6 +224,7 @@ impl Instance {
         self.simulation = (*self.fresh).clone();
         let values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         self.state = State::new(values);
+        self.stop = None;
         self.columns = None;
     }
 
@@ -236,6 +292,9 @@ impl Instance {
             }
             self.state.given[index] |= input && !started;
             self.state.values[index] = *value;
+            if input {
+                self.take_over(index);
+            }
         }
         Ok(())
     }

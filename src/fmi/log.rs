@@ -4,13 +4,14 @@ use std::ffi::{CStr, CString};
 
 use super::outcome::Status;
 
-/// Where messages go: status, category, text.
+/// Where messages go: status, category, format.
 pub type Sink = Box<dyn Fn(Status, &CStr, &CStr) + Send>;
 
 /// Category of a status, as listed in the model description.
 fn category(status: Status) -> &'static CStr {
     match status {
         Status::Ok => c"logEvents",
+        Status::Warning => c"logStatusWarning",
         Status::Discard => c"logStatusDiscard",
         Status::Error => c"logStatusError",
         Status::Fatal => c"logStatusFatal",
@@ -26,18 +27,15 @@ pub struct Log {
     categories: Vec<String>,
 }
 
-/// Text without what a C formatter or an importer would interpret: NUL, percent, hash.
+/// Text without the one character that ends a C text.
 pub fn plain(text: &str) -> CString {
-    let clean: String = text
-        .chars()
-        .map(|c| match c {
-            '\0' => ' ',
-            '%' => '/',
-            '#' => 'n',
-            other => other,
-        })
-        .collect();
-    CString::new(clean).unwrap_or_default()
+    CString::new(text.replace('\0', " ")).unwrap_or_default()
+}
+
+/// Text as the format of a message, which an importer's `printf` shows as it is: percent signs, and hashes, which name a
+/// variable, stand twice (FMI 2.0.4, section 2.1.5).
+pub fn format_of(text: &str) -> CString {
+    plain(&text.replace('%', "%%").replace('#', "##"))
 }
 
 impl Log {
@@ -58,7 +56,18 @@ impl Log {
         let wanted = self.categories.is_empty()
             || self.categories.iter().any(|name| name.as_bytes() == category.to_bytes());
         if wanted && (status != Status::Ok || self.on) {
-            (self.sink)(status, category, &plain(message));
+            (self.sink)(status, category, &format_of(message));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percent_and_hash_stand_twice_in_formats_and_once_in_names() {
+        assert_eq!(format_of("100 % of #3\0").as_c_str(), c"100 %% of ##3 ");
+        assert_eq!(plain("50%\0#1").as_c_str(), c"50% #1");
     }
 }

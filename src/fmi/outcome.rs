@@ -5,6 +5,8 @@
 pub enum Status {
     /// All well.
     Ok,
+    /// Done, and worth a word: for messages alone.
+    Warning,
     /// Not done; the instance is at the last time it reached.
     Discard,
     /// Refused.

@@ -9,7 +9,7 @@ use super::state::State;
 use crate::simulation::Snapshot;
 
 /// First bytes of a serialised state: what it is, and the version of its form.
-const MAGIC: &[u8; 8] = b"rlmtFMU4";
+const MAGIC: &[u8; 8] = b"rlmtFMU5";
 /// Bytes of the checksum.
 const CHECKSUM: usize = 32;
 
@@ -18,12 +18,28 @@ const CHECKSUM: usize = 32;
 pub struct FmuState {
     state: State,
     simulation: Snapshot,
+    /// Identifier of the package that it is of; as bytes it stands before the content.
+    #[serde(skip)]
+    guid: String,
 }
 
 impl Instance {
     /// The instance as it is.
     pub fn save(&self) -> FmuState {
-        FmuState { state: self.state.clone(), simulation: self.simulation.snapshot() }
+        FmuState {
+            state: self.state.clone(),
+            simulation: self.simulation.snapshot(),
+            guid: self.guid.clone(),
+        }
+    }
+
+    /// Refuses a state of another scene, which the library of this one may have given out, too.
+    fn check_origin(&self, saved: &FmuState) -> Outcome {
+        if saved.guid == self.guid {
+            return Ok(());
+        }
+        let (other, own) = (&saved.guid, &self.guid);
+        error(format!("the FMU state is of another scene: its package is {other}, this instance's is {own}"))
     }
 
     /// Goes back to a state of this package.
@@ -31,7 +47,8 @@ impl Instance {
     /// # Errors
     /// If the state is of another scene.
     pub fn restore(&mut self, saved: &FmuState) -> Outcome {
-        let FmuState { state, simulation: snapshot } = saved;
+        self.check_origin(saved)?;
+        let FmuState { state, simulation: snapshot, .. } = saved;
         if !state.fits(self.state.values.len()) {
             return error("the FMU state is of another scene");
         }
@@ -65,8 +82,9 @@ impl Instance {
     /// A state as bytes: magic, guid, length of the content, checksum, content.
     ///
     /// # Errors
-    /// If the content cannot be written, which would be a fault of this library.
+    /// If the state is of another scene, or the content cannot be written, which would be a fault of this library.
     pub fn serialise(&self, state: &FmuState) -> Outcome<Vec<u8>> {
+        self.check_origin(state)?;
         let content = postcard::to_allocvec(state).map_err(|why| (Status::Error, why.to_string()))?;
         let mut bytes = MAGIC.to_vec();
         bytes.extend(self.guid.as_bytes());
@@ -101,6 +119,7 @@ impl Instance {
         if Sha256::digest(content).as_slice() != checksum {
             return refuse("its checksum is wrong");
         }
-        postcard::from_bytes(content).or_else(|why| refuse(&why.to_string()))
+        let read = postcard::from_bytes::<FmuState>(content).or_else(|why| refuse(&why.to_string()))?;
+        Ok(FmuState { guid: self.guid.clone(), ..read })
     }
 }

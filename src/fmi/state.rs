@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::scene::Groups;
 use crate::simulation::Snapshot;
 
 /// Phase of an instance.
@@ -42,6 +43,10 @@ pub struct State {
     pub given: Vec<bool>,
     /// Parameters, by value reference, that the simulation runs with.
     pub applied: Vec<f64>,
+    /// Groups of inputs that the importer set or gave a derivative of: their scripts are not played.
+    pub set: Groups,
+    /// Groups of inputs that the scene's script gave in the last communication step.
+    pub played: Groups,
     /// The communication point before the last; none before the first step.
     pub before: Option<Snapshot>,
 }
@@ -57,6 +62,8 @@ impl State {
             changed: false,
             given: vec![false; values.len()],
             applied: values.clone(),
+            set: Groups::default(),
+            played: Groups::default(),
             before: None,
             values,
         }

@@ -11,7 +11,8 @@ impl Instance {
     /// Advances by a communication step.
     ///
     /// # Errors
-    /// An error for a time that is not the instance's or a step that is not positive; discarded if the step cannot be
+    /// An error for a time that is not the instance's, a step that is not positive or one beyond the defined stop time
+    /// (FMI 2.0.4, section 2.1.6); discarded if the step cannot be
     /// finished: the state is then that of the last time reached.
     pub fn do_step(&mut self, time: f64, step: f64) -> Outcome {
         let now = self.simulation.time();
@@ -25,6 +26,12 @@ impl Instance {
         if time + step <= now {
             return error(format!("the communication step {step} s is lost in rounding at {now} s"));
         }
+        if let Some(stop) =
+            self.stop.filter(|stop| time + step > stop + TIME_TOLERANCE * scale.max(stop.abs()))
+        {
+            let end = time + step;
+            return error(format!("the communication step to {end} s is beyond the stop time {stop} s"));
+        }
         let inputs = self.read_inputs(&self.state.values, self.simulation.inputs())?;
         if self.state.changed {
             self.simulation.tune(&self.scene_with(&self.state.values)?);
@@ -33,10 +40,11 @@ impl Instance {
         }
         self.state.previous_outputs =
             self.variables.values(self.simulation.inputs(), self.simulation.outputs());
+        self.state.played = self.played();
         let before = self.state.before.insert(self.simulation.snapshot());
         self.columns = None;
         self.simulation.set_inputs(inputs);
-        let advanced = self.simulation.advance(time + step);
+        let advanced = self.simulation.advance_with(time + step, self.state.played);
         // A derivative belongs to the communication point that it was set for.
         self.state.rates.fill(0.0);
         let reached = self.simulation.time();
@@ -47,6 +55,12 @@ impl Instance {
             debug_assert!(restored, "a snapshot of this very simulation fits it");
             self.state.last_step = 0.0;
             return Err((Status::Discard, format!("a result is not a number after {now} s")));
+        }
+        for (row, (value, set)) in self.variables.rows().iter().zip(values.iter().zip(&mut self.state.values))
+        {
+            if row.group().is_some_and(|group| self.state.played.contains(group)) {
+                *set = *value;
+            }
         }
         advanced.map_err(|why| (Status::Discard, why.to_string()))
     }
@@ -75,6 +89,7 @@ impl Instance {
         }
         for (reference, value) in references.iter().zip(values) {
             self.state.rates[*reference as usize] = *value;
+            self.take_over(*reference as usize);
         }
         Ok(())
     }

@@ -80,6 +80,12 @@ pub fn page(scene: &Scene) -> String {
          control. A step that cannot be finished ends with fmi2Discard at the last time reached. The FMU state holds \
          everything: a replay gives the same bits. fmi2GetDirectionalDerivative gives the derivatives of all real outputs \
          by all inputs over the last step.</p>\n\
+         <p>What the scene gives as a table over time is played here too, exactly in every internal step, unless \
+         <code>interface.inputs</code> of the scene leaves it to the master: applied loads (<code>loads</code>), \
+         <code>inner.speed</code> (<code>speeds</code>), poses and twists in pose drive (<code>tilts</code>), \
+         <code>friction</code>. Setting an input of such a group, or a derivative of one, ends the script of the whole \
+         group; its other inputs stay at their last values. The log tells which scripts are played. An input that a script \
+         gives reads as its value at the communication point, and directional derivatives by it are zero.</p>\n\
          <h2>Effects</h2>\n<table><tr><th>key</th><th>here</th><th>adds</th><th>states</th><th>source</th></tr>\n\
          {effects}</table>\n\
          <h2>Limits</h2>\n<ul><li>Rigid rings: the raceways do not bend; no thermal growth, no lubricant film.</li>\n\

@@ -1,7 +1,7 @@
 //! What the keys of a scene must agree in; ranges of single numbers stand in their table.
 
 use super::numbers::STEP;
-use super::{Condition, Drive, Scene, SceneError, Schedule};
+use super::{Condition, Drive, Giver, Group, Scene, SceneError, Schedule};
 use crate::schema::numbers::Range;
 
 /// Checks every value of a scene against its range, and the keys against one another.
@@ -12,7 +12,25 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
     start(scene)?;
     steps(scene)?;
     scene.effects.agree(&scene.setup())?;
+    inputs(scene)?;
     load(scene)
+}
+
+/// The master can only give what a package has as an input.
+fn inputs(scene: &Scene) -> Result<(), SceneError> {
+    let wrench = scene.inner.drive == Drive::Wrench;
+    let pose = [&scene.inner, &scene.outer].iter().any(|race| race.drive == Drive::Pose);
+    for (group, has_input, needed) in [
+        (Group::Loads, wrench, "inner.drive = \"wrench\""),
+        (Group::Speeds, wrench, "inner.drive = \"wrench\""),
+        (Group::Tilts, pose, "a race with drive = \"pose\""),
+    ] {
+        if scene.interface.inputs.of(group) == Giver::Master && !has_input {
+            let why = format!("\"master\" needs {needed}: the package has no such input otherwise");
+            return Err(SceneError::conflict(&format!("interface.inputs.{group}"), why));
+        }
+    }
+    Ok(())
 }
 
 fn bearing(scene: &Scene) -> Result<(), SceneError> {

@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use super::inputs::InputGivers;
 use super::schedule::{self, Schedule};
 use super::units::*;
 
@@ -251,4 +252,6 @@ pub enum Orientation {
 pub struct Interface {
     /// How orientations are written.
     pub orientation: Orientation,
+    /// Who gives each group of inputs: the scene's script or the master.
+    pub inputs: InputGivers,
 }

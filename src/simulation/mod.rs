@@ -242,6 +242,15 @@ impl Simulation {
         self.advance_perturbed(end, &[], Groups::default()).map(drop)
     }
 
+    /// Like [`Simulation::advance`], with some groups of inputs given by the scene's script where it has one. The inputs of
+    /// these are then those of the time reached.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn advance_with(&mut self, end: f64, scripted: Groups) -> Result<(), SimulationError> {
+        self.advance_perturbed(end, &[], scripted).map(drop)
+    }
+
     /// Like [`Simulation::advance`], with some groups of inputs given by the scene's script where it has one; also gives the outputs that slightly different inputs would have led to, in the same
     /// steps. They are exact to first order: take differences between perturbations of opposite sign.
     ///

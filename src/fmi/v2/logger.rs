@@ -22,10 +22,10 @@ impl Logger {
         let Some(logger) = self.callbacks.logger else {
             return;
         };
-        // The message is passed as the format: it has no percent sign, and importers whose logger is not variadic
-        // (FMPy's is a Python function) would show nothing but "%s" otherwise.
+        // The message is the format: importers whose logger is not variadic (FMPy's is a Python function) would show
+        // nothing but "%s" otherwise.
         // SAFETY: the importer guarantees its logger for the instance's lifetime; all strings live through the call; a
-        // format without percent signs reads no argument.
+        // format whose percent signs all stand twice reads no argument.
         unsafe {
             logger(
                 self.callbacks.component_environment,

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use crate::effects::Getter;
 use crate::model::bodies::{PerRace, Race};
-use crate::scene::Scene;
+use crate::scene::{Group, Scene};
 use crate::schema::numbers::{FRICTION, Parameter};
 use crate::schema::variable_units::Unit;
 use crate::simulation::inputs::Inputs;
@@ -213,6 +213,16 @@ impl Variable {
             _ if self.causality != Causality::Input => None,
             Source::Friction => Some(InputKind::Friction),
             Source::Race(_, RaceVariable { input, .. }, _) => input.map(|access| access.kind),
+            _ => None,
+        }
+    }
+
+    /// What an input is given together with; none for other variables.
+    pub fn group(&self) -> Option<Group> {
+        match &self.source {
+            _ if self.causality != Causality::Input => None,
+            Source::Friction => Some(Group::Friction),
+            Source::Race(_, RaceVariable { input, .. }, _) => input.map(|access| access.group),
             _ => None,
         }
     }

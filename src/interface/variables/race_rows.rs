@@ -4,7 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::{Causality, InputError};
 use crate::model::bodies::Race;
-use crate::scene::{Drive, Orientation};
+use crate::scene::{Drive, Group, Orientation};
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::inputs::RaceInput;
 use crate::simulation::outputs::RaceOutput;
@@ -43,6 +43,8 @@ pub struct InputAccess {
     pub rate: fn(&RaceInput, usize) -> f64,
     /// Kind of the quantity.
     pub kind: InputKind,
+    /// What it is given together with.
+    pub group: Group,
 }
 
 /// Kinds of inputs: what a small change of one is measured by.
@@ -151,6 +153,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
             set: |race, i, value, _| race.input.pose.position[i] = value,
             rate: no_rate,
             kind: InputKind::Displacement,
+            group: Group::Tilts,
         }),
     },
     RaceVariable {
@@ -168,6 +171,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
             set: |race, i, value, _| race.quaternion[i] = Some(value),
             rate: no_rate,
             kind: InputKind::Quaternion,
+            group: Group::Tilts,
         }),
     },
     RaceVariable {
@@ -184,6 +188,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
             set: |race, i, value, _| race.angles[i] = Some(value),
             rate: no_rate,
             kind: InputKind::Angle,
+            group: Group::Tilts,
         }),
     },
     RaceVariable {
@@ -203,6 +208,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
             },
             rate: |race, i| race.twist_rate.velocity[i],
             kind: InputKind::Velocity,
+            group: Group::Tilts,
         }),
     },
     RaceVariable {
@@ -222,6 +228,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
             },
             rate: |race, i| race.twist_rate.angular_velocity[i],
             kind: InputKind::AngularVelocity,
+            group: Group::Tilts,
         }),
     },
     RaceVariable {
@@ -282,6 +289,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
             set: |race, i, value, _| race.input.applied.force[i] = value,
             rate: no_rate,
             kind: InputKind::Force,
+            group: Group::Loads,
         }),
     },
     RaceVariable {
@@ -298,6 +306,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
             set: |race, i, value, _| race.input.applied.moment[i] = value,
             rate: no_rate,
             kind: InputKind::Moment,
+            group: Group::Loads,
         }),
     },
     RaceVariable {
@@ -314,6 +323,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
             set: |race, _, value, _| race.input.speed = value,
             rate: no_rate,
             kind: InputKind::AngularVelocity,
+            group: Group::Speeds,
         }),
     },
     RaceVariable {
