@@ -2,14 +2,31 @@
 
 mod commands;
 
+use std::error::Error;
+use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     match commands::run() {
         Ok(()) => ExitCode::SUCCESS,
+        // Who closes the pipe has read enough: `roulement ... | head`.
+        Err(why) if reader_left(why.as_ref()) => ExitCode::SUCCESS,
         Err(why) => {
-            eprintln!("error: {why}");
+            // Nobody is there to be told if that fails.
+            let _ = writeln!(std::io::stderr(), "error: {why}");
             ExitCode::FAILURE
         }
     }
+}
+
+/// Was it the closed pipe of standard output?
+fn reader_left(error: &(dyn Error + 'static)) -> bool {
+    let mut cause = Some(error);
+    while let Some(error) = cause {
+        if error.downcast_ref::<std::io::Error>().is_some_and(|why| why.kind() == ErrorKind::BrokenPipe) {
+            return true;
+        }
+        cause = error.source();
+    }
+    false
 }

@@ -180,6 +180,111 @@ fn wrong_scenes_are_refused_with_key_value_and_range() {
 }
 
 #[test]
+fn regression_wrong_scenes_are_refused_in_plain_words() {
+    let scratch = Scratch::new("words");
+    let file = scratch.path("wrong.toml");
+    let text = std::fs::read_to_string(scene("thrust")).unwrap();
+    let thrust = "x = { force = \"1500 N\" }";
+    for (from, to, parts) in [
+        ("balls = 10 ", "bals = 10 ", &["bearing.bals is no known key: did you mean balls?"][..]),
+        ("balls = 10 ", "balls = \"ten\" ", &["bearing.balls wants a whole number, not \"ten\""]),
+        ("balls = 10 ", "", &["bearing.balls is missing", "balls = 10"]),
+        ("[load]", "[lod]", &["lod is no known key: did you mean load?"]),
+        (thrust, "y = 300", &["load.y wants a table { force = ... } or { displacement = ... }, not 300"]),
+        (thrust, "rz = 0.5", &["load.rz wants a table { moment = ... } or { rotation = ... }, not 0.5"]),
+        (thrust, "x = { force = true }", &["load.x.force", "wants a force", "1.5 kN", "not true"]),
+        (thrust, "x = { force = \"1500\" }", &["load.x.force", "\"1500\"", "unit is missing"]),
+        ("\"6000 rpm\"", "\"100 Hz\"", &["load.inner_speed", "100 Hz", "rpm, rad/s or deg/s"]),
+        ("creep = \"saturated\"", "creep = \"saturatd\"", &["effects.creep", "did you mean saturated?"]),
+        ("ball_race = 0.08", "ball_race = -1", &["friction.ball_race = -1", "[0, 2]"]),
+        ("drive = \"fixed\"", "drive = \"wrench\"", &["outer.drive"]),
+        ("balls = 10 ", "balls = = 10 ", &["not TOML"]),
+    ] {
+        assert!(text.contains(from));
+        std::fs::write(&file, text.replace(from, to)).unwrap();
+        let output = roulement(&["describe", &file]);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success());
+        let line = 1 + text[..text.find(from).unwrap()].matches('\n').count();
+        // A key that is missing is missed in its section.
+        let line = if to.is_empty() { line - 1 } else { line };
+        assert!(message.starts_with(&format!("error: {file}, line {line}: ")), "{message}");
+        for part in parts {
+            assert!(message.contains(part), "{message}\nshould say {part}");
+        }
+        for word in ["expected", "invalid", "struct", "untagged", "usize", "integer"] {
+            assert!(!message.contains(word), "{message}");
+        }
+    }
+}
+
+#[test]
+fn defaults_and_numbers_without_sense_are_told_of() {
+    let scratch = Scratch::new("notes");
+    let file = scratch.path("scene.toml");
+    let told = |changes: &[(&str, &str)], command: &[&str]| {
+        std::fs::write(&file, edited("thrust", changes)).unwrap();
+        let output = roulement(&[&[command[0], &file], &command[1..]].concat());
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert_eq!(told(&[], &["equilibrium"]), "");
+    let conformities = [("bearing.inner_conformity", ""), ("bearing.outer_conformity", "")];
+    let note = told(&conformities, &["equilibrium", "--json"]);
+    assert!(note.contains("inner_conformity = 0.52 and bearing.outer_conformity = 0.53"), "{note}");
+    let fast = told(&[("load.inner_speed", "\"70000 rpm\"")], &["describe"]);
+    assert!(fast.contains("n dm = 3.22e6 mm/min"), "{fast}");
+    // 4200 MPa are passed between 40 and 60 kN.
+    assert_eq!(told(&[("load.x.force", "\"40 kN\"")], &["equilibrium"]), "");
+    let heavy = [("load.x.force", "\"60 kN\""), ("load.duration", "\"0.1 ms\"")];
+    for command in [&["equilibrium"][..], &["run", "-o", &scratch.path("out")]] {
+        let warning = told(&heavy, command);
+        assert!(warning.contains("warning: the largest contact pressure is 4"), "{warning}");
+    }
+}
+
+#[test]
+fn regression_a_closed_pipe_ends_quietly() {
+    for arguments in [&["describe"][..], &["equilibrium"], &["equilibrium", "--json"]] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_roulement"))
+            .args([arguments[0], &scene("thrust")])
+            .args(&arguments[1..])
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        // The reader goes before anything is printed.
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success(), "{arguments:?}");
+        assert_eq!(String::from_utf8(output.stderr).unwrap(), "");
+    }
+}
+
+#[test]
+fn prints_say_whose_force_it_is() {
+    let output = roulement(&["equilibrium", &scene("thrust")]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("external load Fx 1500.000 N") && text.contains("the bearing's force on it"),
+        "{text}"
+    );
+    let output = roulement(&["equilibrium", &scene("thrust"), "--json"]);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(json["load_is"].as_str().unwrap().contains("external load on the inner race"));
+    let scratch = Scratch::new("whose");
+    std::fs::write(scratch.path("short.toml"), edited("thrust", &[("load.duration", "\"0.1 ms\"")])).unwrap();
+    let output = roulement(&["run", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("bearing's force  x -1") && text.contains("of the bearing on the inner race"),
+        "{text}"
+    );
+    let plot = std::fs::read_to_string(scratch.path("out/bearing.svg")).unwrap();
+    assert!(plot.contains("force of the bearing on inner race [N]"));
+}
+
+#[test]
 fn a_missing_library_is_named() {
     let scratch = Scratch::new("library");
     let package = scratch.path("x.fmu");

@@ -1,5 +1,6 @@
 //! An equilibrium as text and as JSON.
 
+use std::f64::consts::PI;
 use std::fmt;
 
 use nalgebra::Vector3;
@@ -8,6 +9,8 @@ use serde_json::{Value, json};
 use super::Equilibrium;
 use super::ball::BallBalance;
 use crate::contact::geometry::GrooveContact;
+use crate::model::bodies::Race;
+use crate::model::{Conditions, Model};
 use crate::numerics::scalar::{Dual, Single, values};
 
 /// Reported quantities of a ball.
@@ -59,6 +62,29 @@ impl BallReport {
 }
 
 impl Equilibrium {
+    /// \[Pa] largest contact pressure.
+    pub fn peak_pressure(&self, model: &Model) -> f64 {
+        let radius = model.bearing.ball.radius;
+        let contacts = model.contacts(&Conditions { friction: 0.0 });
+        let mut largest = 0.0f64;
+        for ball in &self.balls {
+            let (b, orbit) = (&ball.report, ball.position.yz().norm());
+            // Curvature along the circumference: cosine of the contact angle over the radius of the contact point.
+            let (inner, outer) = (b.inner_contact_angle.cos(), b.outer_contact_angle.cos());
+            for (race, load, approach, curvature) in [
+                (Race::Inner, b.inner_load, b.inner_approach, inner / (orbit - radius * inner)),
+                (Race::Outer, b.outer_load, b.outer_approach, -outer / (orbit + radius * outer)),
+            ] {
+                if load > 0.0 {
+                    let hertz = contacts[race].shape.hertz(curvature);
+                    let area = PI * hertz.semi_axis_rolling * hertz.semi_axis_transverse * approach;
+                    largest = largest.max(1.5 * load / area);
+                }
+            }
+        }
+        largest
+    }
+
     /// All results as JSON, SI units; keys are part of the command line's contract.
     pub fn to_json(&self) -> Value {
         let column = |get: fn(&BallReport) -> f64| -> Vec<f64> {
@@ -71,6 +97,7 @@ impl Equilibrium {
         json!({
             "units": "SI: m, N, N m, rad, rad/s",
             "displacement": { "x": x, "y": y, "z": z, "ry": ry, "rz": rz },
+            "load_is": "external load on the inner race; the bearing's force on it is the opposite",
             "load": { "Fx": fx, "Fy": fy, "Fz": fz, "My": my, "Mz": mz },
             "stiffness": stiffness,
             "cage_speed": self.cage_speed,
@@ -99,11 +126,14 @@ impl fmt::Display for Equilibrium {
         let [fx, fy, fz, my, mz] = self.load;
         writeln!(f, "inner race    x {:.4} um  y {:.4} um  z {:.4} um", x * 1e6, y * 1e6, z * 1e6)?;
         writeln!(f, "              ry {:.6} mrad  rz {:.6} mrad", ry * 1e3, rz * 1e3)?;
-        writeln!(f, "load          Fx {fx:.3} N  Fy {fy:.3} N  Fz {fz:.3} N")?;
-        writeln!(f, "              My {my:.5} N m  Mz {mz:.5} N m")?;
+        writeln!(
+            f,
+            "external load Fx {fx:.3} N  Fy {fy:.3} N  Fz {fz:.3} N   (on the inner race; the bearing's force on it"
+        )?;
+        writeln!(f, "              My {my:.5} N m  Mz {mz:.5} N m         is the opposite)")?;
         writeln!(f, "cage speed    {:.4} rad/s", self.cage_speed)?;
         writeln!(f, "residual      {:.2e} of the load, {} iterations\n", self.residual, self.iterations)?;
-        writeln!(f, "stiffness     Fx, Fy, Fz [N], My, Mz [N m] by x, y, z [m], ry, rz [rad]")?;
+        writeln!(f, "stiffness     external load Fx, Fy, Fz [N], My, Mz [N m] by x, y, z [m], ry, rz [rad]")?;
         for row in self.stiffness.row_iter() {
             let row: Vec<String> = row.iter().map(|value| format!("{value:12.4e}")).collect();
             writeln!(f, "              {}", row.join(" "))?;

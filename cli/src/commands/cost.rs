@@ -9,6 +9,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use roulement::scene::Scene;
 use roulement_cli::cost::{SCENES, SceneStudy, report, study};
 
+use super::say;
+
 /// Studies one scene file, or the standard scenes if there is none, into a directory.
 ///
 /// # Errors
@@ -17,7 +19,7 @@ pub fn run(scene: Option<&Path>, directory: &Path) -> Result<(), Box<dyn Error>>
     let scenes: Vec<(String, Scene)> = match scene {
         Some(path) => {
             let name = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
-            vec![(name, Scene::load(path)?)]
+            vec![(name, super::load(path)?)]
         }
         None => SCENES
             .iter()
@@ -38,7 +40,7 @@ pub fn run(scene: Option<&Path>, directory: &Path) -> Result<(), Box<dyn Error>>
     }
     bar.finish_and_clear();
     for path in report::write(&studies, directory)? {
-        println!("{}", path.display());
+        say(&format!("{}\n", path.display()))?;
     }
     Ok(())
 }

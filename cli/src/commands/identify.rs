@@ -11,7 +11,6 @@ use roulement::contact::shape::ContactShape;
 use roulement::kalker::Patch;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::model::bearing::Bearing;
-use roulement::scene::Scene;
 
 /// Options of `roulement identify`.
 #[derive(Args)]
@@ -48,7 +47,7 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut section = String::new();
     match &options.scene {
         Some(path) => {
-            let scene = Scene::load(path)?;
+            let scene = super::load(path)?;
             let bearing = Bearing::new(&scene);
             for (race, raceway) in [("inner", &bearing.inner), ("outer", &bearing.outer)] {
                 let materials = &bearing.materials;
@@ -69,10 +68,10 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    print!("{section}");
+    super::say(&section)?;
     if let Some(output) = &options.output {
         write_scene(options.scene.as_deref(), output, &section)?;
-        eprintln!("written to {}", output.display());
+        super::tell([format!("written to {}", output.display())]);
     }
     Ok(())
 }

@@ -6,14 +6,15 @@ mod run;
 mod summary;
 
 use std::error::Error;
-use std::path::PathBuf;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand, ValueEnum};
 use roulement::analysis::single_contact::{Law, RollingContact};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::interface::model_description::render;
 use roulement::model::Model;
-use roulement::scene::{CreepLaw, Scene};
+use roulement::scene::{CreepLaw, Scene, SceneError};
 use roulement::simulation::Simulation;
 use roulement_cli::package::{library_beside_executable, write_fmu};
 
@@ -128,27 +129,51 @@ impl From<GyroscopicChoice> for Gyroscopic {
     }
 }
 
+/// Reads a scene; what its reader should know goes to standard error.
+fn load(path: &Path) -> Result<Scene, SceneError> {
+    let scene = Scene::load(path)?;
+    tell(scene.notes());
+    Ok(scene)
+}
+
+/// Notes and warnings.
+fn tell(notes: impl IntoIterator<Item = String>) {
+    for note in notes {
+        // Nobody is there to be told if that fails.
+        let _ = writeln!(io::stderr(), "{note}");
+    }
+}
+
+/// Results. A closed pipe is an error here and no panic.
+fn say(text: &str) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes())?;
+    out.flush()
+}
+
 /// Reads the command line and does what it says.
 ///
 /// # Errors
 /// Whatever went wrong, as a sentence.
 pub fn run() -> Result<(), Box<dyn Error>> {
     match Arguments::parse().command {
-        Command::Run { scene, output } => run::run(&Scene::load(&scene)?, &output)?,
+        Command::Run { scene, output } => run::run(&load(&scene)?, &output)?,
         Command::Equilibrium { scene, json, gyroscopic } => {
-            let scene = Scene::load(&scene)?;
+            let scene = load(&scene)?;
             let input = EquilibriumInput::from_scene(&scene, gyroscopic.into());
-            let solution = equilibrium::solve(&Model::new(&scene)?, &input)?;
+            let model = Model::new(&scene)?;
+            let solution = equilibrium::solve(&model, &input)?;
             if json {
-                println!("{:#}", solution.to_json());
+                say(&format!("{:#}\n", solution.to_json()))?;
             } else {
-                print!("{solution}");
+                say(&solution.to_string())?;
             }
+            tell(scene.pressure_note(solution.peak_pressure(&model)));
         }
         Command::Fmu { scene, output, library } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
-            write_fmu(&Scene::load(&scene)?, &libraries, &output)?;
-            println!("{}", output.display());
+            write_fmu(&load(&scene)?, &libraries, &output)?;
+            say(&format!("{}\n", output.display()))?;
         }
         Command::Contact { cases, law, degree, grid } => {
             let law = match law {
@@ -171,7 +196,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         }
         Command::Identify(options) => identify::run(&options)?,
         Command::Cost { scene, output } => cost::run(scene.as_deref(), &output)?,
-        Command::Describe { scene } => print!("{}", render(&Simulation::new(&Scene::load(&scene)?)?)?.xml),
+        Command::Describe { scene } => say(&render(&Simulation::new(&load(&scene)?)?)?.xml)?,
     }
     Ok(())
 }

@@ -14,6 +14,7 @@ use roulement_cli::report::plots::write_plots;
 use roulement_cli::report::results::ResultsWriter;
 
 use super::summary::summary;
+use super::{say, tell};
 
 /// Simulates a scene into a directory.
 ///
@@ -44,12 +45,18 @@ pub fn run(scene: &Scene, directory: &Path) -> Result<(), Box<dyn Error>> {
     let wall = begin.elapsed();
     results.finish()?;
     let plots = write_plots(scene, simulation.model(), &history, directory)?;
-    print!("{}", summary(&simulation, &history, wall));
-    println!("\nresults          {}", directory.join("results.csv").display());
+    let mut text = summary(&simulation, &history, wall);
+    text += &format!("\nresults          {}\n", directory.join("results.csv").display());
     for plot in plots {
-        println!("plot             {}", plot.display());
+        text += &format!("plot             {}\n", plot.display());
     }
-    Ok(played.map(drop)?)
+    let contacts =
+        history.iter().flat_map(|outputs| &outputs.balls).flat_map(|ball| [&ball.inner, &ball.outer]);
+    tell(scene.pressure_note(contacts.map(|contact| contact.peak_pressure).fold(0.0, f64::max)));
+    // Why a run has ended early is said even where nobody reads the summary.
+    let said = say(&text);
+    let _ = played?;
+    Ok(said?)
 }
 
 /// A bar with simulated time and an estimate of what is left.

@@ -30,8 +30,16 @@ fn write_summary(
         writeln!(out, "{title}")?;
     }
     writeln!(out, "at {:.3} ms", now.time * 1e3)?;
-    writeln!(out, "force on inner   x {:.3}  y {:.3}  z {:.3} N", force.x, force.y, force.z)?;
-    writeln!(out, "moment on inner  x {:.5}  y {:.5}  z {:.5} N m", moment.x, moment.y, moment.z)?;
+    writeln!(
+        out,
+        "bearing's force  x {:.3}  y {:.3}  z {:.3} N   (of the bearing on the inner race; the external load is the opposite,",
+        force.x, force.y, force.z
+    )?;
+    writeln!(
+        out,
+        "bearing's moment x {:.5}  y {:.5}  z {:.5} N m   but for what accelerates the race)",
+        moment.x, moment.y, moment.z
+    )?;
     writeln!(out, "inner race at    x {:.4}  y {:.4}  z {:.4} um", position.x, position.y, position.z)?;
     let extremes = |get: fn(&roulement::simulation::outputs::BallOutput) -> f64| {
         let values = now.balls.iter().map(get);

@@ -101,7 +101,7 @@ fn bearing_panels(model: &Model, history: &[Outputs]) -> Vec<Panel> {
             ],
         ),
         panel(
-            "force on inner race [N]",
+            "force of the bearing on inner race [N]",
             1.0,
             vec![
                 curve("x", &|o| o.inner.wrench.force.x),
@@ -110,7 +110,7 @@ fn bearing_panels(model: &Model, history: &[Outputs]) -> Vec<Panel> {
             ],
         ),
         panel(
-            "moment on inner race [N m]",
+            "moment of the bearing on inner race [N m]",
             0.001,
             vec![curve("y", &|o| o.inner.wrench.moment.y), curve("z", &|o| o.inner.wrench.moment.z)],
         ),

@@ -1,0 +1,123 @@
+//! What a reader of a scene's results should know: defaults that were taken, and numbers that are allowed but make no sense
+//! for a ball bearing.
+
+use toml::Table;
+
+use super::{Scene, Schedule};
+
+/// [m rad/s] speed over pitch diameter, n dm = 3e6 mm/min, beyond which no ball bearing is known to run.
+const FASTEST: f64 = 3e6 * 1e-3 * std::f64::consts::TAU / 60.0;
+/// \[Pa] pressure at which balls leave marks of a ten thousandth of their diameter: the static load rating of ISO 76.
+const STATIC_RATING: f64 = 4200e6;
+/// [-] friction coefficient above that of dry steel on steel.
+const ROUGHEST: f64 = 0.6;
+
+impl Scene {
+    /// Notes and warnings about the scene as it is written, a sentence each.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if let Some(note) = self.default_conformities() {
+            notes.push(note);
+        }
+        let speed = self.fastest();
+        let characteristic = speed * self.bearing.pitch_diameter.0;
+        if characteristic > FASTEST {
+            notes.push(format!(
+                "warning: n dm = {:.2e} mm/min ({:.0} rpm on a pitch diameter of {} mm): above 3e6 no ball bearing is \
+                 known to run; are load.inner_speed and load.outer_speed in the unit that you mean?",
+                characteristic / FASTEST * 3e6,
+                speed * 30.0 / std::f64::consts::PI,
+                self.bearing.pitch_diameter.0 * 1e3
+            ));
+        }
+        let friction = self.friction.ball_race;
+        if friction > ROUGHEST {
+            notes.push(format!(
+                "warning: friction.ball_race = {friction} is above that of dry steel; lubricated contacts have 0.03 to 0.12"
+            ));
+        }
+        notes
+    }
+
+    /// A warning where balls are pressed on the races harder than they stand \[Pa].
+    pub fn pressure_note(&self, peak_pressure: f64) -> Option<String> {
+        (peak_pressure > STATIC_RATING).then(|| {
+            format!(
+                "warning: the largest contact pressure is {:.0} MPa: above 4200 MPa (static load rating, ISO 76) balls leave \
+                 lasting marks in the races; is the load in the unit that you mean?",
+                peak_pressure * 1e-6
+            )
+        })
+    }
+
+    fn default_conformities(&self) -> Option<String> {
+        let table: Table = toml::from_str(&self.source).ok()?;
+        let bearing = table.get("bearing")?.as_table()?;
+        let of_race = [
+            ("inner_conformity", self.bearing.inner_conformity),
+            ("outer_conformity", self.bearing.outer_conformity),
+        ];
+        let taken: Vec<String> = of_race
+            .iter()
+            .filter(|(key, _)| !bearing.contains_key(*key))
+            .map(|(key, value)| format!("bearing.{key} = {value}"))
+            .collect();
+        let keys = taken.join(" and ");
+        (!taken.is_empty())
+            .then(|| format!("note: taken by default: {keys} (groove radius over ball diameter)"))
+    }
+
+    /// [rad/s] largest relative speed of the races.
+    fn fastest(&self) -> f64 {
+        let speeds = [&self.load.inner_speed, &self.load.outer_speed];
+        let points = |schedule: &Schedule| match schedule {
+            Schedule::Constant(_) => vec![0.0],
+            Schedule::Table(points) => points.iter().map(|(time, _)| *time).collect(),
+        };
+        // Both change linearly in between.
+        let times = speeds.into_iter().flat_map(points);
+        times.map(|time| (speeds[0].at(time) - speeds[1].at(time)).abs()).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const THRUST: &str = include_str!("../../scenes/thrust.toml");
+
+    fn notes(changes: &[(&str, &str)]) -> Vec<String> {
+        Scene::edited(THRUST, changes.iter().copied()).unwrap().notes()
+    }
+
+    #[test]
+    fn closed_form_speeds_beyond_any_bearing_are_warned_of() {
+        assert_eq!(notes(&[]), Vec::<String>::new());
+        // 46 mm: 3e6 mm/min are 65217 rpm.
+        assert_eq!(notes(&[("load.inner_speed", "\"65200 rpm\"")]), Vec::<String>::new());
+        let fast = notes(&[("load.inner_speed", "\"65300 rpm\"")]);
+        assert!(
+            fast.len() == 1 && fast[0].contains("n dm = 3.00e6") && fast[0].contains("65300 rpm"),
+            "{fast:?}"
+        );
+        // Relative speeds count, at any time.
+        let both = ("load.outer_speed", "\"65300 rpm\"");
+        assert_eq!(notes(&[("load.inner_speed", "\"65300 rpm\""), both]), Vec::<String>::new());
+        let ramp = notes(&[("load.outer_speed", "[[0, 0], [\"1 ms\", \"-70000 rpm\"], [\"2 ms\", 0]]")]);
+        assert!(ramp.len() == 1 && ramp[0].contains("76000 rpm"), "{ramp:?}");
+    }
+
+    #[test]
+    fn conformities_that_are_left_out_have_defaults_and_a_note() {
+        let changes = [("bearing.inner_conformity", ""), ("bearing.outer_conformity", "")];
+        let scene = Scene::edited(THRUST, changes).unwrap();
+        assert_eq!([scene.bearing.inner_conformity, scene.bearing.outer_conformity], [0.52, 0.53]);
+        let note = &scene.notes()[0];
+        assert!(
+            note.contains("inner_conformity = 0.52") && note.contains("outer_conformity = 0.53"),
+            "{note}"
+        );
+        let note = &notes(&changes[1..])[0];
+        assert!(!note.contains("inner") && note.contains("outer_conformity = 0.53"), "{note}");
+    }
+}
