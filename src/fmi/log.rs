@@ -11,6 +11,7 @@ pub type Sink = Box<dyn Fn(Status, &CStr, &CStr) + Send>;
 fn category(status: Status) -> &'static CStr {
     match status {
         Status::Ok => c"logEvents",
+        Status::Warning => c"logStatusWarning",
         Status::Discard => c"logStatusDiscard",
         Status::Error => c"logStatusError",
         Status::Fatal => c"logStatusFatal",

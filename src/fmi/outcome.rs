@@ -5,6 +5,8 @@
 pub enum Status {
     /// All well.
     Ok,
+    /// Done, but probably not what was meant.
+    Warning,
     /// Not done; the instance is at the last time it reached.
     Discard,
     /// Refused.

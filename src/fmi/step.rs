@@ -25,7 +25,7 @@ impl Instance {
         if time + step <= now {
             return error(format!("the communication step {step} s is lost in rounding at {now} s"));
         }
-        let inputs = self.read_inputs(&self.state.values, self.simulation.inputs())?;
+        let inputs = self.next_inputs()?;
         if self.state.changed {
             self.simulation.tune(&self.scene_with(&self.state.values)?);
             self.state.applied.clone_from(&self.state.values);

@@ -90,7 +90,7 @@ pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<
 fn spinning(pose: Pose, speed: f64, applied: Wrench) -> RaceInput {
     let angular_velocity = pose.orientation * Vector3::x() * speed;
     let twist = Twist { velocity: Vector3::zeros(), angular_velocity };
-    RaceInput { pose, twist, twist_rate: Twist::default(), applied, speed }
+    RaceInput { pose, twist, applied, speed, ..RaceInput::default() }
 }
 
 fn own_spin(input: &RaceInput) -> f64 {

@@ -26,6 +26,7 @@ impl From<outcome::Status> for Status {
     fn from(status: outcome::Status) -> Self {
         match status {
             outcome::Status::Ok => Self::Ok,
+            outcome::Status::Warning => Self::Warning,
             outcome::Status::Discard => Self::Discard,
             outcome::Status::Error => Self::Error,
             outcome::Status::Fatal => Self::Fatal,

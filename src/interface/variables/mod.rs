@@ -175,6 +175,26 @@ impl Variables {
         self.rows.iter().map(rate).collect()
     }
 
+    /// A race whose pose is an input.
+    pub fn pose_is_given(&self, race: Race) -> bool {
+        self.rows.iter().any(|row| {
+            row.input_kind() == Some(InputKind::Displacement)
+                && matches!(row.source, Source::Race(of, _, _) if of == race)
+        })
+    }
+
+    /// A race whose orientation is a quaternion of zeros among the values of all rows: an input that nothing is connected to.
+    pub fn zero_quaternion(&self, values: &[f64]) -> Option<Race> {
+        Race::BOTH.into_iter().find(|race| {
+            let mut components = self.rows.iter().zip(values).filter(|(row, _)| {
+                row.input_kind() == Some(InputKind::Quaternion)
+                    && matches!(row.source, Source::Race(of, _, _) if of == *race)
+            });
+            components.next().is_some_and(|(_, first)| *first == 0.0)
+                && components.all(|(_, value)| *value == 0.0)
+        })
+    }
+
     /// Turns the values of all rows (those of outputs are ignored) and their rates into inputs, on top of `base`.
     ///
     /// # Errors
