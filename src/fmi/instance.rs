@@ -250,7 +250,7 @@ impl Instance {
             let row = &self.variables.rows()[index];
             *value = match row.causality {
                 Causality::Input | Causality::Parameter => self.state.values[index],
-                Causality::Output => {
+                Causality::Output | Causality::Local => {
                     self.variables.value(row, self.simulation.inputs(), self.simulation.outputs())
                 }
             };
@@ -265,7 +265,7 @@ impl Instance {
     pub fn set(&mut self, references: &[u32], kind: Kind, values: &[f64]) -> Outcome {
         for (reference, value) in references.iter().zip(values) {
             let row = &self.variables.rows()[self.row(*reference, kind)?];
-            if row.causality == Causality::Output {
+            if matches!(row.causality, Causality::Output | Causality::Local) {
                 return error(format!("{} is an output and cannot be set", row.name));
             }
             if !value.is_finite() {

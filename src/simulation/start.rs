@@ -52,6 +52,13 @@ pub fn from_equilibrium(scene: &Scene, model: &Model) -> Result<(Inputs, State),
 /// # Errors
 /// If there is no equilibrium.
 pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<State, EquilibriumError> {
+    for (race, section) in [(Race::Inner, &scene.inner), (Race::Outer, &scene.outer)] {
+        // Its frame rests at the start.
+        if matches!(section.drive, Drive::Fixed | Drive::Hinge) {
+            let input = &mut inputs[race];
+            input.twist.angular_velocity = input.pose.orientation * Vector3::x() * input.speed;
+        }
+    }
     let outer = &inputs.outer.pose;
     let mut problem = EquilibriumInput::from_scene(scene, Gyroscopic::Friction);
     problem.friction = inputs.friction;

@@ -132,7 +132,7 @@ impl Package {
         std::fs::create_dir_all(&folder).unwrap();
         std::fs::write(folder.join("scene.toml"), text).unwrap();
         let scene = Scene::parse(text).unwrap();
-        let guid = render(&Simulation::new(&scene).unwrap()).unwrap().guid;
+        let guid = render(&Simulation::new(&scene).unwrap(), "bearing").unwrap().guid;
         let callbacks = CallbackFunctions {
             logger: None,
             allocate_memory: None,

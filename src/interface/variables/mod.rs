@@ -24,6 +24,8 @@ pub enum Causality {
     Input,
     /// Read by the importer.
     Output,
+    /// Read by the importer, and of interest to nobody else: no master offers it for connections.
+    Local,
     /// A number of the scene, set by the importer before the start or, if tunable, between steps.
     Parameter,
 }
@@ -116,9 +118,9 @@ impl Variables {
     /// The variables that can change in a run, with or without those of every ball.
     pub fn moving(scene: &Scene, per_ball: bool) -> Self {
         let mut table = Self { rows: vec![] };
-        table.add_race(Race::Inner, scene.inner.drive, scene.interface.orientation);
-        table.add_race(Race::Outer, scene.outer.drive, scene.interface.orientation);
-        table.add_bearing();
+        table.add_race(scene, Race::Inner);
+        table.add_race(scene, Race::Outer);
+        table.add_bearing(scene);
         table.add_effects(scene, per_ball);
         table
     }

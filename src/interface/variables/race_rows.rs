@@ -25,12 +25,57 @@ pub struct RaceVariable {
     pub limits: [Option<f64>; 2],
     /// One sentence, with `{race}` and `{component}` in it.
     description: &'static str,
-    /// Causality by the drive of the race and the form of its orientation; none where there is no such variable.
-    pub causality: fn(Drive, Orientation) -> Option<Causality>,
+    /// Causality by the motion of the race; none where there is no such variable.
+    pub causality: fn(RaceMotion) -> Option<Causality>,
     /// \[unit] component as an output.
     pub read: fn(&RaceOutput, usize) -> f64,
     /// Access to the quantity as an input, where it can be one.
     pub input: Option<InputAccess>,
+}
+
+/// What the scene says of the motion of a race.
+#[derive(Clone, Copy, Debug)]
+pub struct RaceMotion {
+    /// How it gets its motion.
+    pub drive: Drive,
+    /// How its orientation is written.
+    pub orientation: Orientation,
+    /// Does a script give its speed at all times?
+    pub scripted_speed: bool,
+}
+
+impl RaceMotion {
+    /// Pose and twist: inputs where they are given, outputs where forces move the race.
+    fn pose(self) -> Option<Causality> {
+        match self.drive {
+            Drive::Pose => Some(Causality::Input),
+            Drive::Wrench | Drive::Hinge => Some(Causality::Output),
+            Drive::Fixed => None,
+        }
+    }
+
+    /// Those of one form of orientation.
+    fn pose_as(self, orientation: Orientation) -> Option<Causality> {
+        self.pose().filter(|_| self.orientation == orientation)
+    }
+
+    fn output(self, drives: &[Drive]) -> Option<Causality> {
+        drives.contains(&self.drive).then_some(Causality::Output)
+    }
+
+    fn input(self, drives: &[Drive]) -> Option<Causality> {
+        drives.contains(&self.drive).then_some(Causality::Input)
+    }
+
+    /// The prescribed speed: not where the angular velocity is given instead, or a script says it.
+    fn speed(self) -> Option<Causality> {
+        let given = match self.drive {
+            Drive::Wrench => true,
+            Drive::Pose => self.orientation == Orientation::Shaft,
+            Drive::Fixed | Drive::Hinge => !self.scripted_speed,
+        };
+        given.then_some(Causality::Input)
+    }
 }
 
 /// How a quantity of a race is an input.
@@ -133,15 +178,6 @@ impl RaceVariable {
     }
 }
 
-/// Pose and twist: inputs where they are given, outputs where forces move the race.
-fn motion(drive: Drive) -> Option<Causality> {
-    match drive {
-        Drive::Pose => Some(Causality::Input),
-        Drive::Wrench | Drive::Hinge => Some(Causality::Output),
-        Drive::Fixed => None,
-    }
-}
-
 /// Rate of a pose, which has none of its own: it is the twist.
 fn no_rate(_: &RaceInput, _: usize) -> f64 {
     0.0
@@ -162,7 +198,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 1e-5,
         limits: NO_LIMITS,
         description: "position of the origin of the {race} race, {component} component, world axes",
-        causality: |drive, _| motion(drive),
+        causality: RaceMotion::pose,
         read: |race, i| race.pose.position[i],
         input: Some(InputAccess {
             get: |race, i| race.pose.position[i],
@@ -178,7 +214,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 1e-3,
         limits: NO_LIMITS,
         description: "rotation vector that tilts the axis of the {race} race away from x, {component} component",
-        causality: |drive, orientation| motion(drive).filter(|_| orientation == Orientation::Shaft),
+        causality: |motion| motion.pose_as(Orientation::Shaft),
         read: |race, i| tilt::coordinates(&race.pose.orientation)[i + 1],
         input: Some(InputAccess {
             get: |race, i| {
@@ -200,7 +236,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         // A quaternion a little longer than 1 is normalised.
         limits: [Some(-1.0 - NORM_TOLERANCE), Some(1.0 + NORM_TOLERANCE)],
         description: "orientation of the {race} race, unit quaternion component {component}",
-        causality: |drive, orientation| motion(drive).filter(|_| orientation == Orientation::Quaternion),
+        causality: |motion| motion.pose_as(Orientation::Quaternion),
         read: |race, i| quaternion(&race.pose.orientation, i),
         input: Some(InputAccess {
             get: |race, i| quaternion(&race.pose.orientation, i),
@@ -216,7 +252,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 1e-3,
         limits: NO_LIMITS,
         description: "Cardan angle {component} of the {race} race: tilts y, z, then the turn x about its own axis, without limit",
-        causality: |drive, orientation| motion(drive).filter(|_| orientation == Orientation::Cardan),
+        causality: |motion| motion.pose_as(Orientation::Cardan),
         read: |race, i| to_cardan(&race.pose.orientation, race.turned)[i],
         input: Some(InputAccess {
             get: |race, i| to_cardan(&race.pose.orientation, 0.0)[i],
@@ -232,7 +268,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 1e-3,
         limits: NO_LIMITS,
         description: "velocity of the origin of the {race} race, {component} component, world axes",
-        causality: |drive, _| motion(drive),
+        causality: RaceMotion::pose,
         read: |race, i| race.twist.velocity[i],
         input: Some(InputAccess {
             get: |race, i| race.twist.velocity[i],
@@ -251,7 +287,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 1.0,
         limits: NO_LIMITS,
         description: "rate of the rotation vector of the {race} race's axis, {component} component",
-        causality: |drive, orientation| motion(drive).filter(|_| orientation == Orientation::Shaft),
+        causality: |motion| motion.pose_as(Orientation::Shaft),
         read: |race, i| {
             tilt::rates(&tilt::coordinates(&race.pose.orientation), &race.twist.angular_velocity)[i + 1]
         },
@@ -272,7 +308,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 100.0,
         limits: NO_LIMITS,
         description: "angular velocity of the {race} race, {component} component, world axes",
-        causality: |drive, orientation| motion(drive).filter(|_| orientation != Orientation::Shaft),
+        causality: |motion| motion.pose().filter(|_| motion.orientation != Orientation::Shaft),
         read: |race, i| race.twist.angular_velocity[i],
         input: Some(InputAccess {
             get: |race, i| race.twist.angular_velocity[i],
@@ -291,7 +327,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 1e3,
         limits: NO_LIMITS,
         description: "force that the bearing exerts on the {race} race, {component} component, world axes",
-        causality: |_, _| Some(Causality::Output),
+        causality: |_| Some(Causality::Output),
         read: |race, i| race.wrench.force[i],
         input: None,
     },
@@ -302,7 +338,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 1.0,
         limits: NO_LIMITS,
         description: "moment that the bearing exerts about the origin of the {race} race, {component} component, world axes",
-        causality: |_, _| Some(Causality::Output),
+        causality: |_| Some(Causality::Output),
         read: |race, i| race.wrench.moment[i],
         input: None,
     },
@@ -313,7 +349,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 1e3,
         limits: NO_LIMITS,
         description: "force of the hinge on the {race} race, {component} component, world axes",
-        causality: |drive, _| (drive == Drive::Hinge).then_some(Causality::Output),
+        causality: |motion| motion.output(&[Drive::Hinge]),
         read: |race, i| race.reaction.force[i],
         input: None,
     },
@@ -324,7 +360,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 1.0,
         limits: NO_LIMITS,
         description: "moment of the hinge and its drive about the origin of the {race} race, {component} component, world axes",
-        causality: |drive, _| (drive == Drive::Hinge).then_some(Causality::Output),
+        causality: |motion| motion.output(&[Drive::Hinge]),
         read: |race, i| race.reaction.moment[i],
         input: None,
     },
@@ -335,7 +371,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 1e3,
         limits: NO_LIMITS,
         description: "external force on the {race} race, {component} component, world axes",
-        causality: |drive, _| (drive == Drive::Wrench).then_some(Causality::Input),
+        causality: |motion| motion.input(&[Drive::Wrench]),
         read: |_, _| 0.0,
         input: Some(InputAccess {
             get: |race, i| race.applied.force[i],
@@ -351,7 +387,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 1.0,
         limits: NO_LIMITS,
         description: "external moment about the origin of the {race} race, {component} component, world axes",
-        causality: |drive, _| (drive == Drive::Wrench).then_some(Causality::Input),
+        causality: |motion| motion.input(&[Drive::Wrench]),
         read: |_, _| 0.0,
         input: Some(InputAccess {
             get: |race, i| race.applied.moment[i],
@@ -367,11 +403,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 100.0,
         limits: NO_LIMITS,
         description: "prescribed spin of the {race} race about its own axis",
-        causality: |drive, orientation| match drive {
-            Drive::Wrench => Some(Causality::Input),
-            Drive::Pose => (orientation == Orientation::Shaft).then_some(Causality::Input),
-            Drive::Fixed | Drive::Hinge => None,
-        },
+        causality: RaceMotion::speed,
         read: |_, _| 0.0,
         input: Some(InputAccess {
             get: |race, _| race.speed,
@@ -391,10 +423,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 100.0,
         limits: NO_LIMITS,
         description: "turn of the {race} race about its own axis since the start",
-        causality: |drive, orientation| {
-            let moves = motion(drive).is_some() && orientation == Orientation::Shaft;
-            moves.then_some(Causality::Output)
-        },
+        causality: |motion| motion.pose_as(Orientation::Shaft).map(|_| Causality::Output),
         read: |race, _| race.turned,
         input: None,
     },
@@ -405,7 +434,7 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         nominal: 0.1,
         limits: NO_LIMITS,
         description: "torque that keeps the {race} race at its prescribed speed",
-        causality: |drive, _| matches!(drive, Drive::Wrench | Drive::Hinge).then_some(Causality::Output),
+        causality: |motion| motion.output(&[Drive::Wrench, Drive::Hinge]),
         read: |race, _| race.drive_torque,
         input: None,
     },
