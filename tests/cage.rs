@@ -573,7 +573,7 @@ fn wrong_sections_are_refused_by_name() {
         ("cage.mass", "", &["cage.mass is missing", "20 g"]),
         ("cage.mass", "0", &["cage.mass = 0", "(0, 10000]"]),
         ("cage.mass", "\"20 mm\"", &["cage.mass", "20 mm", "mm measures something else"]),
-        ("cage.inertia", "[-1.0, 6e-6, 6e-6]", &["cage.inertia = -1"]),
+        ("cage.inertia", "[-1.0, 6e-6, 6e-6]", &["cage.inertia.x = -1"]),
         ("cage.pocket_clearance", "0", &["cage.pocket_clearance = 0"]),
         ("cage.pocket_clearance", "\"4.75 mm\"", &["pockets overlap"]),
         ("cage.guided_by", "\"left\"", &["left", "inner"]),

@@ -59,6 +59,14 @@ keys! {
     section: Option<CageSection> = None,
 }
 
+const INERTIA: Range = Range::above(0.0, 1e4, "kg m2");
+/// Lengths; those of the bearing narrow it.
+const LENGTH: Range = Range::above(0.0, 1e3, "m");
+
+fn length(settings: &mut Settings, of: fn(&mut CageSection) -> &mut Option<Length>) -> Place<'_> {
+    Place::Value(settings.section.as_mut().and_then(|cage| of(cage).as_mut()).map(|length| &mut length.0))
+}
+
 /// [-] smallest diametral clearance of a pocket over the ball diameter.
 const SMALLEST_POCKET_CLEARANCE: f64 = 0.005;
 
@@ -73,19 +81,40 @@ impl Effect for Settings {
     };
 
     const NUMBERS: &'static [Number<Self>] = &[
-        Number::checked("cage.mass", Range::above(0.0, 1e4, "kg"), |s| {
+        Number::fixed("cage.mass", Range::above(0.0, 1e4, "kg"), "mass of the cage", |s| {
             Place::Value(s.section.as_mut().map(|cage| &mut cage.mass.0))
         }),
-        Number::checked("cage.inertia", Range::above(0.0, 1e4, "kg m2"), |s| {
-            Place::Read(s.section.iter().flat_map(|cage| cage.inertia.map(|moment| moment.0)).collect())
+        Number::fixed("cage.inertia.x", INERTIA, "moment of inertia of the cage about its own axis", |s| {
+            Place::Value(s.section.as_mut().map(|cage| &mut cage.inertia[0].0))
         }),
-        Number::checked("cage.youngs_modulus", YOUNGS_MODULUS, |s| {
+        Number::fixed("cage.inertia.y", INERTIA, "moment of inertia of the cage about its y axis", |s| {
+            Place::Value(s.section.as_mut().map(|cage| &mut cage.inertia[1].0))
+        }),
+        Number::fixed("cage.inertia.z", INERTIA, "moment of inertia of the cage about its z axis", |s| {
+            Place::Value(s.section.as_mut().map(|cage| &mut cage.inertia[2].0))
+        }),
+        Number::fixed("cage.pocket_clearance", LENGTH, "diametral clearance of a ball in its pocket", |s| {
+            Place::Value(s.section.as_mut().map(|cage| &mut cage.pocket_clearance.0))
+        }),
+        Number::fixed(
+            "cage.guidance_clearance",
+            LENGTH,
+            "diametral clearance of the cage on the lands",
+            |s| length(s, |cage| &mut cage.guidance_clearance),
+        ),
+        Number::fixed("cage.land_diameter", LENGTH, "diameter of the lands that guide the cage", |s| {
+            length(s, |cage| &mut cage.land_diameter)
+        }),
+        Number::fixed("cage.land_width", LENGTH, "width of each of the two lands", |s| {
+            length(s, |cage| &mut cage.land_width)
+        }),
+        Number::fixed("cage.youngs_modulus", YOUNGS_MODULUS, "Young's modulus in the pockets", |s| {
             Place::Value(s.section.as_mut().and_then(|cage| cage.youngs_modulus.as_mut()).map(|e| &mut e.0))
         }),
-        Number::checked("cage.poisson_ratio", POISSON_RATIO, |s| {
+        Number::fixed("cage.poisson_ratio", POISSON_RATIO, "Poisson's ratio in the pockets", |s| {
             Place::Value(s.section.as_mut().and_then(|cage| cage.poisson_ratio.as_mut()))
         }),
-        Number::checked("cage.damping", DISSIPATION, |s| {
+        Number::fixed("cage.damping", DISSIPATION, "dissipation factor of the cage's contacts", |s| {
             Place::Value(
                 s.section.as_mut().and_then(|cage| cage.damping.as_mut()).map(|factor| &mut factor.0),
             )

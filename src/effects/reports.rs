@@ -36,6 +36,10 @@ pub struct ContactOutput {
     pub spin_moment: f64,
     /// \[W] power lost to friction.
     pub power: f64,
+    /// \[W] part of it by the spin moment.
+    pub spin_power: f64,
+    /// \[W] part of it by the slip of a bent groove.
+    pub groove_power: f64,
     /// \[m] semi-axis of the contact ellipse along rolling.
     pub semi_axis_rolling: f64,
     /// \[m] semi-axis of the contact ellipse transverse to rolling.

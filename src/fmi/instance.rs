@@ -6,8 +6,10 @@ use super::log::Log;
 use super::outcome::{Outcome, Status, error};
 use super::resources;
 use super::state::{Phase, State};
+use crate::interface::contradiction::Contradiction;
 use crate::interface::model_description;
 use crate::interface::variables::{Causality, Kind, Source, Variables};
+use crate::model::bodies::Race;
 use crate::scene::{Giver, Group, Groups, Scene};
 use crate::schema::numbers::Variability;
 use crate::simulation::inputs::Inputs;
@@ -31,6 +33,19 @@ pub struct Instance {
     pub stop: Option<f64>,
     /// Derivatives of outputs by inputs at this point, if they were asked for.
     pub columns: Option<Vec<Vec<f64>>>,
+    /// What was warned of.
+    warned: Warned,
+}
+
+/// [-] steps in a row whose poses contradict their twists before that is told: a vibration may do so where it turns back.
+const CONTRADICTIONS: u32 = 3;
+
+/// Warnings, each of which is given once.
+#[derive(Clone, Copy, Debug, Default)]
+struct Warned {
+    zero_quaternion: bool,
+    /// Steps in a row whose poses contradict their twists.
+    contradictions: u32,
 }
 
 impl Instance {
@@ -60,6 +75,7 @@ impl Instance {
             state: State::new(values),
             stop: None,
             columns: None,
+            warned: Warned::default(),
         })
     }
 
@@ -124,7 +140,8 @@ impl Instance {
     /// From now on the importer gives the group of an input; a script of it ends.
     pub fn take_over(&mut self, index: usize) {
         let row = &self.variables.rows()[index];
-        let Some(group) = row.group().filter(|group| !self.state.set.contains(*group)) else {
+        let Some(group) = row.group(self.simulation.scene()).filter(|group| !self.state.set.contains(*group))
+        else {
             return;
         };
         let ends = self.state.phase == Phase::StepComplete && self.played().contains(group);
@@ -186,7 +203,8 @@ impl Instance {
             }
         }
         if self.state.given.contains(&true) {
-            simulation.set_inputs(self.read_inputs(&values, simulation.inputs())?);
+            let inputs = self.read_inputs(&values, simulation.inputs())?;
+            simulation.set_inputs(inputs);
             simulation.initialise().map_err(|why| (Status::Error, why.to_string()))?;
         }
         self.simulation = simulation;
@@ -210,8 +228,64 @@ impl Instance {
         Ok(scene)
     }
 
-    pub fn read_inputs(&self, values: &[f64], base: &Inputs) -> Outcome<Inputs> {
+    /// Inputs of the values of all rows.
+    ///
+    /// # Errors
+    /// See [`Variables::inputs`].
+    fn read_inputs(&mut self, values: &[f64], base: &Inputs) -> Outcome<Inputs> {
+        self.warn_of_zero_quaternion(values);
         self.variables.inputs(values, &self.state.rates, base).map_err(|why| (Status::Error, why.to_string()))
+    }
+
+    /// Inputs of the next step.
+    ///
+    /// # Errors
+    /// See [`Variables::inputs`].
+    pub fn next_inputs(&mut self) -> Outcome<Inputs> {
+        let (values, base) = (self.state.values.clone(), *self.simulation.inputs());
+        let inputs = self.read_inputs(&values, &base)?;
+        self.warn_of_contradiction(&inputs);
+        Ok(inputs)
+    }
+
+    /// Says once that a quaternion of zeros, that of an input which nothing is connected to, is taken for no rotation.
+    fn warn_of_zero_quaternion(&mut self, values: &[f64]) {
+        if self.warned.zero_quaternion {
+            return;
+        }
+        if let Some(race) = self.variables.zero_quaternion(values).map(Race::name) {
+            let what = format!("{race}.orientation is all zeros, as if not connected: taken as no rotation");
+            self.log.write(Status::Warning, &what);
+            self.warned.zero_quaternion = true;
+        }
+    }
+
+    /// Says once that the poses of several steps contradict their twists. `next` are the inputs of the next step.
+    fn warn_of_contradiction(&mut self, next: &Inputs) {
+        let (step, before) = (self.state.last_step, self.simulation.inputs());
+        // Before the second step, there is nothing to compare with.
+        if self.warned.contradictions >= CONTRADICTIONS || step <= 0.0 {
+            return;
+        }
+        // A script moves on within a step, and its pose and twist agree.
+        let scripted = self.played().contains(Group::Tilts);
+        let given = |race: Race| !scripted && self.variables.pose_is_given(race);
+        let found = Race::BOTH
+            .into_iter()
+            .filter(|race| given(*race))
+            .find_map(|race| Some((race, Contradiction::between(&before[race], &next[race], step)?)));
+        let Some((race, contradiction)) = found else {
+            self.warned.contradictions = 0;
+            return;
+        };
+        self.warned.contradictions += 1;
+        if self.warned.contradictions == CONTRADICTIONS {
+            let (race, time) = (race.name(), self.simulation.time());
+            let what = format!(
+                "the pose of the {race} race contradicts its twist: {contradiction}, over the {step} s before {time} s"
+            );
+            self.log.write(Status::Warning, &what);
+        }
     }
 
     /// Ends the simulation.
@@ -226,6 +300,7 @@ impl Instance {
         self.state = State::new(values);
         self.stop = None;
         self.columns = None;
+        self.warned = Warned::default();
     }
 
     /// Row of a value reference of one type.
@@ -254,7 +329,7 @@ impl Instance {
             let row = &self.variables.rows()[index];
             *value = match row.causality {
                 Causality::Input | Causality::Parameter => self.state.values[index],
-                Causality::Output => {
+                Causality::Output | Causality::Local => {
                     self.variables.value(row, self.simulation.inputs(), self.simulation.outputs())
                 }
             };
@@ -269,7 +344,7 @@ impl Instance {
     pub fn set(&mut self, references: &[u32], kind: Kind, values: &[f64]) -> Outcome {
         for (reference, value) in references.iter().zip(values) {
             let row = &self.variables.rows()[self.row(*reference, kind)?];
-            if row.causality == Causality::Output {
+            if matches!(row.causality, Causality::Output | Causality::Local) {
                 return error(format!("{} is an output and cannot be set", row.name));
             }
             if !value.is_finite() {

@@ -5,7 +5,7 @@
 pub enum Status {
     /// All well.
     Ok,
-    /// Done, and worth a word: for messages alone.
+    /// Done, but probably not what was meant.
     Warning,
     /// Not done; the instance is at the last time it reached.
     Discard,

@@ -32,7 +32,7 @@ impl Instance {
             let end = time + step;
             return error(format!("the communication step to {end} s is beyond the stop time {stop} s"));
         }
-        let inputs = self.read_inputs(&self.state.values, self.simulation.inputs())?;
+        let inputs = self.next_inputs()?;
         if self.state.changed {
             self.simulation.tune(&self.scene_with(&self.state.values)?);
             self.state.applied.clone_from(&self.state.values);
@@ -56,9 +56,10 @@ impl Instance {
             self.state.last_step = 0.0;
             return Err((Status::Discard, format!("a result is not a number after {now} s")));
         }
+        let scene = self.simulation.scene();
         for (row, (value, set)) in self.variables.rows().iter().zip(values.iter().zip(&mut self.state.values))
         {
-            if row.group().is_some_and(|group| self.state.played.contains(group)) {
+            if row.group(scene).is_some_and(|group| self.state.played.contains(group)) {
                 *set = *value;
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::effects::AnyEffect;
 use crate::interface::variables::{Causality, Source, Variable, Variables};
-use crate::scene::{Drive, Scene};
+use crate::scene::{Drive, Orientation, Scene};
 use crate::schema::numbers::Variability;
 
 const STYLE: &str = "body{font:16px sans-serif;max-width:64em;margin:2em auto;padding:0 1em}\
@@ -25,12 +25,31 @@ fn drive(drive: Drive) -> &'static str {
     }
 }
 
-/// The row of an effect, on or off.
-fn effect(effect: &dyn AnyEffect) -> String {
-    let (info, setting) = (effect.info(), effect.setting().unwrap_or_else(|| "off".into()));
+/// The row of an effect that is on.
+fn effect(effect: &dyn AnyEffect) -> Option<String> {
+    let (info, setting) = (effect.info(), effect.setting()?);
     let cells =
         [&setting, info.adds, info.states, info.source].map(|text| format!("<td>{}</td>", escape(text)));
-    format!("<tr><td><code>{}</code></td>{}</tr>\n", escape(info.key), cells.concat())
+    Some(format!("<tr><td><code>{}</code></td>{}</tr>\n", escape(info.key), cells.concat()))
+}
+
+/// How orientations of races are written.
+fn orientation(orientation: Orientation) -> &'static str {
+    match orientation {
+        Orientation::Shaft => {
+            "The orientation of a race is the rotation vector of its axis (<code>rotation.y</code>, <code>rotation.z</code>), \
+             with its rates, and the speed at which it spins about that axis; the angle about the axis is integrated inside. \
+             Zeros are a legal start. Scenes may ask for quaternions or Cardan angles: <code>interface.orientation</code>."
+        }
+        Orientation::Quaternion => {
+            "Orientations are unit quaternions w, x, y, z from race to world axes; the pose of a race that spins has to turn \
+             with it. Only zeros, as of an input that nothing is connected to, mean no rotation."
+        }
+        Orientation::Cardan => {
+            "Orientations are Cardan angles: the axis tilts by y and z, in this order, then the race turns about it by x, \
+             without limit; the angle x of a race that spins has to grow with it."
+        }
+    }
 }
 
 /// The page of a scene's package.
@@ -47,8 +66,10 @@ pub fn page(scene: &Scene) -> String {
         };
         variables.rows().iter().filter(|row| wanted(row)).map(cells).collect::<String>()
     };
-    let interface = rows(&|row| row.causality != Causality::Parameter, &|row| {
-        if row.causality == Causality::Input { "input".into() } else { "output".into() }
+    let interface = rows(&|row| row.causality != Causality::Parameter, &|row| match row.causality {
+        Causality::Input => "input".into(),
+        Causality::Local => "local".into(),
+        Causality::Output | Causality::Parameter => "output".into(),
     });
     let parameters = rows(&|row| row.causality == Causality::Parameter, &|row| {
         let Source::Parameter(parameter) = &row.source else {
@@ -61,7 +82,10 @@ pub fn page(scene: &Scene) -> String {
         let (start, range) = (parameter.start, parameter.range);
         format!("{start} ({} to {}), {when}", range.low, range.high)
     });
-    let effects: String = scene.effects.each().into_iter().map(effect).collect();
+    let effects: String = scene.effects.each().into_iter().filter_map(effect).collect();
+    let off = scene.effects.each().into_iter().filter(|effect| effect.setting().is_none());
+    let off: Vec<_> = off.map(|effect| format!("<code>{}</code>", escape(effect.info().key))).collect();
+    let off = if off.is_empty() { String::new() } else { format!("<p>Off: {}.</p>\n", off.join(", ")) };
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
          <style>{STYLE}</style></head><body>\n<h1>{title}</h1>\n\
@@ -70,8 +94,7 @@ pub fn page(scene: &Scene) -> String {
          co-simulation, made by roulement {version}.</p>\n\
          <h2>Frames</h2>\n<p>Right-handed, x is the bearing axis, the origin is the bearing centre; all components are in \
          these world axes. Azimuths count from +y towards +z. A force or moment of a race is what the bearing exerts on \
-         it, about the origin of the race's frame. Orientations are unit quaternions w, x, y, z (or Cardan angles, \
-         intrinsic x-y-z) from race to world axes.</p>\n\
+         it, about the origin of the race's frame. {orientation}</p>\n\
          <p>Inner race: {inner}. Outer race: {outer}.</p>\n\
          <h2>Steps</h2>\n<p>Inputs are those at the start of a communication step; outputs those at its end. A race whose \
          pose is given moves, without a jump, along a cubic from where it is to where the given pose leads with the given \
@@ -82,17 +105,19 @@ pub fn page(scene: &Scene) -> String {
          by all inputs over the last step.</p>\n\
          <p>What the scene gives as a table over time is played here too, exactly in every internal step, unless \
          <code>interface.inputs</code> of the scene leaves it to the master: applied loads (<code>loads</code>), \
-         <code>inner.speed</code> (<code>speeds</code>), poses and twists in pose drive (<code>tilts</code>), \
+         <code>inner.speed</code> (<code>speeds</code>), poses, twists and speed in pose drive (<code>tilts</code>), \
          <code>friction</code>. Setting an input of such a group, or a derivative of one, ends the script of the whole \
          group; its other inputs stay at their last values. The log tells which scripts are played. An input that a script \
          gives reads as its value at the communication point, and directional derivatives by it are zero.</p>\n\
-         <h2>Effects</h2>\n<table><tr><th>key</th><th>here</th><th>adds</th><th>states</th><th>source</th></tr>\n\
-         {effects}</table>\n\
+         <h2>Effects</h2>\n<table><tr><th>on</th><th>here</th><th>adds</th><th>states</th><th>source</th></tr>\n\
+         {effects}</table>\n{off}\
          <h2>Limits</h2>\n<ul><li>Rigid rings: the raceways do not bend; no thermal growth, no lubricant film.</li>\n\
-         <li>A wrench held over a communication step makes a stiff coupling unstable unless the step is far below the \
-         period of the shaft on the bearing (about 1 us for a shaft of 1 kg); save and restore the state, or use the \
-         directional derivatives, for steps hundreds of times longer.</li>\n\
-         <li>A unit quaternion may be off by 0.001 in norm; more is refused. So is anything that is not finite.</li>\n\
+         <li>A shaft on the bearing is moved by leapfrog, or at least by velocity first and then position: stable while a \
+         step is shorter than the reciprocal of its angular frequency on the bearing (70 us for a shaft of 1 kg). A force held \
+         constant over the step, position and velocity both from it, is unstable in all but steps a hundred times shorter; \
+         the directional derivatives serve for longer steps.</li>\n\
+         <li>What is not finite is refused, and a quaternion that is off by more than 0.001 in norm. A pose that contradicts \
+         its velocities is logged, once.</li>\n\
          <li>The number of balls, the drives and the effects are fixed by the scene; everything under Parameters can be \
          changed.</li></ul>\n\
          <h2>Interface</h2>\n<table><tr><th>name</th><th>unit</th><th>causality</th><th>meaning</th></tr>\n{interface}\
@@ -102,6 +127,7 @@ pub fn page(scene: &Scene) -> String {
          <h2>Scene</h2>\n<pre>{scene}</pre>\n\
          <p>Licences of what this package is linked from: <a href=\"licenses/licenses.txt\">licenses/licenses.txt</a>.</p>\n\
          </body></html>\n",
+        orientation = orientation(scene.interface.orientation),
         balls = scene.bearing.balls,
         version = env!("CARGO_PKG_VERSION"),
         inner = drive(scene.inner.drive),

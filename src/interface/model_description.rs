@@ -6,14 +6,20 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
 
+use crate::analysis::condensed::Condensed;
 use crate::interface::variables::{Causality, Kind, Source, Variable, Variables};
-use crate::scene::Scene;
+use crate::scene::{Drive, Scene};
 use crate::schema::numbers::Variability;
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::Simulation;
 
-/// Model identifier: the name of the shared library in a package.
-pub const MODEL_IDENTIFIER: &str = "roulement";
+/// Model identifier of a package with a name, which its library has as its file name: the name with every character that
+/// is not allowed in C replaced.
+pub fn identifier(name: &str) -> String {
+    let allowed = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    let text: String = name.chars().map(allowed).collect();
+    if text.starts_with(|c: char| !c.is_ascii_digit()) { text } else { format!("_{text}") }
+}
 
 /// Log categories: name and meaning.
 pub const LOG_CATEGORIES: [(&str, &str); 5] = [
@@ -35,15 +41,15 @@ pub struct ModelDescription {
 
 type Xml = Writer<Vec<u8>>;
 
-/// Renders the model description of a started scene.
+/// Renders the model description of a started scene for a package with a name.
 ///
 /// # Errors
 /// Only those of writing to memory.
-pub fn render(simulation: &Simulation) -> std::io::Result<ModelDescription> {
+pub fn render(simulation: &Simulation, name: &str) -> std::io::Result<ModelDescription> {
     let scene = simulation.scene();
     let variables = Variables::new(scene);
     let guid = guid(scene, &variables);
-    let xml = document(simulation, &variables, &guid)?;
+    let xml = document(simulation, name, &variables, &guid)?;
     Ok(ModelDescription { xml, guid })
 }
 
@@ -64,7 +70,12 @@ pub fn guid(scene: &Scene, variables: &Variables) -> String {
     format!("{{{}-{}-{}-{}-{}}}", &hex[0..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..32])
 }
 
-fn document(simulation: &Simulation, variables: &Variables, guid: &str) -> std::io::Result<String> {
+fn document(
+    simulation: &Simulation,
+    name: &str,
+    variables: &Variables,
+    guid: &str,
+) -> std::io::Result<String> {
     let scene = simulation.scene();
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
@@ -72,7 +83,7 @@ fn document(simulation: &Simulation, variables: &Variables, guid: &str) -> std::
     xml.create_element("fmiModelDescription")
         .with_attributes([
             ("fmiVersion", "2.0"),
-            ("modelName", "roulement"),
+            ("modelName", name),
             ("guid", guid),
             ("description", title),
             ("version", env!("CARGO_PKG_VERSION")),
@@ -82,7 +93,7 @@ fn document(simulation: &Simulation, variables: &Variables, guid: &str) -> std::
             ("numberOfEventIndicators", "0"),
         ])
         .write_inner_content(|xml| {
-            co_simulation(xml)?;
+            co_simulation(xml, &identifier(name))?;
             unit_definitions(xml)?;
             type_definitions(xml)?;
             xml.create_element("LogCategories").write_inner_content(|xml| {
@@ -108,10 +119,10 @@ fn document(simulation: &Simulation, variables: &Variables, guid: &str) -> std::
     Ok(text)
 }
 
-fn co_simulation(xml: &mut Xml) -> std::io::Result<()> {
+fn co_simulation(xml: &mut Xml, identifier: &str) -> std::io::Result<()> {
     xml.create_element("CoSimulation")
         .with_attributes([
-            ("modelIdentifier", MODEL_IDENTIFIER),
+            ("modelIdentifier", identifier),
             ("canHandleVariableCommunicationStepSize", "true"),
             ("canInterpolateInputs", "true"),
             ("maxOutputDerivativeOrder", "1"),
@@ -177,9 +188,13 @@ fn type_definitions(xml: &mut Xml) -> std::io::Result<()> {
 }
 
 /// The recommended communication step resolves the passing of the balls with twenty points, and is not longer than the
-/// scene's own output interval.
+/// scene's own output interval. Where the pose of the inner race is an input, it also is short enough for a shaft that its
+/// master moves by leapfrog (`docs/coupling.md`): half the reciprocal of its angular frequency on the bearing, a quarter of
+/// what is stable. The shaft has the mass that the scene gives, or 1 kg.
 fn default_experiment(xml: &mut Xml, simulation: &Simulation) -> std::io::Result<()> {
     const POINTS_PER_PASSAGE: f64 = 20.0;
+    const SHAFT_MASS: f64 = 1.0; // [kg]
+    const FREQUENCY_BY_STEP: f64 = 0.5; // [rad]
     let (scene, outputs) = (simulation.scene(), simulation.outputs());
     let balls = scene.bearing.balls as f64;
     // Balls pass a point of a race at their speed relative to it.
@@ -187,11 +202,19 @@ fn default_experiment(xml: &mut Xml, simulation: &Simulation) -> std::io::Result
     let passing = speeds.map(|speed| balls * (speed - outputs.cage_speed).abs() / std::f64::consts::TAU);
     let frequency = passing[0].max(passing[1]);
     let interval = scene.load.output_interval.0;
-    let step = if frequency > 0.0 {
-        round_down(1.0 / (POINTS_PER_PASSAGE * frequency)).min(interval)
-    } else {
-        interval
-    };
+    let mut step = interval;
+    if frequency > 0.0 {
+        step = step.min(round_down(1.0 / (POINTS_PER_PASSAGE * frequency)));
+    }
+    if scene.inner.drive == Drive::Pose {
+        let condensed =
+            Condensed::new(simulation.model(), simulation.state(), &simulation.inputs().conditions());
+        let stiffness = (0..3).map(|axis| condensed.stiffness[(axis, axis)]).fold(0.0, f64::max);
+        let mass = scene.inner.mass.map_or(SHAFT_MASS, |mass| mass.0);
+        if stiffness > 0.0 {
+            step = step.min(round_down(FREQUENCY_BY_STEP * (mass / stiffness).sqrt()));
+        }
+    }
     let (stop, step) = (scene.load.duration.0.to_string(), step.to_string());
     let attributes = [("startTime", "0"), ("stopTime", stop.as_str()), ("stepSize", step.as_str())];
     xml.create_element("DefaultExperiment").with_attributes(attributes).write_empty()?;
@@ -217,8 +240,8 @@ fn scalar_variable(xml: &mut Xml, reference: usize, row: &Variable, start: f64) 
     let reference = reference.to_string();
     let (causality, variability, initial) = match (row.causality, row.kind) {
         (Causality::Input, _) => ("input", "continuous", None),
-        (Causality::Output, Kind::Real) => ("output", "continuous", Some("calculated")),
-        (Causality::Output, Kind::Integer) => ("output", "discrete", Some("calculated")),
+        (Causality::Output, _) => ("output", "continuous", Some("calculated")),
+        (Causality::Local, _) => ("local", "discrete", Some("calculated")),
         (Causality::Parameter, _) => ("parameter", variability(row), Some("exact")),
     };
     let mut element = xml.create_element("ScalarVariable").with_attributes([
@@ -246,7 +269,7 @@ fn scalar_variable(xml: &mut Xml, reference: usize, row: &Variable, start: f64) 
         if row.kind == Kind::Real {
             attributes.push(("nominal", row.nominal.to_string()));
         }
-        if row.causality != Causality::Output {
+        if matches!(row.causality, Causality::Input | Causality::Parameter) {
             attributes.push(("start", format!("{start:?}")));
         }
         let kind = if row.kind == Kind::Real { "Real" } else { "Integer" };
@@ -264,8 +287,9 @@ fn variability(row: &Variable) -> &'static str {
     }
 }
 
-/// Outputs depend on all inputs: the bearing is one mechanism. At the start they depend on the parameters too, except
-/// those of the time integration, and what is counted from the start depends on nothing.
+/// Outputs are those of the last communication point: after a step none depends on an input as it is then. At the start
+/// they depend on all inputs, as the bearing is one mechanism, and on the parameters, except those of the time
+/// integration; what is counted from the start depends on nothing.
 fn model_structure(xml: &mut Xml, variables: &Variables) -> std::io::Result<()> {
     // Indices count from 1.
     let indices = |wanted: &dyn Fn(&Variable) -> bool| {
@@ -274,22 +298,21 @@ fn model_structure(xml: &mut Xml, variables: &Variables) -> std::io::Result<()> 
     };
     let list = |indices: &[usize]| indices.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
     let outputs = indices(&|row| row.causality == Causality::Output);
-    let inputs = list(&indices(&|row| row.causality == Causality::Input));
     let known = list(&indices(&|row| match row.causality {
         Causality::Input => true,
         Causality::Parameter => !row.name.starts_with("solver."),
-        Causality::Output => false,
+        Causality::Output | Causality::Local => false,
     }));
     let from_start = |index: usize| {
-        let row = &variables.rows()[index - 1];
-        row.kind == Kind::Integer || ["energy.work", "energy.dissipated"].contains(&row.name.as_str())
+        ["energy.work", "energy.dissipated", "inner.turned", "outer.turned"]
+            .contains(&variables.rows()[index - 1].name.as_str())
     };
     xml.create_element("ModelStructure").write_inner_content(|xml| {
-        for (name, dependencies) in [("Outputs", &inputs), ("InitialUnknowns", &known)] {
+        for name in ["Outputs", "InitialUnknowns"] {
             xml.create_element(name).write_inner_content(|xml| {
                 for index in &outputs {
-                    let none = name == "InitialUnknowns" && from_start(*index);
-                    let dependencies = if none { "" } else { dependencies.as_str() };
+                    let none = name == "Outputs" || from_start(*index);
+                    let dependencies = if none { "" } else { known.as_str() };
                     let attributes =
                         [("index", index.to_string()), ("dependencies", dependencies.to_string())];
                     let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));

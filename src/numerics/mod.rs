@@ -10,3 +10,4 @@ pub mod rotation;
 pub mod scalar;
 pub mod size;
 pub mod step_control;
+pub mod tilt;

@@ -30,7 +30,7 @@ impl Scene {
                 self.bearing.pitch_diameter.0 * 1e3
             ));
         }
-        let friction = self.friction.ball_race;
+        let friction = self.friction.ball_race.values().into_iter().fold(0.0, f64::max);
         if friction > ROUGHEST {
             notes.push(format!(
                 "warning: friction.ball_race = {friction} is above that of dry steel; lubricated contacts have 0.03 to 0.12"

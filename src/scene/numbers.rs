@@ -49,9 +49,9 @@ static BEARING: [Number<Scene>; 15] = [
 
 /// Cage friction, races, start, time integration and load: those after the effects.
 #[rustfmt::skip]
-static MOTION: [Number<Scene>; 34] = [
-    Number::checked("friction.ball_cage", FRICTION, |s| Place::Value(s.friction.ball_cage.as_mut())),
-    Number::checked("friction.cage_race", FRICTION, |s| Place::Value(s.friction.cage_race.as_mut())),
+static MOTION: [Number<Scene>; 36] = [
+    Number::fixed("friction.ball_cage", FRICTION, "friction coefficient of the balls in their pockets", |s| Place::Value(s.friction.ball_cage.as_mut())),
+    Number::fixed("friction.cage_race", FRICTION, "friction coefficient of the cage on the lands", |s| Place::Value(s.friction.cage_race.as_mut())),
     Number::fixed_if("inner.mass", MASS, "mass of the inner race and what is fixed to it", inner_moves,
         |s| Place::Value(s.inner.mass.as_mut().map(|mass| &mut mass.0))),
     Number::fixed_if("inner.inertia.x", INERTIA, "moment of inertia of the inner race about its own axis", inner_moves,
@@ -62,9 +62,14 @@ static MOTION: [Number<Scene>; 34] = [
         |s| Place::Value(s.inner.inertia.as_mut().map(|moments| &mut moments[2].0))),
     Number::checked("inner.misalignment.ry", TILT, |s| Place::Schedule(&mut s.inner.misalignment.ry)),
     Number::checked("inner.misalignment.rz", TILT, |s| Place::Schedule(&mut s.inner.misalignment.rz)),
-    Number::checked("outer.mass", MASS, |s| Place::Value(s.outer.mass.as_mut().map(|mass| &mut mass.0))),
-    Number::checked("outer.inertia", INERTIA,
-        |s| Place::Read(s.outer.inertia.iter().flatten().map(|moment| moment.0).collect())),
+    Number::fixed_if("outer.mass", MASS, "mass of the outer race and what is fixed to it", outer_is_hinged,
+        |s| Place::Value(s.outer.mass.as_mut().map(|mass| &mut mass.0))),
+    Number::fixed_if("outer.inertia.x", INERTIA, "moment of inertia of the outer race about its own axis", outer_is_hinged,
+        |s| Place::Value(s.outer.inertia.as_mut().map(|moments| &mut moments[0].0))),
+    Number::fixed_if("outer.inertia.y", INERTIA, "moment of inertia of the outer race about its y axis", outer_is_hinged,
+        |s| Place::Value(s.outer.inertia.as_mut().map(|moments| &mut moments[1].0))),
+    Number::fixed_if("outer.inertia.z", INERTIA, "moment of inertia of the outer race about its z axis", outer_is_hinged,
+        |s| Place::Value(s.outer.inertia.as_mut().map(|moments| &mut moments[2].0))),
     Number::fixed_if("outer.misalignment.ry", TILT, "misalignment of the outer race about y", outer_has_frame,
         |s| Place::Schedule(&mut s.outer.misalignment.ry)),
     Number::fixed_if("outer.misalignment.rz", TILT, "misalignment of the outer race about z", outer_has_frame,
@@ -103,6 +108,10 @@ static MOTION: [Number<Scene>; 34] = [
 
 fn inner_moves(scene: &Scene) -> bool {
     scene.inner.drive == Drive::Wrench
+}
+
+fn outer_is_hinged(scene: &Scene) -> bool {
+    scene.outer.drive == Drive::Hinge
 }
 
 /// A race whose pose is given has no frame of its own.

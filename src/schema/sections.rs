@@ -239,10 +239,13 @@ impl Load {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Orientation {
-    /// Unit quaternion, components w, x, y, z.
+    /// Rotation vector of the race's axis, components y and z, and the spin speed about that axis; the spin angle is
+    /// integrated inside.
     #[default]
+    Shaft,
+    /// Unit quaternion, components w, x, y, z.
     Quaternion,
-    /// Cardan angles, intrinsic x-y-z.
+    /// Cardan angles y, z, x: the axis tilts about y and z, then the race turns about it by x.
     Cardan,
 }
 

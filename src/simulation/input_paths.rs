@@ -61,7 +61,11 @@ impl InputPaths {
                 let (pose, twist) = self.races[race].at(time);
                 let input = &inputs[race];
                 let target = (&input.pose, &input.twist, &input.twist_rate);
-                RacePath::towards(time, (&pose, &twist), target.0, target.1, target.2, duration)
+                let path = RacePath::towards(time, (&pose, &twist), target.0, target.1, target.2, duration);
+                match &input.axis {
+                    Some(axis) => path.with_axis((&pose, &twist), axis, duration),
+                    None => path,
+                }
             }),
             loads: PerRace::new(|race| {
                 self.loads[race].towards(time, load_components(&inputs[race]), duration)

@@ -2,11 +2,24 @@
 
 use std::ops::{Index, IndexMut};
 
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::model::Conditions;
 use crate::model::bodies::Race;
 use crate::numerics::motion::{Pose, Twist, Wrench};
+
+/// Motion of a race given by that of its axis: coordinates of [`crate::numerics::tilt`], turn first. The turn itself is not
+/// given: it is integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct AxisInput {
+    /// \[rad] zero, tilt about y and z.
+    pub tilt: Vector3<f64>,
+    /// [rad/s] spin about the own axis, rates of both tilts.
+    pub rate: Vector3<f64>,
+    /// [rad/s2] rates of these rates; zero if not known.
+    pub acceleration: Vector3<f64>,
+}
 
 /// Inputs of a race, valid at the last communication point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -17,6 +30,9 @@ pub struct RaceInput {
     pub twist: Twist,
     /// [m/s2, rad/s2] rate of change of the twist; zero if not known.
     pub twist_rate: Twist,
+    /// Motion of the axis, where it is given instead of orientation and angular velocity; these then follow from it, but for
+    /// the angle about the axis.
+    pub axis: Option<AxisInput>,
     /// Wrench applied to a race that forces move, about its origin, world axes.
     pub applied: Wrench,
     /// [rad/s] prescribed spin about its own axis, of a race that has no pose as its input.

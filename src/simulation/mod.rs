@@ -267,18 +267,15 @@ impl Simulation {
             return Err(SimulationError::Backwards { from: begin, to: end });
         }
         let script = Script::new(&self.scene, scripted);
-        self.script_fixed_races(begin);
+        let mut given = self.inputs;
+        self.script_fixed_races(begin, &mut given);
+        self.inputs = given;
         script.begin(&mut self.paths, begin);
         let mut perturbed: Vec<Perturbed> = inputs
             .iter()
             .map(|inputs| {
                 let mut inputs = *inputs;
-                if matches!(self.scene.outer.drive, Drive::Fixed | Drive::Hinge) {
-                    inputs.outer = self.inputs.outer;
-                }
-                if self.scene.inner.drive == Drive::Fixed {
-                    inputs.inner = self.inputs.inner;
-                }
+                self.script_fixed_races(begin, &mut inputs);
                 let paths = self.paths.towards(&inputs, begin, end - begin);
                 Perturbed { state: self.state.clone(), paths, inputs }
             })
@@ -304,8 +301,9 @@ impl Simulation {
         Ok(perturbed.iter().map(outputs).collect())
     }
 
-    /// A race that is fixed in its frame or hinged to it has no inputs: the scene's script says how it moves.
-    fn script_fixed_races(&mut self, time: f64) {
+    /// The scene's script says how a race moves that is fixed in its frame or hinged to it, but for a speed that is the same
+    /// at all times: that is an input.
+    fn script_fixed_races(&self, time: f64, inputs: &mut Inputs) {
         let load = &self.scene.load;
         for (race, section, speed) in [
             (Race::Inner, &self.scene.inner, &load.inner_speed),
@@ -313,8 +311,10 @@ impl Simulation {
         ] {
             if matches!(section.drive, Drive::Fixed | Drive::Hinge) {
                 let now = self.paths.races[race].at(time).0;
-                let input = &mut self.inputs[race];
-                input.speed = speed.at(time);
+                let input = &mut inputs[race];
+                if speed.is_table() {
+                    input.speed = speed.at(time);
+                }
                 script::script_motion(&self.scene, race, time, &now, input);
             }
         }

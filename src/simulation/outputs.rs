@@ -129,6 +129,16 @@ impl Outputs {
 }
 
 impl Outputs {
+    /// \[N] normal loads of all contacts with the races.
+    pub fn loads(&self) -> impl Iterator<Item = f64> {
+        self.balls.iter().flat_map(|ball| [ball.inner.load, ball.outer.load])
+    }
+
+    /// \[W] a power of every ball, summed.
+    pub fn contact_power(&self, of_ball: impl Fn(&BallOutput) -> f64) -> f64 {
+        self.balls.iter().map(of_ball).fold(0.0, |sum, power| sum + power)
+    }
+
     /// What effects report.
     pub fn reports(&self) -> Reports<'_> {
         Reports { balls: &self.balls, cage: self.cage.as_ref(), condensed: self.condensed.as_ref() }
@@ -291,6 +301,11 @@ fn contact_output(contact: &BallRaceContact<f64>, axis: &Vector3<f64>) -> Contac
         force_lateral: -along * contact.creep.lateral,
         spin_moment: -contact.creep.spin_moment,
         power: contact.friction_power,
+        spin_power: contact.creep.spin_moment * contact.creepage.spin * contact.rolling_speed,
+        groove_power: contact
+            .creepage
+            .curvature
+            .map_or(0.0, |curvature| -contact.creep.second_moment * curvature * contact.rolling_speed),
         semi_axis_rolling: rolling,
         semi_axis_transverse: transverse,
         peak_pressure: if area > 0.0 { 1.5 * contact.load / area } else { 0.0 },

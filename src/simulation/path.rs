@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::numerics::motion::{Pose, Twist};
 use crate::numerics::rotation::{from_quaternion, rotate, tangent, tangent_inverse, to_quaternion};
+use crate::numerics::tilt;
+use crate::simulation::inputs::AxisInput;
 
 /// A cubic in time with given values and rates at both ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,16 +40,22 @@ impl Cubic {
 /// Path of a race whose motion is given from outside, over one communication step.
 ///
 /// It begins with the pose and twist where the last path ended and ends with those that the inputs announce. The
-/// position is a cubic. The orientation is a turn at the announced angular velocity `w` times a small correction, whose
-/// conformal rotation vector `e(t)` is a cubic: `R(t) = exp(w t) R(e(t)) R(0)`; a steady turn of any number of
-/// revolutions per step is exact.
+/// position is a cubic, and the orientation as it was given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RacePath {
     start_time: f64,
     position: Cubic,
-    orientation: UnitQuaternion<f64>,
-    turn: Vector3<f64>,
-    correction: Cubic,
+    orientation: OrientationPath,
+}
+
+/// Path of an orientation; a steady turn of any number of revolutions per step is exact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum OrientationPath {
+    /// A turn at the announced angular velocity `w` times a small correction, whose conformal rotation vector `e(t)` is a
+    /// cubic: `R(t) = exp(w t) R(e(t)) R(0)`.
+    Turn { start: UnitQuaternion<f64>, turn: Vector3<f64>, correction: Cubic },
+    /// Turn and tilts of [`tilt`]: both tilts are cubics, the spin speed is linear.
+    Axis(Cubic),
 }
 
 impl RacePath {
@@ -57,9 +65,11 @@ impl RacePath {
         Self {
             start_time,
             position: Cubic([pose.position, twist.velocity, zero, zero]),
-            orientation: pose.orientation,
-            turn: twist.angular_velocity,
-            correction: Cubic([zero; 4]),
+            orientation: OrientationPath::Turn {
+                start: pose.orientation,
+                turn: twist.angular_velocity,
+                correction: Cubic([zero; 4]),
+            },
         }
     }
 
@@ -94,20 +104,45 @@ impl RacePath {
         Self {
             start_time,
             position,
-            orientation: start_pose.orientation,
-            turn,
-            correction: Cubic::hermite(Vector3::zeros(), start_rate, end, end_rate, duration),
+            orientation: OrientationPath::Turn {
+                start: start_pose.orientation,
+                turn,
+                correction: Cubic::hermite(Vector3::zeros(), start_rate, end, end_rate, duration),
+            },
         }
+    }
+
+    /// The same path with the orientation led by the motion of the race's axis: the tilts go to where the announced ones
+    /// lead, the spin speed changes linearly to the announced one.
+    #[must_use]
+    pub fn with_axis(self, start: (&Pose, &Twist), axis: &AxisInput, duration: f64) -> Self {
+        let (pose, twist) = start;
+        let now = tilt::coordinates(&pose.orientation);
+        let rate = tilt::rates(&now, &twist.angular_velocity);
+        let gain = axis.acceleration * duration;
+        let mut end = axis.tilt + (axis.rate + gain * 0.5) * duration;
+        let end_rate = axis.rate + gain;
+        end.x = now.x + 0.5 * (rate.x + end_rate.x) * duration;
+        let path = Cubic::hermite(now, rate, end, end_rate, duration);
+        Self { orientation: OrientationPath::Axis(path), ..self }
     }
 
     /// Pose and twist at a time \[s].
     pub fn at(&self, time: f64) -> (Pose, Twist) {
         let t = time - self.start_time;
         let (position, velocity) = self.position.at(t);
-        let (e, e_rate) = self.correction.at(t);
-        let turned = UnitQuaternion::new(self.turn * t);
-        let orientation = turned * to_quaternion(&e) * self.orientation;
-        let angular_velocity = self.turn + turned * rotate(&e, &tangent(&e, &e_rate));
+        let (orientation, angular_velocity) = match &self.orientation {
+            OrientationPath::Turn { start, turn, correction } => {
+                let (e, e_rate) = correction.at(t);
+                let turned = UnitQuaternion::new(turn * t);
+                let orientation = turned * to_quaternion(&e) * start;
+                (orientation, turn + turned * rotate(&e, &tangent(&e, &e_rate)))
+            }
+            OrientationPath::Axis(path) => {
+                let (coordinates, rates) = path.at(t);
+                (tilt::orientation(&coordinates), tilt::angular_velocity(&coordinates, &rates))
+            }
+        };
         let orientation = UnitQuaternion::new_normalize(orientation.into_inner());
         (Pose { position, orientation }, Twist { velocity, angular_velocity })
     }
@@ -204,6 +239,41 @@ mod tests {
             let ((before, _), (_, at), (after, _)) = (path.at(time - d), path.at(time), path.at(time + d));
             let turn = (after.orientation * before.orientation.inverse()).scaled_axis() / (2.0 * d);
             assert!((turn - at.angular_velocity).norm() < 1e-5, "{turn} {}", at.angular_velocity);
+        }
+    }
+
+    #[test]
+    fn closed_form_a_tilting_axis_is_where_its_rotation_vector_says_however_fast_it_spins() {
+        // Tilts that are cubics in time, a spin speed that is linear: announced exactly, step after step.
+        let tilt_at = |t: f64| Vector3::new(0.0, 1e-3 + 0.2 * t - 3.0 * t * t, 2e-3 - 0.5 * t + 4.0 * t * t);
+        let rate_at = |t: f64| Vector3::new(628.0 + 500.0 * t, 0.2 - 6.0 * t, -0.5 + 8.0 * t);
+        let axis_at = |t: f64| AxisInput {
+            tilt: tilt_at(t),
+            rate: rate_at(t),
+            acceleration: Vector3::new(500.0, -6.0, 8.0),
+        };
+        let first = axis_at(0.0);
+        let pose = Pose { orientation: tilt::orientation(&first.tilt), ..Pose::default() };
+        let angular_velocity = tilt::angular_velocity(&first.tilt, &first.rate);
+        let mut path = RacePath::steady(0.0, &pose, &Twist { angular_velocity, ..Twist::default() });
+        // Steps of half a revolution to twenty.
+        for (from, to) in [(0.0, 0.005), (0.005, 0.0051), (0.0051, 0.2)] {
+            let (pose, twist) = path.at(from);
+            let none = Twist::default();
+            let plain = RacePath::towards(from, (&pose, &twist), &pose, &none, &none, to - from);
+            path = plain.with_axis((&pose, &twist), &axis_at(from), to - from);
+            assert!(close(&path.at(from), &(pose, twist)) < 1e-12);
+            for i in 1..=10 {
+                let time = from + (to - from) * f64::from(i) / 10.0;
+                let (pose, twist) = path.at(time);
+                let now = tilt::coordinates(&pose.orientation);
+                assert!((now.yz() - tilt_at(time).yz()).norm() < 1e-12, "{time}");
+                let rate = tilt::rates(&now, &twist.angular_velocity);
+                assert!((rate - rate_at(time)).norm() < 1e-9, "{time} {rate}");
+                let turned = 628.0 * time + 250.0 * time * time;
+                let behind = (turned - now.x) / std::f64::consts::TAU;
+                assert!((behind - behind.round()).abs() < 1e-11, "{time} {behind}");
+            }
         }
     }
 

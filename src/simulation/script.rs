@@ -12,6 +12,7 @@ use super::start::tilt_of;
 use crate::dynamics::Boundary;
 use crate::model::bodies::{PerRace, Race};
 use crate::numerics::motion::{Pose, Twist, Wrench};
+use crate::numerics::tilt;
 use crate::scene::{Drive, Group, Groups, RaceSection, Scene, Schedule};
 
 /// Where a race was when its scripted motion began.
@@ -208,7 +209,7 @@ impl Script {
             if let Some(anchor) = &paths.anchors[race] {
                 let (pose, twist) = motion(scene, race, anchor, time);
                 let speed = speed.at(time);
-                inputs[race] = RaceInput { pose, twist, speed, ..inputs[race] };
+                inputs[race] = RaceInput { pose, twist, speed, axis: None, ..inputs[race] };
             }
             if self.speeds[race] {
                 inputs[race].speed = speed.at(time);
@@ -267,22 +268,9 @@ fn motion(scene: &Scene, race: Race, anchor: &Anchor, time: f64) -> (Pose, Twist
     let turned = UnitQuaternion::new(tilt_of(&anchor.pose)).inverse() * anchor.pose.orientation;
     let turn = UnitQuaternion::new(Vector3::x() * speed.integral(anchor.time, time));
     let orientation = UnitQuaternion::new_normalize((tilted * turn * turned).into_inner());
-    let angular_velocity = tilted * Vector3::x() * speed.at(time) + rate_of_rotation(&tilt, &tilt_rate);
+    let angular_velocity =
+        tilt::angular_velocity(&tilt, &Vector3::new(speed.at(time), tilt_rate.y, tilt_rate.z));
     (Pose { position, orientation }, Twist { velocity, angular_velocity })
-}
-
-/// [rad/s] angular velocity in world axes of a rotation vector that changes at `rate`.
-fn rate_of_rotation(vector: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64> {
-    let square = vector.norm_squared();
-    // (1 - cos)/angle^2 and (angle - sin)/angle^3, by their series where these are 0/0
-    let (first, second) = if square < 1e-4 {
-        (0.5 - square / 24.0 + square * square / 720.0, 1.0 / 6.0 - square / 120.0)
-    } else {
-        let angle = square.sqrt();
-        ((1.0 - angle.cos()) / square, (angle - angle.sin()) / (square * angle))
-    };
-    let across = vector.cross(rate);
-    rate + across * first + vector.cross(&across) * second
 }
 
 /// Sets the pose and twist of a race from the scene's script at a time \[s], as an importer does that reads the script at
@@ -294,7 +282,7 @@ pub fn script_motion(scene: &Scene, race: Race, time: f64, now: &Pose, input: &m
     let turned = UnitQuaternion::new(tilt_of(now)).inverse() * now.orientation;
     let orientation = UnitQuaternion::new_normalize((tilted * turned).into_inner());
     input.pose = Pose { position, orientation };
-    let angular_velocity = tilted * Vector3::x() * speed + rate_of_rotation(&tilt, &tilt_rate);
+    let angular_velocity = tilt::angular_velocity(&tilt, &Vector3::new(speed, tilt_rate.y, tilt_rate.z));
     input.twist = Twist { velocity, angular_velocity };
 }
 

@@ -9,7 +9,7 @@ use crate::model::bodies::{Bodies, PerRace, Race};
 use crate::model::state::{BallState, BodyState, Energies, KeptMatrix, Powers, State, Statistics};
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::step_control::StepControl;
-use crate::scene::Scene;
+use crate::scene::{Drive, Scene};
 use crate::simulation::cage_start;
 use crate::simulation::error::SimulationError;
 use crate::simulation::inputs::{Inputs, RaceInput};
@@ -59,6 +59,13 @@ pub fn from_inputs(
     inputs: &mut Inputs,
     time: f64,
 ) -> Result<State, SimulationError> {
+    for (race, section) in [(Race::Inner, &scene.inner), (Race::Outer, &scene.outer)] {
+        // Its frame rests at the start.
+        if matches!(section.drive, Drive::Fixed | Drive::Hinge) {
+            let input = &mut inputs[race];
+            input.twist.angular_velocity = input.pose.orientation * Vector3::x() * input.speed;
+        }
+    }
     let outer = &inputs.outer.pose;
     let mut problem = EquilibriumInput::at(scene, Gyroscopic::Friction, time);
     problem.friction = inputs.friction;
@@ -97,7 +104,7 @@ pub fn from_inputs(
 fn spinning(pose: Pose, speed: f64, applied: Wrench) -> RaceInput {
     let angular_velocity = pose.orientation * Vector3::x() * speed;
     let twist = Twist { velocity: Vector3::zeros(), angular_velocity };
-    RaceInput { pose, twist, twist_rate: Twist::default(), applied, speed }
+    RaceInput { pose, twist, applied, speed, ..RaceInput::default() }
 }
 
 fn own_spin(input: &RaceInput) -> f64 {

@@ -1,7 +1,7 @@
 //! The library's C interface as an importer sees it, and packages unpacked to folders.
 #![allow(dead_code, non_snake_case, unsafe_code, missing_docs)]
 
-use std::ffi::{CString, c_char, c_int, c_void};
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::path::PathBuf;
 use std::ptr;
 
@@ -108,6 +108,11 @@ pub fn scene_text(drive: &str) -> String {
     )
 }
 
+/// The scene with the pose of the inner race as an input, its orientation written in one of the forms.
+pub fn pose_text(orientation: &str) -> String {
+    format!("{}\n[interface]\norientation = \"{orientation}\"\n", scene_text("pose"))
+}
+
 /// The unpacked package of a scene.
 pub struct Package {
     folder: PathBuf,
@@ -127,7 +132,7 @@ impl Package {
         std::fs::create_dir_all(&folder).unwrap();
         std::fs::write(folder.join("scene.toml"), text).unwrap();
         let scene = Scene::parse(text).unwrap();
-        let guid = render(&Simulation::new(&scene).unwrap()).unwrap().guid;
+        let guid = render(&Simulation::new(&scene).unwrap(), "bearing").unwrap().guid;
         let callbacks = CallbackFunctions {
             logger: None,
             allocate_memory: None,
@@ -152,6 +157,24 @@ impl Package {
         c
     }
 
+    /// An instance whose messages, with their categories, go to `messages`.
+    pub fn instantiate_logging(&self, messages: &Messages) -> Component {
+        type Fixed = unsafe extern "C" fn(*mut c_void, *const c_char, Status, *const c_char, *const c_char);
+        type Variadic =
+            unsafe extern "C" fn(*mut c_void, *const c_char, Status, *const c_char, *const c_char, ...);
+        let callbacks = CallbackFunctions {
+            // SAFETY: what is variadic is not read: the same call on the platforms of packages (FMPy does it, too).
+            logger: Some(unsafe { std::mem::transmute::<Fixed, Variadic>(keep) }),
+            component_environment: ptr::from_ref(messages).cast_mut().cast(),
+            ..self.callbacks
+        };
+        let (guid, location) = (self.guid.as_ptr(), self.location.as_ptr());
+        // SAFETY: all pointers live through the call, the messages as long as the instance.
+        let c = unsafe { fmi2Instantiate(c"bearing".as_ptr(), 1, guid, location, &callbacks, 0, 0) };
+        assert!(!c.is_null());
+        c
+    }
+
     /// Instantiated and initialised, at time 0.
     pub fn start(&self) -> Component {
         let c = self.instantiate();
@@ -165,6 +188,24 @@ impl Package {
 
     pub fn references(&self, causality: Causality) -> Vec<u32> {
         (0..self.rows.len() as u32).filter(|&r| self.rows[r as usize].causality == causality).collect()
+    }
+}
+
+/// Messages of an instance: status, category, text.
+pub type Messages = std::sync::Mutex<Vec<(Status, String, String)>>;
+
+unsafe extern "C" fn keep(
+    messages: *mut c_void,
+    _: *const c_char,
+    status: Status,
+    category: *const c_char,
+    text: *const c_char,
+) {
+    // SAFETY: as instantiated: the messages live, the texts are C strings.
+    unsafe {
+        let [category, text] =
+            [category, text].map(|text| CStr::from_ptr(text).to_string_lossy().into_owned());
+        (*messages.cast::<Messages>()).lock().unwrap().push((status, category, text));
     }
 }
 

@@ -16,7 +16,7 @@ use roulement::interface::model_description::render;
 use roulement::model::Model;
 use roulement::scene::{CreepLaw, Scene, SceneError};
 use roulement::simulation::Simulation;
-use roulement_cli::package::{library_beside_executable, write_fmu};
+use roulement_cli::package::{library_beside_executable, name_of, write_fmu};
 
 /// 3-D dynamic ball bearing for gearbox co-simulation.
 #[derive(Parser)]
@@ -57,6 +57,9 @@ enum Command {
         /// Shared library to pack, once per platform; the one built beside this program if not given.
         #[arg(long)]
         library: Vec<PathBuf>,
+        /// Name of the model, and of its library; that of the package's file if not given.
+        #[arg(long)]
+        name: Option<String>,
     },
     /// Evaluate single rolling contacts of a CSV table; prints CSV.
     Contact {
@@ -170,9 +173,10 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             }
             tell(scene.pressure_note(solution.peak_pressure(&model)));
         }
-        Command::Fmu { scene, output, library } => {
+        Command::Fmu { scene, output, library, name } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
-            write_fmu(&load(&scene)?, &libraries, &output)?;
+            let name = name.unwrap_or_else(|| name_of(&output));
+            write_fmu(&load(&scene)?, &name, &libraries, &output)?;
             say(&format!("{}\n", output.display()))?;
         }
         Command::Contact { cases, law, degree, grid } => {
@@ -196,7 +200,9 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         }
         Command::Identify(options) => identify::run(&options)?,
         Command::Cost { scene, output } => cost::run(scene.as_deref(), &output)?,
-        Command::Describe { scene } => say(&render(&Simulation::new(&load(&scene)?)?)?.xml)?,
+        Command::Describe { scene } => {
+            say(&render(&Simulation::new(&load(&scene)?)?, &name_of(&scene))?.xml)?;
+        }
     }
     Ok(())
 }

@@ -13,7 +13,7 @@ use zip::write::SimpleFileOptions;
 
 use roulement::fmi::SCENE_FILE;
 use roulement::interface::documentation;
-use roulement::interface::model_description::{MODEL_IDENTIFIER, render};
+use roulement::interface::model_description::{identifier, render};
 use roulement::scene::Scene;
 use roulement::simulation::{Simulation, SimulationError};
 
@@ -95,17 +95,28 @@ fn file_error(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) ->
 /// # Errors
 /// If it is not there.
 pub fn library_beside_executable() -> Result<PathBuf, PackageError> {
-    let name = format!("{}{MODEL_IDENTIFIER}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let name = format!("{}roulement{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     let executable = std::env::current_exe()?;
     let path = executable.with_file_name(name);
     if path.is_file() { Ok(path) } else { Err(PackageError::NoLibrary(path.display().to_string())) }
 }
 
-/// Writes the package of a scene, with one library per platform, to `output`; an existing file is replaced only by a complete one.
+/// Name of a package that is given none: that of its file.
+pub fn name_of(file: &Path) -> String {
+    file.file_stem().map_or_else(|| "bearing".into(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// Writes the package of a scene under a name, with one library per platform, to `output`; an existing file is replaced only
+/// by a complete one.
 ///
 /// # Errors
 /// See [`PackageError`].
-pub fn write_fmu(scene: &Scene, libraries: &[PathBuf], output: &Path) -> Result<(), PackageError> {
+pub fn write_fmu(
+    scene: &Scene,
+    name: &str,
+    libraries: &[PathBuf],
+    output: &Path,
+) -> Result<(), PackageError> {
     if let Some(missing) = libraries.iter().find(|library| !library.is_file()) {
         return Err(PackageError::NoLibrary(missing.display().to_string()));
     }
@@ -116,7 +127,7 @@ pub fn write_fmu(scene: &Scene, libraries: &[PathBuf], output: &Path) -> Result<
         }
     }
     let simulation = Simulation::new(scene)?;
-    let description = render(&simulation)?;
+    let (description, identifier) = (render(&simulation, name)?, identifier(name));
 
     // Without time stamps: the same scene and library give the same bytes.
     let options = SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
@@ -127,7 +138,7 @@ pub fn write_fmu(scene: &Scene, libraries: &[PathBuf], output: &Path) -> Result<
     };
     add("modelDescription.xml", description.xml.as_bytes())?;
     for (Platform { folder, ending, .. }, library) in &libraries {
-        add(&format!("binaries/{folder}/{MODEL_IDENTIFIER}.{ending}"), library)?;
+        add(&format!("binaries/{folder}/{identifier}.{ending}"), library)?;
     }
     add(&format!("resources/{SCENE_FILE}"), scene.source.as_bytes())?;
     add("model.png", include_bytes!("../../../assets/model.png"))?;

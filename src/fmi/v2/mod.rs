@@ -12,6 +12,7 @@ mod exports;
 mod logger;
 mod pointers;
 mod state_machine;
+mod stay;
 mod types;
 
 pub use types::{CallbackFunctions, Status};

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use crate::effects::Getter;
 use crate::model::bodies::{PerRace, Race};
-use crate::scene::{Group, Scene};
+use crate::scene::{Drive, Group, Scene};
 use crate::schema::numbers::{FRICTION, Parameter};
 use crate::schema::variable_units::Unit;
 use crate::simulation::inputs::Inputs;
@@ -24,6 +24,8 @@ pub enum Causality {
     Input,
     /// Read by the importer.
     Output,
+    /// Read by the importer, and of interest to nobody else: no master offers it for connections.
+    Local,
     /// A number of the scene, set by the importer before the start or, if tunable, between steps.
     Parameter,
 }
@@ -116,9 +118,9 @@ impl Variables {
     /// The variables that can change in a run, with or without those of every ball.
     pub fn moving(scene: &Scene, per_ball: bool) -> Self {
         let mut table = Self { rows: vec![] };
-        table.add_race(Race::Inner, scene.inner.drive, scene.interface.orientation);
-        table.add_race(Race::Outer, scene.outer.drive, scene.interface.orientation);
-        table.add_bearing();
+        table.add_race(scene, Race::Inner);
+        table.add_race(scene, Race::Outer);
+        table.add_bearing(scene);
         table.add_effects(scene, per_ball);
         table
     }
@@ -175,6 +177,26 @@ impl Variables {
         self.rows.iter().map(rate).collect()
     }
 
+    /// A race whose pose is an input.
+    pub fn pose_is_given(&self, race: Race) -> bool {
+        self.rows.iter().any(|row| {
+            row.input_kind() == Some(InputKind::Displacement)
+                && matches!(row.source, Source::Race(of, _, _) if of == race)
+        })
+    }
+
+    /// A race whose orientation is a quaternion of zeros among the values of all rows: an input that nothing is connected to.
+    pub fn zero_quaternion(&self, values: &[f64]) -> Option<Race> {
+        Race::BOTH.into_iter().find(|race| {
+            let mut components = self.rows.iter().zip(values).filter(|(row, _)| {
+                row.input_kind() == Some(InputKind::Quaternion)
+                    && matches!(row.source, Source::Race(of, _, _) if of == *race)
+            });
+            components.next().is_some_and(|(_, first)| *first == 0.0)
+                && components.all(|(_, value)| *value == 0.0)
+        })
+    }
+
     /// Turns the values of all rows (those of outputs are ignored) and their rates into inputs, on top of `base`.
     ///
     /// # Errors
@@ -217,12 +239,16 @@ impl Variable {
         }
     }
 
-    /// What an input is given together with; none for other variables.
-    pub fn group(&self) -> Option<Group> {
+    /// What an input is given together with in a scene; none for other variables.
+    pub fn group(&self, scene: &Scene) -> Option<Group> {
         match &self.source {
             _ if self.causality != Causality::Input => None,
             Source::Friction => Some(Group::Friction),
-            Source::Race(_, RaceVariable { input, .. }, _) => input.map(|access| access.group),
+            // A race with a given motion has its speed with it.
+            Source::Race(race, RaceVariable { input: Some(access), .. }, _) => {
+                let section = if *race == Race::Inner { &scene.inner } else { &scene.outer };
+                Some(if section.drive == Drive::Pose { Group::Tilts } else { access.group })
+            }
             _ => None,
         }
     }

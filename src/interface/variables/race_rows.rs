@@ -4,9 +4,10 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::{Causality, InputError};
 use crate::model::bodies::Race;
+use crate::numerics::tilt;
 use crate::scene::{Drive, Group, Orientation};
 use crate::schema::variable_units::{self as units, Unit};
-use crate::simulation::inputs::RaceInput;
+use crate::simulation::inputs::{AxisInput, RaceInput};
 use crate::simulation::outputs::RaceOutput;
 
 /// A quantity of a race; a variable per component.
@@ -24,12 +25,57 @@ pub struct RaceVariable {
     pub limits: [Option<f64>; 2],
     /// One sentence, with `{race}` and `{component}` in it.
     description: &'static str,
-    /// Causality by the drive of the race and the form of its orientation; none where there is no such variable.
-    pub causality: fn(Drive, Orientation) -> Option<Causality>,
+    /// Causality by the motion of the race; none where there is no such variable.
+    pub causality: fn(RaceMotion) -> Option<Causality>,
     /// \[unit] component as an output.
     pub read: fn(&RaceOutput, usize) -> f64,
     /// Access to the quantity as an input, where it can be one.
     pub input: Option<InputAccess>,
+}
+
+/// What the scene says of the motion of a race.
+#[derive(Clone, Copy, Debug)]
+pub struct RaceMotion {
+    /// How it gets its motion.
+    pub drive: Drive,
+    /// How its orientation is written.
+    pub orientation: Orientation,
+    /// Does a script give its speed or its tilt at all times?
+    pub scripted_speed: bool,
+}
+
+impl RaceMotion {
+    /// Pose and twist: inputs where they are given, outputs where forces move the race.
+    fn pose(self) -> Option<Causality> {
+        match self.drive {
+            Drive::Pose => Some(Causality::Input),
+            Drive::Wrench | Drive::Hinge => Some(Causality::Output),
+            Drive::Fixed => None,
+        }
+    }
+
+    /// Those of one form of orientation.
+    fn pose_as(self, orientation: Orientation) -> Option<Causality> {
+        self.pose().filter(|_| self.orientation == orientation)
+    }
+
+    fn output(self, drives: &[Drive]) -> Option<Causality> {
+        drives.contains(&self.drive).then_some(Causality::Output)
+    }
+
+    fn input(self, drives: &[Drive]) -> Option<Causality> {
+        drives.contains(&self.drive).then_some(Causality::Input)
+    }
+
+    /// The prescribed speed: not where the angular velocity is given instead, or a script says it.
+    fn speed(self) -> Option<Causality> {
+        let given = match self.drive {
+            Drive::Wrench => true,
+            Drive::Pose => self.orientation == Orientation::Shaft,
+            Drive::Fixed | Drive::Hinge => !self.scripted_speed,
+        };
+        given.then_some(Causality::Input)
+    }
 }
 
 /// How a quantity of a race is an input.
@@ -75,6 +121,8 @@ pub struct RaceSetting {
     pub input: RaceInput,
     quaternion: [Option<f64>; 4],
     angles: [Option<f64>; 3],
+    axis: AxisInput,
+    tilted: bool,
 }
 
 /// [-] deviation of a quaternion's norm from 1 that is corrected; more is refused.
@@ -83,7 +131,8 @@ pub const NORM_TOLERANCE: f64 = 1e-3;
 impl RaceSetting {
     /// Begins with the inputs of `base`.
     pub fn new(base: &RaceInput) -> Self {
-        Self { input: *base, quaternion: [None; 4], angles: [None; 3] }
+        let axis = base.axis.unwrap_or_default();
+        Self { input: *base, quaternion: [None; 4], angles: [None; 3], axis, tilted: false }
     }
 
     /// The inputs, with the orientation whose components were set.
@@ -94,13 +143,25 @@ impl RaceSetting {
         if let [Some(w), Some(x), Some(y), Some(z)] = self.quaternion {
             let quaternion = Quaternion::new(w, x, y, z);
             let norm = quaternion.norm();
-            if (norm - 1.0).abs() > NORM_TOLERANCE {
+            let connected = norm != 0.0;
+            if connected && (norm - 1.0).abs() > NORM_TOLERANCE {
                 return Err(InputError::Quaternion { name: format!("{}.orientation", race.name()), norm });
             }
-            self.input.pose.orientation = UnitQuaternion::new_normalize(quaternion);
+            // Masters that have not connected an input yet leave it at zero.
+            self.input.pose.orientation = if connected {
+                UnitQuaternion::new_normalize(quaternion)
+            } else {
+                UnitQuaternion::identity()
+            };
         }
         if let [Some(x), Some(y), Some(z)] = self.angles {
             self.input.pose.orientation = from_cardan(x, y, z);
+        }
+        self.input.axis = self.tilted.then_some(self.axis);
+        if let Some(axis) = self.input.axis {
+            // Its turn is not known here; nothing but the path of the race asks for it.
+            self.input.pose.orientation = tilt::orientation(&axis.tilt);
+            self.input.twist.angular_velocity = tilt::angular_velocity(&axis.tilt, &axis.rate);
         }
         Ok(self.input)
     }
@@ -119,26 +180,19 @@ impl RaceVariable {
     }
 }
 
-/// Pose and twist: inputs where they are given, outputs where forces move the race.
-fn motion(drive: Drive) -> Option<Causality> {
-    match drive {
-        Drive::Pose => Some(Causality::Input),
-        Drive::Wrench | Drive::Hinge => Some(Causality::Output),
-        Drive::Fixed => None,
-    }
-}
-
 /// Rate of a pose, which has none of its own: it is the twist.
 fn no_rate(_: &RaceInput, _: usize) -> f64 {
     0.0
 }
 
 const AXES: &[&str] = &["x", "y", "z"];
+/// Those across the axis.
+const ACROSS: &[&str] = &["y", "z"];
 const SCALAR: &[&str] = &[""];
 const NO_LIMITS: [Option<f64>; 2] = [None; 2];
 
 /// All of them, in the order of their value references.
-pub static RACE_VARIABLES: [RaceVariable; 13] = [
+pub static RACE_VARIABLES: [RaceVariable; 16] = [
     RaceVariable {
         name: "position",
         components: AXES,
@@ -146,13 +200,35 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         nominal: 1e-5,
         limits: NO_LIMITS,
         description: "position of the origin of the {race} race, {component} component, world axes",
-        causality: |drive, _| motion(drive),
+        causality: RaceMotion::pose,
         read: |race, i| race.pose.position[i],
         input: Some(InputAccess {
             get: |race, i| race.pose.position[i],
             set: |race, i, value, _| race.input.pose.position[i] = value,
             rate: no_rate,
             kind: InputKind::Displacement,
+            group: Group::Tilts,
+        }),
+    },
+    RaceVariable {
+        name: "rotation",
+        components: ACROSS,
+        unit: units::RADIAN,
+        nominal: 1e-3,
+        limits: NO_LIMITS,
+        description: "rotation vector that tilts the axis of the {race} race away from x, {component} component",
+        causality: |motion| motion.pose_as(Orientation::Shaft),
+        read: |race, i| tilt::coordinates(&race.pose.orientation)[i + 1],
+        input: Some(InputAccess {
+            get: |race, i| {
+                race.axis.map_or_else(|| tilt::coordinates(&race.pose.orientation), |axis| axis.tilt)[i + 1]
+            },
+            set: |race, i, value, _| {
+                race.axis.tilt[i + 1] = value;
+                race.tilted = true;
+            },
+            rate: no_rate,
+            kind: InputKind::Angle,
             group: Group::Tilts,
         }),
     },
@@ -164,7 +240,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         // A quaternion a little longer than 1 is normalised.
         limits: [Some(-1.0 - NORM_TOLERANCE), Some(1.0 + NORM_TOLERANCE)],
         description: "orientation of the {race} race, unit quaternion component {component}",
-        causality: |drive, orientation| motion(drive).filter(|_| orientation == Orientation::Quaternion),
+        causality: |motion| motion.pose_as(Orientation::Quaternion),
         read: |race, i| quaternion(&race.pose.orientation, i),
         input: Some(InputAccess {
             get: |race, i| quaternion(&race.pose.orientation, i),
@@ -180,8 +256,8 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         unit: units::RADIAN,
         nominal: 1e-3,
         limits: NO_LIMITS,
-        description: "Cardan angle {component} of the {race} race, intrinsic x-y-z (x without limit)",
-        causality: |drive, orientation| motion(drive).filter(|_| orientation == Orientation::Cardan),
+        description: "Cardan angle {component} of the {race} race: tilts y, z, then the turn x about its own axis, without limit",
+        causality: |motion| motion.pose_as(Orientation::Cardan),
         read: |race, i| to_cardan(&race.pose.orientation, race.turned)[i],
         input: Some(InputAccess {
             get: |race, i| to_cardan(&race.pose.orientation, 0.0)[i],
@@ -198,7 +274,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         nominal: 1e-3,
         limits: NO_LIMITS,
         description: "velocity of the origin of the {race} race, {component} component, world axes",
-        causality: |drive, _| motion(drive),
+        causality: RaceMotion::pose,
         read: |race, i| race.twist.velocity[i],
         input: Some(InputAccess {
             get: |race, i| race.twist.velocity[i],
@@ -212,13 +288,35 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         }),
     },
     RaceVariable {
+        name: "rotation_rate",
+        components: ACROSS,
+        unit: units::RADIAN_PER_SECOND,
+        nominal: 1.0,
+        limits: NO_LIMITS,
+        description: "rate of the rotation vector of the {race} race's axis, {component} component",
+        causality: |motion| motion.pose_as(Orientation::Shaft),
+        read: |race, i| {
+            tilt::rates(&tilt::coordinates(&race.pose.orientation), &race.twist.angular_velocity)[i + 1]
+        },
+        input: Some(InputAccess {
+            get: |race, i| race.axis.map_or(0.0, |axis| axis.rate[i + 1]),
+            set: |race, i, value, rate| {
+                race.axis.rate[i + 1] = value;
+                race.axis.acceleration[i + 1] = rate;
+            },
+            rate: |race, i| race.axis.map_or(0.0, |axis| axis.acceleration[i + 1]),
+            kind: InputKind::AngularVelocity,
+            group: Group::Tilts,
+        }),
+    },
+    RaceVariable {
         name: "angular_velocity",
         components: AXES,
         unit: units::RADIAN_PER_SECOND,
         nominal: 100.0,
         limits: NO_LIMITS,
         description: "angular velocity of the {race} race, {component} component, world axes",
-        causality: |drive, _| motion(drive),
+        causality: |motion| motion.pose().filter(|_| motion.orientation != Orientation::Shaft),
         read: |race, i| race.twist.angular_velocity[i],
         input: Some(InputAccess {
             get: |race, i| race.twist.angular_velocity[i],
@@ -238,7 +336,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         nominal: 1e3,
         limits: NO_LIMITS,
         description: "force that the bearing exerts on the {race} race, {component} component, world axes",
-        causality: |_, _| Some(Causality::Output),
+        causality: |_| Some(Causality::Output),
         read: |race, i| race.wrench.force[i],
         input: None,
     },
@@ -249,7 +347,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         nominal: 1.0,
         limits: NO_LIMITS,
         description: "moment that the bearing exerts about the origin of the {race} race, {component} component, world axes",
-        causality: |_, _| Some(Causality::Output),
+        causality: |_| Some(Causality::Output),
         read: |race, i| race.wrench.moment[i],
         input: None,
     },
@@ -260,7 +358,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         nominal: 1e3,
         limits: NO_LIMITS,
         description: "force of the hinge on the {race} race, {component} component, world axes",
-        causality: |drive, _| (drive == Drive::Hinge).then_some(Causality::Output),
+        causality: |motion| motion.output(&[Drive::Hinge]),
         read: |race, i| race.reaction.force[i],
         input: None,
     },
@@ -271,7 +369,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         nominal: 1.0,
         limits: NO_LIMITS,
         description: "moment of the hinge and its drive about the origin of the {race} race, {component} component, world axes",
-        causality: |drive, _| (drive == Drive::Hinge).then_some(Causality::Output),
+        causality: |motion| motion.output(&[Drive::Hinge]),
         read: |race, i| race.reaction.moment[i],
         input: None,
     },
@@ -282,7 +380,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         nominal: 1e3,
         limits: NO_LIMITS,
         description: "external force on the {race} race, {component} component, world axes",
-        causality: |drive, _| (drive == Drive::Wrench).then_some(Causality::Input),
+        causality: |motion| motion.input(&[Drive::Wrench]),
         read: |_, _| 0.0,
         input: Some(InputAccess {
             get: |race, i| race.applied.force[i],
@@ -299,7 +397,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         nominal: 1.0,
         limits: NO_LIMITS,
         description: "external moment about the origin of the {race} race, {component} component, world axes",
-        causality: |drive, _| (drive == Drive::Wrench).then_some(Causality::Input),
+        causality: |motion| motion.input(&[Drive::Wrench]),
         read: |_, _| 0.0,
         input: Some(InputAccess {
             get: |race, i| race.applied.moment[i],
@@ -316,15 +414,30 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         nominal: 100.0,
         limits: NO_LIMITS,
         description: "prescribed spin of the {race} race about its own axis",
-        causality: |drive, _| (drive == Drive::Wrench).then_some(Causality::Input),
+        causality: RaceMotion::speed,
         read: |_, _| 0.0,
         input: Some(InputAccess {
             get: |race, _| race.speed,
-            set: |race, _, value, _| race.input.speed = value,
-            rate: no_rate,
+            set: |race, _, value, rate| {
+                race.input.speed = value;
+                race.axis.rate.x = value;
+                race.axis.acceleration.x = rate;
+            },
+            rate: |race, _| race.axis.map_or(0.0, |axis| axis.acceleration.x),
             kind: InputKind::AngularVelocity,
             group: Group::Speeds,
         }),
+    },
+    RaceVariable {
+        name: "turned",
+        components: SCALAR,
+        unit: units::RADIAN,
+        nominal: 100.0,
+        limits: NO_LIMITS,
+        description: "turn of the {race} race about its own axis since the start",
+        causality: |motion| motion.pose_as(Orientation::Shaft).map(|_| Causality::Output),
+        read: |race, _| race.turned,
+        input: None,
     },
     RaceVariable {
         name: "drive_torque",
@@ -333,7 +446,7 @@ pub static RACE_VARIABLES: [RaceVariable; 13] = [
         nominal: 0.1,
         limits: NO_LIMITS,
         description: "torque that keeps the {race} race at its prescribed speed",
-        causality: |drive, _| matches!(drive, Drive::Wrench | Drive::Hinge).then_some(Causality::Output),
+        causality: |motion| motion.output(&[Drive::Wrench, Drive::Hinge]),
         read: |race, _| race.drive_torque,
         input: None,
     },
@@ -344,18 +457,18 @@ fn quaternion(orientation: &UnitQuaternion<f64>, component: usize) -> f64 {
     if component == 0 { orientation.w } else { orientation.imag()[component - 1] }
 }
 
-/// Orientation of Cardan angles, intrinsic x-y-z: `R = Rx(x) Ry(y) Rz(z)`.
+/// Orientation of Cardan angles, tilt first and spin last: `R = Ry(y) Rz(z) Rx(x)`.
 fn from_cardan(x: f64, y: f64, z: f64) -> UnitQuaternion<f64> {
     let about = |axis: Vector3<f64>, angle: f64| UnitQuaternion::new(axis * angle);
-    about(Vector3::x(), x) * about(Vector3::y(), y) * about(Vector3::z(), z)
+    about(Vector3::y(), y) * about(Vector3::z(), z) * about(Vector3::x(), x)
 }
 
-/// Cardan angles of an orientation; the first is the one nearest to `turned` \[rad].
+/// Cardan angles of an orientation; x is the one nearest to `turned` \[rad].
 fn to_cardan(orientation: &UnitQuaternion<f64>, turned: f64) -> [f64; 3] {
     let m = orientation.to_rotation_matrix();
-    let y = m[(0, 2)].clamp(-1.0, 1.0).asin();
-    let x = (-m[(1, 2)]).atan2(m[(2, 2)]);
-    let z = (-m[(0, 1)]).atan2(m[(0, 0)]);
+    let z = m[(1, 0)].clamp(-1.0, 1.0).asin();
+    let y = (-m[(2, 0)]).atan2(m[(0, 0)]);
+    let x = (-m[(1, 2)]).atan2(m[(1, 1)]);
     let turns = ((turned - x) / std::f64::consts::TAU).round();
     [x + turns * std::f64::consts::TAU, y, z]
 }

@@ -1,9 +1,9 @@
 //! The rows of the table.
 
-use super::race_rows::RACE_VARIABLES;
+use super::race_rows::{RACE_VARIABLES, RaceMotion};
 use super::{Causality, FromOutputs, Kind, Source, Variable, Variables};
 use crate::model::bodies::Race;
-use crate::scene::{Drive, Orientation, Scene};
+use crate::scene::Scene;
 use crate::schema::numbers::FRICTION;
 use crate::schema::variable_units::{self as units, Unit};
 
@@ -52,9 +52,20 @@ impl Variables {
     }
 
     /// Adds what a race has under its drive.
-    pub(super) fn add_race(&mut self, race: Race, drive: Drive, orientation: Orientation) {
+    pub(super) fn add_race(&mut self, scene: &Scene, race: Race) {
+        let (section, speed) = match race {
+            Race::Inner => (&scene.inner, &scene.load.inner_speed),
+            Race::Outer => (&scene.outer, &scene.load.outer_speed),
+        };
+        let motion = RaceMotion {
+            drive: section.drive,
+            orientation: scene.interface.orientation,
+            scripted_speed: [speed, &section.misalignment.ry, &section.misalignment.rz]
+                .iter()
+                .any(|schedule| schedule.is_table()),
+        };
         for quantity in &RACE_VARIABLES {
-            let Some(causality) = (quantity.causality)(drive, orientation) else {
+            let Some(causality) = (quantity.causality)(motion) else {
                 continue;
             };
             for component in 0..quantity.components.len() {
@@ -66,7 +77,7 @@ impl Variables {
         }
     }
 
-    pub(super) fn add_bearing(&mut self) {
+    pub(super) fn add_bearing(&mut self, scene: &Scene) {
         let friction = "friction coefficient of the ball-race contacts".to_string();
         self.add("friction".into(), units::ONE, Causality::Input, 0.1, friction, Source::Friction);
         let mut output = |name: &str, unit, nominal, description: &str, get: FromOutputs| {
@@ -81,6 +92,44 @@ impl Variables {
         let power = "power lost to friction in all contacts";
         output("friction_power", units::WATT, 1.0, power, |o| o.friction_power);
         let power = "power lost to contact damping";
+        let kind = "power lost to friction in all contacts with the inner race";
+        output("power.inner", units::WATT, 1.0, kind, |o| o.contact_power(|ball| ball.inner.power));
+        let kind = "power lost to friction in all contacts with the outer race";
+        output("power.outer", units::WATT, 1.0, kind, |o| o.contact_power(|ball| ball.outer.power));
+        let kind = "power of the spin moments of all contacts with the races, part of their friction power";
+        output("power.spin", units::WATT, 1.0, kind, |o| {
+            o.contact_power(|ball| ball.inner.spin_power + ball.outer.spin_power)
+        });
+        if scene.effects.groove_slip.on {
+            let kind = "power of the slip of bent grooves in all contacts with the races, part of their friction power";
+            output("power.groove", units::WATT, 1.0, kind, |o| {
+                o.contact_power(|ball| ball.inner.groove_power + ball.outer.groove_power)
+            });
+        }
+        if scene.effects.cage.on {
+            let kind = "power lost to friction in all contacts of the cage";
+            output("power.cage", units::WATT, 1.0, kind, |o| {
+                o.cage.as_ref().map_or(0.0, |cage| cage.pocket_power + cage.land_power)
+            });
+        }
+        let load = "largest normal load of a ball on a race";
+        output("balls.largest_load", units::NEWTON, 100.0, load, |o| o.loads().fold(0.0, f64::max));
+        let load = "smallest normal load of a ball on a race";
+        output("balls.smallest_load", units::NEWTON, 100.0, load, |o| {
+            let least = o.loads().fold(f64::INFINITY, f64::min);
+            if least.is_finite() { least } else { 0.0 }
+        });
+        let loaded = "number of balls that both races press on";
+        output("balls.loaded", units::ONE, 10.0, loaded, |o| {
+            o.balls.iter().filter(|ball| ball.inner.load > 0.0 && ball.outer.load > 0.0).count() as f64
+        });
+        let pressure = "largest peak pressure of a ball on a race";
+        output("balls.largest_pressure", units::PASCAL, 1e9, pressure, |o| {
+            o.balls
+                .iter()
+                .flat_map(|ball| [&ball.inner, &ball.outer])
+                .fold(0.0, |most, contact| most.max(contact.peak_pressure))
+        });
         output("damping_power", units::WATT, 1e-2, power, |o| o.damping_power);
         let torque = "friction torque against the rotation of the inner race";
         output("friction_torque", units::NEWTON_METRE, 0.1, torque, |o| o.friction_torque);
@@ -92,7 +141,8 @@ impl Variables {
                 name: name.into(),
                 unit: units::ONE,
                 kind: Kind::Integer,
-                causality: Causality::Output,
+                // Some masters read every output as a real number.
+                causality: Causality::Local,
                 nominal: 1.0,
                 limits: [Some(0.0), None],
                 description: description.into(),

@@ -13,6 +13,7 @@ use crate::fmi::outcome::{self, Outcome, error};
 use crate::fmi::v2::logger::sink;
 use crate::fmi::v2::pointers::{list, text};
 use crate::fmi::v2::state_machine::Call;
+use crate::fmi::v2::stay::stay_loaded;
 use crate::fmi::v2::types::{Boolean, CallbackFunctions, Status};
 use crate::interface::model_description::LOG_CATEGORIES;
 
@@ -42,6 +43,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     let Some(callbacks) = functions.copied() else {
         return std::ptr::null_mut();
     };
+    stay_loaded();
     // SAFETY: the importer's contract.
     let (name, guid, location) = unsafe { (text(name), text(guid), text(resource_location)) };
     let name = name.unwrap_or_default();

@@ -1,0 +1,230 @@
+//! What a package tells its importers: names, dependencies, variables, parameters, its page.
+#![allow(clippy::unwrap_used)]
+
+use roulement::effects::Effects;
+use roulement::interface::documentation::page;
+use roulement::interface::model_description::{identifier, render};
+use roulement::interface::variables::{Causality, Variables};
+use roulement::scene::Scene;
+use roulement::simulation::Simulation;
+
+#[path = "common/scenes.rs"]
+mod scenes;
+
+use scenes::scene;
+
+const THRUST: &str = include_str!("../scenes/thrust.toml");
+const CAGE: &str = include_str!("../scenes/cage.toml");
+
+fn names(scene: &Scene, causality: Causality) -> Vec<String> {
+    let table = Variables::new(scene);
+    let rows = table.rows().iter().filter(|row| row.causality == causality);
+    rows.map(|row| row.name.clone()).collect()
+}
+
+/// Value of a variable of a simulation.
+fn value(simulation: &Simulation, name: &str) -> f64 {
+    let table = Variables::new(simulation.scene());
+    let row = table.rows().iter().find(|row| row.name == name).unwrap();
+    table.value(row, simulation.inputs(), simulation.outputs())
+}
+
+/// Elements of a name, with their text up to the end of the tag.
+fn elements<'a>(xml: &'a str, name: &str) -> Vec<&'a str> {
+    let start = format!("<{name} ");
+    xml.split(&start).skip(1).map(|rest| rest.split('>').next().unwrap()).collect()
+}
+
+#[test]
+fn names_are_those_that_were_asked_for_and_identifiers_are_those_of_c() {
+    for (name, wanted) in [
+        ("front_bearing", "front_bearing"),
+        ("7008 C, \u{fc}ber", "_7008_C___ber"),
+        ("", "_"),
+        ("x-1.2", "x_1_2"),
+    ] {
+        assert_eq!(identifier(name), wanted, "{name}");
+    }
+    let simulation = Simulation::new(&Scene::parse(THRUST).unwrap()).unwrap();
+    let xml = render(&simulation, "front bearing").unwrap().xml;
+    assert!(xml.contains("modelName=\"front bearing\"") && xml.contains("modelIdentifier=\"front_bearing\""));
+}
+
+#[test]
+fn regression_after_a_step_no_output_depends_on_an_input() {
+    let simulation = Simulation::new(&Scene::parse(THRUST).unwrap()).unwrap();
+    let xml = render(&simulation, "thrust").unwrap().xml;
+    let (outputs, initial) = xml.split_once("<InitialUnknowns>").unwrap();
+    let outputs = outputs.split_once("<Outputs>").unwrap().1;
+    let unknowns = elements(outputs, "Unknown");
+    assert!(unknowns.len() > 30 && unknowns.iter().all(|unknown| unknown.contains("dependencies=\"\"")));
+    // At the start they do, but for what is counted from there.
+    let dependent = elements(initial, "Unknown").iter().filter(|u| !u.contains("dependencies=\"\"")).count();
+    assert_eq!(dependent, unknowns.len() - 3);
+}
+
+#[test]
+fn regression_counters_are_local_and_inputs_and_parameters_have_starts() {
+    let simulation = Simulation::new(&Scene::parse(CAGE).unwrap()).unwrap();
+    let xml = render(&simulation, "cage").unwrap().xml;
+    for variable in xml.split("<ScalarVariable ").skip(1) {
+        let variable = variable.split("</ScalarVariable>").next().unwrap();
+        let is = |causality: &str| variable.contains(&format!("causality=\"{causality}\""));
+        assert_eq!(variable.contains("<Integer"), is("local"), "{variable}");
+        assert_eq!(variable.contains(" start="), is("input") || is("parameter"), "{variable}");
+    }
+    assert_eq!(names(simulation.scene(), Causality::Local).len(), 3);
+}
+
+#[test]
+fn the_speed_of_the_outer_race_is_an_input_where_no_script_says_it() {
+    let is_input = |changes: &[(&str, &str)]| {
+        names(&scene(THRUST, changes), Causality::Input).contains(&"outer.speed".to_string())
+    };
+    let hinge =
+        [("outer.drive", "\"hinge\""), ("outer.mass", "0.3"), ("outer.inertia", "[3e-4, 2e-4, 2e-4]")];
+    assert!(is_input(&[]) && is_input(&hinge) && is_input(&[("outer.drive", "\"pose\"")]));
+    assert!(!is_input(&[("load.outer_speed", "[[0.0, 0.0], [0.01, 100.0]]")]));
+    let quaternion = [("outer.drive", "\"pose\""), ("interface.orientation", "\"quaternion\"")];
+    assert!(!is_input(&quaternion));
+}
+
+#[test]
+fn invariant_an_outer_speed_from_outside_is_that_of_the_scene() {
+    // Given before the start: the same bits. Given later: the same steady state.
+    let turning = scene(THRUST, &[("load.outer_speed", "-200.0")]);
+    let advance = |simulation: &mut Simulation| {
+        for point in 1..=60 {
+            simulation.advance(f64::from(point) * 1e-4).unwrap();
+        }
+        simulation.outputs().cage_speed
+    };
+    let expected = advance(&mut Simulation::new(&turning).unwrap());
+    for before_the_start in [true, false] {
+        let mut simulation = Simulation::new(&Scene::parse(THRUST).unwrap()).unwrap();
+        let mut inputs = *simulation.inputs();
+        inputs.outer.speed = -200.0;
+        simulation.set_inputs(inputs);
+        if before_the_start {
+            simulation.initialise().unwrap();
+        }
+        let got = advance(&mut simulation);
+        let tolerance = if before_the_start { 1e-9 } else { 1e-2 };
+        assert!((got / expected - 1.0).abs() < tolerance, "{before_the_start} {got} {expected}");
+        let spin = simulation.outputs().outer.twist.angular_velocity.x;
+        assert!((spin + 200.0).abs() < 1e-9, "{spin}");
+    }
+}
+
+#[test]
+fn numbers_of_the_cage_and_of_a_hinged_race_are_parameters() {
+    let cage = names(&Scene::parse(CAGE).unwrap(), Causality::Parameter);
+    for key in [
+        "mass",
+        "inertia.x",
+        "inertia.z",
+        "pocket_clearance",
+        "guidance_clearance",
+        "land_diameter",
+        "land_width",
+    ] {
+        assert!(cage.contains(&format!("cage.{key}")), "{key} {cage:?}");
+    }
+    let hinge =
+        [("outer.drive", "\"hinge\""), ("outer.mass", "0.3"), ("outer.inertia", "[3e-4, 2e-4, 2e-4]")];
+    let hinged = names(&scene(THRUST, &hinge), Causality::Parameter);
+    assert!(["outer.mass", "outer.inertia.y"].iter().all(|key| hinged.contains(&(*key).to_string())));
+    assert!(
+        !names(&Scene::parse(THRUST).unwrap(), Causality::Parameter)
+            .iter()
+            .any(|key| key.starts_with("cage."))
+    );
+    // Each is the number of the scene that it is named after.
+    let text = CAGE.to_string();
+    let mut changed = Scene::parse(&text).unwrap();
+    changed.set_number("cage.land_width", 1.25e-3);
+    changed.set_number("cage.inertia.y", 7e-6);
+    let section = changed.effects.cage.section.unwrap();
+    assert_eq!((section.land_width.unwrap().0, section.inertia[1].0), (1.25e-3, 7e-6));
+}
+
+#[test]
+fn closed_form_totals_of_the_balls_are_those_of_every_ball() {
+    let text = scene(CAGE, &[("effects.heathcote_slip", "true"), ("effects.per_ball_outputs", "true")]);
+    let mut simulation = Simulation::new(&text).unwrap();
+    for point in 1..=20 {
+        simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
+        simulation.advance(f64::from(point) * 1e-4).unwrap();
+    }
+    let balls = simulation.outputs().balls.len();
+    let every = |quantity: &str| -> Vec<f64> {
+        let of = |j: usize| value(&simulation, &format!("ball[{j}].{quantity}"));
+        (1..=balls).map(of).collect()
+    };
+    let (inner, outer) = (every("inner.load"), every("outer.load"));
+    let loads = || inner.iter().chain(&outer).copied();
+    let get = |name: &str| value(&simulation, name);
+    assert_eq!(get("balls.largest_load"), loads().fold(0.0, f64::max));
+    assert_eq!(get("balls.smallest_load"), loads().fold(f64::INFINITY, f64::min));
+    let loaded = inner.iter().zip(&outer).filter(|(i, o)| **i > 0.0 && **o > 0.0).count();
+    assert_eq!(get("balls.loaded"), loaded as f64);
+    let pressures = [every("inner.peak_pressure"), every("outer.peak_pressure")].concat();
+    assert_eq!(get("balls.largest_pressure"), pressures.into_iter().fold(0.0, f64::max));
+    // Powers by kind: of the races and the cage all of it, by translation, spin and groove that of the races.
+    let sum = |values: Vec<f64>| values.into_iter().sum::<f64>();
+    let close = |one: f64, other: f64| (one - other).abs() < 1e-12 * get("friction_power");
+    assert!(close(get("power.inner"), sum(every("inner.power"))));
+    assert!(close(get("power.outer"), sum(every("outer.power"))));
+    assert!(close(get("power.inner") + get("power.outer") + get("power.cage"), get("friction_power")));
+    // Spin moment times relative angular velocity about the normal; the rest is slip in x and y.
+    let mut translation = 0.0;
+    for ball in &simulation.outputs().balls {
+        for (contact, race) in
+            [(&ball.inner, &simulation.outputs().inner), (&ball.outer, &simulation.outputs().outer)]
+        {
+            let slips = [contact.creepage_longitudinal, contact.creepage_lateral];
+            let forces = [-contact.force_longitudinal, -contact.force_lateral];
+            // The rolling speed of the contact, from spin power and moment.
+            if contact.spin_power != 0.0 {
+                let spin = contact.spin_power / -contact.spin_moment;
+                let speed = spin / contact.creepage_spin;
+                assert!(speed > 0.1 && speed < 60.0, "{speed} {race:?}");
+                translation += (slips[0] * forces[0] + slips[1] * forces[1]) * speed;
+            }
+        }
+    }
+    let races = get("power.inner") + get("power.outer");
+    let parts = translation + get("power.spin") + get("power.groove");
+    assert!((parts - races).abs() < 1e-9 * races, "{parts} {races}");
+    assert!(get("power.spin") > 0.0 && get("power.groove") != 0.0);
+}
+
+#[test]
+fn the_page_shows_the_effects_that_are_on_and_the_form_of_orientation() {
+    let scene = scene(CAGE, &[("effects.heathcote_slip", "true")]);
+    let page = page(&scene);
+    let (table, rest) = page.split_once("<h2>Effects</h2>").unwrap().1.split_once("</table>").unwrap();
+    let off = rest.split_once("</p>").unwrap().0;
+    let effects: &Effects = &scene.effects;
+    for effect in effects.each() {
+        let key = format!("<code>{}</code>", effect.info().key);
+        assert_eq!(table.contains(&key), effect.setting().is_some(), "{key}");
+        assert_eq!(off.contains(&key), effect.setting().is_none(), "{key}");
+    }
+    assert!(page.contains("rotation.y") && page.contains("spins about that axis"));
+}
+
+#[test]
+fn the_recommended_step_holds_a_shaft_that_moves_by_leapfrog() {
+    let step = |changes: &[(&str, &str)]| -> f64 {
+        let xml = render(&Simulation::new(&scene(THRUST, changes)).unwrap(), "thrust").unwrap().xml;
+        let step = xml.split("stepSize=\"").nth(1).unwrap();
+        step.split('"').next().unwrap().parse().unwrap()
+    };
+    // The 0.2 kg of the scene on about 2e8 N/m; 1 kg where it gives none.
+    let pose = ("inner.drive", "\"pose\"");
+    assert_eq!(step(&[pose]), 1e-5);
+    assert_eq!(step(&[pose, ("inner.mass", "")]), 2e-5);
+    // The passing of the balls asks for less than a heavy shaft allows, or one whose motion is not from outside.
+    assert_eq!([step(&[pose, ("inner.mass", "20.0")]), step(&[])], [5e-5; 2]);
+}
