@@ -49,9 +49,10 @@ static BEARING: [Number<Scene>; 15] = [
 
 /// Cage friction, races, start, time integration and load: those after the effects.
 #[rustfmt::skip]
-static MOTION: [Number<Scene>; 34] = [
+static MOTION: [Number<Scene>; 35] = [
     Number::checked("friction.ball_cage", FRICTION, |s| Place::Value(s.friction.ball_cage.as_mut())),
     Number::checked("friction.cage_race", FRICTION, |s| Place::Value(s.friction.cage_race.as_mut())),
+    Number::checked("friction.ball_ball", FRICTION, |s| Place::Value(s.friction.ball_ball.as_mut())),
     Number::fixed_if("inner.mass", MASS, "mass of the inner race and what is fixed to it", inner_moves,
         |s| Place::Value(s.inner.mass.as_mut().map(|mass| &mut mass.0))),
     Number::fixed_if("inner.inertia.x", INERTIA, "moment of inertia of the inner race about its own axis", inner_moves,
