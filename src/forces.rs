@@ -16,11 +16,36 @@ pub struct BallContacts {
     pub pocket: Option<PairForces>,
 }
 
+/// Two neighbouring balls that touch.
+#[derive(Clone, Copy, Debug)]
+pub struct BallPair {
+    /// The first (0 is the first ball).
+    pub first: usize,
+    /// The next one around the bearing.
+    pub second: usize,
+    /// Forces between them.
+    pub forces: PairForces,
+}
+
+impl BallPair {
+    /// Force and moment on a ball, if it is one of the two.
+    pub fn on(&self, ball: usize) -> Option<Wrench> {
+        let PairForces { force, moment, other_moment, .. } = self.forces;
+        if ball == self.first {
+            Some(Wrench { force, moment })
+        } else {
+            (ball == self.second).then(|| Wrench { force: -force, moment: other_moment })
+        }
+    }
+}
+
 /// All contacts of a bearing in a state.
 #[derive(Clone, Debug)]
 pub struct Contacts {
     /// Contacts of every ball.
     pub balls: Vec<BallContacts>,
+    /// Neighbouring balls that touch.
+    pub ball_pairs: Vec<BallPair>,
     /// Contacts of the cage with the lands at its -x and +x side, where they touch.
     pub lands: [Option<PairForces>; 2],
     /// The race that these lands are on, where there are some.
@@ -29,8 +54,13 @@ pub struct Contacts {
 
 impl Contacts {
     /// Contacts that were evaluated elsewhere.
-    pub fn from_parts(model: &Model, balls: Vec<BallContacts>, lands: [Option<PairForces>; 2]) -> Self {
-        Self { balls, lands, guide: model.cage_guide() }
+    pub fn from_parts(
+        model: &Model,
+        balls: Vec<BallContacts>,
+        ball_pairs: Vec<BallPair>,
+        lands: [Option<PairForces>; 2],
+    ) -> Self {
+        Self { balls, ball_pairs, lands, guide: model.cage_guide() }
     }
 
     /// Evaluates the contacts of a state.
@@ -49,7 +79,25 @@ impl Contacts {
         };
         let lands =
             cage.as_ref().map_or([None; 2], |(cage, seen)| cage.land_contacts(seen, |race| races[race]));
-        Self::from_parts(model, state.balls.iter().enumerate().map(of_ball).collect(), lands)
+        let balls = state.balls.iter().enumerate().map(of_ball).collect();
+        Self::from_parts(model, balls, touching_balls(model, state), lands)
+    }
+
+    /// Force and moment of all its pairs on a ball, on top of `start`.
+    pub fn on_ball(&self, ball: usize, start: Wrench) -> Wrench {
+        let touched = on_ball(self.of_ball(ball).map(|(_, pair)| pair), start);
+        self.neighbours_on(ball).fold(touched, Wrench::plus)
+    }
+
+    /// Force and moment on a ball of each neighbour that it touches.
+    pub fn neighbours_on(&self, ball: usize) -> impl Iterator<Item = Wrench> {
+        self.ball_pairs.iter().filter_map(move |pair| pair.on(ball))
+    }
+
+    /// \[J] elastic energy of each contact of two balls.
+    pub fn ball_pair_energies(&self, model: &Model) -> impl Iterator<Item = f64> {
+        let contact = model.ball_contact.as_ref();
+        self.ball_pairs.iter().filter_map(move |pair| Some(contact?.elastic_energy(pair.forces.approach)))
     }
 
     /// Forces between all balls and races.
@@ -66,6 +114,19 @@ impl Contacts {
     }
 }
 
+/// Neighbouring balls that touch in a state.
+fn touching_balls(model: &Model, state: &State) -> Vec<BallPair> {
+    let Some(contact) = &model.ball_contact else {
+        return vec![];
+    };
+    let touching = |(first, second): (usize, usize)| {
+        let motions = [first, second].map(|ball| state.balls[ball].motion());
+        let forces = contact.evaluate(&motions[0], &motions[1], model.damping)?;
+        Some(BallPair { first, second, forces })
+    };
+    model.bearing.neighbours().filter_map(touching).collect()
+}
+
 impl BallContacts {
     /// \[J] elastic energy of each contact.
     pub fn elastic_energies(&self, model: &Model) -> impl Iterator<Item = f64> {
@@ -75,10 +136,13 @@ impl BallContacts {
     }
 }
 
-/// Pairs of bodies that touch, in one order for all sums: by ball, then between bodies.
+/// Pairs of bodies that touch, in one order for all sums: by ball, between balls, then between bodies.
 pub trait Pairs {
     /// Pairs of a ball and the body that it touches.
     fn of_ball(&self, ball: usize) -> impl Iterator<Item = (Body, PairForces)>;
+
+    /// Pairs of two balls.
+    fn between_balls(&self) -> impl Iterator<Item = BallPair>;
 
     /// Pairs of two bodies.
     fn between_bodies(&self) -> impl Iterator<Item = (Body, Body, PairForces)>;
@@ -89,6 +153,10 @@ impl Pairs for Contacts {
         let BallContacts { raceways, pocket } = &self.balls[ball];
         let races = Body::ALL.into_iter().zip(raceways.iter().map(PairForces::from));
         races.chain(pocket.iter().map(|pair| (Body::Cage, *pair)))
+    }
+
+    fn between_balls(&self) -> impl Iterator<Item = BallPair> {
+        self.ball_pairs.iter().copied()
     }
 
     fn between_bodies(&self) -> impl Iterator<Item = (Body, Body, PairForces)> {
@@ -123,6 +191,10 @@ impl Totals {
             for (body, pair) in pairs.of_ball(ball) {
                 totals.add_to_second(body, &pair);
             }
+        }
+        for BallPair { forces, .. } in pairs.between_balls() {
+            totals.friction_power += forces.friction_power;
+            totals.damping_power += forces.damping_power;
         }
         for (first, second, pair) in pairs.between_bodies() {
             let wrench = &mut totals.bodies[first.index()];

@@ -77,7 +77,7 @@
 //! |---|---|
 //! | [`numerics`] | methods that know nothing of bearings: numbers with derivatives, rotations, Newton's method, HHT steps |
 //! | [`kalker`] | rolling contact theories of one scaled patch: linear, polynomials, table, half-space reference |
-//! | [`contact`] | one contact of a ball with a race, of a ball with its pocket, or of the cage with a land: from motion to forces |
+//! | [`contact`] | one contact of a ball with a race, its pocket or another ball, or of the cage with a land: from motion to forces |
 //! | [`schema`] | the parts of a scene: sections, units, schedules, ranges, errors |
 //! | [`effects`] | effects that a scene can switch on, a file each |
 //! | [`scene`] | the whole scene file: what its parts have to agree on |

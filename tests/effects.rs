@@ -46,11 +46,12 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
     let base = names(&parse(OFF));
     let first_parameter = base.iter().position(|name| name == "bearing.ball_diameter").unwrap();
     // Effect, how many variables it adds, and how their names begin: 36 coefficients twice; of a cage without lands 21;
-    // of 10 balls 22 each.
+    // of 10 balls 22 each; of neighbouring balls 4.
     let adding = [
         ("effects.stiffness_outputs", 72, &["stiffness.", "damping."][..]),
         ("effects.cage", 21, &["cage."]),
         ("effects.per_ball_outputs", 220, &["ball["]),
+        ("effects.full_complement", 4, &["neighbours."]),
     ];
     for effect in parse(OFF).effects.each() {
         let info = effect.info();

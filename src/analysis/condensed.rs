@@ -34,7 +34,7 @@ const DIRECTIONS: usize = 9;
 type D = Dual<DIRECTIONS>;
 
 impl Condensed {
-    /// Stiffness and damping in a state. Contacts of a cage are left out, and so are balls that do not touch both races.
+    /// Stiffness and damping in a state. Contacts of a cage and between balls are left out, and so are balls that do not touch both races.
     pub fn new(model: &Model, state: &State, conditions: &Conditions) -> Self {
         let contacts = model.contacts(conditions);
         let races = PerRace::new(|race| state.race(race).motion());

@@ -1,5 +1,6 @@
 //! Contact between a ball and a raceway: geometry, Hertz, creepage, creep laws.
 
+pub mod ball_ball;
 pub mod body;
 pub mod creep;
 pub mod geometry;

@@ -3,9 +3,10 @@
 use nalgebra::Vector3;
 
 use super::ball::BallTrial;
+use super::neighbours::NeighbourTrial;
 use super::{Boundary, Workspace, body};
 use crate::contact::pair::PairForces;
-use crate::forces::{Contacts, Pairs, Totals, between_cage_and_lands, on_ball};
+use crate::forces::{BallPair, Contacts, Pairs, Totals, between_cage_and_lands};
 use crate::model::Model;
 use crate::model::bodies::{Body, Race};
 use crate::model::state::{BallState, BodyState, Powers, State, axes_of};
@@ -30,6 +31,10 @@ struct Solved<'a> {
 impl Pairs for Solved<'_> {
     fn of_ball(&self, ball: usize) -> impl Iterator<Item = (Body, PairForces)> {
         self.workspace.balls[ball].pairs().map(|(body, pair)| (body, *pair))
+    }
+
+    fn between_balls(&self) -> impl Iterator<Item = BallPair> {
+        self.workspace.neighbours.iter().filter_map(NeighbourTrial::touching)
     }
 
     fn between_bodies(&self) -> impl Iterator<Item = (Body, Body, PairForces)> {
@@ -81,7 +86,8 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
     }
     state.energies.add(&state.powers, &powers, step.h);
     state.powers = powers;
-    let pairs = workspace.balls.iter().flat_map(|ball| ball.raceways.iter());
+    let raceways = workspace.balls.iter().flat_map(|ball| ball.raceways.iter().copied());
+    let pairs = raceways.chain(solved.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }
 
@@ -99,7 +105,7 @@ fn reach(model: &Model, state: &State) -> f64 {
 
 /// \[N] residual below which nothing but rounding remains: nine digits of the largest load, or a last digit of a
 /// coordinate times the stiffness `dQ/dx` of the stiffest contact.
-fn force_tolerance<'a>(contacts: impl Iterator<Item = &'a PairForces>, reach: f64) -> f64 {
+fn force_tolerance(contacts: impl Iterator<Item = PairForces>, reach: f64) -> f64 {
     // `dQ/dx = 1.5 K^(2/3) Q^(1/3)`; the root is taken once, of the largest
     let (mut load, mut cube) = (0.0f64, 0.0f64);
     for contact in contacts {
@@ -152,7 +158,7 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     let ball_model = &model.bearing.ball;
     for (index, ball) in state.balls.iter_mut().enumerate() {
         let weight = Wrench { force: model.gravity * ball_model.mass, moment: Vector3::zeros() };
-        ball.total = on_ball(contacts.of_ball(index).map(|(_, pair)| pair), weight);
+        ball.total = contacts.on_ball(index, weight);
         ball.acceleration = ball.total.force / ball_model.mass;
         ball.angular_acceleration = ball.total.moment / ball_model.inertia;
     }
@@ -172,6 +178,6 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
         };
     }
     state.powers = powers;
-    let pairs: Vec<PairForces> = contacts.raceway_pairs().collect();
-    state.force_tolerance = force_tolerance(pairs.iter(), reach(model, state));
+    let pairs = contacts.raceway_pairs().chain(contacts.between_balls().map(|pair| pair.forces));
+    state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }

@@ -5,6 +5,7 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 use super::body::RaceSeen;
 use super::cage::CageTrial;
 use super::directions::{D, DIRECTIONS, by_first, by_second, constant_race, scale_moments, seed};
+use super::neighbours::Push;
 use super::reaction::Reaction;
 use crate::contact::many::ContactGroup;
 use crate::contact::pair::PairForces;
@@ -69,6 +70,8 @@ pub struct BallTrial {
     pub raceways: PerRace<PairForces>,
     /// Contact with the cage's pocket at the end of the step, where they touch.
     pub pocket: Option<PairForces>,
+    /// What its neighbours do to it at the end of the step, where it touches one.
+    pub pushed: Option<Push>,
     /// Total force and moment at the end of the step.
     pub total: Wrench,
     /// \[N] residual; moments over the ball radius.
@@ -87,6 +90,7 @@ impl BallTrial {
             motion: ball.motion(),
             raceways: PerRace::new(|_| PairForces::none()),
             pocket: None,
+            pushed: None,
             total: ball.total,
             residual: Vector6::zeros(),
             block: Block::default(),
@@ -216,6 +220,11 @@ impl BallTrial {
         let fraction = 1.0 - step.alpha_f;
         let weight = Wrench { force: model.gravity * ball.mass, moment: Vector3::zeros() };
         self.total = on_ball(self.pairs().map(|(_, pair)| *pair), weight);
+        let mut tangent = tangent;
+        if let Some(push) = &self.pushed {
+            self.total = self.total.plus(push.wrench);
+            tangent.iter_mut().for_each(|tangent| *tangent += push.tangent);
+        }
         let blended = start.total.blend(&self.total, fraction);
         let acceleration = Vector3::new(self.unknowns[0], self.unknowns[1], self.unknowns[2]);
         let angular_acceleration =

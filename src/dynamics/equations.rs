@@ -17,6 +17,7 @@ use crate::numerics::arrowhead::{BLOCK, Block, Offsets, SLOTS};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::lanes::WIDTH;
 use crate::numerics::newton::Equations;
+use crate::numerics::ring::Link;
 use crate::numerics::size::{larger, largest};
 
 /// [-] accepted violation of position constraints over the ball diameter (paper section 5: 1e-8).
@@ -78,9 +79,9 @@ impl<'a> BearingStep<'a> {
         }
     }
 
-    /// Are the balls independent of each other, because no body has unknowns?
+    /// Are the balls independent of each other, because no body has unknowns and no two balls may touch?
     pub fn balls_are_independent(&self) -> bool {
-        self.model.border_offsets() == [None; SLOTS]
+        self.model.border_offsets() == [None; SLOTS] && self.workspace.neighbours.is_empty()
     }
 
     /// Moves the bodies to the end of the step.
@@ -104,6 +105,7 @@ impl<'a> BearingStep<'a> {
     /// Under prescribed races balls whose unknowns did not change keep their last evaluation.
     fn evaluate_balls(&mut self, unknowns: &[f64], with_tangent: bool) {
         let all = with_tangent || self.fresh || !self.balls_are_independent();
+        self.evaluate_neighbours(unknowns, with_tangent);
         let workspace = &mut *self.workspace;
         let around = Surroundings {
             model: self.model,
@@ -283,11 +285,12 @@ impl BearingStep<'_> {
             let rows = trial.residual.len();
             workspace.border_correction.rows_mut(from, rows).copy_from(&-&trial.residual);
         }
-        let solved = workspace.arrowhead.solve(
-            &mut workspace.ball_corrections,
-            &mut workspace.border_correction,
-            offsets,
-        );
+        let (x, y) = (&mut workspace.ball_corrections, &mut workspace.border_correction);
+        let solved = if workspace.neighbours.is_empty() {
+            workspace.arrowhead.solve(x, y, offsets)
+        } else {
+            workspace.ring.solve(x, y, offsets)
+        };
         let (balls, border) = correction.split_at_mut(BLOCK * workspace.balls.len());
         for (chunk, x) in balls.chunks_exact_mut(BLOCK).zip(&workspace.ball_corrections) {
             chunk.copy_from_slice(x.as_slice());
@@ -334,7 +337,12 @@ impl BearingStep<'_> {
             workspace.border.view_mut((own, race), size).copy_from(&cage.cage_by_race);
         }
         let blocks: Vec<&Block> = workspace.balls.iter().map(|trial| &trial.block).collect();
-        workspace.arrowhead.factorise(&blocks, &workspace.border, offsets);
+        if workspace.neighbours.is_empty() {
+            workspace.arrowhead.factorise(&blocks, &workspace.border, offsets);
+        } else {
+            let links: Vec<Link> = workspace.neighbours.iter().map(|pair| pair.link).collect();
+            workspace.ring.factorise(&blocks, &links, &workspace.border, offsets);
+        }
     }
 }
 

@@ -9,6 +9,7 @@ mod equations;
 mod failure;
 mod guess;
 mod local_error;
+mod neighbours;
 mod orbit_turn;
 mod reaction;
 mod sensitivity;
@@ -24,6 +25,7 @@ use crate::numerics::arrowhead::Arrowhead;
 use crate::numerics::lanes::WIDTH;
 use crate::numerics::motion::{Pose, Twist};
 use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure};
+use crate::numerics::ring::Ring;
 pub use accept::make_consistent;
 use accept::{accept, renew_polynomials};
 use ball::BallTrial;
@@ -32,6 +34,7 @@ use body::BodyTrial;
 use cage::CageTrial;
 use equations::BearingStep;
 pub use failure::{FailureSite, Worst, failure_site};
+use neighbours::NeighbourTrial;
 pub use sensitivity::advance_perturbed;
 
 /// Corrections beyond one a step that a kept matrix may take: they cost about as much as a new one (benches/speed.rs).
@@ -61,7 +64,11 @@ pub struct Workspace {
     /// Trials of the bodies that forces move; empty before the first step.
     bodies: Bodies<Option<BodyTrial>>,
     cage: Option<CageTrial>,
+    /// Neighbouring balls that may touch in the step.
+    neighbours: Vec<NeighbourTrial>,
     arrowhead: Arrowhead,
+    /// The matrix of a step in which neighbouring balls may touch.
+    ring: Ring,
     border: DMatrix<f64>,
     ball_corrections: Vec<Vector6<f64>>,
     border_correction: DVector<f64>,
@@ -80,7 +87,8 @@ impl Workspace {
             }
         };
         let lands = self.cage.as_ref().map_or([None; 2], |cage| cage.lands);
-        Contacts::from_parts(model, self.balls.iter().enumerate().map(of_ball).collect(), lands)
+        let ball_pairs = self.neighbours.iter().filter_map(NeighbourTrial::touching).collect();
+        Contacts::from_parts(model, self.balls.iter().enumerate().map(of_ball).collect(), ball_pairs, lands)
     }
 }
 
@@ -112,14 +120,23 @@ pub fn try_step(
     renew_polynomials(model, state, boundary);
     let mut statistics = state.statistics;
     let mut equations = BearingStep::new(model, state, boundary, h, workspace);
+    equations.list_near();
     equations.guess_steady_orbit(&mut unknowns);
     let before = statistics.newton;
-    let mut solved = newton::solve(&mut equations, &mut unknowns, &mut buffers, &mut statistics.newton);
+    let mut solve = |equations: &mut BearingStep<'_>, unknowns: &mut [f64]| {
+        newton::solve(equations, unknowns, &mut buffers, &mut statistics.newton)?;
+        // Each time around another pair of balls has met.
+        while equations.list_met() {
+            newton::solve(equations, unknowns, &mut buffers, &mut statistics.newton)?;
+        }
+        Ok(())
+    };
+    let mut solved = solve(&mut equations, &mut unknowns);
     if solved.is_err() {
-        statistics.second_guesses += 1;
         equations.workspace.kept = KeptMatrix::default();
         equations.guess_steady_velocity(&mut unknowns);
-        solved = newton::solve(&mut equations, &mut unknowns, &mut buffers, &mut statistics.newton);
+        solved = solve(&mut equations, &mut unknowns);
+        statistics.second_guesses += 1;
     }
     statistics.contact_values += equations.contact_values;
     statistics.contact_tangents += equations.contact_tangents;

@@ -26,6 +26,7 @@ pub fn advance_perturbed<'a>(
 ) -> bool {
     let solution = &accepted.unknowns;
     let mut unknowns = vec![0.0; solution.len()];
+    workspace.list_those_of(accepted);
     BearingStep::new(model, start, boundary, h, workspace).residual(solution, true);
     let mut regular = true;
     for (state, boundary) in perturbed {

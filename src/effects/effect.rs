@@ -32,6 +32,8 @@ pub struct Setup<'a> {
     pub friction: &'a Friction,
     /// Does the creep law of the ball-race contacts saturate?
     pub saturates: bool,
+    /// Is there a cage?
+    pub cage: bool,
 }
 
 /// How the value of a variable is found in what is reported.

@@ -18,6 +18,7 @@ pub mod cage;
 pub mod creep;
 pub mod damping;
 mod effect;
+pub mod full_complement;
 pub mod gravity;
 pub mod groove_slip;
 pub mod keys;
@@ -69,7 +70,7 @@ macro_rules! effects {
     };
 }
 
-effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball }
+effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement }
 
 impl Effects {
     /// Checks all numbers against their ranges.

@@ -11,6 +11,8 @@ pub struct Reports<'a> {
     pub balls: &'a [BallOutput],
     /// The cage.
     pub cage: Option<&'a CageOutput>,
+    /// Contacts of neighbouring balls.
+    pub neighbours: Option<&'a NeighboursOutput>,
     /// Stiffness and damping of the running bearing.
     pub condensed: Option<&'a Condensed>,
 }
@@ -61,6 +63,19 @@ pub struct PocketOutput {
     pub power: f64,
 }
 
+/// Contacts of neighbouring balls, where no cage keeps them apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NeighboursOutput {
+    /// [-] pairs that touch.
+    pub touching: usize,
+    /// \[N] largest normal load.
+    pub largest_load: f64,
+    /// \[m] smallest gap; negative is an approach. That of a single ball is infinite.
+    pub gap: f64,
+    /// \[W] power lost to friction.
+    pub power: f64,
+}
+
 /// The cage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CageOutput {
@@ -104,6 +119,10 @@ pub struct BallOutput {
     pub outer: ContactOutput,
     /// Contact with the cage, where there is one.
     pub pocket: Option<PocketOutput>,
+    /// \[N] largest normal load between the ball and a neighbour.
+    pub neighbours_load: f64,
+    /// \[N] force of its neighbours on the ball, world axes.
+    pub neighbours_force: Vector3<f64>,
 }
 
 /// What an external load on the inner race has to overcome, by components: rows force x, y, z and moment x, y, z,

@@ -9,6 +9,7 @@ pub mod state;
 use nalgebra::Vector3;
 
 use crate::contact::ContactModel;
+use crate::contact::ball_ball::BallBallModel;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::numerics::arrowhead::Offsets;
@@ -36,6 +37,8 @@ pub struct Model {
     raceways: PerRace<RacewayContacts>,
     /// Balls against the cage's pockets and the cage against a race's lands, where a cage is simulated.
     pub cage: Option<CageModel>,
+    /// Neighbouring balls against each other, where no cage keeps them apart.
+    pub ball_contact: Option<BallBallModel>,
     /// [-] change of creepages over sliding ones after which Kalker's polynomials are solved anew.
     pub epsilon_switch: f64,
     /// [s/m] Hunt-Crossley dissipation factor.
@@ -64,6 +67,11 @@ impl Model {
         Ok(Self {
             bodies: Bodies::new(races, section.map(|section| Some(RigidBody::cage(section)))),
             raceways: PerRace::try_new(|race| RacewayContacts::new(scene, &bearing, race))?,
+            ball_contact: cage.is_none().then(|| {
+                let material = (scene.ball.youngs_modulus.0, scene.ball.poisson_ratio);
+                let friction = scene.friction.ball_ball.unwrap_or(scene.friction.ball_race.at(0.0));
+                BallBallModel::new(bearing.ball.radius, material, friction)
+            }),
             cage,
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,

@@ -44,6 +44,12 @@ impl Twist {
 }
 
 impl Wrench {
+    /// The sum with another one about the same point.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self { force: self.force + other.force, moment: self.moment + other.moment }
+    }
+
     /// `(1 - t) self + t other`.
     pub fn blend(&self, other: &Self, t: f64) -> Self {
         Self { force: self.force.lerp(&other.force, t), moment: self.moment.lerp(&other.moment, t) }

@@ -107,7 +107,8 @@ impl Scene {
     /// What effects may have to agree with.
     fn setup(&self) -> effects::Setup<'_> {
         let saturates = self.effects.creep.law.saturates();
-        effects::Setup { bearing: &self.bearing, friction: &self.friction, saturates }
+        let cage = self.effects.cage.on;
+        effects::Setup { bearing: &self.bearing, friction: &self.friction, saturates, cage }
     }
 
     /// Reads a scene file.

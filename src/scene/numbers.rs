@@ -49,9 +49,10 @@ static BEARING: [Number<Scene>; 15] = [
 
 /// Cage friction, races, start, time integration and load: those after the effects.
 #[rustfmt::skip]
-static MOTION: [Number<Scene>; 36] = [
+static MOTION: [Number<Scene>; 37] = [
     Number::fixed("friction.ball_cage", FRICTION, "friction coefficient of the balls in their pockets", |s| Place::Value(s.friction.ball_cage.as_mut())),
     Number::fixed("friction.cage_race", FRICTION, "friction coefficient of the cage on the lands", |s| Place::Value(s.friction.cage_race.as_mut())),
+    Number::fixed("friction.ball_ball", FRICTION, "friction coefficient of neighbouring balls", |s| Place::Value(s.friction.ball_ball.as_mut())),
     Number::fixed_if("inner.mass", MASS, "mass of the inner race and what is fixed to it", inner_moves,
         |s| Place::Value(s.inner.mass.as_mut().map(|mass| &mut mass.0))),
     Number::fixed_if("inner.inertia.x", INERTIA, "moment of inertia of the inner race about its own axis", inner_moves,

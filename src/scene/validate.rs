@@ -1,7 +1,7 @@
 //! What the keys of a scene must agree in; ranges of single numbers stand in their table.
 
 use super::numbers::STEP;
-use super::{Condition, Drive, Giver, Group, Scene, SceneError, Schedule};
+use super::{BearingSection, Condition, Drive, Giver, Group, Scene, SceneError, Schedule};
 use crate::schema::numbers::Range;
 
 /// Checks every value of a scene against its range, and the keys against one another.
@@ -49,11 +49,11 @@ fn bearing(scene: &Scene) -> Result<(), SceneError> {
             return Err(SceneError::conflict("bearing", why));
         }
     }
-    let spacing = pitch * (std::f64::consts::PI / bearing.balls as f64).sin();
-    if bearing.balls > 1 && spacing < ball {
+    // Without load the orbit of the balls is the pitch circle, with a contact angle or a clearance.
+    let (balls, fit) = (bearing.balls, BearingSection::most_balls(ball, pitch));
+    if balls > fit {
         let why = format!(
-            "{} balls of {ball} m do not fit on a pitch diameter of {pitch} m: their spacing is {spacing} m",
-            bearing.balls
+            "{balls} balls of {ball} m do not fit on a pitch diameter of {pitch} m: allowed is [1, {fit}]"
         );
         return Err(SceneError::conflict("bearing.balls", why));
     }

@@ -31,6 +31,15 @@ pub struct BearingSection {
     pub first_ball_azimuth: Angle,
 }
 
+impl BearingSection {
+    /// Largest number of balls of a diameter \[m] that fit on an orbit of another diameter \[m] side by side.
+    pub fn most_balls(ball: f64, orbit: f64) -> usize {
+        let half_angle = (ball / orbit).min(1.0).asin();
+        // Balls that just fit are not lost in rounding.
+        (std::f64::consts::PI / half_angle * (1.0 + 1e-12)) as usize
+    }
+}
+
 fn zero_angle() -> Angle {
     Angle(0.0)
 }
@@ -72,12 +81,14 @@ pub struct Friction {
     pub ball_cage: Option<f64>,
     /// [-] cage on the race that guides it; that of `ball_race` at time 0 if not given.
     pub cage_race: Option<f64>,
+    /// [-] ball on ball, without a cage; that of `ball_race` at time 0 if not given.
+    pub ball_ball: Option<f64>,
 }
 
 impl Default for Friction {
     fn default() -> Self {
         // The paper's dry estimate (section 5).
-        Self { ball_race: Schedule::Constant(0.08), ball_cage: None, cage_race: None }
+        Self { ball_race: Schedule::Constant(0.08), ball_cage: None, cage_race: None, ball_ball: None }
     }
 }
 

@@ -77,6 +77,34 @@ pub enum SimulationError {
         /// \[m] approach.
         approach: f64,
     },
+    /// Two balls are pressed together more deeply than Hertz's theory reaches.
+    #[error(
+        "at {time} s balls {ball} and {next} are pressed together by {approach:.3e} m: more than {MAX_APPROACH} of their \
+         diameter, far beyond elastic Hertzian contact"
+    )]
+    BallsPressed {
+        /// \[s] time.
+        time: f64,
+        /// Ball, counted from 1.
+        ball: usize,
+        /// Its neighbour.
+        next: usize,
+        /// \[m] approach.
+        approach: f64,
+    },
+    /// Balls that do not fit where the equilibrium puts them.
+    #[error(
+        "bearing.balls = {balls} is out of range at the start: allowed is [1, {fit}], as neighbouring balls overlap by \
+         {overlap:.3e} m where the equilibrium puts them"
+    )]
+    TooManyBalls {
+        /// Number of balls.
+        balls: usize,
+        /// Largest number that fits.
+        fit: usize,
+        /// \[m] largest overlap.
+        overlap: f64,
+    },
     /// The Newton matrix of a step whose sensitivities were asked for is singular.
     #[error("at {0} s the Newton matrix is singular")]
     Singular(f64),

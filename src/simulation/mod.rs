@@ -12,6 +12,7 @@ mod spin_balance;
 mod start;
 
 use std::cmp::Ordering;
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -24,13 +25,17 @@ use crate::forces::Contacts;
 use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::model::state::{KeptMatrix, State};
-use crate::scene::{Drive, Groups, Scene};
+use crate::scene::{BearingSection, Drive, Groups, Scene};
 pub use error::SimulationError;
 use input_paths::InputPaths;
 use inputs::Inputs;
 use outputs::Outputs;
 use script::Script;
 pub use script::{follows_time, scripted_groups};
+
+/// [-] overlap of neighbouring balls over their diameter that a start may have: balls that just fit are moved by microns
+/// where the load bends their orbit.
+const START_OVERLAP: f64 = 1e-4;
 
 /// A simulation beside the running one, under slightly different inputs.
 struct Perturbed {
@@ -93,6 +98,7 @@ impl Simulation {
             outputs,
             workspace: Workspace::default(),
         };
+        simulation.check_room()?;
         simulation.settle();
         Ok(simulation)
     }
@@ -105,8 +111,26 @@ impl Simulation {
     pub fn initialise(&mut self) -> Result<(), SimulationError> {
         self.state = start::from_inputs(&self.scene, &self.model, &mut self.inputs, self.state.time)?;
         self.paths = InputPaths::steady(&self.inputs, &self.state);
+        self.check_room()?;
         self.settle();
         Ok(())
+    }
+
+    /// Refuses more balls than fit on the orbit that the equilibrium gives them. It knows nothing of their contacts.
+    fn check_room(&self) -> Result<(), SimulationError> {
+        let (Some(contact), bearing) = (&self.model.ball_contact, &self.model.bearing) else {
+            return Ok(());
+        };
+        let approach = |(first, second): (usize, usize)| {
+            contact.approach(&self.state.balls[first].motion(), &self.state.balls[second].motion())
+        };
+        let overlap = bearing.neighbours().map(approach).fold(f64::NEG_INFINITY, f64::max);
+        if overlap <= START_OVERLAP * contact.diameter {
+            return Ok(());
+        }
+        let orbit = (contact.diameter - overlap) / (PI / bearing.n_balls as f64).sin();
+        let fit = BearingSection::most_balls(contact.diameter, orbit);
+        Err(SimulationError::TooManyBalls { balls: bearing.n_balls, fit, overlap })
     }
 
     /// Goes on with a scene that differs in tunable parameters alone.
@@ -414,6 +438,13 @@ impl Simulation {
                 if approach > MAX_APPROACH * diameter {
                     return Err(SimulationError::Overload { time, ball, race: race.name(), approach });
                 }
+            }
+        }
+        for pair in &contacts.ball_pairs {
+            let (time, approach) = (self.state.time, pair.forces.approach);
+            if approach > MAX_APPROACH * diameter {
+                let (ball, next) = (pair.first + 1, pair.second + 1);
+                return Err(SimulationError::BallsPressed { time, ball, next, approach });
             }
         }
         Ok(())

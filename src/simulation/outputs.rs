@@ -6,7 +6,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::contact::BallRaceContact;
 use crate::effects::Reports;
-pub use crate::effects::reports::{BallOutput, CageOutput, Condensed, ContactOutput, PocketOutput};
+pub use crate::effects::reports::{
+    BallOutput, CageOutput, Condensed, ContactOutput, NeighboursOutput, PocketOutput,
+};
 use crate::forces::{BallContacts, Contacts, Totals};
 use crate::model::bodies::{Constraint, Race, RigidBody, tilt_direction};
 use crate::model::cage::CageModel;
@@ -46,6 +48,8 @@ pub struct Outputs {
     pub balls: Vec<BallOutput>,
     /// The cage, where it is simulated.
     pub cage: Option<CageOutput>,
+    /// Contacts of neighbouring balls, where there is no cage.
+    pub neighbours: Option<NeighboursOutput>,
     /// Stiffness and damping of the running bearing, where they are asked for.
     pub condensed: Option<Condensed>,
     /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
@@ -80,6 +84,9 @@ impl Outputs {
         let cage = model.cage.as_ref().zip(state.cage());
         let outer = state.race(Race::Outer);
         let races = Race::BOTH.map(|race| state.race(race).motion());
+        let all = contacts;
+        let contacts_of_neighbours =
+            |ball: usize| all.ball_pairs.iter().filter(move |pair| [pair.first, pair.second].contains(&ball));
         let of_ball = |(index, (ball, contacts)): (usize, (&BallState, &BallContacts))| {
             let pocket = cage.map(|(model, state)| {
                 let approach = model.pocket_approach(index, &ball.motion(), &state.body_motion());
@@ -98,6 +105,9 @@ impl Outputs {
                 inner: contact_output(&contacts.raceways.inner, &races[0].axis),
                 outer: contact_output(&contacts.raceways.outer, &races[1].axis),
                 pocket,
+                neighbours_load: contacts_of_neighbours(index)
+                    .fold(0.0, |load, pair| pair.forces.load.max(load)),
+                neighbours_force: all.neighbours_on(index).map(|wrench| wrench.force).sum(),
             }
         };
         let balls: Vec<_> = state.balls.iter().zip(&contacts.balls).enumerate().map(of_ball).collect();
@@ -115,6 +125,7 @@ impl Outputs {
             outer,
             balls,
             cage: cage_output,
+            neighbours: neighbours(model, state, contacts),
             condensed: model.stiffness_outputs.then(|| Condensed::new(model, state, conditions)),
             cage_speed,
             cage_slip: if epicyclic == 0.0 { 0.0 } else { 1.0 - cage_speed / epicyclic },
@@ -141,7 +152,12 @@ impl Outputs {
 
     /// What effects report.
     pub fn reports(&self) -> Reports<'_> {
-        Reports { balls: &self.balls, cage: self.cage.as_ref(), condensed: self.condensed.as_ref() }
+        Reports {
+            balls: &self.balls,
+            cage: self.cage.as_ref(),
+            neighbours: self.neighbours.as_ref(),
+            condensed: self.condensed.as_ref(),
+        }
     }
 }
 
@@ -180,8 +196,24 @@ fn stored_energy(model: &Model, state: &State, contacts: &Contacts) -> f64 {
                 + 0.5 * state.rate.component_mul(&body.inertia).dot(&state.rate);
         }
     }
+    contacts.ball_pair_energies(model).for_each(|elastic| energy += elastic);
     contacts.land_energies(model).for_each(|elastic| energy += elastic);
     energy
+}
+
+/// Contacts of neighbouring balls, where no cage keeps them apart.
+fn neighbours(model: &Model, state: &State, contacts: &Contacts) -> Option<NeighboursOutput> {
+    let contact = model.ball_contact.as_ref()?;
+    let gap = |(first, second): (usize, usize)| {
+        -contact.approach(&state.balls[first].motion(), &state.balls[second].motion())
+    };
+    let loads = contacts.ball_pairs.iter().map(|pair| pair.forces.load);
+    Some(NeighboursOutput {
+        touching: contacts.ball_pairs.len(),
+        largest_load: loads.fold(0.0, f64::max),
+        gap: model.bearing.neighbours().map(gap).fold(f64::INFINITY, f64::min),
+        power: contacts.ball_pairs.iter().fold(0.0, |sum, pair| sum + pair.forces.friction_power),
+    })
 }
 
 /// \[rad] contact angle of the mean of all contacts with the races, weighted by their loads; none without load.

@@ -4,6 +4,7 @@
 //! to the same bits; (g) bounded rejections. Gate (f), no gain of energy, has cases of its own.
 
 use nalgebra::Vector3;
+use roulement::forces::Contacts;
 use roulement::interface::variables::Variables;
 use roulement::model::bodies::{Body, Race};
 use roulement::model::state::{BodyState, State, Statistics};
@@ -364,6 +365,7 @@ fn residual(end: &Simulation, before: &State) -> f64 {
     let cage = model.cage.as_ref().zip(state.cage());
     let cage_motion = state.cage().map(BodyState::body_motion);
     let mut on_cage = Wrench::default();
+    let neighbours = Contacts::new(model, state, &end.inputs().conditions());
     for (index, (now, old)) in state.balls.iter().zip(&before.balls).enumerate() {
         // Polynomials are those that the step was solved with.
         let [inner, outer] = Race::BOTH.map(|race| {
@@ -380,6 +382,10 @@ fn residual(end: &Simulation, before: &State) -> f64 {
             moment += pocket.moment;
             on_cage.force -= pocket.force;
             on_cage.moment += pocket.other_moment;
+        }
+        for push in neighbours.neighbours_on(index) {
+            force += push.force;
+            moment += push.moment;
         }
         let linear = now.acceleration * ball.mass - force * weight - old.total.force * (1.0 - weight);
         let angular =
