@@ -100,6 +100,15 @@ fn closed_form_moments_are_in_balance_at_a_start_that_asks_for_it() {
 }
 
 #[test]
+fn regression_without_friction_balls_start_rolling_whatever_balance_is_asked_for() {
+    let start = |spin_balance| {
+        let changes = [("effects.creep", "\"frictionless\""), ("start.spin_balance", spin_balance)];
+        Simulation::new(&scene(THRUST, &changes)).unwrap().state().balls.clone()
+    };
+    assert_eq!(start("true"), start("false"));
+}
+
+#[test]
 fn a_step_that_cannot_be_finished_names_ball_and_contact() {
     // A shock towards one ball of a deep-groove bearing, through the inner race or through the outer one.
     let scene = |ball: f64, inner: &str, outer: &str, rest: &str| {

@@ -92,6 +92,7 @@ impl Scene {
         scene.source = text.to_string();
         scene.effects.creep.regularised = std::mem::take(&mut scene.regularised);
         scene.effects.cage.section = scene.cage.take();
+        scene.solver.fit_to(scene.bearing.ball_diameter.0);
         scene.check().map_err(|why| (why, None))?;
         Ok(scene)
     }

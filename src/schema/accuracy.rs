@@ -20,7 +20,7 @@ pub struct Solver {
     pub initial_step: Time,
     /// \[s] largest step.
     pub max_step: Time,
-    /// \[s] smallest step; needing a smaller one is an error.
+    /// \[s] smallest step; needing a smaller one is an error. As a default it follows the ball: see [`Solver::fit_to`].
     pub min_step: Time,
     /// [-] a Newton correction that leaves more than this fraction of the residual asks for a new matrix: 0 computes a
     /// matrix for every correction, 1 keeps one until it no longer lowers the residual.
@@ -34,8 +34,21 @@ impl Default for Solver {
             tolerance: 1e-6,
             initial_step: Time(1e-6),
             max_step: Time(1e-5),
-            min_step: Time(1e-10),
+            min_step: Time(0.0),
             matrix_reuse: REFACTOR_CONTRACTION,
+        }
+    }
+}
+
+/// [s/m] default smallest step over the ball diameter. What has to be followed gets shorter with the ball: near standstill friction
+/// settles within `m v/(mu Q)`, which is below 1e-10 s for a ball of a millimetre.
+const SMALLEST_STEP: f64 = 1e-11;
+
+impl Solver {
+    /// Takes the default smallest step, where none is given (0), for balls of a diameter \[m].
+    pub fn fit_to(&mut self, ball_diameter: f64) {
+        if self.min_step.0 == 0.0 {
+            self.min_step = Time((SMALLEST_STEP * ball_diameter).max(1e-15).min(self.max_step.0));
         }
     }
 }
@@ -126,6 +139,18 @@ impl TryFrom<SolverKeys> for Solver {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn regression_the_smallest_step_follows_the_ball_unless_it_is_given() {
+        let fitted = |text: &str, diameter: f64| {
+            let mut solver = parse(text).unwrap();
+            solver.fit_to(diameter);
+            solver.min_step.0
+        };
+        assert_eq!((fitted("", 1e-3), fitted("", 1e-2)), (1e-14, 1e-13));
+        assert_eq!(fitted("min_step = \"1 ns\"", 1e-3), 1e-9);
+        assert_eq!(fitted("max_step = 1e-14", 0.05), 1e-14);
+    }
 
     fn parse(text: &str) -> Result<Solver, String> {
         toml::from_str(text).map_err(|why: toml::de::Error| why.to_string())

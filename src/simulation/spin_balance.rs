@@ -8,6 +8,7 @@
 use nalgebra::{Matrix4, Matrix6, Vector4};
 
 use crate::analysis::condensed::{Linear, Orbit};
+use crate::contact::creep::Law;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::model::Model;
 use crate::model::bodies::{PerRace, Race};
@@ -27,6 +28,10 @@ pub fn balanced(
     races: &PerRace<RaceMotion<f64>>,
     start: &BallMotion<f64>,
 ) -> Option<BallMotion<f64>> {
+    // Without friction nothing decides how a ball turns.
+    if matches!(contacts.inner.law, Law::Frictionless) {
+        return None;
+    }
     let (mass, radius) = (model.bearing.ball.mass, model.bearing.ball.radius);
     let inertia = model.bearing.ball.inertia / (radius * radius);
     let orbit = |motion: &BallMotion<f64>| Orbit::new(motion, &races.outer);
