@@ -9,6 +9,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use roulement::scene::Scene;
 use roulement_cli::cost::{SCENES, SceneStudy, report, study};
 
+use super::say;
+
 /// Studies one scene file, or the standard scenes if there is none, into a directory.
 ///
 /// # Errors
@@ -38,7 +40,7 @@ pub fn run(scene: Option<&Path>, directory: &Path) -> Result<(), Box<dyn Error>>
     }
     bar.finish_and_clear();
     for path in report::write(&studies, directory)? {
-        println!("{}", path.display());
+        say(format_args!("{}\n", path.display()))?;
     }
     Ok(())
 }

@@ -13,6 +13,8 @@ use roulement::kalker::nonlinear::Kalker;
 use roulement::model::bearing::Bearing;
 use roulement::scene::Scene;
 
+use super::say;
+
 /// Options of `roulement identify`.
 #[derive(Args)]
 pub struct Options {
@@ -69,7 +71,7 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    print!("{section}");
+    say(&section)?;
     if let Some(output) = &options.output {
         write_scene(options.scene.as_deref(), output, &section)?;
         eprintln!("written to {}", output.display());

@@ -6,7 +6,10 @@ mod run;
 mod summary;
 
 use std::error::Error;
+use std::fmt::Display;
+use std::io::Write;
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 use clap::{Parser, Subcommand, ValueEnum};
 use roulement::analysis::single_contact::{Law, RollingContact};
@@ -28,13 +31,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     /// Simulate a scene: result table, plots, summary.
-    Run {
-        /// Scene file.
-        scene: PathBuf,
-        /// Directory for the results; made if missing.
-        #[arg(short, long, default_value = "results")]
-        output: PathBuf,
-    },
+    Run(run::Options),
     /// Solve the quasi-static equilibrium of a scene at time 0.
     Equilibrium {
         /// Scene file.
@@ -132,23 +129,23 @@ impl From<GyroscopicChoice> for Gyroscopic {
 ///
 /// # Errors
 /// Whatever went wrong, as a sentence.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn run() -> Result<ExitCode, Box<dyn Error>> {
     match Arguments::parse().command {
-        Command::Run { scene, output } => run::run(&Scene::load(&scene)?, &output)?,
+        Command::Run(options) => return run::run(options),
         Command::Equilibrium { scene, json, gyroscopic } => {
             let scene = Scene::load(&scene)?;
             let input = EquilibriumInput::from_scene(&scene, gyroscopic.into());
             let solution = equilibrium::solve(&Model::new(&scene)?, &input)?;
             if json {
-                println!("{:#}", solution.to_json());
+                say(format_args!("{:#}\n", solution.to_json()))?;
             } else {
-                print!("{solution}");
+                say(solution)?;
             }
         }
         Command::Fmu { scene, output, library } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
             write_fmu(&Scene::load(&scene)?, &libraries, &output)?;
-            println!("{}", output.display());
+            say(format_args!("{}\n", output.display()))?;
         }
         Command::Contact { cases, law, degree, grid } => {
             let law = match law {
@@ -171,7 +168,16 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         }
         Command::Identify(options) => identify::run(&options)?,
         Command::Cost { scene, output } => cost::run(scene.as_deref(), &output)?,
-        Command::Describe { scene } => print!("{}", render(&Simulation::new(&Scene::load(&scene)?)?)?.xml),
+        Command::Describe { scene } => {
+            say(render(&Simulation::new(&Scene::load(&scene)?)?)?.xml)?;
+        }
     }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes to the standard output; one that is full or closed is an error and no panic.
+fn say(text: impl Display) -> Result<(), Box<dyn Error>> {
+    let mut out = std::io::stdout().lock();
+    let written = write!(out, "{text}").and_then(|()| out.flush());
+    written.map_err(|why| format!("cannot write to the standard output: {why}").into())
 }
