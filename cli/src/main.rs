@@ -8,11 +8,11 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     match commands::run() {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         // Who closes the pipe has read enough: `roulement ... | head`.
         Err(why) if reader_left(why.as_ref()) => ExitCode::SUCCESS,
         Err(why) => {
-            // Nobody is there to be told if that fails.
+            // Where even this cannot be written, the exit code tells.
             let _ = writeln!(std::io::stderr(), "error: {why}");
             ExitCode::FAILURE
         }

@@ -1,4 +1,5 @@
-//! Analyses of a model or a state without running it: stiffness and damping, single rolling contacts.
+//! Analyses of a model or a state without running it: stiffness and damping, natural frequency, single rolling contacts.
 
 pub mod condensed;
+pub mod natural_frequency;
 pub mod single_contact;

@@ -12,6 +12,8 @@ use roulement::kalker::Patch;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::model::bearing::Bearing;
 
+use super::say;
+
 /// Options of `roulement identify`.
 #[derive(Args)]
 pub struct Options {
@@ -68,7 +70,7 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    super::say(&section)?;
+    say(&section)?;
     if let Some(output) = &options.output {
         write_scene(options.scene.as_deref(), output, &section)?;
         super::tell([format!("written to {}", output.display())]);

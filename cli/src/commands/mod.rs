@@ -8,6 +8,7 @@ mod summary;
 use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use clap::{Parser, Subcommand, ValueEnum};
 use roulement::analysis::single_contact::{Law, RollingContact};
@@ -29,13 +30,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     /// Simulate a scene: result table, plots, summary.
-    Run {
-        /// Scene file.
-        scene: PathBuf,
-        /// Directory for the results; made if missing.
-        #[arg(short, long, default_value = "results")]
-        output: PathBuf,
-    },
+    Run(run::Options),
     /// Solve the quasi-static equilibrium of a scene at time 0.
     Equilibrium {
         /// Scene file.
@@ -147,20 +142,21 @@ fn tell(notes: impl IntoIterator<Item = String>) {
     }
 }
 
-/// Results. A closed pipe is an error here and no panic.
+/// Results. A closed pipe or a full device is an error here and no panic.
 fn say(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
-    out.write_all(text.as_bytes())?;
-    out.flush()
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .map_err(|why| io::Error::new(why.kind(), format!("cannot write to the standard output: {why}")))
 }
 
 /// Reads the command line and does what it says.
 ///
 /// # Errors
 /// Whatever went wrong, as a sentence.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn run() -> Result<ExitCode, Box<dyn Error>> {
     match Arguments::parse().command {
-        Command::Run { scene, output } => run::run(&load(&scene)?, &output)?,
+        Command::Run(options) => return run::run(options),
         Command::Equilibrium { scene, json, gyroscopic } => {
             let scene = load(&scene)?;
             let input = EquilibriumInput::from_scene(&scene, gyroscopic.into());
@@ -204,5 +200,5 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             say(&render(&Simulation::new(&load(&scene)?)?, &name_of(&scene))?.xml)?;
         }
     }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
 }

@@ -4,24 +4,87 @@ use std::fmt::Write;
 use std::time::Duration;
 
 use roulement::simulation::Simulation;
-use roulement::simulation::outputs::{CageOutput, Outputs};
+use roulement_cli::report::energy::EnergyWatch;
+use roulement_cli::report::means::{Means, NEGLIGIBLE};
 
-/// Summary of a finished run; means are over the second half.
-pub fn summary(simulation: &Simulation, history: &[Outputs], wall: Duration) -> String {
+/// A run that has ended.
+pub struct Run<'a> {
+    /// The bearing at the end.
+    pub simulation: &'a Simulation,
+    /// Means over the second half.
+    pub means: Option<&'a Means>,
+    /// Its energy.
+    pub energy: &'a EnergyWatch,
+    /// Time that it took.
+    pub wall: Duration,
+}
+
+/// Summary of a run.
+pub fn summary(run: &Run<'_>) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
-    let _ = write_summary(&mut text, simulation, history, wall);
+    let _ = write_summary(&mut text, run);
     text
 }
 
-fn write_summary(
-    out: &mut String,
-    simulation: &Simulation,
-    history: &[Outputs],
-    wall: Duration,
-) -> std::fmt::Result {
-    let half = &history[history.len() / 2..];
-    let mean = |get: fn(&Outputs) -> f64| half.iter().map(get).sum::<f64>() / half.len() as f64;
+/// Means, and whether they have settled.
+fn write_means(out: &mut String, means: &Means, has_cage: bool) -> std::fmt::Result {
+    let [begin, end] = means.window;
+    writeln!(out, "means over the last {:.3} ms", (end - begin) * 1e3)?;
+    writeln!(
+        out,
+        "cage speed       {:.4} rad/s, {:.4} % below epicyclic",
+        means.of("cage speed"),
+        means.of("cage slip") * 100.0
+    )?;
+    writeln!(out, "friction power   {:.4} W", means.of("friction power"))?;
+    writeln!(
+        out,
+        "per ball         inner {:.4} mW, outer {:.4} mW",
+        means.of("inner power per ball") * 1e3,
+        means.of("outer power per ball") * 1e3
+    )?;
+    if has_cage {
+        let [eccentricity, pocket, land] = means.largest;
+        writeln!(out, "cage centre      at most {:.3} um off axis", eccentricity * 1e6)?;
+        writeln!(out, "largest load     pocket {pocket:.3} N, land {land:.3} N")?;
+        writeln!(
+            out,
+            "cage friction    pockets {:.4} W, lands {:.4} W",
+            means.of("pocket power"),
+            means.of("land power")
+        )?;
+    }
+    writeln!(out, "friction torque  {:.5} N m", means.of("friction torque"))?;
+    if !means.can_tell() {
+        return writeln!(out, "settled?         too few rows to tell: lower load.output_interval");
+    }
+    if means.unsettled().next().is_none() {
+        return writeln!(
+            out,
+            "settled          all means: no drift beyond noise or {NEGLIGIBLE} of their size"
+        );
+    }
+    for (mean, trend) in means.unsettled() {
+        writeln!(
+            out,
+            "NOT SETTLED      {}: {:.5e} {}, drifts by {:.2e}, noise {:.1e}",
+            mean.name, mean.mean, mean.unit, trend.drift, trend.noise
+        )?;
+    }
+    match means.needed() {
+        Some(needed) => {
+            writeln!(out, "                 load.duration of about {:.4} s would settle them", needed)
+        }
+        None => writeln!(
+            out,
+            "                 no decay to be seen: more than twice the duration, or they never settle"
+        ),
+    }
+}
+
+fn write_summary(out: &mut String, run: &Run<'_>) -> std::fmt::Result {
+    let Run { simulation, means, energy, wall } = run;
     let now = simulation.outputs();
     let (force, moment) = (now.inner.wrench.force, now.inner.wrench.moment);
     let position = now.inner.pose.position * 1e6;
@@ -58,49 +121,21 @@ fn write_summary(
         extremes(|b| b.inner.contact_angle.to_degrees()),
         extremes(|b| b.outer.contact_angle.to_degrees())
     )?;
-    writeln!(out, "means over the last {:.3} ms", (now.time - half[0].time) * 1e3)?;
-    let slip = mean(|o| o.cage_slip);
-    writeln!(
-        out,
-        "cage speed       {:.4} rad/s, {:.4} % below epicyclic",
-        mean(|o| o.cage_speed),
-        slip * 100.0
-    )?;
-    writeln!(out, "friction power   {:.4} W", mean(|o| o.friction_power))?;
-    let inner = mean(|o| o.balls.iter().map(|b| b.inner.power).sum::<f64>() / o.balls.len() as f64);
-    let outer = mean(|o| o.balls.iter().map(|b| b.outer.power).sum::<f64>() / o.balls.len() as f64);
-    writeln!(out, "per ball         inner {:.4} mW, outer {:.4} mW", inner * 1e3, outer * 1e3)?;
     if let Some(cage) = &now.cage {
-        let mean = |get: fn(&CageOutput) -> f64| {
-            half.iter().filter_map(|o| o.cage.as_ref()).map(get).sum::<f64>() / half.len() as f64
-        };
-        let largest = |get: fn(&Outputs) -> f64| half.iter().map(get).fold(0.0, f64::max);
-        let radius = |o: &Outputs| o.cage.map_or(0.0, |cage| cage.eccentricity.yz().norm());
-        writeln!(
-            out,
-            "cage centre      off axis {:.3} um, at most {:.3} um",
-            cage.eccentricity.yz().norm() * 1e6,
-            largest(radius) * 1e6
-        )?;
-        let pocket = |o: &Outputs| {
-            o.balls.iter().filter_map(|b| b.pocket).map(|pocket| pocket.load).fold(0.0, f64::max)
-        };
-        let land = |o: &Outputs| o.cage.map_or(0.0, |cage| cage.land_loads[0].max(cage.land_loads[1]));
-        writeln!(out, "largest load     pocket {:.3} N, land {:.3} N", largest(pocket), largest(land))?;
-        writeln!(
-            out,
-            "cage friction    pockets {:.4} W, lands {:.4} W",
-            mean(|c| c.pocket_power),
-            mean(|c| c.land_power)
-        )?;
+        writeln!(out, "cage centre      {:.3} um off axis", cage.eccentricity.yz().norm() * 1e6)?;
     }
-    writeln!(out, "friction torque  {:.5} N m", mean(|o| o.friction_torque))?;
-    let balance = now.work - now.dissipated - (now.stored_energy - history[0].stored_energy);
+    if let Some(means) = means {
+        write_means(out, means, now.cage.is_some())?;
+    }
+    let balance = energy.balance(now);
     writeln!(
         out,
         "energy           work {:.5} J, lost {:.5} J, stored {:.5} J, balance {balance:.2e} J",
         now.work, now.dissipated, now.stored_energy
     )?;
+    if let Some(warning) = energy.warning(simulation) {
+        writeln!(out, "WARNING          {warning}")?;
+    }
     let s = &now.statistics;
     let steps = s.steps.max(1) as f64;
     writeln!(
@@ -124,6 +159,6 @@ fn write_summary(
         )?;
     }
     let seconds = wall.as_secs_f64();
-    let simulated = now.time - history[0].time;
+    let simulated = now.time - energy.begin();
     writeln!(out, "wall time        {seconds:.3} s, {:.2} s per simulated second", seconds / simulated)
 }

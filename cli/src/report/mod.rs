@@ -1,5 +1,8 @@
-//! Results of a run: its table and its plots; and the style of all plots.
+//! Results of a run: its table, its means, its energy and its plots; and the style of all plots.
 
+pub mod energy;
+pub mod means;
 pub mod plots;
 pub mod results;
 pub mod style;
+pub mod thinned;
