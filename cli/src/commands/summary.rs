@@ -62,9 +62,10 @@ fn write_summary(
     let slip = mean(|o| o.cage_slip);
     writeln!(
         out,
-        "cage speed       {:.4} rad/s, {:.4} % below epicyclic",
+        "cage speed       {:.4} rad/s, {:.4} % below epicyclic; balls {:.4} %",
         mean(|o| o.cage_speed),
-        slip * 100.0
+        slip * 100.0,
+        mean(|o| o.ball_slip) * 100.0
     )?;
     writeln!(out, "friction power   {:.4} W", mean(|o| o.friction_power))?;
     let inner = mean(|o| o.balls.iter().map(|b| b.inner.power).sum::<f64>() / o.balls.len() as f64);
