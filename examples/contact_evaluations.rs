@@ -29,7 +29,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [law, heathcote, count] = &arguments[..] else {
         return Err("usage: contact_evaluations LAW HEATHCOTE COUNT".into());
     };
-    let effects = [("effects.creep", &format!("\"{law}\"")), ("effects.heathcote_slip", heathcote)];
+    // Room for the law `linear`, which ends at mu Q; the contact below has its own coefficient.
+    let law = format!("\"{law}\"");
+    let effects =
+        [("effects.creep", &*law), ("effects.heathcote_slip", heathcote), ("friction.ball_race", "2.0")];
     let scene = Scene::edited(include_str!("../scenes/thrust.toml"), effects)?;
     let simulation = Simulation::new(&scene)?;
     let contact = simulation.model().contact(Race::Inner, &Conditions { friction: 0.08 });

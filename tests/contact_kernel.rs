@@ -242,3 +242,48 @@ fn published_number_unlike_materials_after_kalker() {
     assert!((pair.poisson_ratio / (0.0043 / 0.014) - 1.0).abs() < 1e-12, "{pair:?}");
     assert!((pair.compliance / 9.7e-12 - 1.0).abs() < 1e-12, "{pair:?}");
 }
+
+#[test]
+fn invariant_friction_that_is_off_is_not_computed_and_forces_are_the_same() {
+    let model = model();
+    for race in Race::BOTH {
+        for damping in [0.0, 0.02] {
+            let x = motion(race);
+            let vector = |i: usize| Vector3::new(x[i], x[i + 1], x[i + 2]);
+            let ball = BallMotion { position: vector(0), velocity: vector(3), angular_velocity: vector(6) };
+            let seen = RaceMotion {
+                position: vector(9),
+                axis: Vector3::x(),
+                velocity: vector(12),
+                angular_velocity: vector(15),
+            };
+            let mut contact = model.contact(race, &Conditions { friction: 0.0 });
+            contact.damping = damping;
+            // Linear theory without stiffness computes everything, and has no force either.
+            contact.law = Law::Saturated;
+            let all = contact.evaluate(&ball, &seen);
+            contact.law = Law::Frictionless;
+            let pressed = contact.evaluate(&ball, &seen);
+            assert!(all.load > 0.0);
+            assert_eq!(
+                (all.load, all.force, all.damping_power),
+                (pressed.load, pressed.force, pressed.damping_power)
+            );
+            assert_eq!((all.stiffness, all.geometry), (pressed.stiffness, pressed.geometry));
+            assert!((all.race_moment - pressed.race_moment).norm() < 1e-15 * all.race_moment.norm());
+            assert_eq!(pressed.ball_moment, Vector3::zeros());
+            // What no force depends on waits until it is reported.
+            assert_eq!(
+                (pressed.semi_axes, pressed.creepage.spin, pressed.rolling_speed),
+                ([0.0; 2], 0.0, 0.0)
+            );
+            let completed = contact.completed(&pressed, &ball, &seen);
+            assert_eq!((completed.force, completed.load), (pressed.force, pressed.load));
+            assert_eq!((completed.creepage, completed.semi_axes), (all.creepage, all.semi_axes));
+            assert_eq!(
+                (completed.rolling_speed, completed.rolling_cosine),
+                (all.rolling_speed, all.rolling_cosine)
+            );
+        }
+    }
+}

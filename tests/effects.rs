@@ -159,7 +159,10 @@ fn wrong_keys_of_effects_are_refused_by_name_value_and_range() {
         ("[effects]\nkalker_degree = 8".into(), &["effects.kalker_degree = 8", "[1, 7]"]),
         ("[effects]\nepsilon_switch = nan".into(), &["effects.epsilon_switch = NaN", "[0, 1]"]),
         ("[effects]\ncreep = \"slippery\"".into(), &["slippery", "kalker_table", "line"]),
-        ("[effects]\nheathcote_slip = 1".into(), &["boolean", "line"]),
+        (
+            "[effects]\nheathcote_slip = 1".into(),
+            &["effects.heathcote_slip wants true or false, not 1", "line"],
+        ),
         (
             "[effects]\ncreep = \"linear\"\nheathcote_slip = true".into(),
             &["effects.heathcote_slip", "saturates"],

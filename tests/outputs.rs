@@ -433,21 +433,36 @@ fn closed_form_sums() {
             energy += kinetic(MASSES[i], V::from(INERTIAS[i]), body);
         }
         close("energy", outputs.stored_energy, energy, 1e-9, 0.0);
-        // Cage speed about its own axis; slip against rolling at the mean contact angle, weighted by load.
+        // Cage speed about its own axis; slip against the orbit in which each ball would roll on both races about the axis that
+        // it has: two equations of surface speeds, for that orbit and the ball's own spin.
         let cage = case.cage();
         let speed = cage.omega.dot(&cage.axis());
         close("cage speed", outputs.cage_speed, speed, 1e-12, 0.0);
-        let (mut cosine, mut load) = (0.0, 0.0);
-        for of_ball in &case.balls {
-            for (race, contact) in of_ball.iter().enumerate() {
-                cosine += contact.load * (1.0 - contact.normal.dot(&races[race].axis()).powi(2)).sqrt();
-                load += contact.load;
-            }
+        let (mut rolling, mut orbit, mut weight) = (0.0, 0.0, 0.0);
+        for (ball, of_ball) in case.state.balls.iter().zip(&case.balls) {
+            let load = of_ball[0].load.min(of_ball[1].load);
+            let out = ball.position - races[1].position;
+            let about = races[1].axis();
+            let across = out - about * about.dot(&out);
+            let relative = ball.velocity - races[1].velocity;
+            let own = about.cross(&across).dot(&relative) / across.norm_squared();
+            let spin = ball.angular_velocity - about * own;
+            let equation = |race: usize| {
+                let axis = races[race].axis();
+                let offset = ball.position - races[race].position;
+                let radial = (offset - axis * axis.dot(&offset)).normalize();
+                let along = axis.cross(&radial);
+                let arm = of_ball[race].normal * RADIUS;
+                let reach = (offset + arm).dot(&radial);
+                (reach, spin.cross(&arm).dot(&along), reach * races[race].omega.dot(&axis))
+            };
+            let [(a, b, e), (c, d, f)] = [equation(0), equation(1)];
+            rolling += load * (e * d - b * f) / (a * d - b * c);
+            orbit += load * own;
+            weight += load;
         }
-        let gamma = DIAMETER / PITCH * cosine / load;
-        let spins = races.map(|race| race.omega.dot(&race.axis()));
-        let rolling = 0.5 * ((1.0 - gamma) * spins[0] + (1.0 + gamma) * spins[1]);
-        close("cage slip", outputs.cage_slip, 1.0 - speed / rolling, 1e-9, 1.0);
+        close("cage slip", outputs.cage_slip, 1.0 - speed * weight / rolling, 1e-9, 1.0);
+        close("ball slip", outputs.ball_slip, 1.0 - orbit / rolling, 1e-9, 1.0);
         assert_eq!(outputs.time, 1e-3);
         assert!(case.model.stiffness_outputs == outputs.condensed.is_some());
     }
@@ -657,6 +672,56 @@ fn closed_form_without_a_cage_the_mean_orbit_is_the_cage_speed() {
     // Races at rest have no speed to compare with.
     let rest = scenes::scene(text, &[("load.inner_speed", "0.0")]);
     assert_eq!(Simulation::new(&rest).unwrap().outputs().cage_slip, 0.0);
+}
+
+/// Orbital speed of rolling on both races at contact angles of their own, about an axis of a pitch angle: Harris, Rolling
+/// Bearing Analysis, 4th edition, eq. 8.14, outer race at rest; `gamma` is ball over orbit diameter.
+fn harris(inner_speed: f64, gamma: f64, [inner, outer]: [f64; 2], pitch: f64) -> f64 {
+    let turned = |angle: f64| angle.cos() + pitch.tan() * angle.sin();
+    let outer_part = (1.0 + gamma * outer.cos()) * turned(inner);
+    let inner_part = (1.0 - gamma * inner.cos()) * turned(outer);
+    inner_speed * inner_part / (outer_part + inner_part)
+}
+
+#[test]
+fn closed_form_slip_by_the_contact_angles_of_both_races() {
+    // Fast and lightly loaded: balls lie far out on the outer race and high up on the inner one.
+    let text = include_str!("../scenes/thrust.toml");
+    let fast = [("load.inner_speed", "\"20000 rpm\""), ("load.x.force", "\"60 N\"")];
+    let mut simulation = Simulation::new(&scenes::scene(text, &fast)).unwrap();
+    let first = simulation.outputs();
+    let angles = [first.balls[0].inner.contact_angle, first.balls[0].outer.contact_angle];
+    assert!(angles[0] > 2.0 * angles[1], "{angles:?}");
+    // The start rolls on both races: a mean contact angle called that slip.
+    close("ball slip at the start", first.ball_slip, 0.0, 1e-9, 1.0);
+    close("cage slip at the start", first.cage_slip, 0.0, 1e-9, 1.0);
+    let radius = 4.7625e-3;
+    let speed = 20000.0 * std::f64::consts::PI / 30.0;
+    let mean = 0.5 * speed * (1.0 - radius / 0.023 * (0.5 * (angles[0] + angles[1])).cos());
+    assert!((1.0 - first.cage_speed / mean).abs() > 0.02, "{} {mean}", first.cage_speed);
+    // Balls that roll about axes of any pitch angle between the contacts, then behind that orbit by a known part.
+    for pitch in [0.1, 0.3, 0.6] {
+        for behind in [0.0, 0.02] {
+            let mut state = simulation.state().clone();
+            for ball in &mut state.balls {
+                let orbit = ball.position.yz().norm();
+                let rolling = harris(speed, radius / orbit, angles, pitch);
+                let own = rolling * (1.0 - behind);
+                let along = V::x().cross(&ball.position) / orbit;
+                let radial = along.cross(&V::x());
+                // Seen from the orbit the ball turns about (-cos, sin) of its pitch angle, at any speed.
+                let spin = V::x() * -pitch.cos() + radial * pitch.sin();
+                ball.velocity = along * (own * orbit);
+                ball.angular_velocity = V::x() * own + spin * (0.9 * speed);
+            }
+            let outputs = Outputs::new(simulation.model(), &state, &Conditions { friction: 0.08 });
+            close("ball slip", outputs.ball_slip, behind, 1e-12, 1.0);
+            close("cage slip", outputs.cage_slip, behind, 1e-12, 1.0);
+        }
+    }
+    // And it stays small while friction takes the axes to where they belong.
+    simulation.advance(1e-3).unwrap();
+    assert!(simulation.outputs().cage_slip.abs() < 0.01, "{}", simulation.outputs().cage_slip);
 }
 
 #[test]

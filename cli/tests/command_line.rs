@@ -197,7 +197,11 @@ fn regression_wrong_scenes_are_refused_in_plain_words() {
         ("\"6000 rpm\"", "\"100 Hz\"", &["load.inner_speed", "100 Hz", "rpm, rad/s or deg/s"]),
         ("creep = \"saturated\"", "creep = \"saturatd\"", &["effects.creep", "did you mean saturated?"]),
         ("ball_race = 0.08", "ball_race = -1", &["friction.ball_race = -1", "[0, 2]"]),
-        ("drive = \"fixed\"", "drive = \"wrench\"", &["outer.drive"]),
+        (
+            "drive = \"fixed\"",
+            "drive = \"wrench\"\nmass = 1\ninertia = [1, 1, 1]",
+            &["outer.drive: wrench drive is offered for the inner race"],
+        ),
         ("balls = 10 ", "balls = = 10 ", &["not TOML"]),
     ] {
         assert!(text.contains(from));

@@ -29,6 +29,28 @@ pub(super) struct Surfaces<S: Scalar> {
     relative: Vector3<S>,
 }
 
+/// \[m] contact point from the ball's centre, by the normal and the ball radius \[m], and from the other body's origin, by
+/// the ball's offset from that \[m].
+#[inline(always)]
+pub(super) fn arms<S: Scalar>(
+    normal: Vector3<S>,
+    radius: f64,
+    offset: &Vector3<S>,
+) -> (Vector3<S>, Vector3<S>) {
+    let arm = normal.map(|component| component.scale(radius));
+    (arm, offset + arm)
+}
+
+/// [m/s] velocity of the ball's surface less that of a body of `[velocity, angular velocity]`, at both arms \[m].
+#[inline(always)]
+pub(super) fn slip<S: Scalar>(
+    ball: &BallMotion<S>,
+    [velocity, angular_velocity]: [&Vector3<S>; 2],
+    [arm, other_arm]: [&Vector3<S>; 2],
+) -> Vector3<S> {
+    ball.velocity + cross(&ball.angular_velocity, arm) - (velocity + cross(angular_velocity, other_arm))
+}
+
 /// Rolling, slip and creepages in a contact frame whose z axis points into the ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rolling<S: Scalar> {
@@ -75,9 +97,8 @@ impl<S: Scalar> Surfaces<S> {
         normal: Vector3<S>,
         normal_rate: &Vector3<S>,
     ) -> Self {
-        let arm = normal.map(|component| component.scale(radius));
+        let (arm, other_arm) = arms(normal, radius, offset);
         let ball_surface = ball.velocity + cross(&ball.angular_velocity, &arm);
-        let other_arm = offset + arm;
         let other_surface = velocity + cross(angular_velocity, &other_arm);
         let slip = ball_surface - other_surface;
         let contact_point = ball.velocity + normal_rate.map(|component| component.scale(radius));

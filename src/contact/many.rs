@@ -1,5 +1,6 @@
 //! Contacts of many balls with a race at once: values alone, several balls in the lanes of one vector.
 
+use super::creep::Law;
 use super::pair::PairForces;
 use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::numerics::lanes::Lanes;
@@ -50,7 +51,10 @@ impl ContactGroup {
             velocity: Lanes::vector(|lane| ball(lane).velocity),
             angular_velocity: Lanes::vector(|lane| ball(lane).angular_velocity),
         };
-        evaluate_lanes(contact, race, &motion, &mut self.0);
+        match contact.law {
+            Law::Frictionless => press_lanes(contact, race, &motion, &mut self.0),
+            _ => roll_lanes(contact, race, &motion, &mut self.0),
+        }
     }
 
     /// Puts a contact into its lane; that of the first lane goes into all.
@@ -75,21 +79,38 @@ impl ContactGroup {
     }
 }
 
-/// Compiled twice, for processors with vectors of four numbers and for those without; the version is chosen at run time.
+/// Contacts with friction. Compiled twice, for processors with vectors of four numbers and for those without; the version is
+/// chosen at run time.
 ///
 /// Arguments and result lie in memory lane by lane, because compilers vectorise from the stores backwards.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn evaluate_lanes(
+fn roll_lanes(
     contact: &ContactModel<'_>,
     race: &RaceMotion<f64>,
     balls: &BallMotion<Lanes>,
     contacts: &mut BallRaceContact<Lanes>,
 ) {
-    let race = RaceMotion {
+    *contacts = contact.rolling(balls, &in_lanes(race));
+}
+
+/// Contacts without friction, alike.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn press_lanes(
+    contact: &ContactModel<'_>,
+    race: &RaceMotion<f64>,
+    balls: &BallMotion<Lanes>,
+    contacts: &mut BallRaceContact<Lanes>,
+) {
+    *contacts = contact.pressed(balls, &in_lanes(race));
+}
+
+/// One race, the same in all lanes.
+#[inline(always)]
+fn in_lanes(race: &RaceMotion<f64>) -> RaceMotion<Lanes> {
+    RaceMotion {
         position: constant_vector(&race.position),
         axis: constant_vector(&race.axis),
         velocity: constant_vector(&race.velocity),
         angular_velocity: constant_vector(&race.angular_velocity),
-    };
-    *contacts = contact.evaluate(balls, &race);
+    }
 }

@@ -155,9 +155,77 @@ impl BallRaceContact<f64> {
 
 impl ContactModel<'_> {
     /// Evaluates the contact of a ball with the race: the whole chain from motion to forces, written once for values
-    /// and for exact derivatives.
+    /// and for exact derivatives. Without friction only what forces need is computed; [`Self::completed`] adds the rest.
     #[inline(always)]
     pub fn evaluate<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        match self.law {
+            Law::Frictionless => self.pressed_apart(ball, race),
+            _ => self.rolling(ball, race),
+        }
+    }
+
+    /// [`Self::pressed`] as a function of its own: inlined beside the contact with friction it is more than the compiler takes.
+    #[inline(never)]
+    fn pressed_apart<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        self.pressed(ball, race)
+    }
+
+    /// A contact without friction with the ellipse, the creepages and the direction of rolling that no force depends on.
+    pub fn completed(
+        &self,
+        contact: &BallRaceContact<f64>,
+        ball: &BallMotion<f64>,
+        race: &RaceMotion<f64>,
+    ) -> BallRaceContact<f64> {
+        match self.law {
+            Law::Frictionless => self.rolling(ball, race),
+            _ => *contact,
+        }
+    }
+
+    /// A contact that carries its normal load alone.
+    #[inline(always)]
+    fn pressed<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        let offset = ball.position - race.position;
+        let geometry = GrooveContact::new(self.raceway, self.ball_radius, &offset, &race.axis);
+        let depth = geometry.approach.positive_part();
+        let stiffness = self.shape.stiffness(geometry.circumferential_curvature);
+        let (arm, race_arm) = kinematics::arms(geometry.normal, self.ball_radius, &offset);
+        let rate = match self.damping == 0.0 {
+            true => S::zero(),
+            false => {
+                let bodies = [&race.velocity, &race.angular_velocity];
+                dot(&geometry.normal, &kinematics::slip(ball, bodies, [&arm, &race_arm]))
+            }
+        };
+        let load = NormalLoad::hertz(stiffness, depth, depth.sqrt(), rate, self.damping);
+        let (zero, none) = (S::zero(), Vector3::from_element(S::zero()));
+        let force = -geometry.normal.map(|component| component * load.total);
+        BallRaceContact {
+            load: load.total,
+            stiffness,
+            semi_axes: [zero; 2],
+            rolling_speed: zero,
+            creepage: Creepage {
+                longitudinal: zero,
+                lateral: zero,
+                spin: zero,
+                curvature: self.groove_bend.map(|_| zero),
+            },
+            creep: CreepForces { longitudinal: zero, lateral: zero, spin_moment: zero, second_moment: zero },
+            rolling_cosine: zero,
+            force,
+            ball_moment: none,
+            race_moment: -cross(&race_arm, &force),
+            friction_power: zero,
+            damping_power: load.damping_power,
+            geometry,
+        }
+    }
+
+    /// A contact with its creep forces.
+    #[inline(always)]
+    fn rolling<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
         let offset = ball.position - race.position;
         let geometry = GrooveContact::new(self.raceway, self.ball_radius, &offset, &race.axis);
         let surfaces = Surfaces::new(

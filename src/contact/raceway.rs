@@ -12,3 +12,13 @@ pub struct Raceway {
     /// \[m] axial position of the groove centres.
     pub groove_offset: f64,
 }
+
+/// [-] sine of the free contact angle from which a raceway is that of a thrust bearing: 85.95 degrees.
+const STEEP: f64 = 0.9975;
+
+impl Raceway {
+    /// Is it the washer of a thrust bearing, whose groove faces along the axis? `ball_radius` \[m].
+    pub fn faces_along_axis(&self, ball_radius: f64) -> bool {
+        self.groove_offset.abs() > STEEP * (self.groove_radius - ball_radius)
+    }
+}

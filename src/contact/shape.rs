@@ -17,6 +17,8 @@ use crate::numerics::scalar::Scalar;
 /// Nodes per polynomial. The interval of curvatures is short, so that they converge at about two digits a node:
 /// the relative error of the stiffness is below 1e-10 for ball over pitch diameter up to 0.4 (tested).
 const NODES: usize = 14;
+/// [-] largest cosine of a contact angle on the washer of a thrust bearing: 30 degrees from a free angle of 86.
+const STEEPEST: f64 = 0.56;
 
 /// A polynomial in a variable that is scaled to [-1, 1], ascending powers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -191,6 +193,11 @@ impl ContactShape {
         raceway: &Raceway,
         properties: impl Fn(&HertzContact) -> Result<ShapeAt<f64>, E>,
     ) -> Result<Self, E> {
+        if raceway.faces_along_axis(ball_radius) {
+            // Curvatures of both signs about a right angle, to where `Bearing::contact_angles` ends.
+            let half_width = 1.05 * STEEPEST / (0.5 * pitch_diameter - STEEPEST * ball_radius);
+            return Self::between(0.0, half_width, ball_radius, materials, raceway, properties);
+        }
         // Curvature at contact angle 0; beyond a right angle the contact has left any real groove.
         let contact_radius = if raceway.groove_circle_radius > pitch_diameter / 2.0 {
             raceway.groove_circle_radius - raceway.groove_radius
@@ -198,7 +205,18 @@ impl ContactShape {
             -(raceway.groove_circle_radius + raceway.groove_radius)
         };
         let extreme = 1.05 / contact_radius;
-        let (middle, half_width) = (0.475 * extreme, 0.525 * extreme.abs());
+        Self::between(0.475 * extreme, 0.525 * extreme.abs(), ball_radius, materials, raceway, properties)
+    }
+
+    /// Interpolates over curvatures [1/m] a half width about a middle.
+    fn between<E>(
+        middle: f64,
+        half_width: f64,
+        ball_radius: f64,
+        materials: &Pair,
+        raceway: &Raceway,
+        properties: impl Fn(&HertzContact) -> Result<ShapeAt<f64>, E>,
+    ) -> Result<Self, E> {
         let ball_curvature = 1.0 / ball_radius;
         let transverse_curvature = ball_curvature - 1.0 / raceway.groove_radius;
         let at = |node: f64| {

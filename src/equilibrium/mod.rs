@@ -112,7 +112,7 @@ pub enum EquilibriumError {
     },
     /// A contact lies where no groove is.
     #[error(
-        "ball {ball} would touch the {race} race at a contact angle of {angle:.3} rad: beyond a right angle there is no \
+        "ball {ball} would touch the {race} race at a contact angle of {angle:.3} rad: beyond {limit:.3} rad there is no \
          groove; the load, the displacement or the tilt is too large"
     )]
     LeftGroove {
@@ -122,6 +122,8 @@ pub enum EquilibriumError {
         race: &'static str,
         /// \[rad] contact angle.
         angle: f64,
+        /// \[rad] contact angle that the groove ends at on this side.
+        limit: f64,
     },
     /// Outer race control asks for more friction than there can be.
     #[error(

@@ -1,7 +1,5 @@
 //! A quasi-static problem as equations: unknowns, residual, and the search for its root.
 
-use std::f64::consts::FRAC_PI_2;
-
 use nalgebra::Vector3;
 
 use super::ball::Place;
@@ -282,6 +280,7 @@ impl<'a> Problem<'a> {
 
     /// Refuses contacts that Hertz's theory does not reach, or that lie where no groove is.
     pub fn check(&self, solution: Equilibrium) -> Result<Equilibrium, EquilibriumError> {
+        let [least, most] = self.model.bearing.contact_angles();
         for (index, ball) in solution.balls.iter().enumerate() {
             let b = &ball.report;
             let (approach, load) = (b.inner_approach.max(b.outer_approach), b.inner_load.max(b.outer_load));
@@ -294,8 +293,9 @@ impl<'a> Problem<'a> {
                 ("outer", b.outer_load, b.outer_contact_angle),
             ];
             for (race, load, angle) in contacts {
-                if load > 0.0 && angle.abs() > FRAC_PI_2 {
-                    return Err(EquilibriumError::LeftGroove { ball: index + 1, race, angle });
+                if load > 0.0 && !(least..=most).contains(&angle) {
+                    let limit = if angle < least { least } else { most };
+                    return Err(EquilibriumError::LeftGroove { ball: index + 1, race, angle, limit });
                 }
             }
         }

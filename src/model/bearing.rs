@@ -1,6 +1,6 @@
 //! The immutable bearing: geometry and materials in SI, from the scene.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, PI, TAU};
 
 use nalgebra::Vector3;
 
@@ -91,6 +91,20 @@ impl Bearing {
             Race::Inner => &self.inner,
             Race::Outer => &self.outer,
         }
+    }
+
+    /// \[rad] smallest and largest contact angle for which there is a groove: up to a right angle on either side; on the
+    /// washers of a thrust bearing 30 degrees to either side of the free contact angle.
+    pub fn contact_angles(&self) -> [f64; 2] {
+        match self.is_thrust_bearing() {
+            true => [-1.0, 1.0].map(|side| self.free_contact_angle + side * FRAC_PI_6),
+            false => [-FRAC_PI_2, FRAC_PI_2],
+        }
+    }
+
+    /// Do the grooves face along the axis?
+    pub fn is_thrust_bearing(&self) -> bool {
+        self.inner.faces_along_axis(self.ball.radius)
     }
 
     /// \[rad] azimuth of a ball (0 for the first) of the bearing at rest.

@@ -23,7 +23,7 @@ static BEARING: [Number<Scene>; 15] = [
         |s| Place::Value(Some(&mut s.bearing.ball_diameter.0))),
     Number::fixed("bearing.pitch_diameter", Range::closed(1.2e-4, 1e3, "m"), "diameter of the circle through the ball centres",
         |s| Place::Value(Some(&mut s.bearing.pitch_diameter.0))),
-    Number::fixed("bearing.contact_angle", Range::closed(0.0, 1.5, "rad"), "free contact angle",
+    Number::fixed("bearing.contact_angle", Range::closed(0.0, std::f64::consts::FRAC_PI_2, "rad"), "free contact angle",
         |s| Place::Value(s.bearing.contact_angle.as_mut().map(|angle| &mut angle.0))),
     Number::fixed("bearing.diametral_clearance", Range::closed(-0.1, 2.0, "m"), "diametral clearance; negative is interference",
         |s| Place::Value(s.bearing.diametral_clearance.as_mut().map(|clearance| &mut clearance.0))),

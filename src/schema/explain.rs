@@ -54,7 +54,12 @@ pub fn format_error(text: &str, error: &toml::de::Error) -> SceneError {
     let key = error.span().and_then(|span| key_at(text, &span));
     let Some(key) = key else {
         let at = error.span().map_or(String::new(), |span| format!(" at {:?}", line_text(text, span.start)));
-        return SceneError::Format(format!("not TOML{at}: {}", error.message()));
+        let why = match error.message().split_once(", expected ") {
+            Some((why, "nothing")) => why.to_string(),
+            Some((why, wanted)) => format!("{why}; there should be {wanted}"),
+            None => error.message().to_string(),
+        };
+        return SceneError::Format(format!("not TOML{at}: {why}"));
     };
     SceneError::Format(in_words(&key, error.message()))
 }

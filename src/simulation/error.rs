@@ -105,6 +105,24 @@ pub enum SimulationError {
         /// \[m] largest overlap.
         overlap: f64,
     },
+    /// A contact under the law `linear` creeps beyond what that law describes.
+    #[error(
+        "at {time} s the law linear has left its range at ball {ball} on the {race} race: its creep force {force:.3} N is above \
+         the friction limit mu Q = {limit:.3} N, as it has no sliding; creep or spin is too large for effects.creep = \
+         \"linear\": take saturated, or a law of Kalker's nonlinear theory"
+    )]
+    BeyondLinear {
+        /// \[s] time.
+        time: f64,
+        /// Ball, counted from 1.
+        ball: usize,
+        /// Inner or outer.
+        race: &'static str,
+        /// \[N] creep force.
+        force: f64,
+        /// \[N] friction coefficient times load.
+        limit: f64,
+    },
     /// The Newton matrix of a step whose sensitivities were asked for is singular.
     #[error("at {0} s the Newton matrix is singular")]
     Singular(f64),

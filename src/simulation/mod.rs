@@ -8,6 +8,7 @@ pub mod outputs;
 mod path;
 pub mod play;
 mod script;
+mod slip;
 mod spin_balance;
 mod start;
 
@@ -17,6 +18,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::creep::Law;
 use crate::dynamics::{
     Boundary, StepFailure, Workspace, advance_perturbed, failure_site, make_consistent, try_step,
 };
@@ -100,6 +102,7 @@ impl Simulation {
         };
         simulation.check_room()?;
         simulation.settle();
+        simulation.check_creep(&simulation.boundary(simulation.state.time))?;
         Ok(simulation)
     }
 
@@ -113,7 +116,7 @@ impl Simulation {
         self.paths = InputPaths::steady(&self.inputs, &self.state);
         self.check_room()?;
         self.settle();
-        Ok(())
+        self.check_creep(&self.boundary(self.state.time))
     }
 
     /// Refuses more balls than fit on the orbit that the equilibrium gives them. It knows nothing of their contacts.
@@ -379,6 +382,7 @@ impl Simulation {
             let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
             let (cause, worst) = match tried {
                 Ok(()) => {
+                    self.check_creep(&boundary)?;
                     if let Some(mut start) = start {
                         // Renewed by the step itself.
                         start.differences.clone_from(&self.state.differences);
@@ -426,13 +430,24 @@ impl Simulation {
     /// Refuses contacts that no material takes, or where no groove is.
     fn check_contacts(&self, contacts: &Contacts) -> Result<(), SimulationError> {
         let diameter = 2.0 * self.model.bearing.ball.radius;
+        let thrust = self.model.bearing.is_thrust_bearing();
+        let [least, most] = self.model.bearing.contact_angles();
         for race in Race::BOTH {
+            let axis = self.state.race(race).motion().axis;
             for (index, ball) in contacts.balls.iter().enumerate() {
                 let contact = &ball.raceways[race].geometry;
                 let (time, ball, approach) = (self.state.time, index + 1, contact.approach);
                 // The groove of the inner race opens away from its axis, that of the outer race towards it.
                 let out = if race == Race::Inner { -1.0 } else { 1.0 };
-                if approach > 0.0 && out * contact.normal.dot(&contact.radial) < 0.0 {
+                let radial = out * contact.normal.dot(&contact.radial);
+                let off = match thrust {
+                    true => {
+                        let angle = (out * contact.normal.dot(&axis)).atan2(radial);
+                        !(least..=most).contains(&angle)
+                    }
+                    false => radial < 0.0,
+                };
+                if approach > 0.0 && off {
                     return Err(SimulationError::LeftGroove { time, ball, race: race.name(), approach });
                 }
                 if approach > MAX_APPROACH * diameter {
@@ -445,6 +460,26 @@ impl Simulation {
             if approach > MAX_APPROACH * diameter {
                 let (ball, next) = (pair.first + 1, pair.second + 1);
                 return Err(SimulationError::BallsPressed { time, ball, next, approach });
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses contacts that linear theory does not reach: their creep force is above what friction can carry.
+    fn check_creep(&self, boundary: &Boundary) -> Result<(), SimulationError> {
+        let contacts = self.model.contacts(&boundary.conditions);
+        if !matches!(contacts.inner.law, Law::Linear) {
+            return Ok(());
+        }
+        for (index, ball) in self.state.balls.iter().enumerate() {
+            for race in Race::BOTH {
+                let contact = contacts[race].evaluate(&ball.motion(), &self.state.race(race).motion());
+                let force = contact.creep.longitudinal.hypot(contact.creep.lateral);
+                let limit = contacts[race].friction * contact.load;
+                if force > limit {
+                    let (time, ball, race) = (self.state.time, index + 1, race.name());
+                    return Err(SimulationError::BeyondLinear { time, ball, race, force, limit });
+                }
             }
         }
         Ok(())

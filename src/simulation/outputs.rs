@@ -4,13 +4,14 @@ use std::ops::Index;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::slip::RollingOrbit;
 use crate::contact::BallRaceContact;
 use crate::effects::Reports;
 pub use crate::effects::reports::{
     BallOutput, CageOutput, Condensed, ContactOutput, NeighboursOutput, PocketOutput,
 };
 use crate::forces::{BallContacts, Contacts, Totals};
-use crate::model::bodies::{Constraint, Race, RigidBody, tilt_direction};
+use crate::model::bodies::{Constraint, PerRace, Race, RigidBody, tilt_direction};
 use crate::model::cage::CageModel;
 use crate::model::state::{BallState, BodyState, State, Statistics};
 use crate::model::{Conditions, Model};
@@ -54,8 +55,11 @@ pub struct Outputs {
     pub condensed: Option<Condensed>,
     /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
     pub cage_speed: f64,
-    /// [-] 1 - cage speed over its epicyclic value; 0 where that is 0.
+    /// [-] 1 - cage speed over the orbital speed of balls that roll without slip at their contact angles on both races, their
+    /// mean weighted by load; 0 where that is 0.
     pub cage_slip: f64,
+    /// [-] the same of the balls' own orbital speeds, weighted alike.
+    pub ball_slip: f64,
     /// \[W] power lost to friction in all contacts.
     pub friction_power: f64,
     /// \[W] power lost to contact damping.
@@ -83,7 +87,9 @@ impl Outputs {
         let totals = Totals::of(contacts, state.balls.len());
         let cage = model.cage.as_ref().zip(state.cage());
         let outer = state.race(Race::Outer);
-        let races = Race::BOTH.map(|race| state.race(race).motion());
+        let races = PerRace::new(|race| state.race(race).motion());
+        let models = model.contacts(conditions);
+        let thrust = model.bearing.is_thrust_bearing();
         let all = contacts;
         let contacts_of_neighbours =
             |ball: usize| all.ball_pairs.iter().filter(move |pair| [pair.first, pair.second].contains(&ball));
@@ -97,13 +103,17 @@ impl Outputs {
                     power: contacts.pocket.map_or(0.0, |pair| pair.friction_power),
                 }
             });
+            let output = |race: Race| {
+                let contact = models[race].completed(&contacts.raceways[race], &ball.motion(), &races[race]);
+                contact_output(&contact, &races[race].axis, thrust.then_some(race))
+            };
             BallOutput {
                 azimuth: spin_free_azimuth(outer, &(ball.position - outer.pose.position)),
                 orbital_speed: orbital_speed(ball, outer),
                 position: ball.position,
                 angular_velocity: ball.angular_velocity,
-                inner: contact_output(&contacts.raceways.inner, &races[0].axis),
-                outer: contact_output(&contacts.raceways.outer, &races[1].axis),
+                inner: output(Race::Inner),
+                outer: output(Race::Outer),
                 pocket,
                 neighbours_load: contacts_of_neighbours(index)
                     .fold(0.0, |load, pair| pair.forces.load.max(load)),
@@ -115,12 +125,11 @@ impl Outputs {
         let mean_orbit = balls.iter().map(|ball| ball.orbital_speed).sum::<f64>() / balls.len() as f64;
         let cage_speed = cage.map_or(mean_orbit, |(_, state)| state.rate.x);
         let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
-        let angle = mean_contact_angle(contacts).unwrap_or(model.bearing.free_contact_angle);
-        let epicyclic = model.bearing.epicyclic_speed(angle, speeds[0], speeds[1]);
+        let rolling = RollingOrbit::mean(model, state, contacts, &races);
         let [inner, outer] = Race::BOTH.map(|race| race_output(state.race(race), model, race));
         Self {
             time: state.time,
-            friction_torque: -inner.wrench.moment.dot(&races[0].axis) * sign(speeds[0]),
+            friction_torque: -inner.wrench.moment.dot(&races.inner.axis) * sign(speeds[0]),
             inner,
             outer,
             balls,
@@ -128,7 +137,8 @@ impl Outputs {
             neighbours: neighbours(model, state, contacts),
             condensed: model.stiffness_outputs.then(|| Condensed::new(model, state, conditions)),
             cage_speed,
-            cage_slip: if epicyclic == 0.0 { 0.0 } else { 1.0 - cage_speed / epicyclic },
+            cage_slip: rolling.slip_of(cage_speed),
+            ball_slip: rolling.slip_of(rolling.orbit),
             friction_power: totals.friction_power,
             damping_power: totals.damping_power,
             stored_energy: stored_energy(model, state, contacts),
@@ -216,18 +226,8 @@ fn neighbours(model: &Model, state: &State, contacts: &Contacts) -> Option<Neigh
     })
 }
 
-/// \[rad] contact angle of the mean of all contacts with the races, weighted by their loads; none without load.
-fn mean_contact_angle(contacts: &Contacts) -> Option<f64> {
-    let (mut cosine, mut loaded) = (0.0, 0.0);
-    for contact in contacts.balls.iter().flat_map(|ball| ball.raceways.iter()) {
-        cosine += contact.load * contact.geometry.normal.dot(&contact.geometry.radial).abs();
-        loaded += contact.load;
-    }
-    (loaded > 0.0).then(|| (cosine / loaded).clamp(-1.0, 1.0).acos())
-}
-
 /// [rad/s] orbital speed of a ball about the axis of the outer race.
-fn orbital_speed(ball: &BallState, outer: &BodyState) -> f64 {
+pub(super) fn orbital_speed(ball: &BallState, outer: &BodyState) -> f64 {
     let frame = outer.pose.orientation.inverse();
     let offset = frame * (ball.position - outer.pose.position);
     let relative = frame * (ball.velocity - outer.velocity);
@@ -311,13 +311,22 @@ fn reaction(race: &BodyState, body: &RigidBody, axis: &Vector3<f64>) -> Wrench {
     sum
 }
 
-fn contact_output(contact: &BallRaceContact<f64>, axis: &Vector3<f64>) -> ContactOutput {
+/// A contact as it is reported; `facing` is the race where grooves face along the axis, so that the side of the groove does
+/// not tell which race it is.
+fn contact_output(
+    contact: &BallRaceContact<f64>,
+    axis: &Vector3<f64>,
+    facing: Option<Race>,
+) -> ContactOutput {
     let normal = &contact.geometry.normal;
     // The outer normal points outwards, the inner one inwards: the angle is that of the force on the ball for the
     // inner race, and of its opposite for the outer, so that both are positive under the same thrust.
-    let outwards = if normal.dot(&contact.geometry.radial) < 0.0 { -1.0 } else { 1.0 };
     let (axial, radial) = (normal.dot(axis), normal.dot(&contact.geometry.radial));
-    let contact_angle = (outwards * axial).atan2(radial.abs());
+    let contact_angle = match facing {
+        Some(Race::Inner) => (-axial).atan2(-radial),
+        Some(Race::Outer) => axial.atan2(radial),
+        None => (if radial < 0.0 { -axial } else { axial }).atan2(radial.abs()),
+    };
     // Frame C has x along the rolling direction; the kernel's x is along the circumference.
     let along = if contact.rolling_cosine < 0.0 { -1.0 } else { 1.0 };
     let root = contact.geometry.approach.max(0.0).sqrt();

@@ -33,9 +33,10 @@ fn write_means(out: &mut String, means: &Means, has_cage: bool) -> std::fmt::Res
     writeln!(out, "means over the last {:.3} ms", (end - begin) * 1e3)?;
     writeln!(
         out,
-        "cage speed       {:.4} rad/s, {:.4} % below epicyclic",
+        "cage speed       {:.4} rad/s, {:.4} % below epicyclic; balls {:.4} %",
         means.of("cage speed"),
-        means.of("cage slip") * 100.0
+        means.of("cage slip") * 100.0,
+        means.of("ball slip") * 100.0
     )?;
     writeln!(out, "friction power   {:.4} W", means.of("friction power"))?;
     writeln!(

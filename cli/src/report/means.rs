@@ -73,7 +73,7 @@ fn cage(outputs: &Outputs, get: fn(&CageOutput) -> f64) -> f64 {
     outputs.cage.as_ref().map_or(0.0, get)
 }
 
-const N: usize = 18;
+const N: usize = 19;
 
 /// All of them.
 pub static QUANTITIES: [Quantity; N] = [
@@ -89,6 +89,7 @@ pub static QUANTITIES: [Quantity; N] = [
     quantity("outer race speed", "rad/s", Size::Speed, |o| spin(&o.outer)),
     quantity("cage speed", "rad/s", Size::Speed, |o| o.cage_speed),
     quantity("cage slip", "1", Size::One, |o| o.cage_slip),
+    quantity("ball slip", "1", Size::One, |o| o.ball_slip),
     quantity("friction power", "W", Size::Own, |o| o.friction_power),
     quantity("friction torque", "N.m", Size::Own, |o| o.friction_torque),
     quantity("inner power per ball", "W", Size::Own, |o| of_balls(o, |ball| ball.inner.power)),

@@ -87,7 +87,7 @@ impl Variables {
         let speed =
             "spin of the cage about its own axis where there is a cage, else mean orbital speed of the balls";
         output("cage.speed", units::RADIAN_PER_SECOND, 100.0, speed, |o| o.cage_speed);
-        let slip = "1 - cage speed over its epicyclic value";
+        let slip = "1 - cage speed over the orbital speed of balls that roll without slip on both races";
         output("cage.slip", units::ONE, 1e-2, slip, |o| o.cage_slip);
         let power = "power lost to friction in all contacts";
         output("friction_power", units::WATT, 1.0, power, |o| o.friction_power);
@@ -136,6 +136,9 @@ impl Variables {
         output("energy.stored", units::JOULE, 1.0, "kinetic and elastic energy", |o| o.stored_energy);
         output("energy.work", units::JOULE, 1.0, "work put in since the start", |o| o.work);
         output("energy.dissipated", units::JOULE, 1.0, "energy lost since the start", |o| o.dissipated);
+        let slip =
+            "1 - mean orbital speed of the loaded balls over that of rolling without slip on both races";
+        output("balls.slip", units::ONE, 1e-2, slip, |o| o.ball_slip);
         let mut count = |name: &str, description: &str, get: FromOutputs| {
             self.rows.push(Variable {
                 name: name.into(),
