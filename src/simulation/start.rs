@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{Bodies, Body, PerRace, Race};
 use crate::model::state::{BallState, BodyState, Energies, KeptMatrix, Powers, State, Statistics};
-use crate::numerics::motion::{Pose, Twist, Wrench};
+use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 use crate::numerics::step_control::StepControl;
 use crate::scene::{Condition, Drive, Scene, Schedule};
 use crate::simulation::inputs::{Inputs, RaceInput};
@@ -56,6 +56,12 @@ pub fn from_inputs(scene: &Scene, model: &Model, inputs: &mut Inputs) -> Result<
         // Its frame rests at the start.
         if matches!(section.drive, Drive::Fixed | Drive::Hinge) {
             let input = &mut inputs[race];
+            if section.drive == Drive::Hinge && input.frame != FrameInput::default() {
+                let [ry, rz] =
+                    [&section.misalignment.ry, &section.misalignment.rz].map(|tilt| tilt.smooth_at(0.0).0);
+                let tilt = Vector3::new(0.0, ry, rz) + input.frame.tilt;
+                input.pose = Pose { position: input.frame.position, orientation: UnitQuaternion::new(tilt) };
+            }
             input.twist.angular_velocity = input.pose.orientation * Vector3::x() * input.speed;
         }
     }

@@ -120,7 +120,7 @@ impl Variables {
         let mut table = Self { rows: vec![] };
         table.add_race(scene, Race::Inner);
         table.add_race(scene, Race::Outer);
-        table.add_bearing(scene);
+        table.add_bearing();
         table.add_effects(scene, per_ball);
         table
     }
@@ -180,7 +180,7 @@ impl Variables {
     /// A race whose pose is an input.
     pub fn pose_is_given(&self, race: Race) -> bool {
         self.rows.iter().any(|row| {
-            row.input_kind() == Some(InputKind::Displacement)
+            row.input_kind() == Some(InputKind::Velocity)
                 && matches!(row.source, Source::Race(of, _, _) if of == race)
         })
     }
