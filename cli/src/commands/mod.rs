@@ -176,7 +176,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         Command::Identify(options) => identify::run(&options)?,
         Command::Cost { scene, output } => cost::run(scene.as_deref(), &output)?,
         Command::Describe { scene } => {
-            print!("{}", render(&Simulation::new(&Scene::load(&scene)?)?, &name_of(&scene))?.xml)
+            print!("{}", render(&Simulation::new(&Scene::load(&scene)?)?, &name_of(&scene))?.xml);
         }
     }
     Ok(())
