@@ -30,22 +30,10 @@ def tilt(time):
     return TILT * s * s * (3 - 2 * s), TILT * 6 * s * (1 - s) / 0.03 if moving else 0.0
 
 
-def pose_inputs(time, x):
-    """Inputs of the inner race at a time: held at x, spinning about its own axis, which is tilted about z."""
+def shaft_inputs(time, x):
+    """Inputs of the inner race at a time: held at x, its axis tilted about z; it spins by itself."""
     angle, rate = tilt(time)
-    spin = SPEED * time
-    # orientation = turn about z by `angle`, then about the own axis by `spin`
-    c, s, cs, ss = math.cos(angle / 2), math.sin(angle / 2), math.cos(spin / 2), math.sin(spin / 2)
-    return {
-        "inner.position.x": x,
-        "inner.orientation.w": c * cs,
-        "inner.orientation.x": c * ss,
-        "inner.orientation.y": s * ss,
-        "inner.orientation.z": s * cs,
-        "inner.angular_velocity.x": SPEED * math.cos(angle),
-        "inner.angular_velocity.y": SPEED * math.sin(angle),
-        "inner.angular_velocity.z": rate,
-    }
+    return {"inner.position.x": x, "inner.rotation.z": angle, "inner.rotation_rate.z": rate, "inner.speed": SPEED}
 
 
 def simulate(package):
@@ -70,7 +58,7 @@ def simulate(package):
     rows = []
     for k in range(round(DURATION / STEP)):
         time = k * STEP
-        inputs = pose_inputs(time, x)
+        inputs = shaft_inputs(time, x)
         bearing.setReal([references[name] for name in inputs], list(inputs.values()))
         bearing.doStep(time, STEP)
         rows.append([time + STEP, *bearing.getReal([references[name] for name in outputs])])

@@ -1,7 +1,6 @@
 //! What a package tells its importers: names, dependencies, variables, parameters, its page.
 #![allow(clippy::unwrap_used)]
 
-use roulement::effects::Effects;
 use roulement::interface::documentation::page;
 use roulement::interface::model_description::{identifier, render};
 use roulement::interface::variables::{Causality, Variables};
@@ -117,6 +116,50 @@ fn invariant_an_outer_speed_from_outside_is_that_of_the_scene() {
 }
 
 #[test]
+fn invariant_a_hinge_that_is_moved_from_outside_carries_the_bearing_along() {
+    let hinge =
+        [("outer.drive", "\"hinge\""), ("outer.mass", "0.3"), ("outer.inertia", "[3e-4, 2e-4, 2e-4]")];
+    let scripted = [&hinge[..], &[("outer.misalignment", "{ ry = 2e-4, rz = -1e-4 }")]].concat();
+    let inputs = names(&scene(THRUST, &hinge), Causality::Input);
+    for name in ["outer.frame.position.x", "outer.frame.position.z", "outer.frame.rotation.y"] {
+        assert!(inputs.contains(&name.to_string()), "{name}");
+    }
+    assert!(
+        !names(&Scene::parse(THRUST).unwrap(), Causality::Input).iter().any(|name| name.contains("frame"))
+    );
+    let run = |changes: &[(&str, &str)], tilt: [f64; 2], offset: f64, before_the_start: bool| {
+        let mut simulation = Simulation::new(&scene(THRUST, changes)).unwrap();
+        let mut inputs = *simulation.inputs();
+        inputs.outer.frame.tilt = [0.0, tilt[0], tilt[1]].into();
+        inputs.outer.frame.position.x = offset;
+        simulation.set_inputs(inputs);
+        if before_the_start {
+            simulation.initialise().unwrap();
+        }
+        for point in 1..=100 {
+            simulation.advance(f64::from(point) * 1e-4).unwrap();
+        }
+        simulation.outputs().clone()
+    };
+    let misaligned = run(&scripted, [0.0; 2], 0.0, false);
+    for before_the_start in [true, false] {
+        // Tilted by its hinge, the race is as if the scene had misaligned it; moved along the axis, it takes all along.
+        let moved = run(&hinge, [2e-4, -1e-4], 1e-5, before_the_start);
+        let (one, other) = (&moved.outer.pose, &misaligned.outer.pose);
+        let axes = [one, other].map(|pose| pose.orientation * nalgebra::Vector3::x());
+        assert!((axes[0] - axes[1]).norm() < 1e-8, "{before_the_start}");
+        assert!((one.position.x - 1e-5).abs() < 1e-9, "{}", one.position);
+        if !before_the_start {
+            // The inner race still swings on the bearing.
+            continue;
+        }
+        let way = moved.inner.pose.position.x - misaligned.inner.pose.position.x;
+        assert!((way / 1e-5 - 1.0).abs() < 0.05, "{before_the_start} {way}");
+        assert!((moved.outer.wrench.force.x / misaligned.outer.wrench.force.x - 1.0).abs() < 0.02);
+    }
+}
+
+#[test]
 fn numbers_of_the_cage_and_of_a_hinged_race_are_parameters() {
     let cage = names(&Scene::parse(CAGE).unwrap(), Causality::Parameter);
     for key in [
@@ -175,7 +218,7 @@ fn closed_form_totals_of_the_balls_are_those_of_every_ball() {
     let close = |one: f64, other: f64| (one - other).abs() < 1e-12 * get("friction_power");
     assert!(close(get("power.inner"), sum(every("inner.power"))));
     assert!(close(get("power.outer"), sum(every("outer.power"))));
-    assert!(close(get("power.inner") + get("power.outer") + get("power.cage"), get("friction_power")));
+    assert!(close(get("power.inner") + get("power.outer") + get("cage.power"), get("friction_power")));
     // Spin moment times relative angular velocity about the normal; the rest is slip in x and y.
     let mut translation = 0.0;
     for ball in &simulation.outputs().balls {
@@ -200,18 +243,14 @@ fn closed_form_totals_of_the_balls_are_those_of_every_ball() {
 }
 
 #[test]
-fn the_page_shows_the_effects_that_are_on_and_the_form_of_orientation() {
-    let scene = scene(CAGE, &[("effects.heathcote_slip", "true")]);
-    let page = page(&scene);
-    let (table, rest) = page.split_once("<h2>Effects</h2>").unwrap().1.split_once("</table>").unwrap();
-    let off = rest.split_once("</p>").unwrap().0;
-    let effects: &Effects = &scene.effects;
-    for effect in effects.each() {
-        let key = format!("<code>{}</code>", effect.info().key);
-        assert_eq!(table.contains(&key), effect.setting().is_some(), "{key}");
-        assert_eq!(off.contains(&key), effect.setting().is_none(), "{key}");
+fn the_page_says_how_orientations_are_written() {
+    for (form, wanted) in
+        [("shaft", "spins about that axis"), ("quaternion", "unit quaternions"), ("cardan", "tilts by y")]
+    {
+        let form = format!("\"{form}\"");
+        assert!(page(&scene(THRUST, &[("interface.orientation", &form)])).contains(wanted), "{form}");
     }
-    assert!(page.contains("rotation.y") && page.contains("spins about that axis"));
+    assert!(page(&Scene::parse(THRUST).unwrap()).contains("inner.rotation_rate.y"));
 }
 
 #[test]

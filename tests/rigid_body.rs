@@ -58,7 +58,7 @@ impl Flight {
             statistics: Statistics::default(),
         };
         let speed = state.race(Race::Inner).rate.x;
-        let load = BodyLoad { applied: Wrench::default(), speed };
+        let load = BodyLoad { speed, ..BodyLoad::default() };
         let motion = PerRace { inner: (pose, *twist), outer: (outer, Twist::default()) };
         let conditions = Conditions { friction: 0.08 };
         let boundary = Boundary { time: 0.0, motion, loads: PerRace::new(|_| load), conditions };

@@ -9,7 +9,7 @@ use crate::contact::body::BodyMotion;
 use crate::model::bodies::{Bodies, Constraint, PerRace, Race, RigidBody, tilt_component, tilt_direction};
 use crate::model::state::{BodyState, normalised};
 use crate::numerics::hht::HhtStep;
-use crate::numerics::motion::{Pose, Wrench};
+use crate::numerics::motion::{FrameInput, Pose, Wrench};
 use crate::numerics::rotation::{from_rotation_vector, rotate, to_quaternion, turn};
 use crate::numerics::scalar::{Scalar, constant_vector, values};
 use crate::numerics::size::larger;
@@ -20,6 +20,8 @@ const SPEED_TOLERANCE: f64 = 1e-8;
 /// Load and drive on a body from outside the bearing at the end of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BodyLoad {
+    /// Where the frame of a race on a hinge is.
+    pub frame: FrameInput,
     /// Applied wrench and weight, world axes.
     pub applied: Wrench,
     /// [rad/s] prescribed spin speed.
@@ -153,7 +155,7 @@ impl BodyTrial {
             let unknown = self.unknowns[row];
             let (value, gain, scale, inertia, direction) = match constraint {
                 Constraint::Position(axis, schedule) => {
-                    let target = schedule.smooth_at(scales.time).0;
+                    let target = schedule.smooth_at(scales.time).0 + load.frame.position[*axis];
                     let direction = Vector3::from_fn(|i, _| if i == *axis { 1.0 } else { 0.0 });
                     // Directions 0 to 2 are those of the balls, which are minus the race's.
                     let position = D::variable(self.end.pose.position[*axis], *axis, -step.position_gain());
@@ -162,7 +164,7 @@ impl BodyTrial {
                 }
                 Constraint::Tilt(axis, _) => {
                     let (other, sign) = tilt_component(*axis);
-                    let target = body.tilt_target(*axis, scales.time);
+                    let target = body.tilt_target(*axis, scales.time, &load.frame.tilt);
                     let value = motion.axis[other].scale(sign) - D::constant(target);
                     let direction = tilt_direction(*axis, &motion.axis);
                     (value, step.position_gain(), length, body.inertia[*axis], Along::Moment(direction))

@@ -236,6 +236,8 @@ fn cage_rows(guided_by: Guidance) -> Vec<Row> {
         }),
         ("pocket_power", WATT, 1.0, "power lost to friction in all pockets".into(), |c| c.pocket_power),
     ];
+    let power = "power lost to friction in all contacts of the cage".to_string();
+    rows.push(("power", WATT, 1.0, power, |c| c.pocket_power + c.land_power));
     let vectors: [(&str, Unit, f64, &str, [FromCage; 3]); 6] = [
         (
             "position",

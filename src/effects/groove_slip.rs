@@ -1,8 +1,10 @@
 //! Slip of grooves that bend across rolling ([`crate::contact::heathcote`]), with the laws that saturate.
 
-use super::effect::{Effect, Info, Setup};
+use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::keys::keys;
+use super::reports::BallOutput;
 use crate::schema::SceneError;
+use crate::schema::variable_units::WATT;
 
 keys! {
     /// Is it simulated?
@@ -27,6 +29,24 @@ impl Effect for Settings {
 
     fn setting(&self) -> Option<String> {
         self.on.then(|| "on".into())
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        if !self.on {
+            return vec![];
+        }
+        let what =
+            "power of the slip of bent grooves in all contacts with the races, part of their friction power";
+        let of_ball = |ball: &BallOutput| ball.inner.groove_power + ball.outer.groove_power;
+        vec![Row {
+            name: "power.groove".into(),
+            unit: WATT,
+            nominal: 1.0,
+            description: what.into(),
+            get: Getter::new(move |reports| {
+                reports.balls.iter().map(of_ball).fold(0.0, |sum, power| sum + power)
+            }),
+        }]
     }
 
     fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {

@@ -11,9 +11,9 @@ use crate::simulation::inputs::RaceInput;
 /// sign or a wrong unit is beyond; what coarse steps of a vibration leave is below in most steps.
 const DIFFERENCE: f64 = 0.5;
 /// [m/s] difference of velocities that does not matter.
-const SLOW: f64 = 1e-3;
+const SLOW: f64 = 0.05;
 /// [rad/s] difference of angular velocities that does not matter.
-const SLOW_TURN: f64 = 0.1;
+const SLOW_TURN: f64 = 2.0;
 
 /// Rates of a race over a communication step: by its poses, and as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,8 +83,8 @@ mod tests {
         let held = between(input(2e-6, 0.02, 0.1, speed)).map(|found| found.to_string());
         let text = "by its poses it turns at 0.000000 rad/s, by its velocities at 628.000000 rad/s";
         assert_eq!(held.as_deref(), Some(text));
-        let moved = between(input(8e-6, 0.02, 0.1 + speed * h, speed)).map(|found| found.to_string());
-        let text = "by its poses it moves at 0.080000 m/s, by its velocities at 0.020000 m/s";
+        let moved = between(input(8e-5, 0.02, 0.1 + speed * h, speed)).map(|found| found.to_string());
+        let text = "by its poses it moves at 0.800000 m/s, by its velocities at 0.020000 m/s";
         assert_eq!(moved.as_deref(), Some(text));
     }
 

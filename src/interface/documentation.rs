@@ -25,12 +25,12 @@ fn drive(drive: Drive) -> &'static str {
     }
 }
 
-/// The row of an effect that is on.
-fn effect(effect: &dyn AnyEffect) -> Option<String> {
-    let (info, setting) = (effect.info(), effect.setting()?);
+/// The row of an effect, on or off.
+fn effect(effect: &dyn AnyEffect) -> String {
+    let (info, setting) = (effect.info(), effect.setting().unwrap_or_else(|| "off".into()));
     let cells =
         [&setting, info.adds, info.states, info.source].map(|text| format!("<td>{}</td>", escape(text)));
-    Some(format!("<tr><td><code>{}</code></td>{}</tr>\n", escape(info.key), cells.concat()))
+    format!("<tr><td><code>{}</code></td>{}</tr>\n", escape(info.key), cells.concat())
 }
 
 /// How orientations of races are written.
@@ -82,10 +82,7 @@ pub fn page(scene: &Scene) -> String {
         let (start, range) = (parameter.start, parameter.range);
         format!("{start} ({} to {}), {when}", range.low, range.high)
     });
-    let effects: String = scene.effects.each().into_iter().filter_map(effect).collect();
-    let off = scene.effects.each().into_iter().filter(|effect| effect.setting().is_none());
-    let off: Vec<_> = off.map(|effect| format!("<code>{}</code>", escape(effect.info().key))).collect();
-    let off = if off.is_empty() { String::new() } else { format!("<p>Off: {}.</p>\n", off.join(", ")) };
+    let effects: String = scene.effects.each().into_iter().map(effect).collect();
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
          <style>{STYLE}</style></head><body>\n<h1>{title}</h1>\n\
@@ -109,8 +106,8 @@ pub fn page(scene: &Scene) -> String {
          <code>friction</code>. Setting an input of such a group, or a derivative of one, ends the script of the whole \
          group; its other inputs stay at their last values. The log tells which scripts are played. An input that a script \
          gives reads as its value at the communication point, and directional derivatives by it are zero.</p>\n\
-         <h2>Effects</h2>\n<table><tr><th>on</th><th>here</th><th>adds</th><th>states</th><th>source</th></tr>\n\
-         {effects}</table>\n{off}\
+         <h2>Effects</h2>\n<table><tr><th>key</th><th>here</th><th>adds</th><th>states</th><th>source</th></tr>\n\
+         {effects}</table>\n\
          <h2>Limits</h2>\n<ul><li>Rigid rings: the raceways do not bend; no thermal growth, no lubricant film.</li>\n\
          <li>A shaft on the bearing is moved by leapfrog, or at least by velocity first and then position: stable while a \
          step is shorter than the reciprocal of its angular frequency on the bearing (70 us for a shaft of 1 kg). A force held \

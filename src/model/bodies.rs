@@ -210,12 +210,12 @@ pub struct RigidBody {
 
 impl RigidBody {
     /// [-] components along world z and y of the body's axis held at a time \[s], with the sign of their tilts about y and
-    /// z: the axis of the rotation vector [0, ry, rz] of all scripted tilts.
-    pub fn tilt_target(&self, axis: usize, time: f64) -> f64 {
-        let mut tilt = [0.0; 2];
+    /// z: the axis of the rotation vector [0, ry, rz] of all scripted tilts and that of the frame \[rad].
+    pub fn tilt_target(&self, axis: usize, time: f64, frame: &Vector3<f64>) -> f64 {
+        let mut tilt = [frame.y, frame.z];
         for constraint in &self.constraints {
             if let Constraint::Tilt(axis, schedule) = constraint {
-                tilt[axis - 1] = schedule.smooth_at(time).0;
+                tilt[axis - 1] += schedule.smooth_at(time).0;
             }
         }
         let angle = f64::hypot(tilt[0], tilt[1]);

@@ -21,6 +21,15 @@ pub struct Twist {
     pub angular_velocity: Vector3<f64>,
 }
 
+/// Place of the frame that a race on a hinge is held in, beside what a script says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FrameInput {
+    /// \[m] origin.
+    pub position: Vector3<f64>,
+    /// \[rad] rotation vector of its axis; x is not used.
+    pub tilt: Vector3<f64>,
+}
+
 /// Force and moment about a body's origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Wrench {

@@ -4,13 +4,13 @@ use nalgebra::{SVector, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::inputs::{Inputs, RaceInput};
-use super::path::{RAMP_WIDTH, RacePath, Ramp};
+use super::path::{RacePath, Ramp};
 use super::script::Anchor;
 use crate::dynamics::{BodyLoad, Boundary};
 use crate::model::Conditions;
 use crate::model::bodies::PerRace;
 use crate::model::state::State;
-use crate::numerics::motion::Wrench;
+use crate::numerics::motion::{FrameInput, Wrench};
 
 /// Paths of all inputs during a communication step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,7 +18,9 @@ pub struct InputPaths {
     /// Pose and twist of races with prescribed motion.
     pub races: PerRace<RacePath>,
     /// Applied force, applied moment, speed.
-    loads: PerRace<Ramp>,
+    loads: PerRace<Ramp<7>>,
+    /// Position and tilt of the frame of a race on a hinge.
+    frames: PerRace<Ramp<6>>,
     /// Where scripted motions of races began; none where there is no script or it is not played.
     pub anchors: PerRace<Option<Anchor>>,
 }
@@ -32,7 +34,9 @@ impl InputPaths {
             loads: PerRace::new(|race| {
                 let [fx, fy, fz, mx, my, mz, speed] = self.loads[race].at(time).into();
                 let applied = Wrench { force: Vector3::new(fx, fy, fz), moment: Vector3::new(mx, my, mz) };
-                BodyLoad { applied, speed }
+                let [x, y, z, rx, ry, rz] = self.frames[race].smooth_at(time).into();
+                let frame = FrameInput { position: Vector3::new(x, y, z), tilt: Vector3::new(rx, ry, rz) };
+                BodyLoad { frame, applied, speed }
             }),
             conditions,
         }
@@ -46,6 +50,7 @@ impl InputPaths {
             }),
             loads: PerRace::new(|race| Ramp::constant(load_components(&inputs[race]))),
             anchors: PerRace::new(|_| None),
+            frames: PerRace::new(|race| Ramp::constant(frame_components(&inputs[race]))),
         }
     }
 
@@ -71,12 +76,21 @@ impl InputPaths {
                 self.loads[race].towards(time, load_components(&inputs[race]), duration)
             }),
             anchors: self.anchors,
+            frames: PerRace::new(|race| {
+                self.frames[race].smooth_towards(time, frame_components(&inputs[race]), duration)
+            }),
         }
     }
 }
 
 /// Applied force, applied moment and speed as one vector.
-fn load_components(input: &RaceInput) -> SVector<f64, RAMP_WIDTH> {
+fn load_components(input: &RaceInput) -> SVector<f64, 7> {
     let (force, moment) = (input.applied.force, input.applied.moment);
     SVector::from([force.x, force.y, force.z, moment.x, moment.y, moment.z, input.speed])
+}
+
+/// Position and tilt of a race's frame as one vector.
+fn frame_components(input: &RaceInput) -> SVector<f64, 6> {
+    let (position, tilt) = (input.frame.position, input.frame.tilt);
+    SVector::from([position.x, position.y, position.z, tilt.x, tilt.y, tilt.z])
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::Conditions;
 use crate::model::bodies::Race;
-use crate::numerics::motion::{Pose, Twist, Wrench};
+use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 
 /// Motion of a race given by that of its axis: coordinates of [`crate::numerics::tilt`], turn first. The turn itself is not
 /// given: it is integrated.
@@ -33,6 +33,8 @@ pub struct RaceInput {
     /// Motion of the axis, where it is given instead of orientation and angular velocity; these then follow from it, but for
     /// the angle about the axis.
     pub axis: Option<AxisInput>,
+    /// Frame of a race on a hinge.
+    pub frame: FrameInput,
     /// Wrench applied to a race that forces move, about its origin, world axes.
     pub applied: Wrench,
     /// [rad/s] prescribed spin about its own axis, of a race that has no pose as its input.

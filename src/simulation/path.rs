@@ -148,31 +148,40 @@ impl RacePath {
     }
 }
 
-/// A vector that moves linearly from one value to another within a communication step, and is held afterwards.
+/// A vector of `N` numbers that moves linearly from one value to another within a communication step, and is held
+/// afterwards.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Ramp {
+pub struct Ramp<const N: usize> {
     start_time: f64,
     duration: f64,
-    from: SVector<f64, RAMP_WIDTH>,
-    to: SVector<f64, RAMP_WIDTH>,
+    from: SVector<f64, N>,
+    to: SVector<f64, N>,
 }
 
-/// Components of a [`Ramp`]: applied force, applied moment, speed.
-pub const RAMP_WIDTH: usize = 7;
-
-impl Ramp {
+impl<const N: usize> Ramp<N> {
     /// A constant.
-    pub fn constant(value: SVector<f64, RAMP_WIDTH>) -> Self {
+    pub fn constant(value: SVector<f64, N>) -> Self {
         Self { start_time: 0.0, duration: 1.0, from: value, to: value }
     }
 
     /// Ramp from the value of `self` at `start_time` \[s] to `value` after `duration` \[s].
-    pub fn towards(&self, start_time: f64, value: SVector<f64, RAMP_WIDTH>, duration: f64) -> Self {
+    pub fn towards(&self, start_time: f64, value: SVector<f64, N>, duration: f64) -> Self {
         Self { start_time, duration, from: self.at(start_time), to: value }
     }
 
+    /// As [`Ramp::towards`], of a ramp that is read by [`Ramp::smooth_at`].
+    pub fn smooth_towards(&self, start_time: f64, value: SVector<f64, N>, duration: f64) -> Self {
+        Self { start_time, duration, from: self.smooth_at(start_time), to: value }
+    }
+
+    /// Value at a time \[s] where the way from one value to the other begins and ends at rest.
+    pub fn smooth_at(&self, time: f64) -> SVector<f64, N> {
+        let t = ((time - self.start_time) / self.duration).clamp(0.0, 1.0);
+        self.from + (self.to - self.from) * (t * t * (3.0 - 2.0 * t))
+    }
+
     /// Value at a time \[s].
-    pub fn at(&self, time: f64) -> SVector<f64, RAMP_WIDTH> {
+    pub fn at(&self, time: f64) -> SVector<f64, N> {
         let t = ((time - self.start_time) / self.duration).clamp(0.0, 1.0);
         self.from + (self.to - self.from) * t
     }
@@ -279,7 +288,8 @@ mod tests {
 
     #[test]
     fn a_ramp_is_linear_and_held_afterwards() {
-        let ramp = Ramp::constant(SVector::repeat(1.0)).towards(2.0, SVector::repeat(3.0), 0.5);
+        let ramp = Ramp::<5>::constant(SVector::repeat(1.0)).towards(2.0, SVector::repeat(3.0), 0.5);
+        assert_eq!([2.0, 2.25, 2.5, 3.0].map(|time| ramp.smooth_at(time)[4]), [1.0, 2.0, 3.0, 3.0]);
         assert_eq!([1.0, 2.0, 2.25, 3.0].map(|time| ramp.at(time)[4]), [1.0, 1.0, 2.0, 3.0]);
     }
 }

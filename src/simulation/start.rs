@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{Bodies, PerRace, Race};
 use crate::model::state::{BallState, BodyState, Energies, KeptMatrix, Powers, State, Statistics};
-use crate::numerics::motion::{Pose, Twist, Wrench};
+use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 use crate::numerics::step_control::StepControl;
 use crate::scene::{Drive, Scene};
 use crate::simulation::cage_start;
@@ -63,6 +63,12 @@ pub fn from_inputs(
         // Its frame rests at the start.
         if matches!(section.drive, Drive::Fixed | Drive::Hinge) {
             let input = &mut inputs[race];
+            if section.drive == Drive::Hinge && input.frame != FrameInput::default() {
+                let [ry, rz] =
+                    [&section.misalignment.ry, &section.misalignment.rz].map(|tilt| tilt.smooth_at(0.0).0);
+                let tilt = Vector3::new(0.0, ry, rz) + input.frame.tilt;
+                input.pose = Pose { position: input.frame.position, orientation: UnitQuaternion::new(tilt) };
+            }
             input.twist.angular_velocity = input.pose.orientation * Vector3::x() * input.speed;
         }
     }

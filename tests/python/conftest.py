@@ -25,9 +25,14 @@ def build(scene_text, directory, name):
     return package
 
 
-def pose_drive(text):
+def pose_drive(text, orientation="quaternion"):
     """The same scene with the inner race driven by its pose."""
-    return text.replace('drive = "wrench"', 'drive = "pose"', 1)
+    return oriented(text.replace('drive = "wrench"', 'drive = "pose"', 1), orientation)
+
+
+def oriented(text, orientation):
+    """The same scene with orientations written in another form."""
+    return f'{text}\n[interface]\norientation = "{orientation}"\n'
 
 
 @pytest.fixture(scope="session")
@@ -42,6 +47,8 @@ def packages(tmp_path_factory, thrust_text):
     return {
         "wrench": build(thrust_text, directory, "wrench"),
         "pose": build(pose_drive(thrust_text), directory, "pose"),
+        "shaft": build(pose_drive(thrust_text, "shaft"), directory, "shaft"),
+        "wrench, quaternion": build(oriented(thrust_text, "quaternion"), directory, "wrench_quaternion"),
     }
 
 

@@ -21,7 +21,7 @@ def bearing(tmp_path_factory):
 
 @pytest.mark.parametrize(
     "scheme, stands, fails",
-    [("held", 2e-6, 2e-5), ("extrapolated", 4e-5, 3.2e-4), ("rollback", 1.6e-4, 6.4e-4), ("implicit", 1.28e-3, None)],
+    [("leapfrog", 1.6e-4, 1.28e-3), ("euler", 1.6e-4, 2.56e-3), ("held", 2e-6, 2e-5), ("extrapolated", 4e-5, 3.2e-4), ("rollback", 1.6e-4, 6.4e-4), ("implicit", 1.28e-3, None)],
 )
 def test_stable_steps_of_a_shaft_of_20_kg(bearing, scheme, stands, fails):
     scheme = getattr(coupling, scheme)
@@ -42,7 +42,21 @@ def test_the_implicit_scheme_is_accurate_where_the_held_wrench_is(bearing):
     assert errors[coupling.implicit] < 3e-3 < errors[coupling.held] < 0.2
 
 
+def test_leapfrog_is_the_most_accurate_of_one_step_each(bearing):
+    reference = coupling.simulate(bearing, coupling.rollback, 1.0, 2e-6, coupling.ERROR_DURATION)
+    error = {s: coupling.error(bearing, s, 1.0, 1e-5, reference, 2e-6) for s in coupling.SCHEMES.values()}
+    assert error[coupling.leapfrog] < 4e-3
+    assert all(error[coupling.leapfrog] < other for s, other in error.items() if s is not coupling.leapfrog)
+
+
+def test_the_recommended_step_holds(bearing):
+    from fmpy import read_model_description
+
+    step = float(read_model_description(bearing.package).defaultExperiment.stepSize)
+    assert step <= 4e-5 and coupling.stable(bearing, coupling.leapfrog, 1.0, 2 * step)
+
+
 def test_the_document_has_the_tables():
-    for name in ("stability", "accuracy"):
+    for name, lines in (("stability", len(coupling.MASSES)), ("accuracy", 10), ("cost", 1)):
         rows = TABLE.split(f"<!-- {name} -->\n")[1].split("<!-- end -->")[0].splitlines()
-        assert len(rows) == 2 + (len(coupling.MASSES) if name == "stability" else 10)
+        assert len(rows) == 2 + lines and all(row.startswith("| ") for row in rows)

@@ -25,7 +25,7 @@ def native_rows(scene_text, directory):
     return [{name.split(" [")[0]: float(value) for name, value in row.items()} for row in rows]
 
 
-@pytest.mark.parametrize("drive", ["wrench", "pose"])
+@pytest.mark.parametrize("drive", ["wrench", "pose", "shaft"])
 def test_fmpy_finds_no_problem(packages, drive):
     assert validate_fmu(str(packages[drive])) == []
 
@@ -37,7 +37,12 @@ def test_interface_is_that_of_the_drive(packages):
     }
     for component in ["position.x", "orientation.w", "velocity.z", "angular_velocity.y"]:
         assert names["pose"][f"inner.{component}"] == "input"
+        assert names["wrench, quaternion"][f"inner.{component}"] == "output"
+    for component in ["position.x", "rotation.y", "velocity.z", "rotation_rate.z"]:
+        assert names["shaft"][f"inner.{component}"] == "input"
         assert names["wrench"][f"inner.{component}"] == "output"
+    assert names["shaft"]["inner.speed"] == "input" and names["shaft"]["inner.turned"] == "output"
+    assert not any(name.startswith("inner.orientation") for name in [*names["shaft"], *names["wrench"]])
     for component in ["force.x", "moment.z"]:
         assert names["pose"][f"inner.{component}"] == names["wrench"][f"inner.{component}"] == "output"
     for name in ["inner.applied_force.x", "inner.applied_moment.y", "inner.speed", "inner.drive_torque"]:
@@ -46,7 +51,7 @@ def test_interface_is_that_of_the_drive(packages):
     assert not any(name.startswith("ball[") for name in names["pose"])
 
 
-@pytest.mark.parametrize("drive", ["wrench", "pose"])
+@pytest.mark.parametrize("drive", ["wrench", "pose", "shaft"])
 def test_simulate_fmu_reaches_the_load(packages, drive):
     result = simulate_fmu(str(packages[drive]), stop_time=0.02, output_interval=STEP)
     force = result["inner.force.x"][-1]
@@ -237,7 +242,7 @@ def test_per_ball_outputs_only_when_asked_for(thrust_text, tmp_path):
 
 
 def test_cardan_angles(thrust_text, tmp_path):
-    text = pose_drive(thrust_text) + '[interface]\norientation = "cardan"\n'
+    text = pose_drive(thrust_text, "cardan")
     package = build(text, tmp_path, "cardan")
     assert validate_fmu(str(package)) == []
     slave = Slave(package, tmp_path / "unzipped").start()
@@ -246,6 +251,31 @@ def test_cardan_angles(thrust_text, tmp_path):
     slave.fmu.doStep(0.0, STEP)
     assert math.isclose(slave.get("inner.force.x")[0], -1500, rel_tol=0.02)
     slave.close()
+
+
+def test_no_output_depends_on_an_input_after_a_step(packages, slave):
+    description = read_model_description(packages["wrench"])
+    assert description.outputs and all(unknown.dependencies == [] for unknown in description.outputs)
+    assert any(unknown.dependencies for unknown in description.initialUnknowns)
+    bearing = slave().start()
+    bearing.fmu.doStep(0.0, STEP)
+    before = list(bearing.outputs())
+    for variable in description.modelVariables:
+        if variable.causality == "input":
+            bearing.fmu.setReal([variable.valueReference], [0.9 * float(variable.start) + 0.01])
+            assert list(bearing.outputs()) == before, variable.name
+
+
+def test_a_package_is_named_after_its_file_or_as_asked(thrust_text, tmp_path):
+    package = build(thrust_text, tmp_path, "2nd bearing")
+    description = read_model_description(package)
+    assert (description.modelName, description.coSimulation.modelIdentifier) == ("2nd bearing", "_2nd_bearing")
+    assert validate_fmu(str(package)) == []
+    Slave(package, tmp_path / "unzipped").start().close()
+    assert any((tmp_path / "unzipped" / "binaries").rglob("_2nd_bearing.*"))
+    roulement("fmu", tmp_path / "2nd bearing.toml", "-o", tmp_path / "x.fmu", "--name", "rear")
+    description = read_model_description(tmp_path / "x.fmu")
+    assert description.modelName == description.coSimulation.modelIdentifier == "rear"
 
 
 def test_committed_model_description_is_current():

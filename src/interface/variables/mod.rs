@@ -120,7 +120,7 @@ impl Variables {
         let mut table = Self { rows: vec![] };
         table.add_race(scene, Race::Inner);
         table.add_race(scene, Race::Outer);
-        table.add_bearing(scene);
+        table.add_bearing();
         table.add_effects(scene, per_ball);
         table
     }
@@ -180,7 +180,7 @@ impl Variables {
     /// A race whose pose is an input.
     pub fn pose_is_given(&self, race: Race) -> bool {
         self.rows.iter().any(|row| {
-            row.input_kind() == Some(InputKind::Displacement)
+            row.input_kind() == Some(InputKind::Velocity)
                 && matches!(row.source, Source::Race(of, _, _) if of == race)
         })
     }
@@ -247,7 +247,12 @@ impl Variable {
             // A race with a given motion has its speed with it.
             Source::Race(race, RaceVariable { input: Some(access), .. }, _) => {
                 let section = if *race == Race::Inner { &scene.inner } else { &scene.outer };
-                Some(if section.drive == Drive::Pose { Group::Tilts } else { access.group })
+                match section.drive {
+                    Drive::Pose => Some(Group::Tilts),
+                    Drive::Wrench => Some(access.group),
+                    // What is scripted there is no input.
+                    Drive::Fixed | Drive::Hinge => None,
+                }
             }
             _ => None,
         }

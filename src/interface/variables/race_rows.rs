@@ -192,7 +192,7 @@ const SCALAR: &[&str] = &[""];
 const NO_LIMITS: [Option<f64>; 2] = [None; 2];
 
 /// All of them, in the order of their value references.
-pub static RACE_VARIABLES: [RaceVariable; 16] = [
+pub static RACE_VARIABLES: [RaceVariable; 18] = [
     RaceVariable {
         name: "position",
         components: AXES,
@@ -438,6 +438,40 @@ pub static RACE_VARIABLES: [RaceVariable; 16] = [
         causality: |motion| motion.pose_as(Orientation::Shaft).map(|_| Causality::Output),
         read: |race, _| race.turned,
         input: None,
+    },
+    RaceVariable {
+        name: "frame.position",
+        components: AXES,
+        unit: units::METRE,
+        nominal: 1e-5,
+        limits: NO_LIMITS,
+        description: "position of the hinge of the {race} race, {component} component, world axes",
+        causality: |motion| motion.input(&[Drive::Hinge]),
+        read: |_, _| 0.0,
+        input: Some(InputAccess {
+            get: |race, i| race.frame.position[i],
+            set: |race, i, value, _| race.input.frame.position[i] = value,
+            rate: no_rate,
+            kind: InputKind::Displacement,
+            group: Group::Tilts,
+        }),
+    },
+    RaceVariable {
+        name: "frame.rotation",
+        components: ACROSS,
+        unit: units::RADIAN,
+        nominal: 1e-3,
+        limits: NO_LIMITS,
+        description: "rotation vector of the hinge of the {race} race, {component} component, beside its misalignment",
+        causality: |motion| motion.input(&[Drive::Hinge]),
+        read: |_, _| 0.0,
+        input: Some(InputAccess {
+            get: |race, i| race.frame.tilt[i + 1],
+            set: |race, i, value, _| race.input.frame.tilt[i + 1] = value,
+            rate: no_rate,
+            kind: InputKind::Angle,
+            group: Group::Tilts,
+        }),
     },
     RaceVariable {
         name: "drive_torque",

@@ -77,7 +77,7 @@ impl Variables {
         }
     }
 
-    pub(super) fn add_bearing(&mut self, scene: &Scene) {
+    pub(super) fn add_bearing(&mut self) {
         let friction = "friction coefficient of the ball-race contacts".to_string();
         self.add("friction".into(), units::ONE, Causality::Input, 0.1, friction, Source::Friction);
         let mut output = |name: &str, unit, nominal, description: &str, get: FromOutputs| {
@@ -100,18 +100,6 @@ impl Variables {
         output("power.spin", units::WATT, 1.0, kind, |o| {
             o.contact_power(|ball| ball.inner.spin_power + ball.outer.spin_power)
         });
-        if scene.effects.groove_slip.on {
-            let kind = "power of the slip of bent grooves in all contacts with the races, part of their friction power";
-            output("power.groove", units::WATT, 1.0, kind, |o| {
-                o.contact_power(|ball| ball.inner.groove_power + ball.outer.groove_power)
-            });
-        }
-        if scene.effects.cage.on {
-            let kind = "power lost to friction in all contacts of the cage";
-            output("power.cage", units::WATT, 1.0, kind, |o| {
-                o.cage.as_ref().map_or(0.0, |cage| cage.pocket_power + cage.land_power)
-            });
-        }
         let load = "largest normal load of a ball on a race";
         output("balls.largest_load", units::NEWTON, 100.0, load, |o| o.loads().fold(0.0, f64::max));
         let load = "smallest normal load of a ball on a race";

@@ -53,7 +53,7 @@ fn the_high_level_interface_gives_the_native_run() {
     assert_eq!(rows.len(), 81);
 
     let import: Fmi2Import = fmi::import::from_path(&package).unwrap();
-    assert_eq!(import.model_description().model_name, "roulement");
+    assert_eq!(import.model_description().model_name, "thrust");
     let references = references(&import);
     let names =
         ["inner.force.x", "inner.position.x", "inner.drive_torque", "cage.speed", "energy.dissipated"];
@@ -86,7 +86,7 @@ fn every_function_answers_through_the_standards_prototypes() {
     let (_, _, package) = package("prototypes");
     let import: Fmi2Import = fmi::import::from_path(&package).unwrap();
     let references = references(&import);
-    let library = import.archive_path().join(import.shared_lib_path("roulement").unwrap());
+    let library = import.archive_path().join(import.shared_lib_path("thrust").unwrap());
     let callbacks = binding::fmi2CallbackFunctions {
         logger: None,
         allocateMemory: None,
