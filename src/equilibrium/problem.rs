@@ -4,7 +4,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::ball::Place;
 use super::trial::{SharedMatrix, SharedVector, Trial, evaluate, finish};
-use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
+use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed, SIDES};
+use crate::contact::shoulder::SMALL_LOAD;
 use crate::model::bodies::Race;
 use crate::model::{Conditions, Model};
 
@@ -285,6 +286,24 @@ impl<'a> Problem<'a> {
             for (race, load, angle) in contacts {
                 if load > 0.0 && angle.abs() > FRAC_PI_2 {
                     return Err(EquilibriumError::LeftGroove { ball: index + 1, race, angle });
+                }
+            }
+        }
+        for race in Race::BOTH {
+            let contacts = || solution.balls.iter().map(|ball| ball.report.on(race));
+            let largest = contacts().map(|(load, _)| load).fold(0.0, f64::max);
+            for (index, (load, towards_x)) in contacts().enumerate() {
+                let beyond = self.model.bearing.shoulders[race].beyond(towards_x);
+                if let (Some(beyond), true) = (beyond, load > SMALL_LOAD * largest) {
+                    return Err(EquilibriumError::BeyondShoulder {
+                        ball: index + 1,
+                        race: race.name(),
+                        load,
+                        side: SIDES[beyond.side],
+                        angle: beyond.angle,
+                        end: beyond.end,
+                        why: self.model.bearing.why_beyond(race, &beyond),
+                    });
                 }
             }
         }

@@ -102,8 +102,8 @@ impl Outputs {
                 orbital_speed: orbital_speed(ball, outer),
                 position: ball.position,
                 angular_velocity: ball.angular_velocity,
-                inner: contact_output(&contacts.raceways.inner, &races[0].axis),
-                outer: contact_output(&contacts.raceways.outer, &races[1].axis),
+                inner: contact_output(model, Race::Inner, &contacts.raceways.inner, &races[0].axis),
+                outer: contact_output(model, Race::Outer, &contacts.raceways.outer, &races[1].axis),
                 pocket,
                 neighbours_load: contacts_of_neighbours(index)
                     .fold(0.0, |load, pair| pair.forces.load.max(load)),
@@ -301,7 +301,18 @@ fn reaction(race: &BodyState, body: &RigidBody, axis: &Vector3<f64>) -> Wrench {
     sum
 }
 
-fn contact_output(contact: &BallRaceContact<f64>, axis: &Vector3<f64>) -> ContactOutput {
+/// \[rad] contact angle towards the +x side of a race of this axis.
+pub(super) fn towards_x(contact: &BallRaceContact<f64>, axis: &Vector3<f64>) -> f64 {
+    let normal = &contact.geometry.normal;
+    normal.dot(axis).atan2(normal.dot(&contact.geometry.radial).abs())
+}
+
+fn contact_output(
+    model: &Model,
+    race: Race,
+    contact: &BallRaceContact<f64>,
+    axis: &Vector3<f64>,
+) -> ContactOutput {
     let normal = &contact.geometry.normal;
     // The outer normal points outwards, the inner one inwards: the angle is that of the force on the ball for the
     // inner race, and of its opposite for the outer, so that both are positive under the same thrust.
@@ -325,6 +336,7 @@ fn contact_output(contact: &BallRaceContact<f64>, axis: &Vector3<f64>) -> Contac
         power: contact.friction_power,
         semi_axis_rolling: rolling,
         semi_axis_transverse: transverse,
+        shoulder_share: model.bearing.shoulder_share(race, towards_x(contact, axis), transverse),
         peak_pressure: if area > 0.0 { 1.5 * contact.load / area } else { 0.0 },
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::time::Duration;
 
+use roulement::contact::shoulder::largest_share;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::{CageOutput, Outputs};
 
@@ -12,6 +13,28 @@ pub fn summary(simulation: &Simulation, history: &[Outputs], wall: Duration) -> 
     // Writing to a string cannot fail.
     let _ = write_summary(&mut text, simulation, history, wall);
     text
+}
+
+/// What a run met of shoulders and neighbouring balls; nothing where it met none.
+fn write_limits(out: &mut String, history: &[Outputs]) -> std::fmt::Result {
+    let contacts = |outputs: &Outputs| {
+        [
+            largest_share(outputs.balls.iter().map(|ball| (ball.inner.load, ball.inner.shoulder_share))),
+            largest_share(outputs.balls.iter().map(|ball| (ball.outer.load, ball.outer.shoulder_share))),
+        ]
+    };
+    let most = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
+    let over = history.iter().map(contacts).fold([0.0; 2], most);
+    if over != [0.0; 2] {
+        let [inner, outer] = over.map(|share| share * 100.0);
+        writeln!(out, "over shoulders   inner up to {inner:.2} %, outer up to {outer:.2} % of a load")?;
+    }
+    let loads = history.iter().filter_map(|outputs| outputs.neighbours).map(|n| n.largest_load);
+    let largest = loads.fold(0.0, f64::max);
+    if largest > 0.0 {
+        writeln!(out, "between balls    up to {largest:.3} N: they touch, as no cage keeps them apart")?;
+    }
+    Ok(())
 }
 
 fn write_summary(
@@ -50,6 +73,7 @@ fn write_summary(
         extremes(|b| b.inner.contact_angle.to_degrees()),
         extremes(|b| b.outer.contact_angle.to_degrees())
     )?;
+    write_limits(out, history)?;
     writeln!(out, "means over the last {:.3} ms", (now.time - half[0].time) * 1e3)?;
     let slip = mean(|o| o.cage_slip);
     writeln!(
