@@ -320,6 +320,42 @@ fn invariant_a_restored_state_goes_on_to_the_same_bits() {
 }
 
 #[test]
+fn invariant_sensitivities_are_those_of_runs_beside() {
+    // Equal steps, so that differences of runs are smooth.
+    let steps = [("solver.max_step", "\"2 us\""), ("solver.initial_step", "\"2 us\"")];
+    let mut simulation = touching(&steps);
+    let force = |outputs: &Outputs| -> Vec<Vector3<f64>> {
+        let of_balls = outputs.balls.iter().map(|ball| ball.neighbours_force);
+        of_balls.chain([outputs.inner.wrench.force]).collect()
+    };
+    let end = simulation.time() + 20e-6;
+    let inputs = [1.0, -1.0].map(|size| {
+        let mut inputs = *simulation.inputs();
+        inputs.inner.applied.force += Vector3::new(5.0, 20.0, 20.0) * size;
+        inputs
+    });
+    let run = |inputs| {
+        let mut beside = simulation.clone();
+        beside.set_inputs(inputs);
+        beside.advance(end).unwrap();
+        force(beside.outputs())
+    };
+    let runs = inputs.map(run);
+    let sensitive = simulation.advance_perturbed(end, &inputs).unwrap();
+    let sensitive = [0, 1].map(|i: usize| force(&sensitive[i]));
+    let difference = |[plus, minus]: &[Vec<Vector3<f64>>; 2]| -> Vec<Vector3<f64>> {
+        plus.iter().zip(minus).map(|(plus, minus)| (plus - minus) * 0.5).collect()
+    };
+    let (exact, expected) = (difference(&sensitive), difference(&runs));
+    let pushed = expected[..13].iter().map(|force| force.norm()).fold(0.0, f64::max);
+    assert!(pushed > 1e-4, "{pushed}");
+    for (exact, expected) in exact[..13].iter().zip(&expected) {
+        assert!((exact - expected).norm() < 1e-2 * pushed, "{exact} {expected}");
+    }
+    assert!((exact[13] - expected[13]).norm() < 1e-3 * expected[13].norm(), "{} {}", exact[13], expected[13]);
+}
+
+#[test]
 fn closed_form_reported_forces_are_those_of_the_pairs() {
     let scene = scene(COMBINED, &[("effects.full_complement", "true"), ("effects.per_ball_outputs", "true")]);
     let variables = Variables::new(&scene);
