@@ -192,7 +192,12 @@ fn one_faster(faster: f64, friction: &str) -> Simulation {
         ("load.rz", "{ rotation = 0.0 }"),
         ("solver.max_step", "\"1 us\""),
     ];
-    let mut simulation = Simulation::new(&scene(THRUST, &changes)).unwrap();
+    faster_first(faster, &changes)
+}
+
+/// The thrust case with these changes, its first ball faster by some speed [m/s] than the others.
+fn faster_first(faster: f64, changes: &[(&str, &str)]) -> Simulation {
+    let mut simulation = Simulation::new(&scene(THRUST, changes)).unwrap();
     let mut value = serde_json::to_value(simulation.snapshot()).unwrap();
     let place = &mut value["state"]["balls"][0]["velocity"];
     let velocity: Vector3<f64> = serde_json::from_value(place.clone()).unwrap();
@@ -347,7 +352,7 @@ fn invariant_sensitivities_are_those_of_runs_beside() {
         plus.iter().zip(minus).map(|(plus, minus)| (plus - minus) * 0.5).collect()
     };
     let (exact, expected) = (difference(&sensitive), difference(&runs));
-    let pushed = expected[..13].iter().map(|force| force.norm()).fold(0.0, f64::max);
+    let pushed = expected[..13].iter().map(Vector3::norm).fold(0.0, f64::max);
     assert!(pushed > 1e-4, "{pushed}");
     for (exact, expected) in exact[..13].iter().zip(&expected) {
         assert!((exact - expected).norm() < 1e-2 * pushed, "{exact} {expected}");
@@ -434,4 +439,29 @@ fn keys_of_balls_without_a_cage_are_refused_with_one() {
         assert!(message.contains(key) && message.contains("effects.cage"), "{message}");
     }
     assert!(refusal(THRUST, &[("friction.ball_ball", "3")]).contains("friction.ball_ball = 3"));
+}
+
+#[test]
+fn a_step_that_fails_between_balls_says_so() {
+    // Steps of 20 us cannot follow a blow of 30 us, and may not be smaller.
+    let changes = [
+        ("effects.creep", "\"frictionless\""),
+        ("effects.damping", "0.0"),
+        ("load.y", "{ displacement = 0.0 }"),
+        ("load.z", "{ displacement = 0.0 }"),
+        ("load.ry", "{ rotation = 0.0 }"),
+        ("load.rz", "{ rotation = 0.0 }"),
+        ("solver.max_step", "\"20 us\""),
+        ("solver.initial_step", "\"20 us\""),
+        ("solver.min_step", "\"20 us\""),
+        ("solver.tolerance", "1e-6"),
+    ];
+    let mut simulation = faster_first(1.0, &changes);
+    let why = loop {
+        assert!(simulation.time() < 50e-3);
+        if let Err(why) = simulation.advance(simulation.time() + 1e-4) {
+            break why.to_string();
+        }
+    };
+    assert!(why.contains("between its neighbours"), "{why}");
 }
