@@ -206,7 +206,8 @@ fn closed_form_outputs_report_the_share_of_every_ball() {
 fn wrong_shoulders_are_refused_by_key_value_and_range() {
     let refusal =
         |changes: &[(&str, &str)]| Scene::edited(THRUST, changes.iter().copied()).unwrap_err().to_string();
-    let cases: [(&[(&str, &str)], &[&str]); 4] = [
+    type Changes = [(&'static str, &'static str)];
+    let cases: [(&Changes, &[&str]); 4] = [
         (&[("inner.shoulder_height", "[\"6 mm\", 0]")], &["inner.shoulder_height = 0.006 m", "[0, 0.004953"]),
         (&[("outer.shoulder_height", "[0, -1e-3]")], &["outer.shoulder_height = -0.001 m", "[0, "]),
         (&[("outer.shoulder_angle", "[0, \"91 deg\"]")], &["outer.shoulder_angle = 1.588", "[0, 1.57"]),
