@@ -9,7 +9,7 @@ use roulement::contact::ball_ball::BallBallModel;
 use roulement::forces::Contacts;
 use roulement::interface::variables::Variables;
 use roulement::numerics::scalar::{Dual, Scalar, constant_vector};
-use roulement::scene::Scene;
+use roulement::scene::{Groups, Scene};
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::{Simulation, SimulationError, Snapshot};
 
@@ -192,7 +192,12 @@ fn one_faster(faster: f64, friction: &str) -> Simulation {
         ("load.rz", "{ rotation = 0.0 }"),
         ("solver.max_step", "\"1 us\""),
     ];
-    let mut simulation = Simulation::new(&scene(THRUST, &changes)).unwrap();
+    faster_first(faster, &changes)
+}
+
+/// The thrust case with these changes, its first ball faster by some speed [m/s] than the others.
+fn faster_first(faster: f64, changes: &[(&str, &str)]) -> Simulation {
+    let mut simulation = Simulation::new(&scene(THRUST, changes)).unwrap();
     let mut value = serde_json::to_value(simulation.snapshot()).unwrap();
     let place = &mut value["state"]["balls"][0]["velocity"];
     let velocity: Vector3<f64> = serde_json::from_value(place.clone()).unwrap();
@@ -320,6 +325,42 @@ fn invariant_a_restored_state_goes_on_to_the_same_bits() {
 }
 
 #[test]
+fn invariant_sensitivities_are_those_of_runs_beside() {
+    // Equal steps, so that differences of runs are smooth.
+    let steps = [("solver.max_step", "\"2 us\""), ("solver.initial_step", "\"2 us\"")];
+    let mut simulation = touching(&steps);
+    let force = |outputs: &Outputs| -> Vec<Vector3<f64>> {
+        let of_balls = outputs.balls.iter().map(|ball| ball.neighbours_force);
+        of_balls.chain([outputs.inner.wrench.force]).collect()
+    };
+    let end = simulation.time() + 20e-6;
+    let inputs = [1.0, -1.0].map(|size| {
+        let mut inputs = *simulation.inputs();
+        inputs.inner.applied.force += Vector3::new(5.0, 20.0, 20.0) * size;
+        inputs
+    });
+    let run = |inputs| {
+        let mut beside = simulation.clone();
+        beside.set_inputs(inputs);
+        beside.advance(end).unwrap();
+        force(beside.outputs())
+    };
+    let runs = inputs.map(run);
+    let sensitive = simulation.advance_perturbed(end, &inputs, Groups::default()).unwrap();
+    let sensitive = [0, 1].map(|i: usize| force(&sensitive[i]));
+    let difference = |[plus, minus]: &[Vec<Vector3<f64>>; 2]| -> Vec<Vector3<f64>> {
+        plus.iter().zip(minus).map(|(plus, minus)| (plus - minus) * 0.5).collect()
+    };
+    let (exact, expected) = (difference(&sensitive), difference(&runs));
+    let pushed = expected[..13].iter().map(Vector3::norm).fold(0.0, f64::max);
+    assert!(pushed > 1e-4, "{pushed}");
+    for (exact, expected) in exact[..13].iter().zip(&expected) {
+        assert!((exact - expected).norm() < 1e-2 * pushed, "{exact} {expected}");
+    }
+    assert!((exact[13] - expected[13]).norm() < 1e-3 * expected[13].norm(), "{} {}", exact[13], expected[13]);
+}
+
+#[test]
 fn closed_form_reported_forces_are_those_of_the_pairs() {
     let scene = scene(COMBINED, &[("effects.full_complement", "true"), ("effects.per_ball_outputs", "true")]);
     let variables = Variables::new(&scene);
@@ -398,4 +439,29 @@ fn keys_of_balls_without_a_cage_are_refused_with_one() {
         assert!(message.contains(key) && message.contains("effects.cage"), "{message}");
     }
     assert!(refusal(THRUST, &[("friction.ball_ball", "3")]).contains("friction.ball_ball = 3"));
+}
+
+#[test]
+fn a_step_that_fails_between_balls_says_so() {
+    // Steps of 20 us cannot follow a blow of 30 us, and may not be smaller.
+    let changes = [
+        ("effects.creep", "\"frictionless\""),
+        ("effects.damping", "0.0"),
+        ("load.y", "{ displacement = 0.0 }"),
+        ("load.z", "{ displacement = 0.0 }"),
+        ("load.ry", "{ rotation = 0.0 }"),
+        ("load.rz", "{ rotation = 0.0 }"),
+        ("solver.max_step", "\"20 us\""),
+        ("solver.initial_step", "\"20 us\""),
+        ("solver.min_step", "\"20 us\""),
+        ("solver.tolerance", "1e-6"),
+    ];
+    let mut simulation = faster_first(1.0, &changes);
+    let why = loop {
+        assert!(simulation.time() < 50e-3);
+        if let Err(why) = simulation.advance(simulation.time() + 1e-4) {
+            break why.to_string();
+        }
+    };
+    assert!(why.contains("between its neighbours"), "{why}");
 }

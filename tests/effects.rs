@@ -53,6 +53,7 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
         ("effects.heathcote_slip", 1, &["power.groove"]),
         ("effects.per_ball_outputs", 220, &["ball["]),
         ("effects.full_complement", 4, &["neighbours."]),
+        ("effects.shoulder_outputs", 2, &["shoulder."]),
     ];
     for effect in parse(OFF).effects.each() {
         let info = effect.info();

@@ -15,6 +15,12 @@ mod reference;
 use mechanics::{Body, Dimensions, V, grooves};
 use reference::{cases, number, scene_text};
 
+/// Scene text of a reference case. The data know no shoulders: grooves reach to both sides.
+fn whole(case: &Value) -> String {
+    let shoulders = "shoulder_angle = [1.5, 1.5]\n";
+    format!("[inner]\n{shoulders}[outer]\n{shoulders}{}", scene_text(case))
+}
+
 fn solve(text: &str, gyroscopic: Gyroscopic) -> Equilibrium {
     let scene = Scene::parse(text).unwrap();
     let input = EquilibriumInput::from_scene(&scene, gyroscopic);
@@ -67,7 +73,7 @@ fn independent_data_twenty_cases_under_both_hypotheses() {
         for (key, gyroscopic) in
             [("outer_race_control", Gyroscopic::OuterRaceControl), ("no_gyro", Gyroscopic::None)]
         {
-            let ours = solve(&scene_text(case), gyroscopic);
+            let ours = solve(&whole(case), gyroscopic);
             let d = difference(&ours, &case[key]);
             let name = format!("{} {key}", case["id"]);
             // Both solve the same equations; what differs is the last digits of the reference's Hertz table and its
@@ -183,7 +189,7 @@ fn independent_data_static_iso_16281_type_references() {
 fn invariant_under_rotation_by_one_ball_pitch() {
     let data: Value = serde_json::from_str(include_str!("data/bearing/equilibrium.json")).unwrap();
     let case = &data["cases"].as_array().unwrap()[10];
-    let scene = Scene::parse(&scene_text(case)).unwrap();
+    let scene = Scene::parse(&whole(case)).unwrap();
     let model = Model::new(&scene).unwrap();
     let input = EquilibriumInput::from_scene(&scene, Gyroscopic::OuterRaceControl);
     let one = equilibrium::solve(&model, &input).unwrap();
@@ -207,7 +213,7 @@ fn invariant_under_rotation_by_one_ball_pitch() {
 fn invariant_stiffness_is_the_derivative_of_the_load() {
     let data: Value = serde_json::from_str(include_str!("data/bearing/equilibrium.json")).unwrap();
     let case = &data["cases"].as_array().unwrap()[18];
-    let scene = Scene::parse(&scene_text(case)).unwrap();
+    let scene = Scene::parse(&whole(case)).unwrap();
     let model = Model::new(&scene).unwrap();
     let mut input = EquilibriumInput::from_scene(&scene, Gyroscopic::OuterRaceControl);
     let here = equilibrium::solve(&model, &input).unwrap();
@@ -234,11 +240,12 @@ fn closed_form_axial_play_between_the_flanks() {
     let solve_at = |force: f64| {
         let load = format!(
             "x = {{ force = {force} }}\ny = {{ displacement = 0.0 }}\nz = {{ displacement = 0.0 }}\n\
-             ry = {{ rotation = 0.0 }}\nrz = {{ rotation = 0.0 }}"
+             ry = {{ rotation = 0.0 }}\nrz = {{ rotation = 0.0 }}\n\
+             [inner]\nshoulder_angle = [1.5, 1.5]\n[outer]\nshoulder_angle = [1.5, 1.5]"
         );
         solve(&bearing_text(ANGULAR_218, &load), Gyroscopic::None).displacement[0]
     };
-    // Grooves are whole tori: the other flanks take a thrust the other way after 2 A sin(alpha0).
+    // Grooves that reach to both sides: the other flanks take a thrust the other way after 2 A sin(alpha0).
     let play = 2.0 * (2.0 * 0.5232 - 1.0) * 22.23e-3 * 40f64.to_radians().sin();
     let (forward, backward) = (solve_at(1000.0), solve_at(-1000.0));
     assert!((forward + backward + play).abs() < 1e-12, "{forward} {backward} {play}");

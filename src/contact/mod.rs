@@ -18,6 +18,7 @@ pub mod pocket;
 pub mod raceway;
 pub mod regularised;
 pub mod shape;
+pub mod shoulder;
 
 use nalgebra::Vector3;
 

@@ -2,12 +2,15 @@
 
 use std::fmt;
 
+use nalgebra::Vector3;
+
 use super::{Boundary, Workspace};
 use crate::contact::pair::PairForces;
 use crate::forces::{Contacts, Pairs};
 use crate::model::Model;
 use crate::model::bodies::{Body, Race};
 use crate::model::state::State;
+use crate::numerics::motion::Wrench;
 
 /// Where the residual or local error of a failed step is largest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +51,8 @@ pub struct FailureSite {
     pub ball: usize,
     /// Second body of that ball's contact whose force changed most in the step.
     pub contact: Body,
+    /// Did the force of its neighbours change more than that of every body?
+    pub neighbours: bool,
 }
 
 impl fmt::Display for FailureSite {
@@ -56,6 +61,7 @@ impl fmt::Display for FailureSite {
         match self.body {
             Some(body) if body == contact => write!(f, "the {body}, at its contact with ball {ball}"),
             Some(body) => write!(f, "the {body}, then at ball {ball} on the {contact}"),
+            None if self.neighbours => write!(f, "ball {ball} between its neighbours"),
             None => write!(f, "ball {ball} on the {contact}"),
         }
     }
@@ -85,10 +91,13 @@ pub fn failure_site(
         .flat_map(changes)
         .filter(|change| Some(change.contact) == worst.body && change.force > 0.0);
     // A body may be in trouble without its balls: a cage on its lands.
-    let (ball, contact) = largest(of_body)
-        .or_else(|| largest(changes(worst.ball)))
-        .map_or((worst.ball, Race::Inner.into()), |change| (change.ball, change.contact));
-    FailureSite { body: worst.body, ball: ball + 1, contact }
+    let change = largest(of_body).or_else(|| largest(changes(worst.ball)));
+    let (ball, contact, force) = change
+        .map_or((worst.ball, Race::Inner.into(), 0.0), |change| (change.ball, change.contact, change.force));
+    let pushed = before.neighbours_on(ball).fold(Wrench::default(), Wrench::plus);
+    let push = workspace.balls[ball].pushed.map_or_else(Wrench::default, |push| push.wrench);
+    let neighbours = size(&(push.force - pushed.force), &(push.moment - pushed.moment), radius) > force;
+    FailureSite { body: worst.body, ball: ball + 1, contact, neighbours }
 }
 
 /// How much a contact changed in a step.
@@ -116,7 +125,11 @@ fn change(old: Option<&PairForces>, new: Option<&PairForces>, radius: f64) -> Op
         return None;
     }
     let (old, new) = (old.unwrap_or(&none), new.unwrap_or(&none));
-    let force = (new.force - old.force).norm().hypot(((new.moment - old.moment) / radius).norm());
-    // NaN counts as the largest change.
-    Some(if force.is_nan() { f64::INFINITY } else { force })
+    Some(size(&(new.force - old.force), &(new.moment - old.moment), radius))
+}
+
+/// \[N] size of a force \[N] and of a moment [N m] over the radius \[m]; what is not a number counts as the largest.
+fn size(force: &Vector3<f64>, moment: &Vector3<f64>, radius: f64) -> f64 {
+    let size = force.norm().hypot((moment / radius).norm());
+    if size.is_nan() { f64::INFINITY } else { size }
 }

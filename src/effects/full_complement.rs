@@ -12,6 +12,9 @@ keys! {
     "full_complement" => on: bool = false,
 }
 
+type FromNeighbours = fn(&NeighboursOutput) -> f64;
+type FromBall = fn(&BallOutput) -> f64;
+
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
         key: "effects.full_complement",
@@ -40,7 +43,7 @@ impl Effect for Settings {
     }
 
     fn rows(&self) -> Vec<Row> {
-        let quantities: [(&str, Unit, f64, &str, fn(&NeighboursOutput) -> f64); 4] = [
+        let quantities: [(&str, Unit, f64, &str, FromNeighbours); 4] = [
             ("touching", ONE, 1.0, "pairs of neighbouring balls that touch", |n| n.touching as f64),
             ("largest_load", NEWTON, 10.0, "largest normal load between two balls", |n| n.largest_load),
             ("gap", METRE, 1e-4, "smallest gap between neighbouring balls (negative is an approach)", |n| {
@@ -48,22 +51,21 @@ impl Effect for Settings {
             }),
             ("power", WATT, 1.0, "power lost to friction between balls", |n| n.power),
         ];
-        let row =
-            |(name, unit, nominal, what, get): (&str, Unit, f64, &str, fn(&NeighboursOutput) -> f64)| {
-                let get = Getter::new(move |reports| reports.neighbours.map_or(0.0, get));
-                Row { name: format!("neighbours.{name}"), unit, nominal, description: what.into(), get }
-            };
+        let row = |(name, unit, nominal, what, get): (&str, Unit, f64, &str, FromNeighbours)| {
+            let get = Getter::new(move |reports| reports.neighbours.map_or(0.0, get));
+            Row { name: format!("neighbours.{name}"), unit, nominal, description: what.into(), get }
+        };
         if self.on { quantities.into_iter().map(row).collect() } else { vec![] }
     }
 
     fn ball_rows(&self, ball: usize) -> Vec<Row> {
-        let quantities: [(&str, &str, fn(&BallOutput) -> f64); 4] = [
+        let quantities: [(&str, &str, FromBall); 4] = [
             ("load", "largest normal load", |b| b.neighbours_load),
             ("force.x", "force on the ball, x component, world axes,", |b| b.neighbours_force.x),
             ("force.y", "force on the ball, y component, world axes,", |b| b.neighbours_force.y),
             ("force.z", "force on the ball, z component, world axes,", |b| b.neighbours_force.z),
         ];
-        let row = |(name, what, get): (&str, &str, fn(&BallOutput) -> f64)| {
+        let row = |(name, what, get): (&str, &str, FromBall)| {
             let description = format!("{what} of ball {} and its neighbours", ball + 1);
             ball_row(ball, &format!("neighbours.{name}"), NEWTON, 10.0, description, get)
         };

@@ -24,6 +24,7 @@ pub mod groove_slip;
 pub mod keys;
 pub mod per_ball;
 pub mod reports;
+pub mod shoulder;
 pub mod stiffness;
 
 use std::fmt;
@@ -70,7 +71,7 @@ macro_rules! effects {
     };
 }
 
-effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement }
+effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder }
 
 impl Effects {
     /// Checks all numbers against their ranges.

@@ -46,6 +46,8 @@ pub struct ContactOutput {
     pub semi_axis_rolling: f64,
     /// \[m] semi-axis of the contact ellipse transverse to rolling.
     pub semi_axis_transverse: f64,
+    /// [-] share of the load beyond the shoulders of the race.
+    pub shoulder_share: f64,
     /// \[Pa] peak pressure.
     pub peak_pressure: f64,
 }

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use super::Equilibrium;
 use super::ball::BallBalance;
 use crate::contact::geometry::GrooveContact;
+use crate::contact::shoulder::largest_share;
 use crate::model::bodies::Race;
 use crate::model::{Conditions, Model};
 use crate::numerics::scalar::{Dual, Single, values};
@@ -36,27 +37,49 @@ pub struct BallReport {
     pub inner_hertz_stiffness: f64,
     /// [N/m^1.5] Hertz stiffness of the outer contact.
     pub outer_hertz_stiffness: f64,
+    /// [-] share of the inner load beyond the shoulders of the inner race.
+    pub inner_shoulder_share: f64,
+    /// [-] share of the outer load beyond the shoulders of the outer race.
+    pub outer_shoulder_share: f64,
 }
 
 impl BallReport {
     /// Report of a settled ball; `inner_axis` is the inner race's axis relative to the outer race.
-    pub(super) fn new(balance: &BallBalance, inner_axis: &Vector3<f64>) -> Self {
+    pub(super) fn new(model: &Model, balance: &BallBalance, inner_axis: &Vector3<f64>) -> Self {
         // atan2(axial, radial) of the force on the ball for the inner race, of the opposite for the outer.
         let angle = |contact: &GrooveContact<Dual<8>>, axis: &Vector3<f64>, sign: f64| {
             let normal = values(&contact.normal) * sign;
             normal.dot(axis).atan2(normal.dot(&values(&contact.radial)))
         };
+        let contacts = model.contacts(&Conditions { friction: 0.0 });
+        let share = |race: Race, contact: &GrooveContact<Dual<8>>, towards_x: f64| {
+            let shape = contacts[race].shape.at(contact.circumferential_curvature.value);
+            let semi_axis = shape.semi_axis_transverse * contact.approach.value.max(0.0).sqrt();
+            model.bearing.shoulder_share(race, towards_x, semi_axis)
+        };
+        let inner_contact_angle = angle(&balance.inner, inner_axis, -1.0);
+        let outer_contact_angle = angle(&balance.outer, &Vector3::x(), 1.0);
         Self {
             inner_load: balance.inner_load.value,
             outer_load: balance.outer_load.value,
-            inner_contact_angle: angle(&balance.inner, inner_axis, -1.0),
-            outer_contact_angle: angle(&balance.outer, &Vector3::x(), 1.0),
+            inner_contact_angle,
+            outer_contact_angle,
             inner_approach: balance.inner.approach.value,
             outer_approach: balance.outer.approach.value,
             centrifugal_force: balance.centrifugal_force.value(),
             gyroscopic_moment: balance.gyroscopic_moment.value,
             inner_hertz_stiffness: balance.stiffness.inner.value,
             outer_hertz_stiffness: balance.stiffness.outer.value,
+            inner_shoulder_share: share(Race::Inner, &balance.inner, -inner_contact_angle),
+            outer_shoulder_share: share(Race::Outer, &balance.outer, outer_contact_angle),
+        }
+    }
+
+    /// \[N] load on a race, and \[rad] contact angle there towards the race's +x side.
+    pub(super) fn on(&self, race: Race) -> (f64, f64) {
+        match race {
+            Race::Inner => (self.inner_load, -self.inner_contact_angle),
+            Race::Outer => (self.outer_load, self.outer_contact_angle),
         }
     }
 }
@@ -115,6 +138,8 @@ impl Equilibrium {
                 "gyroscopic_moment": column(|b| b.gyroscopic_moment),
                 "inner_hertz_stiffness": column(|b| b.inner_hertz_stiffness),
                 "outer_hertz_stiffness": column(|b| b.outer_hertz_stiffness),
+                "inner_shoulder_share": column(|b| b.inner_shoulder_share),
+                "outer_shoulder_share": column(|b| b.outer_shoulder_share),
             },
         })
     }
@@ -150,6 +175,18 @@ impl fmt::Display for Equilibrium {
                 b.outer_load,
                 b.inner_contact_angle.to_degrees(),
                 b.outer_contact_angle.to_degrees()
+            )?;
+        }
+        let reports = || self.balls.iter().map(|ball| &ball.report);
+        let over = [
+            largest_share(reports().map(|b| (b.inner_load, b.inner_shoulder_share))),
+            largest_share(reports().map(|b| (b.outer_load, b.outer_shoulder_share))),
+        ];
+        if over != [0.0; 2] {
+            let [inner, outer] = over.map(|share| share * 100.0);
+            writeln!(
+                f,
+                "\nover shoulders: up to {inner:.2} % of a load on the inner, {outer:.2} % on the outer race"
             )?;
         }
         Ok(())

@@ -154,7 +154,7 @@ pub fn finish(
                 position: Vector3::x() * axial + radial * radius,
                 velocity: tangential * (cage_speed * radius),
                 angular_velocity: Vector3::x() * spin[0] + radial * spin[1],
-                report: BallReport::new(balance, &shared(model, input, unknowns).axis.map(D::value)),
+                report: BallReport::new(model, balance, &shared(model, input, unknowns).axis.map(D::value)),
             }
         })
         .collect();

@@ -12,6 +12,10 @@ const SPEED: Range = Range::closed(-1e5, 1e5, "rad/s");
 const FORCE: Range = Range::closed(-1e9, 1e9, "N");
 const MOMENT: Range = Range::closed(-1e8, 1e8, "N m");
 const DISPLACEMENT: Range = Range::closed(-0.1, 0.1, "m");
+/// Heights of shoulders; the groove radius is their limit.
+const LENGTH: Range = Range::closed(0.0, 1.0, "m");
+/// A groove ends before the ball stands on the race's side, but for rounding.
+const RIGHT_ANGLE: Range = Range::closed(0.0, std::f64::consts::FRAC_PI_2 * (1.0 + 1e-12), "rad");
 /// Steps; the smallest, first and largest must agree, too.
 pub(super) const STEP: Range = Range::closed(1e-15, 1e-2, "s");
 
@@ -49,7 +53,7 @@ static BEARING: [Number<Scene>; 15] = [
 
 /// Cage friction, races, start, time integration and load: those after the effects.
 #[rustfmt::skip]
-static MOTION: [Number<Scene>; 37] = [
+static MOTION: [Number<Scene>; 41] = [
     Number::fixed("friction.ball_cage", FRICTION, "friction coefficient of the balls in their pockets", |s| Place::Value(s.friction.ball_cage.as_mut())),
     Number::fixed("friction.cage_race", FRICTION, "friction coefficient of the cage on the lands", |s| Place::Value(s.friction.cage_race.as_mut())),
     Number::fixed("friction.ball_ball", FRICTION, "friction coefficient of neighbouring balls", |s| Place::Value(s.friction.ball_ball.as_mut())),
@@ -63,6 +67,10 @@ static MOTION: [Number<Scene>; 37] = [
         |s| Place::Value(s.inner.inertia.as_mut().map(|moments| &mut moments[2].0))),
     Number::checked("inner.misalignment.ry", TILT, |s| Place::Schedule(&mut s.inner.misalignment.ry)),
     Number::checked("inner.misalignment.rz", TILT, |s| Place::Schedule(&mut s.inner.misalignment.rz)),
+    Number::checked("inner.shoulder_height", LENGTH,
+        |s| Place::Read(s.inner.shoulder_height.iter().flatten().map(|height| height.0).collect())),
+    Number::checked("inner.shoulder_angle", RIGHT_ANGLE,
+        |s| Place::Read(s.inner.shoulder_angle.iter().flatten().map(|angle| angle.0).collect())),
     Number::fixed_if("outer.mass", MASS, "mass of the outer race and what is fixed to it", outer_is_hinged,
         |s| Place::Value(s.outer.mass.as_mut().map(|mass| &mut mass.0))),
     Number::fixed_if("outer.inertia.x", INERTIA, "moment of inertia of the outer race about its own axis", outer_is_hinged,
@@ -75,6 +83,10 @@ static MOTION: [Number<Scene>; 37] = [
         |s| Place::Schedule(&mut s.outer.misalignment.ry)),
     Number::fixed_if("outer.misalignment.rz", TILT, "misalignment of the outer race about z", outer_has_frame,
         |s| Place::Schedule(&mut s.outer.misalignment.rz)),
+    Number::checked("outer.shoulder_height", LENGTH,
+        |s| Place::Read(s.outer.shoulder_height.iter().flatten().map(|height| height.0).collect())),
+    Number::checked("outer.shoulder_angle", RIGHT_ANGLE,
+        |s| Place::Read(s.outer.shoulder_angle.iter().flatten().map(|angle| angle.0).collect())),
     Number::checked("start.orbital_speed", SPEED,
         |s| Place::Value(s.start.orbital_speed.as_mut().map(|speed| &mut speed.0))),
     Number::checked("start.ball_angular_velocity", Range::closed(-1e6, 1e6, "rad/s"),

@@ -61,7 +61,21 @@ fn bearing(scene: &Scene) -> Result<(), SceneError> {
 }
 
 fn races(scene: &Scene) -> Result<(), SceneError> {
-    for (section, race) in [("inner", &scene.inner), ("outer", &scene.outer)] {
+    let bearing = &scene.bearing;
+    for (section, race, conformity) in
+        [("inner", &scene.inner, bearing.inner_conformity), ("outer", &scene.outer, bearing.outer_conformity)]
+    {
+        if let Some(heights) = race.shoulder_height {
+            let key = format!("{section}.shoulder_height");
+            if race.shoulder_angle.is_some() {
+                return Err(SceneError::conflict(
+                    key,
+                    "give at most one of shoulder_height and shoulder_angle",
+                ));
+            }
+            let range = Range::closed(0.0, conformity * bearing.ball_diameter.0, "m");
+            heights.iter().try_for_each(|height| range.check(&key, height.0))?;
+        }
         let is_body = matches!(race.drive, Drive::Wrench | Drive::Hinge);
         if is_body && (race.mass.is_none() || race.inertia.is_none()) {
             let why = "a race driven by a wrench or on a hinge is a rigid body: give its mass and its inertia [Ix, Iy, \

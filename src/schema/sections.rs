@@ -120,6 +120,10 @@ pub struct RaceSection {
     pub inertia: Option<[Inertia; 3]>,
     /// Misalignment of the frame of a fixed or hinged race.
     pub misalignment: Misalignment,
+    /// \[m] heights of the shoulders over the groove's bottom at the race's -x and +x side; not with `shoulder_angle`.
+    pub shoulder_height: Option<[Length; 2]>,
+    /// \[rad] contact angles at which the groove ends at the race's -x and +x side; not with `shoulder_height`.
+    pub shoulder_angle: Option<[Angle; 2]>,
 }
 
 /// Rotation vector [0, ry, rz] of a race's frame, constant or a scripted motion.

@@ -77,6 +77,29 @@ pub enum SimulationError {
         /// \[m] approach.
         approach: f64,
     },
+    /// A contact lies beyond the shoulder of its race.
+    #[error(
+        "at {time} s ball {ball} presses on the {race} race with {load:.3e} N at a contact angle of {angle:.3} rad towards {side}, beyond \
+         the shoulder that ends the groove at {end:.3} rad: {why}"
+    )]
+    BeyondShoulder {
+        /// \[s] time.
+        time: f64,
+        /// Ball, counted from 1.
+        ball: usize,
+        /// Inner or outer.
+        race: &'static str,
+        /// \[N] load.
+        load: f64,
+        /// Side of the race.
+        side: &'static str,
+        /// \[rad] contact angle.
+        angle: f64,
+        /// \[rad] where the groove ends.
+        end: f64,
+        /// What that says of the bearing.
+        why: &'static str,
+    },
     /// Two balls are pressed together more deeply than Hertz's theory reaches.
     #[error(
         "at {time} s balls {ball} and {next} are pressed together by {approach:.3e} m: more than {MAX_APPROACH} of their \

@@ -19,10 +19,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::creep::Law;
+use crate::contact::shoulder::SMALL_LOAD;
 use crate::dynamics::{
     Boundary, StepFailure, Workspace, advance_perturbed, failure_site, make_consistent, try_step,
 };
-use crate::equilibrium::MAX_APPROACH;
+use crate::equilibrium::{MAX_APPROACH, SIDES};
 use crate::forces::Contacts;
 use crate::model::Model;
 use crate::model::bodies::Race;
@@ -31,7 +32,7 @@ use crate::scene::{BearingSection, Drive, Groups, Scene};
 pub use error::SimulationError;
 use input_paths::InputPaths;
 use inputs::Inputs;
-use outputs::Outputs;
+use outputs::{Outputs, towards_x};
 use script::Script;
 pub use script::{follows_time, scripted_groups};
 
@@ -455,6 +456,7 @@ impl Simulation {
                 }
             }
         }
+        self.check_shoulders(contacts)?;
         for pair in &contacts.ball_pairs {
             let (time, approach) = (self.state.time, pair.forces.approach);
             if approach > MAX_APPROACH * diameter {
@@ -480,6 +482,32 @@ impl Simulation {
                     let (time, ball, race) = (self.state.time, index + 1, race.name());
                     return Err(SimulationError::BeyondLinear { time, ball, race, force, limit });
                 }
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses contacts beyond the shoulders of their race.
+    fn check_shoulders(&self, contacts: &Contacts) -> Result<(), SimulationError> {
+        for race in Race::BOTH {
+            let on_race = || contacts.balls.iter().map(|ball| &ball.raceways[race]);
+            let largest = on_race().map(|contact| contact.load).fold(0.0, f64::max);
+            let axis = self.state.race(race).axes[0];
+            for (index, contact) in on_race().enumerate().filter(|(_, c)| c.load > SMALL_LOAD * largest) {
+                let Some(beyond) = self.model.bearing.shoulders[race].beyond(towards_x(contact, &axis))
+                else {
+                    continue;
+                };
+                return Err(SimulationError::BeyondShoulder {
+                    time: self.state.time,
+                    ball: index + 1,
+                    race: race.name(),
+                    load: contact.load,
+                    side: SIDES[beyond.side],
+                    angle: beyond.angle,
+                    end: beyond.end,
+                    why: self.model.bearing.why_beyond(race, &beyond),
+                });
             }
         }
         Ok(())

@@ -89,7 +89,6 @@ impl Outputs {
         let outer = state.race(Race::Outer);
         let races = PerRace::new(|race| state.race(race).motion());
         let models = model.contacts(conditions);
-        let thrust = model.bearing.is_thrust_bearing();
         let all = contacts;
         let contacts_of_neighbours =
             |ball: usize| all.ball_pairs.iter().filter(move |pair| [pair.first, pair.second].contains(&ball));
@@ -105,7 +104,7 @@ impl Outputs {
             });
             let output = |race: Race| {
                 let contact = models[race].completed(&contacts.raceways[race], &ball.motion(), &races[race]);
-                contact_output(&contact, &races[race].axis, thrust.then_some(race))
+                contact_output(model, race, &contact, &races[race].axis)
             };
             BallOutput {
                 azimuth: spin_free_azimuth(outer, &(ball.position - outer.pose.position)),
@@ -311,21 +310,27 @@ fn reaction(race: &BodyState, body: &RigidBody, axis: &Vector3<f64>) -> Wrench {
     sum
 }
 
-/// A contact as it is reported; `facing` is the race where grooves face along the axis, so that the side of the groove does
-/// not tell which race it is.
+/// \[rad] contact angle towards the +x side of a race of this axis.
+pub(super) fn towards_x(contact: &BallRaceContact<f64>, axis: &Vector3<f64>) -> f64 {
+    let normal = &contact.geometry.normal;
+    normal.dot(axis).atan2(normal.dot(&contact.geometry.radial).abs())
+}
+
+/// A contact as it is reported; where grooves face along the axis, the side of the groove does not tell which race it is.
 fn contact_output(
+    model: &Model,
+    race: Race,
     contact: &BallRaceContact<f64>,
     axis: &Vector3<f64>,
-    facing: Option<Race>,
 ) -> ContactOutput {
     let normal = &contact.geometry.normal;
     // The outer normal points outwards, the inner one inwards: the angle is that of the force on the ball for the
     // inner race, and of its opposite for the outer, so that both are positive under the same thrust.
     let (axial, radial) = (normal.dot(axis), normal.dot(&contact.geometry.radial));
-    let contact_angle = match facing {
-        Some(Race::Inner) => (-axial).atan2(-radial),
-        Some(Race::Outer) => axial.atan2(radial),
-        None => (if radial < 0.0 { -axial } else { axial }).atan2(radial.abs()),
+    let contact_angle = match (model.bearing.is_thrust_bearing(), race) {
+        (true, Race::Inner) => (-axial).atan2(-radial),
+        (true, Race::Outer) => axial.atan2(radial),
+        (false, _) => (if radial < 0.0 { -axial } else { axial }).atan2(radial.abs()),
     };
     // Frame C has x along the rolling direction; the kernel's x is along the circumference.
     let along = if contact.rolling_cosine < 0.0 { -1.0 } else { 1.0 };
@@ -349,6 +354,7 @@ fn contact_output(
             .map_or(0.0, |curvature| -contact.creep.second_moment * curvature * contact.rolling_speed),
         semi_axis_rolling: rolling,
         semi_axis_transverse: transverse,
+        shoulder_share: model.bearing.shoulder_share(race, towards_x(contact, axis), transverse),
         peak_pressure: if area > 0.0 { 1.5 * contact.load / area } else { 0.0 },
     }
 }

@@ -6,7 +6,7 @@ use roulement::simulation::inputs::Inputs;
 use roulement::simulation::outputs::Outputs;
 
 use crate::gates::{Case, Run, limits};
-use crate::scenes::{ANGULAR, FLAT, GROOVE, HELD, groove, load, scene};
+use crate::scenes::{ANGULAR, FLAT, GROOVE, HELD, WHOLE_INNER, WHOLE_OUTER, groove, load, scene};
 
 /// The second half of a run, and the mean of a quantity over it.
 fn late(run: &Run) -> &[Outputs] {
@@ -42,7 +42,8 @@ fn unloaded_zone() {
 #[test]
 fn thrust_takes_up_a_millimetre() {
     let thrust = format!("x = {{ force = 1500.0 }}\n{HELD}");
-    let scene = scene(GROOVE, &(groove(1000.0, 0.56) + &load(15.0, 6000.0, &thrust)));
+    let scene =
+        scene(GROOVE, &(groove(1000.0, 0.56) + &load(15.0, 6000.0, &thrust) + WHOLE_INNER + WHOLE_OUTER));
     let run = Case::new("thrust, clearance 1 mm", scene, limits(1700, 10, 10, 4.0)).pass();
     // The balls climb to where the clearance is used up: cos(alpha) = 1 - P_d/(2 (f_i + f_o - 1) D), compression aside.
     let expected = (1.0f64 - 1e-3 / (2.0 * 0.12 * 9.525e-3)).acos();
@@ -55,7 +56,7 @@ fn thrust_takes_up_a_millimetre() {
 #[test]
 fn thrust_reversal_through_zero() {
     let rows = "x = { force = [[0.0, 1500.0], [0.01, 1500.0], [0.02, -1500.0]] }\n";
-    let scene = scene(ANGULAR, &load(40.0, 6000.0, rows));
+    let scene = scene(ANGULAR, &(load(40.0, 6000.0, rows) + WHOLE_INNER + WHOLE_OUTER));
     let run = Case::new("thrust from 1500 to -1500 N in 10 ms", scene, limits(6000, 40, 20, 3.0)).pass();
     // The race has moved by its play and the compression of both flanks.
     let mut input = EquilibriumInput::from_scene(run.simulation.scene(), Gyroscopic::None);

@@ -10,6 +10,8 @@ use roulement::scene::Scene;
 use crate::random::Random;
 use crate::scenes::{ANGULAR, GROOVE, load};
 
+/// Grooves that reach to both sides.
+const WHOLE: &str = "shoulder_angle = [1.5707963, 1.5707963]";
 /// Largest residual over the sum of the loads.
 const TOLERANCE: f64 = 1e-8;
 
@@ -48,7 +50,7 @@ fn scene(seed: u64) -> String {
     format!(
         "[bearing]\nballs = {balls}\nball_diameter = {diameter}\npitch_diameter = {pitch}\n{play}\n\
          inner_conformity = {}\nouter_conformity = {}\n\
-         [outer]\nmisalignment = {{ ry = {}, rz = {} }}\n[load]\n{rows}",
+         [inner]\n{WHOLE}\n[outer]\nmisalignment = {{ ry = {}, rz = {} }}\n{WHOLE}\n[load]\n{rows}",
         conformity[0], conformity[1], misalignment[0], misalignment[1]
     )
 }

@@ -3,7 +3,7 @@
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 
 use crate::gates::{Case, Run, limits};
-use crate::scenes::{ANGULAR, FLAT, GROOVE, HELD, groove, load, scene};
+use crate::scenes::{ANGULAR, FLAT, GROOVE, HELD, WHOLE_INNER, groove, load, scene};
 
 /// Quasi-static solution under the same conditions.
 fn reference(run: &Run) -> equilibrium::Equilibrium {
@@ -23,7 +23,8 @@ fn mean_wrench(run: &Run) -> [f64; 6] {
     })
 }
 
-const MISALIGNED: &str = "[outer]\ndrive = \"fixed\"\nmisalignment = { ry = \"0.5 deg\" }\n";
+const MISALIGNED: &str = "[outer]\ndrive = \"fixed\"\nmisalignment = { ry = \"0.5 deg\" }\n\
+                          shoulder_angle = [1.5, 1.5]\n";
 
 #[test]
 fn misaligned_by_half_a_degree() {
@@ -37,7 +38,9 @@ fn misaligned_by_half_a_degree() {
             load(30.0, 6000.0, &radial) + &groove(30.0, 0.52),
         ),
     ] {
-        let run = Case::new(name, scene(base, &(changes + MISALIGNED)), limits(4000, 20, 20, 4.5)).pass();
+        let run =
+            Case::new(name, scene(base, &(changes + WHOLE_INNER + MISALIGNED)), limits(4000, 20, 20, 4.5))
+                .pass();
         // The moment that holds the tilt is the quasi-static one but for friction; pure tilt loads twice per turn.
         let expected = reference(&run).load[3];
         let moment = mean_wrench(&run)[4];

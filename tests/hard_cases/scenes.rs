@@ -13,6 +13,13 @@ pub const CAGE: &str = include_str!("../../scenes/cage.toml");
 /// Angular-contact bearing as above, with its inner race moved by the importer.
 pub const POSE: &str = "[inner]\ndrive = \"pose\"";
 
+/// The inner race of both bearings with a groove that reaches to both sides, so that balls may climb either.
+pub const WHOLE_INNER: &str = "[inner]\ndrive = \"wrench\"\nmass = \"0.2 kg\"\n\
+                               inertia = [\"6e-5 kg m^2\", \"4e-5 kg m^2\", \"4e-5 kg m^2\"]\n\
+                               shoulder_angle = [1.5, 1.5]\n";
+/// The same of the outer race.
+pub const WHOLE_OUTER: &str = "[outer]\nshoulder_angle = [1.5, 1.5]\n";
+
 /// Directions in which a bearing cannot hold its inner race by itself are held at 0.
 pub const HELD: &str = "y = { displacement = 0.0 }\nz = { displacement = 0.0 }\n\
                         ry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";

@@ -14,6 +14,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use roulement::simulation::Simulation;
 use roulement::simulation::play::{Rows, play};
 use roulement_cli::report::energy::EnergyWatch;
+use roulement_cli::report::limits::Limits;
 use roulement_cli::report::means::Blocks;
 use roulement_cli::report::plots::write_plots;
 use roulement_cli::report::results::{Choice, ResultsError, ResultsWriter, Window};
@@ -70,7 +71,7 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     let begin = Instant::now();
     let mut plotted = Thinned::default();
     let mut energy = EnergyWatch::default();
-    let mut peak_pressure = 0.0f64;
+    let mut limits = Limits::default();
     let mut blocks =
         Blocks::new(simulation.outputs().cage.is_some(), 0.5 * simulation.model().bearing.pitch_diameter);
     let played = play(&mut simulation, rows, |simulation| {
@@ -82,8 +83,7 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
         progress.set_position(plotted.seen());
         blocks.push(outputs);
         energy.push(outputs);
-        let contacts = outputs.balls.iter().flat_map(|ball| [&ball.inner, &ball.outer]);
-        peak_pressure = contacts.map(|contact| contact.peak_pressure).fold(peak_pressure, f64::max);
+        limits.push(outputs);
         plotted.push(outputs.clone());
         if interrupted.load(Ordering::Relaxed) {
             ControlFlow::Break(End::Interrupted)
@@ -104,13 +104,19 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     if let Some(means) = &means {
         write(&directory.join("means.csv"), |path| means.write(path))?;
     }
-    let text = summary(&Run { simulation: &simulation, means: means.as_ref(), energy: &energy, wall });
+    let text = summary(&Run {
+        simulation: &simulation,
+        means: means.as_ref(),
+        energy: &energy,
+        limits: &limits,
+        wall,
+    });
     write(&directory.join("summary.txt"), |path| fs::write(path, &text))?;
     let mut listed = format!("{text}\nresults          {}\n", directory.join("results.csv").display());
     for plot in plots {
         listed += &format!("plot             {}\n", plot.display());
     }
-    tell(scene.pressure_note(peak_pressure));
+    tell(scene.pressure_note(limits.peak_pressure));
     // Why a run has ended early is said even where nobody reads the summary.
     let said = say(&listed);
     if let ControlFlow::Break(End::Interrupted) = played? {

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use roulement::simulation::Simulation;
 use roulement_cli::report::energy::EnergyWatch;
+use roulement_cli::report::limits::Limits;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
 
 /// A run that has ended.
@@ -15,6 +16,8 @@ pub struct Run<'a> {
     pub means: Option<&'a Means>,
     /// Its energy.
     pub energy: &'a EnergyWatch,
+    /// Limits of the bearing that it met.
+    pub limits: &'a Limits,
     /// Time that it took.
     pub wall: Duration,
 }
@@ -84,8 +87,21 @@ fn write_means(out: &mut String, means: &Means, has_cage: bool) -> std::fmt::Res
     }
 }
 
+/// What a run met of shoulders and neighbouring balls; nothing where it met none.
+fn write_limits(out: &mut String, limits: &Limits) -> std::fmt::Result {
+    if limits.over_shoulders != [0.0; 2] {
+        let [inner, outer] = limits.over_shoulders.map(|share| share * 100.0);
+        writeln!(out, "over shoulders   inner up to {inner:.2} %, outer up to {outer:.2} % of a load")?;
+    }
+    if limits.between_balls > 0.0 {
+        let largest = limits.between_balls;
+        writeln!(out, "between balls    up to {largest:.3} N: they touch, as no cage keeps them apart")?;
+    }
+    Ok(())
+}
+
 fn write_summary(out: &mut String, run: &Run<'_>) -> std::fmt::Result {
-    let Run { simulation, means, energy, wall } = run;
+    let Run { simulation, means, energy, limits, wall } = run;
     let now = simulation.outputs();
     let (force, moment) = (now.inner.wrench.force, now.inner.wrench.moment);
     let position = now.inner.pose.position * 1e6;
@@ -122,6 +138,7 @@ fn write_summary(out: &mut String, run: &Run<'_>) -> std::fmt::Result {
         extremes(|b| b.inner.contact_angle.to_degrees()),
         extremes(|b| b.outer.contact_angle.to_degrees())
     )?;
+    write_limits(out, limits)?;
     if let Some(cage) = &now.cage {
         writeln!(out, "cage centre      {:.3} um off axis", cage.eccentricity.yz().norm() * 1e6)?;
     }

@@ -1,6 +1,7 @@
 //! Results of a run: its table, its means, its energy and its plots; and the style of all plots.
 
 pub mod energy;
+pub mod limits;
 pub mod means;
 pub mod plots;
 pub mod results;

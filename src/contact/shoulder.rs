@@ -1,0 +1,57 @@
+//! Where the groove of a race ends: a shoulder on either side.
+//!
+//! A groove of radius `r` with a shoulder of height `h` over its bottom ends at a contact angle of `acos(1 - h/r)`. A contact
+//! at angle `a` whose ellipse is seen from the ball's centre under the half angle `b` is cut off at `t = (end - |a|)/b` of its
+//! semi-axis; beyond lies the share `(1 - t)^2 (2 + t)/4` of a Hertzian load.
+
+/// [-] load of a contact over the largest of its race below which its place is not looked at: balls that others leave without
+/// load rattle about their groove.
+pub const SMALL_LOAD: f64 = 0.01;
+
+/// Largest share beyond the shoulders of a race among contacts that carry load, by their loads \[N] and shares.
+pub fn largest_share(contacts: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
+    let largest = contacts.clone().fold(0.0, |largest: f64, (load, _)| largest.max(load));
+    contacts.filter(|(load, _)| *load > SMALL_LOAD * largest).fold(0.0, |most, (_, share)| share.max(most))
+}
+
+/// Ends of a groove as contact angles.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shoulders {
+    /// \[rad] at the -x and the +x side of the race, both positive.
+    pub ends: [f64; 2],
+}
+
+/// A contact that lies beyond a shoulder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beyond {
+    /// Side of the race: 0 towards -x, 1 towards +x.
+    pub side: usize,
+    /// \[rad] contact angle, positive.
+    pub angle: f64,
+    /// \[rad] contact angle at which the groove ends there.
+    pub end: f64,
+}
+
+impl Shoulders {
+    /// \[rad] where a groove of a radius \[m] ends under a shoulder of a height \[m].
+    pub fn end(height: f64, groove_radius: f64) -> f64 {
+        (1.0 - height / groove_radius).clamp(0.0, 1.0).acos()
+    }
+
+    /// [-] share of a Hertzian load beyond the shoulders, of a contact at an angle \[rad] towards +x with a half angle of its
+    /// ellipse \[rad].
+    pub fn share_beyond(&self, towards_x: f64, half_angle: f64) -> f64 {
+        let share = |margin: f64| {
+            let t = if half_angle > 0.0 { (margin / half_angle).clamp(-1.0, 1.0) } else { 1.0 };
+            0.25 * (1.0 - t).powi(2) * (2.0 + t)
+        };
+        share(self.ends[0] + towards_x) + share(self.ends[1] - towards_x)
+    }
+
+    /// Is a contact at an angle \[rad] towards +x beyond a shoulder?
+    pub fn beyond(&self, towards_x: f64) -> Option<Beyond> {
+        let side = usize::from(towards_x > 0.0);
+        let (angle, end) = (towards_x.abs(), self.ends[side]);
+        (angle > end).then_some(Beyond { side, angle, end })
+    }
+}
