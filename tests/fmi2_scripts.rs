@@ -1,6 +1,7 @@
 //! Scripts of the scene in its package, the stop time, foreign states, and messages as a C importer shows them.
 #![allow(clippy::unwrap_used, unsafe_code)]
 #![allow(clippy::undocumented_unsafe_blocks)] // every pointer in here lives through its call
+#![allow(clippy::missing_transmute_annotations)] // the type of the logger stands beside
 
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::ptr;

@@ -57,3 +57,25 @@ fn closed_form_table_between_its_points() {
         close(schedule.at(time), value);
     }
 }
+
+#[test]
+fn closed_form_integral_and_knots_of_a_table() {
+    let schedule = Schedule::Table(POINTS.to_vec());
+    // Trapezoids 1.5, 2, 13, 3.75 and 6 between the points; held before and after.
+    let areas = [0.0, 1.5, 3.5, 16.5, 20.25, 26.25];
+    for ((time, _), area) in POINTS.into_iter().zip(areas) {
+        close(schedule.integral(1.0, time), area);
+        close(schedule.integral(time, 1.0), -area);
+        close(schedule.integral(-1.0, time), area + 1.0);
+    }
+    close(schedule.integral(6.0, 8.0), 9.0);
+    close(schedule.integral(2.1, 2.3), 0.2 * 3.7);
+    // Simpson's rule within one piece is exact, too.
+    let simpson = (schedule.at(3.0) + 4.0 * schedule.at(3.4) + schedule.at(3.8)) * 0.8 / 6.0;
+    close(schedule.integral(3.0, 3.8), simpson);
+    assert_eq!(Schedule::Constant(3.0).integral(1.0, 3.0), 6.0);
+    let knots = |from, to| schedule.knots(from, to).collect::<Vec<_>>();
+    assert_eq!(knots(0.0, 9.0), POINTS.map(|(time, _)| time));
+    assert_eq!((knots(2.0, 4.5), knots(5.0, 5.5)), (vec![2.5], vec![]));
+    assert_eq!(Schedule::Constant(3.0).knots(0.0, 9.0).count(), 0);
+}

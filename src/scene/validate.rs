@@ -27,7 +27,7 @@ fn inputs(scene: &Scene) -> Result<(), SceneError> {
     ] {
         if scene.interface.inputs.of(group) == Giver::Master && !has_input {
             let why = format!("\"master\" needs {needed}: the package has no such input otherwise");
-            return Err(SceneError::conflict(&format!("interface.inputs.{group}"), why));
+            return Err(SceneError::conflict(format!("interface.inputs.{group}"), why));
         }
     }
     Ok(())

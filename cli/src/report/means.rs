@@ -1,6 +1,6 @@
 //! Means over the second half of a run, and whether they have settled: drift against noise.
 //!
-//! Rows go into blocks of equal length, at most [`MOST_BLOCKS`]: when there would be more, neighbours are joined, so that
+//! Rows go into blocks of equal length, at most 128: when there would be more, neighbours are joined, so that
 //! memory does not grow with the run. The window is made of the blocks of the second half. It is divided into equal groups,
 //! and a straight line is fitted through their means. A mean has settled if the drift of that line over the window is not
 //! significant (Student's t, two-sided, 99 %) or less than [`NEGLIGIBLE`] of its size. Noise is the scatter of the group
