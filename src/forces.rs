@@ -2,6 +2,7 @@
 
 use crate::contact::BallRaceContact;
 use crate::contact::pair::PairForces;
+use crate::model::bearing::neighbours;
 use crate::model::bodies::{Body, PerRace, Race};
 use crate::model::state::{BallState, BodyState, State};
 use crate::model::{Conditions, Model};
@@ -124,7 +125,7 @@ fn touching_balls(model: &Model, state: &State) -> Vec<BallPair> {
         let forces = contact.evaluate(&motions[0], &motions[1], model.damping)?;
         Some(BallPair { first, second, forces })
     };
-    model.bearing.neighbours().filter_map(touching).collect()
+    neighbours(state.balls.len()).filter_map(touching).collect()
 }
 
 impl BallContacts {

@@ -14,6 +14,7 @@ use crate::contact::ball_ball::BallBallModel;
 use crate::contact::pair::PairForces;
 use crate::forces::BallPair;
 use crate::model::Model;
+use crate::model::bearing::neighbours;
 use crate::model::state::State;
 use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::hht::HhtStep;
@@ -130,7 +131,7 @@ fn near(model: &Model, state: &State, h: f64) -> Vec<(usize, usize)> {
         let approach_rate = offset.dot(&(first.velocity - second.velocity)) / distance;
         distance - approach_rate.max(0.0) * h < (1.0 + NEAR) * contact.diameter
     };
-    model.bearing.neighbours().filter(is_near).collect()
+    neighbours(state.balls.len()).filter(is_near).collect()
 }
 
 impl Workspace {
@@ -164,7 +165,7 @@ impl BearingStep<'_> {
             let [first, second] = [first, second].map(|ball| workspace.balls[ball].motion.position);
             (second - first).norm_squared() < contact.diameter * contact.diameter
         };
-        let pairs = || self.model.bearing.neighbours();
+        let pairs = || neighbours(workspace.balls.len());
         if !pairs().any(|pair| met(pair) && !is_listed(pair.0)) {
             return false;
         }

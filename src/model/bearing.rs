@@ -141,13 +141,6 @@ impl Bearing {
         self.first_ball_azimuth + TAU * index as f64 / self.n_balls as f64
     }
 
-    /// Neighbouring balls around the bearing, each pair once: (0, 1), (1, 2) and so on to the last and the first.
-    pub fn neighbours(&self) -> impl Iterator<Item = (usize, usize)> {
-        let n = self.n_balls;
-        let pairs = if n > 2 { n } else { n.saturating_sub(1) };
-        (0..pairs).map(move |first| (first, (first + 1) % n))
-    }
-
     /// [-] ratio of cage speed to inner race speed at a contact angle \[rad], outer race at rest, pure rolling:
     /// `(1 - gamma)/2`, `gamma = D cos(alpha)/dm`.
     pub fn epicyclic_ratio(&self, contact_angle: f64) -> f64 {
@@ -190,6 +183,12 @@ fn shoulders(scene: &Scene, race: Race) -> Shoulders {
         ends[1 - loaded_side(race)] = LOW_SHOULDER * free;
     }
     Shoulders { ends }
+}
+
+/// Neighbours among balls that stand around a bearing, each pair once: (0, 1), (1, 2) and so on to the last and the first.
+pub fn neighbours(n_balls: usize) -> impl Iterator<Item = (usize, usize)> {
+    let pairs = if n_balls > 2 { n_balls } else { n_balls.saturating_sub(1) };
+    (0..pairs).map(move |first| (first, (first + 1) % n_balls))
 }
 
 /// Unit vectors at an azimuth \[rad]: radial and tangential (direction of growing azimuth).

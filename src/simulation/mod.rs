@@ -26,6 +26,7 @@ use crate::dynamics::{
 use crate::equilibrium::{MAX_APPROACH, SIDES};
 use crate::forces::Contacts;
 use crate::model::Model;
+use crate::model::bearing::neighbours;
 use crate::model::bodies::Race;
 use crate::model::state::{KeptMatrix, State};
 use crate::scene::{BearingSection, Drive, Groups, Scene};
@@ -128,7 +129,7 @@ impl Simulation {
         let approach = |(first, second): (usize, usize)| {
             contact.approach(&self.state.balls[first].motion(), &self.state.balls[second].motion())
         };
-        let overlap = bearing.neighbours().map(approach).fold(f64::NEG_INFINITY, f64::max);
+        let overlap = neighbours(self.state.balls.len()).map(approach).fold(f64::NEG_INFINITY, f64::max);
         if overlap <= START_OVERLAP * contact.diameter {
             return Ok(());
         }

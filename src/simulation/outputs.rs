@@ -11,6 +11,7 @@ pub use crate::effects::reports::{
     BallOutput, CageOutput, Condensed, ContactOutput, NeighboursOutput, PocketOutput,
 };
 use crate::forces::{BallContacts, Contacts, Totals};
+use crate::model::bearing;
 use crate::model::bodies::{Constraint, PerRace, Race, RigidBody, tilt_direction};
 use crate::model::cage::CageModel;
 use crate::model::state::{BallState, BodyState, State, Statistics};
@@ -220,7 +221,7 @@ fn neighbours(model: &Model, state: &State, contacts: &Contacts) -> Option<Neigh
     Some(NeighboursOutput {
         touching: contacts.ball_pairs.len(),
         largest_load: loads.fold(0.0, f64::max),
-        gap: model.bearing.neighbours().map(gap).fold(f64::INFINITY, f64::min),
+        gap: bearing::neighbours(state.balls.len()).map(gap).fold(f64::INFINITY, f64::min),
         power: contacts.ball_pairs.iter().fold(0.0, |sum, pair| sum + pair.forces.friction_power),
     })
 }
