@@ -117,19 +117,19 @@ fn closed_form_default_shoulders() {
         let shoulders = Model::new(scene).unwrap().bearing.shoulders;
         Race::BOTH.map(|race| shoulders[race].ends)
     };
-    // 0.25 D high in grooves of 0.52 D, and half the contact angle on the other side of an angular-contact bearing.
+    // 0.3 D high in grooves of 0.52 D, and the contact angle on the other side of an angular-contact bearing.
     let end = |height: f64| (1.0 - height / 0.52f64).acos();
     let near = |ours: [[f64; 2]; 2], expected: [[f64; 2]; 2]| {
         let pairs = ours.iter().flatten().zip(expected.iter().flatten());
         assert!(pairs.clone().all(|(a, b)| (a - b).abs() < 1e-9), "{ours:?} {expected:?}");
     };
-    let (high, low) = (end(0.25), 12.5f64.to_radians());
+    let (high, low) = (end(0.3), 25f64.to_radians());
     near(ends(&Scene::parse(RADIAL).unwrap()), [[high; 2]; 2]);
     near(ends(&Scene::parse(THRUST).unwrap()), [[high, low], [low, high]]);
     near(ends(&scene(THRUST, &[("bearing.contact_angle", "0.0")])), [[high; 2]; 2]);
     // A steep contact angle has a groove that reaches it.
     let steep = 70f64.to_radians();
-    let low = 30f64.to_radians();
+    let low = 60f64.to_radians();
     near(ends(&scene(THRUST, &[("bearing.contact_angle", "\"60 deg\"")])), [[steep, low], [low, steep]]);
     let given = [("inner.shoulder_angle", "[0.7, 0.6]"), ("outer.shoulder_height", "[\"1 mm\", \"2 mm\"]")];
     let outer = [1e-3, 2e-3].map(|height| end(height / 9.525e-3));

@@ -147,7 +147,7 @@ mod tests {
             solver.fit_to(diameter);
             solver.min_step.0
         };
-        assert_eq!((fitted("", 1e-3), fitted("", 1e-2)), (1e-14, 1e-13));
+        assert_eq!((fitted("", 1e-3), fitted("", 0.1)), (1e-14, 1e-12));
         assert_eq!(fitted("min_step = \"1 ns\"", 1e-3), 1e-9);
         assert_eq!(fitted("max_step = 1e-14", 0.05), 1e-14);
     }

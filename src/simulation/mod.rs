@@ -140,9 +140,14 @@ impl Simulation {
 
     /// Goes on with a scene that differs in tunable parameters alone.
     pub fn tune(&mut self, scene: &Scene) {
+        let gravity = self.model.gravity;
         Arc::make_mut(&mut self.model).tune(scene);
         self.scene = Arc::new(scene.clone());
         self.state.matrix = KeptMatrix::default();
+        // The next step begins with the forces of this moment: weight that has come or gone is one of them.
+        if self.model.gravity != gravity {
+            self.settle();
+        }
     }
 
     /// Sets the time \[s] of a simulation that has not moved yet, and leaves it where it is: its start does not follow the

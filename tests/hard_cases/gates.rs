@@ -9,6 +9,7 @@ use roulement::interface::variables::Variables;
 use roulement::model::bodies::{Body, Race};
 use roulement::model::state::{BodyState, State, Statistics};
 use roulement::numerics::motion::Wrench;
+use roulement::scene::units::Acceleration;
 use roulement::scene::{CreepLaw, Scene};
 use roulement::simulation::outputs::{ContactOutput, Outputs};
 use roulement::simulation::{Simulation, Snapshot};
@@ -51,6 +52,8 @@ pub struct Case<'a> {
     pub importer: Option<&'a Importer<'a>>,
     /// [m] displacement of the whole bearing at the start, for races with given poses.
     pub displaced: Vector3<f64>,
+    /// [m/s2] gravity from just after the start on.
+    pub late_gravity: Option<[f64; 3]>,
     /// Communication steps.
     pub points: u32,
     /// Of how many communication points one is looked at.
@@ -85,6 +88,7 @@ impl<'a> Case<'a> {
             scene,
             importer: None,
             displaced: Vector3::zeros(),
+            late_gravity: None,
             points,
             every: 1,
             window: [0.5, 1.0],
@@ -125,6 +129,11 @@ impl<'a> Case<'a> {
 
     fn simulation(&self, scene: &Scene) -> Simulation {
         let mut simulation = Simulation::new(scene).unwrap_or_else(|why| panic!("{}: {why}", self.name));
+        if let Some(gravity) = self.late_gravity {
+            let mut later = scene.clone();
+            later.effects.gravity.acceleration = gravity.map(Acceleration);
+            simulation.tune(&later);
+        }
         if self.displaced != Vector3::zeros() {
             let mut inputs = *simulation.inputs();
             inputs.inner.pose.position += self.displaced;
