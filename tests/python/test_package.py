@@ -74,13 +74,13 @@ def test_native_run_and_package_agree_to_the_last_bit(thrust_text, tmp_path, dri
     assert [rows[0][name] for name in names] == list(bearing.get(*names))
     for before, row in zip(rows, rows[1:]):
         if drive == "pose":
-            # The native run drives the race by its script: here a steady turn, whose angle is that of the last point.
+            # The native run drives the race by its script: here a steady turn: inputs are those at the start of a step.
             poses = {
-                name: row[name]
-                for name in row
+                name: before[name]
+                for name in before
                 if name.startswith("inner.") and name.split(".")[1] in ("position", "orientation", "velocity")
             }
-            poses |= {name: row[name] for name in row if name.startswith("inner.angular_velocity")}
+            poses |= {name: before[name] for name in before if name.startswith("inner.angular_velocity")}
             bearing.set(**{name.replace(".", "__"): value for name, value in poses.items()})
         bearing.fmu.doStep(before["time"], row["time"] - before["time"])
         got = bearing.get(*names)
