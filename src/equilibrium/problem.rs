@@ -172,7 +172,8 @@ impl<'a> Problem<'a> {
         let mut residual = self.residual(&here);
         let mut shift = 0.0;
         let mut iterations = 0;
-        while !(largest(&residual) <= TOLERANCE) {
+        let reached = |residual: &SharedVector| largest(residual) <= TOLERANCE;
+        while !reached(&residual) {
             iterations += 1;
             let trial = self.newton_step(&here, shift).and_then(|mut step| {
                 // At most a hundredth of a ball diameter at a time.

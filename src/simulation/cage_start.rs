@@ -67,7 +67,8 @@ pub fn place(
     let pose =
         if worst(&around.distances(&centred)).1 <= 1.0 { centred } else { least(&around, centred, radius) };
     let (place, distance) = worst(&around.distances(&pose));
-    if !(distance <= 1.0 + OVERLAP) {
+    let fits = distance <= 1.0 + OVERLAP;
+    if !fits {
         let clearance = cage.land.iter().map(|(_, land)| land.half_clearance);
         let (contact, clearance) = match balls.get(place) {
             Some(_) => (format!("the pocket of ball {}", place + 1), cage.pocket.half_clearance),
@@ -131,7 +132,7 @@ fn least(around: &Surroundings<'_>, start: Pose, radius: f64) -> Pose {
             best = (largest, pose);
         }
         let mean = distances.iter().zip(&weights).map(|(d, weight)| weight * d).sum::<f64>();
-        if !(mean > 0.0) {
+        if mean <= 0.0 || mean.is_nan() {
             break;
         }
         let count = weights.len() as f64;

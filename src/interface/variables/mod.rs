@@ -3,6 +3,7 @@
 //! Model description, value references, CSV headers and the documentation of a package all derive from it.
 
 mod race_rows;
+mod race_setting;
 mod rows;
 
 use thiserror::Error;
@@ -14,8 +15,9 @@ use crate::schema::numbers::{FRICTION, Parameter};
 use crate::schema::variable_units::Unit;
 use crate::simulation::inputs::Inputs;
 use crate::simulation::outputs::Outputs;
-pub use race_rows::InputKind;
-use race_rows::{RaceSetting, RaceVariable};
+use race_rows::RaceVariable;
+pub use race_setting::InputKind;
+use race_setting::RaceSetting;
 
 /// FMI causality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

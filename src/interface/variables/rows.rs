@@ -1,6 +1,7 @@
 //! The rows of the table.
 
-use super::race_rows::{RACE_VARIABLES, RaceMotion};
+use super::race_rows::RACE_VARIABLES;
+use super::race_setting::RaceMotion;
 use super::{Causality, FromOutputs, Kind, Source, Variable, Variables};
 use crate::model::bodies::Race;
 use crate::scene::Scene;

@@ -1,0 +1,122 @@
+//! Limits of what is simulated: a state beyond them is refused.
+
+use std::f64::consts::PI;
+
+use super::outputs::towards_x;
+use super::{Simulation, SimulationError};
+use crate::contact::creep::Law;
+use crate::contact::shoulder::SMALL_LOAD;
+use crate::dynamics::Boundary;
+use crate::equilibrium::{MAX_APPROACH, SIDES};
+use crate::forces::Contacts;
+use crate::model::bearing::neighbours;
+use crate::model::bodies::Race;
+use crate::scene::BearingSection;
+
+/// [-] overlap of neighbouring balls over their diameter that a start may have: balls that just fit are moved by microns
+/// where the load bends their orbit.
+const START_OVERLAP: f64 = 1e-4;
+
+impl Simulation {
+    /// Refuses more balls than fit on the orbit that the equilibrium gives them. It knows nothing of their contacts.
+    pub(super) fn check_room(&self) -> Result<(), SimulationError> {
+        let (Some(contact), bearing) = (&self.model.ball_contact, &self.model.bearing) else {
+            return Ok(());
+        };
+        let approach = |(first, second): (usize, usize)| {
+            contact.approach(&self.state.balls[first].motion(), &self.state.balls[second].motion())
+        };
+        let overlap = neighbours(self.state.balls.len()).map(approach).fold(f64::NEG_INFINITY, f64::max);
+        if overlap <= START_OVERLAP * contact.diameter {
+            return Ok(());
+        }
+        let orbit = (contact.diameter - overlap) / (PI / bearing.n_balls as f64).sin();
+        let fit = BearingSection::most_balls(contact.diameter, orbit);
+        Err(SimulationError::TooManyBalls { balls: bearing.n_balls, fit, overlap })
+    }
+
+    /// Refuses contacts that no material takes, or where no groove is.
+    pub(super) fn check_contacts(&self, contacts: &Contacts) -> Result<(), SimulationError> {
+        let diameter = 2.0 * self.model.bearing.ball.radius;
+        let thrust = self.model.bearing.is_thrust_bearing();
+        let [least, most] = self.model.bearing.contact_angles();
+        for race in Race::BOTH {
+            let axis = self.state.race(race).motion().axis;
+            for (index, ball) in contacts.balls.iter().enumerate() {
+                let contact = &ball.raceways[race].geometry;
+                let (time, ball, approach) = (self.state.time, index + 1, contact.approach);
+                // The groove of the inner race opens away from its axis, that of the outer race towards it.
+                let out = if race == Race::Inner { -1.0 } else { 1.0 };
+                let radial = out * contact.normal.dot(&contact.radial);
+                let off = match thrust {
+                    true => {
+                        let angle = (out * contact.normal.dot(&axis)).atan2(radial);
+                        !(least..=most).contains(&angle)
+                    }
+                    false => radial < 0.0,
+                };
+                if approach > 0.0 && off {
+                    return Err(SimulationError::LeftGroove { time, ball, race: race.name(), approach });
+                }
+                if approach > MAX_APPROACH * diameter {
+                    return Err(SimulationError::Overload { time, ball, race: race.name(), approach });
+                }
+            }
+        }
+        self.check_shoulders(contacts)?;
+        for pair in &contacts.ball_pairs {
+            let (time, approach) = (self.state.time, pair.forces.approach);
+            if approach > MAX_APPROACH * diameter {
+                let (ball, next) = (pair.first + 1, pair.second + 1);
+                return Err(SimulationError::BallsPressed { time, ball, next, approach });
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses contacts that linear theory does not reach: their creep force is above what friction can carry.
+    pub(super) fn check_creep(&self, boundary: &Boundary) -> Result<(), SimulationError> {
+        let contacts = self.model.contacts(&boundary.conditions);
+        if !matches!(contacts.inner.law, Law::Linear) {
+            return Ok(());
+        }
+        for (index, ball) in self.state.balls.iter().enumerate() {
+            for race in Race::BOTH {
+                let contact = contacts[race].evaluate(&ball.motion(), &self.state.race(race).motion());
+                let force = contact.creep.longitudinal.hypot(contact.creep.lateral);
+                let limit = contacts[race].friction * contact.load;
+                if force > limit {
+                    let (time, ball, race) = (self.state.time, index + 1, race.name());
+                    return Err(SimulationError::BeyondLinear { time, ball, race, force, limit });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses contacts beyond the shoulders of their race.
+    fn check_shoulders(&self, contacts: &Contacts) -> Result<(), SimulationError> {
+        for race in Race::BOTH {
+            let on_race = || contacts.balls.iter().map(|ball| &ball.raceways[race]);
+            let largest = on_race().map(|contact| contact.load).fold(0.0, f64::max);
+            let axis = self.state.race(race).axes[0];
+            for (index, contact) in on_race().enumerate().filter(|(_, c)| c.load > SMALL_LOAD * largest) {
+                let Some(beyond) = self.model.bearing.shoulders[race].beyond(towards_x(contact, &axis))
+                else {
+                    continue;
+                };
+                return Err(SimulationError::BeyondShoulder {
+                    time: self.state.time,
+                    ball: index + 1,
+                    race: race.name(),
+                    load: contact.load,
+                    side: SIDES[beyond.side],
+                    angle: beyond.angle,
+                    end: beyond.end,
+                    why: self.model.bearing.why_beyond(race, &beyond),
+                });
+            }
+        }
+        Ok(())
+    }
+}
