@@ -8,17 +8,8 @@ use super::bodies::{PerRace, Race};
 use crate::contact::materials::Pair;
 use crate::contact::raceway::Raceway;
 use crate::contact::shoulder::{Beyond, Shoulders};
+use crate::effects::shoulder::{DEFAULT_HEIGHT, default_ends};
 use crate::scene::Scene;
-
-/// [-] height of a shoulder over the ball diameter, where it is not given. Bearings of published cases roll within it (a 218 at
-/// 15,000 rpm at 57 degrees, one of the reference cases at 60, the end is at 65); under 0.25 they would not.
-const HIGH_SHOULDER: f64 = 0.3;
-/// [-] where the groove of an angular-contact bearing ends on the side that thrust does not load, over the free contact angle:
-/// it keeps balls that cross the bottom of the groove under tilt or centrifugal force, and carries no thrust, as the other flank
-/// would meet the ball beyond.
-const LOW_SHOULDER: f64 = 1.0;
-/// \[rad] a high shoulder reaches at least this far beyond the free contact angle.
-const REACH: f64 = 10.0 * PI / 180.0;
 
 /// A ball: homogeneous sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,7 +154,7 @@ fn loaded_side(race: Race) -> usize {
     }
 }
 
-/// Ends of the groove of a race: those of the scene, or high shoulders, of an angular-contact bearing one on its loaded side.
+/// Ends of the groove of a race: those of the scene, or defaults.
 fn shoulders(scene: &Scene, race: Race) -> Shoulders {
     let bearing = &scene.bearing;
     let (section, conformity) = match race {
@@ -177,13 +168,12 @@ fn shoulders(scene: &Scene, race: Race) -> Shoulders {
     if let Some(heights) = section.shoulder_height {
         return Shoulders { ends: heights.map(|height| end(height.0)) };
     }
-    let free = bearing.contact_angle.map_or(0.0, |angle| angle.0);
-    let high = end(HIGH_SHOULDER * bearing.ball_diameter.0).max(free + REACH);
-    // Washers that face along the axis have no shoulder at all.
-    let mut ends = [if high < FRAC_PI_2 { high } else { PI }; 2];
-    if free > 0.0 {
-        ends[1 - loaded_side(race)] = LOW_SHOULDER * free;
-    }
+    let [loaded, other] = default_ends(
+        bearing.contact_angle.map_or(0.0, |angle| angle.0),
+        end(DEFAULT_HEIGHT * bearing.ball_diameter.0),
+    );
+    let mut ends = [loaded; 2];
+    ends[1 - loaded_side(race)] = other;
     Shoulders { ends }
 }
 
