@@ -40,15 +40,18 @@ impl Default for Solver {
     }
 }
 
-/// [s/m] default smallest step over the ball diameter. What has to be followed gets shorter with the ball: near standstill friction
-/// settles within `m v/(mu Q)`, which is below 1e-10 s for a ball of a millimetre.
-const SMALLEST_STEP: f64 = 1e-11;
+/// \[s] default smallest step for balls of `LARGE_BALL` \[m] and more. What has to be followed gets shorter with the mass of a
+/// smaller ball, which friction brings to its speed: below 1e-13 s for a ball of a millimetre near standstill. A step much
+/// smaller than needed would only make a run crawl that has gone wrong.
+const SMALLEST_STEP: f64 = 1e-10;
+const LARGE_BALL: f64 = 0.01;
 
 impl Solver {
     /// Takes the default smallest step, where none is given (0), for balls of a diameter \[m].
     pub fn fit_to(&mut self, ball_diameter: f64) {
         if self.min_step.0 == 0.0 {
-            self.min_step = Time((SMALLEST_STEP * ball_diameter).max(1e-15).min(self.max_step.0));
+            let mass = (ball_diameter / LARGE_BALL).min(1.0).powi(3);
+            self.min_step = Time((SMALLEST_STEP * mass).max(1e-15).min(self.max_step.0));
         }
     }
 }
@@ -147,7 +150,8 @@ mod tests {
             solver.fit_to(diameter);
             solver.min_step.0
         };
-        assert_eq!((fitted("", 1e-3), fitted("", 0.1)), (1e-14, 1e-12));
+        assert!((fitted("", 1e-3) / 1e-13 - 1.0).abs() < 1e-12);
+        assert_eq!((fitted("", 0.01), fitted("", 0.5)), (1e-10, 1e-10));
         assert_eq!(fitted("min_step = \"1 ns\"", 1e-3), 1e-9);
         assert_eq!(fitted("max_step = 1e-14", 0.05), 1e-14);
     }
