@@ -68,6 +68,8 @@ pub struct BallTrial {
     pub motion: BallMotion<f64>,
     /// Contacts with the races at the end of the step.
     pub raceways: PerRace<PairForces>,
+    /// All of these contacts where they were evaluated with derivatives; else they are in a lane of a group.
+    pub contacts: Option<PerRace<BallRaceContact<f64>>>,
     /// Contact with the cage's pocket at the end of the step, where they touch.
     pub pocket: Option<PairForces>,
     /// What its neighbours do to it at the end of the step, where it touches one.
@@ -89,6 +91,7 @@ impl BallTrial {
             unknowns: Vector6::zeros(),
             motion: ball.motion(),
             raceways: PerRace::new(|_| PairForces::none()),
+            contacts: None,
             pocket: None,
             pushed: None,
             total: ball.total,
@@ -132,21 +135,20 @@ impl BallTrial {
         self.reactions[body.index()].unwrap_or_else(|| Reaction::constant_on_second(pair))
     }
 
-    /// Evaluates the contacts with the races into a lane of a group and returns their derivatives.
+    /// Evaluates the contacts with the races and returns their derivatives.
     pub fn contacts_with_tangent(
         &mut self,
         index: usize,
         around: &Surroundings<'_>,
         step: &HhtStep,
-        (group, lane): (&mut PerRace<ContactGroup>, usize),
     ) -> Matrix6<f64> {
         let Surroundings { model, contacts, differences, races, .. } = around;
         let radius = model.bearing.ball.radius;
         let mut tangent = Matrix6::zeros();
         self.reactions = [None; SLOTS];
-        for race in Race::BOTH {
+        let values = PerRace::new(|race| {
             let contact = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));
-            let value = match races[race].moved {
+            match races[race].moved {
                 None => {
                     let seeded = seed(&self.motion, step, radius);
                     let (value, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);
@@ -160,16 +162,17 @@ impl BallTrial {
                     tangent += self.couple(race.into(), &forces, step, radius);
                     contact.values()
                 }
-            };
-            self.raceways[race] = PairForces::from(&value);
-            group[race].set(lane, &value);
-        }
+            }
+        });
+        self.raceways = PerRace::new(|race| PairForces::from(&values[race]));
+        self.contacts = Some(values);
         tangent
     }
 
     /// Takes over contacts with the races that were evaluated without derivatives, from a lane of a group.
     pub fn take_contacts(&mut self, group: &PerRace<ContactGroup>, lane: usize) {
         self.raceways = PerRace::new(|race| group[race].forces(lane));
+        self.contacts = None;
         self.reactions = [None; SLOTS];
     }
 

@@ -139,7 +139,7 @@ impl<'a> BearingStep<'a> {
                 let index = first + lane;
                 let mut tangent = if with_tangent {
                     self.contact_tangents += 2;
-                    Some(trial.contacts_with_tangent(index, &around, &self.step, (&mut *group, lane)))
+                    Some(trial.contacts_with_tangent(index, &around, &self.step))
                 } else if changed[lane] {
                     self.contact_values += 2;
                     trial.take_contacts(group, lane);

@@ -57,7 +57,7 @@ pub struct Boundary {
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     balls: Vec<BallTrial>,
-    /// Contacts of the balls with the races, as evaluated last: those of [`WIDTH`] balls in each.
+    /// Contacts of the balls with the races, as evaluated last without derivatives: those of [`WIDTH`] balls in each.
     groups: Vec<PerRace<ContactGroup>>,
     /// The state's matrix during a step.
     kept: KeptMatrix,
@@ -82,7 +82,9 @@ impl Workspace {
         let of_ball = |(index, trial): (usize, &BallTrial)| {
             let group = &self.groups[index / WIDTH];
             BallContacts {
-                raceways: PerRace::new(|race| group[race].contact(index % WIDTH)),
+                raceways: trial
+                    .contacts
+                    .unwrap_or_else(|| PerRace::new(|race| group[race].contact(index % WIDTH))),
                 pocket: trial.pocket,
             }
         };
