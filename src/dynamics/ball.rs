@@ -5,7 +5,6 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 use super::body::RaceSeen;
 use super::cage::CageTrial;
 use super::directions::{D, DIRECTIONS, by_first, by_second, constant_race, scale_moments, seed};
-use super::neighbours::Push;
 use super::reaction::Reaction;
 use crate::contact::many::ContactGroup;
 use crate::contact::pair::PairForces;
@@ -82,6 +81,22 @@ pub struct BallTrial {
     pub block: Block,
     /// Reactions on the bodies with their derivatives, where those were asked for.
     reactions: [Option<Reaction>; SLOTS],
+}
+
+/// What the neighbours of a ball do to it in a trial step.
+#[derive(Clone, Copy, Debug)]
+pub struct Push {
+    /// Force and moment.
+    pub wrench: Wrench,
+    /// Derivatives of force and moment (rows) by the ball's own unknowns.
+    pub tangent: Matrix6<f64>,
+}
+
+impl Push {
+    /// Nothing yet.
+    pub fn none() -> Self {
+        Self { wrench: Wrench::default(), tangent: Matrix6::zeros() }
+    }
 }
 
 impl BallTrial {

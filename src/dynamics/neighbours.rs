@@ -6,7 +6,7 @@
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::Workspace;
-use super::ball::BallTrial;
+use super::ball::{BallTrial, Push};
 use super::directions::{D, DIRECTIONS, SECOND_ROTATION, by_first, by_second, scale_moments, seed};
 use super::equations::BearingStep;
 use crate::contact::BallMotion;
@@ -18,7 +18,6 @@ use crate::model::bearing::neighbours;
 use crate::model::state::State;
 use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::hht::HhtStep;
-use crate::numerics::motion::Wrench;
 use crate::numerics::ring::Link;
 use crate::numerics::scalar::constant_vector;
 
@@ -37,15 +36,6 @@ pub struct NeighbourTrial {
     forces: Option<PairForces>,
     /// Couplings of both balls in the Newton matrix.
     pub link: Link,
-}
-
-/// What the neighbours of a ball do to it in a trial step.
-#[derive(Clone, Copy, Debug)]
-pub struct Push {
-    /// Force and moment.
-    pub wrench: Wrench,
-    /// Derivatives of force and moment (rows) by the ball's own unknowns.
-    pub tangent: Matrix6<f64>,
 }
 
 impl NeighbourTrial {
@@ -95,12 +85,6 @@ impl NeighbourTrial {
                 }
             }
         }
-    }
-}
-
-impl Push {
-    fn none() -> Self {
-        Self { wrench: Wrench::default(), tangent: Matrix6::zeros() }
     }
 }
 
@@ -198,6 +182,7 @@ impl BearingStep<'_> {
 mod tests {
     use super::*;
     use crate::model::state::BallState;
+    use crate::numerics::motion::Wrench;
 
     /// Two balls that press on each other, after a step with these unknowns.
     fn moved(unknowns: &[Vector6<f64>; 2], step: &HhtStep) -> [BallTrial; 2] {

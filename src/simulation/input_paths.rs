@@ -5,12 +5,20 @@ use serde::{Deserialize, Serialize};
 
 use super::inputs::{Inputs, RaceInput};
 use super::path::{RacePath, Ramp};
-use super::script::Anchor;
 use crate::dynamics::{BodyLoad, Boundary};
 use crate::model::Conditions;
 use crate::model::bodies::PerRace;
 use crate::model::state::State;
-use crate::numerics::motion::{FrameInput, Wrench};
+use crate::numerics::motion::{FrameInput, Pose, Wrench};
+
+/// Where a race was when its scripted motion began.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Anchor {
+    /// \[s] when.
+    pub time: f64,
+    /// Its pose then: what no table gives stays so, and its own turn is counted from there.
+    pub pose: Pose,
+}
 
 /// Paths of all inputs during a communication step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@ use std::ops::Index;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::slip::RollingOrbit;
+use super::slip::{RollingOrbit, orbital_speed};
 use crate::contact::BallRaceContact;
 use crate::effects::Reports;
 pub use crate::effects::reports::{
@@ -224,14 +224,6 @@ fn neighbours(model: &Model, state: &State, contacts: &Contacts) -> Option<Neigh
         gap: bearing::neighbours(state.balls.len()).map(gap).fold(f64::INFINITY, f64::min),
         power: contacts.ball_pairs.iter().fold(0.0, |sum, pair| sum + pair.forces.friction_power),
     })
-}
-
-/// [rad/s] orbital speed of a ball about the axis of the outer race.
-pub(super) fn orbital_speed(ball: &BallState, outer: &BodyState) -> f64 {
-    let frame = outer.pose.orientation.inverse();
-    let offset = frame * (ball.position - outer.pose.position);
-    let relative = frame * (ball.velocity - outer.velocity);
-    (offset.y * relative.z - offset.z * relative.y) / (offset.y * offset.y + offset.z * offset.z)
 }
 
 impl CageOutput {

@@ -4,9 +4,8 @@
 //! bends. A constant is no script: it is an input that stays as it is.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use serde::{Deserialize, Serialize};
 
-use super::input_paths::InputPaths;
+use super::input_paths::{Anchor, InputPaths};
 use super::inputs::{Inputs, RaceInput};
 use super::start::tilt_of;
 use crate::dynamics::Boundary;
@@ -14,15 +13,6 @@ use crate::model::bodies::{PerRace, Race};
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::tilt;
 use crate::scene::{Drive, Group, Groups, RaceSection, Scene, Schedule};
-
-/// Where a race was when its scripted motion began.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Anchor {
-    /// \[s] when.
-    pub time: f64,
-    /// Its pose then: what no table gives stays so, and its own turn is counted from there.
-    pub pose: Pose,
-}
 
 /// What the script of a scene gives in a step.
 #[derive(Clone, Copy, Debug)]

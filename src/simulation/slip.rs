@@ -9,12 +9,11 @@
 
 use nalgebra::Vector3;
 
-use super::outputs::orbital_speed;
 use crate::contact::{BallRaceContact, RaceMotion};
 use crate::forces::Contacts;
 use crate::model::Model;
 use crate::model::bodies::{PerRace, Race};
-use crate::model::state::{BallState, State};
+use crate::model::state::{BallState, BodyState, State};
 
 /// Orbital speeds of the balls that both races hold, weighted by their loads.
 #[derive(Clone, Copy, Debug)]
@@ -88,4 +87,12 @@ fn rolling_speed(
     }
     let (inner, outer) = (arms.inner * surface.outer, arms.outer * surface.inner);
     (speeds.inner * inner - speeds.outer * outer) / (inner - outer)
+}
+
+/// [rad/s] orbital speed of a ball about the axis of the outer race.
+pub(super) fn orbital_speed(ball: &BallState, outer: &BodyState) -> f64 {
+    let frame = outer.pose.orientation.inverse();
+    let offset = frame * (ball.position - outer.pose.position);
+    let relative = frame * (ball.velocity - outer.velocity);
+    (offset.y * relative.z - offset.z * relative.y) / (offset.y * offset.y + offset.z * offset.z)
 }
