@@ -86,7 +86,7 @@ impl Contacts {
 
     /// Force and moment of all its pairs on a ball, on top of `start`.
     pub fn on_ball(&self, ball: usize, start: Wrench) -> Wrench {
-        let touched = on_ball(self.of_ball(ball).map(|(_, pair)| pair), start);
+        let touched = on_ball(self.of_ball(ball).map(|(_, pair)| pair.on_first()), start);
         self.neighbours_on(ball).fold(touched, Wrench::plus)
     }
 
@@ -220,7 +220,7 @@ impl Totals {
     }
 }
 
-/// Force and moment of all its pairs on a ball, on top of `start`.
-pub fn on_ball(pairs: impl Iterator<Item = PairForces>, start: Wrench) -> Wrench {
-    pairs.fold(start, |sum, pair| Wrench { force: sum.force + pair.force, moment: sum.moment + pair.moment })
+/// Sum of what its pairs do to a ball, on top of `start`.
+pub fn on_ball(pairs: impl Iterator<Item = Wrench>, start: Wrench) -> Wrench {
+    pairs.fold(start, Wrench::plus)
 }

@@ -1,5 +1,7 @@
 //! Contacts of many balls with a race at once: values alone, several balls in the lanes of one vector.
 
+use nalgebra::Vector3;
+
 use super::creep::Law;
 use super::pair::PairForces;
 use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
@@ -8,19 +10,30 @@ use crate::numerics::lanes::Lanes;
 use crate::numerics::lanes::WIDTH;
 use crate::numerics::scalar::{Scalar, constant_vector};
 
+impl<S: Scalar> BallRaceContact<S> {
+    /// What the contact does, number by number.
+    ///
+    /// By reference: a lane picked from a copy would need the whole copy in memory.
+    #[inline(always)]
+    fn forces_with<T: Scalar>(&self, of: impl Fn(&S) -> T) -> PairForces<T> {
+        let vector = |v: &Vector3<S>| Vector3::new(of(&v.x), of(&v.y), of(&v.z));
+        PairForces {
+            approach: of(&self.geometry.approach),
+            load: of(&self.load),
+            stiffness: of(&self.stiffness),
+            force: vector(&self.force),
+            moment: vector(&self.ball_moment),
+            other_moment: vector(&self.race_moment),
+            friction_power: of(&self.friction_power),
+            damping_power: of(&self.damping_power),
+        }
+    }
+}
+
 impl<S: Scalar> From<&BallRaceContact<S>> for PairForces<S> {
     #[inline(always)]
     fn from(contact: &BallRaceContact<S>) -> Self {
-        Self {
-            approach: contact.geometry.approach,
-            load: contact.load,
-            stiffness: contact.stiffness,
-            force: contact.force,
-            moment: contact.ball_moment,
-            other_moment: contact.race_moment,
-            friction_power: contact.friction_power,
-            damping_power: contact.damping_power,
-        }
+        contact.forces_with(|x| *x)
     }
 }
 
@@ -75,7 +88,7 @@ impl ContactGroup {
     /// The forces in a lane.
     #[inline(always)]
     pub fn forces(&self, lane: usize) -> PairForces {
-        PairForces::from(&self.contact(lane))
+        self.0.forces_with(|lanes| lanes.0[lane])
     }
 }
 

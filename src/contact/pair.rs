@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::{Scalar, constant_vector};
 
 /// Forces between a first and a second body, world axes. The force on the second is the opposite.
@@ -39,5 +40,13 @@ impl<S: Scalar> PairForces<S> {
             friction_power: zero,
             damping_power: zero,
         }
+    }
+}
+
+impl PairForces {
+    /// Force and moment on the first body.
+    #[inline(always)]
+    pub fn on_first(&self) -> Wrench {
+        Wrench { force: self.force, moment: self.moment }
     }
 }

@@ -186,7 +186,9 @@ impl BallTrial {
 
     /// Takes over contacts with the races that were evaluated without derivatives, from a lane of a group.
     pub fn take_contacts(&mut self, group: &PerRace<ContactGroup>, lane: usize) {
-        self.raceways = PerRace::new(|race| group[race].forces(lane));
+        for race in Race::BOTH {
+            self.raceways[race] = group[race].forces(lane);
+        }
         self.contacts = None;
         self.reactions = [None; SLOTS];
     }
@@ -237,7 +239,7 @@ impl BallTrial {
         let ball = &model.bearing.ball;
         let fraction = 1.0 - step.alpha_f;
         let weight = Wrench { force: model.gravity * ball.mass, moment: Vector3::zeros() };
-        self.total = on_ball(self.pairs().map(|(_, pair)| *pair), weight);
+        self.total = on_ball(self.pairs().map(|(_, pair)| pair.on_first()), weight);
         let mut tangent = tangent;
         if let Some(push) = &self.pushed {
             self.total = self.total.plus(push.wrench);

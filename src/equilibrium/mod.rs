@@ -13,15 +13,13 @@ use nalgebra::{SMatrix, UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use crate::model::Model;
+use crate::model::bearing::BeyondShoulder;
 use crate::scene::{Condition, Scene};
 use problem::{Found, Problem, Progress};
 pub use report::BallReport;
 
 /// [-] largest approach over ball diameter of an answer; steel yields at a tenth of that.
 pub const MAX_APPROACH: f64 = 0.02;
-
-/// Sides of a race.
-pub const SIDES: [&str; 2] = ["-x", "+x"];
 
 /// How the gyroscopic moment of the balls is carried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,26 +127,8 @@ pub enum EquilibriumError {
         limit: f64,
     },
     /// A contact lies beyond the shoulder of its race.
-    #[error(
-        "ball {ball} would press on the {race} race with {load:.3e} N at a contact angle of {angle:.3} rad towards {side}, beyond \
-         the shoulder that ends the groove at {end:.3} rad: {why}"
-    )]
-    BeyondShoulder {
-        /// Ball, counted from 1.
-        ball: usize,
-        /// Inner or outer.
-        race: &'static str,
-        /// \[N] load.
-        load: f64,
-        /// Side of the race.
-        side: &'static str,
-        /// \[rad] contact angle.
-        angle: f64,
-        /// \[rad] where the groove ends.
-        end: f64,
-        /// What that says of the bearing.
-        why: &'static str,
-    },
+    #[error("in equilibrium {0}")]
+    BeyondShoulder(#[from] BeyondShoulder),
     /// Outer race control asks for more friction than there can be.
     #[error(
         "no equilibrium was found under outer race control, and there is one without gyroscopic moments: that of ball \

@@ -4,8 +4,7 @@ use nalgebra::Vector3;
 
 use super::ball::Place;
 use super::trial::{SharedMatrix, SharedVector, Trial, evaluate, finish};
-use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed, SIDES};
-use crate::contact::shoulder::SMALL_LOAD;
+use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
 use crate::model::bodies::Race;
 use crate::model::{Conditions, Model};
 use crate::numerics::size::{larger, largest};
@@ -302,22 +301,9 @@ impl<'a> Problem<'a> {
             }
         }
         for race in Race::BOTH {
-            let contacts = || solution.balls.iter().map(|ball| ball.report.on(race));
-            let largest = contacts().map(|(load, _)| load).fold(0.0, f64::max);
-            for (index, (load, towards_x)) in contacts().enumerate() {
-                let beyond = self.model.bearing.shoulders[race].beyond(towards_x);
-                if let (Some(beyond), true) = (beyond, load > SMALL_LOAD * largest) {
-                    return Err(EquilibriumError::BeyondShoulder {
-                        ball: index + 1,
-                        race: race.name(),
-                        load,
-                        side: SIDES[beyond.side],
-                        angle: beyond.angle,
-                        end: beyond.end,
-                        why: self.model.bearing.why_beyond(race, &beyond),
-                    });
-                }
-            }
+            self.model
+                .bearing
+                .check_shoulders(race, solution.balls.iter().map(|ball| ball.report.on(race)))?;
         }
         Ok(solution)
     }

@@ -3,13 +3,40 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, PI, TAU};
 
 use nalgebra::Vector3;
+use thiserror::Error;
 
 use super::bodies::{PerRace, Race};
 use crate::contact::materials::Pair;
 use crate::contact::raceway::Raceway;
-use crate::contact::shoulder::{Beyond, Shoulders};
+use crate::contact::shoulder::{Beyond, SMALL_LOAD, Shoulders};
 use crate::effects::shoulder::{DEFAULT_HEIGHT, default_ends};
 use crate::scene::Scene;
+
+/// Sides of a race.
+const SIDES: [&str; 2] = ["-x", "+x"];
+
+/// A contact that carries load beyond a shoulder of its race.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error(
+    "ball {ball} presses on the {race} race with {load:.3e} N at a contact angle of {angle:.3} rad towards {side}, beyond the \
+     shoulder that ends the groove at {end:.3} rad: {why}"
+)]
+pub struct BeyondShoulder {
+    /// Ball, counted from 1.
+    pub ball: usize,
+    /// Inner or outer.
+    pub race: &'static str,
+    /// \[N] load.
+    pub load: f64,
+    /// Side of the race.
+    pub side: &'static str,
+    /// \[rad] contact angle.
+    pub angle: f64,
+    /// \[rad] where the groove ends.
+    pub end: f64,
+    /// What that says of the bearing.
+    pub why: &'static str,
+}
 
 /// A ball: homogeneous sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,14 +123,34 @@ impl Bearing {
         self.shoulders[race].share_beyond(towards_x, half_angle)
     }
 
-    /// What a contact beyond a shoulder says of the bearing.
-    pub fn why_beyond(&self, race: Race, beyond: &Beyond) -> &'static str {
-        if self.free_contact_angle > 0.0 && beyond.side != loaded_side(race) {
-            "a single-row angular-contact bearing carries thrust of its inner race along +x alone and falls apart under \
-             one along -x: turn it round, or pair it with a second one"
-        } else {
-            "the load, the displacement or the tilt is too large for this shoulder"
+    /// Refuses contacts with a race that carry load beyond its shoulders, by ball: loads \[N] and contact angles \[rad] towards
+    /// +x.
+    ///
+    /// # Errors
+    /// Names the first.
+    pub fn check_shoulders(
+        &self,
+        race: Race,
+        contacts: impl Iterator<Item = (f64, f64)> + Clone,
+    ) -> Result<(), BeyondShoulder> {
+        let largest = contacts.clone().fold(0.0, |largest: f64, (load, _)| largest.max(load));
+        for (index, (load, towards_x)) in
+            contacts.enumerate().filter(|(_, (load, _))| *load > SMALL_LOAD * largest)
+        {
+            let Some(beyond) = self.shoulders[race].beyond(towards_x) else {
+                continue;
+            };
+            let why = if self.free_contact_angle > 0.0 && beyond.side != loaded_side(race) {
+                "a single-row angular-contact bearing carries thrust of its inner race along +x alone and falls apart under \
+                 one along -x: turn it round, or pair it with a second one"
+            } else {
+                "the load, the displacement or the tilt is too large for this shoulder"
+            };
+            let Beyond { side, angle, end } = beyond;
+            let (ball, race, side) = (index + 1, race.name(), SIDES[side]);
+            return Err(BeyondShoulder { ball, race, load, side, angle, end, why });
         }
+        Ok(())
     }
 
     /// Raceway of a race.

@@ -5,6 +5,7 @@ use thiserror::Error;
 use crate::dynamics::FailureSite;
 use crate::equilibrium::{EquilibriumError, MAX_APPROACH};
 use crate::kalker::nonlinear::KalkerError;
+use crate::model::bearing::BeyondShoulder;
 
 /// Why a simulation could not start or go on.
 #[derive(Debug, Error)]
@@ -78,27 +79,12 @@ pub enum SimulationError {
         approach: f64,
     },
     /// A contact lies beyond the shoulder of its race.
-    #[error(
-        "at {time} s ball {ball} presses on the {race} race with {load:.3e} N at a contact angle of {angle:.3} rad towards {side}, beyond \
-         the shoulder that ends the groove at {end:.3} rad: {why}"
-    )]
+    #[error("at {time} s {contact}")]
     BeyondShoulder {
         /// \[s] time.
         time: f64,
-        /// Ball, counted from 1.
-        ball: usize,
-        /// Inner or outer.
-        race: &'static str,
-        /// \[N] load.
-        load: f64,
-        /// Side of the race.
-        side: &'static str,
-        /// \[rad] contact angle.
-        angle: f64,
-        /// \[rad] where the groove ends.
-        end: f64,
-        /// What that says of the bearing.
-        why: &'static str,
+        /// The contact.
+        contact: BeyondShoulder,
     },
     /// Two balls are pressed together more deeply than Hertz's theory reaches.
     #[error(

@@ -5,9 +5,8 @@ use std::f64::consts::PI;
 use super::outputs::towards_x;
 use super::{Simulation, SimulationError};
 use crate::contact::creep::Law;
-use crate::contact::shoulder::SMALL_LOAD;
 use crate::dynamics::Boundary;
-use crate::equilibrium::{MAX_APPROACH, SIDES};
+use crate::equilibrium::MAX_APPROACH;
 use crate::forces::Contacts;
 use crate::model::bearing::neighbours;
 use crate::model::bodies::Race;
@@ -97,25 +96,12 @@ impl Simulation {
     /// Refuses contacts beyond the shoulders of their race.
     fn check_shoulders(&self, contacts: &Contacts) -> Result<(), SimulationError> {
         for race in Race::BOTH {
-            let on_race = || contacts.balls.iter().map(|ball| &ball.raceways[race]);
-            let largest = on_race().map(|contact| contact.load).fold(0.0, f64::max);
             let axis = self.state.race(race).axes[0];
-            for (index, contact) in on_race().enumerate().filter(|(_, c)| c.load > SMALL_LOAD * largest) {
-                let Some(beyond) = self.model.bearing.shoulders[race].beyond(towards_x(contact, &axis))
-                else {
-                    continue;
-                };
-                return Err(SimulationError::BeyondShoulder {
-                    time: self.state.time,
-                    ball: index + 1,
-                    race: race.name(),
-                    load: contact.load,
-                    side: SIDES[beyond.side],
-                    angle: beyond.angle,
-                    end: beyond.end,
-                    why: self.model.bearing.why_beyond(race, &beyond),
-                });
-            }
+            let on_race = contacts.balls.iter().map(|ball| &ball.raceways[race]);
+            self.model
+                .bearing
+                .check_shoulders(race, on_race.map(|contact| (contact.load, towards_x(contact, &axis))))
+                .map_err(|contact| SimulationError::BeyondShoulder { time: self.state.time, contact })?;
         }
         Ok(())
     }
