@@ -89,7 +89,8 @@ fn invariant_kept_matrices_change_costs_and_not_results() {
 
 #[test]
 fn closed_form_steady_thrust_load_and_race_speed() {
-    let (_, history) = run(&thrust(), 500);
+    // Where spin slides on both races, nothing but contact damping ends the axial swing of the start; here it sticks on one.
+    let (_, history) = run(&scene(THRUST, &[("start.spin_balance", "false")]), 500);
     let last = &history[500];
     assert!((last.inner.wrench.force.x + 1500.0).abs() < 1e-3, "{}", last.inner.wrench.force.x);
     assert!((last.inner.twist.angular_velocity.x - 200.0 * std::f64::consts::PI).abs() < 1e-8);

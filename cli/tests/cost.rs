@@ -15,8 +15,11 @@ use strum::VariantArray;
 fn short_study() -> &'static SceneStudy {
     static STUDY: OnceLock<SceneStudy> = OnceLock::new();
     STUDY.get_or_init(|| {
-        let changes =
-            [("load.ry.rotation", "[[\"0.8 ms\", 0.0], [\"3.2 ms\", 5e-4]]"), ("load.duration", "\"4 ms\"")];
+        let changes = [
+            ("load.ry.rotation", "[[\"0.8 ms\", 0.0], [\"3.2 ms\", 5e-4]]"),
+            ("load.duration", "\"4 ms\""),
+            ("start.spin_balance", "false"),
+        ];
         let mut scene = Scene::edited(include_str!("../../scenes/cost/misalignment.toml"), changes).unwrap();
         scene.effects.cage = roulement::effects::cage::Settings::default();
         study("short", &scene, &ProgressBar::hidden()).unwrap()

@@ -21,11 +21,11 @@ pub enum CreepLaw {
     /// The paper's regularised law with spin coupling.
     Regularised,
     /// Linear theory, saturated as a vector.
-    #[default]
     Saturated,
     /// Kalker's nonlinear theory in polynomials of degree `kalker_degree`: slow.
     Kalker,
     /// Kalker's nonlinear theory as a smooth table.
+    #[default]
     KalkerTable,
 }
 
@@ -33,6 +33,30 @@ impl CreepLaw {
     /// Is its force bounded by friction, and not always zero?
     pub fn saturates(self) -> bool {
         !matches!(self, Self::Frictionless | Self::Linear)
+    }
+
+    /// What this law misses of friction, with or without the slip of bent grooves (docs/creep-laws.md); nothing of the
+    /// default.
+    pub fn misses(self, groove_slip: bool) -> Option<&'static str> {
+        match (self, groove_slip) {
+            (Self::KalkerTable | Self::Kalker, true) => None,
+            (Self::Frictionless, _) => {
+                Some("has no friction at all: no torque, no loss, and balls keep the spin of the start")
+            }
+            (Self::Linear, _) => Some(
+                "has unbounded forces: right for small creepages alone, a run beyond friction is refused",
+            ),
+            (Self::KalkerTable | Self::Kalker, false) => Some(
+                "misses the slip of bent grooves: a tenth of the friction power under thrust, nearly all of it under a radial load",
+            ),
+            (Self::Regularised | Self::Saturated, true) => {
+                Some("has the friction power within 6 %, that of inner and outer race may be exchanged")
+            }
+            (Self::Regularised | Self::Saturated, false) => Some(
+                "misses 3 to 21 % of the friction power under thrust, nearly all of it under a radial load; that of inner and outer race \
+                 may be exchanged",
+            ),
+        }
     }
 }
 

@@ -7,8 +7,8 @@ use crate::schema::SceneError;
 use crate::schema::variable_units::WATT;
 
 keys! {
-    /// Is it simulated?
-    "heathcote_slip" => on: bool = false,
+    /// Is it simulated? With the default creep law by default; a scene that names its law has it where it says so.
+    "heathcote_slip" => on: bool = true,
 }
 
 impl Settings {

@@ -135,8 +135,14 @@ impl<'de> Deserialize<'de> for Effects {
 
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Effects, A::Error> {
                 let mut effects = Effects::default();
+                let mut given = vec![];
                 while let Some(Key(key)) = map.next_key()? {
                     effects.read(key, &mut map)?;
+                    given.push(key);
+                }
+                // A scene that names its creep law names all that it adds.
+                if given.contains(&"creep") && !given.contains(&"heathcote_slip") {
+                    effects.groove_slip.on = false;
                 }
                 Ok(effects)
             }

@@ -100,7 +100,7 @@ fn start(scene: &Scene) -> Result<(), SceneError> {
     if start.inner_velocity.is_some() && scene.inner.drive != Drive::Wrench {
         return Err(SceneError::conflict("start.inner_velocity", "needs inner.drive = \"wrench\""));
     }
-    if start.spin_balance && (start.orbital_speed.is_some() || start.ball_angular_velocity.is_some()) {
+    if start.contradicts() {
         return Err(SceneError::conflict("start.spin_balance", "not with given velocities of the balls"));
     }
     Ok(())

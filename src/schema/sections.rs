@@ -146,11 +146,28 @@ pub struct Start {
     pub orbital_speed: Option<AngularVelocity>,
     /// [rad/s] angular velocity of the balls: components axial, radial, and along the orbit.
     pub ball_angular_velocity: Option<[AngularVelocity; 3]>,
-    /// Balls start at the velocities at which the moments of friction on each are in balance, spin moments among them,
-    /// instead of those of rolling with all spin on the inner race.
-    pub spin_balance: bool,
+    /// Do balls start at the velocities at which the moments of friction on each are in balance, spin moments among them,
+    /// instead of those of rolling with all spin on the inner race? By default unless velocities are given.
+    pub spin_balance: Option<bool>,
     /// [m/s] velocity of the inner race's origin, where that is a body.
     pub inner_velocity: Option<[Velocity; 3]>,
+}
+
+impl Start {
+    /// Are velocities of the balls given?
+    fn gives_velocities(&self) -> bool {
+        self.orbital_speed.is_some() || self.ball_angular_velocity.is_some()
+    }
+
+    /// Are moments of friction balanced though velocities are given?
+    pub fn contradicts(&self) -> bool {
+        self.spin_balance == Some(true) && self.gives_velocities()
+    }
+
+    /// Do balls start with moments of friction in balance?
+    pub fn balances_spin(&self) -> bool {
+        self.spin_balance.unwrap_or(!self.gives_velocities())
+    }
 }
 
 /// One translational direction of the inner race: a force or a displacement.

@@ -2,7 +2,8 @@
 //!
 //! For a ball that stays where it is, the velocity along the orbit and the angular velocity `u` are sought at which
 //! friction along the orbit vanishes and the moments of both contacts, spin moments among them, give the gyroscopic
-//! moment. From the velocities of rolling, where one contact carries all spin, `(M/tau - g_u) du = g` goes with growing
+//! moment. Balls under different loads would each go at a speed of their own: all then take the mean of these, weighted by
+//! their loads, and a second search at that speed is for the moments alone. From the velocities of rolling, where one contact carries all spin, `(M/tau - g_u) du = g` goes with growing
 //! `tau` from implicit steps in time, which friction keeps stable, to Newton's method.
 
 use nalgebra::{Matrix4, Matrix6, Vector4};
@@ -17,21 +18,64 @@ use crate::numerics::size::largest;
 /// \[s] first step in time: rolling takes microseconds.
 const FIRST_STEP: f64 = 1e-6;
 /// [-] residual that is left over the friction that the contacts can carry.
-const TOLERANCE: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-12;
+/// [-] creepage beyond which a contact does not roll: friction too small for the gyroscopic moment has a balance, too, in which
+/// balls slide or turn some other way, and a bearing does not start there.
+const ROLLING: f64 = 0.02;
 /// Iterations; balls of the thrust case with a radial load take 20 to 60.
 const MAX_ITERATIONS: u32 = 3000;
 
-/// The motion in balance, from a motion of the same place; none where there is none, or no balance is found.
-pub fn balanced(
-    model: &Model,
-    contacts: &PerRace<ContactModel<'_>>,
-    races: &PerRace<RaceMotion<f64>>,
-    start: &BallMotion<f64>,
-) -> Option<BallMotion<f64>> {
+/// The bearing whose balls are looked at.
+pub struct Surroundings<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Contact with each race.
+    pub contacts: PerRace<ContactModel<'a>>,
+    /// Motion of each race.
+    pub races: PerRace<RaceMotion<f64>>,
+}
+
+/// Motions in balance of balls, from motions of the same places that roll. All keep theirs where one of those that are held by
+/// both races has no balance near rolling: its gyroscopic moment is too large for friction.
+pub fn balance(around: &Surroundings<'_>, balls: &mut [BallMotion<f64>]) {
     // Without friction nothing decides how a ball turns.
-    if matches!(contacts.inner.law, Law::Frictionless) {
-        return None;
+    if matches!(around.contacts.inner.law, Law::Frictionless) {
+        return;
     }
+    let load =
+        |ball: &BallMotion<f64>, race: Race| around.contacts[race].evaluate(ball, &around.races[race]).load;
+    let is_held = |ball: &BallMotion<f64>| Race::BOTH.into_iter().all(|race| load(ball, race) > 0.0);
+    let held: Vec<usize> = (0..balls.len()).filter(|&ball| is_held(&balls[ball])).collect();
+    let along =
+        |motion: &BallMotion<f64>| motion.velocity.dot(&Orbit::new(motion, &around.races.outer).tangential);
+    // Loads, and loads times own orbital speeds over those of rolling.
+    let mut sums = [0.0; 2];
+    for ball in held.iter().map(|&ball| &balls[ball]) {
+        let Some(own) = balanced(around, ball, true) else {
+            return;
+        };
+        let weight = load(ball, Race::Inner) * along(ball).abs();
+        sums = [sums[0] + weight, sums[1] + weight * along(&own) / along(ball)];
+    }
+    // A bearing at rest has no speed to change.
+    let faster = if sums[0] > 0.0 { sums[1] / sums[0] } else { 1.0 };
+    if (faster - 1.0).abs() > ROLLING || faster.is_nan() {
+        return;
+    }
+    let at_common_speed = |&ball: &usize| {
+        let common = BallMotion { velocity: balls[ball].velocity * faster, ..balls[ball] };
+        Some((ball, balanced(around, &common, false)?))
+    };
+    if let Some(found) = held.iter().map(at_common_speed).collect::<Option<Vec<_>>>() {
+        for (ball, motion) in found {
+            balls[ball] = motion;
+        }
+    }
+}
+
+/// The motion of a ball in balance, with an orbital speed of its own or that of the start; none where no balance is found.
+fn balanced(around: &Surroundings<'_>, start: &BallMotion<f64>, own_orbit: bool) -> Option<BallMotion<f64>> {
+    let Surroundings { model, contacts, races } = around;
     let (mass, radius) = (model.bearing.ball.mass, model.bearing.ball.radius);
     let inertia = model.bearing.ball.inertia / (radius * radius);
     let orbit = |motion: &BallMotion<f64>| Orbit::new(motion, &races.outer);
@@ -41,7 +85,7 @@ pub fn balanced(
         let [inner, outer] = Race::BOTH.map(|race| contacts[race].evaluate(motion, &races[race]));
         let moment = inner.ball_moment + outer.ball_moment + orbit(motion).gyroscopic_moment(model, motion);
         let moment = moment / radius;
-        let force = (inner.force + outer.force).dot(&tangential);
+        let force = if own_orbit { (inner.force + outer.force).dot(&tangential) } else { 0.0 };
         let limit = inner.load.min(outer.load) * contacts.inner.friction;
         (Vector4::new(force, moment.x, moment.y, moment.z), limit)
     };
@@ -53,7 +97,7 @@ pub fn balanced(
     let mut step = FIRST_STEP;
     for _ in 0..MAX_ITERATIONS {
         if largest(&here) <= TOLERANCE * limit {
-            return Some(motion);
+            return rolls(contacts, races, &motion).then_some(motion);
         }
         let contact = |race: Race| Linear::new(&contacts[race], &motion, &races[race]).ball_by_rate();
         let by_rate: Matrix6<f64> = contact(Race::Inner) + contact(Race::Outer);
@@ -68,7 +112,9 @@ pub fn balanced(
                     (by_rate[(row, 2 + k)] + by_orbit[(row, 2 + k)]) / radius
                 }
             };
-            if i == 0 {
+            if i == 0 && !own_orbit {
+                if k == 0 { 1.0 } else { 0.0 }
+            } else if i == 0 {
                 let along: f64 = (0..3).map(|row| tangential[row] * column(row)).sum();
                 (if k == 0 { mass / step } else { 0.0 }) - along
             } else {
@@ -90,4 +136,16 @@ pub fn balanced(
         }
     }
     None
+}
+
+/// Does a ball roll on both races?
+fn rolls(
+    contacts: &PerRace<ContactModel<'_>>,
+    races: &PerRace<RaceMotion<f64>>,
+    motion: &BallMotion<f64>,
+) -> bool {
+    Race::BOTH.into_iter().all(|race| {
+        let creepage = contacts[race].evaluate(motion, &races[race]).creepage;
+        creepage.longitudinal.hypot(creepage.lateral) <= ROLLING
+    })
 }

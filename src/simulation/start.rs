@@ -13,7 +13,7 @@ use crate::scene::{Drive, Scene};
 use crate::simulation::cage_start;
 use crate::simulation::error::SimulationError;
 use crate::simulation::inputs::{Inputs, RaceInput};
-use crate::simulation::spin_balance::balanced;
+use crate::simulation::spin_balance::{Surroundings, balance};
 
 /// Inputs and state of a scene at a time \[s] of its script: the equilibrium under the scene's load, every race spinning about its own
 /// axis at its scripted speed.
@@ -153,14 +153,16 @@ fn state(
             }
         })
         .collect();
-    if scene.start.spin_balance {
-        let contacts = model.contacts(&inputs.conditions());
-        let motions = PerRace::new(|race| races[race].motion());
-        for ball in &mut balls {
-            // A ball that is not held by both races, or without friction, keeps the velocities of rolling.
-            if let Some(motion) = balanced(model, &contacts, &motions, &ball.motion()) {
-                (ball.velocity, ball.angular_velocity) = (motion.velocity, motion.angular_velocity);
-            }
+    if scene.start.balances_spin() {
+        let around = Surroundings {
+            model,
+            contacts: model.contacts(&inputs.conditions()),
+            races: PerRace::new(|race| races[race].motion()),
+        };
+        let mut motions: Vec<_> = balls.iter().map(BallState::motion).collect();
+        balance(&around, &mut motions);
+        for (ball, motion) in balls.iter_mut().zip(&motions) {
+            (ball.velocity, ball.angular_velocity) = (motion.velocity, motion.angular_velocity);
         }
     }
     let cage = match &model.cage {

@@ -9,7 +9,7 @@ use roulement::simulation::inputs::Inputs;
 use roulement::simulation::outputs::{BallOutput, CageOutput, Outputs, PocketOutput};
 
 use crate::gates::{Case, Run, limits};
-use crate::scenes::{CAGE, load, ramp, scene};
+use crate::scenes::{CAGE, ROLLING_START, load, ramp, scene};
 
 /// Thrust and radial load.
 const COMBINED: &str = "x = { force = 1500.0 }\nz = { force = -300.0 }\n";
@@ -154,7 +154,7 @@ fn whirl() {
             (inputs, f64::from(point + 1) * 1e-4)
         };
         let rows = "x = { force = 1500.0 }\ny = { force = 300.0 }\n";
-        let changes = load(20.0, 6000.0, rows) + WEIGHTLESS + &section;
+        let changes = load(20.0, 6000.0, rows) + WEIGHTLESS + &section + ROLLING_START;
         let mut case = Case::new(name, scene(CAGE, &changes), limits(2300, 20, 10, 4.0));
         case.importer = Some(&importer);
         let run = case.pass();

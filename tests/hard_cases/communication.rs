@@ -5,7 +5,7 @@ use roulement::simulation::inputs::Inputs;
 
 use crate::gates::{Case, Importer, Run, limits};
 use crate::random::Random;
-use crate::scenes::{ANGULAR, HELD, POSE, load, scene};
+use crate::scenes::{ANGULAR, HELD, POSE, ROLLING_START, load, scene};
 
 const COMBINED: &str = "x = { force = 1500.0 }\ny = { force = 300.0 }\n";
 
@@ -103,7 +103,7 @@ fn posed(name: &str, importer: &Importer<'_>, limit: crate::gates::Limits) -> Ru
 
 fn posed_scene() -> roulement::scene::Scene {
     let rows = format!("x = {{ force = 1500.0 }}\n{HELD}");
-    scene(ANGULAR, &(load(40.0, 6000.0, &rows) + POSE))
+    scene(ANGULAR, &(load(40.0, 6000.0, &rows) + POSE + "\n" + ROLLING_START))
 }
 
 /// [m] where 1500 N put the inner race.

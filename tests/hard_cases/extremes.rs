@@ -5,7 +5,7 @@ use roulement::simulation::Simulation;
 use roulement::simulation::inputs::Inputs;
 
 use crate::gates::{Case, Limits, Run, limits};
-use crate::scenes::{ANGULAR, FLAT, GROOVE, HELD, POSE, groove, load, scene};
+use crate::scenes::{ANGULAR, FLAT, GROOVE, HELD, POSE, ROLLING_START, groove, load, scene};
 
 fn bearing(balls: u32, diameter: &str) -> String {
     format!(
@@ -64,7 +64,7 @@ fn far_from_the_origin() {
         };
         let name = format!("{:.0} m from the origin", far.norm());
         let rows = format!("x = {{ force = 1500.0 }}\n{HELD}");
-        let changes = load(20.0, 6000.0, &rows) + POSE + "\n[outer]\ndrive = \"pose\"\n";
+        let changes = load(20.0, 6000.0, &rows) + POSE + "\n[outer]\ndrive = \"pose\"\n" + ROLLING_START;
         let mut case = Case::new(&name, scene(ANGULAR, &changes), limits(2300, 5, 5, 3.0));
         case.displaced = far;
         case.importer = Some(&importer);

@@ -20,6 +20,9 @@ pub const WHOLE_INNER: &str = "[inner]\ndrive = \"wrench\"\nmass = \"0.2 kg\"\n\
 /// The same of the outer race.
 pub const WHOLE_OUTER: &str = "[outer]\nshoulder_angle = [1.5, 1.5]\n";
 
+/// Balls that roll at the start, all spin on the inner race.
+pub const ROLLING_START: &str = "[start]\nspin_balance = false\n";
+
 /// Directions in which a bearing cannot hold its inner race by itself are held at 0.
 pub const HELD: &str = "y = { displacement = 0.0 }\nz = { displacement = 0.0 }\n\
                         ry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";

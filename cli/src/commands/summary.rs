@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::time::Duration;
 
+use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 use roulement_cli::report::energy::EnergyWatch;
 use roulement_cli::report::limits::Limits;
@@ -30,7 +31,7 @@ pub fn summary(run: &Run<'_>) -> String {
     text
 }
 
-/// Means, and whether they have settled.
+/// Means over the window.
 fn write_means(out: &mut String, means: &Means, has_cage: bool) -> std::fmt::Result {
     let [begin, end] = means.window;
     writeln!(out, "means over the last {:.3} ms", (end - begin) * 1e3)?;
@@ -60,6 +61,21 @@ fn write_means(out: &mut String, means: &Means, has_cage: bool) -> std::fmt::Res
         )?;
     }
     writeln!(out, "friction torque  {:.5} N m", means.of("friction torque"))?;
+    Ok(())
+}
+
+/// What the creep law of the scene misses.
+fn write_law(out: &mut String, scene: &Scene) -> std::fmt::Result {
+    let (law, slip) = (scene.effects.creep.law, scene.effects.groove_slip.on);
+    let Some(missing) = law.misses(slip) else {
+        return Ok(());
+    };
+    let (name, with): (&str, _) = (law.into(), if slip { " with groove slip" } else { "" });
+    writeln!(out, "creep law        {name}{with} {missing} (default: kalker_table with heathcote_slip)")
+}
+
+/// Whether the means have settled.
+fn write_settled(out: &mut String, means: &Means) -> std::fmt::Result {
     if !means.can_tell() {
         return writeln!(out, "settled?         too few rows to tell: lower load.output_interval");
     }
@@ -144,6 +160,8 @@ fn write_summary(out: &mut String, run: &Run<'_>) -> std::fmt::Result {
     }
     if let Some(means) = means {
         write_means(out, means, now.cage.is_some())?;
+        write_law(out, simulation.scene())?;
+        write_settled(out, means)?;
     }
     let balance = energy.balance(now);
     writeln!(
