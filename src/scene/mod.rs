@@ -18,9 +18,9 @@ pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
 use crate::schema::explain;
 pub use crate::schema::{
-    Accuracy, BearingSection, Condition, Drive, Friction, Giver, Group, Groups, InputGivers, Interface, Load,
-    Material, Misalignment, Orientation, RaceSection, SceneError, Schedule, Solver, Start, Tilt, Translation,
-    units,
+    Accuracy, BearingSection, Condition, Drive, ErrorGoal, ErrorOf, Friction, Giver, Group, Groups,
+    InputGivers, Interface, Load, Material, Misalignment, Orientation, RaceSection, SceneError, Schedule,
+    Solver, Start, Tilt, Translation, units,
 };
 
 /// A bearing, its load and its simulation, as described by a scene file.

@@ -2,6 +2,7 @@
 
 mod cost;
 mod identify;
+mod player;
 mod run;
 mod summary;
 
