@@ -1,12 +1,14 @@
 //! Numerical errors that are measured on the scene at hand: rounds of refinement, chaos, and the program's `run --error`.
 #![allow(clippy::unwrap_used)]
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
 use roulement::scene::{ErrorGoal, ErrorOf, Scene, Solver};
 use roulement::simulation::Simulation;
-use roulement_cli::error::{Judgement, Lengths, Rounds, Run, Sample};
+use roulement::simulation::play::{Rows, play};
+use roulement_cli::error::{Difference, Judgement, Lengths, Rounds, Run, Sample};
 use roulement_cli::report::figures::Figures;
 use roulement_cli::report::means::Blocks;
 use roulement_cli::report::quantities::{COUNT, QUANTITIES};
@@ -259,4 +261,64 @@ fn a_goal_that_is_not_met_or_makes_no_sense_is_said() {
     assert!(message.contains("solver.accuracy.error") && message.contains("[0.0000001, 0.5]"), "{message}");
     let refused = Scene::edited(&short(&[]).source, [("solver.accuracy", "{ error = 0.0 }")]).unwrap_err();
     assert!(refused.to_string().contains("solver.accuracy.error = 0"), "{refused}");
+}
+
+/// Plays a scene with other settings.
+fn played(scene: &Scene, solver: Solver) -> Run {
+    let mut scene = scene.clone();
+    scene.solver = solver;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let bearing = &simulation.model().bearing;
+    let lengths =
+        Lengths { pitch_radius: 0.5 * bearing.pitch_diameter, ball_diameter: 2.0 * bearing.ball.radius };
+    let mut blocks = Blocks::new(simulation.outputs().cage.is_some(), lengths.pitch_radius);
+    let mut samples = Vec::new();
+    let rows = Rows::of(&simulation);
+    let _: ControlFlow<()> = play(&mut simulation, rows, |simulation| {
+        blocks.push(simulation.outputs());
+        samples.push(Sample::new(simulation.outputs()));
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    Run { solver, cpu: 0.0, samples, means: blocks.means(), figures: Figures::default(), lengths }
+}
+
+/// Largest errors of means and histories where nothing is said about steps, against steps of an eighth; and the torque's.
+fn errors_of_default(name: &str) -> [f64; 3] {
+    let scene = scene(&format!("error/{name}"), &[]);
+    assert!(!scene.source.contains("[solver]"));
+    let default = played(&scene, scene.solver);
+    let difference = Difference::of(&default, &played(&scene, scene.solver.refined(3)));
+    let is_torque = |i: &usize| QUANTITIES[*i].name == "friction torque";
+    let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
+    let others: Vec<f64> = (0..COUNT).filter(|i| !is_torque(i)).map(|i| difference.histories[i]).collect();
+    let torque = (0..COUNT).find(is_torque).map(|i| difference.histories[i]).unwrap();
+    let errors = [largest(&difference.means), largest(&others), torque];
+    let Solver { max_step, tolerance, .. } = scene.solver;
+    let [means, histories, torque] = errors;
+    println!(
+        "{name}: max_step {:.2e} s, tolerance {tolerance:.1e}: means {means:.1e}, histories {histories:.1e}, torque {torque:.1e}",
+        max_step.0
+    );
+    errors
+}
+
+#[test]
+fn invariant_where_nothing_is_said_means_keep_one_and_histories_two_percent() {
+    for name in ["thrust_step", "load_step", "unbalance", "spindle", "miniature"] {
+        let [means, histories, torque] = errors_of_default(name);
+        assert!(means < 0.01 && histories < 0.02, "{name}: {means} {histories}");
+        // The torque after the step of a radial load has the bounce of unloaded balls in it.
+        assert!(torque < if name == "load_step" { 0.1 } else { 0.02 }, "{name}: {torque}");
+    }
+}
+
+#[test]
+#[ignore = "two minutes"]
+fn invariant_where_nothing_is_said_means_of_large_slow_bearings_and_cages_keep_one_percent() {
+    let [means, histories, torque] = errors_of_default("slewing_ring");
+    assert!(means < 0.01 && histories < 0.02 && torque < 0.02, "{means} {histories} {torque}");
+    // Chaotic: its power is known to the interval of a run of that length.
+    let [means, ..] = errors_of_default("rattling_cage");
+    assert!(means < 0.1, "{means}");
 }

@@ -31,6 +31,22 @@ pub struct Solver {
     pub matrix_reuse: f64,
     /// Error that `roulement run` measures and keeps, if the scene states one.
     pub goal: Option<ErrorGoal>,
+    /// What follows the bearing's own frequency and load: see [`Solver::follow`].
+    pub follows: Follows,
+}
+
+/// What of the settings follows the bearing, until [`Solver::follow`] has set it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Follows {
+    /// Nothing: the settings are as they were given.
+    Nothing,
+    /// First and largest step, of an error goal.
+    Steps,
+    /// First and largest step and the tolerance: nothing was given. Is the first step given?
+    All {
+        /// Is the first step to follow, too?
+        initial_step: bool,
+    },
 }
 
 /// A goal that is an error: `accuracy = { error = 1e-3 }`.
@@ -69,6 +85,7 @@ impl ErrorGoal {
             max_step: Time(balanced.max_step.0 * steps),
             tolerance: balanced.tolerance * steps.powi(3),
             goal: Some(self),
+            follows: Follows::Steps,
             ..balanced
         }
     }
@@ -84,9 +101,19 @@ impl Default for Solver {
             min_step: Time(0.0),
             matrix_reuse: REFACTOR_CONTRACTION,
             goal: None,
+            follows: Follows::All { initial_step: true },
         }
     }
 }
+
+/// [-] tolerance where nothing is said: the cheapest that kept means within 1 % and histories within 2 % in the scenes of
+/// scenes/error and scenes/cost, but for chaotic ones (`docs/accuracy-cost.md`).
+const USUAL_TOLERANCE: f64 = 1e-8;
+/// [-] the same over the approach of the most loaded ball, for bearings that carry little: their motions are as small.
+const TOLERANCE_OF_APPROACH: f64 = 1e-4;
+/// [-] largest and first step where nothing is said, in periods of a ball between its races. The tolerance holds steps down where
+/// balls swing; where nothing does, steps beyond some periods are no cheaper.
+const PERIODS: [f64; 2] = [4.0, 0.03];
 
 /// \[s] default smallest step for balls of `LARGE_BALL` \[m] and more. What has to be followed gets shorter with the mass of a
 /// smaller ball, which friction brings to its speed: below 1e-13 s for a ball of a millimetre near standstill. A step much
@@ -100,6 +127,28 @@ impl Solver {
         if self.min_step.0 == 0.0 {
             let mass = (ball_diameter / LARGE_BALL).min(1.0).powi(3);
             self.min_step = Time((SMALLEST_STEP * mass).max(1e-15).min(self.max_step.0));
+        }
+    }
+
+    /// Sets what follows the bearing: the natural frequency \[Hz] of its most loaded ball and the approach of that ball over
+    /// its diameter.
+    pub fn follow(&mut self, frequency: f64, approach: f64) {
+        let [max_step, initial_step] = PERIODS.map(|periods| (periods / frequency).clamp(1e-9, 1e-3));
+        match std::mem::replace(&mut self.follows, Follows::Nothing) {
+            Follows::Nothing => {}
+            Follows::Steps => {
+                self.max_step = Time(self.max_step.0.min(max_step));
+                self.initial_step = Time(self.initial_step.0.min(initial_step));
+            }
+            Follows::All { initial_step: first } => {
+                self.tolerance =
+                    USUAL_TOLERANCE.min(TOLERANCE_OF_APPROACH * approach).max(SMALLEST_TOLERANCE);
+                if first {
+                    self.initial_step = Time(initial_step.max(self.min_step.0));
+                }
+                // What was given has room.
+                self.max_step = Time(max_step.max(self.initial_step.0).max(self.min_step.0));
+            }
         }
     }
 
@@ -137,7 +186,12 @@ pub enum Accuracy {
 impl Accuracy {
     /// Settings of a goal.
     pub fn solver(self) -> Solver {
-        let steps = |max_step, tolerance| Solver { max_step: Time(max_step), tolerance, ..Solver::default() };
+        let steps = |max_step, tolerance| Solver {
+            max_step: Time(max_step),
+            tolerance,
+            follows: Follows::Nothing,
+            ..Solver::default()
+        };
         match self {
             Self::Fast => steps(2e-4, 1e-5),
             Self::Balanced => steps(5e-5, 1e-7),
@@ -230,6 +284,13 @@ impl TryFrom<SolverKeys> for Solver {
                 .solver(),
         };
         let max_step = keys.max_step.unwrap_or(goal.max_step);
+        let limited = keys.max_step.is_some() || keys.tolerance.is_some();
+        let follows = match goal.follows {
+            _ if limited => Follows::Nothing,
+            Follows::All { .. } => Follows::All { initial_step: keys.initial_step.is_none() },
+            Follows::Steps if keys.initial_step.is_some() => Follows::Nothing,
+            follows => follows,
+        };
         Ok(Self {
             alpha_f: keys.alpha_f.unwrap_or(goal.alpha_f),
             tolerance: keys.tolerance.unwrap_or(goal.tolerance),
@@ -239,6 +300,7 @@ impl TryFrom<SolverKeys> for Solver {
             min_step: keys.min_step.unwrap_or(Time(goal.min_step.si().min(max_step.si()))),
             matrix_reuse: keys.matrix_reuse.unwrap_or(goal.matrix_reuse),
             goal: goal.goal,
+            follows,
         })
     }
 }
@@ -286,6 +348,27 @@ mod tests {
     }
 
     #[test]
+    fn closed_form_what_is_not_said_follows_the_bearing() {
+        let followed = |text: &str, frequency: f64, approach: f64| {
+            let mut solver = parse(text).unwrap();
+            solver.follow(frequency, approach);
+            (solver.max_step.0, solver.initial_step.0, solver.tolerance)
+        };
+        // Four periods of a ball, and 3 % of one; a tolerance that is small against its approach.
+        assert_eq!(followed("", 40e3, 1e-3), (1e-4, 0.75e-6, 1e-8));
+        assert_eq!(followed("", 400e3, 1e-5), (1e-5, 0.075e-6, 1e-9));
+        assert_eq!(followed("alpha_f = 0.2\ninitial_step = 2e-6", 40e3, 1e-3), (1e-4, 2e-6, 1e-8));
+        assert_eq!(followed("initial_step = 2e-4", 40e3, 1e-3), (2e-4, 2e-4, 1e-8));
+        // One limit that is given is enough to be followed alone.
+        assert_eq!(followed("max_step = 1e-5", 40e3, 1e-3), (1e-5, 1e-6, 1e-6));
+        assert_eq!(followed("tolerance = 1e-5", 40e3, 1e-3), (1e-5, 1e-6, 1e-5));
+        assert_eq!(followed("accuracy = \"balanced\"", 400e3, 1e-5), (5e-5, 1e-6, 1e-7));
+        // An error goal begins with no larger steps than the bearing takes.
+        assert_eq!(followed("accuracy = { error = 1e-3 }", 400e3, 1e-3), (1e-5, 0.075e-6, 1e-7));
+        assert_eq!(followed("accuracy = { error = 1e-3 }\nmax_step = 4e-5", 400e3, 1e-3), (4e-5, 1e-6, 1e-7));
+    }
+
+    #[test]
     fn goals_are_ordered_from_cheap_to_exact() {
         for pair in Accuracy::VARIANTS.windows(2) {
             assert!(pair[0].wrench_error() > pair[1].wrench_error());
@@ -318,7 +401,8 @@ mod tests {
     fn an_error_is_a_goal_whose_settings_are_those_to_begin_with() {
         let usual = parse("accuracy = { error = 1e-3 }").unwrap();
         let goal = ErrorGoal { error: 1e-3, of: ErrorOf::All };
-        assert_eq!(usual, Solver { goal: Some(goal), ..Accuracy::Balanced.solver() });
+        let follows = Follows::Steps;
+        assert_eq!(usual, Solver { goal: Some(goal), follows, ..Accuracy::Balanced.solver() });
         let finer = parse("accuracy = { error = 2.5e-4, of = \"means\" }\nalpha_f = 0.1").unwrap();
         assert_eq!(finer.goal, Some(ErrorGoal { error: 2.5e-4, of: ErrorOf::Means }));
         assert_eq!((finer.max_step.0, finer.alpha_f), (25e-6, 0.1));
