@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::{Rows, play};
 use roulement::simulation::{Simulation, SimulationError};
-use roulement_cli::error::{Lengths, Run, Sample};
+use roulement_cli::error::{Estimate, Lengths, Run, Sample};
 use roulement_cli::report::energy::EnergyWatch;
 use roulement_cli::report::figures::Figures;
 use roulement_cli::report::limits::Limits;
@@ -31,6 +31,8 @@ pub struct Played {
     pub energy: EnergyWatch,
     /// Limits of the bearing that it met.
     pub limits: Limits,
+    /// Its error, as far as its local errors tell.
+    pub estimate: Estimate,
     /// Time that it took.
     pub wall: Duration,
     /// \[s] CPU time that it took.
@@ -104,6 +106,7 @@ impl Player {
         let mut samples = Thinned::default();
         let mut energy = EnergyWatch::default();
         let mut limits = Limits::default();
+        let mut estimate = Estimate::default();
         let mut blocks =
             Blocks::new(simulation.outputs().cage.is_some(), 0.5 * simulation.model().bearing.pitch_diameter);
         let played = play(&mut simulation, rows, |simulation| {
@@ -116,6 +119,7 @@ impl Player {
             blocks.push(outputs);
             energy.push(outputs);
             limits.push(outputs);
+            estimate.push(simulation);
             samples.push(Sample::new(outputs));
             plotted.push(outputs.clone());
             if self.interrupted.load(Ordering::Relaxed) {
@@ -137,7 +141,7 @@ impl Player {
             table.finish()?;
         }
         let (plotted, samples, means) = (plotted.finish(), samples.finish(), blocks.means());
-        Ok(Played { simulation, plotted, means, energy, limits, wall, cpu, samples, end })
+        Ok(Played { simulation, plotted, means, energy, limits, estimate, wall, cpu, samples, end })
     }
 }
 

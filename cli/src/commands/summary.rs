@@ -147,6 +147,13 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Res
     if let Some(warning) = energy.warning(simulation) {
         writeln!(out, "WARNING          {warning}")?;
     }
+    if let (None, Some([histories, means])) = (&shown.bars, run.estimate.errors(simulation)) {
+        writeln!(
+            out,
+            "error, estimate  histories {histories:.0e}, means {means:.0e} of their size, within a factor of ten or so, and no \
+             promise: --error measures it"
+        )?;
+    }
     let s = &now.statistics;
     let steps = s.steps.max(1) as f64;
     writeln!(

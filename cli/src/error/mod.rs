@@ -6,9 +6,11 @@
 //! one of statistics.
 
 mod difference;
+mod estimate;
 mod rounds;
 mod sample;
 
 pub use difference::Difference;
+pub use estimate::Estimate;
 pub use rounds::{Judgement, Rounds, TWIN};
 pub use sample::{Lengths, Run, Sample, sizes};
