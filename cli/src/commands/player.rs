@@ -59,8 +59,8 @@ impl Played {
         Figures::of(&self.simulation, self.means.as_ref(), &self.limits, &self.energy)
     }
 
-    /// What is kept for comparison with other runs.
-    pub fn to_compare(&mut self) -> Run {
+    /// What is kept for comparison with other runs; its rows move there.
+    pub fn take_comparable(&mut self) -> Run {
         let bearing = &self.simulation.model().bearing;
         let lengths =
             Lengths { pitch_radius: 0.5 * bearing.pitch_diameter, ball_diameter: 2.0 * bearing.ball.radius };

@@ -42,7 +42,7 @@ pub struct Options {
     #[arg(long)]
     window: Option<Window>,
     /// Measure the numerical error: run again with half the steps, and again until it is below GOAL, such as `1e-3`, if one is
-    /// given here or by `solver.accuracy`. Exit code 3 says that it is not.
+    /// given here or by `solver.accuracy`. Exit code 3 says that it is not. Without GOAL it stands behind the scene file.
     #[arg(long, value_name = "GOAL", num_args = 0..=1)]
     error: Option<Option<f64>>,
     /// The goal is one of means alone, not of histories.
@@ -119,7 +119,7 @@ fn measured(
         place.leave(&played, None, "")?;
         return ended(played);
     }
-    rounds.push(played.to_compare());
+    rounds.push(played.take_comparable());
     let (judgement, end) = loop {
         let judgement = rounds.judge();
         let next = match judgement {
@@ -131,7 +131,7 @@ fn measured(
                 let mut next = player.play(simulation, Some(table), &words)?;
                 if matches!(next.end, End::Reached) {
                     put(&place.results_of_round(), &place.results())?;
-                    rounds.push(next.to_compare());
+                    rounds.push(next.take_comparable());
                     played = next;
                     continue;
                 }
@@ -144,7 +144,7 @@ fn measured(
                 let twin = Simulation::new(&with(changed(coarser.solver)))?;
                 let mut next = player.play(twin, None, &format!("round {}: ", rounds.count() + 1))?;
                 if matches!(next.end, End::Reached) {
-                    rounds.push_twin(&next.to_compare());
+                    rounds.push_twin(&next.take_comparable());
                     continue;
                 }
                 next
