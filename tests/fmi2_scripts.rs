@@ -88,6 +88,16 @@ const TABLES: [(&str, &str); 4] = [
 ];
 
 #[test]
+fn a_package_with_an_error_goal_says_that_it_runs_once() {
+    for (solver, told) in [("{ accuracy = { error = 1e-3 } }", 1), ("{ accuracy = \"balanced\" }", 0)] {
+        let (package, messages) = package("goal", &scripted("wrench", &[("solver", solver)]));
+        let c = start(&package, 0.0, None);
+        assert_eq!(count(messages, Status::Ok, "solver.accuracy.error = 1e-3: this package runs once"), told);
+        unsafe { fmi2FreeInstance(c) };
+    }
+}
+
+#[test]
 fn invariant_a_package_plays_the_scripts_as_a_native_run_does() {
     let text = scripted("wrench", &TABLES);
     let (package, messages) = package("plays", &text);

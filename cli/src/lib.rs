@@ -1,5 +1,6 @@
-//! Parts of the command line: packages, results of runs, and the study of accuracy against CPU time.
+//! Parts of the command line: packages, results of runs, their numerical errors, and the study of accuracy against CPU time.
 
 pub mod cost;
+pub mod error;
 pub mod package;
 pub mod report;

@@ -122,6 +122,26 @@ fn run_writes_table_plots_and_summary() {
 }
 
 #[test]
+fn cost_studies_the_levers_that_are_asked_for_and_ends_with_advice() {
+    let scratch = Scratch::new("only");
+    let text = edited("cost/thrust", &[("load.duration", "\"1 ms\"")]);
+    std::fs::write(scratch.path("short.toml"), text).unwrap();
+    let arguments =
+        ["cost", &scratch.path("short.toml"), "-o", &scratch.path("out"), "--only", "goal,step-cap"];
+    let output = roulement(&arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8(output.stdout).unwrap();
+    let advice = said.lines().last().unwrap();
+    assert!(advice.starts_with("short: For 1 % of the mean power take saturated with "), "{said}");
+    let report = std::fs::read_to_string(scratch.path("out/report.md")).unwrap();
+    assert!(report.contains(advice.strip_prefix("short: ").unwrap()), "{report}");
+    let table = std::fs::read_to_string(scratch.path("out/cost.csv")).unwrap();
+    assert!(table.contains("step cap") && !table.contains("alpha_f") && !table.contains("frictionless"));
+    let refused = roulement(&["cost", "--only", "speed"]);
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("step-cap"));
+}
+
+#[test]
 fn cost_writes_table_plots_and_report() {
     let scratch = Scratch::new("cost");
     let text = edited("cost/thrust", &[("load.duration", "\"1 ms\"")]);

@@ -5,10 +5,12 @@ use std::sync::OnceLock;
 
 use indicatif::ProgressBar;
 use roulement::scene::{Accuracy, CreepLaw, Scene};
-use roulement_cli::cost::levers::{CreepModel, Lever, ReferenceKind, Setting};
+use roulement_cli::cost::levers::{
+    CreepModel, Lever, ReferenceKind, Setting, numerical_settings, reference_steps,
+};
 use roulement_cli::cost::norms::{Comparison, Norm, errors};
 use roulement_cli::cost::record::record;
-use roulement_cli::cost::{Measured, SCENES, SceneStudy, study};
+use roulement_cli::cost::{Choice, Measured, SCENES, SceneStudy, study, study_of};
 use strum::VariantArray;
 
 /// The misalignment scene without its cage, which makes it smooth, and with its tilt in 2.4 ms instead of 16.
@@ -166,6 +168,77 @@ fn invariant_the_front_falls_and_nothing_lies_below_it() {
             point.lever.name(),
             point.label
         );
+    }
+}
+
+#[test]
+fn invariant_results_do_not_depend_on_threads_and_only_levers_that_were_asked_for_are_run() {
+    let mut scene = Scene::parse(SCENES[5].1).unwrap();
+    scene.effects.cage = roulement::effects::cage::Settings::default();
+    scene.load.duration.0 = 1e-3;
+    let only = vec![Lever::StepCap, Lever::Level];
+    let run = |threads| {
+        let choice = Choice { only: only.clone(), threads };
+        study_of("threads", &scene, &choice, &ProgressBar::hidden()).unwrap()
+    };
+    let (one, many) = (run(1), run(3));
+    assert!(one.points.iter().all(|point| only.contains(&point.lever)) && one.points.len() > 6);
+    for (a, b) in one.points.iter().zip(&many.points) {
+        let errors = |point: &roulement_cli::cost::Point| {
+            let measured = point.result.as_ref().unwrap();
+            (measured.errors, measured.work)
+        };
+        assert_eq!((a.lever, &a.label, errors(a)), (b.lever, &b.label, errors(b)));
+    }
+    assert_eq!(one.error_bars, many.error_bars);
+    // Without levers that change the model there is no reference for them, and the advice is of steps alone.
+    let choice = Choice { only: vec![Lever::StepCap], threads: 2 };
+    let steps = study_of("steps", &scene, &choice, &ProgressBar::hidden()).unwrap();
+    assert_eq!(steps.error_bar(ReferenceKind::Model).worst(), None);
+    assert!(steps.advice[0].contains("take saturated with max_step = "), "{:?}", steps.advice);
+}
+
+#[test]
+fn closed_form_the_reference_step_follows_the_bearing_and_not_the_rows() {
+    // About 0.1 us for balls of a centimetre; fixed steps end well before it.
+    let step = |name: &str, interval: &str| {
+        let path = format!("{}/../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(path).unwrap();
+        let scene = Scene::edited(&text, [("load.output_interval", interval)]).unwrap();
+        let [fine, coarse] = reference_steps(&scene);
+        assert_eq!(coarse, 2.0 * fine);
+        let settings = numerical_settings(&scene);
+        let fixed = settings.iter().filter(|setting| setting.lever == Lever::FixedStep);
+        assert!(
+            fixed.clone().count() > 3 && fixed.into_iter().all(|s| s.scene.solver.max_step.0 > 7.9 * fine)
+        );
+        fine
+    };
+    let standard = step("cost/thrust", "2e-4");
+    assert_eq!(standard, 2e-4 / 2048.0);
+    for interval in ["2e-5", "1e-4", "1e-3"] {
+        assert!((step("cost/thrust", interval) / standard).log2().abs() <= 0.7, "{interval}");
+    }
+    assert!(step("error/miniature", "1e-5") < 0.3 * standard);
+    assert!(step("error/slewing_ring", "5e-4") > 3.0 * standard);
+}
+
+#[test]
+fn invariant_the_advice_is_of_a_run_that_keeps_its_error() {
+    let study = short_study();
+    assert_eq!(study.advice.len(), 2);
+    for (sentence, quantity) in study.advice.iter().zip(["mean power", "wrench"]) {
+        assert!(sentence.starts_with(&format!("For 1 % of the {quantity} take ")), "{sentence}");
+        let error: f64 = sentence.rsplit_once("error ").unwrap().1.trim_end_matches('.').parse().unwrap();
+        assert!(error <= 0.01, "{sentence}");
+    }
+    // A law that is wrong by more than that is no advice, however cheap: without friction there is no power at all.
+    assert!(!study.advice[0].contains("frictionless"), "{}", study.advice[0]);
+    let points = study.points.iter().filter(|point| point.lever == Lever::CreepLaw);
+    let wrong = points
+        .filter(|point| point.result.as_ref().is_ok_and(|m| m.errors.get(Norm::Power).unwrap() > 0.011));
+    for point in wrong {
+        assert!(!study.advice[0].contains(&format!("take {} with", point.label)), "{}", study.advice[0]);
     }
 }
 

@@ -10,7 +10,7 @@ use crate::interface::contradiction::Contradiction;
 use crate::interface::model_description;
 use crate::interface::variables::{Causality, Kind, Source, Variables};
 use crate::model::bodies::Race;
-use crate::scene::{Giver, Group, Groups, Scene};
+use crate::scene::{Giver, Group, Groups, Scene, Solver};
 use crate::schema::numbers::Variability;
 use crate::simulation::inputs::Inputs;
 use crate::simulation::{Simulation, follows_time, scripted_groups};
@@ -178,7 +178,23 @@ impl Instance {
             self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         self.state.phase = Phase::StepComplete;
         self.announce_scripts();
+        self.announce_goal();
         Ok(())
+    }
+
+    /// Tells what an error goal means here: a single run cannot measure its own error.
+    fn announce_goal(&self) {
+        if let Some(goal) = self.simulation.scene().solver.goal {
+            let Solver { max_step, tolerance, .. } = self.simulation.scene().solver;
+            self.log.write(
+                Status::Ok,
+                &format!(
+                    "solver.accuracy.error = {:e}: this package runs once, with the settings that runs of the scene begin with \
+                     (max_step {:e} s, tolerance {tolerance:e}), and does not measure its error; \"roulement run\" does",
+                    goal.error, max_step.0
+                ),
+            );
+        }
     }
 
     /// Starts from inputs and parameters that were set before the start; without any, the start is the scene's own.

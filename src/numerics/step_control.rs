@@ -91,6 +91,11 @@ impl StepControl {
             && self.growth_blocked <= STEPS_WITHOUT_GROWTH
     }
 
+    /// [-] local error of the step that was accepted last over its tolerance; 1 before the first.
+    pub fn last_error(&self) -> f64 {
+        self.last_error
+    }
+
     /// Is the present step still allowed?
     pub fn above_minimum(&self) -> bool {
         self.step() >= self.min_step

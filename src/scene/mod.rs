@@ -6,6 +6,7 @@
 mod edit;
 mod notes;
 mod numbers;
+mod scales;
 mod validate;
 
 use std::path::Path;
@@ -16,12 +17,13 @@ use crate::effects;
 pub use crate::effects::Effects;
 pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
-use crate::schema::explain;
 pub use crate::schema::{
-    Accuracy, BearingSection, Condition, Drive, Friction, Giver, Group, Groups, InputGivers, Interface, Load,
-    Material, Misalignment, Orientation, RaceSection, SceneError, Schedule, Solver, Start, Tilt, Translation,
-    units,
+    Accuracy, BearingSection, Condition, Drive, ErrorGoal, ErrorOf, Friction, Giver, Group, Groups,
+    InputGivers, Interface, Load, Material, Misalignment, Orientation, RaceSection, SceneError, Schedule,
+    Solver, Start, Tilt, Translation, units,
 };
+use crate::schema::{Follows, explain};
+pub use scales::Scales;
 
 /// A bearing, its load and its simulation, as described by a scene file.
 #[derive(Clone, Debug, Deserialize)]
@@ -92,6 +94,10 @@ impl Scene {
         scene.source = text.to_string();
         scene.effects.creep.regularised = std::mem::take(&mut scene.regularised);
         scene.effects.cage.section = scene.cage.take();
+        if scene.solver.follows != Follows::Nothing {
+            let Scales { approach, frequency } = Scales::of(&scene);
+            scene.solver.follow(frequency, approach);
+        }
         scene.solver.fit_to(scene.bearing.ball_diameter.0);
         scene.check().map_err(|why| (why, None))?;
         Ok(scene)

@@ -1,6 +1,7 @@
 //! The one table of the numbers of a scene, but for those of its effects, which stand with them.
 
 use super::{Drive, Scene, SceneError, Schedule};
+use crate::schema::SMALLEST_TOLERANCE;
 use crate::schema::numbers::{FRICTION, Number, POISSON_RATIO, Parameter, Place, Range, YOUNGS_MODULUS};
 
 const DENSITY: Range = Range::closed(1.0, 1e5, "kg/m3");
@@ -53,7 +54,7 @@ static BEARING: [Number<Scene>; 15] = [
 
 /// Cage friction, races, start, time integration and load: those after the effects.
 #[rustfmt::skip]
-static MOTION: [Number<Scene>; 41] = [
+static MOTION: [Number<Scene>; 42] = [
     Number::fixed("friction.ball_cage", FRICTION, "friction coefficient of the balls in their pockets", |s| Place::Value(s.friction.ball_cage.as_mut())),
     Number::fixed("friction.cage_race", FRICTION, "friction coefficient of the cage on the lands", |s| Place::Value(s.friction.cage_race.as_mut())),
     Number::fixed("friction.ball_ball", FRICTION, "friction coefficient of neighbouring balls", |s| Place::Value(s.friction.ball_ball.as_mut())),
@@ -93,9 +94,12 @@ static MOTION: [Number<Scene>; 41] = [
         |s| Place::Read(s.start.ball_angular_velocity.iter().flatten().map(|component| component.0).collect())),
     Number::checked("start.inner_velocity", Range::closed(-1e4, 1e4, "m/s"),
         |s| Place::Read(s.start.inner_velocity.iter().flatten().map(|component| component.0).collect())),
+    // Before the settings that follow from it.
+    Number::checked("solver.accuracy.error", Range::closed(1e-7, 0.5, ""),
+        |s| Place::Read(s.solver.goal.iter().map(|goal| goal.error).collect())),
     Number::fixed("solver.alpha_f", Range::above(0.0, 1.0 / 3.0, ""), "numerical damping of the HHT scheme",
         |s| Place::Value(Some(&mut s.solver.alpha_f))),
-    Number::tunable("solver.tolerance", Range::closed(1e-14, 1e-2, ""), "local error of an internal step over the ball diameter",
+    Number::tunable("solver.tolerance", Range::closed(SMALLEST_TOLERANCE, 1e-2, ""), "local error of an internal step over the ball diameter",
         |s| Place::Value(Some(&mut s.solver.tolerance))),
     Number::fixed("solver.initial_step", STEP, "first internal step",
         |s| Place::Value(Some(&mut s.solver.initial_step.0))),

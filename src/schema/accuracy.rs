@@ -1,8 +1,12 @@
 //! Settings of the time integration: given one by one, or by the goal that the scene states.
 //!
-//! The settings of each goal were chosen by measurement: `roulement cost`, written up in `docs/accuracy-cost.md`.
+//! The settings of the named goals were chosen by measurement on the scenes of `roulement cost` (`docs/accuracy-cost.md`); they
+//! promise nothing on other scenes. A goal that is an error is kept by `roulement run`, which measures it on the scene at hand;
+//! the settings here are those that it begins with.
 
 use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, IntoDeserializer, MapAccess, Visitor};
 use strum::{IntoStaticStr, VariantArray};
 
 use super::units::{Quantity, Time};
@@ -25,6 +29,66 @@ pub struct Solver {
     /// [-] a Newton correction that leaves more than this fraction of the residual asks for a new matrix: 0 computes a
     /// matrix for every correction, 1 keeps one until it no longer lowers the residual.
     pub matrix_reuse: f64,
+    /// Error that `roulement run` measures and keeps, if the scene states one.
+    pub goal: Option<ErrorGoal>,
+    /// What follows the bearing's own frequency and load: see [`Solver::follow`].
+    pub follows: Follows,
+}
+
+/// What of the settings follows the bearing, until [`Solver::follow`] has set it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Follows {
+    /// Nothing: the settings are as they were given.
+    Nothing,
+    /// First and largest step, of an error goal.
+    Steps,
+    /// First and largest step and the tolerance: nothing was given. Is the first step given?
+    All {
+        /// Is the first step to follow, too?
+        initial_step: bool,
+    },
+}
+
+/// A goal that is an error: `accuracy = { error = 1e-3 }`.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ErrorGoal {
+    /// [-] largest numerical error of any quantity, over its size.
+    pub error: f64,
+    /// What has to have no larger error.
+    #[serde(default)]
+    pub of: ErrorOf,
+}
+
+/// What an error goal is about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, IntoStaticStr)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum ErrorOf {
+    /// Means over the second half of a run, and histories: values at equal times, root mean square over the run.
+    #[default]
+    All,
+    /// Means alone.
+    Means,
+}
+
+impl ErrorGoal {
+    /// Goal that is easily kept, and the settings to begin with: those of `balanced`, for 1e-3.
+    const USUAL: f64 = 1e-3;
+
+    /// Settings to begin with. Errors of the method fall with the square of the step, local errors with its cube.
+    fn solver(self) -> Solver {
+        let balanced = Accuracy::Balanced.solver();
+        // A goal that is out of range is refused later on.
+        let steps = (self.error / Self::USUAL).clamp(1e-4, 16.0).sqrt();
+        Solver {
+            max_step: Time(balanced.max_step.0 * steps),
+            tolerance: balanced.tolerance * steps.powi(3),
+            goal: Some(self),
+            follows: Follows::Steps,
+            ..balanced
+        }
+    }
 }
 
 impl Default for Solver {
@@ -36,9 +100,20 @@ impl Default for Solver {
             max_step: Time(1e-5),
             min_step: Time(0.0),
             matrix_reuse: REFACTOR_CONTRACTION,
+            goal: None,
+            follows: Follows::All { initial_step: true },
         }
     }
 }
+
+/// [-] tolerance where nothing is said: the cheapest that kept means within 1 % and histories within 2 % in the scenes of
+/// scenes/error and scenes/cost, but for chaotic ones (`docs/accuracy-cost.md`).
+const USUAL_TOLERANCE: f64 = 1e-8;
+/// [-] the same over the approach of the most loaded ball, for bearings that carry little: their motions are as small.
+const TOLERANCE_OF_APPROACH: f64 = 1e-4;
+/// [-] largest and first step where nothing is said, in periods of a ball between its races. The tolerance holds steps down where
+/// balls swing; where nothing does, steps beyond some periods are no cheaper.
+const PERIODS: [f64; 2] = [4.0, 0.03];
 
 /// \[s] default smallest step for balls of `LARGE_BALL` \[m] and more. What has to be followed gets shorter with the mass of a
 /// smaller ball, which friction brings to its speed: below 1e-13 s for a ball of a millimetre near standstill. A step much
@@ -54,7 +129,46 @@ impl Solver {
             self.min_step = Time((SMALLEST_STEP * mass).max(1e-15).min(self.max_step.0));
         }
     }
+
+    /// Sets what follows the bearing: the natural frequency \[Hz] of its most loaded ball and the approach of that ball over
+    /// its diameter.
+    pub fn follow(&mut self, frequency: f64, approach: f64) {
+        let [max_step, initial_step] = PERIODS.map(|periods| (periods / frequency).clamp(1e-9, 1e-3));
+        match std::mem::replace(&mut self.follows, Follows::Nothing) {
+            Follows::Nothing => {}
+            Follows::Steps => {
+                self.max_step = Time(self.max_step.0.min(max_step));
+                self.initial_step = Time(self.initial_step.0.min(initial_step));
+            }
+            Follows::All { initial_step: first } => {
+                self.tolerance =
+                    USUAL_TOLERANCE.min(TOLERANCE_OF_APPROACH * approach).max(SMALLEST_TOLERANCE);
+                if first {
+                    self.initial_step = Time(initial_step.max(self.min_step.0));
+                }
+                // What was given has room.
+                self.max_step = Time(max_step.max(self.initial_step.0).max(self.min_step.0));
+            }
+        }
+    }
+
+    /// Settings that take half the steps, and again, `halvings` times: the local error that is allowed falls with the cube of
+    /// the step, so that both limits ask for half.
+    pub fn refined(&self, halvings: u32) -> Self {
+        let part = f64::from(halvings).exp2().recip();
+        let max_step = Time(self.max_step.0 * part);
+        Self {
+            tolerance: (self.tolerance * part.powi(3)).max(SMALLEST_TOLERANCE),
+            initial_step: Time(self.initial_step.0 * part),
+            max_step,
+            min_step: Time(self.min_step.0.min(self.initial_step.0 * part)),
+            ..*self
+        }
+    }
 }
+
+/// [-] smallest tolerance that a scene may have.
+pub const SMALLEST_TOLERANCE: f64 = 1e-14;
 
 /// Goal that a scene sets for the time integration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, IntoStaticStr, VariantArray)]
@@ -72,7 +186,12 @@ pub enum Accuracy {
 impl Accuracy {
     /// Settings of a goal.
     pub fn solver(self) -> Solver {
-        let steps = |max_step, tolerance| Solver { max_step: Time(max_step), tolerance, ..Solver::default() };
+        let steps = |max_step, tolerance| Solver {
+            max_step: Time(max_step),
+            tolerance,
+            follows: Follows::Nothing,
+            ..Solver::default()
+        };
         match self {
             Self::Fast => steps(2e-4, 1e-5),
             Self::Balanced => steps(5e-5, 1e-7),
@@ -96,11 +215,49 @@ impl Accuracy {
     }
 }
 
+/// `accuracy` as written.
+#[derive(Clone, Copy)]
+enum Goal {
+    Named(Accuracy),
+    Error(ErrorGoal),
+}
+
+impl Goal {
+    fn solver(self) -> Solver {
+        match self {
+            Self::Named(goal) => goal.solver(),
+            Self::Error(goal) => goal.solver(),
+        }
+    }
+}
+
+/// A word or a table: an untagged choice would not say what is wrong with either.
+fn some_goal<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Goal>, D::Error> {
+    struct WordOrTable;
+    impl<'de> Visitor<'de> for WordOrTable {
+        type Value = Goal;
+
+        fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            write!(f, "\"fast\", \"balanced\", \"reference\" or a table {{ error = 1e-3 }}")
+        }
+
+        fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<Goal, E> {
+            Accuracy::deserialize(word.into_deserializer()).map(Goal::Named)
+        }
+
+        fn visit_map<M: MapAccess<'de>>(self, table: M) -> Result<Goal, M::Error> {
+            ErrorGoal::deserialize(MapAccessDeserializer::new(table)).map(Goal::Error)
+        }
+    }
+    deserializer.deserialize_any(WordOrTable).map(Some)
+}
+
 /// The section as written; what is left out comes from the goal.
 #[derive(Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct SolverKeys {
-    accuracy: Option<Accuracy>,
+    #[serde(deserialize_with = "some_goal")]
+    accuracy: Option<Goal>,
     wrench_error: Option<f64>,
     alpha_f: Option<f64>,
     tolerance: Option<f64>,
@@ -116,7 +273,7 @@ impl TryFrom<SolverKeys> for Solver {
     fn try_from(keys: SolverKeys) -> Result<Self, String> {
         let goal = match (keys.accuracy, keys.wrench_error) {
             (Some(_), Some(_)) => return Err("give at most one of accuracy and wrench_error".into()),
-            (accuracy, None) => accuracy.map_or_else(Self::default, Accuracy::solver),
+            (accuracy, None) => accuracy.map_or_else(Self::default, Goal::solver),
             (None, Some(error)) => Accuracy::for_wrench_error(error)
                 .ok_or_else(|| {
                     let least = Accuracy::Reference.wrench_error();
@@ -127,6 +284,13 @@ impl TryFrom<SolverKeys> for Solver {
                 .solver(),
         };
         let max_step = keys.max_step.unwrap_or(goal.max_step);
+        let limited = keys.max_step.is_some() || keys.tolerance.is_some();
+        let follows = match goal.follows {
+            _ if limited => Follows::Nothing,
+            Follows::All { .. } => Follows::All { initial_step: keys.initial_step.is_none() },
+            Follows::Steps if keys.initial_step.is_some() => Follows::Nothing,
+            follows => follows,
+        };
         Ok(Self {
             alpha_f: keys.alpha_f.unwrap_or(goal.alpha_f),
             tolerance: keys.tolerance.unwrap_or(goal.tolerance),
@@ -135,6 +299,8 @@ impl TryFrom<SolverKeys> for Solver {
             max_step,
             min_step: keys.min_step.unwrap_or(Time(goal.min_step.si().min(max_step.si()))),
             matrix_reuse: keys.matrix_reuse.unwrap_or(goal.matrix_reuse),
+            goal: goal.goal,
+            follows,
         })
     }
 }
@@ -182,6 +348,27 @@ mod tests {
     }
 
     #[test]
+    fn closed_form_what_is_not_said_follows_the_bearing() {
+        let followed = |text: &str, frequency: f64, approach: f64| {
+            let mut solver = parse(text).unwrap();
+            solver.follow(frequency, approach);
+            (solver.max_step.0, solver.initial_step.0, solver.tolerance)
+        };
+        // Four periods of a ball, and 3 % of one; a tolerance that is small against its approach.
+        assert_eq!(followed("", 40e3, 1e-3), (1e-4, 0.75e-6, 1e-8));
+        assert_eq!(followed("", 400e3, 1e-5), (1e-5, 0.075e-6, 1e-9));
+        assert_eq!(followed("alpha_f = 0.2\ninitial_step = 2e-6", 40e3, 1e-3), (1e-4, 2e-6, 1e-8));
+        assert_eq!(followed("initial_step = 2e-4", 40e3, 1e-3), (2e-4, 2e-4, 1e-8));
+        // One limit that is given is enough to be followed alone.
+        assert_eq!(followed("max_step = 1e-5", 40e3, 1e-3), (1e-5, 1e-6, 1e-6));
+        assert_eq!(followed("tolerance = 1e-5", 40e3, 1e-3), (1e-5, 1e-6, 1e-5));
+        assert_eq!(followed("accuracy = \"balanced\"", 400e3, 1e-5), (5e-5, 1e-6, 1e-7));
+        // An error goal begins with no larger steps than the bearing takes.
+        assert_eq!(followed("accuracy = { error = 1e-3 }", 400e3, 1e-3), (1e-5, 0.075e-6, 1e-7));
+        assert_eq!(followed("accuracy = { error = 1e-3 }\nmax_step = 4e-5", 400e3, 1e-3), (4e-5, 1e-6, 1e-7));
+    }
+
+    #[test]
     fn goals_are_ordered_from_cheap_to_exact() {
         for pair in Accuracy::VARIANTS.windows(2) {
             assert!(pair[0].wrench_error() > pair[1].wrench_error());
@@ -204,5 +391,26 @@ mod tests {
         assert!(parse("accuracy = \"fast\"\nwrench_error = 1e-3").unwrap_err().contains("at most one"));
         let message = parse("accuracy = \"quick\"").unwrap_err();
         assert!(message.contains("quick") && message.contains("balanced"), "{message}");
+        let message = parse("accuracy = 3").unwrap_err();
+        assert!(message.contains("balanced") && message.contains("{ error = 1e-3 }"), "{message}");
+        let message = parse("accuracy = { eror = 1e-3 }").unwrap_err();
+        assert!(message.contains("eror") && message.contains("error"), "{message}");
+    }
+
+    #[test]
+    fn an_error_is_a_goal_whose_settings_are_those_to_begin_with() {
+        let usual = parse("accuracy = { error = 1e-3 }").unwrap();
+        let goal = ErrorGoal { error: 1e-3, of: ErrorOf::All };
+        let follows = Follows::Steps;
+        assert_eq!(usual, Solver { goal: Some(goal), follows, ..Accuracy::Balanced.solver() });
+        let finer = parse("accuracy = { error = 2.5e-4, of = \"means\" }\nalpha_f = 0.1").unwrap();
+        assert_eq!(finer.goal, Some(ErrorGoal { error: 2.5e-4, of: ErrorOf::Means }));
+        assert_eq!((finer.max_step.0, finer.alpha_f), (25e-6, 0.1));
+        assert!((finer.tolerance / usual.refined(1).tolerance - 1.0).abs() < 1e-12);
+        // Half the steps whichever limit holds, down to what a scene may ask for.
+        let refined = usual.refined(2);
+        assert_eq!((refined.max_step.0, refined.tolerance), (50e-6 / 4.0, 1e-7 / 64.0));
+        assert!(refined.initial_step.0 <= refined.max_step.0 && refined.min_step.0 <= refined.initial_step.0);
+        assert_eq!(usual.refined(20).tolerance, SMALLEST_TOLERANCE);
     }
 }

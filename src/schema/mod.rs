@@ -11,7 +11,7 @@ mod spelling;
 pub mod units;
 pub mod variable_units;
 
-pub use accuracy::{Accuracy, Solver};
+pub use accuracy::{Accuracy, ErrorGoal, ErrorOf, Follows, SMALLEST_TOLERANCE, Solver};
 pub use error::SceneError;
 pub use inputs::{Giver, Group, Groups, InputGivers};
 pub use schedule::Schedule;

@@ -160,6 +160,11 @@ impl Simulation {
         &self.state
     }
 
+    /// [-] local error of the last step over the ball diameter, root mean square over all positions.
+    pub fn local_error(&self) -> f64 {
+        self.state.control.last_error() * self.model.solver.tolerance
+    }
+
     /// Inputs as set last.
     pub fn inputs(&self) -> &Inputs {
         &self.inputs

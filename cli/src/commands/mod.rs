@@ -2,6 +2,7 @@
 
 mod cost;
 mod identify;
+mod player;
 mod run;
 mod summary;
 
@@ -74,13 +75,7 @@ enum Command {
     /// Identify the spin coupling of the regularised creep law against Kalker's nonlinear theory.
     Identify(identify::Options),
     /// Measure error against CPU time of every setting that trades accuracy for speed.
-    Cost {
-        /// Scene file; the six standard scenes if not given.
-        scene: Option<PathBuf>,
-        /// Directory for table, plots and report; made if missing.
-        #[arg(short, long, default_value = "cost")]
-        output: PathBuf,
-    },
+    Cost(cost::Options),
     /// Print the model description of a scene's package.
     Describe {
         /// Scene file.
@@ -195,7 +190,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
             answers.flush()?;
         }
         Command::Identify(options) => identify::run(&options)?,
-        Command::Cost { scene, output } => cost::run(scene.as_deref(), &output)?,
+        Command::Cost(options) => cost::run(options)?,
         Command::Describe { scene } => {
             say(&render(&Simulation::new(&load(&scene)?)?, &name_of(&scene))?.xml)?;
         }

@@ -1,32 +1,31 @@
-//! `roulement run`: simulation with progress, results, plots and summary.
+//! `roulement run`: simulation with progress, results, plots and summary; with `--error`, as often as its error asks for.
 
 use std::error::Error;
 use std::fs;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use roulement::scene::units::Time;
+use roulement::scene::{ErrorGoal, ErrorOf, Solver};
 use roulement::simulation::Simulation;
-use roulement::simulation::play::{Rows, play};
-use roulement_cli::report::energy::EnergyWatch;
-use roulement_cli::report::limits::Limits;
-use roulement_cli::report::means::Blocks;
+use roulement_cli::error::{Judgement, Rounds, TWIN};
+use roulement_cli::report::figures::{Figures, Shown};
 use roulement_cli::report::plots::write_plots;
-use roulement_cli::report::results::{Choice, ResultsError, ResultsWriter, Window};
-use roulement_cli::report::thinned::Thinned;
+use roulement_cli::report::results::{Choice, ResultsWriter, Window};
 use signal_hook::consts::SIGINT;
 use signal_hook::flag;
 
-use super::summary::{Run, summary};
+use super::player::{End, Played, Player, put};
+use super::summary::summary;
 use super::{load, say, tell};
 
 /// Exit code of a program that Ctrl-C ended: 128 and the number of the signal.
 const INTERRUPTED: u8 = 130;
+/// Exit code of a run whose results are there and whose error goal is not met.
+const GOAL_NOT_MET: u8 = 3;
 
 /// Options of `roulement run`.
 #[derive(Args)]
@@ -42,12 +41,16 @@ pub struct Options {
     /// Time window whose rows are written to results.csv, FROM:TO, such as `10 ms:20 ms`; either end may be left out.
     #[arg(long)]
     window: Option<Window>,
-}
-
-/// Why a run ends before its time.
-enum End {
-    Interrupted,
-    Results(ResultsError),
+    /// Measure the numerical error: run again with half the steps, and again until it is below GOAL, such as `1e-3`, if one is
+    /// given here or by `solver.accuracy`. Exit code 3 says that it is not. Without GOAL it stands behind the scene file.
+    #[arg(long, value_name = "GOAL", num_args = 0..=1)]
+    error: Option<Option<f64>>,
+    /// The goal is one of means alone, not of histories.
+    #[arg(long, requires = "error")]
+    means_only: bool,
+    /// Runs that `--error` may take, each with half the steps of the one before; a run that looks for chaos comes on top.
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(2..=16))]
+    rounds: u32,
 }
 
 /// Simulates a scene into a directory. What has been simulated until an error or Ctrl-C is kept, with its summary and plots.
@@ -55,90 +58,165 @@ enum End {
 /// # Errors
 /// If the simulation cannot start or go on, or files cannot be written.
 pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
-    let Options { scene, output: directory, columns, window } = options;
-    let scene = load(&scene)?;
-    let mut simulation = Simulation::new(&scene)?;
-    fs::create_dir_all(&directory).map_err(|why| format!("cannot make {}: {why}", directory.display()))?;
-    let choice = Choice { columns, window: window.unwrap_or_default() };
-    let mut results = ResultsWriter::create(&directory.join("results.csv"), &scene, &choice)?;
+    let Options { scene, output: directory, columns, window, error, means_only, rounds } = options;
+    let mut scene = load(&scene)?;
+    if let Some(Some(error)) = error {
+        scene.solver.goal = Some(ErrorGoal { error, of: ErrorOf::All });
+        scene.check()?;
+    }
+    if let (Some(goal), true) = (&mut scene.solver.goal, means_only) {
+        goal.of = ErrorOf::Means;
+    }
     let interrupted = Arc::new(AtomicBool::new(false));
+    let player = Player { interrupted: Arc::clone(&interrupted) };
+    let choice = Choice { columns, window: window.unwrap_or_default() };
+    let simulation = Simulation::new(&scene)?;
+    fs::create_dir_all(&directory).map_err(|why| format!("cannot make {}: {why}", directory.display()))?;
+    let place = Place { directory, choice };
+    let table = ResultsWriter::create(&place.results(), &scene, &place.choice)?;
     // A second Ctrl-C does not wait for the row.
     flag::register_conditional_shutdown(SIGINT, INTERRUPTED.into(), Arc::clone(&interrupted))?;
-    flag::register(SIGINT, Arc::clone(&interrupted))?;
+    flag::register(SIGINT, interrupted)?;
 
-    let rows = Rows::of(&simulation);
-    let progress = progress_bar(rows.count());
-    let begin = Instant::now();
-    let mut plotted = Thinned::default();
-    let mut energy = EnergyWatch::default();
-    let mut limits = Limits::default();
-    let mut blocks =
-        Blocks::new(simulation.outputs().cage.is_some(), 0.5 * simulation.model().bearing.pitch_diameter);
-    let played = play(&mut simulation, rows, |simulation| {
-        let outputs = simulation.outputs();
-        if let Err(why) = results.write(simulation.inputs(), outputs) {
-            return ControlFlow::Break(End::Results(why));
+    if error.is_some() || scene.solver.goal.is_some() {
+        return measured(&player, simulation, table, &place, rounds);
+    }
+    let played = player.play(simulation, Some(table), "")?;
+    place.leave(&played, None, "")?;
+    ended(played)
+}
+
+/// What the program says at the end of a run that was not compared with another.
+fn ended(played: Played) -> Result<ExitCode, Box<dyn Error>> {
+    match played.end {
+        End::Reached => Ok(ExitCode::SUCCESS),
+        End::Interrupted => {
+            tell([format!("interrupted at {:.3} ms", played.simulation.time() * 1e3)]);
+            Ok(ExitCode::from(INTERRUPTED))
         }
-        progress.set_message(format!("{:.3} of {:.3} ms", outputs.time * 1e3, rows.duration * 1e3));
-        progress.set_position(plotted.seen());
-        blocks.push(outputs);
-        energy.push(outputs);
-        limits.push(outputs);
-        plotted.push(outputs.clone());
-        if interrupted.load(Ordering::Relaxed) {
-            ControlFlow::Break(End::Interrupted)
-        } else {
-            ControlFlow::Continue(())
-        }
-    });
-    progress.finish_and_clear();
-    let wall = begin.elapsed();
-    // A full disk takes no plots either.
-    let played = match played {
-        Ok(ControlFlow::Break(End::Results(why))) => return Err(why.into()),
-        played => played,
+        End::Failed(why) => Err(why.into()),
+    }
+}
+
+/// Runs a scene with smaller and smaller steps until its error is known, and kept if there is a goal. The files are those of
+/// the finest run that came to its end.
+fn measured(
+    player: &Player,
+    simulation: Simulation,
+    table: ResultsWriter,
+    place: &Place,
+    most: u32,
+) -> Result<ExitCode, Box<dyn Error>> {
+    let scene = simulation.scene().clone();
+    let with = |solver: Solver| {
+        let mut scene = scene.clone();
+        scene.solver = solver;
+        scene
     };
-    results.finish()?;
-    let plots = write_plots(&scene, simulation.model(), &plotted.finish(), &directory)?;
-    let means = blocks.means();
-    if let Some(means) = &means {
-        write(&directory.join("means.csv"), |path| means.write(path))?;
+    let mut rounds = Rounds::new(scene.solver.goal, most);
+    let mut played = player.play(simulation, Some(table), "round 1: ")?;
+    if !matches!(played.end, End::Reached) {
+        place.leave(&played, None, "")?;
+        return ended(played);
     }
-    let text = summary(&Run {
-        simulation: &simulation,
-        means: means.as_ref(),
-        energy: &energy,
-        limits: &limits,
-        wall,
-    });
-    write(&directory.join("summary.txt"), |path| fs::write(path, &text))?;
-    let mut listed = format!("{text}\nresults          {}\n", directory.join("results.csv").display());
-    for plot in plots {
-        listed += &format!("plot             {}\n", plot.display());
+    rounds.push(played.take_comparable());
+    let (judgement, end) = loop {
+        let judgement = rounds.judge();
+        let next = match judgement {
+            Judgement::Refine => {
+                let finer = with(scene.solver.refined(rounds.refinements()));
+                let simulation = Simulation::new(&finer)?;
+                let table = ResultsWriter::create(&place.results_of_round(), &finer, &place.choice)?;
+                let words = format!("round {}: ", rounds.count() + 1);
+                let mut next = player.play(simulation, Some(table), &words)?;
+                if matches!(next.end, End::Reached) {
+                    put(&place.results_of_round(), &place.results())?;
+                    rounds.push(next.take_comparable());
+                    played = next;
+                    continue;
+                }
+                // Rows of a run that is not whole.
+                let _ = fs::remove_file(place.results_of_round());
+                next
+            }
+            Judgement::Twin => {
+                let Some(coarser) = rounds.coarser() else { break (judgement, End::Reached) };
+                let twin = Simulation::new(&with(changed(coarser.solver)))?;
+                let mut next = player.play(twin, None, &format!("round {}: ", rounds.count() + 1))?;
+                if matches!(next.end, End::Reached) {
+                    rounds.push_twin(&next.take_comparable());
+                    continue;
+                }
+                next
+            }
+            Judgement::Done | Judgement::TooShort | Judgement::TooMany => break (judgement, End::Reached),
+        };
+        break (judgement, next.end);
+    };
+    played.means = rounds.means();
+    place.leave(&played, rounds.bars(), &rounds.report())?;
+    let round = rounds.count() + 1;
+    match (end, judgement) {
+        (End::Interrupted, _) => {
+            tell([format!(
+                "interrupted in round {round}; the results are of the last round that came to its end"
+            )]);
+            Ok(ExitCode::from(INTERRUPTED))
+        }
+        (End::Failed(why), _) => Err(format!("in round {round}: {why}").into()),
+        (End::Reached, Judgement::TooShort | Judgement::TooMany) => Ok(ExitCode::from(GOAL_NOT_MET)),
+        (End::Reached, _) => Ok(ExitCode::SUCCESS),
     }
-    tell(scene.pressure_note(limits.peak_pressure));
-    // Why a run has ended early is said even where nobody reads the summary.
-    let said = say(&listed);
-    if let ControlFlow::Break(End::Interrupted) = played? {
-        tell([format!("interrupted at {:.3} ms", simulation.time() * 1e3)]);
-        return Ok(ExitCode::from(INTERRUPTED));
+}
+
+/// Settings whose steps differ by next to nothing.
+fn changed(solver: Solver) -> Solver {
+    let [max_step, initial_step] =
+        [solver.max_step, solver.initial_step].map(|step| Time(step.0 * (1.0 + TWIN)));
+    Solver { max_step, initial_step, ..solver }
+}
+
+/// Where the files of a run go.
+struct Place {
+    directory: PathBuf,
+    choice: Choice,
+}
+
+impl Place {
+    fn results(&self) -> PathBuf {
+        self.directory.join("results.csv")
     }
-    said?;
-    Ok(ExitCode::SUCCESS)
+
+    /// The table of a round until it is whole.
+    fn results_of_round(&self) -> PathBuf {
+        self.directory.join("results.csv.round")
+    }
+
+    /// Leaves plots, means and summary of a run, and says the summary. Error bars and a report of errors are those of runs that
+    /// were compared.
+    fn leave(&self, played: &Played, bars: Option<Figures>, errors: &str) -> Result<(), Box<dyn Error>> {
+        let scene = played.simulation.scene();
+        let plots = write_plots(scene, played.simulation.model(), &played.plotted, &self.directory)?;
+        if let Some(means) = &played.means {
+            write(&self.directory.join("means.csv"), |path| means.write(path))?;
+        }
+        let text = summary(played, &Shown { figures: played.figures(), bars }) + errors;
+        write(&self.directory.join("summary.txt"), |path| fs::write(path, &text))?;
+        let mut listed = format!("{text}\nresults          {}\n", self.results().display());
+        for plot in plots {
+            listed += &format!("plot             {}\n", plot.display());
+        }
+        tell(scene.pressure_note(played.limits.peak_pressure));
+        let said = say(&listed);
+        // Why a run has ended early is said even where nobody reads the summary.
+        if matches!(played.end, End::Reached) {
+            said?;
+        }
+        Ok(())
+    }
 }
 
 /// Writes a file, with its name in the error.
 fn write(path: &Path, write: impl FnOnce(&Path) -> std::io::Result<()>) -> Result<(), String> {
     write(path).map_err(|why| format!("cannot write {}: {why}", path.display()))
-}
-
-/// A bar with simulated time and an estimate of what is left.
-fn progress_bar(points: u64) -> ProgressBar {
-    let bar = ProgressBar::new(points);
-    let template = "simulated {msg} [{bar:40}] {percent} %, {elapsed} elapsed, {eta} left";
-    if let Ok(style) = ProgressStyle::with_template(template) {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar.enable_steady_tick(Duration::from_millis(200));
-    bar
 }

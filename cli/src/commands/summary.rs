@@ -1,67 +1,49 @@
 //! Summary that `roulement run` prints at the end.
 
 use std::fmt::Write;
-use std::time::Duration;
 
 use roulement::scene::Scene;
-use roulement::simulation::Simulation;
-use roulement_cli::report::energy::EnergyWatch;
+use roulement_cli::report::figures::Shown;
 use roulement_cli::report::limits::Limits;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
 
-/// A run that has ended.
-pub struct Run<'a> {
-    /// The bearing at the end.
-    pub simulation: &'a Simulation,
-    /// Means over the second half.
-    pub means: Option<&'a Means>,
-    /// Its energy.
-    pub energy: &'a EnergyWatch,
-    /// Limits of the bearing that it met.
-    pub limits: &'a Limits,
-    /// Time that it took.
-    pub wall: Duration,
-}
+use super::player::Played;
 
-/// Summary of a run.
-pub fn summary(run: &Run<'_>) -> String {
+/// Summary of a run, with error bars where figures have them.
+pub fn summary(run: &Played, shown: &Shown) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
-    let _ = write_summary(&mut text, run);
+    let _ = write_summary(&mut text, run, shown);
     text
 }
 
 /// Means over the window.
-fn write_means(out: &mut String, means: &Means, has_cage: bool) -> std::fmt::Result {
+fn write_means(out: &mut String, means: &Means, shown: &Shown, has_cage: bool) -> std::fmt::Result {
     let [begin, end] = means.window;
+    let text = |name: &str, factor, digits| shown.text(name, factor, digits);
     writeln!(out, "means over the last {:.3} ms", (end - begin) * 1e3)?;
     writeln!(
         out,
-        "cage speed       {:.4} rad/s, {:.4} % below epicyclic; balls {:.4} %",
-        means.of("cage speed"),
-        means.of("cage slip") * 100.0,
-        means.of("ball slip") * 100.0
+        "cage speed       {} rad/s, {} % below epicyclic; balls {} %",
+        text("cage speed", 1.0, 4),
+        text("cage slip", 100.0, 4),
+        text("ball slip", 100.0, 4)
     )?;
-    writeln!(out, "friction power   {:.4} W", means.of("friction power"))?;
+    writeln!(out, "friction power   {} W", text("friction power", 1.0, 4))?;
     writeln!(
         out,
-        "per ball         inner {:.4} mW, outer {:.4} mW",
-        means.of("inner power per ball") * 1e3,
-        means.of("outer power per ball") * 1e3
+        "per ball         inner {} mW, outer {} mW",
+        text("inner power per ball", 1e3, 4),
+        text("outer power per ball", 1e3, 4)
     )?;
     if has_cage {
-        let [eccentricity, pocket, land] = means.largest;
-        writeln!(out, "cage centre      at most {:.3} um off axis", eccentricity * 1e6)?;
-        writeln!(out, "largest load     pocket {pocket:.3} N, land {land:.3} N")?;
-        writeln!(
-            out,
-            "cage friction    pockets {:.4} W, lands {:.4} W",
-            means.of("pocket power"),
-            means.of("land power")
-        )?;
+        writeln!(out, "cage centre      at most {} um off axis", text("largest eccentricity", 1e6, 3))?;
+        let [pocket, land] = ["largest pocket load", "largest land load"].map(|name| text(name, 1.0, 3));
+        writeln!(out, "largest load     pocket {pocket} N, land {land} N")?;
+        let [pocket, land] = ["pocket power", "land power"].map(|name| text(name, 1.0, 4));
+        writeln!(out, "cage friction    pockets {pocket} W, lands {land} W")?;
     }
-    writeln!(out, "friction torque  {:.5} N m", means.of("friction torque"))?;
-    Ok(())
+    writeln!(out, "friction torque  {} N m", text("friction torque", 1.0, 5))
 }
 
 /// What the creep law of the scene misses.
@@ -104,23 +86,26 @@ fn write_settled(out: &mut String, means: &Means) -> std::fmt::Result {
 }
 
 /// What a run met of shoulders and neighbouring balls; nothing where it met none.
-fn write_limits(out: &mut String, limits: &Limits) -> std::fmt::Result {
+fn write_limits(out: &mut String, limits: &Limits, shown: &Shown) -> std::fmt::Result {
     if limits.over_shoulders != [0.0; 2] {
-        let [inner, outer] = limits.over_shoulders.map(|share| share * 100.0);
-        writeln!(out, "over shoulders   inner up to {inner:.2} %, outer up to {outer:.2} % of a load")?;
+        let [inner, outer] =
+            ["over inner shoulders", "over outer shoulders"].map(|name| shown.text(name, 100.0, 2));
+        writeln!(out, "over shoulders   inner up to {inner} %, outer up to {outer} % of a load")?;
     }
     if limits.between_balls > 0.0 {
-        let largest = limits.between_balls;
-        writeln!(out, "between balls    up to {largest:.3} N: they touch, as no cage keeps them apart")?;
+        let largest = shown.text("between balls", 1.0, 3);
+        writeln!(out, "between balls    up to {largest} N: they touch, as no cage keeps them apart")?;
     }
     Ok(())
 }
 
-fn write_summary(out: &mut String, run: &Run<'_>) -> std::fmt::Result {
-    let Run { simulation, means, energy, limits, wall } = run;
+fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Result {
+    let Played { simulation, means, energy, limits, wall, .. } = run;
     let now = simulation.outputs();
-    let (force, moment) = (now.inner.wrench.force, now.inner.wrench.moment);
-    let position = now.inner.pose.position * 1e6;
+    let text = |name: &str, factor, digits| shown.text(name, factor, digits);
+    let range = |[least, most]: [&str; 2], digits| {
+        format!("{} to {}", text(least, 1.0, digits), text(most, 1.0, digits))
+    };
     let title = &simulation.scene().title;
     if !title.is_empty() {
         writeln!(out, "{title}")?;
@@ -128,49 +113,63 @@ fn write_summary(out: &mut String, run: &Run<'_>) -> std::fmt::Result {
     writeln!(out, "at {:.3} ms", now.time * 1e3)?;
     writeln!(
         out,
-        "bearing's force  x {:.3}  y {:.3}  z {:.3} N   (of the bearing on the inner race; the external load is the opposite,",
-        force.x, force.y, force.z
+        "bearing's force  x {}  y {}  z {} N   (of the bearing on the inner race; the external load is the opposite,",
+        text("end force.x", 1.0, 3),
+        text("end force.y", 1.0, 3),
+        text("end force.z", 1.0, 3)
     )?;
     writeln!(
         out,
-        "bearing's moment x {:.5}  y {:.5}  z {:.5} N m   but for what accelerates the race)",
-        moment.x, moment.y, moment.z
+        "bearing's moment x {}  y {}  z {} N m   but for what accelerates the race)",
+        text("end moment.x", 1.0, 5),
+        text("end moment.y", 1.0, 5),
+        text("end moment.z", 1.0, 5)
     )?;
-    writeln!(out, "inner race at    x {:.4}  y {:.4}  z {:.4} um", position.x, position.y, position.z)?;
-    let extremes = |get: fn(&roulement::simulation::outputs::BallOutput) -> f64| {
-        let values = now.balls.iter().map(get);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-        format!("{low:.3} to {high:.3}")
-    };
+    writeln!(
+        out,
+        "inner race at    x {}  y {}  z {} um",
+        text("end position.x", 1e6, 4),
+        text("end position.y", 1e6, 4),
+        text("end position.z", 1e6, 4)
+    )?;
     writeln!(
         out,
         "ball loads       inner {} N, outer {} N",
-        extremes(|b| b.inner.load),
-        extremes(|b| b.outer.load)
+        range(["least inner load", "largest inner load"], 3),
+        range(["least outer load", "largest outer load"], 3)
     )?;
     writeln!(
         out,
         "contact angles   inner {} deg, outer {} deg",
-        extremes(|b| b.inner.contact_angle.to_degrees()),
-        extremes(|b| b.outer.contact_angle.to_degrees())
+        range(["least inner angle", "largest inner angle"], 3),
+        range(["least outer angle", "largest outer angle"], 3)
     )?;
-    write_limits(out, limits)?;
-    if let Some(cage) = &now.cage {
-        writeln!(out, "cage centre      {:.3} um off axis", cage.eccentricity.yz().norm() * 1e6)?;
+    write_limits(out, limits, shown)?;
+    if now.cage.is_some() {
+        writeln!(out, "cage centre      {} um off axis", text("end eccentricity", 1e6, 3))?;
     }
     if let Some(means) = means {
-        write_means(out, means, now.cage.is_some())?;
+        write_means(out, means, shown, now.cage.is_some())?;
         write_law(out, simulation.scene())?;
         write_settled(out, means)?;
     }
-    let balance = energy.balance(now);
     writeln!(
         out,
-        "energy           work {:.5} J, lost {:.5} J, stored {:.5} J, balance {balance:.2e} J",
-        now.work, now.dissipated, now.stored_energy
+        "energy           work {} J, lost {} J, stored {} J, balance {:.2e} J",
+        text("work", 1.0, 5),
+        text("lost", 1.0, 5),
+        text("stored", 1.0, 5),
+        energy.balance(now)
     )?;
     if let Some(warning) = energy.warning(simulation) {
         writeln!(out, "WARNING          {warning}")?;
+    }
+    if let (None, Some([histories, means])) = (&shown.bars, run.estimate.errors(simulation)) {
+        writeln!(
+            out,
+            "error, estimate  histories {histories:.0e}, means {means:.0e} of their size, within a factor of ten or so, and no \
+             promise: --error measures it"
+        )?;
     }
     let s = &now.statistics;
     let steps = s.steps.max(1) as f64;

@@ -72,11 +72,17 @@ pub fn write_norms(study: &SceneStudy, kind: ReferenceKind, path: &Path) -> Resu
 /// If the file cannot be written.
 pub fn write_overview(study: &SceneStudy, path: &Path) -> Result<(), PlotError> {
     let kinds = [ReferenceKind::Numerical, ReferenceKind::Model];
+    let kinds: Vec<_> = kinds.into_iter().filter(|&kind| study.has(kind)).collect();
     let panel = |kind| {
         let caption = format!("{}, largest of all quantities", kind_name(kind));
         Panel { study, kind, norm: None, caption }
     };
-    write(path, &format!("{}: what accuracy costs", study.title()), &kinds.map(panel), &kinds)
+    write(
+        path,
+        &format!("{}: what accuracy costs", study.title()),
+        &kinds.iter().copied().map(panel).collect::<Vec<_>>(),
+        &kinds,
+    )
 }
 
 fn kind_name(kind: ReferenceKind) -> &'static str {
@@ -88,7 +94,8 @@ fn kind_name(kind: ReferenceKind) -> &'static str {
 
 fn write(path: &Path, title: &str, panels: &[Panel<'_>], kinds: &[ReferenceKind]) -> Result<(), PlotError> {
     let columns = 2;
-    let rows = panels.len().div_ceil(columns);
+    // Where every error is too small to be shown the legend stands alone.
+    let rows = panels.len().div_ceil(columns).max(1);
     let width = PANEL.0 * columns as u32;
     picture(path, (width + LEGEND_WIDTH, PANEL.1 * rows as u32), title, |body| {
         let (grid, key) = body.split_horizontally(width);

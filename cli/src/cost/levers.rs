@@ -1,12 +1,13 @@
 //! Levers (see [`crate::cost`]) and their settings, as changed copies of a scene.
 
+use clap::ValueEnum;
 use strum::{IntoStaticStr, VariantArray};
 
 use roulement::scene::units::Time;
-use roulement::scene::{Accuracy, CreepLaw, Drive, Scene};
+use roulement::scene::{Accuracy, CreepLaw, Drive, Scales, Scene};
 
 /// A setting that trades accuracy for speed; one curve in the plots.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, IntoStaticStr, VariantArray)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, IntoStaticStr, ValueEnum, VariantArray)]
 pub enum Lever {
     /// Quasi-static or dynamic.
     #[strum(serialize = "level")]
@@ -185,9 +186,10 @@ const DEGREES: [usize; 4] = [1, 3, 5, 7];
 pub const DYNAMIC: &str = "dynamic";
 /// [-] largest tolerance that a scene may have.
 const OPEN_TOLERANCE: f64 = 1e-2;
-/// Halvings of the output interval: fixed steps of the ladder, and the two steps of the reference.
-const FIXED_STEPS: std::ops::RangeInclusive<i32> = 0..=8;
-const REFERENCE_HALVINGS: [i32; 2] = [10, 11];
+/// [-] tiny step of the reference in periods of the most loaded ball between its races, about.
+const REFERENCE_STEP: f64 = 0.0036;
+/// [-] halvings by which the smallest fixed step of the ladder is above that of the reference.
+const ABOVE_REFERENCE: i32 = 3;
 const TOLERANCES: [f64; 7] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
 const STEP_CAPS: [f64; 6] = [2e-4, 1e-4, 5e-5, 2e-5, 5e-6, 2e-6];
 const DAMPINGS: [f64; 6] = [0.005, 0.02, 0.05, 0.1, 0.2, 1.0 / 3.0];
@@ -197,8 +199,15 @@ const COMMUNICATION: [f64; 7] = [0.125, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
 /// \[s] the tiny step of the numerical reference, then twice that, which gives its error bar.
 pub fn reference_steps(scene: &Scene) -> [f64; 2] {
-    let [coarse, fine] = REFERENCE_HALVINGS.map(|k| scene.load.output_interval.0 * f64::from(-k).exp2());
-    [fine, coarse]
+    let fine = scene.load.output_interval.0 * f64::from(-reference_halvings(scene)).exp2();
+    [fine, 2.0 * fine]
+}
+
+/// [-] halvings of the output interval that lead to the tiny step; enough for a ladder of fixed steps.
+fn reference_halvings(scene: &Scene) -> i32 {
+    let step = REFERENCE_STEP / Scales::of(scene).frequency;
+    let halvings = (scene.load.output_interval.0 / step).log2().round() as i32;
+    halvings.clamp(ABOVE_REFERENCE + 3, 16)
 }
 
 /// All settings of the levers that change the model, at the scene's own step.
@@ -222,7 +231,8 @@ pub fn numerical_settings(scene: &Scene) -> Vec<Setting> {
     let goals = Accuracy::VARIANTS
         .iter()
         .map(|&goal| changed(Lever::Goal, <&str>::from(goal).to_string(), &|s| s.solver = goal.solver()));
-    let fixed = FIXED_STEPS.map(|k| Setting::fixed_step(scene, interval * f64::from(-k).exp2()));
+    let fixed = (0..=reference_halvings(scene) - ABOVE_REFERENCE)
+        .map(|k| Setting::fixed_step(scene, interval * f64::from(-k).exp2()));
     let tolerances = TOLERANCES.iter().map(|&tolerance| {
         changed(Lever::Tolerance, format!("{tolerance:e}"), &|s| {
             s.solver.tolerance = tolerance;

@@ -5,19 +5,24 @@
 //! step gives the numerical error of levers that leave the model as it is, the richest model gives the model error of
 //! those that change it. Each reference has an error bar from a run at another step.
 
+pub mod advice;
 mod document;
 pub mod figures;
 pub mod levers;
 mod meter;
 pub mod norms;
+mod pool;
 pub mod record;
 pub mod report;
 pub mod table;
+
+use std::num::NonZero;
 
 use indicatif::ProgressBar;
 
 use levers::{CreepModel, Level, Lever, ReferenceKind, Setting};
 use norms::{Comparison, Errors, Norm, errors};
+use pool::Job;
 use record::{Record, record};
 use roulement::scene::Scene;
 use roulement::scene::units::Time;
@@ -90,6 +95,8 @@ pub struct SceneStudy {
     pub error_bars: [Errors; 2],
     /// All settings.
     pub points: Vec<Point>,
+    /// What to take, a sentence for each quantity that is asked for.
+    pub advice: Vec<String>,
 }
 
 impl SceneStudy {
@@ -101,6 +108,11 @@ impl SceneStudy {
     /// Error bar of a reference.
     pub fn error_bar(&self, kind: ReferenceKind) -> &Errors {
         &self.error_bars[kind as usize]
+    }
+
+    /// Are there settings measured against a reference?
+    pub fn has(&self, kind: ReferenceKind) -> bool {
+        self.points_of(kind).next().is_some()
     }
 
     /// Settings measured against a reference, those that failed too.
@@ -132,56 +144,107 @@ impl SceneStudy {
     }
 }
 
+/// What of a study is run, and how.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    /// Levers; empty is all.
+    pub only: Vec<Lever>,
+    /// [-] threads.
+    pub threads: usize,
+}
+
+impl Default for Choice {
+    /// All levers, on all cores.
+    fn default() -> Self {
+        Self { only: vec![], threads: std::thread::available_parallelism().map_or(1, NonZero::get) }
+    }
+}
+
+impl Choice {
+    fn has(&self, lever: Lever) -> bool {
+        self.only.is_empty() || self.only.contains(&lever)
+    }
+}
+
+/// Studies a scene with all levers on all cores; the bar shows what is running.
+///
+/// # Errors
+/// See [`study_of`].
+pub fn study(name: &str, scene: &Scene, progress: &ProgressBar) -> Result<SceneStudy, SimulationError> {
+    study_of(name, scene, &Choice::default(), progress)
+}
+
 /// Studies a scene; the bar shows what is running.
 ///
 /// # Errors
 /// If a reference cannot be run: there is nothing to compare with then. Settings that fail are part of the result.
-pub fn study(name: &str, scene: &Scene, progress: &ProgressBar) -> Result<SceneStudy, SimulationError> {
-    let window_start = WINDOW_START * scene.load.duration.0;
+pub fn study_of(
+    name: &str,
+    scene: &Scene,
+    choice: &Choice,
+    progress: &ProgressBar,
+) -> Result<SceneStudy, SimulationError> {
+    let duration = scene.load.duration.0;
+    let window_start = WINDOW_START * duration;
     let [fine, coarse] = levers::reference_steps(scene);
-    let numerical = levers::numerical_settings(scene);
-    let model = levers::model_settings(scene);
-    progress.set_length(4 + (numerical.len() + model.len()) as u64);
-    progress.reset();
-    let timed = |what: String, setting: &Setting| {
-        progress.set_message(format!("{name}: {what}"));
-        let result = record(setting);
-        progress.inc(1);
-        result
-    };
+    let chosen = |settings: Vec<Setting>| settings.into_iter().filter(|s| choice.has(s.lever));
+    let settings: Vec<Setting> =
+        chosen(levers::model_settings(scene)).chain(chosen(levers::numerical_settings(scene))).collect();
+    let has_model = settings.iter().any(|setting| setting.lever.reference() == ReferenceKind::Model);
 
-    // numerical reference; whether its two finest runs stay together decides how runs are compared
-    let reference_run = |step: f64| {
-        timed(format!("reference at {}", levers::seconds(step)), &Setting::fixed_step(scene, step))
-    };
-    let (finest, second) = (reference_run(fine)?, reference_run(coarse)?);
+    // Whether the two finest runs of the scene's own model stay together decides how runs are compared. The richest model
+    // runs at the scene's own step, and at half of it.
+    let mut references: Vec<(String, Setting)> = [fine, coarse]
+        .map(|step| (format!("reference at {}", levers::seconds(step)), Setting::fixed_step(scene, step)))
+        .into();
+    if has_model {
+        let richest = Setting::creep(scene, CreepModel::RICHEST);
+        let mut half = richest.clone();
+        let solver = &mut half.scene.solver;
+        (solver.max_step, solver.initial_step) =
+            (Time(0.5 * solver.max_step.0), Time(0.5 * solver.initial_step.0));
+        references.extend([("richest model".into(), richest), ("richest model, half the step".into(), half)]);
+    }
+    let needed = references.iter().map(|(what, setting)| (what.clone(), setting, true));
+    let others = settings.iter().map(|s| (format!("{} {}", s.lever.name(), s.label), s, false));
+    let jobs: Vec<Job<'_>> = needed
+        .chain(others)
+        .map(|(what, setting, needed)| Job { what: format!("{name}: {what}"), setting, needed })
+        .collect();
+    progress.set_length(jobs.iter().map(Job::weight).sum());
+    progress.reset();
+    let mut results = pool::run_all(&jobs, choice.threads, progress);
+    let failed = |(job, result): (&Job<'_>, &pool::Outcome)| job.needed && matches!(result, Some(Err(_)));
+    if let Some(index) = jobs.iter().zip(&results).position(failed)
+        && let Some(Err(why)) = results.swap_remove(index)
+    {
+        return Err(why);
+    }
+    // Every job was begun, as none that is needed has failed.
+    let mut results = results.into_iter().flatten();
+    let mut finished = || results.next().unwrap_or(Err(SimulationError::Singular(0.0)));
+
+    let (finest, second) = (finished()?, finished()?);
     let divergence = errors(&second, &finest, Comparison::Pointwise, window_start).worst().unwrap_or(0.0);
     let comparison = if divergence < SMOOTH { Comparison::Pointwise } else { Comparison::WindowMeans };
     let compare = |run: &Record, reference: &Record| errors(run, reference, comparison, window_start);
     let tiny = Reference { error_bar: compare(&second, &finest), run: finest };
-
-    // the richest model at the scene's own step, and at half of it
-    let richest = Setting::creep(scene, CreepModel::RICHEST);
-    let run = timed("richest model".into(), &richest)?;
-    let mut finer = richest.scene.clone();
-    let solver = &mut finer.solver;
-    (solver.max_step, solver.initial_step) =
-        (Time(0.5 * solver.max_step.0), Time(0.5 * solver.initial_step.0));
-    let half = timed("richest model, half the step".into(), &Setting { scene: finer, ..richest })?;
-    let rich = Reference { error_bar: compare(&half, &run), run };
-
-    let duration = scene.load.duration.0;
-    let points = model
+    let rich = match has_model {
+        true => {
+            let (run, half) = (finished()?, finished()?);
+            Some(Reference { error_bar: compare(&half, &run), run })
+        }
+        false => None,
+    };
+    let reference = |kind: ReferenceKind| match (kind, &rich) {
+        (ReferenceKind::Model, Some(rich)) => rich,
+        _ => &tiny,
+    };
+    let points: Vec<Point> = settings
         .iter()
-        .chain(&numerical)
         .map(|setting| {
-            let reference = match setting.lever.reference() {
-                ReferenceKind::Numerical => &tiny,
-                ReferenceKind::Model => &rich,
-            };
-            let result = timed(format!("{} {}", setting.lever.name(), setting.label), setting);
-            let measured = result.map(|run| Measured {
-                errors: compare(&run, &reference.run),
+            let measured = finished().map(|run| Measured {
+                errors: compare(&run, &reference(setting.lever.reference()).run),
                 cpu: run.cost.cpu / duration,
                 instructions: run.cost.instructions.map(|count| count / duration),
                 work: run.work,
@@ -195,13 +258,20 @@ pub fn study(name: &str, scene: &Scene, progress: &ProgressBar) -> Result<SceneS
             }
         })
         .collect();
+    let advice = advice::advise(&points, &settings, scene, |setting, kind| {
+        progress.set_message(format!("{name}: to be sure of the advice, {}", setting.label));
+        let run = record(setting).ok()?;
+        Some((compare(&run, &reference(kind).run), run.cost.cpu / duration))
+    });
+    let model_bar = rich.as_ref().map_or(Errors::default(), |rich| rich.error_bar);
     Ok(SceneStudy {
         name: name.to_string(),
         scene: scene.clone(),
         comparison,
         divergence,
         reference_step: fine,
-        error_bars: [tiny.error_bar, rich.error_bar],
+        error_bars: [tiny.error_bar, model_bar],
         points,
+        advice,
     })
 }

@@ -39,6 +39,7 @@ pub enum ReportError {
 
 /// Errors that the summary asks for.
 const TARGETS: [f64; 5] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
+const KINDS: [ReferenceKind; 2] = [ReferenceKind::Numerical, ReferenceKind::Model];
 const TITLE: &str = "What accuracy costs in time";
 
 /// Writes `cost.csv`, the plots, `report.md` and `report.html` into a directory and returns their paths.
@@ -53,9 +54,12 @@ pub fn write(studies: &[SceneStudy], directory: &Path) -> Result<Vec<PathBuf>, R
     for study in studies {
         let file = |what| directory.join(figure_file(study, what));
         figures::write_overview(study, &file("overview"))?;
-        figures::write_norms(study, ReferenceKind::Numerical, &file("numerical"))?;
-        figures::write_norms(study, ReferenceKind::Model, &file("model"))?;
-        paths.extend(["overview", "numerical", "model"].map(file));
+        paths.push(file("overview"));
+        for kind in KINDS.into_iter().filter(|&kind| study.has(kind)) {
+            let path = file(kind.into());
+            figures::write_norms(study, kind, &path)?;
+            paths.push(path);
+        }
     }
     let blocks = report(studies);
     for (name, text) in [("report.md", markdown(&blocks)), ("report.html", html(TITLE, &blocks))] {
@@ -76,6 +80,8 @@ fn text(text: impl Into<String>) -> Block {
 }
 
 fn report(studies: &[SceneStudy]) -> Vec<Block> {
+    let sentences = studies.iter().map(|study| format!("*{}*: {}", study.title(), study.advice.join(" ")));
+    let advice = Block::Text(sentences.collect::<Vec<_>>().join("\n\n"));
     let group =
         |comparison| studies.iter().filter(|study| study.comparison == comparison).collect::<Vec<_>>();
     let (smooth, impacts) = (group(Comparison::Pointwise), group(Comparison::WindowMeans));
@@ -84,11 +90,15 @@ fn report(studies: &[SceneStudy]) -> Vec<Block> {
         Block::Heading(1, TITLE.into()),
         Block::Section("machine".into(), vec![text(made)]),
         text(
-            "CPU is the time of one thread per simulated second, without the start; the least of up to three runs. \
-             Errors are relative, from a quarter of the simulated time on. The numerical error is against the same \
+            "CPU is the time of one thread per simulated second, without the start; the least of up to three runs, with others \
+             beside it on the other cores unless `--threads 1` was given. Errors are relative, from a quarter of the simulated time on. The numerical error is against the same \
              model at a tiny step, the model error against the richest model at the scene's own step. Each reference \
              has an error bar, its difference to a run at another step: errors near the bar or below it say no more than that.",
         ),
+        text(
+            "The cheapest law and step together, run once to be sure (errors against the richest model, where laws were run):",
+        ),
+        advice,
         text("The goals of `solver.accuracy` over all scenes:"),
         Block::Section("goals".into(), vec![goals(&smooth, &impacts)]),
     ];
@@ -110,12 +120,15 @@ fn report(studies: &[SceneStudy]) -> Vec<Block> {
         let plot = |study: &&SceneStudy| figure(study, "overview", "largest error against CPU time");
         blocks.extend([Block::Heading(2, heading.into()), text(how), goals_by_scene(&group)]);
         blocks.extend(group.iter().map(plot));
-        blocks.extend([
-            text(CHEAPEST),
-            cheapest(&group),
-            text("Error of every model against the richest, at the scene's own step, and its CPU time:"),
-            models(&group),
-        ]);
+        if group.iter().all(|study| study.has(ReferenceKind::Numerical)) {
+            blocks.extend([text(CHEAPEST), cheapest(&group)]);
+        }
+        if group.iter().all(|study| study.has(ReferenceKind::Model)) {
+            blocks.extend([
+                text("Error of every model against the richest, at the scene's own step, and its CPU time:"),
+                models(&group),
+            ]);
+        }
         group.iter().for_each(|study| scene(study, &mut blocks));
     }
     blocks
@@ -263,13 +276,21 @@ fn scene(study: &SceneStudy, blocks: &mut Vec<Block>) {
             seconds(study.reference_step),
             number(Some(study.divergence)),
         )),
-        figure(study, "numerical", "numerical error of every quantity"),
-        text("Numerical error, same model. A star marks the Pareto front of the largest error."),
-        points(study, ReferenceKind::Numerical),
-        figure(study, "model", "model error of every quantity"),
-        text("Model error, at the scene's own step."),
-        points(study, ReferenceKind::Model),
     ]);
+    if study.has(ReferenceKind::Numerical) {
+        blocks.extend([
+            figure(study, "numerical", "numerical error of every quantity"),
+            text("Numerical error, same model. A star marks the Pareto front of the largest error."),
+            points(study, ReferenceKind::Numerical),
+        ]);
+    }
+    if study.has(ReferenceKind::Model) {
+        blocks.extend([
+            figure(study, "model", "model error of every quantity"),
+            text("Model error, at the scene's own step."),
+            points(study, ReferenceKind::Model),
+        ]);
+    }
     let failed = study.points.iter().filter_map(|point| Some((point, point.result.as_ref().err()?)));
     for (point, why) in failed {
         blocks.push(text(format!("{} {} failed: {why}.", point.lever.name(), point.label)));

@@ -10,7 +10,10 @@
 use std::io;
 use std::path::Path;
 
-use roulement::simulation::outputs::{BallOutput, CageOutput, Outputs, RaceOutput};
+use roulement::simulation::outputs::Outputs;
+
+use super::interval;
+use super::quantities::{COUNT, QUANTITIES, Size, values};
 
 /// [-] blocks of a run; even.
 const MOST_BLOCKS: usize = 128;
@@ -24,80 +27,6 @@ const STUDENT_T: [f64; GROUPS / 2 - 2] = [63.657, 9.925, 5.841, 4.604, 4.032, 3.
 /// [-] run lengths further ahead than this are not foretold.
 const FURTHEST: f64 = 100.0;
 
-/// What the size of a quantity is measured by.
-#[derive(Clone, Copy, PartialEq)]
-enum Size {
-    /// Its own mean.
-    Own,
-    /// The largest force.
-    Force,
-    /// The largest force at the pitch radius.
-    Moment,
-    /// The largest component of the position.
-    Position,
-    /// The largest speed of a race or of the cage.
-    Speed,
-    /// 1.
-    One,
-}
-
-/// A quantity whose mean is reported.
-pub struct Quantity {
-    /// Name.
-    pub name: &'static str,
-    /// Unit.
-    pub unit: &'static str,
-    size: Size,
-    of_cage: bool,
-    get: fn(&Outputs) -> f64,
-}
-
-const fn quantity(name: &'static str, unit: &'static str, size: Size, get: fn(&Outputs) -> f64) -> Quantity {
-    Quantity { name, unit, size, of_cage: false, get }
-}
-
-const fn of_cage(name: &'static str, get: fn(&Outputs) -> f64) -> Quantity {
-    Quantity { name, unit: "W", size: Size::Own, of_cage: true, get }
-}
-
-/// [rad/s] spin of a race about its own axis.
-fn spin(race: &RaceOutput) -> f64 {
-    (race.pose.orientation.inverse() * race.twist.angular_velocity).x
-}
-
-fn of_balls(outputs: &Outputs, get: fn(&BallOutput) -> f64) -> f64 {
-    outputs.balls.iter().map(get).sum::<f64>() / outputs.balls.len() as f64
-}
-
-fn cage(outputs: &Outputs, get: fn(&CageOutput) -> f64) -> f64 {
-    outputs.cage.as_ref().map_or(0.0, get)
-}
-
-const N: usize = 19;
-
-/// All of them.
-pub static QUANTITIES: [Quantity; N] = [
-    quantity("force.x on the inner race", "N", Size::Force, |o| o.inner.wrench.force.x),
-    quantity("force.y on the inner race", "N", Size::Force, |o| o.inner.wrench.force.y),
-    quantity("force.z on the inner race", "N", Size::Force, |o| o.inner.wrench.force.z),
-    quantity("moment.y on the inner race", "N.m", Size::Moment, |o| o.inner.wrench.moment.y),
-    quantity("moment.z on the inner race", "N.m", Size::Moment, |o| o.inner.wrench.moment.z),
-    quantity("position.x of the inner race", "m", Size::Position, |o| o.inner.pose.position.x),
-    quantity("position.y of the inner race", "m", Size::Position, |o| o.inner.pose.position.y),
-    quantity("position.z of the inner race", "m", Size::Position, |o| o.inner.pose.position.z),
-    quantity("inner race speed", "rad/s", Size::Speed, |o| spin(&o.inner)),
-    quantity("outer race speed", "rad/s", Size::Speed, |o| spin(&o.outer)),
-    quantity("cage speed", "rad/s", Size::Speed, |o| o.cage_speed),
-    quantity("cage slip", "1", Size::One, |o| o.cage_slip),
-    quantity("ball slip", "1", Size::One, |o| o.ball_slip),
-    quantity("friction power", "W", Size::Own, |o| o.friction_power),
-    quantity("friction torque", "N.m", Size::Own, |o| o.friction_torque),
-    quantity("inner power per ball", "W", Size::Own, |o| of_balls(o, |ball| ball.inner.power)),
-    quantity("outer power per ball", "W", Size::Own, |o| of_balls(o, |ball| ball.outer.power)),
-    of_cage("pocket power", |o| cage(o, |cage| cage.pocket_power)),
-    of_cage("land power", |o| cage(o, |cage| cage.land_power)),
-];
-
 /// Largest values that are reported over the window: eccentricity of the cage \[m], pocket load \[N], land load \[N].
 const LARGEST: [fn(&Outputs) -> f64; 3] = [
     |o| o.cage.map_or(0.0, |cage| cage.eccentricity.yz().norm()),
@@ -110,7 +39,7 @@ struct Block {
     rows: u64,
     /// \[s] times of the first and the last row.
     span: [f64; 2],
-    sums: [f64; N],
+    sums: [f64; COUNT],
     largest: [f64; 3],
 }
 
@@ -144,6 +73,20 @@ pub struct Mean {
     pub mean: f64,
     /// Its trend; none where the window has too few rows to tell.
     pub trend: Option<Trend>,
+    /// \[unit] half of the interval in which the mean of a longer run lies, at 95 %, if the run goes on as in the window; none
+    /// where the window has too few rows to tell.
+    pub interval: Option<f64>,
+    /// Its numerical error, where that was measured.
+    pub error: Option<MeasuredError>,
+}
+
+/// Numerical error of a quantity, measured with a run at twice the steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuredError {
+    /// \[unit] of the mean; with the interval of the mean where the quantity is chaotic.
+    pub mean: f64,
+    /// \[unit] of values at equal times, root mean square over the run; none where the quantity is chaotic.
+    pub history: Option<f64>,
 }
 
 /// Trend of a quantity over the window.
@@ -184,7 +127,7 @@ impl Blocks {
         let row = Block {
             rows: 1,
             span: [outputs.time; 2],
-            sums: std::array::from_fn(|i| (QUANTITIES[i].get)(outputs)),
+            sums: values(outputs),
             largest: LARGEST.map(|get| get(outputs)),
         };
         self.add(row);
@@ -218,7 +161,7 @@ impl Blocks {
         window[1..].iter().for_each(|block| all.join(block));
         let mean = |i: usize| all.sums[i] / all.rows as f64;
         let largest_of = |size: Size| {
-            let of = (0..N).filter(|&i| QUANTITIES[i].size == size);
+            let of = (0..COUNT).filter(|&i| QUANTITIES[i].size == size);
             of.map(|i| mean(i).abs()).fold(0.0, f64::max)
         };
         let size = |i: usize| match QUANTITIES[i].size {
@@ -228,20 +171,25 @@ impl Blocks {
             size => largest_of(size),
         };
         let start = self.blocks[0].span[0];
-        let there = (0..N).filter(|&i| self.has_cage || !QUANTITIES[i].of_cage);
+        let there = (0..COUNT).filter(|&i| self.has_cage || !QUANTITIES[i].of_cage);
         let means = there.map(|i| {
-            let groups = groups(window, i);
-            let trend = Trend::of(&groups, [all.span[0] - start, all.span[1] - start], size(i));
-            Mean { name: QUANTITIES[i].name, unit: QUANTITIES[i].unit, mean: mean(i), trend }
+            let each = window.len().div_ceil(GROUPS);
+            let of_trend = groups(window, i, each, window.len() / each);
+            let trend = Trend::of(&of_trend, [all.span[0] - start, all.span[1] - start], size(i));
+            let interval = interval::of_mean(|n| {
+                let each = (window.len() / n).max(1);
+                groups(window, i, each, n.min(window.len()))
+            });
+            let (name, unit) = (QUANTITIES[i].name, QUANTITIES[i].unit);
+            Mean { name, unit, mean: mean(i), trend, interval, error: None }
         });
         Some(Means { window: all.span, means: means.collect(), largest: all.largest })
     }
 }
 
-/// Means of a quantity in equal groups of the window's blocks; the oldest blocks are left out where they do not divide.
-fn groups(window: &[Block], quantity: usize) -> Vec<f64> {
-    let each = window.len().div_ceil(GROUPS);
-    let n = window.len() / each;
+/// Means of a quantity in groups of so many of the window's blocks, `n` of them; the oldest blocks are left out where they do
+/// not divide.
+fn groups(window: &[Block], quantity: usize, each: usize, n: usize) -> Vec<f64> {
     let mean = |blocks: &[Block]| {
         let rows: u64 = blocks.iter().map(|block| block.rows).sum();
         blocks.iter().map(|block| block.sums[quantity]).sum::<f64>() / rows as f64
@@ -304,9 +252,14 @@ impl Trend {
 }
 
 impl Means {
+    /// The mean of a quantity by its name.
+    pub fn find(&self, name: &str) -> Option<&Mean> {
+        self.means.iter().find(|mean| mean.name == name)
+    }
+
     /// The mean of a quantity by its name; not a number where it is not there.
     pub fn of(&self, name: &str) -> f64 {
-        self.means.iter().find(|mean| mean.name == name).map_or(f64::NAN, |mean| mean.mean)
+        self.find(name).map_or(f64::NAN, |mean| mean.mean)
     }
 
     /// What has not settled.
@@ -342,8 +295,12 @@ impl Means {
             "drift_of_noise",
             "settled",
             "needed_duration [s]",
+            "interval_95",
+            "error",
+            "history_error",
         ];
         table.write_record(header)?;
+        let text = |number: Option<f64>| number.map_or(String::new(), |number| number.to_string());
         for mean in &self.means {
             let trend = mean.trend.as_ref();
             let number = |get: fn(&Trend) -> f64| trend.map_or(String::new(), |trend| get(trend).to_string());
@@ -358,6 +315,9 @@ impl Means {
                 number(|trend| trend.noise),
                 trend.map_or(String::new(), |trend| trend.settled.to_string()),
                 trend.and_then(|trend| trend.needed).map_or(String::new(), |needed| needed.to_string()),
+                text(mean.interval),
+                text(mean.error.map(|error| error.mean)),
+                text(mean.error.and_then(|error| error.history)),
             ])?;
         }
         let table = table.into_inner().map_err(|why| io::Error::other(why.to_string()))?;
@@ -378,7 +338,8 @@ mod tests {
         let mut blocks = Blocks::new(true, 1.0);
         for row in 0..=rows {
             let time = duration * f64::from(row) / f64::from(rows);
-            let block = Block { rows: 1, span: [time; 2], sums: [value(time); N], largest: [value(time); 3] };
+            let block =
+                Block { rows: 1, span: [time; 2], sums: [value(time); COUNT], largest: [value(time); 3] };
             blocks.add(block);
         }
         assert!(blocks.blocks.len() <= MOST_BLOCKS);

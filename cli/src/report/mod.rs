@@ -1,9 +1,12 @@
 //! Results of a run: its table, its means, its energy and its plots; and the style of all plots.
 
 pub mod energy;
+pub mod figures;
+mod interval;
 pub mod limits;
 pub mod means;
 pub mod plots;
+pub mod quantities;
 pub mod results;
 pub mod style;
 pub mod thinned;

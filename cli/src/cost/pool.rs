@@ -1,0 +1,77 @@
+//! The runs of a study on all cores. What a run gives does not depend on the others, but for its time.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use indicatif::ProgressBar;
+use roulement::scene::CreepLaw;
+use roulement::simulation::SimulationError;
+
+use super::levers::{Level, Setting};
+use super::record::{Record, record};
+
+/// A run to be done.
+pub struct Job<'a> {
+    /// What the progress says.
+    pub what: String,
+    /// Setting.
+    pub setting: &'a Setting,
+    /// Is nothing to be had without it?
+    pub needed: bool,
+}
+
+impl Job<'_> {
+    /// [-] about how long it takes, for the progress and for the order: long ones first, so that no core waits at the end.
+    pub fn weight(&self) -> u64 {
+        let scene = &self.setting.scene;
+        let step = match self.setting.level {
+            // About as long as twenty steps each.
+            Level::Equilibrium => self.setting.communication / 20.0,
+            // What tolerances ask of balls of a centimetre that have been struck.
+            Level::Dynamic => {
+                let of_tolerance = 5e-5 * (scene.solver.tolerance / 1e-6).powf(0.4);
+                scene.solver.max_step.0.min(of_tolerance).min(self.setting.communication)
+            }
+        };
+        let law = match scene.effects.creep.law {
+            CreepLaw::Kalker => 6.0,
+            CreepLaw::KalkerTable => 2.0,
+            _ => 1.0,
+        };
+        (law * scene.load.duration.0 / step).ceil().max(1.0) as u64
+    }
+}
+
+/// What came of a job; none if it was not begun.
+pub type Outcome = Option<Result<Record, SimulationError>>;
+
+/// Runs all jobs on some threads. A job that was not begun, because a needed one failed, has no result.
+pub fn run_all(jobs: &[Job<'_>], threads: usize, progress: &ProgressBar) -> Vec<Outcome> {
+    let mut order: Vec<usize> = (0..jobs.len()).collect();
+    order.sort_by_key(|&job| (!jobs[job].needed, u64::MAX - jobs[job].weight()));
+    let (next, over) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let results = Mutex::new(jobs.iter().map(|_| None).collect::<Vec<_>>());
+    let work = || {
+        while !over.load(Ordering::Relaxed) {
+            let Some(&index) = order.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
+            let job = &jobs[index];
+            progress.set_message(job.what.clone());
+            let result = record(job.setting);
+            progress.inc(job.weight());
+            if job.needed && result.is_err() {
+                over.store(true, Ordering::Relaxed);
+            }
+            // No thread panics while it holds the lock.
+            if let Ok(mut results) = results.lock() {
+                results[index] = Some(result);
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads.clamp(1, jobs.len().max(1)) {
+            scope.spawn(work);
+        }
+        work();
+    });
+    results.into_inner().unwrap_or_default()
+}

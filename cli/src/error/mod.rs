@@ -1,0 +1,16 @@
+//! Numerical error of a run, measured on its own scene (`roulement run --error`).
+//!
+//! A scene is run again at half the steps, with a tolerance of the local error that asks for half the steps, too; what then
+//! differs is the error of the coarser run, and more than that of the finer one. It is refined until the finer run keeps the
+//! goal. Errors of means and of histories are told apart: where a run is chaotic its histories have no promise, and its means
+//! one of statistics.
+
+mod difference;
+mod estimate;
+mod rounds;
+mod sample;
+
+pub use difference::Difference;
+pub use estimate::Estimate;
+pub use rounds::{Judgement, Rounds, TWIN};
+pub use sample::{Lengths, Run, Sample, sizes};

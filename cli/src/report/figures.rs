@@ -1,0 +1,104 @@
+//! The figures of a summary by their names, and their error bars.
+
+use std::collections::BTreeMap;
+
+use roulement::simulation::Simulation;
+use roulement::simulation::outputs::{BallOutput, Outputs};
+
+use super::energy::EnergyWatch;
+use super::limits::Limits;
+use super::means::Means;
+
+/// Figures by name.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Figures(BTreeMap<&'static str, f64>);
+
+impl Figures {
+    /// All figures of a run that has come to its end; those of means, too.
+    pub fn of(simulation: &Simulation, means: Option<&Means>, limits: &Limits, energy: &EnergyWatch) -> Self {
+        let now = simulation.outputs();
+        let (force, moment) = (now.inner.wrench.force, now.inner.wrench.moment);
+        let position = now.inner.pose.position;
+        let balls = |get: fn(&BallOutput) -> f64| {
+            let values = now.balls.iter().map(get);
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+        };
+        let (inner, outer) = (balls(|b| b.inner.load), balls(|b| b.outer.load));
+        let inner_angle = balls(|b| b.inner.contact_angle.to_degrees());
+        let outer_angle = balls(|b| b.outer.contact_angle.to_degrees());
+        let mut figures = Self(BTreeMap::from([
+            ("end force.x", force.x),
+            ("end force.y", force.y),
+            ("end force.z", force.z),
+            ("end moment.x", moment.x),
+            ("end moment.y", moment.y),
+            ("end moment.z", moment.z),
+            ("end position.x", position.x),
+            ("end position.y", position.y),
+            ("end position.z", position.z),
+            ("least inner load", inner.0),
+            ("largest inner load", inner.1),
+            ("least outer load", outer.0),
+            ("largest outer load", outer.1),
+            ("least inner angle", inner_angle.0),
+            ("largest inner angle", inner_angle.1),
+            ("least outer angle", outer_angle.0),
+            ("largest outer angle", outer_angle.1),
+            ("over inner shoulders", limits.over_shoulders[0]),
+            ("over outer shoulders", limits.over_shoulders[1]),
+            ("between balls", limits.between_balls),
+            ("end eccentricity", eccentricity(now)),
+            ("work", now.work),
+            ("lost", now.dissipated),
+            ("stored", now.stored_energy),
+            ("balance", energy.balance(now)),
+        ]));
+        if let Some(means) = means {
+            figures.0.extend(means.means.iter().map(|mean| (mean.name, mean.mean)));
+            let names = ["largest eccentricity", "largest pocket load", "largest land load"];
+            figures.0.extend(names.into_iter().zip(means.largest));
+        }
+        figures
+    }
+
+    /// A figure; not a number where it is not there.
+    pub fn get(&self, name: &str) -> f64 {
+        self.0.get(name).copied().unwrap_or(f64::NAN)
+    }
+
+    /// Gives a figure another value.
+    pub fn set(&mut self, name: &'static str, value: f64) {
+        self.0.insert(name, value);
+    }
+
+    /// How far figures are from those of another run; what one of them does not have is left out.
+    pub fn distance(&self, other: &Self) -> Self {
+        let both = self.0.iter().filter_map(|(name, value)| Some((*name, value - other.0.get(name)?)));
+        Self(both.map(|(name, difference)| (name, difference.abs())).collect())
+    }
+}
+
+/// \[m] the cage's centre off the axis.
+fn eccentricity(now: &Outputs) -> f64 {
+    now.cage.as_ref().map_or(0.0, |cage| cage.eccentricity.yz().norm())
+}
+
+/// Figures with their error bars, where they were measured.
+#[derive(Clone, Debug, Default)]
+pub struct Shown {
+    /// Figures.
+    pub figures: Figures,
+    /// Their error bars.
+    pub bars: Option<Figures>,
+}
+
+impl Shown {
+    /// A figure times a factor with so many digits, and its error bar.
+    pub fn text(&self, name: &str, factor: f64, digits: usize) -> String {
+        let value = self.figures.get(name) * factor;
+        match self.bars.as_ref().map(|bars| bars.get(name) * factor) {
+            Some(bar) => format!("{value:.digits$} (+- {bar:.1e})"),
+            None => format!("{value:.digits$}"),
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! The quantities whose means are reported, and whose errors are measured.
+
+use roulement::simulation::outputs::{BallOutput, CageOutput, Outputs, RaceOutput};
+
+/// What the size of a quantity is measured by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// Its own mean.
+    Own,
+    /// The largest force.
+    Force,
+    /// The largest force at the pitch radius.
+    Moment,
+    /// The largest component of the position.
+    Position,
+    /// The largest speed of a race or of the cage.
+    Speed,
+    /// 1.
+    One,
+}
+
+/// A quantity whose mean is reported.
+#[derive(Debug)]
+pub struct Quantity {
+    /// Name.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// What its size is measured by.
+    pub size: Size,
+    /// Is it there with a cage alone?
+    pub of_cage: bool,
+    get: fn(&Outputs) -> f64,
+}
+
+const fn quantity(name: &'static str, unit: &'static str, size: Size, get: fn(&Outputs) -> f64) -> Quantity {
+    Quantity { name, unit, size, of_cage: false, get }
+}
+
+const fn of_cage(name: &'static str, get: fn(&Outputs) -> f64) -> Quantity {
+    Quantity { name, unit: "W", size: Size::Own, of_cage: true, get }
+}
+
+/// [rad/s] spin of a race about its own axis.
+fn spin(race: &RaceOutput) -> f64 {
+    (race.pose.orientation.inverse() * race.twist.angular_velocity).x
+}
+
+fn of_balls(outputs: &Outputs, get: fn(&BallOutput) -> f64) -> f64 {
+    outputs.balls.iter().map(get).sum::<f64>() / outputs.balls.len() as f64
+}
+
+fn cage(outputs: &Outputs, get: fn(&CageOutput) -> f64) -> f64 {
+    outputs.cage.as_ref().map_or(0.0, get)
+}
+
+/// [-] their number.
+pub const COUNT: usize = 19;
+
+/// All of them.
+pub static QUANTITIES: [Quantity; COUNT] = [
+    quantity("force.x on the inner race", "N", Size::Force, |o| o.inner.wrench.force.x),
+    quantity("force.y on the inner race", "N", Size::Force, |o| o.inner.wrench.force.y),
+    quantity("force.z on the inner race", "N", Size::Force, |o| o.inner.wrench.force.z),
+    quantity("moment.y on the inner race", "N.m", Size::Moment, |o| o.inner.wrench.moment.y),
+    quantity("moment.z on the inner race", "N.m", Size::Moment, |o| o.inner.wrench.moment.z),
+    quantity("position.x of the inner race", "m", Size::Position, |o| o.inner.pose.position.x),
+    quantity("position.y of the inner race", "m", Size::Position, |o| o.inner.pose.position.y),
+    quantity("position.z of the inner race", "m", Size::Position, |o| o.inner.pose.position.z),
+    quantity("inner race speed", "rad/s", Size::Speed, |o| spin(&o.inner)),
+    quantity("outer race speed", "rad/s", Size::Speed, |o| spin(&o.outer)),
+    quantity("cage speed", "rad/s", Size::Speed, |o| o.cage_speed),
+    quantity("cage slip", "1", Size::One, |o| o.cage_slip),
+    quantity("ball slip", "1", Size::One, |o| o.ball_slip),
+    quantity("friction power", "W", Size::Own, |o| o.friction_power),
+    quantity("friction torque", "N.m", Size::Own, |o| o.friction_torque),
+    quantity("inner power per ball", "W", Size::Own, |o| of_balls(o, |ball| ball.inner.power)),
+    quantity("outer power per ball", "W", Size::Own, |o| of_balls(o, |ball| ball.outer.power)),
+    of_cage("pocket power", |o| cage(o, |cage| cage.pocket_power)),
+    of_cage("land power", |o| cage(o, |cage| cage.land_power)),
+];
+
+/// All of them at a row.
+pub fn values(outputs: &Outputs) -> [f64; COUNT] {
+    std::array::from_fn(|i| (QUANTITIES[i].get)(outputs))
+}
