@@ -18,9 +18,9 @@ pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
 use crate::schema::explain;
 pub use crate::schema::{
-    Accuracy, BearingSection, Condition, Drive, Friction, Giver, Group, Groups, InputGivers, Interface, Load,
-    Material, Misalignment, Orientation, RaceSection, SceneError, Schedule, Solver, Start, Tilt, Translation,
-    units,
+    Accuracy, BearingSection, Condition, Direction, Drive, Friction, Giver, Group, Groups, InputGivers,
+    Interface, Load, Material, Misalignment, Orientation, RaceLoad, RaceSection, SceneError, Schedule,
+    Solver, Start, Tilt, Translation, units,
 };
 
 /// A bearing, its load and its simulation, as described by a scene file.
@@ -61,7 +61,7 @@ pub struct Scene {
     /// Time integration.
     #[serde(default)]
     pub solver: Solver,
-    /// Duration, speeds and load of the inner race.
+    /// Duration, speeds and loads of the races.
     pub load: Load,
     /// Interface of the FMU.
     #[serde(default)]

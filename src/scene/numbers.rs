@@ -1,6 +1,6 @@
 //! The one table of the numbers of a scene, but for those of its effects, which stand with them.
 
-use super::{Drive, Scene, SceneError, Schedule};
+use super::{Drive, RaceLoad, Scene, SceneError, Schedule};
 use crate::schema::numbers::{FRICTION, Number, POISSON_RATIO, Parameter, Place, Range, YOUNGS_MODULUS};
 
 const DENSITY: Range = Range::closed(1.0, 1e5, "kg/m3");
@@ -53,7 +53,7 @@ static BEARING: [Number<Scene>; 15] = [
 
 /// Cage friction, races, start, time integration and load: those after the effects.
 #[rustfmt::skip]
-static MOTION: [Number<Scene>; 41] = [
+static MOTION: [Number<Scene>; 51] = [
     Number::fixed("friction.ball_cage", FRICTION, "friction coefficient of the balls in their pockets", |s| Place::Value(s.friction.ball_cage.as_mut())),
     Number::fixed("friction.cage_race", FRICTION, "friction coefficient of the cage on the lands", |s| Place::Value(s.friction.cage_race.as_mut())),
     Number::fixed("friction.ball_ball", FRICTION, "friction coefficient of neighbouring balls", |s| Place::Value(s.friction.ball_ball.as_mut())),
@@ -71,13 +71,13 @@ static MOTION: [Number<Scene>; 41] = [
         |s| Place::Read(s.inner.shoulder_height.iter().flatten().map(|height| height.0).collect())),
     Number::checked("inner.shoulder_angle", RIGHT_ANGLE,
         |s| Place::Read(s.inner.shoulder_angle.iter().flatten().map(|angle| angle.0).collect())),
-    Number::fixed_if("outer.mass", MASS, "mass of the outer race and what is fixed to it", outer_is_hinged,
+    Number::fixed_if("outer.mass", MASS, "mass of the outer race and what is fixed to it", outer_moves,
         |s| Place::Value(s.outer.mass.as_mut().map(|mass| &mut mass.0))),
-    Number::fixed_if("outer.inertia.x", INERTIA, "moment of inertia of the outer race about its own axis", outer_is_hinged,
+    Number::fixed_if("outer.inertia.x", INERTIA, "moment of inertia of the outer race about its own axis", outer_moves,
         |s| Place::Value(s.outer.inertia.as_mut().map(|moments| &mut moments[0].0))),
-    Number::fixed_if("outer.inertia.y", INERTIA, "moment of inertia of the outer race about its y axis", outer_is_hinged,
+    Number::fixed_if("outer.inertia.y", INERTIA, "moment of inertia of the outer race about its y axis", outer_moves,
         |s| Place::Value(s.outer.inertia.as_mut().map(|moments| &mut moments[1].0))),
-    Number::fixed_if("outer.inertia.z", INERTIA, "moment of inertia of the outer race about its z axis", outer_is_hinged,
+    Number::fixed_if("outer.inertia.z", INERTIA, "moment of inertia of the outer race about its z axis", outer_moves,
         |s| Place::Value(s.outer.inertia.as_mut().map(|moments| &mut moments[2].0))),
     Number::fixed_if("outer.misalignment.ry", TILT, "misalignment of the outer race about y", outer_has_frame,
         |s| Place::Schedule(&mut s.outer.misalignment.ry)),
@@ -117,24 +117,39 @@ static MOTION: [Number<Scene>; 41] = [
     Number::checked("load.ry.rotation", TILT, |s| values(&s.load.ry.rotation)),
     Number::checked("load.rz.moment", MOMENT, |s| values(&s.load.rz.moment)),
     Number::checked("load.rz.rotation", TILT, |s| values(&s.load.rz.rotation)),
+    Number::checked("load.outer.x.force", FORCE, |s| outer(s, |load| &load.x.force)),
+    Number::checked("load.outer.x.displacement", DISPLACEMENT, |s| outer(s, |load| &load.x.displacement)),
+    Number::checked("load.outer.y.force", FORCE, |s| outer(s, |load| &load.y.force)),
+    Number::checked("load.outer.y.displacement", DISPLACEMENT, |s| outer(s, |load| &load.y.displacement)),
+    Number::checked("load.outer.z.force", FORCE, |s| outer(s, |load| &load.z.force)),
+    Number::checked("load.outer.z.displacement", DISPLACEMENT, |s| outer(s, |load| &load.z.displacement)),
+    Number::checked("load.outer.ry.moment", MOMENT, |s| outer(s, |load| &load.ry.moment)),
+    Number::checked("load.outer.ry.rotation", TILT, |s| outer(s, |load| &load.ry.rotation)),
+    Number::checked("load.outer.rz.moment", MOMENT, |s| outer(s, |load| &load.rz.moment)),
+    Number::checked("load.outer.rz.rotation", TILT, |s| outer(s, |load| &load.rz.rotation)),
 ];
 
 fn inner_moves(scene: &Scene) -> bool {
     scene.inner.drive == Drive::Wrench
 }
 
-fn outer_is_hinged(scene: &Scene) -> bool {
-    scene.outer.drive == Drive::Hinge
+fn outer_moves(scene: &Scene) -> bool {
+    matches!(scene.outer.drive, Drive::Hinge | Drive::Wrench)
 }
 
-/// A race whose pose is given has no frame of its own.
+/// A race whose pose is given has no frame of its own, nor has one that a wrench moves.
 fn outer_has_frame(scene: &Scene) -> bool {
-    scene.outer.drive != Drive::Pose
+    matches!(scene.outer.drive, Drive::Fixed | Drive::Hinge)
 }
 
 /// All values of a schedule, if it was given.
 fn values(schedule: &Option<Schedule>) -> Place<'static> {
     Place::Read(schedule.as_ref().map(Schedule::values).unwrap_or_default())
+}
+
+/// All values of a schedule of the load on the outer race, if it was given.
+fn outer(scene: &Scene, of: impl Fn(&RaceLoad) -> &Option<Schedule>) -> Place<'static> {
+    scene.load.outer.as_ref().map_or(Place::Read(vec![]), |load| values(of(load)))
 }
 
 impl Scene {

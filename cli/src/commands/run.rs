@@ -11,11 +11,12 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use roulement::model::bodies::Race;
 use roulement::simulation::Simulation;
 use roulement::simulation::play::{Rows, play};
 use roulement_cli::report::energy::EnergyWatch;
 use roulement_cli::report::limits::Limits;
-use roulement_cli::report::means::Blocks;
+use roulement_cli::report::means::{Blocks, Parts};
 use roulement_cli::report::plots::write_plots;
 use roulement_cli::report::results::{Choice, ResultsError, ResultsWriter, Window};
 use roulement_cli::report::thinned::Thinned;
@@ -72,8 +73,11 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     let mut plotted = Thinned::default();
     let mut energy = EnergyWatch::default();
     let mut limits = Limits::default();
-    let mut blocks =
-        Blocks::new(simulation.outputs().cage.is_some(), 0.5 * simulation.model().bearing.pitch_diameter);
+    let parts = Parts {
+        cage: simulation.outputs().cage.is_some(),
+        moving_outer: Race::loaded(&scene) == Race::Outer,
+    };
+    let mut blocks = Blocks::new(parts, 0.5 * simulation.model().bearing.pitch_diameter);
     let played = play(&mut simulation, rows, |simulation| {
         let outputs = simulation.outputs();
         if let Err(why) = results.write(simulation.inputs(), outputs) {

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::time::Duration;
 
+use roulement::model::bodies::Race;
 use roulement::simulation::Simulation;
 use roulement_cli::report::energy::EnergyWatch;
 use roulement_cli::report::limits::Limits;
@@ -103,8 +104,10 @@ fn write_limits(out: &mut String, limits: &Limits) -> std::fmt::Result {
 fn write_summary(out: &mut String, run: &Run<'_>) -> std::fmt::Result {
     let Run { simulation, means, energy, limits, wall } = run;
     let now = simulation.outputs();
-    let (force, moment) = (now.inner.wrench.force, now.inner.wrench.moment);
-    let position = now.inner.pose.position * 1e6;
+    let loaded = Race::loaded(simulation.scene());
+    let (force, moment) = (now[loaded].wrench.force, now[loaded].wrench.moment);
+    let position = now[loaded].pose.position * 1e6;
+    let race = loaded.name();
     let title = &simulation.scene().title;
     if !title.is_empty() {
         writeln!(out, "{title}")?;
@@ -112,7 +115,7 @@ fn write_summary(out: &mut String, run: &Run<'_>) -> std::fmt::Result {
     writeln!(out, "at {:.3} ms", now.time * 1e3)?;
     writeln!(
         out,
-        "bearing's force  x {:.3}  y {:.3}  z {:.3} N   (of the bearing on the inner race; the external load is the opposite,",
+        "bearing's force  x {:.3}  y {:.3}  z {:.3} N   (of the bearing on the {race} race; the external load is the opposite,",
         force.x, force.y, force.z
     )?;
     writeln!(
@@ -120,7 +123,7 @@ fn write_summary(out: &mut String, run: &Run<'_>) -> std::fmt::Result {
         "bearing's moment x {:.5}  y {:.5}  z {:.5} N m   but for what accelerates the race)",
         moment.x, moment.y, moment.z
     )?;
-    writeln!(out, "inner race at    x {:.4}  y {:.4}  z {:.4} um", position.x, position.y, position.z)?;
+    writeln!(out, "{race} race at    x {:.4}  y {:.4}  z {:.4} um", position.x, position.y, position.z)?;
     let extremes = |get: fn(&roulement::simulation::outputs::BallOutput) -> f64| {
         let values = now.balls.iter().map(get);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));

@@ -48,16 +48,29 @@ pub struct Quantity {
     /// Unit.
     pub unit: &'static str,
     size: Size,
-    of_cage: bool,
+    shown: fn(Parts) -> bool,
     get: fn(&Outputs) -> f64,
 }
 
+/// Parts of a bearing that some quantities are of.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts {
+    /// Is there a cage?
+    pub cage: bool,
+    /// Does a wrench move the outer race?
+    pub moving_outer: bool,
+}
+
 const fn quantity(name: &'static str, unit: &'static str, size: Size, get: fn(&Outputs) -> f64) -> Quantity {
-    Quantity { name, unit, size, of_cage: false, get }
+    Quantity { name, unit, size, shown: |_| true, get }
 }
 
 const fn of_cage(name: &'static str, get: fn(&Outputs) -> f64) -> Quantity {
-    Quantity { name, unit: "W", size: Size::Own, of_cage: true, get }
+    Quantity { name, unit: "W", size: Size::Own, shown: |parts| parts.cage, get }
+}
+
+const fn of_moving_outer(name: &'static str, get: fn(&Outputs) -> f64) -> Quantity {
+    Quantity { name, unit: "m", size: Size::Position, shown: |parts| parts.moving_outer, get }
 }
 
 /// [rad/s] spin of a race about its own axis.
@@ -73,7 +86,7 @@ fn cage(outputs: &Outputs, get: fn(&CageOutput) -> f64) -> f64 {
     outputs.cage.as_ref().map_or(0.0, get)
 }
 
-const N: usize = 19;
+const N: usize = 22;
 
 /// All of them.
 pub static QUANTITIES: [Quantity; N] = [
@@ -85,6 +98,9 @@ pub static QUANTITIES: [Quantity; N] = [
     quantity("position.x of the inner race", "m", Size::Position, |o| o.inner.pose.position.x),
     quantity("position.y of the inner race", "m", Size::Position, |o| o.inner.pose.position.y),
     quantity("position.z of the inner race", "m", Size::Position, |o| o.inner.pose.position.z),
+    of_moving_outer("position.x of the outer race", |o| o.outer.pose.position.x),
+    of_moving_outer("position.y of the outer race", |o| o.outer.pose.position.y),
+    of_moving_outer("position.z of the outer race", |o| o.outer.pose.position.z),
     quantity("inner race speed", "rad/s", Size::Speed, |o| spin(&o.inner)),
     quantity("outer race speed", "rad/s", Size::Speed, |o| spin(&o.outer)),
     quantity("cage speed", "rad/s", Size::Speed, |o| o.cage_speed),
@@ -129,7 +145,7 @@ pub struct Blocks {
     blocks: Vec<Block>,
     rows_per_block: u64,
     rows: u64,
-    has_cage: bool,
+    parts: Parts,
     pitch_radius: f64,
 }
 
@@ -175,8 +191,8 @@ pub struct Means {
 
 impl Blocks {
     /// None yet.
-    pub fn new(has_cage: bool, pitch_radius: f64) -> Self {
-        Self { blocks: vec![], rows_per_block: 1, rows: 0, has_cage, pitch_radius }
+    pub fn new(parts: Parts, pitch_radius: f64) -> Self {
+        Self { blocks: vec![], rows_per_block: 1, rows: 0, parts, pitch_radius }
     }
 
     /// Adds a row.
@@ -228,7 +244,7 @@ impl Blocks {
             size => largest_of(size),
         };
         let start = self.blocks[0].span[0];
-        let there = (0..N).filter(|&i| self.has_cage || !QUANTITIES[i].of_cage);
+        let there = (0..N).filter(|&i| (QUANTITIES[i].shown)(self.parts));
         let means = there.map(|i| {
             let groups = groups(window, i);
             let trend = Trend::of(&groups, [all.span[0] - start, all.span[1] - start], size(i));
@@ -375,7 +391,7 @@ mod tests {
     }
 
     fn run(rows: u32, duration: f64, value: impl Fn(f64) -> f64) -> Means {
-        let mut blocks = Blocks::new(true, 1.0);
+        let mut blocks = Blocks::new(Parts { cage: true, moving_outer: true }, 1.0);
         for row in 0..=rows {
             let time = duration * f64::from(row) / f64::from(rows);
             let block = Block { rows: 1, span: [time; 2], sums: [value(time); N], largest: [value(time); 3] };
