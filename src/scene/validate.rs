@@ -77,7 +77,9 @@ fn races(scene: &Scene) -> Result<(), SceneError> {
                 ));
             }
             let range = Range::closed(0.0, conformity * bearing.ball_diameter.0, "m");
-            heights.iter().try_for_each(|height| range.check(&key, height.0))?;
+            for (side, height) in ["minus_x", "plus_x"].into_iter().zip(heights) {
+                range.check(&format!("{key}.{side}"), height.0)?;
+            }
         }
         let is_body = matches!(race.drive, Drive::Wrench | Drive::Hinge);
         if is_body && (race.mass.is_none() || race.inertia.is_none()) {
