@@ -209,9 +209,15 @@ fn wrong_shoulders_are_refused_by_key_value_and_range() {
         |changes: &[(&str, &str)]| Scene::edited(THRUST, changes.iter().copied()).unwrap_err().to_string();
     type Changes = [(&'static str, &'static str)];
     let cases: [(&Changes, &[&str]); 4] = [
-        (&[("inner.shoulder_height", "[\"6 mm\", 0]")], &["inner.shoulder_height = 0.006 m", "[0, 0.004953"]),
-        (&[("outer.shoulder_height", "[0, -1e-3]")], &["outer.shoulder_height = -0.001 m", "[0, "]),
-        (&[("outer.shoulder_angle", "[0, \"91 deg\"]")], &["outer.shoulder_angle = 1.588", "[0, 1.57"]),
+        (
+            &[("inner.shoulder_height", "[\"6 mm\", 0]")],
+            &["inner.shoulder_height.minus_x = 0.006 m", "[0, 0.004953"],
+        ),
+        (&[("outer.shoulder_height", "[0, -1e-3]")], &["outer.shoulder_height.plus_x = -0.001 m", "[0, "]),
+        (
+            &[("outer.shoulder_angle", "[0, \"91 deg\"]")],
+            &["outer.shoulder_angle.plus_x = 1.588", "[0, 1.57"],
+        ),
         (
             &[("inner.shoulder_height", "[0, 0]"), ("inner.shoulder_angle", "[0, 0]")],
             &["inner.shoulder_height", "at most one"],

@@ -220,7 +220,7 @@ fn regression_wrong_scenes_are_refused_in_plain_words() {
         (
             "drive = \"fixed\"",
             "drive = \"wrench\"\nmass = 1\ninertia = [1, 1, 1]",
-            &["outer.drive: wrench drive is offered for the inner race"],
+            &["outer.drive: \"wrench\" beside inner.drive = \"wrench\": nothing would hold the bearing"],
         ),
         ("balls = 10 ", "balls = = 10 ", &["not TOML"]),
     ] {
@@ -296,6 +296,7 @@ fn prints_say_whose_force_it_is() {
     let output = roulement(&["equilibrium", &scene("thrust"), "--json"]);
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(json["load_is"].as_str().unwrap().contains("external load on the inner race"));
+    assert_eq!(json["race"], "inner");
     let scratch = Scratch::new("whose");
     std::fs::write(scratch.path("short.toml"), edited("thrust", &[("load.duration", "\"0.1 ms\"")])).unwrap();
     let output = roulement(&["run", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
@@ -304,6 +305,28 @@ fn prints_say_whose_force_it_is() {
         text.contains("bearing's force  x -1") && text.contains("of the bearing on the inner race"),
         "{text}"
     );
+    // That of an outer race under a wrench, which moves instead.
+    let outer = [
+        ("inner.drive", "\"fixed\""),
+        ("outer", "{ drive = \"wrench\", mass = 0.2, inertia = [6e-5, 4e-5, 4e-5] }"),
+        ("load.x", ""),
+        ("load.outer.x.force", "\"-1500 N\""),
+        ("load.duration", "\"0.1 ms\""),
+    ];
+    std::fs::write(scratch.path("outer.toml"), edited("thrust", &outer)).unwrap();
+    let output = roulement(&["equilibrium", &scratch.path("outer.toml")]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in ["outer race    x -", "external load Fx -1500.000 N", "(on the outer race;"] {
+        assert!(text.contains(part), "{text}");
+    }
+    let output = roulement(&["run", &scratch.path("outer.toml"), "-o", &scratch.path("outer")]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("of the bearing on the outer race") && text.contains("outer race at    x -"),
+        "{text}"
+    );
+    let plot = std::fs::read_to_string(scratch.path("outer/bearing.svg")).unwrap();
+    assert!(plot.contains("force of the bearing on outer race [N]"));
     let plot = std::fs::read_to_string(scratch.path("out/bearing.svg")).unwrap();
     assert!(plot.contains("force of the bearing on inner race [N]"));
 }

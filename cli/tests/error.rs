@@ -12,7 +12,7 @@ use roulement::simulation::play::{Rows, play};
 use roulement_cli::error::{Difference, Estimate, Judgement, Lengths, Rounds, Run, Sample};
 use roulement_cli::report::figures::Figures;
 use roulement_cli::report::means::Blocks;
-use roulement_cli::report::quantities::{COUNT, QUANTITIES};
+use roulement_cli::report::quantities::{COUNT, Parts, QUANTITIES};
 
 /// A directory of its own for a test, removed at the end.
 struct Scratch(PathBuf);
@@ -79,7 +79,7 @@ fn column<'a>(table: &'a [(String, Vec<String>)], name: &str) -> &'a [String] {
 fn synthetic(solver: Solver, added: impl Fn(f64) -> f64) -> Run {
     let index = QUANTITIES.iter().position(|quantity| quantity.name == "friction power").unwrap();
     let mut outputs = Simulation::new(&scene("thrust", &[])).unwrap().outputs().clone();
-    let mut blocks = Blocks::new(false, 1.0);
+    let mut blocks = Blocks::new(Parts { cage: false, moving_outer: false }, 1.0);
     let mut samples = Vec::new();
     for row in 0..=1000 {
         outputs.time = f64::from(row) * 1e-3;
@@ -274,7 +274,7 @@ fn played(scene: &Scene, solver: Solver) -> (Run, [f64; 2]) {
     let bearing = &simulation.model().bearing;
     let lengths =
         Lengths { pitch_radius: 0.5 * bearing.pitch_diameter, ball_diameter: 2.0 * bearing.ball.radius };
-    let mut blocks = Blocks::new(simulation.outputs().cage.is_some(), lengths.pitch_radius);
+    let mut blocks = Blocks::new(Parts::of(&simulation), lengths.pitch_radius);
     let (mut samples, mut estimate) = (Vec::new(), Estimate::default());
     let rows = Rows::of(&simulation);
     let _: ControlFlow<()> = play(&mut simulation, rows, |simulation| {

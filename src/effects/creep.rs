@@ -14,7 +14,7 @@ use crate::schema::numbers::{Number, Place, Range};
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum CreepLaw {
-    /// No tangential force.
+    /// No tangential force; normal contacts and the Newton matrix remain, more than half the cost of a step.
     Frictionless,
     /// Kalker's linear theory, unbounded.
     Linear,

@@ -5,11 +5,11 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 use super::{EquilibriumInput, Gyroscopic};
 use crate::contact::geometry::GrooveContact;
 use crate::model::bearing::azimuth_directions;
-use crate::model::bodies::PerRace;
+use crate::model::bodies::{PerRace, Race};
 use crate::model::{Conditions, Model};
 use crate::numerics::scalar::{Dual, Scalar, constant_vector};
 
-/// Directions of differentiation: ball axial and radial, inner race x, y, z, ry, rz, cage speed.
+/// Directions of differentiation: ball axial and radial, x, y, z, ry, rz of the race that moves, cage speed.
 pub const DIRECTIONS: usize = 8;
 /// First direction of the shared unknowns: those of all balls together.
 pub const SHARED: usize = 2;
@@ -35,7 +35,7 @@ pub struct Shared {
     /// [rad/s] cage speed.
     pub cage_speed: D,
     /// [m/s2] gravity on the balls; what it does along the orbit is left to friction.
-    pub gravity: Vector3<f64>,
+    pub gravity: Vector3<D>,
 }
 
 /// Forces on one ball, all relative to the outer race's frame.
@@ -43,10 +43,10 @@ pub struct Shared {
 pub struct BallBalance {
     /// \[N] unbalanced force along the two coordinates of [`Place`].
     pub residual: [D; 2],
-    /// \[N] force of the inner race on the ball.
-    pub inner_force: Vector3<D>,
-    /// [N m] moment, about the inner race's origin, of the external load that holds it against this ball.
-    pub inner_moment: Vector3<D>,
+    /// \[N] force on the ball of the race that moves.
+    pub force: Vector3<D>,
+    /// [N m] moment, about that race's origin, of the external load that holds it against this ball.
+    pub moment: Vector3<D>,
     /// \[N] load on the inner race.
     pub inner_load: D,
     /// \[N] load on the outer race.
@@ -143,7 +143,7 @@ pub fn balance(
     let tangent = constant_vector(&tangential);
     let inner_force = -inner.normal * inner_load + inner.normal.cross(&tangent) * inner_friction;
     let outer_force = -outer.normal * outer_load + outer.normal.cross(&tangent) * outer_friction;
-    let total = inner_force + outer_force + constant_vector(&(shared.gravity * ball.mass));
+    let total = inner_force + outer_force + shared.gravity.map(|c| c.scale(ball.mass));
     let (axial, radial_force) = (total.x, total.dot(&constant_vector(&radial)) + centrifugal_force);
     let mut residual = [axial * cosine - radial_force * sine, axial * sine + radial_force * cosine];
     if shared.cage_speed.value == 0.0 {
@@ -151,11 +151,15 @@ pub fn balance(
         residual[0] -= (angle.scale(arc_radius(model)) - D::constant(middle.x)).scale(IDLE_HOLD);
         residual[1] -= (distance - D::constant(middle.y)).scale(IDLE_HOLD);
     }
-    let arm = offset + inner.normal.map(|c| c.scale(ball.radius));
+    let (force, from, contact) = match input.race {
+        Race::Inner => (inner_force, offset, &inner),
+        Race::Outer => (outer_force, position, &outer),
+    };
+    let arm = from + contact.normal.map(|c| c.scale(ball.radius));
     BallBalance {
         residual,
-        inner_force,
-        inner_moment: arm.cross(&inner_force),
+        force,
+        moment: arm.cross(&force),
         inner_load,
         outer_load,
         own_orbital_speed,

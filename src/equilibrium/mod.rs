@@ -1,4 +1,5 @@
-//! Quasi-static equilibrium of the bearing: any mix of imposed loads and displacements of the inner race.
+//! Quasi-static equilibrium of the bearing: any mix of imposed loads and displacements of one race, the inner one but where
+//! the outer race is under a wrench; the other race rests.
 //!
 //! Exact torus geometry at any tilt, exact Hertz, centrifugal force and gyroscopic moment of the balls after Jones
 //! (1960) and Harris. All balls orbit with one cage speed, the mean of the speeds that each would take by itself,
@@ -14,6 +15,8 @@ use thiserror::Error;
 
 use crate::model::Model;
 use crate::model::bearing::BeyondShoulder;
+use crate::model::bodies::Race;
+use crate::numerics::motion::Pose;
 use crate::scene::{Condition, Scene};
 use problem::{Found, Problem, Progress};
 pub use report::BallReport;
@@ -35,23 +38,25 @@ pub enum Gyroscopic {
 /// Load or displacement imposed in one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Prescribed {
-    /// External force \[N] or moment [N m] on the inner race.
+    /// External force \[N] or moment [N m] on the race, world axes, about its own origin.
     Load(f64),
-    /// Displacement \[m] or rotation vector component \[rad] of the inner race.
+    /// Displacement \[m] or rotation vector component \[rad] of the race.
     Motion(f64),
 }
 
 /// A quasi-static problem.
 #[derive(Clone, Debug)]
 pub struct EquilibriumInput {
-    /// Conditions of the inner race, in the order x, y, z, ry, rz, in the bearing frame.
+    /// The race that moves until it is in balance.
+    pub race: Race,
+    /// Its conditions, in the order x, y, z, ry, rz, in the bearing frame.
     pub conditions: [Prescribed; 5],
     /// [rad/s] spin of the inner race.
     pub inner_speed: f64,
     /// [rad/s] spin of the outer race.
     pub outer_speed: f64,
-    /// Orientation of the outer race in the bearing frame.
-    pub outer_orientation: UnitQuaternion<f64>,
+    /// Pose of the other race in the bearing frame, without its turn about its own axis; an outer race rests at the origin.
+    pub resting: Pose,
     /// How the gyroscopic moment is carried.
     pub gyroscopic: Gyroscopic,
     /// [-] friction coefficient, for [`Gyroscopic::Friction`].
@@ -66,19 +71,30 @@ impl EquilibriumInput {
 
     /// The problem of a scene at a time \[s] of its script.
     pub fn at(scene: &Scene, gyroscopic: Gyroscopic, time: f64) -> Self {
-        let misalignment = &scene.outer.misalignment;
+        let race = Race::loaded(scene);
+        let (position, tilt) = match race {
+            Race::Inner => {
+                let misalignment = &scene.outer.misalignment;
+                (Vector3::zeros(), [misalignment.ry.at(time), misalignment.rz.at(time)])
+            }
+            // A direction that nothing is given for is held at 0.
+            Race::Outer => {
+                let [x, y, z, ry, rz] = Race::Inner
+                    .directions(scene)
+                    .map(|direction| direction.motion.map_or(0.0, |motion| motion.at(time)));
+                (Vector3::new(x, y, z), [ry, rz])
+            }
+        };
+        let orientation = UnitQuaternion::new(Vector3::new(0.0, tilt[0], tilt[1]));
         Self {
-            conditions: scene.load.conditions().map(|condition| match condition {
+            race,
+            conditions: race.directions(scene).map(|direction| match direction.condition() {
                 Condition::Load(schedule) => Prescribed::Load(schedule.at(time)),
                 Condition::Motion(schedule) => Prescribed::Motion(schedule.at(time)),
             }),
             inner_speed: scene.load.inner_speed.at(time),
             outer_speed: scene.load.outer_speed.at(time),
-            outer_orientation: UnitQuaternion::new(Vector3::new(
-                0.0,
-                misalignment.ry.at(time),
-                misalignment.rz.at(time),
-            )),
+            resting: Pose { position, orientation },
             gyroscopic,
             friction: scene.friction.ball_race.at(time),
         }
@@ -89,7 +105,7 @@ impl EquilibriumInput {
 #[derive(Clone, Debug, Error)]
 pub enum EquilibriumError {
     /// A ball finds no balance.
-    #[error("ball {ball} finds no balance at inner race displacement {displacement:?} [m, rad]")]
+    #[error("ball {ball} finds no balance at race displacement {displacement:?} [m, rad]")]
     Ball {
         /// Ball, counted from 1.
         ball: usize,
@@ -148,7 +164,7 @@ pub enum EquilibriumError {
     /// The displacements do not converge.
     #[error(
         "the equilibrium does not converge: residual {residual:.3e} of the load in direction {direction} after \
-         {iterations} iterations, at inner race displacement {displacement:?} [m, rad] (is the bearing held in \
+         {iterations} iterations, at race displacement {displacement:?} [m, rad] (is the bearing held in \
          every direction?)"
     )]
     NoConvergence {
@@ -188,9 +204,11 @@ pub struct BallEquilibrium {
 /// A quasi-static solution.
 #[derive(Clone, Debug)]
 pub struct Equilibrium {
-    /// [m, rad] displacement x, y, z and rotation vector ry, rz of the inner race in the bearing frame.
+    /// The race that moved: displacement, load and stiffness are of it.
+    pub race: Race,
+    /// [m, rad] displacement x, y, z and rotation vector ry, rz of the race in the bearing frame.
     pub displacement: [f64; 5],
-    /// [N, N m] external load that holds the inner race: Fx, Fy, Fz, My, Mz.
+    /// [N, N m] external load that holds the race, in world axes about its own origin: Fx, Fy, Fz, My, Mz.
     pub load: [f64; 5],
     /// Derivative of the external load by the displacement, cage speed following.
     pub stiffness: SMatrix<f64, 5, 5>,

@@ -7,6 +7,7 @@ use super::trial::{SharedMatrix, SharedVector, Trial, evaluate, finish};
 use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
 use crate::model::bodies::Race;
 use crate::model::{Conditions, Model};
+use crate::numerics::motion::Pose;
 use crate::numerics::size::{larger, largest};
 
 /// [-] accepted residual over the size of the forces at work.
@@ -43,7 +44,7 @@ pub struct Found {
 pub struct Problem<'a> {
     model: &'a Model,
     input: &'a EquilibriumInput,
-    /// \[N] weight of the inner race and what is fixed to it, where forces move it.
+    /// \[N] weight of the race and what is fixed to it, where forces move it.
     weight: Vector3<f64>,
     /// \[m] ball diameter.
     diameter: f64,
@@ -69,7 +70,7 @@ impl<'a> Problem<'a> {
             * (1e-6 * diameter).powf(1.5);
         let inertia_force = bearing.ball.mass * epicyclic * epicyclic * length;
         let weight =
-            model.bodies[Race::Inner].as_ref().map_or_else(Vector3::zeros, |body| model.gravity * body.mass);
+            model.bodies[input.race].as_ref().map_or_else(Vector3::zeros, |body| model.gravity * body.mass);
         let mut problem = Self {
             model,
             input,
@@ -93,7 +94,7 @@ impl<'a> Problem<'a> {
         if direction < 3 { 1.0 } else { self.model.race_length() }
     }
 
-    /// [N, N m] load on the inner race in a direction, its weight included; none where its motion is imposed.
+    /// [N, N m] load on the race in a direction, its weight included; none where its motion is imposed.
     fn imposed_load(&self, direction: usize) -> Option<f64> {
         match self.input.conditions.get(direction) {
             Some(Prescribed::Load(load)) => Some(load + self.weight.iter().nth(direction).unwrap_or(&0.0)),
@@ -104,6 +105,12 @@ impl<'a> Problem<'a> {
     /// The race in the middle but for what is imposed on it.
     pub fn centred(&self) -> SharedVector {
         let mut unknowns = SharedVector::zeros();
+        // An outer race starts in line with the inner one, which may be anywhere.
+        if self.input.race == Race::Outer {
+            let Pose { position, orientation } = &self.input.resting;
+            unknowns.fixed_rows_mut::<3>(0).copy_from(position);
+            unknowns.fixed_rows_mut::<2>(3).copy_from(&orientation.scaled_axis().yz());
+        }
         for (i, condition) in self.input.conditions.iter().enumerate() {
             if let Prescribed::Motion(value) = condition {
                 unknowns[i] = *value;

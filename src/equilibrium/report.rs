@@ -120,7 +120,9 @@ impl Equilibrium {
         json!({
             "units": "SI: m, N, N m, rad, rad/s",
             "displacement": { "x": x, "y": y, "z": z, "ry": ry, "rz": rz },
-            "load_is": "external load on the inner race; the bearing's force on it is the opposite",
+            "race": self.race.name(),
+            "load_is":
+                format!("external load on the {} race; the bearing's force on it is the opposite", self.race.name()),
             "load": { "Fx": fx, "Fy": fy, "Fz": fz, "My": my, "Mz": mz },
             "stiffness": stiffness,
             "cage_speed": self.cage_speed,
@@ -149,11 +151,12 @@ impl fmt::Display for Equilibrium {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z, ry, rz] = self.displacement;
         let [fx, fy, fz, my, mz] = self.load;
-        writeln!(f, "inner race    x {:.4} um  y {:.4} um  z {:.4} um", x * 1e6, y * 1e6, z * 1e6)?;
+        let race = self.race.name();
+        writeln!(f, "{race} race    x {:.4} um  y {:.4} um  z {:.4} um", x * 1e6, y * 1e6, z * 1e6)?;
         writeln!(f, "              ry {:.6} mrad  rz {:.6} mrad", ry * 1e3, rz * 1e3)?;
         writeln!(
             f,
-            "external load Fx {fx:.3} N  Fy {fy:.3} N  Fz {fz:.3} N   (on the inner race; the bearing's force on it"
+            "external load Fx {fx:.3} N  Fy {fy:.3} N  Fz {fz:.3} N   (on the {race} race; the bearing's force on it"
         )?;
         writeln!(f, "              My {my:.5} N m  Mz {mz:.5} N m         is the opposite)")?;
         writeln!(f, "cage speed    {:.4} rad/s", self.cage_speed)?;

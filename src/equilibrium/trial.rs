@@ -1,6 +1,6 @@
 //! Forces of a bearing at given displacements and cage speed, its balls settled.
 
-use nalgebra::{Matrix2, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix2, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::ball::{
     BallBalance, DIRECTIONS, N_SHARED, Place, SHARED, Shared, bottom_of_outer_groove, middle_of_gap, settle,
@@ -8,8 +8,9 @@ use super::ball::{
 use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
-use crate::numerics::rotation::turn;
-use crate::numerics::scalar::{Dual, Scalar, Single};
+use crate::model::bodies::Race;
+use crate::numerics::rotation::{from_rotation_vector, rotate, turn};
+use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, values};
 
 type D = Dual<DIRECTIONS>;
 /// Displacements x, y, z, ry, rz and cage speed.
@@ -19,7 +20,7 @@ pub type SharedMatrix = SMatrix<f64, N_SHARED, N_SHARED>;
 
 /// One evaluation at given displacements: all balls settled.
 pub struct Trial {
-    /// [N, N m] external load that holds the inner race.
+    /// [N, N m] external load that holds the race that moves.
     pub load: SVector<f64, 5>,
     /// [N rad/s] weighted excess of the balls' own orbital speed over the cage speed.
     pub cage_excess: f64,
@@ -33,19 +34,80 @@ pub struct Trial {
     pub places: Vec<Place>,
 }
 
+/// Axes of the outer race in the bearing frame, those that balls are looked at in.
+enum OuterAxes {
+    /// Of a race that rests.
+    Resting(UnitQuaternion<f64>),
+    /// Of a race that moves: conformal vector of its rotation.
+    Moving(Vector3<D>),
+}
+
+impl OuterAxes {
+    fn new(input: &EquilibriumInput, unknowns: &SharedVector) -> Self {
+        match input.race {
+            Race::Inner => Self::Resting(input.resting.orientation),
+            Race::Outer => {
+                let [ry, rz] = [3, 4].map(|i| variable(unknowns, i));
+                Self::Moving(from_rotation_vector(&Vector3::new(D::constant(0.0), ry, rz)))
+            }
+        }
+    }
+
+    /// A vector of the bearing frame.
+    fn from_world(&self, v: &Vector3<D>) -> Vector3<D> {
+        match self {
+            Self::Resting(orientation) => turn(&orientation.inverse(), v),
+            Self::Moving(rotation) => rotate(&-rotation, v),
+        }
+    }
+
+    /// A vector of these axes.
+    fn to_world(&self, v: &Vector3<D>) -> Vector3<D> {
+        match self {
+            Self::Resting(orientation) => turn(orientation, v),
+            Self::Moving(rotation) => rotate(rotation, v),
+        }
+    }
+
+    /// Gravity \[m/s2] in these axes.
+    fn gravity(&self, gravity: &Vector3<f64>) -> Vector3<D> {
+        match self {
+            Self::Resting(orientation) => constant_vector(&(orientation.inverse() * gravity)),
+            Self::Moving(_) => self.from_world(&constant_vector(gravity)),
+        }
+    }
+}
+
+fn variable(unknowns: &SharedVector, i: usize) -> D {
+    D::variable(unknowns[i], SHARED + i, 1.0)
+}
+
 /// The inner race relative to the outer one, with derivatives.
 fn shared(model: &Model, input: &EquilibriumInput, unknowns: &SharedVector) -> Shared {
-    let variable = |i: usize| D::variable(unknowns[i], SHARED + i, 1.0);
-    let (ry, rz) = (variable(3), variable(4));
+    let axes = OuterAxes::new(input, unknowns);
+    let moved = Vector3::from_fn(|i, _| variable(unknowns, i));
+    let (position, axis) = match input.race {
+        Race::Inner => (moved, tilted_axis(variable(unknowns, 3), variable(unknowns, 4))),
+        Race::Outer => (
+            constant_vector(&input.resting.position) - moved,
+            constant_vector(&(input.resting.orientation * Vector3::x())),
+        ),
+    };
+    Shared {
+        position: axes.from_world(&position),
+        axis: axes.from_world(&axis),
+        cage_speed: variable(unknowns, 5),
+        gravity: axes.gravity(&model.gravity),
+    }
+}
+
+/// Axis of a race of rotation vector [0, ry, rz].
+fn tilted_axis(ry: D, rz: D) -> Vector3<D> {
     let square = ry.square() + rz.square();
     // cos(t) and sin(t)/t as smooth functions of t^2
     let cosine = square.map_smooth(|s| (s.sqrt().cos(), -0.5 * sinc(s)));
     let sine = square.map_smooth(|s| (sinc(s), sinc_slope(s)));
-    let axis = Vector3::new(cosine, sine * rz, -(sine * ry));
-    let position = Vector3::new(variable(0), variable(1), variable(2));
-    let seen = |v: &Vector3<D>| turn(&input.outer_orientation.inverse(), v);
-    let gravity = input.outer_orientation.inverse() * model.gravity;
-    Shared { position: seen(&position), axis: seen(&axis), cage_speed: variable(5), gravity }
+    Vector3::new(cosine, sine * rz, -(sine * ry))
 }
 
 /// `sin(t)/t` with `s = t^2`.
@@ -67,6 +129,7 @@ pub fn evaluate(
     tolerance: f64,
 ) -> Result<Trial, EquilibriumError> {
     let shared = shared(model, input, unknowns);
+    let axes = OuterAxes::new(input, unknowns);
     let n = model.bearing.n_balls;
     let mut trial = Trial {
         load: SVector::zeros(),
@@ -90,8 +153,8 @@ pub fn evaluate(
             })
         };
         // A free ball that would fall off the side of a groove stays where it is, as if without weight.
-        let weightless = Shared { gravity: Vector3::zeros(), ..shared };
-        let fallen = || if shared.gravity == weightless.gravity { None } else { settled(&weightless) };
+        let weightless = Shared { gravity: constant_vector(&Vector3::zeros()), ..shared };
+        let fallen = || (values(&shared.gravity) != Vector3::zeros()).then(|| settled(&weightless)).flatten();
         let settled = settled(&shared).or_else(fallen);
         let Some((balance, place)) = settled else {
             return Err(EquilibriumError::Ball {
@@ -100,8 +163,8 @@ pub fn evaluate(
             });
         };
         // rows in the bearing frame: external load and cage excess
-        let force = turn(&input.outer_orientation, &balance.inner_force);
-        let moment = turn(&input.outer_orientation, &balance.inner_moment);
+        let force = axes.to_world(&balance.force);
+        let moment = axes.to_world(&balance.moment);
         // A free ball has no speed of its own: where its contact normals are opposite, it would be 0/0.
         let excess = if balance.inner_load.value > 0.0 {
             balance.inner_load * (balance.own_orbital_speed - shared.cage_speed)
@@ -166,6 +229,7 @@ pub fn finish(
         t[(i, k)] - follow
     });
     Equilibrium {
+        race: input.race,
         displacement: std::array::from_fn(|i| unknowns[i]),
         load: std::array::from_fn(|i| trial.load[i]),
         stiffness,

@@ -101,8 +101,8 @@ pub fn page(scene: &Scene) -> String {
          everything: a replay gives the same bits. fmi2GetDirectionalDerivative gives the derivatives of all real outputs \
          by all inputs over the last step.</p>\n\
          <p>What the scene gives as a table over time is played here too, exactly in every internal step, unless \
-         <code>interface.inputs</code> of the scene leaves it to the master: applied loads (<code>loads</code>), \
-         <code>inner.speed</code> (<code>speeds</code>), poses, twists and speed in pose drive (<code>tilts</code>), \
+         <code>interface.inputs</code> of the scene leaves it to the master: applied loads (<code>loads</code>), the \
+         speed of a race under a wrench (<code>speeds</code>), poses, twists and speed in pose drive (<code>tilts</code>), \
          <code>friction</code>. Setting an input of such a group, or a derivative of one, ends the script of the whole \
          group; its other inputs stay at their last values. The log tells which scripts are played. An input that a script \
          gives reads as its value at the communication point, and directional derivatives by it are zero.</p>\n\

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::effects::cage::CageSection;
 use crate::numerics::scalar::Scalar;
-use crate::scene::{Condition, Drive, RaceSection, Scene, Schedule};
+use crate::scene::{Condition, Direction, Drive, RaceSection, Scene, Schedule};
 
 /// A race.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +29,28 @@ impl Race {
             Self::Inner => "inner",
             Self::Outer => "outer",
         }
+    }
+
+    /// Its section of a scene.
+    pub fn section(self, scene: &Scene) -> &RaceSection {
+        match self {
+            Self::Inner => &scene.inner,
+            Self::Outer => &scene.outer,
+        }
+    }
+
+    /// What a scene gives for its directions x, y, z, ry, rz.
+    pub fn directions(self, scene: &Scene) -> [Direction<'_>; 5] {
+        match self {
+            Self::Inner => scene.load.of_inner(),
+            Self::Outer => scene.load.of_outer(),
+        }
+    }
+
+    /// The race that the loads of a scene are put on: the outer one under a wrench, else the inner one. The other race
+    /// holds the bearing.
+    pub fn loaded(scene: &Scene) -> Self {
+        if scene.outer.drive == Drive::Wrench { Self::Outer } else { Self::Inner }
     }
 }
 
@@ -234,16 +256,14 @@ impl RigidBody {
     }
 
     /// A race under a wrench, held where the scene's load gives motions.
-    pub(super) fn under_wrench(section: &RaceSection, scene: &Scene) -> Option<Self> {
-        let held = |(direction, condition): (usize, &Condition)| match condition {
+    pub(super) fn under_wrench(race: Race, scene: &Scene) -> Option<Self> {
+        let held = |(direction, given): (usize, Direction<'_>)| match given.condition() {
             Condition::Load(_) => None,
-            Condition::Motion(schedule) if direction < 3 => {
-                Some(Constraint::Position(direction, schedule.clone()))
-            }
-            Condition::Motion(schedule) => Some(Constraint::Tilt(direction - 2, schedule.clone())),
+            Condition::Motion(schedule) if direction < 3 => Some(Constraint::Position(direction, schedule)),
+            Condition::Motion(schedule) => Some(Constraint::Tilt(direction - 2, schedule)),
         };
-        let held = scene.load.conditions().iter().enumerate().filter_map(held).collect::<Vec<_>>();
-        Self::of_race(section, Drive::Wrench, held.into_iter())
+        let held = race.directions(scene).into_iter().enumerate().filter_map(held);
+        Self::of_race(race.section(scene), Drive::Wrench, held)
     }
 
     /// A race on a hinge to its frame (paper section 2: the outer race).

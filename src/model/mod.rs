@@ -61,8 +61,8 @@ impl Model {
         let section = scene.effects.cage.section.as_ref();
         let cage = section.map(|section| CageModel::new(section, scene, &bearing)).transpose()?;
         let races = PerRace {
-            inner: RigidBody::under_wrench(&scene.inner, scene),
-            outer: RigidBody::on_hinge(&scene.outer),
+            inner: RigidBody::under_wrench(Race::Inner, scene),
+            outer: RigidBody::under_wrench(Race::Outer, scene).or_else(|| RigidBody::on_hinge(&scene.outer)),
         };
         Ok(Self {
             bodies: Bodies::new(races, section.map(|section| Some(RigidBody::cage(section)))),

@@ -18,9 +18,9 @@ pub use crate::effects::Effects;
 pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
 pub use crate::schema::{
-    Accuracy, BearingSection, Condition, Drive, ErrorGoal, ErrorOf, Friction, Giver, Group, Groups,
-    InputGivers, Interface, Load, Material, Misalignment, Orientation, RaceSection, SceneError, Schedule,
-    Solver, Start, Tilt, Translation, units,
+    Accuracy, BearingSection, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver, Group,
+    Groups, InputGivers, Interface, Load, Material, Misalignment, Orientation, RaceLoad, RaceSection,
+    SceneError, Schedule, Solver, Start, Tilt, Translation, units,
 };
 use crate::schema::{Follows, explain};
 pub use scales::Scales;
@@ -63,7 +63,7 @@ pub struct Scene {
     /// Time integration.
     #[serde(default)]
     pub solver: Solver,
-    /// Duration, speeds and load of the inner race.
+    /// Duration, speeds and loads of the races.
     pub load: Load,
     /// Interface of the FMU.
     #[serde(default)]

@@ -1,6 +1,6 @@
 //! The one table of the numbers of a scene, but for those of its effects, which stand with them.
 
-use super::{Drive, Scene, SceneError, Schedule};
+use super::{Drive, RaceLoad, Scene, SceneError, Schedule};
 use crate::schema::SMALLEST_TOLERANCE;
 use crate::schema::numbers::{FRICTION, Number, POISSON_RATIO, Parameter, Place, Range, YOUNGS_MODULUS};
 
@@ -54,7 +54,7 @@ static BEARING: [Number<Scene>; 15] = [
 
 /// Cage friction, races, start, time integration and load: those after the effects.
 #[rustfmt::skip]
-static MOTION: [Number<Scene>; 42] = [
+static MOTION: [Number<Scene>; 56] = [
     Number::fixed("friction.ball_cage", FRICTION, "friction coefficient of the balls in their pockets", |s| Place::Value(s.friction.ball_cage.as_mut())),
     Number::fixed("friction.cage_race", FRICTION, "friction coefficient of the cage on the lands", |s| Place::Value(s.friction.cage_race.as_mut())),
     Number::fixed("friction.ball_ball", FRICTION, "friction coefficient of neighbouring balls", |s| Place::Value(s.friction.ball_ball.as_mut())),
@@ -68,26 +68,34 @@ static MOTION: [Number<Scene>; 42] = [
         |s| Place::Value(s.inner.inertia.as_mut().map(|moments| &mut moments[2].0))),
     Number::checked("inner.misalignment.ry", TILT, |s| Place::Schedule(&mut s.inner.misalignment.ry)),
     Number::checked("inner.misalignment.rz", TILT, |s| Place::Schedule(&mut s.inner.misalignment.rz)),
-    Number::checked("inner.shoulder_height", LENGTH,
-        |s| Place::Read(s.inner.shoulder_height.iter().flatten().map(|height| height.0).collect())),
-    Number::checked("inner.shoulder_angle", RIGHT_ANGLE,
-        |s| Place::Read(s.inner.shoulder_angle.iter().flatten().map(|angle| angle.0).collect())),
-    Number::fixed_if("outer.mass", MASS, "mass of the outer race and what is fixed to it", outer_is_hinged,
+    Number::fixed("inner.shoulder_height.minus_x", LENGTH, "height over the groove's bottom of the shoulder at the -x side of the inner race",
+        |s| Place::Value(s.inner.shoulder_height.as_mut().map(|heights| &mut heights[0].0))),
+    Number::fixed("inner.shoulder_height.plus_x", LENGTH, "height over the groove's bottom of the shoulder at the +x side of the inner race",
+        |s| Place::Value(s.inner.shoulder_height.as_mut().map(|heights| &mut heights[1].0))),
+    Number::fixed("inner.shoulder_angle.minus_x", RIGHT_ANGLE, "contact angle at which the groove ends at the -x side of the inner race",
+        |s| Place::Value(s.inner.shoulder_angle.as_mut().map(|angles| &mut angles[0].0))),
+    Number::fixed("inner.shoulder_angle.plus_x", RIGHT_ANGLE, "contact angle at which the groove ends at the +x side of the inner race",
+        |s| Place::Value(s.inner.shoulder_angle.as_mut().map(|angles| &mut angles[1].0))),
+    Number::fixed_if("outer.mass", MASS, "mass of the outer race and what is fixed to it", outer_moves,
         |s| Place::Value(s.outer.mass.as_mut().map(|mass| &mut mass.0))),
-    Number::fixed_if("outer.inertia.x", INERTIA, "moment of inertia of the outer race about its own axis", outer_is_hinged,
+    Number::fixed_if("outer.inertia.x", INERTIA, "moment of inertia of the outer race about its own axis", outer_moves,
         |s| Place::Value(s.outer.inertia.as_mut().map(|moments| &mut moments[0].0))),
-    Number::fixed_if("outer.inertia.y", INERTIA, "moment of inertia of the outer race about its y axis", outer_is_hinged,
+    Number::fixed_if("outer.inertia.y", INERTIA, "moment of inertia of the outer race about its y axis", outer_moves,
         |s| Place::Value(s.outer.inertia.as_mut().map(|moments| &mut moments[1].0))),
-    Number::fixed_if("outer.inertia.z", INERTIA, "moment of inertia of the outer race about its z axis", outer_is_hinged,
+    Number::fixed_if("outer.inertia.z", INERTIA, "moment of inertia of the outer race about its z axis", outer_moves,
         |s| Place::Value(s.outer.inertia.as_mut().map(|moments| &mut moments[2].0))),
     Number::fixed_if("outer.misalignment.ry", TILT, "misalignment of the outer race about y", outer_has_frame,
         |s| Place::Schedule(&mut s.outer.misalignment.ry)),
     Number::fixed_if("outer.misalignment.rz", TILT, "misalignment of the outer race about z", outer_has_frame,
         |s| Place::Schedule(&mut s.outer.misalignment.rz)),
-    Number::checked("outer.shoulder_height", LENGTH,
-        |s| Place::Read(s.outer.shoulder_height.iter().flatten().map(|height| height.0).collect())),
-    Number::checked("outer.shoulder_angle", RIGHT_ANGLE,
-        |s| Place::Read(s.outer.shoulder_angle.iter().flatten().map(|angle| angle.0).collect())),
+    Number::fixed("outer.shoulder_height.minus_x", LENGTH, "height over the groove's bottom of the shoulder at the -x side of the outer race",
+        |s| Place::Value(s.outer.shoulder_height.as_mut().map(|heights| &mut heights[0].0))),
+    Number::fixed("outer.shoulder_height.plus_x", LENGTH, "height over the groove's bottom of the shoulder at the +x side of the outer race",
+        |s| Place::Value(s.outer.shoulder_height.as_mut().map(|heights| &mut heights[1].0))),
+    Number::fixed("outer.shoulder_angle.minus_x", RIGHT_ANGLE, "contact angle at which the groove ends at the -x side of the outer race",
+        |s| Place::Value(s.outer.shoulder_angle.as_mut().map(|angles| &mut angles[0].0))),
+    Number::fixed("outer.shoulder_angle.plus_x", RIGHT_ANGLE, "contact angle at which the groove ends at the +x side of the outer race",
+        |s| Place::Value(s.outer.shoulder_angle.as_mut().map(|angles| &mut angles[1].0))),
     Number::checked("start.orbital_speed", SPEED,
         |s| Place::Value(s.start.orbital_speed.as_mut().map(|speed| &mut speed.0))),
     Number::checked("start.ball_angular_velocity", Range::closed(-1e6, 1e6, "rad/s"),
@@ -121,24 +129,39 @@ static MOTION: [Number<Scene>; 42] = [
     Number::checked("load.ry.rotation", TILT, |s| values(&s.load.ry.rotation)),
     Number::checked("load.rz.moment", MOMENT, |s| values(&s.load.rz.moment)),
     Number::checked("load.rz.rotation", TILT, |s| values(&s.load.rz.rotation)),
+    Number::checked("load.outer.x.force", FORCE, |s| outer(s, |load| &load.x.force)),
+    Number::checked("load.outer.x.displacement", DISPLACEMENT, |s| outer(s, |load| &load.x.displacement)),
+    Number::checked("load.outer.y.force", FORCE, |s| outer(s, |load| &load.y.force)),
+    Number::checked("load.outer.y.displacement", DISPLACEMENT, |s| outer(s, |load| &load.y.displacement)),
+    Number::checked("load.outer.z.force", FORCE, |s| outer(s, |load| &load.z.force)),
+    Number::checked("load.outer.z.displacement", DISPLACEMENT, |s| outer(s, |load| &load.z.displacement)),
+    Number::checked("load.outer.ry.moment", MOMENT, |s| outer(s, |load| &load.ry.moment)),
+    Number::checked("load.outer.ry.rotation", TILT, |s| outer(s, |load| &load.ry.rotation)),
+    Number::checked("load.outer.rz.moment", MOMENT, |s| outer(s, |load| &load.rz.moment)),
+    Number::checked("load.outer.rz.rotation", TILT, |s| outer(s, |load| &load.rz.rotation)),
 ];
 
 fn inner_moves(scene: &Scene) -> bool {
     scene.inner.drive == Drive::Wrench
 }
 
-fn outer_is_hinged(scene: &Scene) -> bool {
-    scene.outer.drive == Drive::Hinge
+fn outer_moves(scene: &Scene) -> bool {
+    matches!(scene.outer.drive, Drive::Hinge | Drive::Wrench)
 }
 
-/// A race whose pose is given has no frame of its own.
+/// A race whose pose is given has no frame of its own, nor has one that a wrench moves.
 fn outer_has_frame(scene: &Scene) -> bool {
-    scene.outer.drive != Drive::Pose
+    matches!(scene.outer.drive, Drive::Fixed | Drive::Hinge)
 }
 
 /// All values of a schedule, if it was given.
 fn values(schedule: &Option<Schedule>) -> Place<'static> {
     Place::Read(schedule.as_ref().map(Schedule::values).unwrap_or_default())
+}
+
+/// All values of a schedule of the load on the outer race, if it was given.
+fn outer(scene: &Scene, of: impl Fn(&RaceLoad) -> &Option<Schedule>) -> Place<'static> {
+    scene.load.outer.as_ref().map_or(Place::Read(vec![]), |load| values(of(load)))
 }
 
 impl Scene {

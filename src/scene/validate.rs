@@ -4,6 +4,9 @@ use super::numbers::STEP;
 use super::{BearingSection, Condition, Drive, Giver, Group, Scene, SceneError, Schedule};
 use crate::schema::numbers::Range;
 
+/// The directions of a race, in the order of their conditions.
+const DIRECTIONS: [&str; 5] = ["x", "y", "z", "ry", "rz"];
+
 /// Checks every value of a scene against its range, and the keys against one another.
 pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
     scene.check_numbers()?;
@@ -18,11 +21,11 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
 
 /// The master can only give what a package has as an input.
 fn inputs(scene: &Scene) -> Result<(), SceneError> {
-    let wrench = scene.inner.drive == Drive::Wrench;
-    let pose = [&scene.inner, &scene.outer].iter().any(|race| race.drive == Drive::Pose);
+    let driven = |drive| [&scene.inner, &scene.outer].iter().any(|race| race.drive == drive);
+    let (wrench, pose) = (driven(Drive::Wrench), driven(Drive::Pose));
     for (group, has_input, needed) in [
-        (Group::Loads, wrench, "inner.drive = \"wrench\""),
-        (Group::Speeds, wrench, "inner.drive = \"wrench\""),
+        (Group::Loads, wrench, "a race with drive = \"wrench\""),
+        (Group::Speeds, wrench, "a race with drive = \"wrench\""),
         (Group::Tilts, pose, "a race with drive = \"pose\""),
     ] {
         if scene.interface.inputs.of(group) == Giver::Master && !has_input {
@@ -74,7 +77,9 @@ fn races(scene: &Scene) -> Result<(), SceneError> {
                 ));
             }
             let range = Range::closed(0.0, conformity * bearing.ball_diameter.0, "m");
-            heights.iter().try_for_each(|height| range.check(&key, height.0))?;
+            for (side, height) in ["minus_x", "plus_x"].into_iter().zip(heights) {
+                range.check(&format!("{key}.{side}"), height.0)?;
+            }
         }
         let is_body = matches!(race.drive, Drive::Wrench | Drive::Hinge);
         if is_body && (race.mass.is_none() || race.inertia.is_none()) {
@@ -84,8 +89,22 @@ fn races(scene: &Scene) -> Result<(), SceneError> {
         }
     }
     if scene.outer.drive == Drive::Wrench {
-        let why = "wrench drive is offered for the inner race; allowed: fixed, pose, hinge";
-        return Err(SceneError::conflict("outer.drive", why));
+        if scene.inner.drive == Drive::Wrench {
+            let why = "\"wrench\" beside inner.drive = \"wrench\": nothing would hold the bearing; allowed here: fixed, \
+                       pose, hinge, or this with inner.drive = \"fixed\" or \"pose\"";
+            return Err(SceneError::conflict("outer.drive", why));
+        }
+        let misalignment = &scene.outer.misalignment;
+        for (key, tilt) in [("ry", &misalignment.ry), ("rz", &misalignment.rz)] {
+            if *tilt != Schedule::default() {
+                let (value, key) = (tilt.at(0.0), format!("outer.misalignment.{key}"));
+                let why = format!(
+                    "{value} rad is of the frame of a fixed or hinged race, and a race under a wrench has none; its tilt \
+                     is held by load.outer.ry and load.outer.rz, each a rotation"
+                );
+                return Err(SceneError::conflict(key, why));
+            }
+        }
     }
     if scene.inner.drive == Drive::Hinge {
         let why = "a hinge is offered for the outer race; hold the inner race by displacements and rotations in \
@@ -117,15 +136,28 @@ fn load(scene: &Scene) -> Result<(), SceneError> {
     let load = &scene.load;
     Range::closed(1e-9, load.duration.0, "s").check("load.output_interval", load.output_interval.0)?;
     let both = "give at most one of a load and a motion";
-    for (key, direction) in [("load.x", &load.x), ("load.y", &load.y), ("load.z", &load.z)] {
-        if direction.force.is_some() && direction.displacement.is_some() {
-            return Err(SceneError::conflict(key, both));
+    for (section, directions) in [("load", load.of_inner()), ("load.outer", load.of_outer())] {
+        for (name, direction) in DIRECTIONS.into_iter().zip(directions) {
+            if direction.load.is_some() && direction.motion.is_some() {
+                return Err(SceneError::conflict(format!("{section}.{name}"), both));
+            }
         }
     }
-    for (key, direction) in [("load.ry", &load.ry), ("load.rz", &load.rz)] {
-        if direction.moment.is_some() && direction.rotation.is_some() {
-            return Err(SceneError::conflict(key, both));
+    if scene.outer.drive == Drive::Wrench {
+        for (name, direction) in DIRECTIONS.into_iter().zip(load.of_inner()) {
+            if let Some(given) = direction.load {
+                let quantity = if name.starts_with('r') { "moment" } else { "force" };
+                let why = format!(
+                    "{} at the start is no load that could move the inner race, which is held while outer.drive = \
+                     \"wrench\"; give load.outer.{name}",
+                    given.at(0.0)
+                );
+                return Err(SceneError::conflict(format!("load.{name}.{quantity}"), why));
+            }
         }
+    } else if load.outer.is_some() {
+        let why = "needs outer.drive = \"wrench\": another drive holds the outer race, whatever its load";
+        return Err(SceneError::conflict("load.outer", why));
     }
     let varies = |condition: &Condition| matches!(condition, Condition::Load(Schedule::Table(_)));
     if scene.inner.drive != Drive::Wrench && load.conditions().iter().any(varies) {

@@ -7,9 +7,9 @@ use strum::{Display, VariantArray};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Display, VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum Group {
-    /// Wrench applied to the inner race (`inner.applied_force`, `inner.applied_moment`).
+    /// Wrench applied to a race, as `inner.applied_force`, `inner.applied_moment`.
     Loads,
-    /// Spin of a race that a wrench moves (`inner.speed`).
+    /// Spin of a race that a wrench moves, as `inner.speed`.
     Speeds,
     /// Pose and twist of races in pose drive: displacements, tilts and spin, which make one motion.
     Tilts,

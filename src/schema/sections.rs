@@ -118,7 +118,7 @@ pub struct RaceSection {
     pub mass: Option<Mass>,
     /// [kg m2] moments of inertia about the race's x, y and z axes; needed when the race is a body.
     pub inertia: Option<[Inertia; 3]>,
-    /// Misalignment of the frame of a fixed or hinged race.
+    /// Misalignment of the frame of a fixed or hinged race; a race under a wrench has no frame.
     pub misalignment: Misalignment,
     /// \[m] heights of the shoulders over the groove's bottom at the race's -x and +x side; not with `shoulder_angle`.
     pub shoulder_height: Option<[Length; 2]>,
@@ -170,23 +170,23 @@ impl Start {
     }
 }
 
-/// One translational direction of the inner race: a force or a displacement.
+/// One translational direction of a race: a force or a displacement.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields, expecting = "a table { force = ... } or { displacement = ... }")]
 pub struct Translation {
-    /// \[N] external force on the inner race.
+    /// \[N] external force on the race.
     #[serde(deserialize_with = "some_schedule::<Force, _>")]
     pub force: Option<Schedule>,
-    /// \[m] displacement of the inner race from the bearing centre.
+    /// \[m] displacement of the race from the bearing centre.
     #[serde(deserialize_with = "some_schedule::<Length, _>")]
     pub displacement: Option<Schedule>,
 }
 
-/// One tilt direction of the inner race: a moment or a rotation.
+/// One tilt direction of a race: a moment or a rotation.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields, expecting = "a table { moment = ... } or { rotation = ... }")]
 pub struct Tilt {
-    /// [N m] external moment on the inner race.
+    /// [N m] external moment on the race.
     #[serde(deserialize_with = "some_schedule::<Moment, _>")]
     pub moment: Option<Schedule>,
     /// \[rad] component of the rotation vector.
@@ -200,7 +200,8 @@ fn some_schedule<'de, Q: Quantity + for<'a> Deserialize<'a>, D: serde::Deseriali
     schedule::deserialize::<Q, D>(deserializer).map(Some)
 }
 
-/// Duration, speeds, and the load of the inner race per direction; a direction left out is free of load.
+/// Duration, speeds, and the load of the inner race per direction; a direction left out is free of load. Under a wrench on
+/// the outer race the inner one is held, and where a direction is left out, at 0.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
@@ -231,6 +232,24 @@ pub struct Load {
     /// About z.
     #[serde(default)]
     pub rz: Tilt,
+    /// The same five directions of an outer race under a wrench.
+    pub outer: Option<RaceLoad>,
+}
+
+/// Load of a race per direction; a direction left out is free of load.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table of x, y, z, ry, rz")]
+pub struct RaceLoad {
+    /// Along x, the bearing axis.
+    pub x: Translation,
+    /// Along y.
+    pub y: Translation,
+    /// Along z.
+    pub z: Translation,
+    /// About y.
+    pub ry: Tilt,
+    /// About z.
+    pub rz: Tilt,
 }
 
 fn default_duration() -> Time {
@@ -241,7 +260,7 @@ fn default_output_interval() -> Time {
     Time(1e-4)
 }
 
-/// What is asked of one of the five directions x, y, z, ry, rz of the inner race.
+/// What is asked of one of the five directions x, y, z, ry, rz of a race.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Condition {
     /// External force \[N] or moment [N m].
@@ -250,20 +269,49 @@ pub enum Condition {
     Motion(Schedule),
 }
 
-impl Load {
-    /// The conditions of the five directions, in the order x, y, z, ry, rz.
-    pub fn conditions(&self) -> [Condition; 5] {
-        let of = |load: &Option<Schedule>, motion: &Option<Schedule>| match motion {
+/// What a scene gives for a direction of a race.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Direction<'a> {
+    /// \[N, N m] external force or moment.
+    pub load: Option<&'a Schedule>,
+    /// \[m, rad] displacement or rotation vector component.
+    pub motion: Option<&'a Schedule>,
+}
+
+impl Direction<'_> {
+    /// The condition; a direction that nothing is given for is free of load.
+    pub fn condition(&self) -> Condition {
+        match self.motion {
             Some(motion) => Condition::Motion(motion.clone()),
-            None => Condition::Load(load.clone().unwrap_or_default()),
-        };
-        [
-            of(&self.x.force, &self.x.displacement),
-            of(&self.y.force, &self.y.displacement),
-            of(&self.z.force, &self.z.displacement),
-            of(&self.ry.moment, &self.ry.rotation),
-            of(&self.rz.moment, &self.rz.rotation),
-        ]
+            None => Condition::Load(self.load.cloned().unwrap_or_default()),
+        }
+    }
+}
+
+/// Directions in the order x, y, z, ry, rz.
+fn directions<'a>([x, y, z]: [&'a Translation; 3], [ry, rz]: [&'a Tilt; 2]) -> [Direction<'a>; 5] {
+    let along = |of: &'a Translation| Direction { load: of.force.as_ref(), motion: of.displacement.as_ref() };
+    let about = |of: &'a Tilt| Direction { load: of.moment.as_ref(), motion: of.rotation.as_ref() };
+    [along(x), along(y), along(z), about(ry), about(rz)]
+}
+
+impl Load {
+    /// The five directions of the inner race, in the order x, y, z, ry, rz.
+    pub fn of_inner(&self) -> [Direction<'_>; 5] {
+        directions([&self.x, &self.y, &self.z], [&self.ry, &self.rz])
+    }
+
+    /// Those of the outer race; nothing is given for them where the scene has no such section.
+    pub fn of_outer(&self) -> [Direction<'_>; 5] {
+        match &self.outer {
+            Some(RaceLoad { x, y, z, ry, rz }) => directions([x, y, z], [ry, rz]),
+            None => [Direction::default(); 5],
+        }
+    }
+
+    /// The conditions of the five directions of the inner race, in the order x, y, z, ry, rz.
+    pub fn conditions(&self) -> [Condition; 5] {
+        self.of_inner().map(|direction| direction.condition())
     }
 }
 

@@ -214,13 +214,13 @@ impl Simulation {
     pub fn scripted_inputs(&self, time: f64) -> Inputs {
         let mut inputs = self.inputs;
         let scene = &self.scene;
-        inputs.inner.applied = script::applied(scene, time);
         inputs.inner.speed = scene.load.inner_speed.at(time);
         inputs.outer.speed = scene.load.outer_speed.at(time);
         if scene.friction.ball_race.is_table() {
             inputs.friction = scene.friction.ball_race.at(time);
         }
         for race in Race::BOTH {
+            inputs[race].applied = script::applied(scene, race, time);
             let now = self.paths.races[race].at(time).0;
             script::script_motion(scene, race, time, &now, &mut inputs[race]);
         }

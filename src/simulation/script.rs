@@ -17,7 +17,8 @@ use crate::scene::{Drive, Group, Groups, RaceSection, Scene, Schedule};
 /// What the script of a scene gives in a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Script {
-    loads: bool,
+    /// Wrenches on races that forces move.
+    loads: PerRace<bool>,
     friction: bool,
     /// Speeds of races that forces move.
     speeds: PerRace<bool>,
@@ -27,30 +28,28 @@ pub struct Script {
 
 /// Section and scripted speed of a race.
 fn of_race(scene: &Scene, race: Race) -> (&RaceSection, &Schedule) {
-    match race {
-        Race::Inner => (&scene.inner, &scene.load.inner_speed),
-        Race::Outer => (&scene.outer, &scene.load.outer_speed),
-    }
+    let speed = match race {
+        Race::Inner => &scene.load.inner_speed,
+        Race::Outer => &scene.load.outer_speed,
+    };
+    (race.section(scene), speed)
 }
 
 /// Applied forces and moments, in the order x, y, z, ry, rz; none where a direction is free or held.
-fn load_schedules(scene: &Scene) -> [Option<&Schedule>; 5] {
-    let load = &scene.load;
-    [&load.x.force, &load.y.force, &load.z.force, &load.ry.moment, &load.rz.moment].map(Option::as_ref)
+fn load_schedules(scene: &Scene, race: Race) -> [Option<&Schedule>; 5] {
+    race.directions(scene).map(|direction| direction.load)
 }
 
-/// Displacements and rotations of the inner race, in the same order.
-fn held_schedules(scene: &Scene) -> [Option<&Schedule>; 5] {
-    let load = &scene.load;
-    [&load.x.displacement, &load.y.displacement, &load.z.displacement, &load.ry.rotation, &load.rz.rotation]
-        .map(Option::as_ref)
+/// Displacements and rotations, in the same order.
+fn held_schedules(scene: &Scene, race: Race) -> [Option<&Schedule>; 5] {
+    race.directions(scene).map(|direction| direction.motion)
 }
 
 /// Displacements and tilts, in the order x, y, z, ry, rz, that the scene gives a race without a body.
 fn motion_schedules(scene: &Scene, race: Race) -> [Option<&Schedule>; 5] {
     let section = of_race(scene, race).0;
     match (race, section.drive) {
-        (Race::Inner, Drive::Pose) => held_schedules(scene),
+        (Race::Inner, Drive::Pose) => held_schedules(scene, race),
         (Race::Outer, Drive::Fixed | Drive::Pose) => {
             let misalignment = &section.misalignment;
             let [ry, rz] =
@@ -73,14 +72,18 @@ pub fn follows_time(scene: &Scene) -> bool {
     let misalignment =
         [&scene.inner, &scene.outer].map(|race| [&race.misalignment.ry, &race.misalignment.rz]);
     let always = [&load.inner_speed, &load.outer_speed, &scene.friction.ball_race];
-    let given = load_schedules(scene).into_iter().chain(held_schedules(scene)).flatten();
-    given.chain(always).chain(misalignment.into_iter().flatten()).any(Schedule::is_table)
+    let given = |race| load_schedules(scene, race).into_iter().chain(held_schedules(scene, race)).flatten();
+    Race::BOTH
+        .into_iter()
+        .flat_map(given)
+        .chain(always)
+        .chain(misalignment.into_iter().flatten())
+        .any(Schedule::is_table)
 }
 
 /// Groups of inputs for which a scene has a script; what has no input in a package, such as the speed of a race on a
 /// hinge, is in none.
 pub fn scripted_groups(scene: &Scene) -> Groups {
-    let table = |schedule: &Option<&Schedule>| schedule.is_some_and(Schedule::is_table);
     let race = |race: Race| {
         let (section, speed) = of_race(scene, race);
         (
@@ -90,10 +93,16 @@ pub fn scripted_groups(scene: &Scene) -> Groups {
     };
     let [inner, outer] = Race::BOTH.map(race);
     Groups::default()
-        .with(Group::Loads, scene.inner.drive == Drive::Wrench && load_schedules(scene).iter().any(table))
+        .with(Group::Loads, Race::BOTH.into_iter().any(|race| has_scripted_load(scene, race)))
         .with(Group::Speeds, inner.1 || outer.1)
         .with(Group::Tilts, inner.0 || outer.0)
         .with(Group::Friction, scene.friction.ball_race.is_table())
+}
+
+/// Does a table give the wrench on this race?
+fn has_scripted_load(scene: &Scene, race: Race) -> bool {
+    let tables = load_schedules(scene, race).into_iter().flatten().any(Schedule::is_table);
+    tables && race.section(scene).drive == Drive::Wrench
 }
 
 impl Script {
@@ -114,7 +123,7 @@ impl Script {
             played && moves(scene, race)
         };
         Self {
-            loads: given(Group::Loads),
+            loads: PerRace::new(|race| groups.contains(Group::Loads) && has_scripted_load(scene, race)),
             friction: given(Group::Friction),
             speeds: PerRace::new(speed),
             motions: PerRace::new(motion),
@@ -123,21 +132,21 @@ impl Script {
 
     /// Does it give anything that an importer could have given, or a motion of a race without a body?
     pub fn gives_inputs(&self) -> bool {
-        let of_race = |race: Race| self.speeds[race] || self.motions[race];
-        self.loads || self.friction || Race::BOTH.into_iter().any(of_race)
+        let of_race = |race: Race| self.loads[race] || self.speeds[race] || self.motions[race];
+        self.friction || Race::BOTH.into_iter().any(of_race)
     }
 
     /// \[s] times within a step at which a table bends, growing, not closer to one another or to the ends than `least`.
     pub fn knots(&self, scene: &Scene, from: f64, to: f64, least: f64) -> Vec<f64> {
         let mut playing: Vec<&Schedule> = vec![];
-        if self.loads {
-            playing.extend(load_schedules(scene).into_iter().flatten());
-        }
         if self.friction {
             playing.push(&scene.friction.ball_race);
         }
         for race in Race::BOTH {
             let (section, speed) = of_race(scene, race);
+            if self.loads[race] {
+                playing.extend(load_schedules(scene, race).into_iter().flatten());
+            }
             if self.speeds[race] || self.motions[race] {
                 playing.push(speed);
             }
@@ -146,7 +155,7 @@ impl Script {
             }
             // Tables of constraints are played by the body itself.
             match section.drive {
-                Drive::Wrench => playing.extend(held_schedules(scene).into_iter().flatten()),
+                Drive::Wrench => playing.extend(held_schedules(scene, race).into_iter().flatten()),
                 Drive::Hinge => playing.extend([&section.misalignment.ry, &section.misalignment.rz]),
                 Drive::Fixed | Drive::Pose => {}
             }
@@ -183,9 +192,9 @@ impl Script {
             if self.speeds[race] {
                 boundary.loads[race].speed = of_race(scene, race).1.at(time);
             }
-        }
-        if self.loads {
-            boundary.loads.inner.applied = applied(scene, time);
+            if self.loads[race] {
+                boundary.loads[race].applied = applied(scene, race, time);
+            }
         }
         if self.friction {
             boundary.conditions.friction = scene.friction.ball_race.at(time);
@@ -204,9 +213,9 @@ impl Script {
             if self.speeds[race] {
                 inputs[race].speed = speed.at(time);
             }
-        }
-        if self.loads {
-            inputs.inner.applied = applied(scene, time);
+            if self.loads[race] {
+                inputs[race].applied = applied(scene, race, time);
+            }
         }
         if self.friction {
             inputs.friction = scene.friction.ball_race.at(time);
@@ -214,10 +223,10 @@ impl Script {
     }
 }
 
-/// External wrench on the inner race at a time \[s].
-pub fn applied(scene: &Scene, time: f64) -> Wrench {
+/// External wrench on a race at a time \[s].
+pub fn applied(scene: &Scene, race: Race, time: f64) -> Wrench {
     let [x, y, z, ry, rz] =
-        load_schedules(scene).map(|schedule| schedule.map_or(0.0, |schedule| schedule.at(time)));
+        load_schedules(scene, race).map(|schedule| schedule.map_or(0.0, |schedule| schedule.at(time)));
     Wrench { force: Vector3::new(x, y, z), moment: Vector3::new(0.0, ry, rz) }
 }
 

@@ -23,10 +23,7 @@ use crate::simulation::spin_balance::{Surroundings, balance};
 pub fn from_equilibrium(scene: &Scene, model: &Model, time: f64) -> Result<(Inputs, State), SimulationError> {
     let problem = EquilibriumInput::at(scene, Gyroscopic::Friction, time);
     let solution = equilibrium::solve(model, &problem)?;
-    let [x, y, z, ry, rz] = solution.displacement;
-    let inner_pose =
-        Pose { position: Vector3::new(x, y, z), orientation: UnitQuaternion::new(Vector3::new(0.0, ry, rz)) };
-    let outer_pose = Pose { position: Vector3::zeros(), orientation: problem.outer_orientation };
+    let pose = |race: Race| if race == problem.race { pose_of(&solution) } else { problem.resting };
     // What is applied is what the scene says; directions with an imposed motion are held by constraints.
     let load = |direction: usize| match problem.conditions[direction] {
         Prescribed::Load(load) => load,
@@ -36,9 +33,10 @@ pub fn from_equilibrium(scene: &Scene, model: &Model, time: f64) -> Result<(Inpu
         force: Vector3::new(load(0), load(1), load(2)),
         moment: Vector3::new(0.0, load(3), load(4)),
     };
+    let on = |race: Race| if race == problem.race { applied } else { Wrench::default() };
     let mut inputs = Inputs {
-        inner: spinning(inner_pose, problem.inner_speed, applied),
-        outer: spinning(outer_pose, problem.outer_speed, Wrench::default()),
+        inner: spinning(pose(Race::Inner), problem.inner_speed, on(Race::Inner)),
+        outer: spinning(pose(Race::Outer), problem.outer_speed, on(Race::Outer)),
         friction: problem.friction,
     };
     if let Some(velocity) = scene.start.inner_velocity {
@@ -72,38 +70,49 @@ pub fn from_inputs(
             input.twist.angular_velocity = input.pose.orientation * Vector3::x() * input.speed;
         }
     }
-    let outer = &inputs.outer.pose;
     let mut problem = EquilibriumInput::at(scene, Gyroscopic::Friction, time);
+    let (race, resting) = match problem.race {
+        Race::Inner => (Race::Inner, Race::Outer),
+        Race::Outer => (Race::Outer, Race::Inner),
+    };
+    // Places are taken from the race that rests, wherever that is.
+    let origin = inputs[resting].pose.position;
     problem.friction = inputs.friction;
-    problem.outer_orientation = spin_free(&outer.orientation);
-    problem.outer_speed = own_spin(&inputs.outer);
-    let relative = inputs.inner.pose.position - outer.position;
-    if model.bodies[Race::Inner].is_some() {
-        problem.inner_speed = inputs.inner.speed;
-        let (force, moment) = (inputs.inner.applied.force, inputs.inner.applied.moment);
+    problem.resting =
+        Pose { position: Vector3::zeros(), orientation: spin_free(&inputs[resting].pose.orientation) };
+    let moves = race.section(scene).drive == Drive::Wrench;
+    let speed = |of: Race| if of == race && moves { inputs[of].speed } else { own_spin(&inputs[of]) };
+    (problem.inner_speed, problem.outer_speed) = (speed(Race::Inner), speed(Race::Outer));
+    if moves {
+        let (force, moment) = (inputs[race].applied.force, inputs[race].applied.moment);
         let loads = [force.x, force.y, force.z, moment.y, moment.z];
-        for (condition, load) in problem.conditions.iter_mut().zip(loads) {
-            if let Prescribed::Load(value) = condition {
-                *value = load;
+        for (direction, (condition, load)) in problem.conditions.iter_mut().zip(loads).enumerate() {
+            match condition {
+                Prescribed::Load(value) => *value = load,
+                Prescribed::Motion(value) => *value -= origin.get(direction).unwrap_or(&0.0),
             }
         }
     } else {
-        problem.inner_speed = own_spin(&inputs.inner);
+        let relative = inputs.inner.pose.position - origin;
         let tilt = tilt_of(&inputs.inner.pose);
         let motion = [relative.x, relative.y, relative.z, tilt.y, tilt.z];
         problem.conditions = motion.map(Prescribed::Motion);
     }
     let solution = equilibrium::solve(model, &problem)?;
-    if model.bodies[Race::Inner].is_some() {
-        let [x, y, z, ry, rz] = solution.displacement;
-        inputs.inner.pose = Pose {
-            position: outer.position + Vector3::new(x, y, z),
-            orientation: UnitQuaternion::new(Vector3::new(0.0, ry, rz)),
-        };
-        let spin = inputs.inner.pose.orientation * Vector3::x() * inputs.inner.speed;
-        inputs.inner.twist = Twist { velocity: Vector3::zeros(), angular_velocity: spin };
+    if moves {
+        let Pose { position, orientation } = pose_of(&solution);
+        let input = &mut inputs[race];
+        input.pose = Pose { position: origin + position, orientation };
+        let angular_velocity = orientation * Vector3::x() * input.speed;
+        input.twist = Twist { velocity: Vector3::zeros(), angular_velocity };
     }
     Ok(State { time, ..state(scene, model, inputs, &solution)? })
+}
+
+/// Pose of the race that moved into balance.
+fn pose_of(solution: &equilibrium::Equilibrium) -> Pose {
+    let [x, y, z, ry, rz] = solution.displacement;
+    Pose { position: Vector3::new(x, y, z), orientation: UnitQuaternion::new(Vector3::new(0.0, ry, rz)) }
 }
 
 /// A race that spins about its own axis.

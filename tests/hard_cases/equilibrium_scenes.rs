@@ -152,7 +152,7 @@ fn residual(scene: &Scene, solution: &Equilibrium, input: &EquilibriumInput) -> 
     let mass = scene.ball.density.0 * PI * diameter.powi(3) / 6.0;
     let inertia = mass * diameter * diameter / 10.0;
     let [x, y, z, ry, rz] = solution.displacement;
-    let to_outer = input.outer_orientation.inverse();
+    let to_outer = input.resting.orientation.inverse();
     let axis = to_outer * (UnitQuaternion::new(Vector3::new(0.0, ry, rz)) * Vector3::x());
     let centre = to_outer * Vector3::new(x, y, z);
     let (wi, wo, wc) = (input.inner_speed, input.outer_speed, solution.cage_speed);
@@ -188,7 +188,7 @@ fn residual(scene: &Scene, solution: &Equilibrium, input: &EquilibriumInput) -> 
         moment += (offset + i.normal * radius).cross(&(i.normal * i.load));
         sum += i.load;
     }
-    let (force, moment) = (-(input.outer_orientation * force), -(input.outer_orientation * moment));
+    let (force, moment) = (-(input.resting.orientation * force), -(input.resting.orientation * moment));
     let held = [force.x, force.y, force.z, moment.y, moment.z];
     let arm = 0.5 * scene.bearing.pitch_diameter.0;
     let scale = solution.balls.iter().map(|b| b.report.outer_load).sum::<f64>().max(sum).max(1.0);

@@ -16,6 +16,8 @@ use roulement::simulation::{Simulation, Snapshot};
 
 use roulement::simulation::inputs::Inputs;
 
+use crate::figures;
+
 /// (b) largest residual of the energy balance over work plus friction.
 const ENERGY: f64 = 0.01;
 /// (c) largest change of a window mean when the step cap is halved.
@@ -124,6 +126,8 @@ impl<'a> Case<'a> {
         assert!(energy < ENERGY, "{}: energy balance open by {energy:.2e}", self.name);
         assert!(change < CAP, "{}: {what}, by {change:.2e}, with half the step cap", self.name);
         self.bounded(&statistics);
+        let simulated = number(run.simulation.time() - run.history[0].time);
+        figures::compare(self.name, &simulated, &statistics);
         run
     }
 
@@ -234,11 +238,11 @@ fn number(seconds: f64) -> String {
 }
 
 /// A rejected step has failed twice, from both first guesses.
-fn failed(s: &Statistics) -> u64 {
+pub fn failed(s: &Statistics) -> u64 {
     s.second_guesses + s.rejected_newton
 }
 
-fn corrections(s: &Statistics) -> f64 {
+pub fn corrections(s: &Statistics) -> f64 {
     s.newton.iterations as f64 / s.steps as f64
 }
 

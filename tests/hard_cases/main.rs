@@ -10,6 +10,7 @@ mod contact_loss;
 mod creep_laws;
 mod equilibrium_scenes;
 mod extremes;
+mod figures;
 mod free_oscillation;
 mod friction;
 mod gates;

@@ -16,6 +16,7 @@ use roulement_cli::report::energy::EnergyWatch;
 use roulement_cli::report::figures::Figures;
 use roulement_cli::report::limits::Limits;
 use roulement_cli::report::means::{Blocks, Means};
+use roulement_cli::report::quantities::Parts;
 use roulement_cli::report::results::{ResultsError, ResultsWriter};
 use roulement_cli::report::thinned::Thinned;
 
@@ -107,8 +108,7 @@ impl Player {
         let mut energy = EnergyWatch::default();
         let mut limits = Limits::default();
         let mut estimate = Estimate::default();
-        let mut blocks =
-            Blocks::new(simulation.outputs().cage.is_some(), 0.5 * simulation.model().bearing.pitch_diameter);
+        let mut blocks = Blocks::new(Parts::of(&simulation), 0.5 * simulation.model().bearing.pitch_diameter);
         let played = play(&mut simulation, rows, |simulation| {
             let outputs = simulation.outputs();
             if let Some(Err(why)) = table.as_mut().map(|table| table.write(simulation.inputs(), outputs)) {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement_cli::report::figures::Shown;
 use roulement_cli::report::limits::Limits;
@@ -106,6 +107,7 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Res
     let range = |[least, most]: [&str; 2], digits| {
         format!("{} to {}", text(least, 1.0, digits), text(most, 1.0, digits))
     };
+    let race = Race::loaded(simulation.scene()).name();
     let title = &simulation.scene().title;
     if !title.is_empty() {
         writeln!(out, "{title}")?;
@@ -113,7 +115,7 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Res
     writeln!(out, "at {:.3} ms", now.time * 1e3)?;
     writeln!(
         out,
-        "bearing's force  x {}  y {}  z {} N   (of the bearing on the inner race; the external load is the opposite,",
+        "bearing's force  x {}  y {}  z {} N   (of the bearing on the {race} race; the external load is the opposite,",
         text("end force.x", 1.0, 3),
         text("end force.y", 1.0, 3),
         text("end force.z", 1.0, 3)
@@ -127,7 +129,7 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Res
     )?;
     writeln!(
         out,
-        "inner race at    x {}  y {}  z {} um",
+        "{race} race at    x {}  y {}  z {} um",
         text("end position.x", 1e6, 4),
         text("end position.y", 1e6, 4),
         text("end position.z", 1e6, 4)

@@ -82,7 +82,7 @@ pub fn sizes(samples: &[Sample], lengths: Lengths) -> [f64; COUNT] {
         Size::Own => {
             let torque = NOTHING * force * lengths.pitch_radius;
             let nothing = if quantity.unit == "W" { torque * speed } else { torque };
-            own(i).max(nothing).max(if quantity.of_cage { PART * friction } else { 0.0 })
+            own(i).max(nothing).max(if quantity.is_of_cage() { PART * friction } else { 0.0 })
         }
     };
     let mut sizes = [0.0; COUNT];

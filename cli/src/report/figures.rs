@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use roulement::model::bodies::Race;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::{BallOutput, Outputs};
 
@@ -17,8 +18,8 @@ impl Figures {
     /// All figures of a run that has come to its end; those of means, too.
     pub fn of(simulation: &Simulation, means: Option<&Means>, limits: &Limits, energy: &EnergyWatch) -> Self {
         let now = simulation.outputs();
-        let (force, moment) = (now.inner.wrench.force, now.inner.wrench.moment);
-        let position = now.inner.pose.position;
+        let race = &now[Race::loaded(simulation.scene())];
+        let (force, moment, position) = (race.wrench.force, race.wrench.moment, race.pose.position);
         let balls = |get: fn(&BallOutput) -> f64| {
             let values = now.balls.iter().map(get);
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))

@@ -13,7 +13,7 @@ use std::path::Path;
 use roulement::simulation::outputs::Outputs;
 
 use super::interval;
-use super::quantities::{COUNT, QUANTITIES, Size, values};
+use super::quantities::{COUNT, Parts, QUANTITIES, Size, values};
 
 /// [-] blocks of a run; even.
 const MOST_BLOCKS: usize = 128;
@@ -58,7 +58,7 @@ pub struct Blocks {
     blocks: Vec<Block>,
     rows_per_block: u64,
     rows: u64,
-    has_cage: bool,
+    parts: Parts,
     pitch_radius: f64,
 }
 
@@ -118,8 +118,8 @@ pub struct Means {
 
 impl Blocks {
     /// None yet.
-    pub fn new(has_cage: bool, pitch_radius: f64) -> Self {
-        Self { blocks: vec![], rows_per_block: 1, rows: 0, has_cage, pitch_radius }
+    pub fn new(parts: Parts, pitch_radius: f64) -> Self {
+        Self { blocks: vec![], rows_per_block: 1, rows: 0, parts, pitch_radius }
     }
 
     /// Adds a row.
@@ -171,7 +171,7 @@ impl Blocks {
             size => largest_of(size),
         };
         let start = self.blocks[0].span[0];
-        let there = (0..COUNT).filter(|&i| self.has_cage || !QUANTITIES[i].of_cage);
+        let there = (0..COUNT).filter(|&i| QUANTITIES[i].is_of(self.parts));
         let means = there.map(|i| {
             let each = window.len().div_ceil(GROUPS);
             let of_trend = groups(window, i, each, window.len() / each);
@@ -335,7 +335,7 @@ mod tests {
     }
 
     fn run(rows: u32, duration: f64, value: impl Fn(f64) -> f64) -> Means {
-        let mut blocks = Blocks::new(true, 1.0);
+        let mut blocks = Blocks::new(Parts { cage: true, moving_outer: true }, 1.0);
         for row in 0..=rows {
             let time = duration * f64::from(row) / f64::from(rows);
             let block =

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use plotters::prelude::*;
 use roulement::model::Model;
+use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement::simulation::outputs::{BallOutput, ContactOutput, Outputs};
 
@@ -41,7 +42,7 @@ pub fn write_plots(
     let title = if scene.title.is_empty() { "ball bearing" } else { &scene.title };
     let figures = [
         ("contacts.svg", format!("{title}: contacts of ball 1"), contact_panels(history)),
-        ("bearing.svg", title.to_string(), bearing_panels(model, history)),
+        ("bearing.svg", title.to_string(), bearing_panels(model, Race::loaded(scene), history)),
         ("balls.svg", format!("{title}: all balls at the end"), ball_panels(history)),
     ];
     figures
@@ -76,7 +77,7 @@ fn contact_panels(history: &[Outputs]) -> Vec<Panel> {
     ]
 }
 
-fn bearing_panels(model: &Model, history: &[Outputs]) -> Vec<Panel> {
+fn bearing_panels(model: &Model, race: Race, history: &[Outputs]) -> Vec<Panel> {
     let curve = |name, get: &dyn Fn(&Outputs) -> f64| Curve {
         name,
         points: history.iter().map(|o| (o.time * 1e3, get(o))).collect(),
@@ -90,29 +91,41 @@ fn bearing_panels(model: &Model, history: &[Outputs]) -> Vec<Panel> {
             o.cage_speed / (1.0 - o.cage_slip)
         }
     };
+    let [position, force, moment] = match race {
+        Race::Inner => [
+            "inner race position [um]",
+            "force of the bearing on inner race [N]",
+            "moment of the bearing on inner race [N m]",
+        ],
+        Race::Outer => [
+            "outer race position [um]",
+            "force of the bearing on outer race [N]",
+            "moment of the bearing on outer race [N m]",
+        ],
+    };
     vec![
         panel(
-            "inner race position [um]",
+            position,
             0.01,
             vec![
-                curve("x", &|o| o.inner.pose.position.x * 1e6),
-                curve("y", &|o| o.inner.pose.position.y * 1e6),
-                curve("z", &|o| o.inner.pose.position.z * 1e6),
+                curve("x", &|o| o[race].pose.position.x * 1e6),
+                curve("y", &|o| o[race].pose.position.y * 1e6),
+                curve("z", &|o| o[race].pose.position.z * 1e6),
             ],
         ),
         panel(
-            "force of the bearing on inner race [N]",
+            force,
             1.0,
             vec![
-                curve("x", &|o| o.inner.wrench.force.x),
-                curve("y", &|o| o.inner.wrench.force.y),
-                curve("z", &|o| o.inner.wrench.force.z),
+                curve("x", &|o| o[race].wrench.force.x),
+                curve("y", &|o| o[race].wrench.force.y),
+                curve("z", &|o| o[race].wrench.force.z),
             ],
         ),
         panel(
-            "moment of the bearing on inner race [N m]",
+            moment,
             0.001,
-            vec![curve("y", &|o| o.inner.wrench.moment.y), curve("z", &|o| o.inner.wrench.moment.z)],
+            vec![curve("y", &|o| o[race].wrench.moment.y), curve("z", &|o| o[race].wrench.moment.z)],
         ),
         panel(
             "cage speed [rad/s]",

@@ -1,5 +1,7 @@
 //! The quantities whose means are reported, and whose errors are measured.
 
+use roulement::model::bodies::Race;
+use roulement::simulation::Simulation;
 use roulement::simulation::outputs::{BallOutput, CageOutput, Outputs, RaceOutput};
 
 /// What the size of a quantity is measured by.
@@ -28,17 +30,51 @@ pub struct Quantity {
     pub unit: &'static str,
     /// What its size is measured by.
     pub size: Size,
-    /// Is it there with a cage alone?
-    pub of_cage: bool,
+    shown: fn(Parts) -> bool,
     get: fn(&Outputs) -> f64,
 }
 
+/// Parts of a bearing that some quantities are of.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts {
+    /// Is there a cage?
+    pub cage: bool,
+    /// Does a wrench move the outer race?
+    pub moving_outer: bool,
+}
+
+impl Parts {
+    /// Those of a simulation.
+    pub fn of(simulation: &Simulation) -> Self {
+        Self {
+            cage: simulation.outputs().cage.is_some(),
+            moving_outer: Race::loaded(simulation.scene()) == Race::Outer,
+        }
+    }
+}
+
+impl Quantity {
+    /// Is it one of the cage?
+    pub fn is_of_cage(&self) -> bool {
+        !self.is_of(Parts { cage: false, moving_outer: true })
+    }
+
+    /// Is it reported of a bearing of these parts?
+    pub fn is_of(&self, parts: Parts) -> bool {
+        (self.shown)(parts)
+    }
+}
+
 const fn quantity(name: &'static str, unit: &'static str, size: Size, get: fn(&Outputs) -> f64) -> Quantity {
-    Quantity { name, unit, size, of_cage: false, get }
+    Quantity { name, unit, size, shown: |_| true, get }
 }
 
 const fn of_cage(name: &'static str, get: fn(&Outputs) -> f64) -> Quantity {
-    Quantity { name, unit: "W", size: Size::Own, of_cage: true, get }
+    Quantity { name, unit: "W", size: Size::Own, shown: |parts| parts.cage, get }
+}
+
+const fn of_moving_outer(name: &'static str, get: fn(&Outputs) -> f64) -> Quantity {
+    Quantity { name, unit: "m", size: Size::Position, shown: |parts| parts.moving_outer, get }
 }
 
 /// [rad/s] spin of a race about its own axis.
@@ -55,7 +91,7 @@ fn cage(outputs: &Outputs, get: fn(&CageOutput) -> f64) -> f64 {
 }
 
 /// [-] their number.
-pub const COUNT: usize = 19;
+pub const COUNT: usize = 22;
 
 /// All of them.
 pub static QUANTITIES: [Quantity; COUNT] = [
@@ -67,6 +103,9 @@ pub static QUANTITIES: [Quantity; COUNT] = [
     quantity("position.x of the inner race", "m", Size::Position, |o| o.inner.pose.position.x),
     quantity("position.y of the inner race", "m", Size::Position, |o| o.inner.pose.position.y),
     quantity("position.z of the inner race", "m", Size::Position, |o| o.inner.pose.position.z),
+    of_moving_outer("position.x of the outer race", |o| o.outer.pose.position.x),
+    of_moving_outer("position.y of the outer race", |o| o.outer.pose.position.y),
+    of_moving_outer("position.z of the outer race", |o| o.outer.pose.position.z),
     quantity("inner race speed", "rad/s", Size::Speed, |o| spin(&o.inner)),
     quantity("outer race speed", "rad/s", Size::Speed, |o| spin(&o.outer)),
     quantity("cage speed", "rad/s", Size::Speed, |o| o.cage_speed),

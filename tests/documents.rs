@@ -1,0 +1,237 @@
+//! Tables of the documents whose numbers are counts and states of runs: computed here, and compared with what is written.
+//!
+//! `scripts/tables` writes them: the same tests with `ROULEMENT_RENEW=1`. Counts are compared within 2 %, as another
+//! system's sine may end in another last bit; residuals of balances are sizes and are compared within a factor of 3.
+#![allow(clippy::unwrap_used)]
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use roulement::Simulation;
+use roulement::analysis::single_contact::RollingContact;
+use roulement::kalker::nonlinear::Kalker;
+use roulement::kalker::{Patch, ScaledCreepage};
+use roulement::simulation::play::{Rows, play};
+
+#[path = "common/scenes.rs"]
+mod scenes;
+
+use scenes::scene;
+
+const THRUST: &str = include_str!("../scenes/thrust.toml");
+const RADIAL: &str = include_str!("../scenes/radial.toml");
+const CAGE: &str = include_str!("../scenes/cage.toml");
+
+/// Noise that a number of a table may have.
+#[derive(Clone, Copy)]
+enum Noise {
+    /// Within 2 %, and half a unit of what is written.
+    Count,
+    /// Within a factor of 3.
+    Size,
+}
+
+/// A row: words, and numbers as they are written with their noise.
+struct Row {
+    words: String,
+    numbers: Vec<(String, Noise)>,
+    /// Unit, or what the numbers are of.
+    unit: &'static str,
+}
+
+fn row(words: impl Into<String>, numbers: Vec<(String, Noise)>, unit: &'static str) -> Row {
+    Row { words: words.into(), numbers, unit }
+}
+
+impl Row {
+    fn text(&self) -> String {
+        let numbers: Vec<&str> = self.numbers.iter().map(|(number, _)| number.as_str()).collect();
+        format!("| {} | {}{} |", self.words, numbers.join(" / "), self.unit)
+    }
+
+    /// Does a line of the document say the same?
+    fn agrees(&self, line: &str) -> bool {
+        let Some(written) = line
+            .strip_prefix(&format!("| {} | ", self.words))
+            .and_then(|rest| rest.strip_suffix(&format!("{} |", self.unit)))
+        else {
+            return false;
+        };
+        let written: Vec<&str> = written.split(" / ").collect();
+        written.len() == self.numbers.len()
+            && written.iter().zip(&self.numbers).all(|(written, (ours, noise))| {
+                let digit = ours.split_once('.').map_or(1.0, |(_, digits)| 0.1f64.powi(digits.len() as i32));
+                let (Ok(written), ours) = (written.parse::<f64>(), ours.parse::<f64>().unwrap()) else {
+                    return false;
+                };
+                match noise {
+                    Noise::Count => (written - ours).abs() <= 0.02 * ours.abs() + 0.51 * digit,
+                    Noise::Size => (written / ours).ln().abs() <= 3.0f64.ln(),
+                }
+            })
+    }
+}
+
+/// Compares the section `<!-- begin NAME -->` of a document with a table, or writes it where that is asked for.
+fn compare(document: &str, name: &str, header: &str, rows: &[Row]) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(document);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let begin = format!("<!-- begin {name} -->\n");
+    let (before, rest) = text.split_once(&begin).unwrap_or_else(|| panic!("{document} has no {begin}"));
+    let (inside, after) = rest.split_once("<!-- end -->").unwrap();
+    let ruler = header.split(" | ").map(|_| "---").collect::<Vec<_>>().join("|");
+    let lines: Vec<String> = rows.iter().map(Row::text).collect();
+    let table = format!("| {header} |\n|{ruler}|\n{}\n", lines.join("\n"));
+    if std::env::var_os("ROULEMENT_RENEW").is_some() {
+        std::fs::write(&path, format!("{before}{begin}{table}<!-- end -->{after}")).unwrap();
+        return;
+    }
+    let written: Vec<&str> = inside.lines().skip(2).collect();
+    let stale = rows.len() != written.len() || rows.iter().zip(&written).any(|(row, line)| !row.agrees(line));
+    assert!(!stale, "{document} is stale (scripts/tables renews it):\n{inside}\nshould be\n{table}");
+}
+
+/// A run by the scene's script.
+fn run(text: &str, changes: &[(&str, &str)], duration: f64) -> Simulation {
+    let mut simulation = Simulation::new(&scene(text, changes)).unwrap();
+    let rows = Rows { interval: 1e-3, duration };
+    let _: ControlFlow<()> = play(&mut simulation, rows, |_| ControlFlow::Continue(())).unwrap();
+    simulation
+}
+
+fn count(value: f64, digits: usize) -> (String, Noise) {
+    (format!("{value:.digits$}"), Noise::Count)
+}
+
+fn corrections(simulation: &Simulation) -> f64 {
+    let statistics = simulation.state().statistics;
+    statistics.newton.iterations as f64 / statistics.steps as f64
+}
+
+/// Residual of the energy balance over the work.
+fn balance(simulation: &Simulation, at_start: f64) -> (String, Noise) {
+    let outputs = simulation.outputs();
+    let residual = outputs.work - outputs.dissipated - (outputs.stored_energy - at_start);
+    (format!("{:.0e}", (residual / outputs.work).abs()), Noise::Size)
+}
+
+#[test]
+fn regression_measured_counts_of_the_model() {
+    let stored = |text: &str| Simulation::new(&scene(text, &[])).unwrap().outputs().stored_energy;
+    let [thrust, radial, cage] = [THRUST, RADIAL, CAGE].map(|text| run(text, &[], 0.05));
+    // The ball at 25 to 50 ms: the mean of ten rows.
+    let mut powers = [0.0; 2];
+    let mut simulation = Simulation::new(&scene(THRUST, &[])).unwrap();
+    for step in 1..=20 {
+        simulation.advance_scripted(f64::from(step) * 2.5e-3).unwrap();
+        if step > 10 {
+            let ball = &simulation.outputs().balls[0];
+            powers[0] += 0.1 * ball.inner.power;
+            powers[1] += 0.1 * ball.outer.power;
+        }
+    }
+    let rows = [
+        row(
+            "`scenes/thrust.toml`, `radial.toml`, `cage.toml` over 50 ms: Newton corrections per step",
+            [&thrust, &radial, &cage].map(|run| count(corrections(run), 2)).into(),
+            "",
+        ),
+        row(
+            "thrust and cage: residual of the energy balance over the work",
+            vec![balance(&thrust, stored(THRUST)), balance(&cage, stored(CAGE))],
+            "",
+        ),
+        row(
+            "thrust, 25 to 50 ms: friction power of a ball on inner and outer race",
+            powers.map(|power| count(power, 2)).into(),
+            " W",
+        ),
+    ];
+    compare("docs/model.md", "measured", "quantity | value", &rows);
+}
+
+#[test]
+fn regression_corrections_by_number_of_balls() {
+    // As scripts/ball-cost: pitch circle and loads grow with the balls, the surface speed is the same.
+    let of = |cage: bool| {
+        let of_balls = |balls: u32| {
+            let changes = [
+                ("bearing.balls", balls.to_string()),
+                ("bearing.pitch_diameter", format!("\"{} mm\"", 5 * balls)),
+                ("cage.land_diameter", format!("\"{} mm\"", 5 * balls + 6)),
+                ("load.x.force", format!("\"{} N\"", 150 * balls)),
+                ("load.z.force", format!("\"-{} N\"", 30 * balls)),
+                ("load.inner_speed", format!("\"{} rpm\"", 60_000 / balls)),
+            ];
+            let mut changes: Vec<(&str, &str)> =
+                changes.iter().map(|(key, value)| (*key, value.as_str())).collect();
+            if !cage {
+                changes.retain(|(key, _)| !key.starts_with("cage"));
+                for key in ["effects.cage", "cage", "friction.ball_cage", "friction.cage_race"] {
+                    changes.push((key, ""));
+                }
+            }
+            count(corrections(&run(CAGE, &changes, 2e-3)), 2)
+        };
+        [8, 16, 32, 64].map(of_balls).into()
+    };
+    let rows = [row("without a cage", of(false), ""), row("with a cage", of(true), "")];
+    let header = "Newton corrections per step | 8 / 16 / 32 / 64 balls";
+    compare("docs/model.md", "balls", header, &rows);
+}
+
+/// Mean iterations of the polynomials over the contacts of `random.csv`, from nothing and from creepages 1 % smaller.
+fn iterations(degree: usize) -> [f64; 2] {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/contact/random.csv");
+    let (mut sums, mut cases) = ([0.0; 2], 0.0);
+    for contact in csv::Reader::from_path(file).unwrap().deserialize() {
+        let contact: RollingContact = contact.unwrap();
+        let c = (contact.semi_axis_x * contact.semi_axis_y).sqrt();
+        let scale = contact.shear_modulus / (contact.friction * contact.peak_pressure);
+        let creepage = |fraction: f64| ScaledCreepage {
+            x: fraction * scale * contact.creep_x,
+            y: fraction * scale * contact.creep_y,
+            spin: fraction * scale * c * contact.spin,
+            curvature: fraction * scale * c * c * contact.curvature,
+        };
+        let patch = Patch {
+            axis_ratio: contact.semi_axis_x / contact.semi_axis_y,
+            poisson_ratio: contact.poisson_ratio,
+            rolling_angle: contact.rolling_angle,
+        };
+        let kalker = Kalker::new(patch, degree).unwrap();
+        let nearby = kalker.solve(&creepage(0.99), None).unwrap();
+        let starts = [None, Some(nearby.coefficients.as_slice())];
+        for (sum, start) in sums.iter_mut().zip(starts) {
+            *sum += f64::from(kalker.solve(&creepage(1.0), start).unwrap().iterations);
+        }
+        cases += 1.0;
+    }
+    sums.map(|sum| sum / cases)
+}
+
+#[test]
+fn regression_iterations_of_the_polynomials() {
+    let row_of = |degree: usize| {
+        let numbers = iterations(degree).map(|mean| count(mean, 1));
+        row(degree.to_string(), numbers.into(), "")
+    };
+    let rows: Vec<Row> = (1..=5).map(row_of).collect();
+    compare("docs/rolling-contact.md", "iterations", "M | iterations, cold / warm", &rows);
+}
+
+#[test]
+fn regression_solutions_of_the_polynomials_in_a_run() {
+    let solutions = |degree: &'static str| {
+        let changes = [("effects.creep", "\"kalker\""), ("effects.kalker_degree", degree)];
+        let statistics = run(THRUST, &changes, 0.01).state().statistics;
+        // Two contacts of ten balls in every step.
+        row(
+            degree,
+            vec![count(100.0 * statistics.polynomials as f64 / (20.0 * statistics.steps as f64), 1)],
+            " %",
+        )
+    };
+    let header = "M | solutions over those of one in every step";
+    compare("docs/rolling-contact.md", "solutions", header, &["3", "5"].map(solutions));
+}
