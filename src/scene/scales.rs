@@ -6,7 +6,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::{Condition, Scene, Schedule};
+use super::{Condition, Drive, Scene, Schedule};
 use crate::contact::hertz::HertzContact;
 
 /// [-] approach of unloaded balls over their diameter: a bearing that carries next to nothing.
@@ -73,19 +73,22 @@ fn largest(schedule: &Schedule) -> f64 {
     schedule.values().into_iter().map(f64::abs).fold(0.0, f64::max)
 }
 
-/// \[N], \[N], [N m], \[m] largest thrust, radial load and tilting moment, and displacement along the contacts where the inner
-/// race is held.
+/// \[N], \[N], [N m], \[m] largest thrust, radial load and tilting moment on a race, and displacement along the contacts where
+/// a race is held.
 fn loads(scene: &Scene) -> [f64; 4] {
     let arms = [1.0, 1.0, 1.0, 0.5 * scene.bearing.pitch_diameter.0, 0.5 * scene.bearing.pitch_diameter.0];
     let mut pressed = 0.0f64;
     let mut loads = [0.0; 5];
-    for ((condition, arm), load) in scene.load.conditions().iter().zip(arms).zip(&mut loads) {
-        match condition {
-            Condition::Load(schedule) => *load = largest(schedule),
-            Condition::Motion(schedule) => pressed = pressed.max(arm * largest(schedule)),
+    for of_race in [scene.load.of_inner(), scene.load.of_outer()] {
+        for ((direction, arm), load) in of_race.iter().zip(arms).zip(&mut loads) {
+            match direction.condition() {
+                Condition::Load(schedule) => *load += largest(&schedule),
+                Condition::Motion(schedule) => pressed = pressed.max(arm * largest(&schedule)),
+            }
         }
     }
-    let weight = scene.inner.mass.map_or(0.0, |mass| mass.0);
+    let moved = [&scene.inner, &scene.outer].into_iter().find(|race| race.drive == Drive::Wrench);
+    let weight = moved.and_then(|race| race.mass).map_or(0.0, |mass| mass.0);
     let [gx, gy, gz] = scene.effects.gravity.acceleration.map(|component| component.0.abs());
     [
         loads[0] + weight * gx,
@@ -112,6 +115,14 @@ mod tests {
         assert!((usual.frequency / 37e3 - 1.0).abs() < 0.3, "{usual:?}");
         assert!(usual.approach > 3e-4 && usual.approach < 2e-3, "{usual:?}");
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
+        // Loads on the outer race count alike.
+        let turned_round = scales(&[
+            ("inner.drive", "\"fixed\""),
+            ("load.x", ""),
+            ("outer", "{ drive = \"wrench\", mass = 0.2, inertia = [6e-5, 4e-5, 4e-5] }"),
+            ("load.outer", "{ x = { force = -1500.0 } }"),
+        ]);
+        assert_eq!(turned_round, usual);
         // At rest: approach as load^(2/3), frequency as load^(1/6).
         let rest = ("load.inner_speed", "0.0");
         let (one, eight) = (scales(&[rest]), scales(&[rest, ("load.x.force", "12e3")]));
