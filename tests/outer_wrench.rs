@@ -258,7 +258,7 @@ fn invariant_energy_of_a_run_with_a_scripted_wrench_on_the_outer_race() {
     // The constraint holds the speed, and its torque carries the friction of the bearing.
     let axis = last.outer.pose.orientation * V::x();
     assert!((last.outer.twist.angular_velocity.dot(&axis) + 100.0 * std::f64::consts::PI).abs() < 1e-7);
-    assert!(last.outer.drive_torque * -1.0 > 0.0 && last.outer.pose.position.norm() > 1e-6);
+    assert!(last.outer.drive_torque < 0.0 && last.outer.pose.position.norm() > 1e-6);
     assert_eq!(last.inner.pose.position, V::zeros());
 }
 

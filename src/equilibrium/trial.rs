@@ -54,7 +54,7 @@ impl OuterAxes {
     }
 
     /// A vector of the bearing frame.
-    fn from_world(&self, v: &Vector3<D>) -> Vector3<D> {
+    fn seen(&self, v: &Vector3<D>) -> Vector3<D> {
         match self {
             Self::Resting(orientation) => turn(&orientation.inverse(), v),
             Self::Moving(rotation) => rotate(&-rotation, v),
@@ -62,7 +62,7 @@ impl OuterAxes {
     }
 
     /// A vector of these axes.
-    fn to_world(&self, v: &Vector3<D>) -> Vector3<D> {
+    fn in_world(&self, v: &Vector3<D>) -> Vector3<D> {
         match self {
             Self::Resting(orientation) => turn(orientation, v),
             Self::Moving(rotation) => rotate(rotation, v),
@@ -73,7 +73,7 @@ impl OuterAxes {
     fn gravity(&self, gravity: &Vector3<f64>) -> Vector3<D> {
         match self {
             Self::Resting(orientation) => constant_vector(&(orientation.inverse() * gravity)),
-            Self::Moving(_) => self.from_world(&constant_vector(gravity)),
+            Self::Moving(_) => self.seen(&constant_vector(gravity)),
         }
     }
 }
@@ -94,8 +94,8 @@ fn shared(model: &Model, input: &EquilibriumInput, unknowns: &SharedVector) -> S
         ),
     };
     Shared {
-        position: axes.from_world(&position),
-        axis: axes.from_world(&axis),
+        position: axes.seen(&position),
+        axis: axes.seen(&axis),
         cage_speed: variable(unknowns, 5),
         gravity: axes.gravity(&model.gravity),
     }
@@ -163,8 +163,8 @@ pub fn evaluate(
             });
         };
         // rows in the bearing frame: external load and cage excess
-        let force = axes.to_world(&balance.force);
-        let moment = axes.to_world(&balance.moment);
+        let force = axes.in_world(&balance.force);
+        let moment = axes.in_world(&balance.moment);
         // A free ball has no speed of its own: where its contact normals are opposite, it would be 0/0.
         let excess = if balance.inner_load.value > 0.0 {
             balance.inner_load * (balance.own_orbital_speed - shared.cage_speed)

@@ -3,6 +3,7 @@
 use roulement::model::state::Statistics;
 use roulement::simulation::Simulation;
 
+use crate::figures;
 use crate::scenes::{GROOVE, scene};
 
 const STEPS: u64 = 100_000;
@@ -56,6 +57,7 @@ impl Release {
             statistics.rejected_error,
             (largest - start) / start,
         );
+        figures::compare_oscillation(name, cap, &statistics);
         assert!(work.abs() < 1e-6 * start, "{name}: work of {work} J");
         assert!(largest <= start * (1.0 + 1e-9), "{name}: {largest} J of {start} J");
         assert_eq!(statistics.rejected_newton, 0);

@@ -127,7 +127,7 @@ impl<'a> Case<'a> {
         assert!(change < CAP, "{}: {what}, by {change:.2e}, with half the step cap", self.name);
         self.bounded(&statistics);
         let simulated = number(run.simulation.time() - run.history[0].time);
-        figures::compare(self.name, &simulated, &statistics);
+        figures::compare_case(self.name, &simulated, &statistics);
         run
     }
 
@@ -437,6 +437,7 @@ fn residual(end: &Simulation, before: &State) -> f64 {
 /// (a) a refusal that names every one of `parts`.
 pub fn refuses(name: &str, error: &str, parts: &[&str]) {
     println!("\n| {name} | refused: {error} |");
+    figures::compare_refusal(name, error);
     for part in parts {
         assert!(error.contains(part), "{name}: `{error}` does not name {part}");
     }
