@@ -15,6 +15,7 @@ pub mod load_displacement;
 mod minimise;
 pub mod nonlinear;
 mod objective;
+mod objective_weights;
 pub mod scaled_law;
 pub mod solution;
 pub mod table;
