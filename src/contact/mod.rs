@@ -13,6 +13,7 @@ pub mod linear_theory;
 pub mod many;
 pub mod materials;
 pub mod normal;
+pub mod oblique;
 pub mod pair;
 pub mod pocket;
 pub mod raceway;
