@@ -31,6 +31,7 @@ use creep::{CreepForces, Creepage, Law, LinearTheory};
 use geometry::GrooveContact;
 use kinematics::Surfaces;
 use normal::NormalLoad;
+use oblique::{Across, obliqueness};
 use shape::ContactShape;
 
 /// Motion of a ball, in world axes.
@@ -73,8 +74,10 @@ pub struct ContactModel<'a> {
     pub shape: &'a ContactShape,
     /// \[m] ball radius.
     pub ball_radius: f64,
-    /// Creep law.
+    /// Creep law of rolling along the circumference.
     pub law: Law<'a>,
+    /// Rolling across it; none where there is no friction.
+    pub across: Option<Across<'a>>,
     /// [-] friction coefficient.
     pub friction: f64,
     /// [s/m] Hunt-Crossley dissipation factor.
@@ -180,7 +183,7 @@ impl ContactModel<'_> {
         race: &RaceMotion<f64>,
     ) -> BallRaceContact<f64> {
         match self.law {
-            Law::Frictionless => self.rolling(ball, race),
+            Law::Frictionless => ContactModel { across: None, ..*self }.rolling(ball, race),
             _ => *contact,
         }
     }
@@ -248,7 +251,14 @@ impl ContactModel<'_> {
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
         let theory = LinearTheory::new(&shape, depth, root, load.total, self.friction, rolling.cosine);
-        let creep = theory.forces(self.law, &rolling.creepage);
+        let along = theory.forces(self.law, &rolling.creepage);
+        let creep = match &self.across {
+            Some(across) if obliqueness(rolling.speed, rolling.speed_across).any_positive() => {
+                let sine = rolling.speed_across / rolling.speed;
+                across.mixed(&along, &theory, sine, &rolling.creepage)
+            }
+            _ => along,
+        };
 
         let wrench = surfaces.wrench(&rolling, load.total, &creep);
         BallRaceContact {

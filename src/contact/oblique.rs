@@ -97,6 +97,12 @@ impl Exchanged {
     }
 }
 
+/// [-] positive where rolling has a share across x: by the rolling speed and its component across x.
+#[inline(always)]
+pub(super) fn obliqueness<S: Scalar>(speed: S, across: S) -> S {
+    across.square() - speed.square().scale(BEGIN)
+}
+
 impl Across<'_> {
     /// Forces of oblique rolling from those of the law along x, by linear theory along x, the sine of the rolling direction and
     /// the creepages. The slip of a bent groove is part of rolling along x alone.
