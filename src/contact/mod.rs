@@ -231,6 +231,25 @@ impl ContactModel<'_> {
     /// A contact with its creep forces.
     #[inline(always)]
     fn rolling<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        let (contact, oblique) = self.rolling_along::<S, false>(ball, race);
+        if oblique { self.rolling_obliquely(ball, race) } else { contact }
+    }
+
+    /// [`Self::rolling`] where rolling across the circumference has a share. Seldom: it computes everything once more, because what
+    /// the usual contact would hand over to it would have to be in memory.
+    #[cold]
+    #[inline(never)]
+    fn rolling_obliquely<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        self.rolling_along::<S, true>(ball, race).0
+    }
+
+    /// A contact with its creep forces along the circumference, or with those across mixed in; and whether those have a share.
+    #[inline(always)]
+    fn rolling_along<S: Scalar, const MIXED: bool>(
+        &self,
+        ball: &BallMotion<S>,
+        race: &RaceMotion<S>,
+    ) -> (BallRaceContact<S>, bool) {
         let offset = ball.position - race.position;
         let geometry = GrooveContact::new(self.raceway, self.ball_radius, &offset, &race.axis);
         let surfaces = Surfaces::new(
@@ -251,17 +270,15 @@ impl ContactModel<'_> {
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
         let theory = LinearTheory::new(&shape, depth, root, load.total, self.friction, rolling.cosine);
-        let along = theory.forces(self.law, &rolling.creepage);
-        let creep = match &self.across {
-            Some(across) if obliqueness(rolling.speed, rolling.speed_across).any_positive() => {
-                let sine = rolling.speed_across / rolling.speed;
-                across.mixed(&along, &theory, sine, &rolling.creepage)
-            }
-            _ => along,
-        };
+        let oblique =
+            self.across.is_some() && obliqueness(rolling.speed, rolling.speed_across).any_positive();
+        let mut creep = theory.forces(self.law, &rolling.creepage);
+        if MIXED && let Some(across) = &self.across {
+            creep = across.mixed(&creep, &theory, rolling.speed_across / rolling.speed, &rolling.creepage);
+        }
 
         let wrench = surfaces.wrench(&rolling, load.total, &creep);
-        BallRaceContact {
+        let contact = BallRaceContact {
             geometry,
             load: load.total,
             stiffness: shape.stiffness,
@@ -275,7 +292,8 @@ impl ContactModel<'_> {
             race_moment: wrench.other_moment,
             friction_power: wrench.friction_power,
             damping_power: load.damping_power,
-        }
+        };
+        (contact, oblique)
     }
 
     /// The contact of one ball, with its difference of Kalker's polynomials from the table, where they are simulated.

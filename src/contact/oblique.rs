@@ -106,8 +106,6 @@ pub(super) fn obliqueness<S: Scalar>(speed: S, across: S) -> S {
 impl Across<'_> {
     /// Forces of oblique rolling from those of the law along x, by linear theory along x, the sine of the rolling direction and
     /// the creepages. The slip of a bent groove is part of rolling along x alone.
-    // Seldom, and not worth a second copy of the law in every caller.
-    #[cold]
     #[inline(never)]
     pub fn mixed<S: Scalar>(
         &self,
