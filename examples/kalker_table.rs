@@ -1,6 +1,6 @@
 //! Builds the shipped table of Kalker's nonlinear theory: `cargo run --release --example kalker_table [FILE]`.
 //!
-//! It takes an hour or two on two cores. Each axis ratio has a file of its own beside FILE, so that an interrupted run
+//! It takes two to three hours on two cores. Each axis ratio has a file of its own beside FILE, so that an interrupted run
 //! goes on where it was.
 
 use std::error::Error;

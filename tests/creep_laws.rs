@@ -1,12 +1,17 @@
 //! One suite for all creep laws, as the simulation calls them, flat and with bent grooves.
 #![allow(clippy::unwrap_used)]
 
+use std::f64::consts::PI;
+
 #[path = "common/laws.rs"]
 mod laws;
 
 use laws::{Laws, theory};
 use roulement::contact::creep::{CreepForces, Creepage, Law, LinearTheory};
+use roulement::contact::identification::identify_by_table;
+use roulement::contact::oblique::{Across, Exchanged, exchanged};
 use roulement::contact::regularised::{lateral_by_spin, moment_by_lateral, moment_by_spin};
+use roulement::kalker::table::CreepTable;
 use roulement::numerics::scalar::{Dual, Scalar};
 
 /// Creepages over many magnitudes and all signs, rest and extremes included; fewer of them for slow laws.
@@ -217,6 +222,78 @@ fn invariant_tangents_where_a_contact_hardly_rolls_along_its_axis() {
                 let error = (exact.derivatives[0] - slope).abs() / scales[i];
                 assert!(error < 1e-6, "{name} {cosine} row {i}: {} {slope}", exact.derivatives[0]);
             }
+        }
+    }
+}
+
+/// Forces over their limits of a contact that rolls at velocities along and across the circumference \[m/s], as simulations mix
+/// them: slip 0.3 mm/s and spin 2 rad/s.
+fn rolling_at(pair: [Law<'_>; 2], exchanged: &Exchanged, [along, across]: [f64; 2]) -> [f64; 3] {
+    let speed = (along * along + across * across + 1e-6f64).sqrt();
+    let theory = theory();
+    let theory = LinearTheory { coupling: theory.coupling * along / speed, ..theory };
+    let creepage =
+        Creepage { longitudinal: 2e-4 / speed, lateral: -2.2e-4 / speed, spin: 2.0 / speed, curvature: None };
+    let forces = theory.forces(pair[0], &creepage);
+    let forces = Across { exchanged, law: pair[1] }.mixed(&forces, &theory, across / speed, &creepage);
+    [
+        forces.longitudinal / theory.friction_limit,
+        forces.lateral / theory.friction_limit,
+        forces.spin_moment / theory.moment_limit,
+    ]
+}
+
+#[test]
+fn invariant_the_direction_of_rolling_acts_smoothly_through_standstill() {
+    let (laws, patch) = (Laws::new(), laws::patch());
+    let (there, exchange) = (exchanged(&patch), Exchanged::new(&patch).unwrap());
+    let table = CreepTable::new(&there).unwrap();
+    let parameters = identify_by_table(&there).unwrap().parameters;
+    let pairs = [
+        ("linear", [Law::Linear; 2]),
+        ("saturated", [Law::Saturated; 2]),
+        ("regularised", [Law::Regularised(&laws.parameters), Law::Regularised(&parameters)]),
+        ("kalker_table", [Law::Table(&laws.table), Law::Table(&table)]),
+    ];
+    for (name, pair) in pairs {
+        // Through standstill across, along, and past it at 0.2 mm/s; and a full turn of the direction. (The regularised law's own
+        // coupling is too steep in the size of the cosine to be seen to be smooth.)
+        for path in (0..4).filter(|_| name != "regularised") {
+            let at = |s: f64| match path {
+                0 => [0.0, 0.02 * s],
+                1 => [0.02 * s, 0.0],
+                2 => [2e-4, 0.02 * s],
+                _ => [0.5 * (PI * s).cos(), 0.5 * (PI * s).sin()],
+            };
+            let largest = |count: i32| {
+                let forces: Vec<[f64; 3]> = (-count..=count)
+                    .map(|k| rolling_at(pair, &exchange, at(f64::from(k) / f64::from(count))))
+                    .collect();
+                let change =
+                    |pair: &[[f64; 3]]| (0..3).map(|m| (pair[1][m] - pair[0][m]).abs()).fold(0.0, f64::max);
+                forces.windows(2).map(change).fold(0.0, f64::max)
+            };
+            let (coarse, fine) = (largest(500), largest(1000));
+            assert!(fine < 0.55 * coarse, "{name}, path {path}: {coarse} {fine}");
+        }
+        // Straight ahead it is the law itself, straight across that of the exchanged ellipse.
+        let ahead = rolling_at(pair, &exchange, [3.0, 0.0]);
+        let theory = theory();
+        let creepage =
+            Creepage { longitudinal: 2e-4 / 3.0, lateral: -2.2e-4 / 3.0, spin: 2.0 / 3.0, curvature: None };
+        let itself = theory.forces(pair[0], &creepage);
+        assert!((ahead[1] * theory.friction_limit / itself.lateral - 1.0).abs() < 1e-6, "{name}");
+        let limits = (300.0, 1.6e9, 79e9, 0.08);
+        let turned = laws::theory_of(there.axis_ratio, limits.0, limits.1, limits.2, limits.3);
+        let seen = Creepage { longitudinal: creepage.lateral, lateral: -creepage.longitudinal, ..creepage };
+        let expected = turned.forces(pair[1], &seen);
+        let across = rolling_at(pair, &exchange, [0.0, 3.0]);
+        for (ours, theirs) in across.into_iter().zip([
+            -expected.lateral / turned.friction_limit,
+            expected.longitudinal / turned.friction_limit,
+            expected.spin_moment / turned.moment_limit,
+        ]) {
+            assert!((ours - theirs).abs() < 1e-5 * (1.0 + theirs.abs()), "{name}: {ours} {theirs}");
         }
     }
 }

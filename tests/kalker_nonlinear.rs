@@ -9,9 +9,10 @@ mod random;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use common::cases;
+use common::{cases, curves};
 use printed::Printed;
 use random::Random;
+use roulement::kalker::half_space::extrapolated;
 use roulement::kalker::linear::creep_matrix;
 use roulement::kalker::nonlinear::{Kalker, KalkerError};
 use roulement::kalker::{Patch, ScaledCreepage, ScaledForces};
@@ -44,14 +45,14 @@ fn errors(degree: usize) -> BTreeMap<String, ([f64; 3], f64, f64, f64)> {
 #[test]
 fn independent_data_by_degree() {
     let mut general = vec![];
-    for degree in [1, 3, 5] {
+    for degree in 1..=7 {
         for (kind, (mean, worst, _, iterations)) in errors(degree) {
             println!(
                 "M = {degree} {kind:8} mean fx {:.4} fy {:.4} mz {:.4}, worst force {worst:.3}, {iterations:.1} iterations",
                 mean[0], mean[1], mean[2]
             );
             let force = 0.5 * (mean[0] + mean[1]);
-            if kind == "general" {
+            if kind == "general" && [1, 3, 5].contains(&degree) {
                 general.push(force);
             }
             // The goals for M = 5; other kinds and degrees are reported.
@@ -67,6 +68,42 @@ fn independent_data_by_degree() {
         general.windows(2).all(|pair| pair[1] < 0.7 * pair[0]),
         "errors fall with the degree: {general:?}"
     );
+}
+
+#[test]
+fn independent_data_small_creepages() {
+    // Rolling with a force up to 0.3 mu Q and half of the contact or more in adhesion, by creepage along or across: 3 % for
+    // every degree from 3 on. (Spin of narrow ellipses has small forces up to complete sliding: `random.csv` has it.)
+    let small = |force: f64| force > 0.0 && force < 0.305;
+    for degree in 3..=7 {
+        let (mut worst, mut count) = (0.0f64, 0);
+        for case in curves() {
+            let [x, y, _] = case.expected;
+            if case.creepage.spin != 0.0 || !small(x.hypot(y)) || case.stick < 0.5 {
+                continue;
+            }
+            let f = Kalker::new(case.patch, degree).unwrap().solve(&case.creepage, None).unwrap().forces;
+            worst = worst.max((f.fx - x).hypot(f.fy - y) / x.hypot(y));
+            count += 1;
+        }
+        println!("M = {degree}: {worst:.4} of {count} cases");
+        assert!(count > 10 && worst < 0.03, "degree {degree}: {worst}");
+    }
+}
+
+#[test]
+fn regression_a_circle_from_rest_to_a_third_of_sliding() {
+    // Against the reference solver, at creepages between those of the independent data and below.
+    let patch = Patch { axis_ratio: 1.0, poisson_ratio: 0.3, rolling_angle: 0.0 };
+    for x in [0.005, 0.02, 0.0505, 0.0841, 0.12, 0.15] {
+        let creepage = ScaledCreepage { x, y: 0.0, spin: 0.0, curvature: 0.0 };
+        let reference = extrapolated(&patch, &creepage, 24).unwrap().fx;
+        for degree in 3..=7 {
+            let error = kalker(1.0, degree).solve(&creepage, None).unwrap().forces.fx / reference - 1.0;
+            println!("{x}: {reference:.4}, M = {degree}: {error:+.4}");
+            assert!(error.abs() < 0.03, "{x}, degree {degree}: {error}");
+        }
+    }
 }
 
 fn kalker(axis_ratio: f64, degree: usize) -> Kalker {
@@ -89,8 +126,8 @@ fn closed_form_small_creepages_give_linear_theory() {
         let ours = forces(&kalker, h[0], h[1], h[2]);
         for i in 0..3 {
             let linear: f64 = (0..3).map(|k| 1.5 / PI * matrix[(i, k)] * h[k]).sum();
-            // Degree 5 against degree 9, and slip that begins at the trailing edge: 3 % of the size of the forces.
-            assert!((ours[i] - linear).abs() < 0.03 * 1e-3, "{ratio} {i}: {} {linear}", ours[i]);
+            // Degree 5 against degree 9: 1 % of the size of the forces.
+            assert!((ours[i] - linear).abs() < 0.01 * 1e-3, "{ratio} {i}: {} {linear}", ours[i]);
         }
     }
 }

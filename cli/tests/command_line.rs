@@ -427,6 +427,26 @@ fn contact_prints_the_documented_columns_for_any_column_order() {
 }
 
 #[test]
+fn contact_says_what_error_to_expect_where_the_table_rolls_obliquely() {
+    let scratch = Scratch::new("oblique");
+    let table = "id,creep_x,creep_y,spin,semi_axis_x,semi_axis_y,peak_pressure,friction,shear_modulus,poisson_ratio,rolling_angle\n\
+                 one,1e-3,0,5,1e-4,1e-3,1.2e9,0.08,8.1e10,0.3,0.7\n\
+                 two,1e-3,0,5,1e-4,1e-3,1.2e9,0.08,8.1e10,0.3,0\n";
+    std::fs::write(scratch.path("cases.csv"), table).unwrap();
+    for (law, expected) in [("kalker_table", true), ("kalker", false)] {
+        let output = roulement(&["contact", "--law", law, &scratch.path("cases.csv")]);
+        let note = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{note}");
+        assert_eq!(
+            note.contains("1 of these contacts rolls obliquely") && note.contains("0.03"),
+            expected,
+            "{note}"
+        );
+        assert_eq!(String::from_utf8(output.stdout).unwrap().lines().count(), 3);
+    }
+}
+
+#[test]
 fn columns_and_window_choose_what_is_written() {
     let scratch = Scratch::new("columns");
     std::fs::write(scratch.path("short.toml"), edited("thrust", &[("load.duration", "\"3 ms\"")])).unwrap();

@@ -60,6 +60,8 @@ pub(super) struct Rolling<S: Scalar> {
     pub(super) speed: S,
     /// [-] cosine of the rolling direction against the x axis.
     pub(super) cosine: S,
+    /// [m/s] component of the rolling velocity along y.
+    pub(super) speed_across: S,
     /// [m/s] slip of the ball along x and y.
     slip: [S; 2],
     /// [rad/s] spin.
@@ -127,6 +129,7 @@ impl<S: Scalar> Surfaces<S> {
             axes: [x, y],
             speed,
             cosine: rolling_x / speed,
+            speed_across: rolling_y,
             slip,
             spin,
             relative_rolling,

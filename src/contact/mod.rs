@@ -13,6 +13,7 @@ pub mod linear_theory;
 pub mod many;
 pub mod materials;
 pub mod normal;
+pub mod oblique;
 pub mod pair;
 pub mod pocket;
 pub mod raceway;
@@ -30,6 +31,7 @@ use creep::{CreepForces, Creepage, Law, LinearTheory};
 use geometry::GrooveContact;
 use kinematics::Surfaces;
 use normal::NormalLoad;
+use oblique::{Across, obliqueness};
 use shape::ContactShape;
 
 /// Motion of a ball, in world axes.
@@ -72,8 +74,10 @@ pub struct ContactModel<'a> {
     pub shape: &'a ContactShape,
     /// \[m] ball radius.
     pub ball_radius: f64,
-    /// Creep law.
+    /// Creep law of rolling along the circumference.
     pub law: Law<'a>,
+    /// Rolling across it; none where there is no friction.
+    pub across: Option<Across<'a>>,
     /// [-] friction coefficient.
     pub friction: f64,
     /// [s/m] Hunt-Crossley dissipation factor.
@@ -179,7 +183,7 @@ impl ContactModel<'_> {
         race: &RaceMotion<f64>,
     ) -> BallRaceContact<f64> {
         match self.law {
-            Law::Frictionless => self.rolling(ball, race),
+            Law::Frictionless => ContactModel { across: None, ..*self }.rolling(ball, race),
             _ => *contact,
         }
     }
@@ -227,6 +231,25 @@ impl ContactModel<'_> {
     /// A contact with its creep forces.
     #[inline(always)]
     fn rolling<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        let (contact, oblique) = self.rolling_along::<S, false>(ball, race);
+        if oblique { self.rolling_obliquely(ball, race) } else { contact }
+    }
+
+    /// [`Self::rolling`] where rolling across the circumference has a share. Seldom: it computes everything once more, because what
+    /// the usual contact would hand over to it would have to be in memory.
+    #[cold]
+    #[inline(never)]
+    fn rolling_obliquely<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        self.rolling_along::<S, true>(ball, race).0
+    }
+
+    /// A contact with its creep forces along the circumference, or with those across mixed in; and whether those have a share.
+    #[inline(always)]
+    fn rolling_along<S: Scalar, const MIXED: bool>(
+        &self,
+        ball: &BallMotion<S>,
+        race: &RaceMotion<S>,
+    ) -> (BallRaceContact<S>, bool) {
         let offset = ball.position - race.position;
         let geometry = GrooveContact::new(self.raceway, self.ball_radius, &offset, &race.axis);
         let surfaces = Surfaces::new(
@@ -247,10 +270,15 @@ impl ContactModel<'_> {
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
         let theory = LinearTheory::new(&shape, depth, root, load.total, self.friction, rolling.cosine);
-        let creep = theory.forces(self.law, &rolling.creepage);
+        let oblique =
+            self.across.is_some() && obliqueness(rolling.speed, rolling.speed_across).any_positive();
+        let mut creep = theory.forces(self.law, &rolling.creepage);
+        if MIXED && let Some(across) = &self.across {
+            creep = across.mixed(&creep, &theory, rolling.speed_across / rolling.speed, &rolling.creepage);
+        }
 
         let wrench = surfaces.wrench(&rolling, load.total, &creep);
-        BallRaceContact {
+        let contact = BallRaceContact {
             geometry,
             load: load.total,
             stiffness: shape.stiffness,
@@ -264,7 +292,8 @@ impl ContactModel<'_> {
             race_moment: wrench.other_moment,
             friction_power: wrench.friction_power,
             damping_power: load.damping_power,
-        }
+        };
+        (contact, oblique)
     }
 
     /// The contact of one ball, with its difference of Kalker's polynomials from the table, where they are simulated.

@@ -15,7 +15,7 @@ use super::load_displacement::{Basis, LoadDisplacement, disc_moment};
 use crate::numerics::elliptic::complete_elliptic_integrals;
 
 /// Degree of the polynomials: odd ones converge faster. Coefficients are within 0.3 % of higher degrees from axis
-/// ratio 0.05 to 20 (tested).
+/// ratio 0.02 to 50 (tested).
 const DEGREE: usize = 9;
 /// Points on the edge of the ellipse.
 const EDGE_POINTS: usize = 96;
@@ -24,7 +24,7 @@ const EDGE_POINTS: usize = 96;
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum LinearError {
     /// Axis ratio out of range.
-    #[error("axis ratio {0} of the contact ellipse (rolling over transverse) is outside [0.05, 20]")]
+    #[error("axis ratio {0} of the contact ellipse (rolling over transverse) is outside [0.018, 55]")]
     AxisRatio(f64),
     /// Poisson's ratio out of range.
     #[error("Poisson's ratio {0} is outside [0, 0.5]")]
@@ -43,7 +43,7 @@ impl Patch {
     /// # Errors
     /// Names the value that is out of range.
     pub fn check(&self) -> Result<(), LinearError> {
-        if !(0.05..=20.0).contains(&self.axis_ratio) {
+        if !(0.018..=55.0).contains(&self.axis_ratio) {
             return Err(LinearError::AxisRatio(self.axis_ratio));
         }
         if !(0.0..=0.5).contains(&self.poisson_ratio) {

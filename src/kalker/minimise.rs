@@ -5,7 +5,7 @@ use nalgebra::{Cholesky, DVector, Dyn};
 
 use super::ScaledCreepage;
 use super::nonlinear::{Kalker, KalkerError};
-use super::objective::{Expansion, Fields};
+use super::objective::{Expansion, Fields, Objective};
 use super::solution::Solution;
 
 /// Iterations of one solve; 6 to 10 are usual.
@@ -36,8 +36,7 @@ enum Step {
 
 /// The iteration at one creepage.
 struct Iteration<'a> {
-    kalker: &'a Kalker,
-    creepage: ScaledCreepage,
+    problem: &'a Objective<'a>,
     /// Coefficients of the traction polynomials, the fields that they give and the objective there.
     z: DVector<f64>,
     fields: Fields,
@@ -50,20 +49,20 @@ struct Iteration<'a> {
 }
 
 impl<'a> Iteration<'a> {
-    fn new(kalker: &'a Kalker, creepage: ScaledCreepage, z: DVector<f64>) -> Self {
-        let fields = kalker.fields_at(&z, &creepage);
-        let objective = kalker.objective(&z, &fields);
-        Self { kalker, creepage, z, fields, objective, damping: 1e-3, factor: None, count: 0 }
+    fn new(problem: &'a Objective<'a>, z: DVector<f64>) -> Self {
+        let fields = problem.fields_at(&z);
+        let objective = problem.objective(&z, &fields);
+        Self { problem, z, fields, objective, damping: 1e-3, factor: None, count: 0 }
     }
 
     /// Newton's own step, where the objective is convex: it ends the iteration at the minimum to rounding, so that
     /// results are a smooth function of the creepages. A decrease of `enough` is the last.
-    fn newton(&mut self, Expansion { gradient, sliding }: &Expansion, enough: f64) -> Step {
+    fn newton(&mut self, Expansion { gradient, sliding, .. }: &Expansion, enough: f64) -> Step {
         let predicted = |step: &DVector<f64>| 0.5 * gradient.dot(step);
         // Where nearly nothing is left, the last step's matrix serves.
         let reused = self.factor.take().map(|factor| factor.solve(gradient));
         let step = reused.filter(|step| predicted(step) <= NEARLY_NOTHING * enough).or_else(|| {
-            self.factor = self.kalker.curvature(sliding, true).cholesky();
+            self.factor = self.problem.curvature(sliding, true).cholesky();
             self.factor.as_ref().map(|factor| factor.solve(gradient))
         });
         let Some(step) = step else {
@@ -72,8 +71,8 @@ impl<'a> Iteration<'a> {
         // Below this, rounding decides whether the objective falls.
         let last = predicted(&step) <= enough;
         let trial = &self.z - step;
-        let fields = self.kalker.fields_at(&trial, &self.creepage);
-        let reached = self.kalker.objective(&trial, &fields);
+        let fields = self.problem.fields_at(&trial);
+        let reached = self.problem.objective(&trial, &fields);
         let before = self.objective;
         if last {
             if reached <= before + enough {
@@ -89,9 +88,9 @@ impl<'a> Iteration<'a> {
     }
 
     /// Levenberg's and Marquardt's step: Gauss's and Newton's matrix, damped until the objective falls.
-    fn levenberg_marquardt(&mut self, Expansion { gradient, sliding }: &Expansion) -> Step {
+    fn levenberg_marquardt(&mut self, Expansion { gradient, sliding, .. }: &Expansion) -> Step {
         self.factor = None;
-        let gauss_newton = self.kalker.curvature(sliding, false);
+        let gauss_newton = self.problem.curvature(sliding, false);
         loop {
             let mut damped = gauss_newton.clone();
             for i in 0..damped.nrows() {
@@ -99,8 +98,8 @@ impl<'a> Iteration<'a> {
             }
             let trial = damped.cholesky().map(|factor| {
                 let trial = &self.z - factor.solve(gradient);
-                let fields = self.kalker.fields_at(&trial, &self.creepage);
-                (self.kalker.objective(&trial, &fields), trial, fields)
+                let fields = self.problem.fields_at(&trial);
+                (self.problem.objective(&trial, &fields), trial, fields)
             });
             if let Some((reached, trial, fields)) = trial
                 && reached < self.objective
@@ -126,7 +125,7 @@ impl<'a> Iteration<'a> {
     }
 
     fn finish(self) -> Solution {
-        self.kalker.finish(self.z, &self.fields, self.count)
+        self.problem.kalker.finish(self.z, &self.fields, self.count)
     }
 }
 
@@ -151,9 +150,10 @@ impl Kalker {
             Some(start) => DVector::from_column_slice(start),
             None => self.linear_start(&scaled),
         };
-        let mut at = Iteration::new(self, scaled, z);
+        let problem = Objective::new(self, &scaled);
+        let mut at = Iteration::new(&problem, z);
         while at.count < MAX_ITERATIONS {
-            let expansion = self.expand(&at.z, &at.fields);
+            let expansion = problem.expand(&at.z, &at.fields);
             let before = at.objective;
             let enough = DECREASE * before + NEGLIGIBLE * size.min(1.0).powi(2);
             at.count += 1;

@@ -15,6 +15,7 @@ pub mod load_displacement;
 mod minimise;
 pub mod nonlinear;
 mod objective;
+mod objective_weights;
 pub mod scaled_law;
 pub mod solution;
 pub mod table;
@@ -25,7 +26,7 @@ mod table_pieces;
 /// A rolling contact patch as Kalker's theory knows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
-    /// [-] semi-axis along the ellipse's x axis over the one along y, 0.05 to 20.
+    /// [-] semi-axis along the ellipse's x axis over the one along y, 0.018 to 55.
     pub axis_ratio: f64,
     /// [-] Poisson's ratio of both bodies, 0 to 0.5.
     pub poisson_ratio: f64,

@@ -8,7 +8,8 @@
 //! ```
 //!
 //! with f the traction over mu p0, s the slip in the same scale and P the projection on the Coulomb disc: it vanishes
-//! exactly where Coulomb's law holds (stick: s = 0 and |f| below the bound; slip: f at the bound along s). A penalty on
+//! exactly where Coulomb's law holds (stick: s = 0 and |f| below the bound; slip: f at the bound along s), for every k and
+//! every weight of a point, which follow the creepages (`super::objective_weights`). A penalty on
 //! the singular traction at the leading edge takes the place of the condition that fresh material enters unstrained.
 //! The minimum is found by Newton's and Levenberg and Marquardt's methods from the linear solution, or from a solution at
 //! nearby creepages.
@@ -22,8 +23,6 @@ use super::linear::{LinearError, adhesion_tractions, leading_edge, resultants};
 use super::load_displacement::{Basis, LoadDisplacement};
 use super::{Patch, ScaledCreepage};
 
-/// [-] weight k of slip against traction in the projection.
-pub(super) const SLIP_WEIGHT: f64 = 2.0;
 /// [-] weight of the leading-edge rows.
 const EDGE_WEIGHT: f64 = 8.0;
 
@@ -64,17 +63,19 @@ pub struct Kalker {
     pub(super) monomial_values: DMatrix<f64>,
     /// Slip at the points by all coefficients: rows x of each point, then y.
     pub(super) slips: DMatrix<f64>,
-    /// Arguments of the projection at the points by all coefficients: one column each of x and y.
-    pub(super) arguments: DMatrix<f64>,
+    /// The same as one column each of x and y of a point, and the squares of the slip over the contact, points by their
+    /// areas and by what these are at rest.
+    pub(super) slip_columns: DMatrix<f64>,
+    pub(super) slip_squares: [DMatrix<f64>; 2],
     /// Leading-edge rows, and their square.
     pub(super) edge: DMatrix<f64>,
     pub(super) edge_square: DMatrix<f64>,
-    /// Second derivative of the objective while every point sticks.
-    pub(super) stick_curvature: DMatrix<f64>,
     /// Linear solutions of unit creepages.
     pub(super) adhesion: DMatrix<f64>,
     /// Net forces over mu Q, mu Q c and mu Q c^2 by all coefficients.
     pub(super) resultants: DMatrix<f64>,
+    /// [-] linear force over mu Q by scaled creepage, the root of the mean square of all directions.
+    pub(super) response: f64,
     pub(super) monomials: usize,
 }
 
@@ -163,32 +164,31 @@ impl Kalker {
         let mut slips = DMatrix::zeros(2 * rows, 2 * n);
         slips.rows_mut(0, rows).copy_from(&(&gradients * stiffness.rows(0, n)));
         slips.rows_mut(rows, rows).copy_from(&(&gradients * stiffness.rows(n, n)));
-        let mut arguments =
-            SLIP_WEIGHT * DMatrix::from_fn(2 * n, 2 * rows, |k, i| slips[(i / 2 + rows * (i % 2), k)]);
-        for i in 0..rows {
-            for k in 0..n {
-                arguments[(k, 2 * i)] += values[(i, k)];
-                arguments[(n + k, 2 * i + 1)] += values[(i, k)];
-            }
-        }
+        let slip_columns = DMatrix::from_fn(2 * n, 2 * rows, |k, i| slips[(i / 2 + rows * (i % 2), k)]);
         // As many rows as coefficients have the same sum of squares as one for every point of the edge.
         let edge = (leading_edge(&patch, basis) * EDGE_WEIGHT).qr().r();
         let edge_square = edge.transpose() * &edge;
-        let slip_square = {
-            let weighted = DMatrix::from_fn(2 * rows, 2 * n, |i, k| slips[(i, k)] * points[i % rows].weight);
+        let slip_square = |weight: fn(&Point) -> f64| {
+            let weights: Vec<f64> = points.iter().map(weight).collect();
+            let weighted = DMatrix::from_fn(2 * rows, 2 * n, |i, k| slips[(i, k)] * weights[i % rows]);
             slips.transpose() * weighted
         };
+        let slip_squares = [slip_square(|point| point.weight), slip_square(Point::weight_at_rest)];
+        let resultants = resultants(&patch, basis) * (1.5 / PI);
+        let response = &resultants * &adhesion;
+        let response = (0.5 * response.view((0, 0), (2, 2)).norm_squared()).sqrt();
         Ok(Self {
             patch,
             points,
             monomial_values: values.transpose(),
             slips,
-            arguments,
-            stick_curvature: &edge_square + slip_square * (SLIP_WEIGHT * SLIP_WEIGHT),
+            slip_columns,
+            slip_squares,
             edge_square,
             edge,
             adhesion,
-            resultants: resultants(&patch, basis) * (1.5 / PI),
+            resultants,
+            response,
             monomials: n,
         })
     }

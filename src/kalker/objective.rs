@@ -3,7 +3,8 @@
 use nalgebra::{DMatrix, DMatrixView, DVector, Dyn, MatrixView};
 
 use super::ScaledCreepage;
-use super::nonlinear::{Kalker, Point, SLIP_WEIGHT};
+use super::nonlinear::{Kalker, Point};
+use super::objective_weights::Weights;
 use crate::numerics::lanes::WIDTH;
 
 /// Tractions and arguments of the projection at every point, components x and y in turn.
@@ -28,6 +29,8 @@ const TOGETHER: usize = 32;
 pub(super) struct Expansion {
     pub(super) gradient: DVector<f64>,
     pub(super) sliding: Vec<Sliding>,
+    /// Half the objective's derivatives by the arguments of the projection, at their places.
+    by_argument: DVector<f64>,
 }
 
 /// Length of a vector whose components are far from overflow.
@@ -110,24 +113,55 @@ pub(super) fn project(v: [f64; 2], bound: f64) -> ([f64; 2], [f64; 3]) {
     ([bound * c, bound * s], [ratio * s * s, -ratio * c * s, ratio * c * c])
 }
 
-impl Kalker {
+/// The objective at some creepages, with the weights that these have.
+#[derive(Clone, Debug)]
+pub(super) struct Objective<'a> {
+    pub(super) kalker: &'a Kalker,
+    creepage: ScaledCreepage,
+    weights: Weights,
+    /// Weights of the points, and their derivatives by the share of those at rest.
+    points: Vec<(f64, f64)>,
+    /// Arguments of the projection at the points by all coefficients: one column each of x and y.
+    arguments: DMatrix<f64>,
+    /// Half the second derivative while every point sticks.
+    stick_curvature: DMatrix<f64>,
+}
+
+impl<'a> Objective<'a> {
+    pub(super) fn new(kalker: &'a Kalker, creepage: &ScaledCreepage) -> Self {
+        let weights = Weights::new(kalker, creepage);
+        let n = kalker.monomials;
+        let mut arguments = &kalker.slip_columns * weights.slip;
+        for (i, mut column) in arguments.column_iter_mut().enumerate() {
+            let mut component = column.rows_mut(n * (i % 2), n);
+            component += kalker.monomial_values.column(i / 2);
+        }
+        let [areas, at_rest] = &kalker.slip_squares;
+        let slip_square = weights.slip * weights.slip;
+        let stick_curvature = &kalker.edge_square
+            + areas * (slip_square * (1.0 - weights.rest))
+            + at_rest * (slip_square * weights.rest);
+        let points = kalker.points.iter().map(|point| weights.of(point)).collect();
+        Self { kalker, creepage: *creepage, weights, points, arguments, stick_curvature }
+    }
+
     /// Fields at coefficients z.
-    pub(super) fn fields_at(&self, z: &DVector<f64>, h: &ScaledCreepage) -> Fields {
-        let (n, rows) = (self.monomials, self.points.len());
+    pub(super) fn fields_at(&self, z: &DVector<f64>) -> Fields {
+        let (n, rows) = (self.kalker.monomials, self.kalker.points.len());
         let mut tractions = DVector::zeros(2 * rows);
         let mut component = vec![0.0; rows];
         for (k, z) in z.as_slice().chunks_exact(n).enumerate() {
-            products(&self.monomial_values, z, &mut component);
+            products(&self.kalker.monomial_values, z, &mut component);
             for (i, value) in component.iter().enumerate() {
                 tractions[2 * i + k] = *value;
             }
         }
         let mut arguments = DVector::zeros(2 * rows);
         products(&self.arguments, z.as_slice(), arguments.as_mut_slice());
-        for (i, point) in self.points.iter().enumerate() {
-            let rigid = self.rigid(h, point);
-            arguments[2 * i] += SLIP_WEIGHT * rigid[0];
-            arguments[2 * i + 1] += SLIP_WEIGHT * rigid[1];
+        for (i, point) in self.kalker.points.iter().enumerate() {
+            let rigid = self.kalker.rigid(&self.creepage, point);
+            arguments[2 * i] += self.weights.slip * rigid[0];
+            arguments[2 * i + 1] += self.weights.slip * rigid[1];
         }
         Fields { tractions, arguments }
     }
@@ -135,10 +169,10 @@ impl Kalker {
     /// The objective at z, whose fields are given.
     pub(super) fn objective(&self, z: &DVector<f64>, fields: &Fields) -> f64 {
         let (f, v) = (&fields.tractions, &fields.arguments);
-        let mut sum = (&self.edge * z).norm_squared();
-        for (i, point) in self.points.iter().enumerate() {
+        let mut sum = (&self.kalker.edge * z).norm_squared();
+        for (i, point) in self.kalker.points.iter().enumerate() {
             let (p, _) = project([v[2 * i], v[2 * i + 1]], point.bound);
-            sum += point.weight * ((f[2 * i] - p[0]).powi(2) + (f[2 * i + 1] - p[1]).powi(2));
+            sum += self.points[i].0 * ((f[2 * i] - p[0]).powi(2) + (f[2 * i + 1] - p[1]).powi(2));
         }
         sum
     }
@@ -148,32 +182,32 @@ impl Kalker {
     /// With values V and arguments A of a point's traction and slope S of the projection, the residual's derivative is
     /// `V - S A`.
     pub(super) fn expand(&self, z: &DVector<f64>, fields: &Fields) -> Expansion {
-        let (n, rows) = (self.monomials, self.points.len());
+        let (n, rows) = (self.kalker.monomials, self.kalker.points.len());
         let (f, v) = (&fields.tractions, &fields.arguments);
         let mut by_value = [vec![0.0; rows], vec![0.0; rows]];
-        let mut by_argument = vec![0.0; 2 * rows];
+        let mut by_argument = DVector::zeros(2 * rows);
         let mut sliding = Vec::with_capacity(rows);
-        for (i, point) in self.points.iter().enumerate() {
+        for (i, point) in self.kalker.points.iter().enumerate() {
             let argument = [v[2 * i], v[2 * i + 1]];
             let (p, slope) = project(argument, point.bound);
             let residual = [f[2 * i] - p[0], f[2 * i + 1] - p[1]];
             let seen = times(slope, residual);
             for k in 0..2 {
-                by_value[k][i] = point.weight * residual[k];
-                by_argument[2 * i + k] = -point.weight * seen[k];
+                by_value[k][i] = self.points[i].0 * residual[k];
+                by_argument[2 * i + k] = -self.points[i].0 * seen[k];
             }
             if norm(argument) > point.bound {
                 // second derivative of -residual P(argument)
-                let bend = projection_bend(argument, point.bound, residual).map(|b| -point.weight * b);
+                let bend = projection_bend(argument, point.bound, residual).map(|b| -self.points[i].0 * b);
                 sliding.push(Sliding { point: i, slope, bend });
             }
         }
-        let mut gradient = &self.edge_square * z;
-        add_columns(gradient.as_mut_slice(), &self.arguments, &by_argument);
+        let mut gradient = &self.kalker.edge_square * z;
+        add_columns(gradient.as_mut_slice(), &self.arguments, by_argument.as_slice());
         for (part, by_value) in gradient.as_mut_slice().chunks_exact_mut(n).zip(&by_value) {
-            add_columns(part, &self.monomial_values, by_value);
+            add_columns(part, &self.kalker.monomial_values, by_value);
         }
-        Expansion { gradient, sliding }
+        Expansion { gradient, sliding, by_argument }
     }
 
     /// Half the objective's second derivative; without the bend of the projection as Gauss and Newton take it, which is
@@ -182,7 +216,7 @@ impl Kalker {
     /// Only what sliding points change is computed, w the weight of a point and I the slope while it sticks:
     /// `A^T (w (S^2 - I) + bend) A - w (V^T (S - I) A + its transpose)`.
     pub(super) fn curvature(&self, sliding: &[Sliding], with_bend: bool) -> DMatrix<f64> {
-        let n = self.monomials;
+        let n = self.kalker.monomials;
         let rows = 2 * n;
         let mut curvature = DMatrix::zeros(rows, rows);
         let mut arguments = Vec::with_capacity(2 * TOGETHER * rows);
@@ -191,8 +225,8 @@ impl Kalker {
             arguments.clear();
             changes.clear();
             for Sliding { point, slope, bend } in sliding {
-                let weight = self.points[*point].weight;
-                let values = column(&self.monomial_values, *point);
+                let weight = self.points[*point].0;
+                let values = column(&self.kalker.monomial_values, *point);
                 let own = [0, 1].map(|k| column(&self.arguments, 2 * point + k));
                 let mut outer = square(*slope);
                 let mut change = *slope;
@@ -230,34 +264,48 @@ impl Kalker {
         curvature
     }
 
-    /// Derivatives of half the objective's gradient by the creepages.
-    pub(super) fn by_creepage(&self, sliding: &[Sliding]) -> DMatrix<f64> {
-        let (n, rows) = (self.monomials, self.points.len());
-        let (a, b) = (self.patch.axis_ratio.sqrt(), 1.0 / self.patch.axis_ratio.sqrt());
-        let slips = |point: &Point| {
+    /// Derivatives of half the objective's gradient by the creepages, through the slip and through the weights.
+    pub(super) fn by_creepage(&self, fields: &Fields, expansion: &Expansion) -> DMatrix<f64> {
+        let (n, rows) = (self.kalker.monomials, self.kalker.points.len());
+        let (a, b) = (self.kalker.patch.axis_ratio.sqrt(), 1.0 / self.kalker.patch.axis_ratio.sqrt());
+        let rigid = |point: &Point| {
             let (x, y) = (a * point.x, b * point.y);
             [[1.0, 0.0], [0.0, 1.0], [-y, x], [-y * y, 0.0]]
-                .map(|slip| slip.map(|component| SLIP_WEIGHT * component))
         };
         let mut projections = vec![([1.0, 0.0, 1.0], [0.0; 3]); rows];
-        for Sliding { point, slope, bend } in sliding {
+        for Sliding { point, slope, bend } in &expansion.sliding {
             projections[*point] = (*slope, *bend);
         }
         let mut by_value = [DMatrix::zeros(rows, 4), DMatrix::zeros(rows, 4)];
         let mut by_argument = DMatrix::zeros(2 * rows, 4);
-        for (i, (point, (slope, bend))) in self.points.iter().zip(projections).enumerate() {
-            for (column, slip) in slips(point).into_iter().enumerate() {
-                let (seen, bent) = (times(slope, slip), times(bend, slip));
+        let (f, v) = (&fields.tractions, &fields.arguments);
+        let Weights { slip: slip_weight, slip_by_creepage, rest_by_creepage, .. } = self.weights;
+        for (i, (point, (slope, bend))) in self.kalker.points.iter().zip(projections).enumerate() {
+            let slip = [0, 1].map(|k| (v[2 * i + k] - f[2 * i + k]) / slip_weight);
+            let (p, _) = project([v[2 * i], v[2 * i + 1]], point.bound);
+            let residual = [0, 1].map(|k| f[2 * i + k] - p[k]);
+            let residual_seen = times(slope, residual);
+            let (weight, by_share) = self.points[i];
+            for (column, rigid) in rigid(point).into_iter().enumerate() {
+                let change = [0, 1].map(|k| slip_weight * rigid[k] + slip_by_creepage[column] * slip[k]);
+                let (seen, bent) = (times(slope, change), times(bend, change));
                 let twice = times(slope, seen);
+                let heavier = by_share * rest_by_creepage[column];
                 for k in 0..2 {
-                    by_value[k][(i, column)] = -point.weight * seen[k];
-                    by_argument[(2 * i + k, column)] = point.weight * twice[k] + bent[k];
+                    by_value[k][(i, column)] = heavier * residual[k] - weight * seen[k];
+                    by_argument[(2 * i + k, column)] =
+                        weight * twice[k] + bent[k] - heavier * residual_seen[k];
                 }
             }
         }
         let mut result = &self.arguments * by_argument;
         for (k, by_value) in by_value.iter().enumerate() {
-            result.rows_mut(k * n, n).gemm(1.0, &self.monomial_values, by_value, 1.0);
+            result.rows_mut(k * n, n).gemm(1.0, &self.kalker.monomial_values, by_value, 1.0);
+        }
+        // The arguments' own derivatives by the coefficients grow with the weight of slip.
+        let by_weight = &self.kalker.slip_columns * &expansion.by_argument;
+        for (mut column, change) in result.column_iter_mut().zip(slip_by_creepage) {
+            column.axpy(change, &by_weight, 1.0);
         }
         result
     }

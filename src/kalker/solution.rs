@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::nonlinear::Kalker;
-use super::objective::{Expansion, Fields, norm, project};
+use super::objective::{Fields, Objective, norm, project};
 use super::{ScaledCreepage, ScaledForces};
 
 /// The solution at one creepage.
@@ -78,8 +78,11 @@ impl Kalker {
     /// None where the minimum is not isolated.
     pub fn derivatives(&self, solution: &Solution, creepage: &ScaledCreepage) -> Option<[[f64; 4]; 4]> {
         let z = &solution.coefficients;
-        let Expansion { sliding, .. } = self.expand(z, &self.fields_at(z, creepage));
-        let follow = self.curvature(&sliding, true).lu().solve(&-self.by_creepage(&sliding))?;
+        let problem = Objective::new(self, creepage);
+        let fields = problem.fields_at(z);
+        let expansion = problem.expand(z, &fields);
+        let by_creepage = problem.by_creepage(&fields, &expansion);
+        let follow = problem.curvature(&expansion.sliding, true).lu().solve(&-by_creepage)?;
         let net = &self.resultants * follow;
         Some(std::array::from_fn(|i| std::array::from_fn(|k| net[(i, k)])))
     }

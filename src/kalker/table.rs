@@ -18,13 +18,16 @@ use std::sync::OnceLock;
 
 use super::Patch;
 use super::linear::{LinearError, Scales};
-use super::table_pieces::{COUNT, locate, weights};
+use super::table_pieces::{COUNT, weights};
 use crate::numerics::lanes::Lanes;
 
 /// Intervals from rest to sliding, from the x axis to the plane of y and spin, and of half a turn in that plane.
 pub const SHAPE: [usize; 3] = [COUNT, 10, 16];
-/// Intervals of ln(axis ratio) from 0.05 to 20.
-pub const RATIOS: usize = 12;
+/// Intervals of ln(axis ratio), from 0.0184 to 54.3.
+pub const RATIOS: usize = WITHIN + 2 * BEYOND;
+/// Intervals of ln(axis ratio) from 0.05 to 20, and beyond at either end.
+const WITHIN: usize = 12;
+const BEYOND: usize = 2;
 /// Poisson's ratio of the table.
 pub const POISSON: f64 = 0.3;
 /// [-] size |q| in the middle between rest and sliding.
@@ -53,7 +56,11 @@ pub fn shipped(ratio: usize) -> &'static [f32] {
 /// Tabulated axis ratio of a number from 0 to [`RATIOS`].
 pub fn axis_ratio(index: usize) -> f64 {
     let (low, high) = (0.05f64.ln(), 20f64.ln());
-    (low + (high - low) * index as f64 / RATIOS as f64).exp().clamp(0.05, 20.0)
+    match index as f64 - BEYOND as f64 {
+        0.0 => 0.05,
+        step if step == WITHIN as f64 => 20.0,
+        step => (low + (high - low) * step / WITHIN as f64).exp(),
+    }
 }
 
 /// How creepages become directions.
@@ -113,9 +120,12 @@ impl CreepTable {
     pub fn new(patch: &Patch) -> Result<Self, LinearError> {
         let aligned = Patch { rolling_angle: 0.0, ..*patch };
         let scales = Scales::new(&aligned)?;
-        // cubic in ln(axis ratio) between the tabulated ones
-        let position = (patch.axis_ratio / 0.05).ln() / (20f64 / 0.05).ln() * RATIOS as f64;
-        let (first, u) = locate(position.clamp(0.0, RATIOS as f64), RATIOS);
+        // cubic in ln(axis ratio) between the tabulated ones, of which that of 0.05 is at 0
+        let steps = (patch.axis_ratio / 0.05).ln() / (20f64 / 0.05).ln() * WITHIN as f64;
+        let (first, end) = (-(BEYOND as f64), (WITHIN + BEYOND) as f64);
+        let steps = steps.clamp(first, end);
+        let piece = steps.floor().min(end - 1.0);
+        let (first, u) = ((piece - first) as usize, steps - piece);
         let (w, _) = weights(u, 1.0);
         let mut nodes = vec![[0.0; 3]; NODES];
         for (offset, weight) in w.into_iter().enumerate() {

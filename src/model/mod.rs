@@ -98,6 +98,7 @@ impl Model {
             shape: &raceway.shape,
             ball_radius: self.bearing.ball.radius,
             law: raceway.law(),
+            across: raceway.across(),
             groove_bend: raceway.groove_bend,
             friction: conditions.friction,
             damping: self.damping,

@@ -4,8 +4,10 @@ use super::bearing::Bearing;
 use super::bodies::Race;
 use crate::contact::creep::Law;
 use crate::contact::identification::identify_by_table;
+use crate::contact::oblique::{Across, Exchanged, exchanged};
 use crate::contact::regularised::Parameters;
 use crate::contact::shape::ContactShape;
+use crate::kalker::Patch;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::kalker::table::CreepTable;
@@ -23,24 +25,25 @@ enum RacewayLaw {
 }
 
 impl RacewayLaw {
-    fn new(scene: &Scene, shape: &ContactShape, bearing: &Bearing, race: Race) -> Result<Self, KalkerError> {
-        let patch = shape.typical_patch(bearing.materials.poisson_ratio);
-        let given = match race {
-            Race::Inner => scene.effects.creep.regularised.inner,
-            Race::Outer => scene.effects.creep.regularised.outer,
-        };
-        Ok(match scene.effects.creep.law {
+    /// Law of a patch that rolls along its x axis.
+    fn new(
+        law: CreepLaw,
+        patch: &Patch,
+        degree: usize,
+        given: Option<Parameters>,
+    ) -> Result<Self, KalkerError> {
+        Ok(match law {
             CreepLaw::Frictionless => Self::Frictionless,
             CreepLaw::Linear => Self::Linear,
             CreepLaw::Regularised => Self::Regularised(match given {
                 Some(parameters) => parameters,
-                None => identify_by_table(&patch)?.parameters,
+                None => identify_by_table(patch)?.parameters,
             }),
             CreepLaw::Saturated => Self::Saturated,
-            CreepLaw::KalkerTable => Self::Table(CreepTable::new(&patch)?),
+            CreepLaw::KalkerTable => Self::Table(CreepTable::new(patch)?),
             CreepLaw::Kalker => {
-                let kalker = ScaledKalker::new(&patch, scene.effects.creep.kalker_degree)?;
-                Self::Kalker(CreepTable::new(&patch)?, Box::new(kalker))
+                let kalker = ScaledKalker::new(patch, degree)?;
+                Self::Kalker(CreepTable::new(patch)?, Box::new(kalker))
             }
         })
     }
@@ -62,6 +65,8 @@ pub struct RacewayContacts {
     /// Contact tables.
     pub shape: ContactShape,
     law: RacewayLaw,
+    /// Rolling across the circumference, and its law; none without friction.
+    across: Option<(Exchanged, RacewayLaw)>,
     /// [1/m] mean transverse curvature of ball and groove over 2, where its slip is simulated.
     pub groove_bend: Option<f64>,
 }
@@ -78,14 +83,37 @@ impl RacewayContacts {
             CreepLaw::Frictionless => ContactShape::without_creep(radius, pitch, materials, raceway),
             _ => ContactShape::new(radius, pitch, materials, raceway)?,
         };
-        let law = RacewayLaw::new(scene, &shape, bearing, race)?;
+        let settings = &scene.effects.creep;
+        let given = match race {
+            Race::Inner => settings.regularised.inner,
+            Race::Outer => settings.regularised.outer,
+        };
+        let patch = shape.typical_patch(materials.poisson_ratio);
+        let law = RacewayLaw::new(settings.law, &patch, settings.kalker_degree, given)?;
+        let across = match settings.law {
+            CreepLaw::Frictionless => None,
+            // Polynomials are a difference from the table of rolling along the circumference.
+            CreepLaw::Kalker => Some(CreepLaw::KalkerTable),
+            law => Some(law),
+        };
+        let across = across
+            .map(|law| -> Result<_, KalkerError> {
+                let law = RacewayLaw::new(law, &exchanged(&patch), settings.kalker_degree, None)?;
+                Ok((Exchanged::new(&patch)?, law))
+            })
+            .transpose()?;
         let groove_bend = scene.effects.groove_slip.bend(bearing.ball.radius, raceway.groove_radius);
-        Ok(Self { shape, law, groove_bend })
+        Ok(Self { shape, law, across, groove_bend })
     }
 
     /// Creep law; Kalker's polynomials give their table.
     pub fn law(&self) -> Law<'_> {
         self.law.law()
+    }
+
+    /// Rolling across the circumference.
+    pub fn across(&self) -> Option<Across<'_>> {
+        self.across.as_ref().map(|(exchanged, law)| Across { exchanged, law: law.law() })
     }
 
     /// Kalker's polynomials, where they are simulated.

@@ -94,6 +94,11 @@ impl Scalar for Lanes {
         let select = |condition: f64, this: f64, other: f64| if condition > 0.0 { this } else { other };
         Self([select(i, a, p), select(j, b, q), select(k, c, r), select(l, d, s)])
     }
+    #[inline(always)]
+    fn any_positive(self) -> bool {
+        let [a, b, c, d] = self.0.map(|lane| lane > 0.0);
+        a | b | c | d
+    }
 }
 
 impl Values for Lanes {

@@ -50,6 +50,9 @@ pub trait Scalar:
     /// `self` where `condition > 0`, `other` elsewhere.
     fn where_positive(self, condition: Self, other: Self) -> Self;
 
+    /// Is a number above 0, of several at a time any?
+    fn any_positive(self) -> bool;
+
     /// `max(self, 0)`.
     fn positive_part(self) -> Self {
         self.where_positive(self, Self::zero())
@@ -168,6 +171,10 @@ impl Scalar for f64 {
     fn where_positive(self, condition: Self, other: Self) -> Self {
         if condition > 0.0 { self } else { other }
     }
+    #[inline(always)]
+    fn any_positive(self) -> bool {
+        self > 0.0
+    }
 }
 
 /// A number and its derivatives in `N` directions (forward-mode differentiation).
@@ -266,6 +273,10 @@ impl<const N: usize> Scalar for Dual<N> {
     #[inline(always)]
     fn where_positive(self, condition: Self, other: Self) -> Self {
         if condition.value > 0.0 { self } else { other }
+    }
+    #[inline(always)]
+    fn any_positive(self) -> bool {
+        self.value > 0.0
     }
 }
 

@@ -13,6 +13,11 @@ use roulement::kalker::table::CreepTable;
 
 const RATIO: f64 = 0.107;
 
+/// Its patch, rolling along x.
+pub fn patch() -> Patch {
+    Patch { axis_ratio: RATIO, poisson_ratio: 0.3, rolling_angle: 0.0 }
+}
+
 /// A contact of a ball in a groove: 300 N on 1.6 GPa, friction 0.08.
 pub fn theory() -> LinearTheory<f64> {
     theory_of(RATIO, 300.0, 1.6e9, 79e9, 0.08)

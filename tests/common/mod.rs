@@ -11,11 +11,24 @@ pub struct Case {
     pub creepage: ScaledCreepage,
     /// fx, fy, mz.
     pub expected: [f64; 3],
+    /// Adhesion area over contact area.
+    #[allow(dead_code)]
+    pub stick: f64,
 }
 
-/// The independent data, scaled as Kalker's problem scales.
+/// Independent data of random contacts.
 pub fn cases() -> Vec<Case> {
-    let text = include_str!("../data/contact/random.csv");
+    read(include_str!("../data/contact/random.csv"))
+}
+
+/// Independent data along curves of one creepage.
+#[allow(dead_code)]
+pub fn curves() -> Vec<Case> {
+    read(include_str!("../data/contact/curves.csv"))
+}
+
+/// Cases of a file, scaled as Kalker's problem scales.
+fn read(text: &str) -> Vec<Case> {
     let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
     text.lines()
         .skip(1)
@@ -39,6 +52,7 @@ pub fn cases() -> Vec<Case> {
                     curvature: 0.0,
                 },
                 expected: [number("fx"), number("fy"), number("mz")],
+                stick: number("stick"),
             }
         })
         .collect()

@@ -19,7 +19,7 @@ use super::say;
 pub struct Options {
     /// Scene whose raceways are meant; without one, give --axis-ratio.
     scene: Option<PathBuf>,
-    /// Semi-axis along rolling over the one across it, 0.05 to 20.
+    /// Semi-axis along rolling over the one across it, 0.018 to 55.
     #[arg(long, conflicts_with = "scene", default_value_t = 1.0)]
     axis_ratio: f64,
     /// Poisson's ratio, 0 to 0.5.

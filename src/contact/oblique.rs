@@ -1,0 +1,136 @@
+//! Rolling obliquely to the axes of the contact ellipse.
+//!
+//! Creep laws are known for rolling along an axis of the ellipse. Rolling along the other one is rolling along the axis of
+//! the ellipse with both exchanged, a quarter of a turn further. Between, the forces of both are mixed: what holds for each,
+//! that forces stay within their limits and dissipate, holds for the mixture.
+//!
+//! With the angle chi between rolling and the x axis the shares are as `cos^2 chi` to `m sin^2 chi`, where `m` is the root of
+//! the axis ratio: in adhesion, where forces go with the way of a particle through the contact, the ratio itself would
+//! be right, in sliding 1. Below 6 degrees there is no share across rolling; it would be 1 % at most. A rolling speed of 1 mm/s,
+//! below which creepages are held finite and a direction has no meaning, counts as along x.
+
+use super::creep::Law;
+use super::linear_theory::{CreepForces, Creepage, LinearTheory};
+use crate::kalker::Patch;
+use crate::kalker::linear::{LinearError, Scales};
+use crate::numerics::scalar::Scalar;
+
+/// [-] squares of the sine of the rolling direction where the share of rolling across begins, and from where it is full.
+const BEGIN: f64 = 0.01;
+const FULL: f64 = 0.04;
+
+/// What rolling across the ellipse's x axis has over rolling along it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exchanged {
+    /// [-] `C11/C22` of the exchanged ellipse over the one in hand: coefficients of the same forces.
+    longitudinal: f64,
+    /// [-] `C22/C11`, likewise.
+    lateral: f64,
+    /// [-] `C23/C11`, likewise.
+    coupling: f64,
+    /// [-] `C33/C33`.
+    spin: f64,
+    /// [-] semi-axis along x over the one along y.
+    axis_ratio: f64,
+}
+
+/// Rolling across the x axis: its law.
+#[derive(Clone, Copy, Debug)]
+pub struct Across<'a> {
+    /// The exchanged ellipse.
+    pub exchanged: &'a Exchanged,
+    /// Law of the exchanged ellipse.
+    pub law: Law<'a>,
+}
+
+/// The patch with its axes exchanged, rolling along its x axis.
+pub fn exchanged(patch: &Patch) -> Patch {
+    Patch { axis_ratio: 1.0 / patch.axis_ratio, rolling_angle: 0.0, ..*patch }
+}
+
+impl Exchanged {
+    /// Of a patch.
+    ///
+    /// # Errors
+    /// If the patch is out of range.
+    pub fn new(patch: &Patch) -> Result<Self, LinearError> {
+        let here = Scales::new(&Patch { rolling_angle: 0.0, ..*patch })?;
+        let there = Scales::new(&exchanged(patch))?;
+        Ok(Self {
+            longitudinal: there.c11 / here.c22,
+            lateral: there.c22 / here.c11,
+            coupling: there.c23 / here.c11,
+            spin: there.c33 / here.c33,
+            axis_ratio: patch.axis_ratio,
+        })
+    }
+
+    /// Linear theory of the exchanged ellipse by that of the one in hand and the sine of the rolling direction.
+    fn theory<S: Scalar>(&self, theory: &LinearTheory<S>, sine: S) -> LinearTheory<S> {
+        LinearTheory {
+            longitudinal: theory.lateral.scale(self.longitudinal),
+            lateral: theory.longitudinal.scale(self.lateral),
+            coupling: theory.longitudinal.scale(self.coupling) * theory.mean_semi_axis * sine,
+            spin: theory.spin.scale(self.spin),
+            half_width: theory.half_width.scale(self.axis_ratio),
+            ..*theory
+        }
+    }
+
+    /// [-] share of rolling across in the forces by the square of the sine of the rolling direction: smooth.
+    fn share<S: Scalar>(&self, sine_square: S) -> S {
+        let m = self.axis_ratio.sqrt();
+        sine_square.map_smooth(|square| {
+            let u = (square - BEGIN) / (FULL - BEGIN);
+            let (ramp, slope) = match u {
+                u if u <= 0.0 => (0.0, 0.0),
+                u if u >= 1.0 => (square, 1.0),
+                // from nothing at slope 0 to the square at slope 1
+                u => (
+                    FULL * u * u * (3.0 - 2.0 * u) + (FULL - BEGIN) * u * u * (u - 1.0),
+                    6.0 * FULL / (FULL - BEGIN) * u * (1.0 - u) + u * (3.0 * u - 2.0),
+                ),
+            };
+            let sum = 1.0 - ramp + m * ramp;
+            (m * ramp / sum, m * slope / (sum * sum))
+        })
+    }
+}
+
+/// [-] positive where rolling has a share across x: by the rolling speed and its component across x.
+#[inline(always)]
+pub(super) fn obliqueness<S: Scalar>(speed: S, across: S) -> S {
+    across.square() - speed.square().scale(BEGIN)
+}
+
+impl Across<'_> {
+    /// Forces of oblique rolling from those of the law along x, by linear theory along x, the sine of the rolling direction and
+    /// the creepages. The slip of a bent groove is part of rolling along x alone.
+    #[inline(never)]
+    pub fn mixed<S: Scalar>(
+        &self,
+        along: &CreepForces<S>,
+        theory: &LinearTheory<S>,
+        sine: S,
+        creepage: &Creepage<S>,
+    ) -> CreepForces<S> {
+        // x of the exchanged ellipse is y here, its y is -x
+        let turned = Creepage {
+            longitudinal: creepage.lateral,
+            lateral: -creepage.longitudinal,
+            spin: creepage.spin,
+            curvature: None,
+        };
+        let forces = self.exchanged.theory(theory, sine).forces(self.law, &turned);
+        let across = CreepForces {
+            longitudinal: -forces.lateral,
+            lateral: forces.longitudinal,
+            spin_moment: forces.spin_moment,
+            second_moment: S::zero(),
+        };
+        let share = self.exchanged.share(sine.square());
+        let rest = S::one() - share;
+        // Where there is no share the forces keep their bits.
+        along.zip_with(&across, |along, across| (along * rest + across * share).where_positive(share, along))
+    }
+}
