@@ -31,7 +31,7 @@ use creep::{CreepForces, Creepage, Law, LinearTheory};
 use geometry::GrooveContact;
 use kinematics::Surfaces;
 use normal::NormalLoad;
-use oblique::{Across, obliqueness};
+use oblique::{Across, is_oblique};
 use shape::ContactShape;
 
 /// Motion of a ball, in world axes.
@@ -270,8 +270,7 @@ impl ContactModel<'_> {
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
         let theory = LinearTheory::new(&shape, depth, root, load.total, self.friction, rolling.cosine);
-        let oblique =
-            self.across.is_some() && obliqueness(rolling.speed, rolling.speed_across).any_positive();
+        let oblique = self.across.is_some() && is_oblique(rolling.speed, rolling.speed_across);
         let mut creep = theory.forces(self.law, &rolling.creepage);
         if MIXED && let Some(across) = &self.across {
             creep = across.mixed(&creep, &theory, rolling.speed_across / rolling.speed, &rolling.creepage);

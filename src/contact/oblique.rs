@@ -97,10 +97,10 @@ impl Exchanged {
     }
 }
 
-/// [-] positive where rolling has a share across x: by the rolling speed and its component across x.
+/// Has rolling across x a share, by the rolling speed and its component across x? From a little before it has.
 #[inline(always)]
-pub(super) fn obliqueness<S: Scalar>(speed: S, across: S) -> S {
-    across.square() - speed.square().scale(BEGIN)
+pub(super) fn is_oblique<S: Scalar>(speed: S, across: S) -> bool {
+    across.any_beyond(0.999 * BEGIN.sqrt(), speed)
 }
 
 impl Across<'_> {

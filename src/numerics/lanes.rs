@@ -95,9 +95,10 @@ impl Scalar for Lanes {
         Self([select(i, a, p), select(j, b, q), select(k, c, r), select(l, d, s)])
     }
     #[inline(always)]
-    fn any_positive(self) -> bool {
-        let [a, b, c, d] = self.0.map(|lane| lane > 0.0);
-        a | b | c | d
+    fn any_beyond(self, fraction: f64, limit: Self) -> bool {
+        let ([a, b, c, d], [p, q, r, s]) = (self.0, limit.0);
+        let beyond = |lane: f64, limit: f64| lane.any_beyond(fraction, limit);
+        beyond(a, p) | beyond(b, q) | beyond(c, r) | beyond(d, s)
     }
 }
 

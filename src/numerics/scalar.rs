@@ -50,8 +50,8 @@ pub trait Scalar:
     /// `self` where `condition > 0`, `other` elsewhere.
     fn where_positive(self, condition: Self, other: Self) -> Self;
 
-    /// Is a number above 0, of several at a time any?
-    fn any_positive(self) -> bool;
+    /// Is the size of a number above a fraction of a limit, of several at a time that of any?
+    fn any_beyond(self, fraction: f64, limit: Self) -> bool;
 
     /// `max(self, 0)`.
     fn positive_part(self) -> Self {
@@ -172,8 +172,8 @@ impl Scalar for f64 {
         if condition > 0.0 { self } else { other }
     }
     #[inline(always)]
-    fn any_positive(self) -> bool {
-        self > 0.0
+    fn any_beyond(self, fraction: f64, limit: Self) -> bool {
+        self.abs() > fraction * limit
     }
 }
 
@@ -275,8 +275,8 @@ impl<const N: usize> Scalar for Dual<N> {
         if condition.value > 0.0 { self } else { other }
     }
     #[inline(always)]
-    fn any_positive(self) -> bool {
-        self.value > 0.0
+    fn any_beyond(self, fraction: f64, limit: Self) -> bool {
+        self.value.any_beyond(fraction, limit.value)
     }
 }
 
