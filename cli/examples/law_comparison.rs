@@ -52,7 +52,7 @@ pub fn settled(changes: &[(&str, &str)]) -> Result<Means, Box<dyn Error>> {
     let scene = Scene::edited(THRUST, changes.iter().copied())?;
     let mut simulation = Simulation::new(&scene)?;
     let contacts: [fn(&BallOutput) -> &ContactOutput; 2] = [|ball| &ball.inner, |ball| &ball.outer];
-    let (mut rows, mut halves, mut spin) = (0.0, [[0.0; 2]; 2], [0.0; 2]);
+    let (mut rows, mut halves, mut spin) = ([0.0; 2], [[0.0; 2]; 2], [0.0; 2]);
     let begin = ThreadTime::now();
     let last = (DURATION / INTERVAL).round() as u32;
     for point in 1..=last {
@@ -63,7 +63,7 @@ pub fn settled(changes: &[(&str, &str)]) -> Result<Means, Box<dyn Error>> {
             continue;
         }
         let half = usize::from(time > 0.5 * (WINDOW + DURATION));
-        rows += 1.0;
+        rows[half] += 1.0;
         let balls = &simulation.outputs().balls;
         for (race, contact) in contacts.iter().enumerate() {
             let mean = |of: fn(&ContactOutput) -> f64| {
@@ -74,11 +74,12 @@ pub fn settled(changes: &[(&str, &str)]) -> Result<Means, Box<dyn Error>> {
         }
     }
     let sums = [0, 1].map(|race: usize| halves[0][race] + halves[1][race]);
-    let of_half = halves.map(|half| half[0] + half[1]);
+    let of_half = [0, 1].map(|half: usize| (halves[half][0] + halves[half][1]) / rows[half]);
+    let all = rows[0] + rows[1];
     Ok(Means {
-        power: sums.map(|sum| sum / rows),
+        power: sums.map(|sum| sum / all),
         spin_share: [0, 1].map(|race: usize| spin[race] / sums[race]),
-        total: (sums[0] + sums[1]) / rows * scene.bearing.balls as f64,
+        total: (sums[0] + sums[1]) / all * scene.bearing.balls as f64,
         drift: of_half[1] / of_half[0] - 1.0,
         cpu: begin.elapsed().as_secs_f64() / DURATION,
     })

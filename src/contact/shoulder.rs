@@ -6,7 +6,7 @@
 
 /// [-] load of a contact over the largest of its race below which its place is not looked at: balls that others leave without
 /// load rattle about their groove.
-pub const SMALL_LOAD: f64 = 0.01;
+pub const SMALL_LOAD: f64 = 0.05;
 
 /// Largest share beyond the shoulders of a race among contacts that carry load, by their loads \[N] and shares.
 pub fn largest_share(contacts: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {

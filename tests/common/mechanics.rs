@@ -103,7 +103,7 @@ impl Hertz {
 }
 
 /// Creep coefficients C11, C22, C23, C33 of an axis ratio (along over across rolling) and Poisson's ratio, between the
-/// independent data: cubic in the logarithm of the ratio, quadratic in Poisson's ratio.
+/// independent data: of degree 5 in the logarithm of the ratio, quadratic in Poisson's ratio.
 pub fn creep_coefficients(ratio: f64, poisson: f64) -> [f64; 4] {
     static ROWS: LazyLock<Vec<Vec<f64>>> = LazyLock::new(|| {
         let text = include_str!("../data/contact/creep_coefficients.csv");
@@ -122,7 +122,7 @@ pub fn creep_coefficients(ratio: f64, poisson: f64) -> [f64; 4] {
             let mut nodes: Vec<(f64, f64)> =
                 ROWS.iter().filter(|row| row[0] == nu).map(|row| (row[1].ln(), row[column].ln())).collect();
             nodes.sort_by(|a, b| (a.0 - ratio.ln()).abs().total_cmp(&(b.0 - ratio.ln()).abs()));
-            lagrange(&nodes[..4], ratio.ln()).exp()
+            lagrange(&nodes[..6], ratio.ln()).exp()
         };
         lagrange(&[0.25, 0.28, 0.3].map(|nu| (nu, at(nu))), poisson)
     })
@@ -147,8 +147,19 @@ pub struct Patch {
     pub friction: f64,
     pub shear: f64,
     pub c: [f64; 4],
-    /// Longitudinal and lateral coefficients both their mean, no coupling.
-    pub round: bool,
+    /// What kind of rolling it is.
+    pub kind: Kind,
+}
+
+/// Kinds of rolling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// In any direction: coefficients of the same ellipse rolling across.
+    Any([f64; 4]),
+    /// Near an axis of the ellipse.
+    Along,
+    /// On a circle: longitudinal and lateral coefficients both their mean, no coupling.
+    Round,
 }
 
 /// Law `saturated`: linear theory, shortened as a vector of force and moment over their limits by Vermeulen and Johnson.
@@ -158,7 +169,7 @@ pub fn saturated(patch: &Patch, slip: [f64; 3], rolling: [f64; 2]) -> Friction {
     let [a, b] = patch.semi;
     let c = (a * b).sqrt();
     let [mut c11, mut c22, mut c23, c33] = patch.c;
-    if patch.round {
+    if patch.kind == Kind::Round {
         (c11, c22, c23) = (0.5 * (c11 + c22), 0.5 * (c11 + c22), 0.0);
     }
     let speed = (rolling[0].powi(2) + rolling[1].powi(2) + SPEED_FLOOR * SPEED_FLOOR).sqrt();
@@ -183,6 +194,28 @@ pub fn saturated(patch: &Patch, slip: [f64; 3], rolling: [f64; 2]) -> Friction {
     let forces = [-q[0] * factor * limit, -q[1] * factor * limit, -q[2] * factor * moment_limit];
     let power = -(0..3).map(|i| forces[i] * slip[i]).sum::<f64>();
     Friction { forces, creepages: [xi, eta, phi], power }
+}
+
+/// The law where rolling is oblique: forces of the ellipse and of the same one rolling across, as `cos^2` to `sin^2 sqrt(a/b)`
+/// of the angle; nothing of rolling across below `sin^2 = 0.01`, all of its share from 0.04 on, a cubic between.
+pub fn oblique(patch: &Patch, slip: [f64; 3], rolling: [f64; 2]) -> Friction {
+    let along = saturated(patch, slip, rolling);
+    let Kind::Any(c) = patch.kind else { return along };
+    let speed = (rolling[0].powi(2) + rolling[1].powi(2) + SPEED_FLOOR * SPEED_FLOOR).sqrt();
+    let square = (rolling[1] / speed).powi(2);
+    let t = ((square - 0.01) / 0.03).clamp(0.0, 1.0);
+    let cubic = 0.04 * t * t * (3.0 - 2.0 * t) + 0.03 * t * t * (t - 1.0);
+    let sine = if t < 1.0 { cubic } else { square };
+    let [a, b] = patch.semi;
+    let weight = (a / b).sqrt() * sine;
+    let share = weight / (1.0 - sine + weight);
+    // x of the ellipse rolling across is y here, its y is -x.
+    let exchanged = Patch { semi: [b, a], c, ..*patch };
+    let across = saturated(&exchanged, [slip[1], -slip[0], slip[2]], [rolling[1], -rolling[0]]);
+    let turned = [-across.forces[1], across.forces[0], across.forces[2]];
+    let forces = [0, 1, 2].map(|i: usize| along.forces[i] * (1.0 - share) + turned[i] * share);
+    let power = -(0..3).map(|i| forces[i] * slip[i]).sum::<f64>();
+    Friction { forces, power, ..along }
 }
 
 /// A contact between two bodies, all that there is to know.
@@ -217,7 +250,7 @@ pub fn ball_contact(
     place: &dyn Fn(&Body, &Body) -> (f64, V),
     hertz: &Hertz,
     along: &V,
-    (friction, shear, c, round): (f64, f64, [f64; 4], bool),
+    (friction, shear, c, kind): (f64, f64, [f64; 4], Kind),
     damping: f64,
 ) -> Option<Contact> {
     let (approach, normal) = place(ball, other);
@@ -240,8 +273,8 @@ pub fn ball_contact(
     let slip = surfaces[0] - surfaces[1];
     let slips = [slip.dot(&x), slip.dot(&y), (ball.omega - other.omega).dot(&z)];
     let semi = hertz.semi_axes(elastic);
-    let patch = Patch { semi, load, friction, shear, c, round };
-    let friction = saturated(&patch, slips, [rolling.dot(&x), rolling.dot(&y)]);
+    let patch = Patch { semi, load, friction, shear, c, kind };
+    let friction = oblique(&patch, slips, [rolling.dot(&x), rolling.dot(&y)]);
     let tangential = x * friction.forces[0] + y * friction.forces[1];
     let about = z * friction.forces[2];
     let force = z * load + tangential;
@@ -319,7 +352,8 @@ impl Dimensions {
         let (compliance, shear, poisson) = pair(self.materials);
         let hertz = Hertz::new([curvature, across], compliance);
         let [a, b] = hertz.semi_axes(1.0);
-        let law = (self.friction, shear, creep_coefficients(a / b, poisson), false);
+        let across = creep_coefficients(b / a, poisson);
+        let law = (self.friction, shear, creep_coefficients(a / b, poisson), Kind::Any(across));
         let along = axis.cross(&radial);
         ball_contact([ball, body], self.ball_radius, &place, &hertz, &along, law, self.damping)
     }
@@ -373,7 +407,8 @@ impl CageDimensions {
         let (compliance, shear, poisson) = pair(self.materials);
         let hertz = Hertz::new([along, around], compliance);
         let [a, b] = hertz.semi_axes(1.0);
-        let law = (self.ball_friction, shear, creep_coefficients(a / b, poisson), self.sphere.is_some());
+        let kind = if self.sphere.is_some() { Kind::Round } else { Kind::Along };
+        let law = (self.ball_friction, shear, creep_coefficients(a / b, poisson), kind);
         // In a sphere any direction will do: the patch is round.
         let along =
             if self.sphere.is_some() { normal.cross(&V::new(0.3, 0.5, -0.7)).normalize() } else { axis };

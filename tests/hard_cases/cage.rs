@@ -221,8 +221,10 @@ fn from_rest() {
 #[test]
 fn standstill() {
     // The cage falls by its play into pockets and lands.
-    let scene = scene(CAGE, &(load(40.0, 0.0, COMBINED) + SHARP + &on_lands(0.2, 0.2, 10.0)));
-    let mut case = Case::new("cage dropped at standstill", scene, limits(4700, 40, 60, 4.0));
+    // The power of this rattle is that of a few blows: two percent of it want still smaller errors than SHARP.
+    let sharper = SHARP.replace("1e-8", "3e-10");
+    let scene = scene(CAGE, &(load(40.0, 0.0, COMBINED) + &sharper + &on_lands(0.2, 0.2, 10.0)));
+    let mut case = Case::new("cage dropped at standstill", scene, limits(6600, 40, 60, 4.0));
     case.window = [0.0, 1.0];
     let run = case.pass();
     for o in &run.history {
