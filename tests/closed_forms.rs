@@ -6,7 +6,6 @@ use std::f64::consts::TAU;
 use roulement::simulation::Simulation;
 
 #[path = "common/mechanics.rs"]
-#[allow(dead_code)]
 mod mechanics;
 #[path = "common/scenes.rs"]
 mod scenes;

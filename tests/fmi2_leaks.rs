@@ -10,10 +10,10 @@ use std::ptr;
 use fmi2_abi::*;
 use roulement::fmi::v2::Status;
 
-/// [kB] resident memory of this process.
+/// [kB] memory that this process has for itself; pages of its files come and go with the machine.
 fn resident() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
-    let line = status.lines().find(|line| line.starts_with("VmRSS:")).unwrap();
+    let line = status.lines().find(|line| line.starts_with("RssAnon:")).unwrap();
     line.split_whitespace().nth(1).unwrap().parse().unwrap()
 }
 

@@ -9,7 +9,6 @@ use roulement::simulation::{Simulation, SimulationError};
 use roulement_cli::report::energy::EnergyWatch;
 
 #[path = "../../tests/common/random.rs"]
-#[allow(dead_code)]
 mod random;
 
 use random::Random;
