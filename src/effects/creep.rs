@@ -47,7 +47,7 @@ impl CreepLaw {
                 "has unbounded forces: right for small creepages alone, a run beyond friction is refused",
             ),
             (Self::KalkerTable | Self::Kalker, false) => Some(
-                "misses the slip of bent grooves: a tenth of the friction power under thrust, nearly all of it under a radial load",
+                "misses the slip of bent grooves: a percent of the friction power under thrust, nearly all of it under a radial load",
             ),
             (Self::Regularised | Self::Saturated, true) => {
                 Some("has the friction power within 6 %, that of inner and outer race may be exchanged")
