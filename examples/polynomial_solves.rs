@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 
 use roulement::analysis::single_contact::RollingContact;
 use roulement::kalker::nonlinear::Kalker;
-use roulement::kalker::{Patch, ScaledCreepage};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -18,28 +17,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut time, mut iterations, mut solves) = (Duration::ZERO, 0, 0);
     for contact in csv::Reader::from_path(file)?.deserialize() {
         let contact: RollingContact = contact?;
-        let c = (contact.semi_axis_x * contact.semi_axis_y).sqrt();
-        let scale = contact.shear_modulus / (contact.friction * contact.peak_pressure);
-        let creepage = |fraction: f64| ScaledCreepage {
-            x: fraction * scale * contact.creep_x,
-            y: fraction * scale * contact.creep_y,
-            spin: fraction * scale * c * contact.spin,
-            curvature: fraction * scale * c * c * contact.curvature,
-        };
-        let patch = Patch {
-            axis_ratio: contact.semi_axis_x / contact.semi_axis_y,
-            poisson_ratio: contact.poisson_ratio,
-            rolling_angle: contact.rolling_angle,
-        };
-        let kalker = Kalker::new(patch, degree)?;
+        let creepage = contact.scaled_creepage();
+        let kalker = Kalker::new(contact.patch(), degree)?;
         let nearby = match start.as_str() {
-            "warm" => Some(kalker.solve(&creepage(0.99), None)?),
+            "warm" => Some(kalker.solve(&creepage.times(0.99), None)?),
             _ => None,
         };
         let start = nearby.as_ref().map(|solution| solution.coefficients.as_slice());
         let begin = Instant::now();
         for _ in 0..count {
-            iterations += kalker.solve(&creepage(1.0), start)?.iterations;
+            iterations += kalker.solve(&creepage, start)?.iterations;
             solves += 1;
         }
         time += begin.elapsed();

@@ -10,7 +10,6 @@ use std::path::Path;
 use roulement::Simulation;
 use roulement::analysis::single_contact::RollingContact;
 use roulement::kalker::nonlinear::Kalker;
-use roulement::kalker::{Patch, ScaledCreepage};
 use roulement::simulation::play::{Rows, play};
 
 #[path = "common/scenes.rs"]
@@ -186,24 +185,12 @@ fn iterations(degree: usize) -> [f64; 2] {
     let (mut sums, mut cases) = ([0.0; 2], 0.0);
     for contact in csv::Reader::from_path(file).unwrap().deserialize() {
         let contact: RollingContact = contact.unwrap();
-        let c = (contact.semi_axis_x * contact.semi_axis_y).sqrt();
-        let scale = contact.shear_modulus / (contact.friction * contact.peak_pressure);
-        let creepage = |fraction: f64| ScaledCreepage {
-            x: fraction * scale * contact.creep_x,
-            y: fraction * scale * contact.creep_y,
-            spin: fraction * scale * c * contact.spin,
-            curvature: fraction * scale * c * c * contact.curvature,
-        };
-        let patch = Patch {
-            axis_ratio: contact.semi_axis_x / contact.semi_axis_y,
-            poisson_ratio: contact.poisson_ratio,
-            rolling_angle: contact.rolling_angle,
-        };
-        let kalker = Kalker::new(patch, degree).unwrap();
-        let nearby = kalker.solve(&creepage(0.99), None).unwrap();
+        let creepage = contact.scaled_creepage();
+        let kalker = Kalker::new(contact.patch(), degree).unwrap();
+        let nearby = kalker.solve(&creepage.times(0.99), None).unwrap();
         let starts = [None, Some(nearby.coefficients.as_slice())];
         for (sum, start) in sums.iter_mut().zip(starts) {
-            *sum += f64::from(kalker.solve(&creepage(1.0), start).unwrap().iterations);
+            *sum += f64::from(kalker.solve(&creepage, start).unwrap().iterations);
         }
         cases += 1.0;
     }

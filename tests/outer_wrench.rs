@@ -1,7 +1,7 @@
 //! The outer race as a rigid body under a wrench, while the inner race is held.
 #![allow(clippy::unwrap_used)]
 
-use nalgebra::{SMatrix, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use roulement::equilibrium::{self, Equilibrium, EquilibriumInput, Gyroscopic, Prescribed};
 use roulement::model::bodies::Race;
 use roulement::scene::Scene;
@@ -10,8 +10,11 @@ use roulement::{Model, Simulation};
 
 #[path = "common/scenes.rs"]
 mod scenes;
+#[path = "common/statics.rs"]
+mod statics;
 
 use scenes::{HELD, scene};
+use statics::load_differences;
 
 type V = Vector3<f64>;
 
@@ -180,20 +183,7 @@ fn invariant_the_stiffness_is_the_difference_of_loads_of_displaced_outer_races()
     for gyroscopic in [Gyroscopic::None, Gyroscopic::Friction] {
         let input = EquilibriumInput::from_scene(&scene, gyroscopic);
         let here = equilibrium::solve(&model, &input).unwrap();
-        let load = |k: usize, change: f64| {
-            let mut displaced = here.displacement;
-            displaced[k] += change;
-            let input = EquilibriumInput { conditions: displaced.map(Prescribed::Motion), ..input.clone() };
-            equilibrium::solve(&model, &input).unwrap().load
-        };
-        let mut differences = SMatrix::<f64, 5, 5>::zeros();
-        for k in 0..5 {
-            let change = if k < 3 { 2e-9 } else { 1e-7 };
-            let (plus, minus) = (load(k, change), load(k, -change));
-            for i in 0..5 {
-                differences[(i, k)] = (plus[i] - minus[i]) / (2.0 * change);
-            }
-        }
+        let differences = load_differences(&model, &input, &here.displacement);
         let scale = |i: usize, k: usize| (differences[(i, i)] * differences[(k, k)]).abs().sqrt();
         for i in 0..5 {
             for k in 0..5 {

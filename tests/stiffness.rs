@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, Matrix3, Matrix6, SMatrix, UnitQuaternion, Vector2, Vect
 use std::ops::AddAssign;
 
 use roulement::analysis::condensed::Condensed;
-use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
+use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::interface::variables::Variables;
 use roulement::model::Conditions;
 use roulement::model::Model;
@@ -20,10 +20,13 @@ mod mechanics;
 mod reference;
 #[path = "common/scenes.rs"]
 mod scenes;
+#[path = "common/statics.rs"]
+mod statics;
 
 use mechanics::{Body, Dimensions, V, grooves};
 use reference::{cases, number, scene_text};
 use scenes::{HELD, scene};
+use statics::load_differences;
 
 const THRUST: &str = include_str!("../scenes/thrust.toml");
 /// Rows and columns x, y, z, ry, rz of six.
@@ -61,21 +64,7 @@ fn invariant_stiffness_at_rest_is_that_of_the_equilibrium() {
         let model = Model::new(simulation.scene()).unwrap();
         let input = EquilibriumInput::from_scene(simulation.scene(), Gyroscopic::None);
         let here = equilibrium::solve(&model, &input).unwrap();
-        let load = |k: usize, change: f64| {
-            let mut displaced = here.displacement;
-            displaced[k] += change;
-            let conditions = displaced.map(Prescribed::Motion);
-            let input = EquilibriumInput { conditions, ..input.clone() };
-            equilibrium::solve(&model, &input).unwrap().load
-        };
-        let mut differences = SMatrix::<f64, 5, 5>::zeros();
-        for k in 0..5 {
-            let change = if k < 3 { 2e-9 } else { 1e-7 };
-            let (plus, minus) = (load(k, change), load(k, -change));
-            for i in 0..5 {
-                differences[(i, k)] = (plus[i] - minus[i]) / (2.0 * change);
-            }
-        }
+        let differences = load_differences(&model, &input, &here.displacement);
         let d = difference(&ours, &differences);
         println!("{} {d:.1e}", case["id"]);
         assert!(d < 1e-3, "{}: {d:e}", case["id"]);

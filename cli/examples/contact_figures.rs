@@ -7,9 +7,9 @@ use std::path::Path;
 use plotters::prelude::*;
 use roulement::analysis::single_contact::{Law, RollingContact, RollingForces};
 use roulement::contact::identification::{Identification, identify_by_table};
+use roulement::kalker::Patch;
 use roulement::kalker::linear::Scales;
 use roulement::kalker::nonlinear::Kalker;
-use roulement::kalker::{Patch, ScaledCreepage};
 use roulement::scene::CreepLaw;
 use roulement_cli::report::style::{Area, CAPTION, COLOURS, Drawn, LABEL, LINE, MARGIN, axes, legend};
 use serde::Deserialize;
@@ -107,14 +107,9 @@ fn adhesion_map(case: &Case, area: &Area<'_>) -> Drawn {
     let contact = &case.contact;
     let a = contact.semi_axis_x;
     let creep = 0.8 * contact.friction * a / BALL_RADIUS;
-    let patch = Patch {
-        axis_ratio: a / contact.semi_axis_y,
-        poisson_ratio: contact.poisson_ratio,
-        rolling_angle: 0.0,
-    };
-    let kalker = Kalker::new(patch, 7)?;
-    let scale = contact.shear_modulus / (contact.friction * contact.peak_pressure);
-    let creepage = ScaledCreepage { x: creep * scale, ..Default::default() };
+    let pure = RollingContact { creep_x: creep, creep_y: 0.0, spin: 0.0, curvature: 0.0, ..contact.clone() };
+    let kalker = Kalker::new(pure.patch(), 7)?;
+    let creepage = pure.scaled_creepage();
     let solution = kalker.solve(&creepage, None)?;
     let title = format!(
         "1b  |f|/(mu p) at c_x R/(mu a) = 0.8, degree 7; adhesion on {:.0} % of the ellipse",

@@ -124,22 +124,17 @@ impl RollingContact {
     /// See [`ContactError`].
     pub fn evaluate(&self, law: Law) -> Result<RollingForces, ContactError> {
         self.check()?;
-        let patch = Patch {
-            axis_ratio: self.semi_axis_x / self.semi_axis_y,
-            poisson_ratio: self.poisson_ratio,
-            rolling_angle: self.rolling_angle,
-        };
-        let c = (self.semi_axis_x * self.semi_axis_y).sqrt();
+        let (patch, c) = (self.patch(), self.mean_semi_axis());
         let ([fx, fy, mz, second_moment], stick) = match law {
             Law::Simulated(CreepLaw::Kalker) => return self.evaluate(Law::Kalker(DEGREE)),
             Law::Simulated(law) => (self.simulated(law, &patch, c)?, None),
             Law::Reference(cells) => {
                 let failed = |why| ContactError::Reference(self.id.clone(), why);
-                let f = extrapolated(&patch, &self.scaled(c), cells).map_err(failed)?;
+                let f = extrapolated(&patch, &self.scaled_creepage(), cells).map_err(failed)?;
                 ([f.fx, f.fy, f.mz, f.second_moment], None)
             }
             Law::Kalker(degree) => {
-                let creepage = self.scaled(c);
+                let creepage = self.scaled_creepage();
                 let failed = |why| ContactError::Kalker(self.id.clone(), why);
                 let solution = Kalker::new(patch, degree)
                     .and_then(|kalker| kalker.solve(&creepage, None))
@@ -153,8 +148,23 @@ impl RollingContact {
         Ok(RollingForces { id: self.id.clone(), fx, fy, mz, power, stick })
     }
 
-    /// Creepages in Kalker's scale.
-    fn scaled(&self, c: f64) -> ScaledCreepage {
+    /// \[m] geometric mean of the semi-axes.
+    fn mean_semi_axis(&self) -> f64 {
+        (self.semi_axis_x * self.semi_axis_y).sqrt()
+    }
+
+    /// Its ellipse, material and direction of rolling.
+    pub fn patch(&self) -> Patch {
+        Patch {
+            axis_ratio: self.semi_axis_x / self.semi_axis_y,
+            poisson_ratio: self.poisson_ratio,
+            rolling_angle: self.rolling_angle,
+        }
+    }
+
+    /// Its creepages in Kalker's scale.
+    pub fn scaled_creepage(&self) -> ScaledCreepage {
+        let c = self.mean_semi_axis();
         let scale = self.shear_modulus / (self.friction * self.peak_pressure);
         ScaledCreepage {
             x: self.creep_x * scale,
@@ -233,7 +243,7 @@ impl RollingContact {
         let (sin, cos) = self.rolling_angle.sin_cos();
         let along = 1.0 / (cos / self.semi_axis_x).hypot(sin / self.semi_axis_y);
         let half_width = 1.0 / (sin / self.semi_axis_x).hypot(cos / self.semi_axis_y);
-        let c = (self.semi_axis_x * self.semi_axis_y).sqrt();
+        let c = self.mean_semi_axis();
         let seen = Patch { axis_ratio: along / half_width, rolling_angle: 0.0, ..*patch };
         let turn = Rotation2::new(self.rolling_angle);
         let axis = |turned: Vector2<f64>| Vector3::new(turned.x, turned.y, 0.0);
@@ -291,7 +301,7 @@ impl RollingContact {
         let aligned = Patch { rolling_angle: 0.0, ..*patch };
         let (sin, cos) = self.rolling_angle.sin_cos();
         let matrix = creep_matrix(&aligned).map_err(failed)?;
-        let c = (self.semi_axis_x * self.semi_axis_y).sqrt();
+        let c = self.mean_semi_axis();
         let stiffness = self.shear_modulus * c * c;
         let theory = LinearTheory {
             longitudinal: stiffness * matrix[(0, 0)],

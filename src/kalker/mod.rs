@@ -47,6 +47,18 @@ pub struct ScaledCreepage {
     pub curvature: f64,
 }
 
+impl ScaledCreepage {
+    /// All of them times a factor.
+    pub fn times(&self, factor: f64) -> Self {
+        Self {
+            x: factor * self.x,
+            y: factor * self.y,
+            spin: factor * self.spin,
+            curvature: factor * self.curvature,
+        }
+    }
+}
+
 /// Net effect of a rolling contact, of body 1 on body 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ScaledForces {

@@ -104,8 +104,10 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Res
     let Played { simulation, means, energy, limits, wall, .. } = run;
     let now = simulation.outputs();
     let text = |name: &str, factor, digits| shown.text(name, factor, digits);
-    let range = |[least, most]: [&str; 2], digits| {
-        format!("{} to {}", text(least, 1.0, digits), text(most, 1.0, digits))
+    let range = |[least, most]: [&str; 2]| format!("{} to {}", text(least, 1.0, 3), text(most, 1.0, 3));
+    let vector = |name: &str, factor, digits| {
+        let [x, y, z] = ["x", "y", "z"].map(|axis| text(&format!("end {name}.{axis}"), factor, digits));
+        format!("x {x}  y {y}  z {z}")
     };
     let race = Race::loaded(simulation.scene()).name();
     let title = &simulation.scene().title;
@@ -115,36 +117,22 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Res
     writeln!(out, "at {:.3} ms", now.time * 1e3)?;
     writeln!(
         out,
-        "bearing's force  x {}  y {}  z {} N   (of the bearing on the {race} race; the external load is the opposite,",
-        text("end force.x", 1.0, 3),
-        text("end force.y", 1.0, 3),
-        text("end force.z", 1.0, 3)
+        "bearing's force  {} N   (of the bearing on the {race} race; the external load is the opposite,",
+        vector("force", 1.0, 3)
     )?;
-    writeln!(
-        out,
-        "bearing's moment x {}  y {}  z {} N m   but for what accelerates the race)",
-        text("end moment.x", 1.0, 5),
-        text("end moment.y", 1.0, 5),
-        text("end moment.z", 1.0, 5)
-    )?;
-    writeln!(
-        out,
-        "{race} race at    x {}  y {}  z {} um",
-        text("end position.x", 1e6, 4),
-        text("end position.y", 1e6, 4),
-        text("end position.z", 1e6, 4)
-    )?;
+    writeln!(out, "bearing's moment {} N m   but for what accelerates the race)", vector("moment", 1.0, 5))?;
+    writeln!(out, "{race} race at    {} um", vector("position", 1e6, 4))?;
     writeln!(
         out,
         "ball loads       inner {} N, outer {} N",
-        range(["least inner load", "largest inner load"], 3),
-        range(["least outer load", "largest outer load"], 3)
+        range(["least inner load", "largest inner load"]),
+        range(["least outer load", "largest outer load"])
     )?;
     writeln!(
         out,
         "contact angles   inner {} deg, outer {} deg",
-        range(["least inner angle", "largest inner angle"], 3),
-        range(["least outer angle", "largest outer angle"], 3)
+        range(["least inner angle", "largest inner angle"]),
+        range(["least outer angle", "largest outer angle"])
     )?;
     write_limits(out, limits, shown)?;
     if now.cage.is_some() {
