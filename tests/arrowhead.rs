@@ -4,52 +4,101 @@
 #[path = "common/random.rs"]
 mod random;
 
-use nalgebra::{DMatrix, DVector, Matrix6, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, Rotation3, Vector3, Vector6};
 use random::Random;
-use roulement::numerics::arrowhead::{Arrowhead, BLOCK, Block, SLOTS};
+use roulement::numerics::arrowhead::{Arrowhead, BLOCK, Block, Eliminated, Member, SLOTS};
+use roulement::numerics::orbit_turn::OrbitTurn;
 use roulement::numerics::ring::{Link, Ring};
+
+/// Turns the last three of six rows.
+fn turned(axes: &Matrix3<f64>) -> Matrix6<f64> {
+    let mut all = Matrix6::identity();
+    all.fixed_view_mut::<3, 3>(3, 3).copy_from(axes);
+    all
+}
+
+/// A turn about x of both vectors of six rows.
+fn about_x(angle: f64) -> Matrix6<f64> {
+    let turn = *Rotation3::from_axis_angle(&Vector3::x_axis(), angle).matrix();
+    let mut all = turned(&turn);
+    all.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
+    all
+}
 
 #[test]
 fn closed_form_agrees_with_the_dense_solution() {
     let mut numbers = Random::new(1);
     let mut random = || numbers.symmetric();
-    let (n_balls, n_border, offsets) = (5, 19, [Some(0), Some(7), Some(13)]);
-    let size = BLOCK * n_balls + n_border;
-    let mut dense = DMatrix::<f64>::zeros(size, size);
-    let mut blocks = vec![Block::default(); n_balls];
-    let border_start = BLOCK * n_balls;
-    for (j, block) in blocks.iter_mut().enumerate() {
-        block.diagonal = Matrix6::from_fn(|i, k| random() + if i == k { 3.0 } else { 0.0 });
-        dense.fixed_view_mut::<BLOCK, BLOCK>(BLOCK * j, BLOCK * j).copy_from(&block.diagonal);
-        for (body, offset) in [(0, 0), (1, 7), (2, 13)] {
-            block.right[body] = Matrix6::from_fn(|_, _| random());
-            block.left[body] = Matrix6::from_fn(|_, _| random());
-            let at = border_start + offset;
-            dense.fixed_view_mut::<BLOCK, BLOCK>(BLOCK * j, at).copy_from(&block.right[body]);
-            dense.fixed_view_mut::<BLOCK, BLOCK>(at, BLOCK * j).copy_from(&block.left[body]);
+    // Blocks are eliminated in one place and used in another, by members that have turned since.
+    for (n_balls, offsets) in [(5, vec![0, 7, 13]), (3, vec![0]), (4, vec![])] {
+        let n_border = if offsets.is_empty() { 0 } else { 19 };
+        let border_start = BLOCK * n_balls;
+        let size = border_start + n_border;
+        let mut dense = DMatrix::<f64>::zeros(size, size);
+        let members = |random: &mut dyn FnMut() -> f64| -> Vec<Member> {
+            let mut member = |(slot, from): (usize, &usize)| {
+                let axes = Rotation3::new(Vector3::from_fn(|_, _| 2.0 * random()));
+                Member { slot, from: *from, axes: axes.into_inner() }
+            };
+            offsets.iter().enumerate().map(&mut member).collect()
+        };
+        let (then, now) = (members(&mut random), members(&mut random));
+        let border = DMatrix::from_fn(n_border, n_border, |_, _| random());
+        dense.view_mut((border_start, border_start), (n_border, n_border)).copy_from(&border);
+        let mut blocks = vec![];
+        for j in 0..n_balls {
+            let mut block = Block::default();
+            let angle = 3.0 * random();
+            let turn = about_x(angle);
+            let diagonal = Matrix6::from_fn(|i, k| random() + if i == k { 3.0 } else { 0.0 });
+            block.diagonal = diagonal;
+            let own = turn * diagonal * turn.transpose();
+            dense.fixed_view_mut::<BLOCK, BLOCK>(BLOCK * j, BLOCK * j).copy_from(&own);
+            for (then, now) in then.iter().zip(&now) {
+                // in world axes
+                let [right, left, own] = [(); 3].map(|()| Matrix6::from_fn(|_, _| random()));
+                block.right[then.slot] = right * turned(&then.axes).transpose();
+                block.left[then.slot] = turned(&then.axes) * left;
+                block.own[then.slot] = turned(&then.axes) * own * turned(&then.axes).transpose();
+                let axes = turned(&now.axes);
+                let at = border_start + now.from;
+                let right = turn * right * turn.transpose() * axes.transpose();
+                let left = axes * turn * left * turn.transpose();
+                let own = axes * turn * own * turn.transpose() * axes.transpose();
+                dense.fixed_view_mut::<BLOCK, BLOCK>(BLOCK * j, at).copy_from(&right);
+                dense.fixed_view_mut::<BLOCK, BLOCK>(at, BLOCK * j).copy_from(&left);
+                let mut rows = dense.fixed_view_mut::<BLOCK, BLOCK>(at, at);
+                rows += own;
+            }
+            let turn = OrbitTurn::between(&Vector3::y(), &Vector3::new(0.0, angle.cos(), angle.sin()));
+            blocks.push((Eliminated::new(&block, &then).unwrap(), turn));
+            assert!(blocks[j].0.fits(offsets.len()) && !blocks[j].0.fits(offsets.len() + 1));
         }
-    }
-    let border = DMatrix::from_fn(n_border, n_border, |_, _| random());
-    dense.view_mut((border_start, border_start), (n_border, n_border)).copy_from(&border);
-    let rhs = DVector::from_fn(size, |_, _| random());
-    let exact = dense.lu().solve(&rhs).unwrap();
+        let rhs = DVector::from_fn(size, |_, _| random());
+        let exact = dense.lu().solve(&rhs).unwrap();
 
-    let mut arrowhead = Arrowhead::default();
-    arrowhead.factorise(&blocks.iter().collect::<Vec<_>>(), &border, offsets);
-    let mut balls: Vec<_> = (0..n_balls).map(|j| rhs.fixed_rows::<BLOCK>(BLOCK * j).into_owned()).collect();
-    let mut tail = rhs.rows(border_start, n_border).into_owned();
-    assert!(arrowhead.solve(&mut balls, &mut tail, offsets));
-    for (j, x) in balls.iter().enumerate() {
-        assert!((x - exact.fixed_rows::<BLOCK>(BLOCK * j)).norm() < 1e-12 * exact.norm());
+        let mut arrowhead = Arrowhead::default();
+        arrowhead.factorise(blocks.iter().map(|(block, turn)| (block, *turn)), &now, border);
+        let mut balls: Vec<_> =
+            (0..n_balls).map(|j| rhs.fixed_rows::<BLOCK>(BLOCK * j).into_owned()).collect();
+        let mut tail = rhs.rows(border_start, n_border).into_owned();
+        assert!(arrowhead.solve(blocks.iter().map(|(block, _)| block), &mut balls, &mut tail));
+        for (j, x) in balls.iter().enumerate() {
+            assert!((x - exact.fixed_rows::<BLOCK>(BLOCK * j)).norm() < 1e-11 * exact.norm());
+        }
+        assert!((tail - exact.rows(border_start, n_border)).norm() < 1e-11 * exact.norm());
     }
-    assert!((tail - exact.rows(border_start, n_border)).norm() < 1e-12 * exact.norm());
 }
 
 #[test]
 fn a_singular_matrix_is_refused() {
+    assert_eq!(Eliminated::new(&Block::default(), &[]), None);
+    let mut border = DMatrix::identity(BLOCK, BLOCK);
+    border[(2, 2)] = 0.0;
+    let member = Member { slot: 0, from: 0, axes: Matrix3::identity() };
     let mut arrowhead = Arrowhead::default();
-    arrowhead.factorise(&[&Block::default()], &DMatrix::zeros(0, 0), [None; SLOTS]);
-    assert!(!arrowhead.solve(&mut [Vector6::repeat(1.0)], &mut DVector::zeros(0), [None; SLOTS]));
+    arrowhead.factorise([].into_iter(), &[member], border);
+    assert!(!arrowhead.solve([].into_iter(), &mut [], &mut DVector::repeat(BLOCK, 1.0)));
 }
 
 #[test]

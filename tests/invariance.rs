@@ -216,10 +216,9 @@ fn invariant_work_is_linear_in_the_number_of_balls() {
     let work = [8, 16, 32, 64].map(|balls| {
         let (simulation, _) = end(&scene(SI, balls, 0.25, 0.5 * PI, 0.1), 1.0);
         let s = simulation.state().statistics;
-        let evaluations = (s.contact_values + s.contact_tangents) as f64;
-        // Every evaluation of the equations takes both contacts of every ball once.
-        let residuals = evaluations / (2.0 * balls as f64);
-        assert_eq!(residuals.fract(), 0.0);
+        // Every evaluation of the equations takes both contacts of every ball once; those with derivatives cost five.
+        let evaluations = s.contact_values as f64 + 5.0 * s.contact_tangents as f64;
+        assert!(evaluations > 2.0 * (balls as u64 * (s.steps + s.newton.iterations)) as f64);
         (evaluations / (s.steps as f64 * balls as f64), s.newton.iterations as f64 / s.steps as f64)
     });
     // The count per ball grows only as the corrections per step do: 2.1 at 8 balls, 2.6 at 64.

@@ -278,6 +278,7 @@ fn ball(position: Vector3<f64>, velocity: Vector3<f64>, angular_velocity: Vector
         acceleration: Vector3::zeros(),
         angular_acceleration: Vector3::zeros(),
         total: Wrench::default(),
+        remainder: Wrench::default(),
     }
 }
 

@@ -127,6 +127,7 @@ impl BallTrial {
             acceleration: self.unknowns.fixed_rows::<3>(0).into_owned(),
             angular_acceleration: self.unknowns.fixed_rows::<3>(3) / radius,
             total: self.total,
+            remainder: self.remainder,
         }
     }
 }
@@ -159,6 +160,7 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     for (index, ball) in state.balls.iter_mut().enumerate() {
         let weight = Wrench { force: model.gravity * ball_model.mass, moment: Vector3::zeros() };
         ball.total = contacts.on_ball(index, weight);
+        ball.remainder = Wrench::default();
         ball.acceleration = ball.total.force / ball_model.mass;
         ball.angular_acceleration = ball.total.moment / ball_model.inertia;
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-use super::body::RaceSeen;
+use super::body::{BodyTrial, RaceSeen};
 use super::cage::CageTrial;
 use super::directions::{D, DIRECTIONS, by_first, by_second, constant_race, scale_moments, seed};
 use super::reaction::Reaction;
@@ -75,10 +75,16 @@ pub struct BallTrial {
     pub pushed: Option<Push>,
     /// Total force and moment at the end of the step.
     pub total: Wrench,
+    /// What is left of the equations of motion.
+    pub remainder: Wrench,
     /// \[N] residual; moments over the ball radius.
     pub residual: Vector6<f64>,
     /// Tangent, with its couplings to the bodies.
     pub block: Block,
+    /// Is its block of the matrix to be computed anew?
+    pub renewed: bool,
+    /// [-] largest component of its residual over the tolerance, before the last correction.
+    pub before: f64,
     /// Reactions on the bodies with their derivatives, where those were asked for.
     reactions: [Option<Reaction>; SLOTS],
 }
@@ -110,8 +116,11 @@ impl BallTrial {
             pocket: None,
             pushed: None,
             total: ball.total,
+            remainder: Wrench::default(),
             residual: Vector6::zeros(),
             block: Block::default(),
+            renewed: false,
+            before: 0.0,
             reactions: [None; SLOTS],
         }
     }
@@ -145,13 +154,30 @@ impl BallTrial {
         }
     }
 
-    /// Reaction of a pair of this ball on its second body, with derivatives where they were asked for.
-    pub fn reaction(&self, body: Body, pair: &PairForces) -> Reaction {
-        self.reactions[body.index()].unwrap_or_else(|| Reaction::constant_on_second(pair))
+    /// Sets the couplings of a body to this ball, where they touch, from the derivatives of its reaction.
+    pub fn couple_body(&mut self, body: Body, trial: &BodyTrial, step: &HhtStep, length: f64) {
+        let slot = body.index();
+        if let Some(reaction) = &self.reactions[slot] {
+            self.block.left[slot] = trial.coupling(reaction, step, length);
+            self.block.own[slot] = trial.own_coupling(reaction, step, length);
+        }
+    }
+
+    /// Evaluates contacts, residual and their derivatives.
+    pub fn evaluate_with_tangent(
+        &mut self,
+        index: usize,
+        around: &Surroundings<'_>,
+        step: &HhtStep,
+        start: &BallState,
+    ) {
+        let mut tangent = self.contacts_with_tangent(index, around, step);
+        self.evaluate_pocket(index, around, step, Some(&mut tangent));
+        self.assemble(around.model, step, start, Some(tangent));
     }
 
     /// Evaluates the contacts with the races and returns their derivatives.
-    pub fn contacts_with_tangent(
+    fn contacts_with_tangent(
         &mut self,
         index: usize,
         around: &Surroundings<'_>,
@@ -211,6 +237,7 @@ impl BallTrial {
         let slot = Body::Cage.index();
         self.block.right[slot].fill(0.0);
         self.block.left[slot].fill(0.0);
+        self.block.own[slot].fill(0.0);
         if self.pocket.is_some() {
             let radius = around.model.bearing.ball.radius;
             let seeded = seed::<DIRECTIONS>(&self.motion, step, radius);
@@ -249,10 +276,12 @@ impl BallTrial {
         let acceleration = Vector3::new(self.unknowns[0], self.unknowns[1], self.unknowns[2]);
         let angular_acceleration =
             Vector3::new(self.unknowns[3], self.unknowns[4], self.unknowns[5]) / ball.radius;
-        self.residual = stack(
-            &(acceleration * ball.mass - blended.force),
-            &((angular_acceleration * ball.inertia - blended.moment) / ball.radius),
-        );
+        // What the last step left is made good here, as of the bodies.
+        self.remainder = Wrench {
+            force: acceleration * ball.mass - blended.force + start.remainder.force,
+            moment: angular_acceleration * ball.inertia - blended.moment + start.remainder.moment,
+        };
+        self.residual = stack(&self.remainder.force, &(self.remainder.moment / ball.radius));
         if let Some(tangent) = tangent {
             let rotational = ball.inertia / (ball.radius * ball.radius);
             let inertia = stack(&Vector3::repeat(ball.mass), &Vector3::repeat(rotational));

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix6, UnitQuaternion, Vector3};
 
-use super::directions::{D, SECOND_ROTATION, by_first, by_second_unknown, constant_race};
+use super::directions::{D, SECOND_ROTATION, by_first, by_second, by_second_unknown, constant_race};
 use super::reaction::Reaction;
 use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
@@ -215,14 +215,19 @@ impl BodyTrial {
         self.end.total = Wrench { force: values(&force), moment: values(&material_moment) };
         self.end.bearing_wrench = Wrench { force: values(&pairs.force), moment: values(&pairs.moment) };
 
+        // What the last step left of these rows is made good here: added up it would move a body that nothing else holds.
+        let owed = &start.remainder;
         for i in 0..3 {
             let translation = self.end.acceleration[i] * body.mass
                 - fraction * force[i].value
-                - step.alpha_f * start.total.force[i];
+                - step.alpha_f * start.total.force[i]
+                + owed.force[i];
             let rotation =
                 self.rate_derivative[i].scale(body.inertia[i]) - material_moment[i].scale(fraction);
             self.residual[i] = translation;
-            self.residual[3 + i] = (rotation.value - step.alpha_f * start.total.moment[i]) / length;
+            let rest = rotation.value - step.alpha_f * start.total.moment[i] + owed.moment[i];
+            self.residual[3 + i] = rest / length;
+            (self.end.remainder.force[i], self.end.remainder.moment[i]) = (translation, rest);
             for k in 0..6 {
                 let inertia = if i == k { body.mass } else { 0.0 };
                 self.block[(i, k)] = inertia - fraction * by_second_unknown(&force[i], k);
@@ -247,8 +252,17 @@ impl BodyTrial {
 
     /// Derivatives of this body's residual by the unknowns of the other body of a pair, from the reaction on this one.
     pub fn coupling(&self, reaction: &Reaction, step: &HhtStep, length: f64) -> Matrix6<f64> {
+        self.rows(&by_first(&reaction.force, &reaction.moment), step, length)
+    }
+
+    /// Derivatives of this body's residual by its own unknowns through a pair, from the reaction on it.
+    pub fn own_coupling(&self, reaction: &Reaction, step: &HhtStep, length: f64) -> Matrix6<f64> {
+        self.rows(&by_second(&reaction.force, &reaction.moment), step, length)
+    }
+
+    /// Rows of the residual from derivatives of force and moment.
+    fn rows(&self, world: &Matrix6<f64>, step: &HhtStep, length: f64) -> Matrix6<f64> {
         let fraction = 1.0 - step.alpha_f;
-        let world = by_first(&reaction.force, &reaction.moment);
         let to_material = self.end.pose.orientation.inverse().to_rotation_matrix();
         let mut rows = world * -fraction;
         let moments = to_material.matrix() * world.fixed_rows::<3>(3) * (-fraction / length);
@@ -314,6 +328,7 @@ pub fn make_consistent(state: &mut BodyState, body: &RigidBody, load: &BodyLoad)
         }
     }
     state.total = Wrench { force, moment };
+    state.remainder = Wrench::default();
     state.acceleration = force / body.mass;
     state.rate_derivative = moment.component_div(&body.inertia);
     power

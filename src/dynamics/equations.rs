@@ -5,19 +5,18 @@ use nalgebra::{Vector3, Vector6};
 use super::ball::{BallTrial, Surroundings};
 use super::body::{BodyLoad, BodyScales, BodyTrial, RaceSeen};
 use super::cage::CageTrial;
-use super::orbit_turn::OrbitTurn;
 use super::reaction::Reaction;
 use super::{Boundary, Workspace};
 use crate::contact::many::ContactGroup;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::model::Model;
-use crate::model::bodies::{Bodies, Body, PerRace, RigidBody};
-use crate::model::state::{BodyState, KeptBlock, KeptMatrix, State, race_motion};
-use crate::numerics::arrowhead::{BLOCK, Block, Offsets, SLOTS};
+use crate::model::bodies::{Body, PerRace, RigidBody};
+use crate::model::state::{BodyState, State, race_motion};
+use crate::numerics::arrowhead::{BLOCK, SLOTS};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::lanes::WIDTH;
+use crate::numerics::motion::Wrench;
 use crate::numerics::newton::Equations;
-use crate::numerics::ring::Link;
 use crate::numerics::size::{larger, largest};
 
 /// [-] accepted violation of position constraints over the ball diameter (paper section 5: 1e-8).
@@ -38,6 +37,10 @@ pub struct BearingStep<'a> {
     pub contact_values: u64,
     /// Ball-race contacts evaluated with derivatives.
     pub contact_tangents: u64,
+    /// Corrections for which blocks of some balls were computed anew.
+    pub renewals: u64,
+    /// Corrections so far.
+    pub(super) corrections: u32,
     /// Was nothing evaluated yet?
     fresh: bool,
 }
@@ -75,13 +78,25 @@ impl<'a> BearingStep<'a> {
             workspace,
             contact_values: 0,
             contact_tangents: 0,
+            renewals: 0,
+            corrections: 0,
             fresh: true,
         }
+    }
+
+    /// Do steps share the blocks of balls?
+    pub(super) fn keeps_matrices(&self) -> bool {
+        self.model.solver.matrix_reuse > 0.0 && self.workspace.neighbours.is_empty()
     }
 
     /// Are the balls independent of each other, because no body has unknowns and no two balls may touch?
     pub fn balls_are_independent(&self) -> bool {
         self.model.border_offsets() == [None; SLOTS] && self.workspace.neighbours.is_empty()
+    }
+
+    /// Motion of the outer race at the end of the step.
+    pub(super) fn outer(&self) -> &RaceMotion<f64> {
+        &self.races.outer
     }
 
     /// Moves the bodies to the end of the step.
@@ -100,12 +115,11 @@ impl<'a> BearingStep<'a> {
         }
     }
 
-    /// Moves the balls to the end of the step and evaluates their pairs, residuals and, if asked for, tangents.
+    /// Moves the balls to the end of the step and evaluates their pairs, residuals and, of those to be renewed, tangents.
     ///
     /// Under prescribed races balls whose unknowns did not change keep their last evaluation.
-    fn evaluate_balls(&mut self, unknowns: &[f64], with_tangent: bool) {
-        let all = with_tangent || self.fresh || !self.balls_are_independent();
-        self.evaluate_neighbours(unknowns, with_tangent);
+    fn evaluate_balls(&mut self, unknowns: &[f64]) {
+        let all = self.fresh || !self.balls_are_independent();
         let workspace = &mut *self.workspace;
         let around = Surroundings {
             model: self.model,
@@ -114,6 +128,7 @@ impl<'a> BearingStep<'a> {
             races: PerRace::new(|race| RaceSeen::new(race, &self.races, &workspace.bodies)),
             cage: self.model.cage.as_ref().zip(workspace.cage.as_ref()),
         };
+        let step = &self.step;
         let radius = self.model.bearing.ball.radius;
         let mut motions = [BallMotion::at_rest(); WIDTH];
         let groups = workspace.balls.chunks_mut(WIDTH).zip(&mut workspace.groups);
@@ -123,7 +138,7 @@ impl<'a> BearingStep<'a> {
             for (lane, trial) in trials.iter_mut().enumerate() {
                 let at = BLOCK * (first + lane);
                 let unknown = Vector6::from_row_slice(&unknowns[at..at + BLOCK]);
-                changed[lane] |= unknown != trial.unknowns;
+                changed[lane] |= unknown != trial.unknowns || trial.renewed;
                 if changed[lane] {
                     trial.move_to(unknown, radius, &self.step, &self.start.balls[first + lane]);
                 }
@@ -132,58 +147,78 @@ impl<'a> BearingStep<'a> {
             if changed == [false; WIDTH] {
                 continue;
             }
-            if !with_tangent {
+            if trials.iter().zip(changed).any(|(trial, changed)| changed && !trial.renewed) {
                 around.evaluate_group(first, &motions[..trials.len()], group);
             }
             for (lane, trial) in trials.iter_mut().enumerate() {
                 let index = first + lane;
-                let mut tangent = if with_tangent {
+                if trial.renewed {
                     self.contact_tangents += 2;
-                    Some(trial.contacts_with_tangent(index, &around, &self.step))
+                    trial.evaluate_with_tangent(index, &around, step, &self.start.balls[index]);
                 } else if changed[lane] {
                     self.contact_values += 2;
                     trial.take_contacts(group, lane);
-                    None
-                } else {
-                    continue;
-                };
-                trial.evaluate_pocket(index, &around, &self.step, tangent.as_mut());
-                trial.assemble(self.model, &self.step, &self.start.balls[index], tangent);
+                    trial.evaluate_pocket(index, &around, step, None);
+                    trial.assemble(self.model, step, &self.start.balls[index], None);
+                }
             }
         }
         self.fresh = false;
     }
 
-    /// Sums the reactions of all pairs on the bodies that forces move and, with a tangent, sets their couplings.
-    fn scatter(&mut self, with_tangent: bool) -> [Reaction; SLOTS] {
+    /// Evaluates the balls to be renewed where they are, with tangents.
+    pub(super) fn evaluate_renewed(&mut self) {
+        let workspace = &mut *self.workspace;
+        let around = Surroundings {
+            model: self.model,
+            contacts: &self.contacts,
+            differences: &self.start.differences,
+            races: PerRace::new(|race| RaceSeen::new(race, &self.races, &workspace.bodies)),
+            cage: self.model.cage.as_ref().zip(workspace.cage.as_ref()),
+        };
         let length = self.model.race_length();
-        let mut sums = [Reaction::zero(); SLOTS];
+        for (index, trial) in workspace.balls.iter_mut().enumerate().filter(|(_, trial)| trial.renewed) {
+            self.contact_tangents += 2;
+            trial.evaluate_with_tangent(index, &around, &self.step, &self.start.balls[index]);
+            for (slot, body) in workspace.bodies.iter() {
+                if let Some(body) = body {
+                    trial.couple_body(slot, body, &self.step, length);
+                }
+            }
+        }
+    }
+
+    /// Sums the reactions of all pairs on the bodies that forces move and sets the couplings of balls with new tangents and,
+    /// if asked for, of the lands.
+    fn scatter(&mut self, with_lands: bool) -> [Reaction; SLOTS] {
+        let length = self.model.race_length();
+        let mut sums = [Wrench::default(); SLOTS];
         let Workspace { balls, bodies, cage, .. } = &mut *self.workspace;
         for trial in balls {
             for slot in Body::ALL {
                 let Some(Some(body)) = bodies.get(slot) else {
                     continue;
                 };
-                let Some(pair) = trial.pair(slot) else {
-                    continue;
-                };
-                let reaction = trial.reaction(slot, pair);
-                sums[slot.index()].add(&reaction);
-                if with_tangent {
-                    trial.block.left[slot.index()] = body.coupling(&reaction, &self.step, length);
+                let at = slot.index();
+                if let Some(pair) = trial.pair(slot) {
+                    sums[at] = sums[at].plus(Wrench { force: -pair.force, moment: pair.other_moment });
+                }
+                if trial.renewed {
+                    trial.couple_body(slot, body, &self.step, length);
                 }
             }
         }
+        let mut sums = sums.map(|sum| Reaction::constant(&sum));
         if let (Some(model), Some(cage), Some(Some(body))) =
             (&self.model.cage, cage.as_mut(), bodies.get(Body::Cage))
             && let Some(guide) = model.guide()
         {
             let seen = RaceSeen::new(guide, &self.races, bodies);
-            let lands = cage.touch_lands(model, &seen, &self.step, with_tangent);
+            let lands = cage.touch_lands(model, &seen, &self.step, with_lands);
             for land in lands.iter().flatten() {
                 sums[Body::from(guide).index()].add(&land.on_race);
                 sums[Body::Cage.index()].add(&land.on_cage);
-                if let (true, Some(race)) = (with_tangent, &bodies[guide]) {
+                if let (true, Some(race)) = (with_lands, &bodies[guide]) {
                     cage.race_by_cage += race.coupling(&land.on_race, &self.step, length);
                     cage.cage_by_race += body.coupling(&land.on_cage, &self.step, length);
                 }
@@ -215,143 +250,52 @@ impl<'a> BearingStep<'a> {
 
 impl Equations for BearingStep<'_> {
     fn residual(&mut self, unknowns: &[f64], with_tangent: bool) -> f64 {
+        let independent = self.balls_are_independent();
+        self.workspace.balls.iter_mut().for_each(|trial| trial.renewed = with_tangent);
+        match (self.fresh, with_tangent) {
+            (true, false) => self.mark_due(),
+            (false, true) => self.give_up_old(),
+            _ => {}
+        }
+        let renewed = self.workspace.balls.iter().any(|trial| trial.renewed);
+        self.renewals += u64::from(renewed && !with_tangent);
         // bodies first: the balls see them move
         self.move_bodies(unknowns);
-        self.evaluate_balls(unknowns, with_tangent);
+        self.evaluate_neighbours(unknowns, with_tangent);
+        self.evaluate_balls(unknowns);
         let mut norm = 0.0f64;
         for trial in &self.workspace.balls {
             norm = larger(norm, largest(&trial.residual) / self.force_tolerance);
         }
-        if !self.balls_are_independent() {
-            let sums = self.scatter(with_tangent);
+        if !independent {
+            let sums = self.scatter(renewed || !self.workspace.factorised);
             norm = larger(norm, self.assemble_bodies(&sums));
+            self.workspace.list_members(self.model.border_offsets());
         }
-        if with_tangent {
+        if renewed {
+            self.eliminate_renewed();
+        }
+        if !independent && !self.workspace.factorised {
             self.factorise();
         }
         norm
     }
 
     fn has_tangent(&self) -> bool {
-        // Step sizes that differ by rounding have the same matrix. Where bodies have unknowns every step has its own matrix:
-        // corrections with an old one stop just inside the tolerance, and what they leave adds up in a body that nothing
-        // else holds.
+        // Step sizes that differ by rounding have the same matrix.
         let kept = &self.workspace.kept;
         let same = (kept.step - self.step.h).abs() < 1e-6 * self.step.h;
         let there = kept.balls.len() == self.start.balls.len();
-        there && same && self.model.solver.matrix_reuse > 0.0 && self.balls_are_independent()
+        there && same && self.keeps_matrices()
     }
 
     fn correction(&mut self, correction: &mut [f64]) -> bool {
-        if self.balls_are_independent() {
-            self.correct_balls(correction)
-        } else {
-            self.correct_all(correction)
-        }
+        self.correct(correction)
     }
 
     fn refactor_contraction(&self) -> f64 {
         self.model.solver.matrix_reuse
     }
-}
-
-impl BearingStep<'_> {
-    /// Corrections of balls between races of prescribed motion. A ball's matrix turns with its orbit; a ball that is solved
-    /// already stays where it is.
-    fn correct_balls(&self, correction: &mut [f64]) -> bool {
-        let Workspace { balls, kept, .. } = &*self.workspace;
-        let mut regular = kept.balls.len() == balls.len();
-        for ((trial, block), x) in balls.iter().zip(&kept.balls).zip(correction.chunks_exact_mut(BLOCK)) {
-            if largest(&trial.residual) <= self.force_tolerance {
-                x.fill(0.0);
-                continue;
-            }
-            let turn = OrbitTurn::between(&block.offset, &self.offset(trial));
-            let solution = turn.stacked(&(block.inverse * turn.back().stacked(&-trial.residual)));
-            regular &= solution.iter().all(|v| v.is_finite());
-            x.copy_from_slice(solution.as_slice());
-        }
-        regular
-    }
-
-    /// Corrections of balls and bodies at once.
-    fn correct_all(&mut self, correction: &mut [f64]) -> bool {
-        let offsets = self.model.border_offsets();
-        let workspace = &mut *self.workspace;
-        workspace.ball_corrections.clear();
-        workspace.ball_corrections.extend(workspace.balls.iter().map(|trial| -trial.residual));
-        workspace.border_correction.resize_vertically_mut(self.model.border_size(), 0.0);
-        for (from, trial) in moved(&workspace.bodies, &offsets) {
-            let rows = trial.residual.len();
-            workspace.border_correction.rows_mut(from, rows).copy_from(&-&trial.residual);
-        }
-        let (x, y) = (&mut workspace.ball_corrections, &mut workspace.border_correction);
-        let solved = if workspace.neighbours.is_empty() {
-            workspace.arrowhead.solve(x, y, offsets)
-        } else {
-            workspace.ring.solve(x, y, offsets)
-        };
-        let (balls, border) = correction.split_at_mut(BLOCK * workspace.balls.len());
-        for (chunk, x) in balls.chunks_exact_mut(BLOCK).zip(&workspace.ball_corrections) {
-            chunk.copy_from_slice(x.as_slice());
-        }
-        border.copy_from_slice(workspace.border_correction.as_slice());
-        solved
-    }
-
-    /// \[m] a ball's position seen from the outer race.
-    fn offset(&self, trial: &BallTrial) -> Vector3<f64> {
-        trial.motion.position - self.races.outer.position
-    }
-
-    /// Inverts the blocks of balls between races of prescribed motion; leaves none if one is singular.
-    fn invert_balls(&mut self) {
-        let invert = |trial: &BallTrial| {
-            let inverse = trial.block.diagonal.try_inverse()?;
-            let regular = inverse.iter().all(|v| v.is_finite());
-            regular.then(|| KeptBlock { inverse, offset: self.offset(trial) })
-        };
-        let balls = self.workspace.balls.iter().map(invert).collect::<Option<_>>().unwrap_or_default();
-        self.workspace.kept = KeptMatrix { step: self.step.h, extra_corrections: 0, balls };
-    }
-
-    fn factorise(&mut self) {
-        if self.balls_are_independent() {
-            return self.invert_balls();
-        }
-        let offsets = self.model.border_offsets();
-        let rows = self.model.border_size();
-        let workspace = &mut *self.workspace;
-        workspace.border.resize_mut(rows, rows, 0.0);
-        workspace.border.fill(0.0);
-        for (from, trial) in moved(&workspace.bodies, &offsets) {
-            let rows = trial.residual.len();
-            workspace.border.view_mut((from, from), (rows, rows)).copy_from(&trial.block);
-        }
-        let guide = self.model.cage_guide().map(Body::from);
-        if let (Some(cage), Some(guide)) = (&workspace.cage, guide)
-            && let (Some(race), Some(own)) = (offsets[guide.index()], offsets[Body::Cage.index()])
-        {
-            let size = (BLOCK, BLOCK);
-            workspace.border.view_mut((race, own), size).copy_from(&cage.race_by_cage);
-            workspace.border.view_mut((own, race), size).copy_from(&cage.cage_by_race);
-        }
-        let blocks: Vec<&Block> = workspace.balls.iter().map(|trial| &trial.block).collect();
-        if workspace.neighbours.is_empty() {
-            workspace.arrowhead.factorise(&blocks, &workspace.border, offsets);
-        } else {
-            let links: Vec<Link> = workspace.neighbours.iter().map(|pair| pair.link).collect();
-            workspace.ring.factorise(&blocks, &links, &workspace.border, offsets);
-        }
-    }
-}
-
-/// Bodies that forces move, with their first border rows.
-fn moved<'a>(
-    bodies: &'a Bodies<Option<BodyTrial>>,
-    offsets: &Offsets,
-) -> impl Iterator<Item = (usize, &'a BodyTrial)> {
-    bodies.iter().filter_map(|(body, trial)| Some((offsets[body.index()]?, trial.as_ref()?)))
 }
 
 impl Workspace {

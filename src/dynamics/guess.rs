@@ -3,20 +3,14 @@
 use nalgebra::Vector6;
 
 use super::equations::BearingStep;
-use super::orbit_turn::OrbitTurn;
 use crate::model::bodies::{Body, Constraint, Race};
 use crate::numerics::arrowhead::BLOCK;
+use crate::numerics::orbit_turn::OrbitTurn;
 
 impl BearingStep<'_> {
-    /// First guess: accelerations and multipliers stay as they are; under prescribed races those of a ball turn with its orbit.
-    ///
-    /// This saves a second correction. Where bodies have unknowns that correction is still made: it takes the residual far
-    /// inside its tolerance, and what is left of it would add up over many steps.
+    /// First guess: accelerations and multipliers stay as they are; those of a ball turn with its orbit.
     pub fn guess_steady_orbit(&self, unknowns: &mut Vec<f64>) {
         self.guess_steady_acceleration(unknowns);
-        if !self.balls_are_independent() {
-            return;
-        }
         let race = self.start.race(Race::Outer);
         for (ball, unknowns) in self.start.balls.iter().zip(unknowns.chunks_exact_mut(BLOCK)) {
             let offset = ball.position - race.pose.position;

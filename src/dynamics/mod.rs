@@ -9,19 +9,19 @@ mod equations;
 mod failure;
 mod guess;
 mod local_error;
+mod matrix;
 mod neighbours;
-mod orbit_turn;
 mod reaction;
 mod sensitivity;
 
-use nalgebra::{DMatrix, DVector, Vector6};
+use nalgebra::{DVector, Vector6};
 
 use crate::contact::many::ContactGroup;
 use crate::forces::{BallContacts, Contacts};
 use crate::model::bodies::{Bodies, PerRace};
 use crate::model::state::{KeptMatrix, State};
 use crate::model::{Conditions, Model};
-use crate::numerics::arrowhead::Arrowhead;
+use crate::numerics::arrowhead::{Arrowhead, Member};
 use crate::numerics::lanes::WIDTH;
 use crate::numerics::motion::{Pose, Twist};
 use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure};
@@ -36,9 +36,6 @@ use equations::BearingStep;
 pub use failure::{FailureSite, Worst, failure_site};
 use neighbours::NeighbourTrial;
 pub use sensitivity::advance_perturbed;
-
-/// Corrections beyond one a step that a kept matrix may take: they cost about as much as a new one (benches/speed.rs).
-const PATIENCE: u64 = 5;
 
 /// Motions, loads and conditions imposed at the end of a step.
 #[derive(Clone, Debug)]
@@ -67,9 +64,12 @@ pub struct Workspace {
     /// Neighbouring balls that may touch in the step.
     neighbours: Vec<NeighbourTrial>,
     arrowhead: Arrowhead,
+    /// Is the matrix that of this step's bodies and kept balls?
+    factorised: bool,
+    /// Bodies that forces move.
+    members: Vec<Member>,
     /// The matrix of a step in which neighbouring balls may touch.
     ring: Ring,
-    border: DMatrix<f64>,
     ball_corrections: Vec<Vector6<f64>>,
     border_correction: DVector<f64>,
     unknowns: Vec<f64>,
@@ -118,13 +118,13 @@ pub fn try_step(
     let mut buffers = std::mem::take(&mut workspace.newton);
     let mut unknowns = std::mem::take(&mut workspace.unknowns);
     workspace.kept = std::mem::take(&mut state.matrix);
+    workspace.factorised = false;
     // Here and not at the end of a step, so that a state keeps those that its forces were computed with.
     renew_polynomials(model, state, boundary);
     let mut statistics = state.statistics;
     let mut equations = BearingStep::new(model, state, boundary, h, workspace);
     equations.list_near();
     equations.guess_steady_orbit(&mut unknowns);
-    let before = statistics.newton;
     let mut solve = |equations: &mut BearingStep<'_>, unknowns: &mut [f64]| {
         newton::solve(equations, unknowns, &mut buffers, &mut statistics.newton)?;
         // Each time around another pair of balls has met.
@@ -140,6 +140,7 @@ pub fn try_step(
         solved = solve(&mut equations, &mut unknowns);
         statistics.second_guesses += 1;
     }
+    statistics.newton.factorisations += equations.renewals;
     statistics.contact_values += equations.contact_values;
     statistics.contact_tangents += equations.contact_tangents;
     let mut control = state.control;
@@ -159,14 +160,6 @@ pub fn try_step(
     workspace.newton = buffers;
     workspace.unknowns = unknowns;
     state.matrix = std::mem::take(&mut workspace.kept);
-    // Corrections of the step that a matrix was made in are not its own alone.
-    if !state.matrix.balls.is_empty() && statistics.newton.factorisations == before.factorisations {
-        let extra = (statistics.newton.iterations - before.iterations).saturating_sub(1);
-        state.matrix.extra_corrections = state.matrix.extra_corrections.saturating_add(extra);
-    }
-    if state.matrix.extra_corrections > PATIENCE {
-        state.matrix = KeptMatrix::default();
-    }
     state.statistics = statistics;
     state.control = control;
     if let Some(failure) = failure {

@@ -15,7 +15,7 @@ use crate::contact::pair::PairForces;
 use crate::forces::BallPair;
 use crate::model::Model;
 use crate::model::bearing::neighbours;
-use crate::model::state::State;
+use crate::model::state::{KeptMatrix, State};
 use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::ring::Link;
@@ -123,6 +123,10 @@ impl Workspace {
     fn list(&mut self, pairs: impl Iterator<Item = (usize, usize)>) {
         self.neighbours.clear();
         self.neighbours.extend(pairs.map(NeighbourTrial::new));
+        if !self.neighbours.is_empty() {
+            // The blocks of balls that may touch are coupled: there is nothing to keep.
+            self.kept = KeptMatrix::default();
+        }
         self.balls.iter_mut().for_each(|trial| trial.pushed = None);
     }
 
@@ -196,6 +200,7 @@ mod tests {
                 acceleration: Vector3::new(30.0, -20.0, 10.0 * side),
                 angular_acceleration: Vector3::new(1e4, -2e4 * side, 3e4),
                 total: Wrench::default(),
+                remainder: Wrench::default(),
             };
             let mut trial = BallTrial::new(&start);
             trial.move_to(unknowns[ball], radius, step, &start);

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::directions::D;
 use crate::contact::pair::PairForces;
+use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::constant_vector;
 
 /// Force and moment of one or many pairs on a body, world axes, with derivatives.
@@ -36,10 +37,9 @@ impl Reaction {
         Self { force: constant_vector(&-pair.force), moment: constant_vector(&pair.other_moment) }
     }
 
-    /// No force and no moment.
-    pub fn zero() -> Self {
-        let zero = constant_vector(&Vector3::zeros());
-        Self { force: zero, moment: zero }
+    /// A force and a moment without derivatives.
+    pub fn constant(wrench: &Wrench) -> Self {
+        Self { force: constant_vector(&wrench.force), moment: constant_vector(&wrench.moment) }
     }
 
     /// Adds another reaction.

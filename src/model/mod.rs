@@ -133,6 +133,11 @@ impl Model {
         offsets
     }
 
+    /// [-] number of bodies that forces move.
+    pub fn moved_bodies(&self) -> usize {
+        self.bodies.iter().filter(|(_, body)| body.is_some()).count()
+    }
+
     /// [-] border rows of all bodies.
     pub fn border_size(&self) -> usize {
         self.bodies.iter().filter_map(|(_, body)| body.as_ref()).map(RigidBody::rows).sum()

@@ -1,12 +1,13 @@
 //! The complete state of a running bearing: plain data, cloned to save and restore.
 
-use nalgebra::{Matrix6, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::bodies::{Bodies, Body, PerRace, Race};
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::kalker::scaled_law::Difference;
+use crate::numerics::arrowhead::Eliminated;
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::newton::NewtonWork;
 use crate::numerics::step_control::StepControl;
@@ -26,6 +27,8 @@ pub struct BallState {
     pub angular_acceleration: Vector3<f64>,
     /// Total force and moment about the centre, the `g` of the HHT scheme.
     pub total: Wrench,
+    /// What the last step left of the equations of motion, within their tolerance.
+    pub remainder: Wrench,
 }
 
 impl BallState {
@@ -54,6 +57,8 @@ pub struct BodyState {
     pub rate_derivative: Vector3<f64>,
     /// Total force (spatial) and moment (material), the `g` of the HHT scheme; 0 where the motion is prescribed.
     pub total: Wrench,
+    /// What the last step left of the equations of motion, within their tolerance: force (spatial) and moment (material).
+    pub remainder: Wrench,
     /// Lagrange multipliers of its constraints [N, N m].
     pub multipliers: Vec<f64>,
     /// Force and moment of balls and lands on the body, about its origin, world axes.
@@ -81,6 +86,7 @@ impl BodyState {
             acceleration: Vector3::zeros(),
             rate_derivative: Vector3::zeros(),
             total: Wrench::default(),
+            remainder: Wrench::default(),
             multipliers: vec![0.0; n_constraints],
             bearing_wrench: Wrench::default(),
             turned: 0.0,
@@ -236,7 +242,7 @@ pub struct State {
     pub control: StepControl,
     /// \[N] residual that counts as converged in the next step.
     pub force_tolerance: f64,
-    /// Newton matrix of the last steps where it is kept: between prescribed races without a cage.
+    /// Newton matrix of the last steps, as far as it is kept.
     pub matrix: KeptMatrix,
     /// Powers now.
     pub powers: Powers,
@@ -263,24 +269,37 @@ impl State {
     }
 }
 
-/// Inverted Newton matrix of balls that nothing couples. It is part of the state, as many steps use it.
+/// What steps share of their Newton matrices: the balls, eliminated. It is part of the state, as many steps use it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct KeptMatrix {
     /// \[s] size of the steps that it is for.
     pub step: f64,
-    /// Newton corrections beyond one per step, since the step in which it was computed.
-    pub extra_corrections: u64,
     /// Blocks of all balls; empty while there is no matrix.
     pub balls: Vec<KeptBlock>,
 }
 
-/// The inverted block of one ball.
+/// The eliminated block of one ball.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KeptBlock {
-    /// `A^-1`.
-    pub inverse: Matrix6<f64>,
+    /// The block and its couplings to the bodies that forces move.
+    pub block: Eliminated,
     /// \[m] where the ball was, seen from the outer race: the block turns with the orbit of its ball.
     pub offset: Vector3<f64>,
+    /// How good it still is.
+    pub wear: Wear,
+}
+
+/// What a kept block has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Wear {
+    /// [-] price of the corrections that it was not good enough for, over that of a new one.
+    pub price: f64,
+    /// Steps to come that begin with a new one, because old ones were no good.
+    pub due: u8,
+    /// Steps that were to begin with a new one when that happened last; 0 once an old one was good enough.
+    pub pause: u8,
+    /// Was it computed for the present step?
+    pub new: bool,
 }
 
 /// Force and moment as one vector.

@@ -9,8 +9,14 @@
 //! A block is coupled to six border rows of each of up to [`SLOTS`] members of the border; a bearing has a block per ball
 //! and its bodies in the border. The matrix is not symmetric (friction), so every block is inverted by LU with pivoting.
 //! Cost grows linearly with the number of blocks.
+//!
+//! An eliminated block turns about the x axis with its ball: in a frame that turns along it hardly changes, and serves many
+//! matrices. Border rows have three forces in world axes and three moments in the axes of their member.
 
-use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix6, Vector6};
+use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix3, Matrix6, Vector6};
+use serde::{Deserialize, Serialize};
+
+use super::orbit_turn::OrbitTurn;
 
 /// Rows and columns of a block.
 pub const BLOCK: usize = 6;
@@ -30,82 +36,198 @@ pub struct Block {
     pub right: [Matrix6<f64>; SLOTS],
     /// Border rows, own columns.
     pub left: [Matrix6<f64>; SLOTS],
+    /// What the block adds to rows and columns of a member of the border.
+    pub own: [Matrix6<f64>; SLOTS],
 }
 
 impl Default for Block {
     fn default() -> Self {
         let zero = Matrix6::zeros();
-        Self { diagonal: zero, right: [zero; SLOTS], left: [zero; SLOTS] }
+        Self { diagonal: zero, right: [zero; SLOTS], left: [zero; SLOTS], own: [zero; SLOTS] }
     }
 }
 
-/// A block, solved.
-#[derive(Clone, Debug)]
-struct Factor {
-    /// `A^-1`: a product costs a quarter of two triangular solves.
-    inverse: Matrix6<f64>,
-    /// `A^-1 R` per member of the border.
-    right: [Matrix6<f64>; SLOTS],
-    left: [Matrix6<f64>; SLOTS],
+/// A member of the border.
+#[derive(Clone, Copy, Debug)]
+pub struct Member {
+    /// Its slot.
+    pub slot: usize,
+    /// Its first border row.
+    pub from: usize,
+    /// Turns world axes into its own.
+    pub axes: Matrix3<f64>,
 }
 
-/// The factorised matrix.
+impl Member {
+    /// Its rows from world axes.
+    fn rows(&self, world: &Vector6<f64>) -> Vector6<f64> {
+        let mut rows = *world;
+        rows.fixed_rows_mut::<3>(3).copy_from(&(self.axes * world.fixed_rows::<3>(3)));
+        rows
+    }
+
+    /// Its unknowns in world axes.
+    fn world(&self, rows: &Vector6<f64>) -> Vector6<f64> {
+        let mut world = *rows;
+        world.fixed_rows_mut::<3>(3).copy_from(&self.axes.tr_mul(&rows.fixed_rows::<3>(3)));
+        world
+    }
+
+    /// A matrix with its rows, from one with rows in world axes.
+    fn by_rows(&self, world: &Matrix6<f64>) -> Matrix6<f64> {
+        let mut matrix = *world;
+        matrix.fixed_rows_mut::<3>(3).copy_from(&(self.axes * world.fixed_rows::<3>(3)));
+        matrix
+    }
+
+    /// A matrix with its columns, from one with columns in world axes.
+    fn by_columns(&self, world: &Matrix6<f64>) -> Matrix6<f64> {
+        let mut matrix = *world;
+        let columns = world.fixed_columns::<3>(3) * self.axes.transpose();
+        matrix.fixed_columns_mut::<3>(3).copy_from(&columns);
+        matrix
+    }
+
+    /// The same the other way round: with rows in world axes, from one with its own.
+    fn world_rows(&self, matrix: &Matrix6<f64>) -> Matrix6<f64> {
+        let mut world = *matrix;
+        world.fixed_rows_mut::<3>(3).copy_from(&self.axes.tr_mul(&matrix.fixed_rows::<3>(3)));
+        world
+    }
+
+    /// With columns in world axes, from one with its own.
+    fn world_columns(&self, matrix: &Matrix6<f64>) -> Matrix6<f64> {
+        let mut world = *matrix;
+        let columns = matrix.fixed_columns::<3>(3) * self.axes;
+        world.fixed_columns_mut::<3>(3).copy_from(&columns);
+        world
+    }
+}
+
+/// A block that is eliminated, rows and columns of its border in world axes at that time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Eliminated {
+    /// `A^-1`: a product costs a quarter of two triangular solves.
+    pub inverse: Matrix6<f64>,
+    /// Its coupling to each member of the border.
+    couplings: Vec<Coupling>,
+}
+
+/// An eliminated block and a member of the border.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Coupling {
+    /// `A^-1 R`.
+    right: Matrix6<f64>,
+    /// `L`.
+    left: Matrix6<f64>,
+    /// What is left in rows of this member, columns of each: `-L A^-1 R`, with what the block adds to the member's own.
+    rest: Vec<Matrix6<f64>>,
+}
+
+impl Eliminated {
+    /// Eliminates a block; none if it is singular.
+    pub fn new(block: &Block, members: &[Member]) -> Option<Self> {
+        let inverse = block.diagonal.lu().try_inverse()?;
+        if !inverse.iter().all(|v| v.is_finite()) {
+            return None;
+        }
+        let right = |member: &Member| inverse * member.world_columns(&block.right[member.slot]);
+        let coupling = |member: &Member| {
+            let left = member.world_rows(&block.left[member.slot]);
+            let rest = |other: &Member| {
+                let mut rest = -(left * right(other));
+                if other.slot == member.slot {
+                    rest += member.world_columns(&member.world_rows(&block.own[member.slot]));
+                }
+                rest
+            };
+            Coupling { right: right(member), left, rest: members.iter().map(rest).collect() }
+        };
+        Some(Self { inverse, couplings: members.iter().map(coupling).collect() })
+    }
+
+    /// Is it coupled to so many members? A check for blocks that come from outside.
+    pub fn fits(&self, members: usize) -> bool {
+        let fits = |coupling: &Coupling| coupling.rest.len() == members;
+        self.couplings.len() == members && self.couplings.iter().all(fits)
+    }
+}
+
+/// The factorised border of a matrix whose blocks are eliminated.
 #[derive(Clone, Debug, Default)]
 pub struct Arrowhead {
-    blocks: Vec<Factor>,
+    members: Vec<Member>,
+    /// Turns of the blocks since they were eliminated.
+    turns: Vec<OrbitTurn>,
     border: Option<LU<f64, Dyn, Dyn>>,
+    /// Loads on the members, and what they do, in world axes.
+    worlds: Vec<Vector6<f64>>,
 }
 
 impl Arrowhead {
-    /// Factorises blocks and border.
-    pub fn factorise(&mut self, blocks: &[&Block], border: &DMatrix<f64>, offsets: Offsets) {
-        self.blocks.clear();
-        let mut schur = border.clone();
-        for block in blocks {
-            // A singular block shows in `solve`.
-            let inverse = block.diagonal.lu().try_inverse().unwrap_or(Matrix6::repeat(f64::NAN));
-            let mut right = block.right;
-            for (slot, offset) in offsets.into_iter().enumerate() {
-                if offset.is_some() {
-                    right[slot] = inverse * block.right[slot];
+    /// Adds what the blocks leave to the border's own matrix, and factorises it.
+    pub fn factorise<'a>(
+        &mut self,
+        blocks: impl Iterator<Item = (&'a Eliminated, OrbitTurn)>,
+        members: &[Member],
+        mut border: DMatrix<f64>,
+    ) {
+        self.members.clear();
+        self.members.extend(members);
+        self.turns.clear();
+        let count = members.len();
+        let mut sums = [Matrix6::zeros(); SLOTS * SLOTS];
+        for (block, turn) in blocks {
+            self.turns.push(turn);
+            for (row, coupling) in block.couplings.iter().enumerate() {
+                for (column, rest) in coupling.rest.iter().enumerate() {
+                    sums[count * row + column] += turn.matrix(rest);
                 }
             }
-            for (row_slot, row) in offsets.into_iter().enumerate() {
-                for (column_slot, column) in offsets.into_iter().enumerate() {
-                    if let (Some(row), Some(column)) = (row, column) {
-                        let mut view = schur.fixed_view_mut::<BLOCK, BLOCK>(row, column);
-                        view -= block.left[row_slot] * right[column_slot];
-                    }
-                }
-            }
-            self.blocks.push(Factor { inverse, right, left: block.left });
         }
-        self.border = if border.is_empty() { None } else { Some(schur.lu()) };
+        for (row, a) in members.iter().enumerate() {
+            for (column, b) in members.iter().enumerate() {
+                let rest = a.by_rows(&b.by_columns(&sums[count * row + column]));
+                let mut view = border.fixed_view_mut::<BLOCK, BLOCK>(a.from, b.from);
+                view += rest;
+            }
+        }
+        self.border = if border.is_empty() { None } else { Some(border.lu()) };
     }
 
-    /// Solves in place for the right-hand sides of blocks and border; false if the matrix is singular.
-    pub fn solve(&self, blocks: &mut [Vector6<f64>], border: &mut DVector<f64>, offsets: Offsets) -> bool {
-        for (factor, x) in self.blocks.iter().zip(&mut *blocks) {
-            *x = factor.inverse * *x;
-            for (slot, offset) in offsets.into_iter().enumerate() {
-                if let Some(offset) = offset {
-                    let mut rows = border.fixed_rows_mut::<BLOCK>(offset);
-                    rows -= factor.left[slot] * *x;
-                }
+    /// Solves in place for the right-hand sides of these blocks and the border; false if the matrix is singular.
+    pub fn solve<'a>(
+        &mut self,
+        blocks: impl Iterator<Item = &'a Eliminated> + Clone,
+        x: &mut [Vector6<f64>],
+        border: &mut DVector<f64>,
+    ) -> bool {
+        self.worlds.clear();
+        self.worlds.resize(self.members.len(), Vector6::zeros());
+        for ((block, turn), x) in blocks.clone().zip(&self.turns).zip(&mut *x) {
+            *x = block.inverse * turn.back().stacked(x);
+            for (coupling, load) in block.couplings.iter().zip(&mut self.worlds) {
+                *load -= turn.stacked(&(coupling.left * *x));
             }
         }
-        if let Some(lu) = &self.border {
-            if !lu.solve_mut(border) {
-                return false;
-            }
-            for (factor, x) in self.blocks.iter().zip(&mut *blocks) {
-                for (slot, offset) in offsets.into_iter().enumerate() {
-                    if let Some(offset) = offset {
-                        *x -= factor.right[slot] * border.fixed_rows::<BLOCK>(offset);
-                    }
-                }
-            }
+        for (member, load) in self.members.iter().zip(&self.worlds) {
+            let mut rows = border.fixed_rows_mut::<BLOCK>(member.from);
+            rows += member.rows(load);
         }
-        blocks.iter().all(|x| x.iter().all(|v| v.is_finite())) && border.iter().all(|v| v.is_finite())
+        if let Some(lu) = &self.border
+            && !lu.solve_mut(border)
+        {
+            return false;
+        }
+        for (member, world) in self.members.iter().zip(&mut self.worlds) {
+            *world = member.world(&border.fixed_rows::<BLOCK>(member.from).into_owned());
+        }
+        for ((block, turn), x) in blocks.zip(&self.turns).zip(&mut *x) {
+            for (coupling, moved) in block.couplings.iter().zip(&self.worlds) {
+                *x -= coupling.right * turn.back().stacked(moved);
+            }
+            *x = turn.stacked(x);
+        }
+        x.iter().all(|x| x.iter().all(|v| v.is_finite())) && border.iter().all(|v| v.is_finite())
     }
 }

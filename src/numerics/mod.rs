@@ -6,6 +6,7 @@ pub mod hht;
 pub mod lanes;
 pub mod motion;
 pub mod newton;
+pub mod orbit_turn;
 pub mod ring;
 pub mod rotation;
 pub mod scalar;

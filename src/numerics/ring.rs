@@ -60,6 +60,10 @@ impl Ring {
             left: block.left,
         };
         self.blocks = blocks.iter().map(open).collect();
+        for (slot, from) in present(offsets) {
+            let mut own = schur.fixed_view_mut::<BLOCK, BLOCK>(from, from);
+            blocks.iter().for_each(|block| own += block.own[slot]);
+        }
         for link in links {
             if link.block + 1 < n {
                 self.blocks[link.block].next = Some([link.forward, link.backward]);

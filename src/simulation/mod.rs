@@ -191,6 +191,7 @@ impl Simulation {
             && constraints(&snapshot.state) == constraints(&self.state)
             && snapshot.state.control.fits(&self.state.control)
             && [0, self.state.balls.len()].contains(&snapshot.state.matrix.balls.len())
+            && snapshot.state.matrix.balls.iter().all(|kept| kept.block.fits(self.model.moved_bodies()))
             && snapshot.state.differences.len() == self.state.differences.len()
             && snapshot.state.differences.iter().all(|of_ball| {
                 Race::BOTH.into_iter().all(|race| of_ball[race].fits(self.model.polynomials(race)))

@@ -159,6 +159,7 @@ fn state(
                 acceleration: Vector3::zeros(),
                 angular_acceleration: Vector3::zeros(),
                 total: Wrench::default(),
+                remainder: Wrench::default(),
             }
         })
         .collect();

@@ -27,8 +27,8 @@ fn standstill() {
         let name = format!("standstill, {name}");
         let rows = format!("{COMBINED}rz = {{ moment = 3.0 }}\n");
         let scene = scene(ANGULAR, &(load(10.0, 0.0, &rows) + &effects(law)));
-        // `regularised` takes 2.1 corrections and 1.5 matrices a step.
-        let run = Case::new(&name, scene, limits(1200, 5, 90, 3.0)).pass();
+        // `regularised`, whose forces bend sharply at rest, takes 3.7 corrections and 1.6 matrices a step.
+        let run = Case::new(&name, scene, limits(1200, 5, 90, 7.0)).pass();
         let (first, last) = (&run.history[0], run.last());
         let largest = first.balls.iter().map(|ball| ball.inner.load).fold(0.0, f64::max);
         for (a, b) in first.balls.iter().zip(&last.balls) {

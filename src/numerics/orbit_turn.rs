@@ -1,6 +1,6 @@
 //! Turns about the bearing axis: vectors and matrices of a ball turn with its orbit.
 
-use nalgebra::{Vector3, Vector6};
+use nalgebra::{Matrix6, Vector3, Vector6};
 
 /// A rotation about the world's x axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +37,28 @@ impl OrbitTurn {
         let second = self.vector(&Vector3::new(v[3], v[4], v[5]));
         Vector6::new(first.x, first.y, first.z, second.x, second.y, second.z)
     }
+
+    /// Turns rows and columns of a matrix of two stacked vectors by two.
+    #[inline]
+    pub fn matrix(&self, m: &Matrix6<f64>) -> Matrix6<f64> {
+        let (cos, sin) = (self.cos, self.sin);
+        let mut turned = *m;
+        for (y, z) in [(1, 2), (4, 5)] {
+            for k in 0..6 {
+                let (a, b) = (turned[(y, k)], turned[(z, k)]);
+                turned[(y, k)] = cos * a - sin * b;
+                turned[(z, k)] = sin * a + cos * b;
+            }
+        }
+        for (y, z) in [(1, 2), (4, 5)] {
+            for k in 0..6 {
+                let (a, b) = (turned[(k, y)], turned[(k, z)]);
+                turned[(k, y)] = cos * a - sin * b;
+                turned[(k, z)] = sin * a + cos * b;
+            }
+        }
+        turned
+    }
 }
 
 #[cfg(test)]
@@ -54,5 +76,9 @@ mod tests {
         let none = OrbitTurn::between(&from, &from);
         assert_eq!(none.stacked(&v), v);
         assert_eq!(OrbitTurn::between(&Vector3::x(), &to).stacked(&v), v);
+        // A turned matrix does to a turned vector what the matrix does to the vector.
+        let m = Matrix6::from_fn(|i, k| (i * i + 3 * k) as f64);
+        assert_eq!(turn.matrix(&m) * turn.stacked(&v), turn.stacked(&(m * v)));
+        assert_eq!(none.matrix(&m), m);
     }
 }

@@ -1,0 +1,267 @@
+//! The Newton matrix of a step: balls, eliminated, that many steps share, and the bodies' own rows, new in every step.
+//!
+//! A ball's block turns with its orbit and changes with its load, and blocks are computed anew one by one: each where the
+//! corrections that it was not good enough for have cost as much as it does.
+
+use nalgebra::{DMatrix, Vector3};
+
+use super::Workspace;
+use super::ball::BallTrial;
+use super::equations::BearingStep;
+use crate::model::bodies::Body;
+use crate::model::state::{KeptBlock, Wear};
+use crate::numerics::arrowhead::{BLOCK, Block, Eliminated, Member, Offsets};
+use crate::numerics::orbit_turn::OrbitTurn;
+use crate::numerics::ring::Link;
+use crate::numerics::size::{larger, largest};
+
+/// [-] price of one more correction over that of a new block (benches/speed.rs): where balls are solved together and all are
+/// evaluated, and where each is alone.
+const TOGETHER: f64 = 3.0;
+const ALONE: f64 = 0.2;
+/// Most steps in a row that begin with a new block before an old one is tried again.
+const LONGEST_PAUSE: u8 = 31;
+/// [-] most corrections that are foreseen.
+const MOST: f64 = 20.0;
+
+impl Workspace {
+    /// Lists the bodies that forces move, as they are in the trial step.
+    pub(super) fn list_members(&mut self, offsets: Offsets) {
+        self.members.clear();
+        for (body, trial) in self.bodies.iter() {
+            if let (Some(from), Some(trial)) = (offsets[body.index()], trial) {
+                let axes = trial.end.pose.orientation.inverse().to_rotation_matrix().into_inner();
+                self.members.push(Member { slot: body.index(), from, axes });
+            }
+        }
+    }
+}
+
+impl Wear {
+    /// Shall blocks of a `cost` be new, as one or as many, for what is saved in this step and what was not in earlier ones?
+    /// If not, this block has cost some more.
+    fn renew(&mut self, cost: f64, saved: f64, lost: f64, more: f64) -> bool {
+        // One that is new and leads badly tells that no block is good for long here.
+        if self.new || saved + lost < cost {
+            self.price += more;
+            return false;
+        }
+        if saved >= cost {
+            self.put_off();
+        }
+        true
+    }
+
+    /// Lets the next steps begin with a new one: twice as many as the last time, unless an old one was good since then.
+    fn put_off(&mut self) {
+        self.pause = (2 * self.pause + 1).min(LONGEST_PAUSE);
+        self.due = self.pause;
+    }
+}
+
+impl BearingStep<'_> {
+    /// Marks the balls whose blocks shall be new from the beginning of a step.
+    pub(super) fn mark_due(&mut self) {
+        let Workspace { balls, kept, .. } = &mut *self.workspace;
+        for (trial, KeptBlock { wear, .. }) in balls.iter_mut().zip(&mut kept.balls) {
+            if !wear.new {
+                wear.pause = 0;
+            }
+            wear.new = false;
+            trial.renewed = wear.due > 0;
+            wear.due = wear.due.saturating_sub(1);
+        }
+    }
+
+    /// Notes which old blocks have led nowhere, before all are computed anew.
+    pub(super) fn give_up_old(&mut self) {
+        let tolerance = self.force_tolerance;
+        let Workspace { balls, kept, .. } = &mut *self.workspace;
+        for (trial, KeptBlock { wear, .. }) in balls.iter().zip(&mut kept.balls) {
+            if !wear.new && trial.before > 1.0 && largest(&trial.residual) > tolerance {
+                wear.put_off();
+            }
+        }
+    }
+
+    /// Marks the balls whose blocks shall be computed anew, after a correction that has not led to the solution; are there some?
+    ///
+    /// From how far the last one has come it follows how many more are needed with the blocks there are. New ones lead there
+    /// in one more; and what they would have saved in earlier steps counts as well.
+    fn mark_worn(&mut self) -> bool {
+        let together = !self.balls_are_independent();
+        let tolerance = self.force_tolerance;
+        let Workspace { balls, kept, .. } = &mut *self.workspace;
+        let norm = |trial: &BallTrial| largest(&trial.residual) / tolerance;
+        let before = balls.iter().map(|trial| trial.before).fold(0.0, larger);
+        let (mut bad, mut most, mut price) = (0.0, 0.0f64, 0.0);
+        for (trial, kept) in balls.iter_mut().zip(&mut kept.balls) {
+            let now = norm(trial);
+            trial.renewed = now > 1.0;
+            if !trial.renewed {
+                continue;
+            }
+            let rate = now / if together { before } else { trial.before };
+            let more = if rate < 1.0 { (now.ln() / -rate.ln()).ceil().min(MOST) } else { MOST };
+            if together {
+                bad += 1.0;
+                most = most.max(more);
+                price += kept.wear.price;
+            } else {
+                trial.renewed = kept.wear.renew(1.0, ALONE * (more - 1.0), kept.wear.price, ALONE);
+            }
+        }
+        if together {
+            for (trial, kept) in balls.iter_mut().zip(&mut kept.balls).filter(|(trial, _)| trial.renewed) {
+                trial.renewed = kept.wear.renew(bad, TOGETHER * (most - 1.0), price, TOGETHER / bad);
+            }
+        }
+        balls.iter().any(|trial| trial.renewed)
+    }
+
+    /// Eliminates the balls whose derivatives are new; without any matrix if one of them is singular.
+    pub(super) fn eliminate_renewed(&mut self) {
+        let origin = self.races_origin();
+        let Workspace { balls, kept, members, neighbours, factorised, .. } = &mut *self.workspace;
+        if !neighbours.is_empty() {
+            *factorised = false;
+            return;
+        }
+        if kept.balls.len() != balls.len() || (kept.step - self.step.h).abs() > 1e-6 * self.step.h {
+            kept.balls.clear();
+        }
+        for (index, trial) in balls.iter().enumerate().filter(|(_, trial)| trial.renewed) {
+            *factorised = false;
+            let Some(block) = Eliminated::new(&trial.block, members) else {
+                kept.balls.clear();
+                return;
+            };
+            let last = kept.balls.get(index).map(|kept| kept.wear).unwrap_or_default();
+            let wear = Wear { price: 0.0, new: true, ..last };
+            let new = KeptBlock { block, offset: trial.motion.position - origin, wear };
+            match kept.balls.get_mut(index) {
+                Some(kept) => *kept = new,
+                None => kept.balls.push(new),
+            }
+        }
+        kept.step = self.step.h;
+    }
+
+    /// Factorises the rows of the bodies, with what the balls leave in them.
+    pub(super) fn factorise(&mut self) {
+        let origin = self.races_origin();
+        let guide = self.model.cage_guide().map(Body::from);
+        let (offsets, rows) = (self.model.border_offsets(), self.model.border_size());
+        let Workspace { balls, bodies, cage, kept, members, neighbours, arrowhead, ring, factorised, .. } =
+            &mut *self.workspace;
+        *factorised = true;
+        let mut border = DMatrix::zeros(rows, rows);
+        for member in members.iter() {
+            if let Some(trial) = Body::ALL.get(member.slot).and_then(|body| bodies.get(*body)?.as_ref()) {
+                let rows = trial.residual.len();
+                border.view_mut((member.from, member.from), (rows, rows)).copy_from(&trial.block);
+            }
+        }
+        if let (Some(cage), Some(guide)) = (cage, guide)
+            && let (Some(race), Some(own)) = (offsets[guide.index()], offsets[Body::Cage.index()])
+        {
+            let size = (BLOCK, BLOCK);
+            border.view_mut((race, own), size).copy_from(&cage.race_by_cage);
+            border.view_mut((own, race), size).copy_from(&cage.cage_by_race);
+        }
+        if neighbours.is_empty() {
+            let turned = |(trial, kept): (&BallTrial, &'_ KeptBlock)| {
+                OrbitTurn::between(&kept.offset, &(trial.motion.position - origin))
+            };
+            let blocks = balls.iter().zip(&kept.balls);
+            let blocks = blocks.map(|(trial, kept)| (&kept.block, turned((trial, kept))));
+            arrowhead.factorise(blocks, members, border);
+        } else {
+            let blocks: Vec<&Block> = balls.iter().map(|trial| &trial.block).collect();
+            let links: Vec<Link> = neighbours.iter().map(|pair| pair.link).collect();
+            ring.factorise(&blocks, &links, &border, offsets);
+        }
+    }
+
+    /// \[m] centre of the outer race, which orbits are about.
+    fn races_origin(&self) -> Vector3<f64> {
+        self.outer().position
+    }
+
+    /// Writes the Newton correction of the present residual; false if the matrix is singular.
+    pub(super) fn correct(&mut self, correction: &mut [f64]) -> bool {
+        if self.corrections > 0 && self.keeps_matrices() && self.mark_worn() {
+            self.renewals += 1;
+            self.evaluate_renewed();
+            self.eliminate_renewed();
+            if !self.balls_are_independent() {
+                self.factorise();
+            }
+        }
+        self.corrections += 1;
+        let tolerance = self.force_tolerance;
+        for trial in &mut self.workspace.balls {
+            trial.before = largest(&trial.residual) / tolerance;
+        }
+        if self.balls_are_independent() {
+            self.correct_balls(correction)
+        } else {
+            self.correct_all(correction)
+        }
+    }
+
+    /// Corrections of balls between races of prescribed motion. A ball that is solved already stays where it is.
+    fn correct_balls(&self, correction: &mut [f64]) -> bool {
+        let origin = self.races_origin();
+        let Workspace { balls, kept, .. } = &*self.workspace;
+        let mut regular = kept.balls.len() == balls.len();
+        for ((trial, kept), x) in balls.iter().zip(&kept.balls).zip(correction.chunks_exact_mut(BLOCK)) {
+            if largest(&trial.residual) <= self.force_tolerance {
+                x.fill(0.0);
+                continue;
+            }
+            let turn = OrbitTurn::between(&kept.offset, &(trial.motion.position - origin));
+            let solution = turn.stacked(&(kept.block.inverse * turn.back().stacked(&-trial.residual)));
+            regular &= solution.iter().all(|v| v.is_finite());
+            x.copy_from_slice(solution.as_slice());
+        }
+        regular
+    }
+
+    /// Corrections of balls and bodies at once.
+    fn correct_all(&mut self, correction: &mut [f64]) -> bool {
+        let (offsets, rows) = (self.model.border_offsets(), self.model.border_size());
+        let Workspace {
+            balls,
+            bodies,
+            kept,
+            members,
+            neighbours,
+            arrowhead,
+            ring,
+            ball_corrections: x,
+            border_correction: y,
+            ..
+        } = &mut *self.workspace;
+        x.clear();
+        x.extend(balls.iter().map(|trial| -trial.residual));
+        y.resize_vertically_mut(rows, 0.0);
+        for member in members.iter() {
+            if let Some(trial) = Body::ALL.get(member.slot).and_then(|body| bodies.get(*body)?.as_ref()) {
+                y.rows_mut(member.from, trial.residual.len()).copy_from(&-&trial.residual);
+            }
+        }
+        let solved = if neighbours.is_empty() {
+            kept.balls.len() == balls.len()
+                && arrowhead.solve(kept.balls.iter().map(|kept| &kept.block), x, y)
+        } else {
+            ring.solve(x, y, offsets)
+        };
+        let (of_balls, border) = correction.split_at_mut(BLOCK * x.len());
+        for (chunk, x) in of_balls.chunks_exact_mut(BLOCK).zip(x.iter()) {
+            chunk.copy_from_slice(x.as_slice());
+        }
+        border.copy_from_slice(y.as_slice());
+        solved
+    }
+}
