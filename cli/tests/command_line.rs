@@ -142,6 +142,53 @@ fn cost_studies_the_levers_that_are_asked_for_and_ends_with_advice() {
 }
 
 #[test]
+fn cost_says_whether_its_window_has_settled_and_how_long_the_scene_should_run() {
+    // Balls that start rolling, without spin in balance, need 150 ms to settle; at 1 rpm without friction nothing has to.
+    let scratch = Scratch::new("settled");
+    for (speed, law, begins) in
+        [("6000 rpm", "saturated", "NOT SETTLED: over"), ("1 rpm", "frictionless", "All means over")]
+    {
+        let changes = [
+            ("load.duration", "\"8 ms\""),
+            ("load.inner_speed", &format!("\"{speed}\"")),
+            ("effects.creep", &format!("\"{law}\"")),
+            ("start.spin_balance", "false"),
+            ("solver.max_step", "\"20 us\""),
+            ("inner.drive", "\"pose\""),
+            ("inner.mass", ""),
+            ("inner.inertia", ""),
+        ];
+        std::fs::write(scratch.path("drift.toml"), edited("cost/thrust", &changes)).unwrap();
+        let output =
+            roulement(&["cost", &scratch.path("drift.toml"), "-o", &scratch.path("out"), "--only", "level"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let said = String::from_utf8(output.stdout).unwrap();
+        println!("{said}");
+        let report = std::fs::read_to_string(scratch.path("out/report.md")).unwrap();
+        let line = said.lines().find(|line| line.contains("window of the reference")).unwrap();
+        assert!(report.contains(line.strip_prefix("drift: ").unwrap()), "{report}");
+        let (reference, richest) = line.split_once("window of the richest model").unwrap();
+        let start = format!("drift: {begins} the window of the reference, 2.0000 to 8.0000 ms,");
+        assert!(reference.starts_with(&start), "{line}");
+        if law != "frictionless" {
+            // Both say so, with drift and noise, and what to do.
+            for of_one in [reference, richest] {
+                assert!(of_one.contains("inner power per ball by"), "{line}");
+                assert!(of_one.contains(" W (noise "), "{line}");
+                let ends = ["; load.duration of about ", "; no decay to be seen"];
+                assert!(ends.iter().any(|end| of_one.contains(end)), "{line}");
+            }
+        }
+        // Contacts have their columns and a table of their own.
+        for name in ["inner race power", "outer race power", "spin share", "largest load", "peak pressure"] {
+            let table = std::fs::read_to_string(scratch.path("out/cost.csv")).unwrap();
+            assert!(table.lines().next().unwrap().contains(&format!("{name} [-]")), "{name}");
+            assert!(report.contains(&format!("| {name} ")), "{name}");
+        }
+    }
+}
+
+#[test]
 fn cost_writes_table_plots_and_report() {
     let scratch = Scratch::new("cost");
     let text = edited("cost/thrust", &[("load.duration", "\"1 ms\"")]);
