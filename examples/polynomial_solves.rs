@@ -5,7 +5,7 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use roulement::analysis::single_contact::RollingContact;
+use roulement::analysis::single_contact::{RollingContact, ScaledContact};
 use roulement::kalker::nonlinear::Kalker;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -17,8 +17,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut time, mut iterations, mut solves) = (Duration::ZERO, 0, 0);
     for contact in csv::Reader::from_path(file)?.deserialize() {
         let contact: RollingContact = contact?;
-        let creepage = contact.scaled_creepage();
-        let kalker = Kalker::new(contact.patch(), degree)?;
+        let ScaledContact { patch, creepage } = contact.scaled()?;
+        let kalker = Kalker::new(patch, degree)?;
         let nearby = match start.as_str() {
             "warm" => Some(kalker.solve(&creepage.times(0.99), None)?),
             _ => None,

@@ -1,16 +1,21 @@
-//! Whole bearings in motion against closed forms of textbooks: cage speed, variable compliance, free vibration.
+//! Bearings in motion against closed forms of textbooks: cage speed, variable compliance, free vibration, gyroscopic moment,
+//! spin moment of complete sliding.
 #![allow(clippy::unwrap_used)]
 
 use std::f64::consts::TAU;
 
+use roulement::analysis::single_contact::{Law, RollingContact};
+use roulement::scene::CreepLaw;
 use roulement::simulation::Simulation;
 
+#[path = "common/evidence.rs"]
+mod evidence;
 #[path = "common/mechanics.rs"]
 mod mechanics;
 #[path = "common/scenes.rs"]
 mod scenes;
 
-use mechanics::{Hertz, pair};
+use mechanics::{Hertz, creep_coefficients, elliptic, pair};
 use scenes::scene;
 
 const THRUST: &str = include_str!("../scenes/thrust.toml");
@@ -184,4 +189,94 @@ fn closed_form_free_vibration_along_the_axis() {
     let expected = (slope / (20.0 + 0.25 * balls)).sqrt() / TAU;
     println!("{measured} Hz, closed form {expected} Hz");
     assert!((measured - expected).abs() < 2e-3 * expected, "{measured} {expected}");
+}
+
+#[test]
+fn closed_form_gyroscopic_moment_of_the_balls() {
+    // A ball that turns about an axis at a pitch angle b to the bearing's, while it orbits with w_c, asks for
+    // J w_c w_b sin(b) about its direction of motion; lateral friction of both races gives it. Rolling on the inner race, at the
+    // radius R_i of the contact, w_b cos(a - b) = (w_i - w_c) R_i/r, and w_c = w_i R_i/(R_i + R_o).
+    for rpm in [3000.0, 6000.0, 12000.0] {
+        let speed = format!("\"{rpm} rpm\"");
+        let mut simulation =
+            Simulation::new(&scene(THRUST, &[("load.inner_speed", &*speed), ("effects.creep", "")])).unwrap();
+        let (radius, points, skipped) = (0.5 * DIAMETER, 200, 100);
+        let (mut moment, mut expected, mut lateral) = (0.0, 0.0, 0.0);
+        for point in 0..points + skipped {
+            go_on(&mut simulation, 1e-4);
+            if point < skipped {
+                continue;
+            }
+            let outputs = simulation.outputs();
+            for ball in &outputs.balls {
+                // Rolling is against the motion of the ball at its inner contact and along it at the outer one.
+                moment += radius * (ball.outer.force_lateral - ball.inner.force_lateral);
+                lateral += radius * ball.outer.force_lateral.abs();
+                let around = ball.position.yz().norm();
+                let [inner, outer] = [(&ball.inner, -1.0), (&ball.outer, 1.0)]
+                    .map(|(contact, sign)| around + sign * radius * contact.contact_angle.cos());
+                let race = rpm * TAU / 60.0;
+                let orbit = race * inner / (inner + outer);
+                let out = ball.position / ball.position.norm();
+                let across = ball.angular_velocity.y * out.y + ball.angular_velocity.z * out.z;
+                let pitch = across.atan2(orbit - ball.angular_velocity.x);
+                let spin = (race - orbit) * inner / radius / (ball.inner.contact_angle - pitch).cos();
+                let inertia = 7800.0 * DIAMETER.powi(5) * std::f64::consts::PI / 60.0;
+                expected += inertia * orbit * spin * pitch.sin();
+            }
+        }
+        println!(
+            "{rpm} rpm: friction {:.4e} N m a ball, closed form {:.4e}, the outer race's share alone {:.4e}",
+            moment / f64::from(10 * points),
+            expected / f64::from(10 * points),
+            lateral / f64::from(10 * points)
+        );
+        assert!((moment - expected).abs() < 1e-3 * expected.abs(), "{rpm}: {moment} {expected}");
+        let per_ball = [expected, moment, lateral].map(|sum| sum / f64::from(10 * points));
+        evidence::compare(&rpm.to_string(), &per_ball);
+    }
+}
+
+#[test]
+fn closed_form_spin_moment_of_complete_sliding() {
+    // Under a spin so large that all of the contact slides about its centre: 3/8 mu Q a E(1 - b^2/a^2), a the longer semi-axis;
+    // 3 pi/16 mu Q a on a circle.
+    for axis_ratio in [1.0, 0.3, 0.1, 3.0] {
+        let (a, b) = (1e-4 * f64::sqrt(axis_ratio), 1e-4 / f64::sqrt(axis_ratio));
+        let (long, short) = (f64::max(a, b), f64::min(a, b));
+        let expected = 0.375 * long / 1e-4 * elliptic(1.0 - (short / long).powi(2)).1;
+        let moment = |law: Law, spin: f64| {
+            let contact = RollingContact {
+                id: String::new(),
+                poisson_ratio: 0.3,
+                shear_modulus: 80e9,
+                friction: 0.08,
+                peak_pressure: 2e9,
+                semi_axis_x: a,
+                semi_axis_y: b,
+                rolling_angle: 0.0,
+                creep_x: 0.0,
+                creep_y: 0.0,
+                spin,
+                curvature: 0.0,
+            };
+            contact.evaluate(law).unwrap().mz
+        };
+        // Linear theory's moment is some hundred times the limit.
+        let of = |law: CreepLaw| moment(Law::Simulated(law), 2e4) / expected;
+        let [table, saturated, regularised] =
+            [CreepLaw::KalkerTable, CreepLaw::Saturated, CreepLaw::Regularised].map(of);
+        let polynomials = moment(Law::Kalker(5), 2e4) / expected;
+        println!(
+            "{axis_ratio}: closed form {expected:.4}; over it table {table:.4}, polynomials {polynomials:.4}, saturated \
+             {saturated:.4}, regularised {regularised:.4}"
+        );
+        assert!((table - 1.0).abs() < 5e-3, "{axis_ratio}: {table}");
+        evidence::compare(&axis_ratio.to_string(), &[table, polynomials, regularised, saturated]);
+        // One factor for force and moment leaves linear theory's lateral force of spin in complete sliding; the
+        // moment is less by its share.
+        let [_, _, c23, c33] = creep_coefficients(axis_ratio, 0.3);
+        let share = (c33 / expected) / f64::hypot(c33 / expected, c23);
+        assert!((saturated / share - 1.0).abs() < 0.01, "{axis_ratio}: {saturated} {share}");
+    }
 }

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use roulement::Simulation;
-use roulement::analysis::single_contact::RollingContact;
+use roulement::analysis::single_contact::{Law, RollingContact, ScaledContact};
 use roulement::kalker::nonlinear::Kalker;
 use roulement::simulation::play::{Rows, play};
 
@@ -185,8 +185,8 @@ fn iterations(degree: usize) -> [f64; 2] {
     let (mut sums, mut cases) = ([0.0; 2], 0.0);
     for contact in csv::Reader::from_path(file).unwrap().deserialize() {
         let contact: RollingContact = contact.unwrap();
-        let creepage = contact.scaled_creepage();
-        let kalker = Kalker::new(contact.patch(), degree).unwrap();
+        let ScaledContact { patch, creepage } = contact.scaled().unwrap();
+        let kalker = Kalker::new(patch, degree).unwrap();
         let nearby = kalker.solve(&creepage.times(0.99), None).unwrap();
         let starts = [None, Some(nearby.coefficients.as_slice())];
         for (sum, start) in sums.iter_mut().zip(starts) {
@@ -195,6 +195,47 @@ fn iterations(degree: usize) -> [f64; 2] {
         cases += 1.0;
     }
     sums.map(|sum| sum / cases)
+}
+
+/// Errors of `roulement contact --law kalker_table --exact` over a kind of contacts of `random.csv`.
+fn exact_errors(kind: &str) -> Row {
+    #[derive(serde::Deserialize)]
+    struct Expected {
+        kind: String,
+        fx: f64,
+        fy: f64,
+        mz: f64,
+    }
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/contact/random.csv");
+    let mut table = csv::Reader::from_path(file).unwrap();
+    let headers = table.headers().unwrap().clone();
+    let (mut mean, mut worst, mut cases) = ([0.0; 3], [0.0f64; 3], 0.0);
+    for record in table.records() {
+        let record = record.unwrap();
+        let expected: Expected = record.deserialize(Some(&headers)).unwrap();
+        if expected.kind != kind {
+            continue;
+        }
+        let contact: RollingContact = record.deserialize(Some(&headers)).unwrap();
+        let ours = contact.evaluate(Law::Exact).unwrap();
+        let errors = [ours.fx - expected.fx, ours.fy - expected.fy, ours.mz - expected.mz].map(f64::abs);
+        for k in 0..3 {
+            mean[k] += errors[k];
+            worst[k] = worst[k].max(errors[k]);
+        }
+        cases += 1.0;
+    }
+    let mut numbers: Vec<_> = mean.iter().map(|sum| count(sum / cases, 4)).collect();
+    numbers.push(count(worst[0].max(worst[1]), 4));
+    numbers.push(count(worst[2], 4));
+    row(format!("{kind}, {cases} contacts"), numbers, "")
+}
+
+#[test]
+fn independent_data_errors_of_exact_contacts() {
+    let rows = ["general", "bearing", "oblique"].map(exact_errors);
+    let header = "contacts | mean error of fx / fy / mz, largest of a force / of the moment";
+    compare("docs/rolling-contact.md", "exact", header, &rows);
 }
 
 #[test]

@@ -3,8 +3,8 @@
 
 mod common;
 
-use common::cases;
-use roulement::kalker::half_space::{HalfSpace, HalfSpaceError, extrapolated};
+use common::{Case, cases, curves};
+use roulement::kalker::half_space::{HalfSpace, HalfSpaceError, extrapolated, refined};
 use roulement::kalker::linear::creep_matrix;
 use roulement::kalker::{Patch, ScaledCreepage};
 
@@ -38,6 +38,59 @@ fn independent_data_every_fourth_case() {
 #[ignore = "takes a minute"]
 fn independent_data_all_cases_long() {
     check(1, 24);
+}
+
+/// Contacts on grids as fine as they need, against the goals of rolling along an axis: mean and largest errors of force and
+/// moment, and the largest ones over the changes by which the grids are chosen.
+fn check_refined<'a>(name: &str, cases: impl Iterator<Item = &'a Case>) {
+    let (mut mean, mut worst, mut count, mut shares) = ([0.0; 3], [0.0f64; 3], 0.0, 0.0);
+    for case in cases {
+        let found = refined(&case.patch, &case.creepage).unwrap();
+        let f = found.forces;
+        let error = [f.fx - case.expected[0], f.fy - case.expected[1], f.mz - case.expected[2]].map(f64::abs);
+        for k in 0..3 {
+            mean[k] += error[k];
+            worst[k] = worst[k].max(error[k]);
+        }
+        shares += error.into_iter().fold(0.0, f64::max) / found.change.max(0.005);
+        count += 1.0;
+    }
+    let mean = mean.map(|sum| sum / count);
+    println!("{name}: mean {mean:.4?} largest {worst:.4?} of {count}, over the change {:.2}", shares / count);
+    assert!(mean[0].max(mean[1]) < 0.005 && worst[0].max(worst[1]) < 0.03, "{name}: {mean:?} {worst:?}");
+    assert!(mean[2] < 0.01 && worst[2] < 0.05, "{name}: {mean:?} {worst:?}");
+}
+
+#[test]
+fn independent_data_oblique_rolling_on_refined_grids() {
+    check_refined("oblique", cases().iter().filter(|case| case.kind == "oblique"));
+}
+
+#[test]
+#[ignore = "316 contacts, a quarter of a minute"]
+fn independent_data_all_cases_and_curves_on_refined_grids() {
+    for kind in ["general", "bearing", "oblique"] {
+        check_refined(kind, cases().iter().filter(|case| case.kind == kind));
+    }
+    check_refined("curves", curves().iter());
+}
+
+#[test]
+fn invariant_refined_grids_serve_the_whole_range_of_ellipses() {
+    // At the ends the coarsest grid has fewest cells across the ellipse; turned by a quarter, the other ellipse is the same.
+    for axis_ratio in [0.0183, 54.6] {
+        let patch = Patch { axis_ratio, poisson_ratio: 0.3, rolling_angle: 0.0 };
+        let across =
+            Patch { axis_ratio: 1.0 / axis_ratio, rolling_angle: std::f64::consts::FRAC_PI_2, ..patch };
+        let creepage = ScaledCreepage { x: 3.0, y: -2.0, spin: 0.5, curvature: 0.0 };
+        let turned = ScaledCreepage { x: 2.0, y: 3.0, ..creepage };
+        let [one, other] =
+            [(patch, creepage), (across, turned)].map(|(p, h)| refined(&p, &h).unwrap().forces);
+        let differences = [one.fx - other.fy, one.fy + other.fx, one.mz - other.mz];
+        assert!(differences.iter().all(|difference| difference.abs() < 1e-3), "{one:?} {other:?}");
+    }
+    let wrong = Patch { axis_ratio: 0.01, poisson_ratio: 0.3, rolling_angle: 0.0 };
+    assert!(matches!(refined(&wrong, &ScaledCreepage::default()), Err(HalfSpaceError::Patch(_))));
 }
 
 #[test]

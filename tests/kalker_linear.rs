@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use roulement::kalker::Patch;
-use roulement::kalker::linear::{adhesion_tractions, creep_matrix, resultants};
+use roulement::kalker::creep_coefficients::{along_x, series, shipped};
+use roulement::kalker::linear::{LinearError, adhesion_tractions, creep_matrix, resultants};
 use roulement::kalker::load_displacement::LoadDisplacement;
 
 fn patch(axis_ratio: f64, poisson_ratio: f64, rolling_angle: f64) -> Patch {
@@ -70,6 +71,46 @@ fn fifty_digits_are_reached_to_rounding() {
         for place in [(0, 1), (0, 2), (1, 0), (2, 0)] {
             assert!(ours[place].abs() < 1e-13 * ours.amax(), "{line}: zero by symmetry, {ours}");
         }
+    }
+}
+
+/// C11, C22, C23 and C33 by the solver.
+fn solved(axis_ratio: f64, poisson_ratio: f64) -> Result<[f64; 4], LinearError> {
+    let c = creep_matrix(&patch(axis_ratio, poisson_ratio, 0.0))?;
+    Ok([c[(0, 0)], c[(1, 1)], c[(1, 2)], c[(2, 2)]])
+}
+
+#[test]
+fn regression_series_of_creep_coefficients_against_the_solver() {
+    // Corners, and places that fill the range evenly: multiples of the powers of the plastic number.
+    let corners = [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)];
+    let inside = (0..300).map(|k| {
+        let multiple = |step: f64| (0.5 + step * f64::from(k)).fract();
+        (multiple(0.754_877_666_246_693), multiple(0.569_840_290_998_053))
+    });
+    let mut worst = [0.0f64; 4];
+    for (u, v) in corners.into_iter().chain(inside) {
+        let (ratio, poisson) = ((0.018 * (55.0f64 / 0.018).powf(u)).clamp(0.018, 55.0), 0.5 * v);
+        let expected = solved(ratio, poisson).unwrap();
+        for (k, value) in along_x(&patch(ratio, poisson, 0.0)).unwrap().into_iter().enumerate() {
+            worst[k] = worst[k].max((value / expected[k] - 1.0).abs());
+        }
+    }
+    println!("{worst:?}");
+    assert!(worst.into_iter().all(|error| error < 1e-10), "{worst:?}");
+    for (ratio, poisson) in [(0.017, 0.3), (56.0, 0.3), (1.0, 0.6), (f64::NAN, 0.3)] {
+        assert!(along_x(&patch(ratio, poisson, 0.0)).is_err());
+    }
+}
+
+#[test]
+fn regression_the_shipped_series_is_what_the_solver_gives() {
+    let made = series(solved).unwrap();
+    let shipped = shipped();
+    assert_eq!(made.len(), shipped.len());
+    for (made, shipped) in made.iter().flatten().zip(shipped.iter().flatten()) {
+        // Rounding of coefficients up to 50; slender across rolling the solver has 3e-13 of it.
+        assert!((made - shipped).abs() < 1e-10, "{made} {shipped}");
     }
 }
 

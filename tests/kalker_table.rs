@@ -173,6 +173,8 @@ fn bearings_of_close_conformity_are_simulated() {
     assert!(simulation.outputs().friction_power > 0.0);
 }
 
+const TABLE: Law = Law::Simulated(CreepLaw::KalkerTable);
+
 /// Oblique contacts with ellipses of ball bearings, 4 to 86 degrees from an axis.
 fn oblique_contacts(count: u32) -> Vec<RollingContact> {
     let between = |low: f64, high: f64, u: f64| low + (high - low) * u;
@@ -201,11 +203,11 @@ fn oblique_contacts(count: u32) -> Vec<RollingContact> {
         .collect()
 }
 
-/// Mean and largest errors of the table against the reference solver over oblique contacts.
-fn oblique_errors(count: u32, cells: usize) -> ([f64; 3], [f64; 3]) {
+/// Mean and largest errors of a law against the reference solver over oblique contacts.
+fn oblique_errors(law: Law, count: u32, cells: usize) -> ([f64; 3], [f64; 3]) {
     let (mut sum, mut worst) = ([0.0; 3], [0.0f64; 3]);
     for contact in oblique_contacts(count) {
-        let table = contact.evaluate(Law::Simulated(CreepLaw::KalkerTable)).unwrap();
+        let table = contact.evaluate(law).unwrap();
         let reference = contact.evaluate(Law::Reference(cells)).unwrap();
         let errors =
             [table.fx - reference.fx, table.fy - reference.fy, table.mz - reference.mz].map(f64::abs);
@@ -222,7 +224,7 @@ fn oblique_errors(count: u32, cells: usize) -> ([f64; 3], [f64; 3]) {
 
 #[test]
 fn regression_oblique_rolling_of_narrow_ellipses() {
-    let (mean, worst) = oblique_errors(12, 12);
+    let (mean, worst) = oblique_errors(TABLE, 12, 12);
     assert!(mean[0].max(mean[1]) < 0.05 && mean[2] < 0.04, "{mean:?} {worst:?}");
     assert!(worst[0].max(worst[1]) < 0.15 && worst[2] < 0.15, "{mean:?} {worst:?}");
 }
@@ -230,8 +232,17 @@ fn regression_oblique_rolling_of_narrow_ellipses() {
 #[test]
 #[ignore = "a measurement for docs/rolling-contact.md"]
 fn regression_error_of_oblique_rolling() {
-    let (mean, worst) = oblique_errors(60, 16);
+    let (mean, worst) = oblique_errors(TABLE, 60, 16);
     assert!(mean[0].max(mean[1]) < 0.05 && mean[2] < 0.03, "{mean:?} {worst:?}");
+}
+
+#[test]
+#[ignore = "60 solutions of the reference solver on fine grids"]
+fn regression_exact_oblique_rolling_of_narrow_ellipses() {
+    // Against grids of 40 and 80 cells, where the solver has mostly taken 16 and 32: the goals of rolling along an axis.
+    let (mean, worst) = oblique_errors(Law::Exact, 60, 40);
+    assert!(mean[0].max(mean[1]) < 0.005 && mean[2] < 0.01, "{mean:?} {worst:?}");
+    assert!(worst[0].max(worst[1]) < 0.03 && worst[2] < 0.05, "{mean:?} {worst:?}");
 }
 
 /// Points all over the space of q, the poles and planes of symmetry among them.

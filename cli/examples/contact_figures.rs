@@ -5,7 +5,7 @@ use std::error::Error;
 use std::path::Path;
 
 use plotters::prelude::*;
-use roulement::analysis::single_contact::{Law, RollingContact, RollingForces};
+use roulement::analysis::single_contact::{Law, RollingContact, RollingForces, ScaledContact};
 use roulement::contact::identification::{Identification, identify_by_table};
 use roulement::kalker::Patch;
 use roulement::kalker::linear::Scales;
@@ -108,8 +108,8 @@ fn adhesion_map(case: &Case, area: &Area<'_>) -> Drawn {
     let a = contact.semi_axis_x;
     let creep = 0.8 * contact.friction * a / BALL_RADIUS;
     let pure = RollingContact { creep_x: creep, creep_y: 0.0, spin: 0.0, curvature: 0.0, ..contact.clone() };
-    let kalker = Kalker::new(pure.patch(), 7)?;
-    let creepage = pure.scaled_creepage();
+    let ScaledContact { patch, creepage } = pure.scaled()?;
+    let kalker = Kalker::new(patch, 7)?;
     let solution = kalker.solve(&creepage, None)?;
     let title = format!(
         "1b  |f|/(mu p) at c_x R/(mu a) = 0.8, degree 7; adhesion on {:.0} % of the ellipse",

@@ -2,5 +2,6 @@
 
 pub mod cost;
 pub mod error;
+pub mod exact;
 pub mod package;
 pub mod report;

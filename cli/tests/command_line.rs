@@ -142,6 +142,53 @@ fn cost_studies_the_levers_that_are_asked_for_and_ends_with_advice() {
 }
 
 #[test]
+fn cost_says_whether_its_window_has_settled_and_how_long_the_scene_should_run() {
+    // Balls that start rolling, without spin in balance, need 150 ms to settle; at 1 rpm without friction nothing has to.
+    let scratch = Scratch::new("settled");
+    for (speed, law, begins) in
+        [("6000 rpm", "saturated", "NOT SETTLED: over"), ("1 rpm", "frictionless", "All means over")]
+    {
+        let changes = [
+            ("load.duration", "\"8 ms\""),
+            ("load.inner_speed", &format!("\"{speed}\"")),
+            ("effects.creep", &format!("\"{law}\"")),
+            ("start.spin_balance", "false"),
+            ("solver.max_step", "\"20 us\""),
+            ("inner.drive", "\"pose\""),
+            ("inner.mass", ""),
+            ("inner.inertia", ""),
+        ];
+        std::fs::write(scratch.path("drift.toml"), edited("cost/thrust", &changes)).unwrap();
+        let output =
+            roulement(&["cost", &scratch.path("drift.toml"), "-o", &scratch.path("out"), "--only", "level"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let said = String::from_utf8(output.stdout).unwrap();
+        println!("{said}");
+        let report = std::fs::read_to_string(scratch.path("out/report.md")).unwrap();
+        let line = said.lines().find(|line| line.contains("window of the reference")).unwrap();
+        assert!(report.contains(line.strip_prefix("drift: ").unwrap()), "{report}");
+        let (reference, richest) = line.split_once("window of the richest model").unwrap();
+        let start = format!("drift: {begins} the window of the reference, 2.0000 to 8.0000 ms,");
+        assert!(reference.starts_with(&start), "{line}");
+        if law != "frictionless" {
+            // Both say so, with drift and noise, and what to do.
+            for of_one in [reference, richest] {
+                assert!(of_one.contains("inner power per ball by"), "{line}");
+                assert!(of_one.contains(" W (noise "), "{line}");
+                let ends = ["; load.duration of about ", "; no decay to be seen"];
+                assert!(ends.iter().any(|end| of_one.contains(end)), "{line}");
+            }
+        }
+        // Contacts have their columns and a table of their own.
+        for name in ["inner race power", "outer race power", "spin share", "largest load", "peak pressure"] {
+            let table = std::fs::read_to_string(scratch.path("out/cost.csv")).unwrap();
+            assert!(table.lines().next().unwrap().contains(&format!("{name} [-]")), "{name}");
+            assert!(report.contains(&format!("| {name} ")), "{name}");
+        }
+    }
+}
+
+#[test]
 fn cost_writes_table_plots_and_report() {
     let scratch = Scratch::new("cost");
     let text = edited("cost/thrust", &[("load.duration", "\"1 ms\"")]);
@@ -643,4 +690,136 @@ fn a_run_whose_energy_does_not_close_says_so_with_the_cause() {
         let good = [("load.duration", "\"5 ms\""), ("friction.ball_race", friction)];
         assert_eq!(summary_of(&scratch, "thrust", &good, "WARNING"), Vec::<String>::new());
     }
+}
+
+const CONTACTS: &str = "id,creep_x,creep_y,spin,semi_axis_x,semi_axis_y,peak_pressure,friction,shear_modulus,poisson_ratio,rolling_angle\n\
+                        one,1e-2,0,5,1e-4,3e-4,1.2e9,0.08,8.1e10,0.3,0.7\n\
+                        two,1e-2,3e-3,20,1e-4,3e-4,1.2e9,0.08,8.1e10,0.3,-0.4\n\
+                        again,1e-2,0,5,1e-4,3e-4,1.2e9,0.08,8.1e10,0.3,0.7\n";
+
+/// `contact --law kalker_table --exact` of a table, with a cache directory: forces, and what is told.
+fn exact(scratch: &Scratch, table: &str) -> (String, String) {
+    std::fs::write(scratch.path("cases.csv"), table).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_roulement"))
+        .args(["contact", "--law", "kalker_table", "--exact", &scratch.path("cases.csv")])
+        .env("XDG_CACHE_HOME", scratch.path("cache"))
+        .output()
+        .unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{told}");
+    (String::from_utf8(output.stdout).unwrap(), told)
+}
+
+#[test]
+fn exact_contacts_are_kept_and_computed_anew_where_anything_differs() {
+    let scratch = Scratch::new("exact");
+    let (computed, told) = exact(&scratch, CONTACTS);
+    let file = scratch.path("cache/roulement/contacts.csv");
+    // The third contact is the first again.
+    assert!(told.contains("3 contacts, 2 of them computed") && told.contains(&file), "{told}");
+    let rows: Vec<&str> = computed.lines().collect();
+    assert_eq!((rows[0], rows.len()), ("id,fx,fy,mz,power,stick", 4));
+    assert_eq!(rows[1].strip_prefix("one"), rows[3].strip_prefix("again"));
+    let kept = exact(&scratch, CONTACTS);
+    assert!(kept.1.contains("3 contacts, 0 of them computed"), "{}", kept.1);
+    assert_eq!(kept.0, computed);
+    // Whatever an answer depends on.
+    for (from, to) in [
+        ("two,1e-2", "two,2e-2"),
+        (",3e-3,20", ",2e-3,20"),
+        (",20,", ",19,"),
+        ("20,1e-4,", "20,1.1e-4,"),
+        ("0.3,-0.4", "0.29,-0.4"),
+        ("0.3,-0.4", "0.3,-0.41"),
+    ] {
+        let (forces, told) = exact(&scratch, &CONTACTS.replace(from, to));
+        assert!(told.contains("3 contacts, 1 of them computed"), "{to}: {told}");
+        let line = forces.lines().nth(2).unwrap();
+        assert!(line.starts_with("two,") && line != rows[2], "{to}: {line}");
+    }
+    // Load and friction alone are nothing but a scale: the answer is kept.
+    let (_, told) = exact(&scratch, &CONTACTS.replace("1.2e9,0.08", "0.6e9,0.16"));
+    assert!(told.contains("3 contacts, 0 of them computed"), "{told}");
+    // Nothing but the file is there.
+    assert_eq!(std::fs::read_dir(scratch.path("cache/roulement")).unwrap().count(), 1);
+}
+
+#[test]
+fn exact_contacts_of_a_damaged_or_older_cache_are_computed_anew() {
+    let scratch = Scratch::new("damaged");
+    let (computed, _) = exact(&scratch, CONTACTS);
+    let file = scratch.path("cache/roulement/contacts.csv");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let [title, first, _] = text.lines().collect::<Vec<_>>()[..] else { panic!("{text}") };
+    let older = text.replace(title, "# rolling contacts of roulement 0.0.1, form 1");
+    // A force that reads as one and is none, half a file, another version, and no text at all.
+    let place = first.match_indices(',').nth(7).unwrap().0 - 3;
+    let digit = if &first[place..=place] == "1" { "2" } else { "1" };
+    let altered = text.replace(first, &format!("{}{digit}{}", &first[..place], &first[place + 1..]));
+    for (damaged, count, words) in [
+        (altered.as_bytes(), 1, "1 line of"),
+        (&text.as_bytes()[..text.len() - 40], 1, "1 line of"),
+        (older.as_bytes(), 2, "another version"),
+        (&[0xff, 0xfe, 0x00, 0x80][..], 2, "is damaged or"),
+    ] {
+        assert_ne!(damaged, text.as_bytes());
+        std::fs::write(&file, damaged).unwrap();
+        let (forces, told) = exact(&scratch, CONTACTS);
+        assert!(told.contains(&format!("{count} of them computed")) && told.contains(words), "{told}");
+        assert_eq!(forces, computed);
+        let (_, told) = exact(&scratch, CONTACTS);
+        assert!(told.contains(" 0 of them computed") && !told.contains(words), "{told}");
+    }
+    // A directory in its place: told, and no obstacle.
+    std::fs::remove_file(&file).unwrap();
+    std::fs::create_dir(&file).unwrap();
+    let (forces, told) = exact(&scratch, CONTACTS);
+    assert!(told.contains("cannot read") && told.contains("cannot write") && told.contains(&file), "{told}");
+    assert_eq!(forces, computed);
+}
+
+#[test]
+fn exact_is_refused_where_it_has_no_meaning() {
+    let scratch = Scratch::new("exact-options");
+    let cases = scratch.path("cases.csv");
+    std::fs::write(&cases, CONTACTS).unwrap();
+    let refused = |arguments: &[&str]| {
+        let output = roulement(&[&["contact", &cases], arguments].concat());
+        assert!(!output.status.success() && output.stdout.is_empty());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let message = refused(&["--law", "kalker", "--exact"]);
+    assert!(message.contains("--exact is an option of --law kalker_table, not of kalker"), "{message}");
+    for other in ["--grid", "--degree"] {
+        let message = refused(&["--law", "kalker_table", "--exact", other, "5"]);
+        assert!(message.contains("'--exact' cannot be used with") && message.contains(other), "{message}");
+    }
+    let message = refused(&["--law", "kalker_table", "--no-cache"]);
+    assert!(message.contains("--exact"), "{message}");
+    // Nothing is computed, and nothing printed, before all contacts are known to be in range.
+    std::fs::write(&cases, CONTACTS.replace("again,1e-2,0,5,1e-4", "again,1e-2,0,5,1e-6")).unwrap();
+    let message = refused(&["--law", "kalker_table", "--exact", "--no-cache"]);
+    assert!(message.contains("case again") && message.contains("[0.018, 55]"), "{message}");
+}
+
+#[test]
+fn exact_contacts_need_no_cache() {
+    let scratch = Scratch::new("no-cache");
+    std::fs::write(scratch.path("cases.csv"), CONTACTS).unwrap();
+    let told = |extra: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_roulement"))
+            .args(["contact", "--law", "kalker_table", "--exact", &scratch.path("cases.csv")])
+            .args(extra)
+            .env("XDG_CACHE_HOME", "relative/paths/do/not/count")
+            .env_remove("HOME")
+            .env_remove("LOCALAPPDATA")
+            .output()
+            .unwrap();
+        assert!(output.status.success() && output.stdout.len() > 100);
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let nowhere = told(&[]);
+    assert!(nowhere.contains("nothing is kept") && nowhere.contains("2 of them computed"), "{nowhere}");
+    let unwanted = told(&["--no-cache"]);
+    assert!(!unwanted.contains("kept") && unwanted.contains("2 of them computed"), "{unwanted}");
 }

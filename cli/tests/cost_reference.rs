@@ -65,12 +65,21 @@ impl Balls<'_> {
     fn sample(&self, time: f64, y: &[f64]) -> Sample {
         let pitch_radius = self.model.race_length();
         let (mut force, mut moment, mut friction_power) = (Vector3::zeros(), Vector3::zeros(), 0.0);
+        let (mut race_power, mut spin_power, mut largest_load, mut peak_pressure) = ([0.0; 2], 0.0, 0.0, 0.0);
         let mut orbital_speed = Vec::new();
         for ball in y.chunks_exact(WIDTH).map(|y| self.motion(y)) {
             let contacts = self.contacts(time, &ball);
             force -= contacts[0].force;
             moment += contacts[0].race_moment;
             friction_power += contacts.iter().map(|contact| contact.friction_power).sum::<f64>();
+            for (race, contact) in contacts.iter().enumerate() {
+                race_power[race] += contact.friction_power;
+                spin_power += contact.creep.spin_moment * contact.creepage.spin * contact.rolling_speed;
+                largest_load = f64::max(largest_load, contact.load);
+                let [a, b] = contact.semi_axes;
+                let area = std::f64::consts::PI * a * b * contact.geometry.approach;
+                peak_pressure = f64::max(peak_pressure, 1.5 * contact.load / area);
+            }
             let (x, v) = (ball.position, ball.velocity);
             orbital_speed.push((x.y * v.z - x.z * v.y) / (x.y * x.y + x.z * x.z));
         }
@@ -82,6 +91,10 @@ impl Balls<'_> {
             displacement: [position.x, position.y, position.z, -axis.z * pitch_radius, axis.y * pitch_radius],
             friction_torque: -moment.dot(&axis),
             friction_power,
+            race_power,
+            spin_power,
+            largest_load,
+            peak_pressure,
             cage_speed: orbital_speed.iter().sum::<f64>() / orbital_speed.len() as f64,
             orbital_speed,
             dissipated: 0.0,
@@ -159,8 +172,21 @@ fn independent(scene: &Scene, like: &Record) -> Record {
     Record { samples, ..like.clone() }
 }
 
-/// Both runs of the reference against DOP853: errors per norm of the tiny step and of twice that.
-fn compare(scene: &Scene) -> [[f64; 2]; 4] {
+/// Quantities that are compared.
+const COMPARED: [Norm; 9] = [
+    Norm::Wrench,
+    Norm::FrictionTorque,
+    Norm::Orbit,
+    Norm::CageSpeed,
+    Norm::InnerPower,
+    Norm::OuterPower,
+    Norm::SpinShare,
+    Norm::LargestLoad,
+    Norm::PeakPressure,
+];
+
+/// Both runs of the reference against DOP853: errors per norm of the tiny step, and error bars.
+fn compare(scene: &Scene) -> [[f64; 2]; COMPARED.len()] {
     // Within a communication step we follow a cubic that meets the script at its ends: steps so short that it does not
     // matter.
     let communication = scene.load.output_interval.0 / 8.0;
@@ -170,7 +196,7 @@ fn compare(scene: &Scene) -> [[f64; 2]; 4] {
     let window = 0.25 * scene.load.duration.0;
     let found = runs.each_ref().map(|run| errors(run, &truth, Comparison::Pointwise, window));
     let bar = errors(&runs[1], &runs[0], Comparison::Pointwise, window);
-    [Norm::Wrench, Norm::FrictionTorque, Norm::Orbit, Norm::CageSpeed].map(|norm| {
+    COMPARED.map(|norm| {
         let [fine, coarse] = found.each_ref().map(|errors| errors.get(norm).unwrap());
         let bar = bar.get(norm).unwrap();
         println!("{:16} tiny step {fine:.2e}, twice that {coarse:.2e}, error bar {bar:.2e}", norm.name());

@@ -19,7 +19,7 @@
 use nalgebra::{Matrix2, Matrix2x6, Matrix4, Matrix4x6, Matrix6, Matrix6x2, Matrix6x4, Vector3, Vector4};
 
 use crate::contact::creep::Law;
-use crate::contact::{BallMotion, ContactModel, RaceMotion};
+use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 pub use crate::effects::reports::Condensed;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::state::{BallState, State};
@@ -59,7 +59,7 @@ struct Derivatives {
 }
 
 /// Derivatives of the forces in one contact.
-pub(crate) struct Linear {
+struct Linear {
     /// Force and moment on the ball by places; a ball has no orientation.
     ball_by_place: Derivatives,
     /// Force and moment on the ball by velocities.
@@ -70,17 +70,46 @@ pub(crate) struct Linear {
     race_by_rate: Derivatives,
 }
 
-impl Linear {
-    /// Force and moment on the ball (rows) by its velocity and angular velocity (columns).
-    pub(crate) fn ball_by_rate(&self) -> Matrix6<f64> {
-        self.ball_by_rate.by_ball
-    }
+fn fixed(v: &Vector3<f64>) -> Vector3<D> {
+    constant_vector(v)
+}
 
+/// A vector whose components are variables, from this direction on.
+fn variable(v: &Vector3<f64>, first: usize) -> Vector3<D> {
+    Vector3::from_fn(|i, _| D::variable(v[i], first + i, 1.0))
+}
+
+/// A contact with its derivatives by velocity and angular velocity of the ball, and by the angular velocity of the race.
+#[inline(never)]
+fn by_rates(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<f64>) -> BallRaceContact<D> {
+    model.evaluate(
+        &BallMotion {
+            position: fixed(&ball.position),
+            velocity: variable(&ball.velocity, 0),
+            angular_velocity: variable(&ball.angular_velocity, 3),
+        },
+        &RaceMotion {
+            position: fixed(&race.position),
+            axis: fixed(&race.axis),
+            velocity: fixed(&race.velocity),
+            angular_velocity: variable(&race.angular_velocity, 6),
+        },
+    )
+}
+
+/// Force and moment on a ball (rows) by its velocity and angular velocity (columns).
+pub(crate) fn ball_by_rate(
+    model: &ContactModel<'_>,
+    ball: &BallMotion<f64>,
+    race: &RaceMotion<f64>,
+) -> Matrix6<f64> {
+    let rates = by_rates(model, ball, race);
+    derivatives(&rates.force, &rates.ball_moment).by_ball
+}
+
+impl Linear {
     /// Derivatives of a contact in motion.
-    pub(crate) fn new(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<f64>) -> Self {
-        let fixed = |v: &Vector3<f64>| constant_vector::<D>(v);
-        let variable =
-            |v: &Vector3<f64>, first: usize| Vector3::from_fn(|i, _| D::variable(v[i], first + i, 1.0));
+    fn new(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<f64>) -> Self {
         // A vector that turns with the race.
         let turning = |v: &Vector3<f64>| {
             let mut turned = fixed(v);
@@ -104,19 +133,7 @@ impl Linear {
                 angular_velocity: turning(&race.angular_velocity),
             },
         );
-        let rates = model.evaluate(
-            &BallMotion {
-                position: fixed(&ball.position),
-                velocity: variable(&ball.velocity, 0),
-                angular_velocity: variable(&ball.angular_velocity, 3),
-            },
-            &RaceMotion {
-                position: fixed(&race.position),
-                axis: fixed(&race.axis),
-                velocity: fixed(&race.velocity),
-                angular_velocity: variable(&race.angular_velocity, 6),
-            },
-        );
+        let rates = by_rates(model, ball, race);
         let opposite = |force: &Vector3<D>| -force;
         Self {
             ball_by_place: derivatives(&places.force, &places.ball_moment),

@@ -7,11 +7,11 @@ use thiserror::Error;
 use crate::contact::creep::{self, CreepForces, Creepage, LinearTheory, saturation};
 use crate::contact::identification::identify_by_table;
 use crate::contact::oblique::{Across, Exchanged, exchanged};
-use crate::kalker::half_space::{HalfSpaceError, extrapolated};
+use crate::kalker::half_space::{HalfSpaceError, Refined, extrapolated, refined};
 use crate::kalker::linear::{LinearError, creep_matrix};
 use crate::kalker::nonlinear::{Kalker, KalkerError};
 use crate::kalker::table::CreepTable;
-use crate::kalker::{Patch, ScaledCreepage};
+use crate::kalker::{Patch, ScaledCreepage, ScaledForces};
 use crate::numerics::elliptic::complete_elliptic_integrals;
 use crate::scene::CreepLaw;
 
@@ -75,6 +75,27 @@ pub enum Law {
     Kalker(usize),
     /// The half-space reference solver, extrapolated from grids of this many cells and twice as many.
     Reference(usize),
+    /// The half-space reference solver on grids as fine as each contact needs.
+    Exact,
+}
+
+/// A contact in Kalker's scale: what its forces over mu N depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaledContact {
+    /// Ellipse, material and direction of rolling.
+    pub patch: Patch,
+    /// Creepages.
+    pub creepage: ScaledCreepage,
+}
+
+impl ScaledContact {
+    /// Its forces by the half-space reference solver, on grids as fine as they need.
+    ///
+    /// # Errors
+    /// See [`HalfSpaceError`].
+    pub fn exact(&self) -> Result<Refined, HalfSpaceError> {
+        refined(&self.patch, &self.creepage)
+    }
 }
 
 /// Why a contact could not be evaluated.
@@ -124,17 +145,21 @@ impl RollingContact {
     /// See [`ContactError`].
     pub fn evaluate(&self, law: Law) -> Result<RollingForces, ContactError> {
         self.check()?;
-        let (patch, c) = (self.patch(), self.mean_semi_axis());
+        let c = self.mean_semi_axis();
+        let ScaledContact { patch, creepage } = self.in_scale();
         let ([fx, fy, mz, second_moment], stick) = match law {
             Law::Simulated(CreepLaw::Kalker) => return self.evaluate(Law::Kalker(DEGREE)),
             Law::Simulated(law) => (self.simulated(law, &patch, c)?, None),
             Law::Reference(cells) => {
                 let failed = |why| ContactError::Reference(self.id.clone(), why);
-                let f = extrapolated(&patch, &self.scaled_creepage(), cells).map_err(failed)?;
+                let f = extrapolated(&patch, &creepage, cells).map_err(failed)?;
                 ([f.fx, f.fy, f.mz, f.second_moment], None)
             }
+            Law::Exact => {
+                let failed = |why| ContactError::Reference(self.id.clone(), why);
+                return Ok(self.with_forces(&refined(&patch, &creepage).map_err(failed)?.forces));
+            }
             Law::Kalker(degree) => {
-                let creepage = self.scaled_creepage();
                 let failed = |why| ContactError::Kalker(self.id.clone(), why);
                 let solution = Kalker::new(patch, degree)
                     .and_then(|kalker| kalker.solve(&creepage, None))
@@ -143,34 +168,49 @@ impl RollingContact {
                 ([f.fx, f.fy, f.mz, f.second_moment], Some(solution.stick))
             }
         };
-        let power = self.creep_x * fx + self.creep_y * fy + self.spin * c * mz
-            - self.curvature * c * c * second_moment;
-        Ok(RollingForces { id: self.id.clone(), fx, fy, mz, power, stick })
+        Ok(RollingForces { stick, ..self.with_forces(&ScaledForces { fx, fy, mz, second_moment }) })
     }
 
-    /// \[m] geometric mean of the semi-axes.
+    /// The contact in Kalker's scale, for forces that are had elsewhere ([`Self::with_forces`]).
+    ///
+    /// # Errors
+    /// If a number is out of range.
+    pub fn scaled(&self) -> Result<ScaledContact, ContactError> {
+        self.check()?;
+        let contact = self.in_scale();
+        contact.patch.check().map_err(|why| ContactError::Linear(self.id.clone(), why))?;
+        Ok(contact)
+    }
+
+    /// Forces and power of the contact by its forces in Kalker's scale.
+    pub fn with_forces(&self, forces: &ScaledForces) -> RollingForces {
+        let c = self.mean_semi_axis();
+        let ScaledForces { fx, fy, mz, second_moment } = *forces;
+        let power = self.creep_x * fx + self.creep_y * fy + self.spin * c * mz
+            - self.curvature * c * c * second_moment;
+        RollingForces { id: self.id.clone(), fx, fy, mz, power, stick: None }
+    }
+
+    /// \[m] `c = sqrt(a b)`.
     fn mean_semi_axis(&self) -> f64 {
         (self.semi_axis_x * self.semi_axis_y).sqrt()
     }
 
-    /// Its ellipse, material and direction of rolling.
-    pub fn patch(&self) -> Patch {
-        Patch {
-            axis_ratio: self.semi_axis_x / self.semi_axis_y,
-            poisson_ratio: self.poisson_ratio,
-            rolling_angle: self.rolling_angle,
-        }
-    }
-
-    /// Its creepages in Kalker's scale.
-    pub fn scaled_creepage(&self) -> ScaledCreepage {
+    fn in_scale(&self) -> ScaledContact {
         let c = self.mean_semi_axis();
         let scale = self.shear_modulus / (self.friction * self.peak_pressure);
-        ScaledCreepage {
-            x: self.creep_x * scale,
-            y: self.creep_y * scale,
-            spin: self.spin * c * scale,
-            curvature: self.curvature * c * c * scale,
+        ScaledContact {
+            patch: Patch {
+                axis_ratio: self.semi_axis_x / self.semi_axis_y,
+                poisson_ratio: self.poisson_ratio,
+                rolling_angle: self.rolling_angle,
+            },
+            creepage: ScaledCreepage {
+                x: self.creep_x * scale,
+                y: self.creep_y * scale,
+                spin: self.spin * c * scale,
+                curvature: self.curvature * c * c * scale,
+            },
         }
     }
 

@@ -8,7 +8,7 @@ use super::heathcote::CurvatureEffect;
 pub use super::linear_theory::{CreepForces, Creepage, LinearTheory};
 use super::regularised::Parameters;
 use super::shape::ShapeAt;
-use crate::kalker::scaled_law::ScaledKalker;
+use crate::kalker::scaled_law::{PolynomialsFrom, ScaledKalker};
 use crate::kalker::table::CreepTable;
 use crate::numerics::scalar::{Scalar, within_limit};
 
@@ -27,6 +27,8 @@ pub enum Law<'a> {
     Table(&'a CreepTable),
     /// Kalker's nonlinear theory in polynomials.
     Kalker(&'a ScaledKalker),
+    /// The same, its minimum sought from the coefficients of a solution at nearby creepages.
+    Continued(&'a ScaledKalker, &'a [f64]),
     /// Kalker's nonlinear theory in polynomials as simulations use it: the table plus a difference that is frozen in a step.
     Frozen(&'a CreepTable, &'a [f64; 4]),
 }
@@ -79,7 +81,12 @@ impl<S: Scalar> LinearTheory<S> {
             Law::Regularised(parameters) => self.regularised(parameters, creepage),
             Law::Saturated => self.saturated(creepage),
             Law::Table(table) | Law::Frozen(table, _) => self.tabulated(table, creepage),
-            Law::Kalker(kalker) => return self.polynomials(kalker, creepage),
+            Law::Kalker(kalker) => {
+                return self.polynomials(&PolynomialsFrom { kalker, start: None }, creepage);
+            }
+            Law::Continued(kalker, start) => {
+                return self.polynomials(&PolynomialsFrom { kalker, start: Some(start) }, creepage);
+            }
         };
         let forces = match creepage.curvature {
             None => self.dimensional(flat, S::zero()),
@@ -198,9 +205,9 @@ impl<S: Scalar> LinearTheory<S> {
 
     /// Kalker's nonlinear theory in polynomials, the curvature of the groove included.
     #[inline(always)]
-    fn polynomials(&self, kalker: &ScaledKalker, creepage: &Creepage<S>) -> CreepForces<S> {
+    fn polynomials(&self, kalker: &PolynomialsFrom<'_>, creepage: &Creepage<S>) -> CreepForces<S> {
         let (turned, q) = self.polynomial_arguments(creepage);
-        let [x, y, z, second] = S::map_smooth_many(q, |q| kalker.evaluate(q));
+        let [x, y, z, second] = S::apply(kalker, q);
         self.dimensional([turned * x, turned * y, z], turned * second * self.second_moment_scale())
     }
 
@@ -243,9 +250,16 @@ impl<S: Scalar> LinearTheory<S> {
 }
 
 impl LinearTheory<f64> {
-    /// Arguments of the polynomials, and the table's results in the same scale.
-    pub fn polynomial_scale(&self, table: &CreepTable, creepage: &Creepage<f64>) -> ([f64; 4], [f64; 4]) {
+    /// Arguments of the polynomials, and the table's results in the same scale; nothing without a table.
+    pub fn polynomial_scale(
+        &self,
+        table: Option<&CreepTable>,
+        creepage: &Creepage<f64>,
+    ) -> ([f64; 4], [f64; 4]) {
         let (turned, q) = self.polynomial_arguments(creepage);
+        let Some(table) = table else {
+            return (q, [0.0; 4]);
+        };
         let forces = self.forces(Law::Table(table), creepage);
         let (per_force, per_moment) = self.per_limits();
         let per_second = 1.0 / (self.second_moment_scale() + f64::MIN_POSITIVE);

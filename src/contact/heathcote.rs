@@ -47,19 +47,23 @@ struct Slopes {
     yy: Lanes,
 }
 
+const ZERO: Lanes = Lanes([0.0; WIDTH]);
+const NO_FORCES: Forces = Forces { x: [ZERO; 3], y: ZERO };
+const NO_SLOPES: Slopes = Slopes { xx: [ZERO; 5], xy: [ZERO; 3], yy: ZERO };
+
 /// Sums over the strips; sums of derivatives only if asked for.
 #[inline(always)]
 fn sums(q: [f64; 4], mut slopes: Option<&mut Slopes>) -> Forces {
-    let zero = Lanes::constant(0.0);
     let one = Lanes::constant(1.0);
     let [x, y, spin, curvature] = q.map(Lanes::constant);
-    let mut forces = Forces { x: [zero; 3], y: zero };
+    let mut forces = NO_FORCES;
     let uy = y.scale(0.5);
     for &[place, weight] in PLACES.iter() {
         let ux = (x - (spin + curvature * place) * place).scale(0.5);
         let square = ux.square() + uy.square();
         let size = square.sqrt();
-        let inverse = one / size.where_positive(size, one);
+        // A quotient by a selected number becomes a jump for each lane; by a larger one it stays a vector's.
+        let inverse = one / size.at_least(f64::MIN_POSITIVE);
         let sliding = size - one;
         // f = g u
         let g = inverse.where_positive(sliding, Lanes::constant(2.0) - size);
@@ -73,7 +77,7 @@ fn sums(q: [f64; 4], mut slopes: Option<&mut Slopes>) -> Forces {
         if let Some(slopes) = &mut slopes {
             // derivative of g by |u|, over |u|; nothing where |u| is
             let slope =
-                (-inverse * inverse * inverse).where_positive(sliding, -inverse.where_positive(size, zero));
+                (-inverse * inverse * inverse).where_positive(sliding, -inverse.where_positive(size, ZERO));
             let ws = weight * slope;
             let mut xx = wg + ws * ux * ux;
             let mut xy = ws * ux * uy;
@@ -113,9 +117,25 @@ impl SmoothMap<4, 4> for CurvatureEffect {
     }
 }
 
+/// Sums with and without the curvature. They go into memory lane by lane: compilers vectorise from the stores backwards.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn both_sums(q: [f64; 4], forces: &mut [Forces; 2]) {
+    *forces = [sums(q, None), sums(flat(q), None)];
+}
+
+/// The same with derivatives.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn both_sums_with_slopes(q: [f64; 4], forces: &mut [Forces; 2], slopes: &mut [Slopes; 2]) {
+    let [mut with, mut without] = [NO_SLOPES; 2];
+    *forces = [sums(q, Some(&mut with)), sums(flat(q), Some(&mut without))];
+    *slopes = [with, without];
+}
+
+#[inline(never)]
 fn curvature_effect(q: [f64; 4]) -> [f64; 4] {
-    changes(&sums(q, None), &sums(flat(q), None))
+    let mut forces = [NO_FORCES; 2];
+    both_sums(q, &mut forces);
+    changes(&forces)
 }
 
 /// Arguments without curvature.
@@ -124,7 +144,7 @@ fn flat([x, y, spin, _]: [f64; 4]) -> [f64; 4] {
 }
 
 #[inline(always)]
-fn changes(curved: &Forces, flat: &Forces) -> [f64; 4] {
+fn changes([curved, flat]: &[Forces; 2]) -> [f64; 4] {
     let change = |curved: Lanes, flat: Lanes| total(curved) - total(flat);
     [
         change(curved.x[0], flat.x[0]),
@@ -135,12 +155,12 @@ fn changes(curved: &Forces, flat: &Forces) -> [f64; 4] {
 }
 
 /// Effect of the curvature with its derivatives.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+#[inline(never)]
 fn curvature_effect_with_gradient(q: [f64; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
-    let zero = Lanes::constant(0.0);
-    let none = Slopes { xx: [zero; 5], xy: [zero; 3], yy: zero };
-    let (mut with, mut without) = (none, none);
-    let change = changes(&sums(q, Some(&mut with)), &sums(flat(q), Some(&mut without)));
+    let (mut forces, mut slopes) = ([NO_FORCES; 2], [NO_SLOPES; 2]);
+    both_sums_with_slopes(q, &mut forces, &mut slopes);
+    let change = changes(&forces);
+    let [with, without] = slopes;
     let slopes = |s: &Slopes| {
         let (xx, xy) = (s.xx.map(total), s.xy.map(total));
         [
@@ -156,4 +176,66 @@ fn curvature_effect_with_gradient(q: [f64; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
         std::array::from_fn(|n| 0.5 * (with[m][n] - if m < 3 && n < 3 { without[m][n] } else { 0.0 }))
     });
     (change, gradient)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sums of `f_x`, `y f_x`, `y^2 f_x`, `f_y` and of `(y/b)^k d f_x/d u_x`, k to 4, strip by strip in the order of the lanes.
+    fn plainly([x, y, spin, curvature]: [f64; 4]) -> [f64; 9] {
+        let mut lanes = [[0.0f64; WIDTH]; 9];
+        for [places, weights] in PLACES.iter() {
+            for lane in 0..WIDTH {
+                let (place, weight) = (places.0[lane], weights.0[lane]);
+                let (ux, uy) = (0.5 * (x - (spin + curvature * place) * place), 0.5 * y);
+                let size = (ux * ux + uy * uy).sqrt();
+                let (g, slope) = match size {
+                    size if size > 1.0 => {
+                        let inverse = 1.0 / size;
+                        (inverse, -inverse * inverse * inverse)
+                    }
+                    size if size > 0.0 => (2.0 - size, -(1.0 / size)),
+                    _ => (2.0, 0.0),
+                };
+                let (wg, ws) = (weight * g, weight * slope);
+                let (mut fx, mut xx) = (wg * ux, wg + ws * ux * ux);
+                for k in 0..3 {
+                    lanes[k][lane] += fx;
+                    fx *= place;
+                }
+                lanes[3][lane] += wg * uy;
+                for k in 4..9 {
+                    lanes[k][lane] += xx;
+                    xx *= place;
+                }
+            }
+        }
+        lanes.map(|[a, b, c, d]| (a + b) + (c + d))
+    }
+
+    #[test]
+    fn invariant_vectors_of_strips_have_the_bits_of_strips_one_by_one() {
+        let sizes = [0.0, 1e-200, 1e-9, 0.1, -0.7, 1.9, -2.0, 30.0, 1e12];
+        for (x, y) in sizes.into_iter().flat_map(|x| sizes.map(|y| (x, y))) {
+            for (spin, curvature) in sizes.into_iter().flat_map(|x| sizes.map(|y| (x, y))) {
+                let q = [x, y, spin, curvature];
+                let (curved, flat) = (plainly(q), plainly(flat(q)));
+                let expected = [curved[0] - flat[0], curved[3] - flat[3], -(curved[1] - flat[1]), curved[2]];
+                let (values, gradient) = curvature_effect_with_gradient(q);
+                assert_eq!(curvature_effect(q), expected, "{q:?}");
+                assert_eq!(values, expected, "{q:?}");
+                let slopes = [
+                    (gradient[0][0], curved[4] - flat[4]),
+                    (gradient[0][2], -curved[5] - -flat[5]),
+                    (gradient[2][2], curved[6] - flat[6]),
+                    (gradient[2][3], curved[7]),
+                    (gradient[3][3], -curved[8]),
+                ];
+                for (ours, expected) in slopes {
+                    assert_eq!(ours, 0.5 * expected, "{q:?}");
+                }
+            }
+        }
+    }
 }

@@ -303,6 +303,7 @@ impl ContactModel<'_> {
         ContactModel {
             law: match (self.law, difference) {
                 (Law::Table(table), Some(difference)) => Law::Frozen(table, &difference.value),
+                (Law::Kalker(kalker), Some(last)) => Law::Continued(kalker, &last.coefficients),
                 (law, _) => law,
             },
             ..*self
@@ -321,8 +322,11 @@ impl ContactModel<'_> {
         fraction: f64,
         difference: &mut Difference,
     ) -> Result<bool, KalkerError> {
-        let Law::Table(table) = self.law else {
-            return Ok(false);
+        let (table, fraction) = match self.law {
+            Law::Table(table) => (Some(table), fraction),
+            // Nothing is frozen: the last solution is where the next one begins.
+            Law::Kalker(_) => (None, 0.0),
+            _ => return Ok(false),
         };
         if contact.load <= 0.0 {
             return Ok(false);

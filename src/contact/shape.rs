@@ -10,7 +10,8 @@ use super::hertz::HertzContact;
 use super::materials::Pair;
 use super::raceway::Raceway;
 use crate::kalker::Patch;
-use crate::kalker::linear::{LinearError, creep_matrix};
+use crate::kalker::creep_coefficients::along_x;
+use crate::kalker::linear::LinearError;
 use crate::numerics::elliptic::complete_elliptic_integrals;
 use crate::numerics::scalar::Scalar;
 
@@ -137,13 +138,13 @@ impl ShapeAt<f64> {
         shear: f64,
         poisson_ratio: f64,
     ) -> Result<Self, LinearError> {
-        let creep = creep_matrix(&Patch { axis_ratio, poisson_ratio, rolling_angle: 0.0 })?;
+        let [c11, c22, c23, c33] = along_x(&Patch { axis_ratio, poisson_ratio, rolling_angle: 0.0 })?;
         let area = hertz.semi_axis_rolling * hertz.semi_axis_transverse;
         Ok(Self {
-            longitudinal: shear * area * creep[(0, 0)],
-            lateral: shear * area * creep[(1, 1)],
-            coupling: shear * area.powf(1.5) * creep[(1, 2)],
-            spin: shear * area.powi(2) * creep[(2, 2)],
+            longitudinal: shear * area * c11,
+            lateral: shear * area * c22,
+            coupling: shear * area.powf(1.5) * c23,
+            spin: shear * area.powi(2) * c33,
             ..Self::without_creep(hertz)
         })
     }

@@ -11,7 +11,7 @@ use crate::contact::many::ContactGroup;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::model::Model;
 use crate::model::bodies::{Body, PerRace, RigidBody};
-use crate::model::state::{BodyState, State, race_motion};
+use crate::model::state::{BodyState, KeptMatrix, State, race_motion};
 use crate::numerics::arrowhead::{BLOCK, SLOTS};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::lanes::WIDTH;
@@ -87,6 +87,24 @@ impl<'a> BearingStep<'a> {
     /// Do steps share the blocks of balls?
     pub(super) fn keeps_matrices(&self) -> bool {
         self.model.solver.matrix_reuse > 0.0 && self.workspace.neighbours.is_empty()
+    }
+
+    /// Takes the law and the tolerance that an iteration begins with, where the model has such ([`crate::model::switch`]).
+    pub fn begin_with_first_law(&mut self) -> bool {
+        let first = self.model.first_law(&self.boundary.conditions);
+        let Some((contacts, residual)) = first else {
+            return false;
+        };
+        self.contacts = contacts;
+        self.force_tolerance = residual.max(self.start.force_tolerance);
+        true
+    }
+
+    /// Goes on from there with the model's own law and tolerance, and with a matrix of its own.
+    pub fn go_on_with_own_law(&mut self) {
+        self.contacts = self.model.contacts(&self.boundary.conditions);
+        self.force_tolerance = self.start.force_tolerance;
+        self.workspace.kept = KeptMatrix::default();
     }
 
     /// Are the balls independent of each other, because no body has unknowns and no two balls may touch?

@@ -126,6 +126,10 @@ pub fn try_step(
     equations.list_near();
     equations.guess_steady_orbit(&mut unknowns);
     let mut solve = |equations: &mut BearingStep<'_>, unknowns: &mut [f64]| {
+        if equations.begin_with_first_law() {
+            newton::solve(equations, unknowns, &mut buffers, &mut statistics.newton)?;
+            equations.go_on_with_own_law();
+        }
         newton::solve(equations, unknowns, &mut buffers, &mut statistics.newton)?;
         // Each time around another pair of balls has met.
         while equations.list_met() {

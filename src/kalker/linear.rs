@@ -11,9 +11,13 @@ use nalgebra::{DMatrix, Matrix3};
 use thiserror::Error;
 
 use super::Patch;
+use super::creep_coefficients::along_x;
 use super::load_displacement::{Basis, LoadDisplacement, disc_moment};
 use crate::numerics::elliptic::complete_elliptic_integrals;
 
+/// Ranges of the axis ratio and of Poisson's ratio.
+pub(super) const RATIO: (f64, f64) = (0.018, 55.0);
+pub(super) const POISSON: (f64, f64) = (0.0, 0.5);
 /// Degree of the polynomials: odd ones converge faster. Coefficients are within 0.3 % of higher degrees from axis
 /// ratio 0.02 to 50 (tested).
 const DEGREE: usize = 9;
@@ -43,10 +47,10 @@ impl Patch {
     /// # Errors
     /// Names the value that is out of range.
     pub fn check(&self) -> Result<(), LinearError> {
-        if !(0.018..=55.0).contains(&self.axis_ratio) {
+        if !(RATIO.0..=RATIO.1).contains(&self.axis_ratio) {
             return Err(LinearError::AxisRatio(self.axis_ratio));
         }
-        if !(0.0..=0.5).contains(&self.poisson_ratio) {
+        if !(POISSON.0..=POISSON.1).contains(&self.poisson_ratio) {
             return Err(LinearError::PoissonRatio(self.poisson_ratio));
         }
         if !self.rolling_angle.is_finite() {
@@ -218,15 +222,15 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// Linear theory of a patch that rolls along the x axis of its ellipse.
+    /// Linear theory of a patch as it rolls along the x axis of its ellipse.
     ///
     /// # Errors
     /// See [`LinearError`].
     pub fn new(patch: &Patch) -> Result<Self, LinearError> {
-        let c = creep_matrix(patch)? * (1.5 / PI);
+        let [c11, c22, c23, c33] = along_x(patch)?.map(|coefficient| coefficient * (1.5 / PI));
         let slender = patch.axis_ratio.min(1.0 / patch.axis_ratio);
         let (_, second) = complete_elliptic_integrals(1.0 - slender * slender);
         let moment = 0.375 * second / slender.sqrt();
-        Ok(Self { c11: c[(0, 0)], c22: c[(1, 1)], c23: c[(1, 2)], c33: c[(2, 2)], moment })
+        Ok(Self { c11, c22, c23, c33, moment })
     }
 }

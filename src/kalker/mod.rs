@@ -9,6 +9,7 @@
 //! minus that of body 2, the material flows towards -x (leading edge at +x), and forces are those of body 1 ON
 //! BODY 2, so that they point along the creepage. The friction force on body 1 is the opposite.
 
+pub mod creep_coefficients;
 pub mod half_space;
 pub mod linear;
 pub mod load_displacement;

@@ -9,6 +9,7 @@ use super::linear::Scales;
 use super::nonlinear::{Kalker, KalkerError};
 use super::solution::Solution;
 use super::{Patch, ScaledCreepage};
+use crate::numerics::scalar::{SmoothMap, Values};
 
 /// [-] change of q over `1 + |q|` beyond which the last solution is no start for the next.
 const NEAR: f64 = 0.5;
@@ -40,6 +41,29 @@ impl Difference {
         let size = q.iter().fold(0.0f64, |size, q| size.max(q.abs()));
         let moved = q.iter().zip(&self.place).fold(0.0f64, |moved, (q, place)| moved.max((q - place).abs()));
         moved / (1.0 + size)
+    }
+}
+
+/// [`ScaledKalker::evaluate`] from a start: coefficients at nearby creepages, or the linear solution.
+#[derive(Clone, Copy, Debug)]
+pub struct PolynomialsFrom<'a> {
+    /// The theory.
+    pub kalker: &'a ScaledKalker,
+    /// Coefficients.
+    pub start: Option<&'a [f64]>,
+}
+
+impl SmoothMap<4, 4> for PolynomialsFrom<'_> {
+    fn values<V: Values>(&self, x: [V; 4]) -> [V; 4] {
+        let Self { kalker, start } = *self;
+        V::each(x, |q| {
+            let solution = kalker.kalker.solve(&kalker.creepage(&q), start);
+            solution.map_or([f64::NAN; 4], |solution| kalker.results(&solution))
+        })
+    }
+
+    fn with_gradient(&self, x: [f64; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
+        self.kalker.evaluate_from(x, self.start)
     }
 }
 
@@ -88,10 +112,14 @@ impl ScaledKalker {
     /// Arguments are linear theory's forces without coupling over the same limits, and the linear force over mu Q of
     /// the slip `kappa b^2`. Where the nonlinear problem does not converge the values are NaN, which no step accepts.
     pub fn evaluate(&self, q: [f64; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
+        self.evaluate_from(q, None)
+    }
+
+    fn evaluate_from(&self, q: [f64; 4], start: Option<&[f64]>) -> ([f64; 4], [[f64; 4]; 4]) {
         let (by_q, by_force) = self.factors();
         let creepage = self.creepage(&q);
         let nothing = ([f64::NAN; 4], [[f64::NAN; 4]; 4]);
-        let Ok(solution) = self.kalker.solve(&creepage, None) else {
+        let Ok(solution) = self.kalker.solve(&creepage, start) else {
             return nothing;
         };
         let Some(derivatives) = self.kalker.derivatives(&solution, &creepage) else {

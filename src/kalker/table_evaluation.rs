@@ -244,11 +244,12 @@ impl Stencil {
         Self { piece: [i, j, k], within: [u, v, w] }
     }
 
-    /// First of the four nodes along phi, at step `a` along t and `b` along theta.
+    /// The nodes around the place and those between them in memory: one range, so that nothing is left to check within it.
     #[inline(always)]
-    fn row(&self, a: usize, b: usize) -> usize {
+    fn around<'a>(&self, nodes: &'a [Lanes]) -> &'a [Lanes] {
         let [i, j, k] = self.piece;
-        ((i + a) * PADDED[1] + j + b) * PADDED[2] + k
+        let first = (i * PADDED[1] + j) * PADDED[2] + k;
+        &nodes[first..first + SPAN]
     }
 
     /// Weights along phi of the stored functions, and their slopes.
@@ -269,22 +270,36 @@ impl Stencil {
     }
 }
 
+/// From the first to the last of the nodes around a place.
+const SPAN: usize = (3 * PADDED[1] + 3) * PADDED[2] + 4;
+
+/// The four nodes along phi, at step `a` along t and `b` along theta.
+#[inline(always)]
+fn row(around: &[Lanes], a: usize, b: usize) -> &[Lanes] {
+    let first = (a * PADDED[1] + b) * PADDED[2];
+    &around[first..first + 4]
+}
+
+/// Sum over the nodes along phi.
+#[inline(always)]
+fn line(weights: &[Lanes; 4], nodes: &[Lanes]) -> Lanes {
+    weights[0] * nodes[0] + weights[1] * nodes[1] + weights[2] * nodes[2] + weights[3] * nodes[3]
+}
+
 /// Values of the stored functions.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn interpolate(nodes: &[Lanes], stencil: &Stencil) -> Lanes {
     let ((wt, _), (wv, _)) =
         (piece(stencil.piece[0]).weights(stencil.within[0]), weights(stencil.within[1], 1.0));
     let (ww, _) = stencil.weights_along_phi();
+    let around = stencil.around(nodes);
     let mut value = Lanes::constant(0.0);
     for a in 0..4 {
+        let mut plane = Lanes::constant(0.0);
         for b in 0..4 {
-            let row = stencil.row(a, b);
-            let mut line = Lanes::constant(0.0);
-            for (w, node) in ww.iter().zip(&nodes[row..row + 4]) {
-                line += *w * *node;
-            }
-            value += line.scale(wt[a] * wv[b]);
+            plane += line(&ww, row(around, a, b)).scale(wv[b]);
         }
+        value += plane.scale(wt[a]);
     }
     value
 }
@@ -295,20 +310,21 @@ fn interpolate_with_slopes(nodes: &[Lanes], stencil: &Stencil) -> [Lanes; 4] {
     let ((wt, dt), (wv, dv)) =
         (piece(stencil.piece[0]).weights(stencil.within[0]), weights(stencil.within[1], 1.0));
     let (ww, dw) = stencil.weights_along_phi();
+    let around = stencil.around(nodes);
     let [mut value, mut by_t, mut by_theta, mut by_phi] = [Lanes::constant(0.0); 4];
     for a in 0..4 {
+        let [mut plane, mut plane_by_theta, mut plane_by_phi] = [Lanes::constant(0.0); 3];
         for b in 0..4 {
-            let row = stencil.row(a, b);
-            let [mut line, mut slope] = [Lanes::constant(0.0); 2];
-            for (c, node) in nodes[row..row + 4].iter().enumerate() {
-                line += ww[c] * *node;
-                slope += dw[c] * *node;
-            }
-            value += line.scale(wt[a] * wv[b]);
-            by_t += line.scale(dt[a] * wv[b]);
-            by_theta += line.scale(wt[a] * dv[b]);
-            by_phi += slope.scale(wt[a] * wv[b]);
+            let nodes = row(around, a, b);
+            let along = line(&ww, nodes);
+            plane += along.scale(wv[b]);
+            plane_by_theta += along.scale(dv[b]);
+            plane_by_phi += line(&dw, nodes).scale(wv[b]);
         }
+        value += plane.scale(wt[a]);
+        by_t += plane.scale(dt[a]);
+        by_theta += plane_by_theta.scale(wt[a]);
+        by_phi += plane_by_phi.scale(wt[a]);
     }
     [value, by_t, by_theta, by_phi]
 }

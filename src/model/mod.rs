@@ -5,6 +5,7 @@ pub mod bodies;
 pub mod cage;
 pub mod raceways;
 pub mod state;
+pub mod switch;
 
 use nalgebra::Vector3;
 
@@ -18,6 +19,7 @@ use bearing::Bearing;
 use bodies::{Bodies, PerRace, Race, RigidBody};
 use cage::CageModel;
 use raceways::RacewayContacts;
+use switch::Switch;
 
 /// Conditions that may change from step to step and are the same in every contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +37,8 @@ pub struct Model {
     pub bodies: Bodies<Option<RigidBody>>,
     /// Balls against raceways.
     raceways: PerRace<RacewayContacts>,
+    /// The law that each step's iteration begins with, in the experiment of [`switch`] alone.
+    switch: Option<Switch>,
     /// Balls against the cage's pockets and the cage against a race's lands, where a cage is simulated.
     pub cage: Option<CageModel>,
     /// Neighbouring balls against each other, where no cage keeps them apart.
@@ -67,6 +71,7 @@ impl Model {
         Ok(Self {
             bodies: Bodies::new(races, section.map(|section| Some(RigidBody::cage(section)))),
             raceways: PerRace::try_new(|race| RacewayContacts::new(scene, &bearing, race))?,
+            switch: None,
             ball_contact: cage.is_none().then(|| {
                 let material = (scene.ball.youngs_modulus.0, scene.ball.poisson_ratio);
                 let friction = scene.friction.ball_ball.unwrap_or(scene.friction.ball_race.at(0.0));
@@ -92,7 +97,15 @@ impl Model {
     /// Contact model of the balls with a race; Kalker's polynomials give its table, to which each ball's difference is
     /// added ([`ContactModel::of_ball`]).
     pub fn contact(&self, race: Race, conditions: &Conditions) -> ContactModel<'_> {
-        let raceway = &self.raceways[race];
+        self.contact_of(&self.raceways[race], race, conditions)
+    }
+
+    fn contact_of<'a>(
+        &'a self,
+        raceway: &'a RacewayContacts,
+        race: Race,
+        conditions: &Conditions,
+    ) -> ContactModel<'a> {
         ContactModel {
             raceway: self.bearing.raceway(race),
             shape: &raceway.shape,

@@ -39,6 +39,12 @@ impl Lanes {
         Vector3::new(component(0), component(1), component(2))
     }
 
+    /// The larger of each number and a bound; the bound where there is no number.
+    #[inline(always)]
+    pub fn at_least(self, bound: f64) -> Self {
+        self.map(|x| if x > bound { x } else { bound })
+    }
+
     #[inline(always)]
     fn map(self, f: impl Fn(f64) -> f64) -> Self {
         let [a, b, c, d] = self.0;

@@ -81,7 +81,15 @@ impl Simulation {
     /// # Errors
     /// See [`SimulationError`].
     pub fn starting_at(scene: &Scene, time: f64) -> Result<Self, SimulationError> {
-        let model = Arc::new(Model::new(scene)?);
+        Self::of_model(scene, Model::new(scene)?, time)
+    }
+
+    /// The same with a model that was built for the scene already.
+    ///
+    /// # Errors
+    /// See [`SimulationError`].
+    pub fn of_model(scene: &Scene, model: Model, time: f64) -> Result<Self, SimulationError> {
+        let model = Arc::new(model);
         let (inputs, state) = start::from_equilibrium(scene, &model, time)?;
         let paths = InputPaths::steady(&inputs, &state);
         let outputs = Outputs::new(&model, &state, &inputs.conditions());

@@ -8,7 +8,7 @@
 
 use nalgebra::{Matrix4, Matrix6, Vector4};
 
-use crate::analysis::condensed::{Linear, Orbit};
+use crate::analysis::condensed::{Orbit, ball_by_rate};
 use crate::contact::creep::Law;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::model::Model;
@@ -99,7 +99,7 @@ fn balanced(around: &Surroundings<'_>, start: &BallMotion<f64>, own_orbit: bool)
         if largest(&here) <= TOLERANCE * limit {
             return rolls(contacts, races, &motion).then_some(motion);
         }
-        let contact = |race: Race| Linear::new(&contacts[race], &motion, &races[race]).ball_by_rate();
+        let contact = |race: Race| ball_by_rate(&contacts[race], &motion, &races[race]);
         let by_rate: Matrix6<f64> = contact(Race::Inner) + contact(Race::Outer);
         let by_orbit = orbit(&motion).inertia_by_rate(model, &motion);
         // First row and column along the orbit, the others of moments over the radius and velocities of the surface.

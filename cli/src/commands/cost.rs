@@ -66,6 +66,7 @@ pub fn run(options: Options) -> Result<(), Box<dyn Error>> {
         say(&format!("{}\n", path.display()))?;
     }
     for study in &studies {
+        say(&format!("{}: {}\n", study.name, study.settled.join(" ")))?;
         say(&format!("{}: {}\n", study.name, study.advice.join(" ")))?;
     }
     Ok(())

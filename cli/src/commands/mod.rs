@@ -1,5 +1,6 @@
 //! Commands and their options.
 
+mod contact;
 mod cost;
 mod identify;
 mod player;
@@ -12,11 +13,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand, ValueEnum};
-use roulement::analysis::single_contact::{Law, RollingContact};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::interface::model_description::render;
 use roulement::model::Model;
-use roulement::scene::{CreepLaw, Scene, SceneError};
+use roulement::scene::{Scene, SceneError};
 use roulement::simulation::Simulation;
 use roulement_cli::package::{library_beside_executable, name_of, write_fmu};
 
@@ -58,20 +58,7 @@ enum Command {
         name: Option<String>,
     },
     /// Evaluate single rolling contacts of a CSV table; prints CSV.
-    Contact {
-        /// Table of cases: id, poisson_ratio, shear_modulus \[Pa], friction, peak_pressure \[Pa], semi_axis_x \[m],
-        /// semi_axis_y \[m], rolling_angle \[rad], creep_x, creep_y, spin [1/m]; other columns are ignored.
-        cases: PathBuf,
-        /// Creep law.
-        #[arg(long, value_enum)]
-        law: LawChoice,
-        /// Degree of the traction polynomials of `kalker`, 1 to 7.
-        #[arg(long, default_value_t = 5)]
-        degree: usize,
-        /// Cells across the ellipse of the coarser grid of `reference`, 4 to 128.
-        #[arg(long, default_value_t = 16)]
-        grid: usize,
-    },
+    Contact(contact::Options),
     /// Identify the spin coupling of the regularised creep law against Kalker's nonlinear theory.
     Identify(identify::Options),
     /// Measure error against CPU time of every setting that trades accuracy for speed.
@@ -81,25 +68,6 @@ enum Command {
         /// Scene file.
         scene: PathBuf,
     },
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum LawChoice {
-    /// No tangential force.
-    Frictionless,
-    /// Kalker's linear theory, unbounded.
-    Linear,
-    /// The paper's regularised law with spin coupling.
-    Regularised,
-    /// Linear theory, saturated as a vector.
-    Saturated,
-    /// Kalker's nonlinear theory in polynomials.
-    Kalker,
-    /// Kalker's nonlinear theory as a smooth table.
-    #[value(name = "kalker_table", alias = "kalker-table")]
-    KalkerTable,
-    /// Half-space reference solver: slow.
-    Reference,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -170,37 +138,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
             write_fmu(&load(&scene)?, &name, &libraries, &output)?;
             say(&format!("{}\n", output.display()))?;
         }
-        Command::Contact { cases, law, degree, grid } => {
-            let law = match law {
-                LawChoice::Frictionless => Law::Simulated(CreepLaw::Frictionless),
-                LawChoice::Linear => Law::Simulated(CreepLaw::Linear),
-                LawChoice::Regularised => Law::Simulated(CreepLaw::Regularised),
-                LawChoice::Saturated => Law::Simulated(CreepLaw::Saturated),
-                LawChoice::Kalker => Law::Kalker(degree),
-                LawChoice::KalkerTable => Law::Simulated(CreepLaw::KalkerTable),
-                LawChoice::Reference => Law::Reference(grid),
-            };
-            let cannot_read = |why: csv::Error| format!("{}: {why}", cases.display());
-            let mut table =
-                csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(&cases).map_err(cannot_read)?;
-            let mut answers = csv::Writer::from_writer(std::io::stdout().lock());
-            let mut rough: Option<([f64; 2], u32)> = None;
-            for case in table.deserialize::<RollingContact>() {
-                let case = case.map_err(cannot_read)?;
-                answers.serialize(case.evaluate(law)?)?;
-                if let Some(error) = case.expected_error(law) {
-                    rough = Some((error, rough.map_or(0, |(_, count)| count) + 1));
-                }
-            }
-            answers.flush()?;
-            tell(rough.map(|([force, moment], count)| {
-                let roll = if count == 1 { "rolls" } else { "roll" };
-                format!(
-                    "{count} of these contacts {roll} obliquely to the axes of their ellipse, where `kalker_table` is expected \
-                     to be wrong by {force} of mu N (moment {moment} of mu N c) in the mean; use `reference` for less"
-                )
-            }));
-        }
+        Command::Contact(options) => contact::run(&options)?,
         Command::Identify(options) => identify::run(&options)?,
         Command::Cost(options) => cost::run(options)?,
         Command::Describe { scene } => {

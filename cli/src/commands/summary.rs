@@ -57,6 +57,9 @@ fn write_law(out: &mut String, scene: &Scene) -> std::fmt::Result {
     writeln!(out, "creep law        {name}{with} {missing} (default: kalker_table with heathcote_slip)")
 }
 
+/// Said of runs in which bodies strike each other.
+const BLOWS: &str = "\n                 balls without a cage or the cage strike now and then: powers at blows are further off";
+
 /// Whether the means have settled.
 fn write_settled(out: &mut String, means: &Means) -> std::fmt::Result {
     if !means.can_tell() {
@@ -158,7 +161,8 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Res
         writeln!(
             out,
             "error, estimate  histories {histories:.0e}, means {means:.0e} of their size, within a factor of ten or so, and no \
-             promise: --error measures it"
+             promise: --error measures it{}",
+            if run.estimate.has_blows() { BLOWS } else { "" }
         )?;
     }
     let s = &now.statistics;

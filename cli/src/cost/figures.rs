@@ -52,13 +52,15 @@ impl Panel<'_> {
     }
 }
 
-/// Draws all norms of one kind of error of a scene.
+/// Draws the norms of one kind of error of a scene.
 ///
 /// # Errors
 /// If the file cannot be written.
 pub fn write_norms(study: &SceneStudy, kind: ReferenceKind, path: &Path) -> Result<(), PlotError> {
+    // Those of single contacts tell models apart.
     let panels: Vec<_> = Norm::VARIANTS
         .iter()
+        .filter(|norm| kind == ReferenceKind::Model || !norm.is_of_contacts())
         .map(|&norm| Panel { study, kind, norm: Some(norm), caption: norm.name().to_string() })
         .filter(|panel| panel.places().any(|(_, error)| error > WORTH_SHOWING))
         .collect();

@@ -14,6 +14,7 @@ pub mod norms;
 mod pool;
 pub mod record;
 pub mod report;
+mod settling;
 pub mod table;
 
 use std::num::NonZero;
@@ -95,6 +96,9 @@ pub struct SceneStudy {
     pub error_bars: [Errors; 2],
     /// All settings.
     pub points: Vec<Point>,
+    /// Whether the windows of the references have settled, a sentence for each: drift against noise, and how long the scene
+    /// should run.
+    pub settled: Vec<String>,
     /// What to take, a sentence for each quantity that is asked for.
     pub advice: Vec<String>,
 }
@@ -263,6 +267,12 @@ pub fn study_of(
         let run = record(setting).ok()?;
         Some((compare(&run, &reference(kind).run), run.cost.cpu / duration))
     });
+    let runs = [("reference", Some(&tiny)), ("richest model", rich.as_ref())];
+    let settled = runs
+        .into_iter()
+        .filter_map(|(what, reference)| Some((what, reference?.run.means.as_ref()?)))
+        .map(|(what, means)| settling::sentence(scene, what, means))
+        .collect();
     let model_bar = rich.as_ref().map_or(Errors::default(), |rich| rich.error_bar);
     Ok(SceneStudy {
         name: name.to_string(),
@@ -272,6 +282,7 @@ pub fn study_of(
         reference_step: fine,
         error_bars: [tiny.error_bar, model_bar],
         points,
+        settled,
         advice,
     })
 }

@@ -29,12 +29,36 @@ pub enum Norm {
     /// Energy that the run cannot account for, over the energy that the reference lost.
     #[strum(serialize = "energy balance")]
     Energy,
+    /// Mean friction power of the contacts with the inner race; as the next one over the power of ALL contacts of the
+    /// reference, so that a race that loses next to nothing has a small error.
+    #[strum(serialize = "inner race power")]
+    InnerPower,
+    /// Mean friction power of the contacts with the outer race, over the power of all contacts.
+    #[strum(serialize = "outer race power")]
+    OuterPower,
+    /// Share of the friction power that spin moments lose, over the window: the difference of the shares, which is over nothing.
+    #[strum(serialize = "spin share")]
+    SpinShare,
+    /// Largest load of a contact with a race.
+    #[strum(serialize = "largest load")]
+    LargestLoad,
+    /// Largest peak pressure of a contact with a race.
+    #[strum(serialize = "peak pressure")]
+    PeakPressure,
 }
 
 impl Norm {
     /// Name in tables and plots.
     pub fn name(self) -> &'static str {
         self.into()
+    }
+
+    /// Is it one of single contacts? Goals promise nothing of these; they are there to tell models apart.
+    pub fn is_of_contacts(self) -> bool {
+        matches!(
+            self,
+            Self::InnerPower | Self::OuterPower | Self::SpinShare | Self::LargestLoad | Self::PeakPressure
+        )
     }
 }
 
@@ -48,9 +72,10 @@ impl Errors {
         self.0[norm as usize]
     }
 
-    /// [-] the largest, the energy balance apart: that is a property of the run and not a distance.
+    /// [-] the largest, without those of single contacts, of which goals promise nothing. The energy balance is apart: it is a
+    /// property of the run and not a distance.
     pub fn worst(&self) -> Option<f64> {
-        let compared = Norm::VARIANTS.iter().filter(|&&norm| norm != Norm::Energy);
+        let compared = Norm::VARIANTS.iter().filter(|&&norm| norm != Norm::Energy && !norm.is_of_contacts());
         compared.filter_map(|&norm| self.get(norm)).reduce(f64::max)
     }
 }
@@ -66,7 +91,8 @@ pub enum Comparison {
 
 /// Errors of a run against a reference from `window_start` \[s] on, at the times that both have.
 ///
-/// Differences are over the root mean square of the reference, of a vector as a whole.
+/// Differences are over the root mean square of the reference, of a vector as a whole; powers of the races are over that of all
+/// contacts, and shares over nothing.
 pub fn errors(record: &Record, reference: &Record, how: Comparison, window_start: f64) -> Errors {
     let pairs = common(record, reference, window_start);
     let distance = |get: &dyn Fn(&Sample) -> &[f64]| relative_distance(&pairs, get, how);
@@ -77,6 +103,18 @@ pub fn errors(record: &Record, reference: &Record, how: Comparison, window_start
     set(Norm::FrictionTorque, distance(&|s| std::slice::from_ref(&s.friction_torque)));
     set(Norm::Orbit, distance(&|s| &s.orbital_speed));
     set(Norm::CageSpeed, distance(&|s| std::slice::from_ref(&s.cage_speed)));
+    set(Norm::LargestLoad, distance(&|s| std::slice::from_ref(&s.largest_load)));
+    set(Norm::PeakPressure, distance(&|s| std::slice::from_ref(&s.peak_pressure)));
+    let sums = |get: &dyn Fn(&Sample) -> f64| {
+        pairs.iter().fold([0.0, 0.0], |[run, of], (sample, other)| [run + get(sample), of + get(other)])
+    };
+    let all = sums(&|s| s.friction_power);
+    for (norm, race) in [(Norm::InnerPower, 0), (Norm::OuterPower, 1)] {
+        let [run, of] = sums(&|s| s.race_power[race]);
+        set(norm, Some(((run - of) / all[1]).abs()));
+    }
+    let [run, of] = sums(&|s| s.spin_power);
+    set(Norm::SpinShare, Some((run / all[0] - of / all[1]).abs()));
     let power = mean_power(reference, window_start);
     set(Norm::Power, Some((mean_power(record, window_start) / power - 1.0).abs()));
     if let (Level::Dynamic, [first, .., last], [ref_first, .., ref_last]) =
@@ -140,6 +178,9 @@ mod tests {
     use crate::cost::meter::Cost;
     use roulement::model::state::Statistics;
 
+    /// [-] a change of the outer races' power over that of all else, in [`run`].
+    const SHIFTED: f64 = 10.0;
+
     /// A run of 1 s at 100 W whose quantities are `1 + ripple cos(time) + offset`.
     fn run(points: u32, ripple: f64, offset: f64) -> Record {
         let sample = |point: u32| {
@@ -151,6 +192,10 @@ mod tests {
                 displacement: [0.0; 5],
                 friction_torque: x,
                 friction_power: x,
+                race_power: [0.7 * x, 0.01 * (1.0 + SHIFTED * offset)],
+                spin_power: 0.6,
+                largest_load: 900.0 * x,
+                peak_pressure: 2e9 * x,
                 orbital_speed: vec![x, 2.0 * x],
                 cage_speed: 1.5 * x,
                 dissipated: 100.0 * time * (1.0 + offset),
@@ -159,7 +204,7 @@ mod tests {
         };
         let samples = (0..=points).map(sample).collect();
         let cost = Cost { cpu: 1.0, instructions: None };
-        Record { samples, cost, work: Statistics::default(), level: Level::Dynamic }
+        Record { samples, cost, work: Statistics::default(), level: Level::Dynamic, means: None }
     }
 
     #[test]
@@ -175,6 +220,14 @@ mod tests {
             }
             near(offset.get(Norm::Energy), 0.03);
             near(offset.worst(), 0.02);
+            // Of the whole power: 0.7 of it is 2 % off, and 0.01 of it 20 %.
+            near(offset.get(Norm::InnerPower), 0.7 * 0.02);
+            assert!((offset.get(Norm::OuterPower).unwrap() - 0.002).abs() < 1e-9);
+            // The same spin power in 2 % more of all.
+            let share = offset.get(Norm::SpinShare).unwrap();
+            assert!((share - (0.6 - 0.6 / 1.02)).abs() < 1e-9, "{share}");
+            near(offset.get(Norm::LargestLoad), 0.02);
+            near(offset.get(Norm::PeakPressure), 0.02);
             // Nothing to compare with: the displacement of the reference is zero.
             assert_eq!(offset.get(Norm::Displacement), None);
         }
@@ -182,6 +235,33 @@ mod tests {
         let ripple = run(100, 0.1, 0.0);
         near(errors(&ripple, &reference, Comparison::Pointwise, 0.0).get(Norm::Wrench), 0.1 / 2f64.sqrt());
         near(errors(&ripple, &reference, Comparison::WindowMeans, 0.0).get(Norm::Wrench), 0.0);
+        // Powers of the races are means however runs are compared; loads and pressures are not.
+        let ripple = errors(&ripple, &reference, Comparison::Pointwise, 0.0);
+        near(ripple.get(Norm::InnerPower), 0.0);
+        near(ripple.get(Norm::LargestLoad), 0.1 / 2f64.sqrt());
+    }
+
+    #[test]
+    fn invariant_quantities_of_contacts_are_in_no_promise() {
+        let reference = run(100, 0.0, 0.0);
+        let mut other = reference.clone();
+        for sample in &mut other.samples {
+            // The races exchange their powers, half of the spin is gone, and one ball carries it all.
+            sample.race_power.swap(0, 1);
+            (sample.spin_power, sample.largest_load, sample.peak_pressure) = (0.3, 5e3, 4e9);
+        }
+        let errors = errors(&other, &reference, Comparison::Pointwise, 0.25);
+        let contacts = Norm::VARIANTS.iter().filter(|norm| norm.is_of_contacts());
+        for &norm in contacts {
+            assert!(errors.get(norm).unwrap() > 0.2, "{}", norm.name());
+        }
+        assert_eq!(errors.worst(), Some(0.0));
+        // Without friction there is no share of it.
+        for sample in &mut other.samples {
+            (sample.race_power, sample.spin_power, sample.friction_power) = ([0.0; 2], 0.0, 0.0);
+        }
+        let none = super::errors(&other, &reference, Comparison::Pointwise, 0.25);
+        assert_eq!((none.get(Norm::SpinShare), none.get(Norm::InnerPower).is_some()), (None, true));
     }
 
     #[test]

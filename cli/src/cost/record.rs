@@ -4,8 +4,11 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
+use super::WINDOW_START;
 use super::levers::{Inputs, Level, Setting};
 use super::meter::{Cost, Meter};
+use crate::report::means::{Blocks, Means};
+use crate::report::quantities::Parts;
 use roulement::model::bodies::Race;
 use roulement::model::state::Statistics;
 use roulement::numerics::motion::{Pose, Twist};
@@ -34,6 +37,14 @@ pub struct Sample {
     pub friction_torque: f64,
     /// \[W] friction power.
     pub friction_power: f64,
+    /// \[W] friction power of all contacts with the inner race and with the outer.
+    pub race_power: [f64; 2],
+    /// \[W] part of both by spin moments.
+    pub spin_power: f64,
+    /// \[N] largest load of a contact with a race.
+    pub largest_load: f64,
+    /// \[Pa] largest peak pressure of a contact with a race.
+    pub peak_pressure: f64,
     /// [rad/s] orbital speed of every ball.
     pub orbital_speed: Vec<f64>,
     /// [rad/s] cage speed.
@@ -49,12 +60,18 @@ impl Sample {
         let (force, moment) = (outputs.inner.wrench.force, outputs.inner.wrench.moment / pitch_radius);
         let position = outputs.inner.pose.position - outputs.outer.pose.position;
         let axis = outputs.inner.pose.orientation * Vector3::x() * pitch_radius;
+        let pressures =
+            outputs.balls.iter().flat_map(|ball| [&ball.inner, &ball.outer]).map(|c| c.peak_pressure);
         Self {
             time: outputs.time,
             wrench: [force.x, force.y, force.z, moment.y, moment.z],
             displacement: [position.x, position.y, position.z, -axis.z, axis.y],
             friction_torque: outputs.friction_torque,
             friction_power: outputs.friction_power,
+            race_power: Race::BOTH.map(|race| outputs.contact_power(|ball| ball[race].power)),
+            spin_power: outputs.contact_power(|ball| ball.inner.spin_power + ball.outer.spin_power),
+            largest_load: outputs.loads().fold(0.0, f64::max),
+            peak_pressure: pressures.fold(0.0, f64::max),
             orbital_speed: outputs.balls.iter().map(|ball| ball.orbital_speed).collect(),
             cage_speed: outputs.cage_speed,
             dissipated: outputs.dissipated,
@@ -74,6 +91,8 @@ pub struct Record {
     pub work: Statistics,
     /// Was it integrated in time?
     pub level: Level,
+    /// Means over the window in which errors are measured, and whether they have settled.
+    pub means: Option<Means>,
 }
 
 /// Runs a setting, repeatedly if it is short.
@@ -99,6 +118,7 @@ fn run(setting: &Setting, mut simulation: Simulation) -> Result<Record, Simulati
     let rows = Rows { interval: setting.communication, duration: setting.scene.load.duration.0 };
     let pitch_radius = 0.5 * simulation.model().bearing.pitch_diameter;
     let mut samples = Vec::with_capacity(rows.count() as usize + 1);
+    let mut blocks = Blocks::new(Parts::of(&simulation), pitch_radius);
     let advance = |simulation: &mut Simulation, end: f64| match setting.level {
         Level::Dynamic => {
             simulation.set_inputs(inputs_of_step(simulation, setting.inputs, end));
@@ -113,10 +133,12 @@ fn run(setting: &Setting, mut simulation: Simulation) -> Result<Record, Simulati
     let meter = Meter::start();
     let _: ControlFlow<()> = play_with(&mut simulation, rows, advance, |simulation| {
         samples.push(Sample::new(simulation.outputs(), pitch_radius));
+        blocks.push(simulation.outputs());
         ControlFlow::Continue(())
     })?;
     let cost = meter.stop();
-    Ok(Record { samples, cost, work: simulation.state().statistics, level: setting.level })
+    let means = blocks.means_from(WINDOW_START);
+    Ok(Record { samples, cost, work: simulation.state().statistics, level: setting.level, means })
 }
 
 /// Inputs that an importer sets at the start of a step to `end` \[s].

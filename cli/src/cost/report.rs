@@ -276,19 +276,24 @@ fn scene(study: &SceneStudy, blocks: &mut Vec<Block>) {
             seconds(study.reference_step),
             number(Some(study.divergence)),
         )),
+        text(study.settled.join(" ")),
     ]);
+    let of_bearing: Vec<Norm> =
+        Norm::VARIANTS.iter().copied().filter(|norm| !norm.is_of_contacts()).collect();
     if study.has(ReferenceKind::Numerical) {
         blocks.extend([
             figure(study, "numerical", "numerical error of every quantity"),
             text("Numerical error, same model. A star marks the Pareto front of the largest error."),
-            points(study, ReferenceKind::Numerical),
+            points(study, ReferenceKind::Numerical, &of_bearing),
         ]);
     }
     if study.has(ReferenceKind::Model) {
         blocks.extend([
             figure(study, "model", "model error of every quantity"),
             text("Model error, at the scene's own step."),
-            points(study, ReferenceKind::Model),
+            points(study, ReferenceKind::Model, &of_bearing),
+            text(OF_CONTACTS),
+            contacts(study),
         ]);
     }
     let failed = study.points.iter().filter_map(|point| Some((point, point.result.as_ref().err()?)));
@@ -297,10 +302,32 @@ fn scene(study: &SceneStudy, blocks: &mut Vec<Block>) {
     }
 }
 
+const OF_CONTACTS: &str = "Model error of single contacts, which no goal promises anything of: friction power of the races over that of \
+    all contacts, share of the power that is spin (difference of the shares), largest load and peak pressure of a contact. \
+    Numerical errors of these are in `cost.csv`.";
+
+/// Model errors of single contacts.
+fn contacts(study: &SceneStudy) -> Block {
+    let shown: Vec<Norm> = Norm::VARIANTS.iter().copied().filter(|norm| norm.is_of_contacts()).collect();
+    let header = ["lever", "setting"].into_iter().chain(shown.iter().map(|norm| norm.name()));
+    let errors = |errors: &Errors| shown.iter().map(|&norm| number(errors.get(norm))).collect::<Vec<_>>();
+    let row = |lever: &str, label: &str, errors: Vec<String>| {
+        [lever.to_string(), label.to_string()].into_iter().chain(errors).collect::<Vec<_>>()
+    };
+    let bar = row("reference", "error bar", errors(study.error_bar(ReferenceKind::Model)));
+    let rows = study.points_of(ReferenceKind::Model).filter_map(|point| {
+        Some(row(point.lever.name(), &point.label, errors(&point.result.as_ref().ok()?.errors)))
+    });
+    Block::Table {
+        header: header.map(String::from).collect(),
+        rows: std::iter::once(bar).chain(rows).collect(),
+    }
+}
+
 /// setting -> error -> CPU time -> work.
-fn points(study: &SceneStudy, kind: ReferenceKind) -> Block {
+fn points(study: &SceneStudy, kind: ReferenceKind, norms: &[Norm]) -> Block {
     let measured = |point: &Point| point.result.as_ref().ok().cloned();
-    let shown: Vec<Norm> = Norm::VARIANTS
+    let shown: Vec<Norm> = norms
         .iter()
         .copied()
         .filter(|&norm| study.points_of(kind).filter_map(measured).any(|m| m.errors.get(norm).is_some()))

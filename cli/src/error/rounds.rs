@@ -122,14 +122,15 @@ impl Rounds {
         }
     }
 
-    /// [-] error of the mean of a quantity over its size. Where it is chaotic, with the interval of the mean.
+    /// [-] error of the mean of a quantity over its size, no less than what chance may hide. Where it is chaotic, with the interval
+    /// of the mean.
     fn mean_error(&self, i: usize) -> f64 {
         let Some((last, before)) = self.differences.split_last() else {
             return 0.0;
         };
         let earlier = before.last().map_or(0.0, |difference| ORDER_TWO * difference.means[i]);
         match self.chaotic[i] {
-            None => last.means[i].max(earlier),
+            None => last.means[i].max(last.scatter[i]).max(earlier),
             Some(_) => last.means[i].hypot(self.interval(i)),
         }
     }

@@ -1,4 +1,4 @@
-//! Means over the second half of a run, and whether they have settled: drift against noise.
+//! Means over the second half of a run (or another last part of it), and whether they have settled: drift against noise.
 //!
 //! Rows go into blocks of equal length, at most 128: when there would be more, neighbours are joined, so that
 //! memory does not grow with the run. The window is made of the blocks of the second half. It is divided into equal groups,
@@ -17,6 +17,8 @@ use super::quantities::{COUNT, Parts, QUANTITIES, Size, values};
 
 /// [-] blocks of a run; even.
 const MOST_BLOCKS: usize = 128;
+/// [-] share of a run before the window, where nothing else is asked for.
+const HALF: f64 = 0.5;
 /// [-] groups of the window for the trend, at most and at least.
 const GROUPS: usize = 16;
 const FEWEST_GROUPS: usize = 8;
@@ -100,12 +102,12 @@ pub struct Trend {
     pub noise: f64,
     /// Has the mean settled?
     pub settled: bool,
-    /// \[s] duration of a run whose second half has settled, if the drift goes on to decay as it does in the window; none
+    /// \[s] duration of a run whose window has settled, if the drift goes on to decay as it does in the window; none
     /// where it does not decay.
     pub needed: Option<f64>,
 }
 
-/// Means over the second half of a run.
+/// Means over the last part of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Means {
     /// \[s] first and last time of the window.
@@ -154,8 +156,13 @@ impl Blocks {
 
     /// Means over the second half of what there is; none without a row.
     pub fn means(&self) -> Option<Means> {
-        // The first block that begins in the second half.
-        let first = (self.rows / 2).div_ceil(self.rows_per_block) as usize;
+        self.means_from(HALF)
+    }
+
+    /// Means over what comes after this share of the rows, in (0, 1); none without a row.
+    pub fn means_from(&self, share: f64) -> Option<Means> {
+        // The first block that begins after it.
+        let first = ((self.rows as f64 * share) as u64).div_ceil(self.rows_per_block) as usize;
         let window = &self.blocks[first.min(self.blocks.len().checked_sub(1)?)..];
         let mut all = window[0].clone();
         window[1..].iter().for_each(|block| all.join(block));
@@ -175,7 +182,7 @@ impl Blocks {
         let means = there.map(|i| {
             let each = window.len().div_ceil(GROUPS);
             let of_trend = groups(window, i, each, window.len() / each);
-            let trend = Trend::of(&of_trend, [all.span[0] - start, all.span[1] - start], size(i));
+            let trend = Trend::of(&of_trend, [all.span[0] - start, all.span[1] - start], share, size(i));
             let interval = interval::of_mean(|n| {
                 let each = (window.len() / n).max(1);
                 groups(window, i, each, n.min(window.len()))
@@ -210,8 +217,9 @@ fn line(values: &[f64]) -> (f64, f64, f64) {
 }
 
 impl Trend {
-    /// Trend through the means of equal groups of a window \[s], counted from the start of the run.
-    fn of(groups: &[f64], window: [f64; 2], size: f64) -> Option<Self> {
+    /// Trend through the means of equal groups of a window \[s], counted from the start of the run; the window begins at this
+    /// share of it.
+    fn of(groups: &[f64], window: [f64; 2], share: f64, size: f64) -> Option<Self> {
         let n = groups.len();
         if n < FEWEST_GROUPS {
             return None;
@@ -234,10 +242,10 @@ impl Trend {
         let ratio = (quarter(3) - quarter(2)) / (quarter(1) - quarter(0));
         let needed = (ratio > 0.0 && ratio < 1.0).then(|| {
             let time_constant = 0.5 * (window[1] - window[0]) / -ratio.ln();
-            // A window that begins there drifts by no more than is allowed; it is the second half of its run, which is
+            // A window that begins there drifts by no more than is allowed; it is the same part of its run, which is
             // longer than this one's: its drift is up to that of the whole rest of the approach.
             let whole = drift.abs() / (1.0 - ratio * ratio);
-            2.0 * (window[0] + time_constant * (whole / allowed).ln().max(0.0))
+            (window[0] + time_constant * (whole / allowed).ln().max(0.0)) / share
         });
         let deviation =
             groups.iter().map(|group| (group - mean) * (group - mean)).sum::<f64>() / (count - 1.0);

@@ -2,7 +2,7 @@
 
 pub mod energy;
 pub mod figures;
-mod interval;
+pub mod interval;
 pub mod limits;
 pub mod means;
 pub mod plots;

@@ -1,0 +1,164 @@
+//! `roulement contact`: single rolling contacts of a table.
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use roulement::analysis::single_contact::{ContactError, Law, RollingContact, RollingForces, ScaledContact};
+use roulement::kalker::half_space::LARGEST_CHANGE;
+use roulement::scene::CreepLaw;
+use roulement_cli::exact::answer;
+use roulement_cli::exact::cache::Cache;
+
+use super::tell;
+
+/// Options of `roulement contact`.
+#[derive(Args)]
+pub struct Options {
+    /// Table of cases: id, poisson_ratio, shear_modulus \[Pa], friction, peak_pressure \[Pa], semi_axis_x \[m],
+    /// semi_axis_y \[m], rolling_angle \[rad], creep_x, creep_y, spin [1/m]; other columns are ignored.
+    cases: PathBuf,
+    /// Creep law.
+    #[arg(long, value_enum)]
+    law: LawChoice,
+    /// Degree of the traction polynomials of `kalker`, 1 to 7.
+    #[arg(long, default_value_t = 5)]
+    degree: usize,
+    /// Cells across the ellipse of the coarser grid of `reference`, 4 to 128.
+    #[arg(long, default_value_t = 16)]
+    grid: usize,
+    /// With `kalker_table`: the nonlinear theory itself in place of its table, in any direction of rolling. The half-space
+    /// solver computes every contact on grids as fine as it needs; answers are kept in the user's cache directory.
+    #[arg(long, conflicts_with_all = ["degree", "grid"])]
+    exact: bool,
+    /// With `--exact`: neither read nor write the cache.
+    #[arg(long, requires = "exact")]
+    no_cache: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum LawChoice {
+    /// No tangential force.
+    Frictionless,
+    /// Kalker's linear theory, unbounded.
+    Linear,
+    /// The paper's regularised law with spin coupling.
+    Regularised,
+    /// Linear theory, saturated as a vector.
+    Saturated,
+    /// Kalker's nonlinear theory in polynomials.
+    Kalker,
+    /// Kalker's nonlinear theory as a smooth table.
+    #[value(name = "kalker_table", alias = "kalker-table")]
+    KalkerTable,
+    /// Half-space reference solver: slow.
+    Reference,
+}
+
+impl Options {
+    fn law(&self) -> Law {
+        match self.law {
+            LawChoice::Frictionless => Law::Simulated(CreepLaw::Frictionless),
+            LawChoice::Linear => Law::Simulated(CreepLaw::Linear),
+            LawChoice::Regularised => Law::Simulated(CreepLaw::Regularised),
+            LawChoice::Saturated => Law::Simulated(CreepLaw::Saturated),
+            LawChoice::Kalker => Law::Kalker(self.degree),
+            LawChoice::KalkerTable => Law::Simulated(CreepLaw::KalkerTable),
+            LawChoice::Reference => Law::Reference(self.grid),
+        }
+    }
+}
+
+/// Evaluates the contacts and prints their forces.
+///
+/// # Errors
+/// If a case cannot be read or evaluated.
+pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    if options.exact && options.law != LawChoice::KalkerTable {
+        let name =
+            options.law.to_possible_value().map_or(String::new(), |value| value.get_name().to_string());
+        return Err(format!(
+            "--exact is an option of --law kalker_table, not of {name}: it puts the nonlinear theory itself in the place of its \
+             table"
+        )
+        .into());
+    }
+    let cannot_read = |why: csv::Error| format!("{}: {why}", options.cases.display());
+    let mut table =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(&options.cases).map_err(cannot_read)?;
+    let cases = table.deserialize::<RollingContact>().map(|case| case.map_err(cannot_read));
+    let mut answers = csv::Writer::from_writer(std::io::stdout().lock());
+    if options.exact {
+        for forces in exact(&cases.collect::<Result<Vec<_>, _>>()?, options.no_cache)? {
+            answers.serialize(forces)?;
+        }
+        answers.flush()?;
+        return Ok(());
+    }
+    let law = options.law();
+    let mut rough: Option<([f64; 2], u32)> = None;
+    for case in cases {
+        let case = case?;
+        answers.serialize(case.evaluate(law)?)?;
+        if let Some(error) = case.expected_error(law) {
+            rough = Some((error, rough.map_or(0, |(_, count)| count) + 1));
+        }
+    }
+    answers.flush()?;
+    tell(rough.map(|([force, moment], count)| {
+        let roll = if count == 1 { "rolls" } else { "roll" };
+        format!(
+            "{count} of these contacts {roll} obliquely to the axes of their ellipse, where `kalker_table` is expected \
+             to be wrong by {force} of mu N (moment {moment} of mu N c) in the mean; --exact computes them to 0.003"
+        )
+    }));
+    Ok(())
+}
+
+/// Forces of contacts by the half-space solver, from the cache where it has them.
+fn exact(cases: &[RollingContact], no_cache: bool) -> Result<Vec<RollingForces>, Box<dyn Error>> {
+    // Whatever is out of range is told before anything is computed.
+    let contacts = cases.iter().map(RollingContact::scaled).collect::<Result<Vec<ScaledContact>, _>>()?;
+    let (mut cache, note) =
+        if no_cache { (Cache::none(), None) } else { Cache::open(env!("ROULEMENT_VERSION")) };
+    tell(note);
+    let begin = Instant::now();
+    let progress = progress_bar();
+    let found = answer(&contacts, &mut cache, &progress);
+    progress.finish_and_clear();
+    let mut forces = Vec::with_capacity(cases.len());
+    let (mut rough, mut largest) = (0, 0.0f64);
+    for (case, answer) in cases.iter().zip(&found.answers) {
+        let answer = answer.as_ref().map_err(|why| ContactError::Reference(case.id.clone(), *why))?;
+        forces.push(case.with_forces(&answer.forces));
+        if answer.change > LARGEST_CHANGE {
+            rough += 1;
+            largest = largest.max(answer.change);
+        }
+    }
+    let place =
+        cache.path().map_or(String::new(), |path| format!("; answers are kept in {}", path.display()));
+    tell([format!(
+        "{} contacts, {} of them computed in {:.1} s{place}",
+        cases.len(),
+        found.computed,
+        begin.elapsed().as_secs_f64()
+    )]);
+    tell(found.unsaved);
+    tell((rough > 0).then(|| {
+        format!("{rough} of these contacts still change by up to {largest:.3} with the grid: expect errors of a third of that")
+    }));
+    Ok(forces)
+}
+
+fn progress_bar() -> ProgressBar {
+    let bar = ProgressBar::new(0);
+    if let Ok(style) =
+        ProgressStyle::with_template("contacts {pos} of {len} [{bar:40}] {elapsed} elapsed, {eta} left")
+    {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar
+}
