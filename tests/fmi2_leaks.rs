@@ -58,7 +58,7 @@ fn growth(n_steps: u32, n_instances: u32) -> f64 {
         }
     };
     // What the allocator keeps for itself it has after the first few.
-    steps(1000);
+    steps(10_000);
     cycles(10);
     let before = resident();
     steps(n_steps);
