@@ -15,9 +15,9 @@ use crate::numerics::orbit_turn::OrbitTurn;
 use crate::numerics::ring::Link;
 use crate::numerics::size::{larger, largest};
 
-/// [-] price of one more correction over that of a new block (benches/speed.rs): where balls are solved together and all are
-/// evaluated, and where each is alone.
-const TOGETHER: f64 = 3.0;
+/// [-] price of one more correction, per ball, over that of a new block (benches/speed.rs): where balls are solved together and all
+/// are evaluated, and where each is alone.
+const TOGETHER: f64 = 0.3;
 const ALONE: f64 = 0.2;
 /// Most steps in a row that begin with a new block before an old one is tried again.
 const LONGEST_PAUSE: u8 = 31;
@@ -93,6 +93,7 @@ impl BearingStep<'_> {
         let tolerance = self.force_tolerance;
         let Workspace { balls, kept, .. } = &mut *self.workspace;
         let norm = |trial: &BallTrial| largest(&trial.residual) / tolerance;
+        let correction = TOGETHER * balls.len() as f64;
         let before = balls.iter().map(|trial| trial.before).fold(0.0, larger);
         let (mut bad, mut most, mut price) = (0.0, 0.0f64, 0.0);
         for (trial, kept) in balls.iter_mut().zip(&mut kept.balls) {
@@ -113,7 +114,7 @@ impl BearingStep<'_> {
         }
         if together {
             for (trial, kept) in balls.iter_mut().zip(&mut kept.balls).filter(|(trial, _)| trial.renewed) {
-                trial.renewed = kept.wear.renew(bad, TOGETHER * (most - 1.0), price, TOGETHER / bad);
+                trial.renewed = kept.wear.renew(bad, correction * (most - 1.0), price, correction / bad);
             }
         }
         balls.iter().any(|trial| trial.renewed)
