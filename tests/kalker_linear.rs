@@ -1,9 +1,10 @@
 //! Kalker's linear theory against independent data and published numbers.
 #![allow(clippy::unwrap_used)]
 
+use roulement::kalker::LinearError;
 use roulement::kalker::Patch;
 use roulement::kalker::creep_coefficients::{along_x, series, shipped};
-use roulement::kalker::linear::{LinearError, adhesion_tractions, creep_matrix, resultants};
+use roulement::kalker::linear::{adhesion_tractions, creep_matrix, resultants};
 use roulement::kalker::load_displacement::LoadDisplacement;
 
 fn patch(axis_ratio: f64, poisson_ratio: f64, rolling_angle: f64) -> Patch {

@@ -7,7 +7,8 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::regularised::{Parameters, lateral_by_spin, moment_by_lateral, moment_by_spin};
-use crate::kalker::linear::{LinearError, Scales};
+use crate::kalker::LinearError;
+use crate::kalker::linear::Scales;
 use crate::kalker::table::CreepTable;
 use crate::kalker::{Patch, ScaledCreepage, ScaledForces};
 use crate::numerics::scalar::{Dual, Scalar};

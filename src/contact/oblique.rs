@@ -11,8 +11,9 @@
 
 use super::creep::Law;
 use super::linear_theory::{CreepForces, Creepage, LinearTheory};
+use crate::kalker::LinearError;
 use crate::kalker::Patch;
-use crate::kalker::linear::{LinearError, Scales};
+use crate::kalker::linear::Scales;
 use crate::numerics::scalar::Scalar;
 
 /// [-] squares of the sine of the rolling direction where the share of rolling across begins, and from where it is full.

@@ -18,7 +18,7 @@ use super::pair::PairForces;
 use super::shape::ShapeAt;
 use crate::contact::BallMotion;
 use crate::contact::materials::Pair;
-use crate::kalker::linear::LinearError;
+use crate::kalker::LinearError;
 use crate::numerics::scalar::{Scalar, Single, cross, dot};
 
 /// [-] axis ratio of the most slender patch with creep coefficients. A tighter cylinder (clearance below 0.8 % of the ball)

@@ -9,9 +9,9 @@ use std::f64::consts::PI;
 use super::hertz::HertzContact;
 use super::materials::Pair;
 use super::raceway::Raceway;
+use crate::kalker::LinearError;
 use crate::kalker::Patch;
 use crate::kalker::creep_coefficients::along_x;
-use crate::kalker::linear::LinearError;
 use crate::numerics::elliptic::complete_elliptic_integrals;
 use crate::numerics::scalar::Scalar;
 

@@ -5,8 +5,7 @@
 
 use std::f64::consts::PI;
 
-use super::Patch;
-use super::linear::{LinearError, POISSON, RATIO};
+use super::patch::{LinearError, POISSON, Patch, RATIO};
 
 /// Terms by ln(axis ratio) and by Poisson's ratio.
 const TERMS: [usize; 2] = [56, 16];

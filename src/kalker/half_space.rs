@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use thiserror::Error;
 
-use super::linear::LinearError;
+use super::patch::LinearError;
 use super::{Patch, ScaledCreepage, ScaledForces};
 
 /// [-] change of a traction over mu p0 in a sweep that counts as none.

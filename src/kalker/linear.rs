@@ -8,57 +8,17 @@ use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
 use nalgebra::{DMatrix, Matrix3};
-use thiserror::Error;
 
-use super::Patch;
 use super::creep_coefficients::along_x;
 use super::load_displacement::{Basis, LoadDisplacement, disc_moment};
+use super::patch::{LinearError, Patch};
 use crate::numerics::elliptic::complete_elliptic_integrals;
 
-/// Ranges of the axis ratio and of Poisson's ratio.
-pub(super) const RATIO: (f64, f64) = (0.018, 55.0);
-pub(super) const POISSON: (f64, f64) = (0.0, 0.5);
 /// Degree of the polynomials: odd ones converge faster. Coefficients are within 0.3 % of higher degrees from axis
 /// ratio 0.02 to 50 (tested).
 const DEGREE: usize = 9;
 /// Points on the edge of the ellipse.
 const EDGE_POINTS: usize = 96;
-
-/// Why there is no solution.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum LinearError {
-    /// Axis ratio out of range.
-    #[error("axis ratio {0} of the contact ellipse (rolling over transverse) is outside [0.018, 55]")]
-    AxisRatio(f64),
-    /// Poisson's ratio out of range.
-    #[error("Poisson's ratio {0} is outside [0, 0.5]")]
-    PoissonRatio(f64),
-    /// Rolling direction that is not a number.
-    #[error("rolling direction {0} rad is not a finite number")]
-    RollingAngle(f64),
-    /// The linear system is singular, which no valid patch leads to.
-    #[error("the linear theory has no solution for {0:?}")]
-    Singular(Patch),
-}
-
-impl Patch {
-    /// Checks the ranges of a patch.
-    ///
-    /// # Errors
-    /// Names the value that is out of range.
-    pub fn check(&self) -> Result<(), LinearError> {
-        if !(RATIO.0..=RATIO.1).contains(&self.axis_ratio) {
-            return Err(LinearError::AxisRatio(self.axis_ratio));
-        }
-        if !(POISSON.0..=POISSON.1).contains(&self.poisson_ratio) {
-            return Err(LinearError::PoissonRatio(self.poisson_ratio));
-        }
-        if !self.rolling_angle.is_finite() {
-            return Err(LinearError::RollingAngle(self.rolling_angle));
-        }
-        Ok(())
-    }
-}
 
 /// A polynomial of the basis as its coefficients.
 type Polynomial = Vec<f64>;

@@ -17,6 +17,7 @@ mod minimise;
 pub mod nonlinear;
 mod objective;
 mod objective_weights;
+mod patch;
 pub mod scaled_law;
 pub mod solution;
 pub mod table;
@@ -24,16 +25,7 @@ mod table_evaluation;
 pub mod table_nodes;
 mod table_pieces;
 
-/// A rolling contact patch as Kalker's theory knows it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Patch {
-    /// [-] semi-axis along the ellipse's x axis over the one along y, 0.018 to 55.
-    pub axis_ratio: f64,
-    /// [-] Poisson's ratio of both bodies, 0 to 0.5.
-    pub poisson_ratio: f64,
-    /// \[rad] direction of rolling measured from the ellipse's x axis; 0 is rolling along x.
-    pub rolling_angle: f64,
-}
+pub use patch::{LinearError, Patch};
 
 /// Creepages times `G/(mu p0)`, components along the ellipse axes; the spin times `c` as well.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

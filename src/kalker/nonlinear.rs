@@ -19,8 +19,9 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
-use super::linear::{LinearError, adhesion_tractions, leading_edge, resultants};
+use super::linear::{adhesion_tractions, leading_edge, resultants};
 use super::load_displacement::{Basis, LoadDisplacement};
+use super::patch::LinearError;
 use super::{Patch, ScaledCreepage};
 
 /// [-] weight of the leading-edge rows.

@@ -17,7 +17,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
 
 use super::Patch;
-use super::linear::{LinearError, Scales};
+use super::linear::Scales;
+use super::patch::LinearError;
 use super::table_pieces::{COUNT, weights};
 use crate::numerics::lanes::Lanes;
 

@@ -11,7 +11,7 @@ use crate::contact::pair::PairForces;
 use crate::contact::pocket::PocketModel;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::effects::cage::{CageSection, Guidance};
-use crate::kalker::linear::LinearError;
+use crate::kalker::LinearError;
 use crate::numerics::scalar::Single;
 use crate::scene::Scene;
 
