@@ -1,0 +1,185 @@
+//! Single contacts: `roulement contact`.
+
+use super::*;
+
+#[test]
+fn contact_prints_the_documented_columns_for_any_column_order() {
+    let scratch = Scratch::new("contact");
+    let table = "spin,note,id,creep_y,creep_x,semi_axis_y,semi_axis_x,peak_pressure,friction,shear_modulus,poisson_ratio,rolling_angle\n\
+                 0,x,one,0,1e-3,1e-4,1e-4,1.2e9,0.08,8.1e10,0.3,0\n\
+                 0,y,two,0,1e-1,1e-4,1e-4,1.2e9,0.08,8.1e10,0.3,0\n";
+    std::fs::write(scratch.path("cases.csv"), table).unwrap();
+    for law in ["frictionless", "linear", "regularised", "saturated", "kalker"] {
+        let output = roulement(&["contact", "--law", law, &scratch.path("cases.csv"), "--degree", "3"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+        assert_eq!(lines[0], ["id", "fx", "fy", "mz", "power", "stick"]);
+        assert_eq!((lines[1][0], lines[2][0], lines.len()), ("one", "two", 3));
+        // A stick fraction only where the law has one.
+        assert_eq!(lines[1][5].is_empty(), law != "kalker");
+        let sliding: f64 = lines[2][1].parse().unwrap();
+        if ["regularised", "saturated", "kalker"].contains(&law) {
+            assert!((sliding - 1.0).abs() < 5e-3, "{law}: {sliding}");
+        }
+    }
+    std::fs::write(scratch.path("cases.csv"), table.replace("1.2e9", "-1")).unwrap();
+    let output = roulement(&["contact", "--law", "kalker", &scratch.path("cases.csv")]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        !output.status.success() && message.contains("peak_pressure") && message.contains("one"),
+        "{message}"
+    );
+}
+
+#[test]
+fn contact_says_what_error_to_expect_where_the_table_rolls_obliquely() {
+    let scratch = Scratch::new("oblique");
+    let table = "id,creep_x,creep_y,spin,semi_axis_x,semi_axis_y,peak_pressure,friction,shear_modulus,poisson_ratio,rolling_angle\n\
+                 one,1e-3,0,5,1e-4,1e-3,1.2e9,0.08,8.1e10,0.3,0.7\n\
+                 two,1e-3,0,5,1e-4,1e-3,1.2e9,0.08,8.1e10,0.3,0\n";
+    std::fs::write(scratch.path("cases.csv"), table).unwrap();
+    for (law, expected) in [("kalker_table", true), ("kalker", false)] {
+        let output = roulement(&["contact", "--law", law, &scratch.path("cases.csv")]);
+        let note = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{note}");
+        assert_eq!(
+            note.contains("1 of these contacts rolls obliquely") && note.contains("0.03"),
+            expected,
+            "{note}"
+        );
+        assert_eq!(String::from_utf8(output.stdout).unwrap().lines().count(), 3);
+    }
+}
+
+const CONTACTS: &str = "id,creep_x,creep_y,spin,semi_axis_x,semi_axis_y,peak_pressure,friction,shear_modulus,poisson_ratio,rolling_angle\n\
+                        one,1e-2,0,5,1e-4,3e-4,1.2e9,0.08,8.1e10,0.3,0.7\n\
+                        two,1e-2,3e-3,20,1e-4,3e-4,1.2e9,0.08,8.1e10,0.3,-0.4\n\
+                        again,1e-2,0,5,1e-4,3e-4,1.2e9,0.08,8.1e10,0.3,0.7\n";
+
+/// `contact --law kalker_table --exact` of a table, with a cache directory: forces, and what is told.
+fn exact(scratch: &Scratch, table: &str) -> (String, String) {
+    std::fs::write(scratch.path("cases.csv"), table).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_roulement"))
+        .args(["contact", "--law", "kalker_table", "--exact", &scratch.path("cases.csv")])
+        .env("XDG_CACHE_HOME", scratch.path("cache"))
+        .output()
+        .unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{told}");
+    (String::from_utf8(output.stdout).unwrap(), told)
+}
+
+#[test]
+fn exact_contacts_are_kept_and_computed_anew_where_anything_differs() {
+    let scratch = Scratch::new("exact");
+    let (computed, told) = exact(&scratch, CONTACTS);
+    let file = scratch.path("cache/roulement/contacts.csv");
+    // The third contact is the first again.
+    assert!(told.contains("3 contacts, 2 of them computed") && told.contains(&file), "{told}");
+    let rows: Vec<&str> = computed.lines().collect();
+    assert_eq!((rows[0], rows.len()), ("id,fx,fy,mz,power,stick", 4));
+    assert_eq!(rows[1].strip_prefix("one"), rows[3].strip_prefix("again"));
+    let kept = exact(&scratch, CONTACTS);
+    assert!(kept.1.contains("3 contacts, 0 of them computed"), "{}", kept.1);
+    assert_eq!(kept.0, computed);
+    // Whatever an answer depends on.
+    for (from, to) in [
+        ("two,1e-2", "two,2e-2"),
+        (",3e-3,20", ",2e-3,20"),
+        (",20,", ",19,"),
+        ("20,1e-4,", "20,1.1e-4,"),
+        ("0.3,-0.4", "0.29,-0.4"),
+        ("0.3,-0.4", "0.3,-0.41"),
+    ] {
+        let (forces, told) = exact(&scratch, &CONTACTS.replace(from, to));
+        assert!(told.contains("3 contacts, 1 of them computed"), "{to}: {told}");
+        let line = forces.lines().nth(2).unwrap();
+        assert!(line.starts_with("two,") && line != rows[2], "{to}: {line}");
+    }
+    // Load and friction alone are nothing but a scale: the answer is kept.
+    let (_, told) = exact(&scratch, &CONTACTS.replace("1.2e9,0.08", "0.6e9,0.16"));
+    assert!(told.contains("3 contacts, 0 of them computed"), "{told}");
+    // Nothing but the file is there.
+    assert_eq!(std::fs::read_dir(scratch.path("cache/roulement")).unwrap().count(), 1);
+}
+
+#[test]
+fn exact_contacts_of_a_damaged_or_older_cache_are_computed_anew() {
+    let scratch = Scratch::new("damaged");
+    let (computed, _) = exact(&scratch, CONTACTS);
+    let file = scratch.path("cache/roulement/contacts.csv");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let [title, first, _] = text.lines().collect::<Vec<_>>()[..] else { panic!("{text}") };
+    let older = text.replace(title, "# rolling contacts of roulement 0.0.1, form 1");
+    // A force that reads as one and is none, half a file, another version, and no text at all.
+    let place = first.match_indices(',').nth(7).unwrap().0 - 3;
+    let digit = if &first[place..=place] == "1" { "2" } else { "1" };
+    let altered = text.replace(first, &format!("{}{digit}{}", &first[..place], &first[place + 1..]));
+    for (damaged, count, words) in [
+        (altered.as_bytes(), 1, "1 line of"),
+        (&text.as_bytes()[..text.len() - 40], 1, "1 line of"),
+        (older.as_bytes(), 2, "another version"),
+        (&[0xff, 0xfe, 0x00, 0x80][..], 2, "is damaged or"),
+    ] {
+        assert_ne!(damaged, text.as_bytes());
+        std::fs::write(&file, damaged).unwrap();
+        let (forces, told) = exact(&scratch, CONTACTS);
+        assert!(told.contains(&format!("{count} of them computed")) && told.contains(words), "{told}");
+        assert_eq!(forces, computed);
+        let (_, told) = exact(&scratch, CONTACTS);
+        assert!(told.contains(" 0 of them computed") && !told.contains(words), "{told}");
+    }
+    // A directory in its place: told, and no obstacle.
+    std::fs::remove_file(&file).unwrap();
+    std::fs::create_dir(&file).unwrap();
+    let (forces, told) = exact(&scratch, CONTACTS);
+    assert!(told.contains("cannot read") && told.contains("cannot write") && told.contains(&file), "{told}");
+    assert_eq!(forces, computed);
+}
+
+#[test]
+fn exact_is_refused_where_it_has_no_meaning() {
+    let scratch = Scratch::new("exact-options");
+    let cases = scratch.path("cases.csv");
+    std::fs::write(&cases, CONTACTS).unwrap();
+    let refused = |arguments: &[&str]| {
+        let output = roulement(&[&["contact", &cases], arguments].concat());
+        assert!(!output.status.success() && output.stdout.is_empty());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let message = refused(&["--law", "kalker", "--exact"]);
+    assert!(message.contains("--exact is an option of --law kalker_table, not of kalker"), "{message}");
+    for other in ["--grid", "--degree"] {
+        let message = refused(&["--law", "kalker_table", "--exact", other, "5"]);
+        assert!(message.contains("'--exact' cannot be used with") && message.contains(other), "{message}");
+    }
+    let message = refused(&["--law", "kalker_table", "--no-cache"]);
+    assert!(message.contains("--exact"), "{message}");
+    // Nothing is computed, and nothing printed, before all contacts are known to be in range.
+    std::fs::write(&cases, CONTACTS.replace("again,1e-2,0,5,1e-4", "again,1e-2,0,5,1e-6")).unwrap();
+    let message = refused(&["--law", "kalker_table", "--exact", "--no-cache"]);
+    assert!(message.contains("case again") && message.contains("[0.018, 55]"), "{message}");
+}
+
+#[test]
+fn exact_contacts_need_no_cache() {
+    let scratch = Scratch::new("no-cache");
+    std::fs::write(scratch.path("cases.csv"), CONTACTS).unwrap();
+    let told = |extra: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_roulement"))
+            .args(["contact", "--law", "kalker_table", "--exact", &scratch.path("cases.csv")])
+            .args(extra)
+            .env("XDG_CACHE_HOME", "relative/paths/do/not/count")
+            .env_remove("HOME")
+            .env_remove("LOCALAPPDATA")
+            .output()
+            .unwrap();
+        assert!(output.status.success() && output.stdout.len() > 100);
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let nowhere = told(&[]);
+    assert!(nowhere.contains("nothing is kept") && nowhere.contains("2 of them computed"), "{nowhere}");
+    let unwanted = told(&["--no-cache"]);
+    assert!(!unwanted.contains("kept") && unwanted.contains("2 of them computed"), "{unwanted}");
+}

@@ -1,0 +1,346 @@
+//! `roulement run` and `equilibrium`: what they write and print, also when they are interrupted.
+
+use super::*;
+
+#[test]
+fn equilibrium_json_has_the_documented_keys() {
+    for choice in ["outer-race-control", "none", "friction"] {
+        let output = roulement(&["equilibrium", &scene("radial"), "--json", "--gyroscopic", choice]);
+        assert!(output.status.success());
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        for (group, keys) in [
+            ("displacement", &["x", "y", "z", "ry", "rz"][..]),
+            ("load", &["Fx", "Fy", "Fz", "My", "Mz"]),
+            ("balls", &["azimuth", "inner_load", "outer_load", "inner_contact_angle", "outer_contact_angle"]),
+        ] {
+            for key in keys {
+                assert!(!json[group][key].is_null(), "{group}.{key}");
+            }
+        }
+        assert_eq!(json["stiffness"].as_array().unwrap().len(), 5);
+        assert_eq!(json["balls"]["inner_load"].as_array().unwrap().len(), 9);
+        assert!(json["cage_speed"].as_f64().unwrap() > 200.0 && json["residual"].as_f64().unwrap() < 1e-9);
+        assert!((json["load"]["Fy"].as_f64().unwrap() - 1500.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn equilibrium_text_has_units() {
+    let output = roulement(&["equilibrium", &scene("thrust")]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in ["um", "mrad", "N m", "rad/s", "[deg]", "load inner, outer [N]"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+#[test]
+fn run_writes_table_plots_and_summary() {
+    let scratch = Scratch::new("run");
+    let text = edited("thrust", &[("load.duration", "\"2 ms\"")]);
+    std::fs::write(scratch.path("short.toml"), text).unwrap();
+    let output = roulement(&["run", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+
+    let table = std::fs::read_to_string(scratch.path("out/results.csv")).unwrap();
+    let mut lines = table.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(header[0], "time [s]");
+    for name in ["inner.force.x [N]", "cage.speed [rad/s]", "ball[10].outer.creepage_spin [1/m]"] {
+        assert!(header.contains(&name), "{name}");
+    }
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 21);
+    assert!(rows.iter().all(|row| row.len() == header.len() && row.iter().all(|value| value.is_finite())));
+    assert_eq!(rows[20][0], 0.002);
+
+    for (name, labels) in [
+        ("contacts.svg", &["contact angle [deg]", "spin moment [N mm]", "friction power [W]"][..]),
+        ("bearing.svg", &["cage speed [rad/s]", "inner race position [um]"]),
+        ("balls.svg", &["azimuth [deg]", "peak pressure [MPa]"]),
+    ] {
+        let picture = std::fs::read_to_string(Path::new(&scratch.path("out")).join(name)).unwrap();
+        assert!(picture.starts_with("<svg") && picture.trim_end().ends_with("</svg>"));
+        for label in labels {
+            assert!(picture.contains(label), "{name}: {label}");
+        }
+        assert!(!picture.contains("NaN"));
+    }
+
+    let summary = String::from_utf8(output.stdout).unwrap();
+    for part in [
+        "cage speed",
+        "epicyclic",
+        "friction power",
+        "accepted",
+        "rejected",
+        "Newton",
+        "per simulated second",
+    ] {
+        assert!(summary.contains(part), "{summary}");
+    }
+}
+
+#[test]
+fn prints_say_whose_force_it_is() {
+    let output = roulement(&["equilibrium", &scene("thrust")]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("external load Fx 1500.000 N") && text.contains("the bearing's force on it"),
+        "{text}"
+    );
+    let output = roulement(&["equilibrium", &scene("thrust"), "--json"]);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(json["load_is"].as_str().unwrap().contains("external load on the inner race"));
+    assert_eq!(json["race"], "inner");
+    let scratch = Scratch::new("whose");
+    std::fs::write(scratch.path("short.toml"), edited("thrust", &[("load.duration", "\"0.1 ms\"")])).unwrap();
+    let output = roulement(&["run", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("bearing's force  x -1") && text.contains("of the bearing on the inner race"),
+        "{text}"
+    );
+    // That of an outer race under a wrench, which moves instead.
+    let outer = [
+        ("inner.drive", "\"fixed\""),
+        ("outer", "{ drive = \"wrench\", mass = 0.2, inertia = [6e-5, 4e-5, 4e-5] }"),
+        ("load.x", ""),
+        ("load.outer.x.force", "\"-1500 N\""),
+        ("load.duration", "\"0.1 ms\""),
+    ];
+    std::fs::write(scratch.path("outer.toml"), edited("thrust", &outer)).unwrap();
+    let output = roulement(&["equilibrium", &scratch.path("outer.toml")]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in ["outer race    x -", "external load Fx -1500.000 N", "(on the outer race;"] {
+        assert!(text.contains(part), "{text}");
+    }
+    let output = roulement(&["run", &scratch.path("outer.toml"), "-o", &scratch.path("outer")]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("of the bearing on the outer race") && text.contains("outer race at    x -"),
+        "{text}"
+    );
+    let plot = std::fs::read_to_string(scratch.path("outer/bearing.svg")).unwrap();
+    assert!(plot.contains("force of the bearing on outer race [N]"));
+    let plot = std::fs::read_to_string(scratch.path("out/bearing.svg")).unwrap();
+    assert!(plot.contains("force of the bearing on inner race [N]"));
+}
+
+#[test]
+fn an_interrupted_run_keeps_what_it_has() {
+    let scratch = Scratch::new("interrupted");
+    // A smallest step that contact cannot be resolved with, after a start that it can.
+    let steps = [
+        ("solver.initial_step", "\"10 us\""),
+        ("solver.min_step", "\"9 us\""),
+        ("solver.tolerance", "1e-12"),
+    ];
+    std::fs::write(scratch.path("hard.toml"), edited("thrust", &steps)).unwrap();
+    let output = roulement(&["run", &scratch.path("hard.toml"), "-o", &scratch.path("out")]);
+    assert!(!output.status.success());
+    let message = String::from_utf8(output.stderr).unwrap();
+    for part in ["solver.min_step", "ball", "inner load", "tolerance"] {
+        assert!(message.contains(part), "{message}");
+    }
+    assert!(std::fs::read_to_string(scratch.path("out/results.csv")).unwrap().lines().count() >= 2);
+}
+
+#[test]
+fn columns_and_window_choose_what_is_written() {
+    let scratch = Scratch::new("columns");
+    std::fs::write(scratch.path("short.toml"), edited("thrust", &[("load.duration", "\"3 ms\"")])).unwrap();
+    let run = |more: &[&str]| {
+        let arguments = ["run", &scratch.path("short.toml"), "-o", &scratch.path("out")];
+        roulement(&[&arguments[..], more].concat())
+    };
+    let output =
+        run(&["--columns", "inner.force.*,ball[2].outer.load,friction_torque", "--window", "1 ms:0.002"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let table = std::fs::read_to_string(scratch.path("out/results.csv")).unwrap();
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(
+        lines[0],
+        "time [s],inner.force.x [N],inner.force.y [N],inner.force.z [N],friction_torque [N.m],ball[2].outer.load [N]"
+    );
+    let times: Vec<f64> =
+        lines[1..].iter().map(|line| line.split(',').next().unwrap().parse().unwrap()).collect();
+    assert_eq!((times.len(), times[0]), (11, 0.001));
+    assert!((times[10] - 0.002).abs() < 1e-15);
+    // Means are those of the run, whatever is written.
+    assert!(String::from_utf8(output.stdout).unwrap().contains("means over the last 1.500 ms"));
+
+    let output = run(&["--columns", "inner.farce.x"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && message.contains("inner.farce.x"), "{message}");
+    assert!(!run(&["--window", "2:1"]).status.success());
+}
+
+/// A run that takes long, once some of its rows are in its table.
+#[cfg(unix)]
+fn long_run(scratch: &Scratch) -> std::process::Child {
+    let text = edited("thrust", &[("load.duration", "\"1000 s\""), ("load.output_interval", "\"20 us\"")]);
+    std::fs::write(scratch.path("long.toml"), text).unwrap();
+    let child = Command::new(env!("CARGO_BIN_EXE_roulement"))
+        .args(["run", &scratch.path("long.toml"), "-o", &scratch.path("out")])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let rows =
+        || std::fs::read_to_string(scratch.path("out/results.csv")).map_or(0, |table| table.lines().count());
+    let begin = std::time::Instant::now();
+    while rows() < 50 {
+        assert!(begin.elapsed().as_secs() < 120, "no rows come");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    child
+}
+
+#[cfg(unix)]
+fn signal(child: &std::process::Child, name: &str) {
+    assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
+}
+
+/// Rows of the table of a run, all whole.
+#[cfg(unix)]
+fn whole_rows(scratch: &Scratch) -> usize {
+    let table = std::fs::read_to_string(scratch.path("out/results.csv")).unwrap();
+    assert!(table.ends_with('\n'));
+    let mut lines = table.lines();
+    let columns = lines.next().unwrap().split(',').count();
+    for line in lines.clone() {
+        let fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
+        assert_eq!(fields.len(), columns);
+    }
+    lines.count()
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_the_row_and_gives_summary_and_plots() {
+    let scratch = Scratch::new("interrupt");
+    let child = long_run(&scratch);
+    signal(&child, "-INT");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(whole_rows(&scratch) >= 50);
+    let summary = String::from_utf8(output.stdout).unwrap();
+    assert!(summary.contains("friction torque") && summary.contains("energy"), "{summary}");
+    for name in ["contacts.svg", "bearing.svg", "balls.svg", "means.csv", "summary.txt"] {
+        assert!(std::fs::read_to_string(scratch.path(&format!("out/{name}"))).unwrap().len() > 100, "{name}");
+    }
+    assert!(String::from_utf8(output.stderr).unwrap().contains("interrupted at"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_killed_run_leaves_whole_rows() {
+    let scratch = Scratch::new("killed");
+    let mut child = long_run(&scratch);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(whole_rows(&scratch) >= 50);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_device_is_an_error_and_no_panic() {
+    let scratch = Scratch::new("full");
+    std::fs::write(scratch.path("short.toml"), edited("thrust", &[("load.duration", "\"1 ms\"")])).unwrap();
+    let run = |full: bool| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_roulement"));
+        command.args(["run", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
+        if full {
+            command.stdout(std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap());
+        }
+        let output = command.output().unwrap();
+        assert_eq!(output.status.code(), Some(1));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let message = run(true);
+    assert!(
+        message.contains("cannot write to the standard output") && !message.contains("panicked"),
+        "{message}"
+    );
+    for name in ["results.csv", "bearing.svg", "means.csv", "summary.txt"] {
+        let path = scratch.path(&format!("out/{name}"));
+        std::fs::remove_file(&path).unwrap();
+        std::os::unix::fs::symlink("/dev/full", &path).unwrap();
+        let message = run(false);
+        assert!(message.contains(name) && !message.contains("panicked"), "{message}");
+        std::fs::remove_file(&path).unwrap();
+    }
+}
+
+/// Lines of the summary of a run that begin with a word.
+fn summary_of(scratch: &Scratch, name: &str, changes: &[(&str, &str)], word: &str) -> Vec<String> {
+    std::fs::write(scratch.path("scene.toml"), edited(name, changes)).unwrap();
+    let output = roulement(&["run", &scratch.path("scene.toml"), "-o", &scratch.path("out")]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let file = std::fs::read_to_string(scratch.path("out/summary.txt")).unwrap();
+    assert!(text.starts_with(&file));
+    text.lines().filter(|line| line.starts_with(word)).map(str::to_string).collect()
+}
+
+#[test]
+fn a_run_says_whether_its_means_have_settled() {
+    let scratch = Scratch::new("settled");
+    // The balls start at a tenth of their speed: friction brings them up within half a millisecond.
+    let slow = [("start.orbital_speed", "26.0"), ("load.output_interval", "\"10 us\"")];
+    let short = [&slow[..], &[("load.duration", "\"0.4 ms\"")]].concat();
+    let unsettled = summary_of(&scratch, "thrust", &short, "NOT SETTLED");
+    assert!(unsettled.iter().any(|line| line.contains("cage speed")), "{unsettled:?}");
+    let table = std::fs::read_to_string(scratch.path("out/means.csv")).unwrap();
+    let cage: Vec<&str> =
+        table.lines().find(|line| line.starts_with("cage speed")).unwrap().split(',').collect();
+    assert_eq!(cage[8], "false", "{table}");
+    let long = [&slow[..], &[("load.duration", "\"4 ms\"")]].concat();
+    let unsettled = summary_of(&scratch, "thrust", &long, "NOT SETTLED");
+    assert!(!unsettled.iter().any(|line| line.contains("cage speed")), "{unsettled:?}");
+    // Where the loads go on to change, nothing settles.
+    let ramp = [("load.inner_speed", "[[0, 500], [1, 1000]]"), ("load.duration", "\"10 ms\"")];
+    let unsettled = summary_of(&scratch, "thrust", &ramp, "NOT SETTLED");
+    assert!(unsettled.iter().any(|line| line.contains("cage speed")), "{unsettled:?}");
+}
+
+#[test]
+fn a_run_whose_energy_does_not_close_says_so_with_the_cause() {
+    let scratch = Scratch::new("energy");
+    // Steps of 0.1 ms without damping, where a ball swings with 45 kHz.
+    let long_steps = [
+        ("solver.max_step", "1e-3"),
+        ("solver.initial_step", "1e-3"),
+        ("solver.tolerance", "1e-2"),
+        ("effects.damping", "0.0"),
+        ("friction.ball_race", "0.001"),
+        ("load.x.force", "[[0, 1500], [\"0.1 ms\", 4000]]"),
+        ("load.duration", "\"10 ms\""),
+    ];
+    let warnings = summary_of(&scratch, "thrust", &long_steps, "WARNING");
+    let parts = ["energy does not close to 1 %", "natural frequency", "steps a period", "solver.max_step"];
+    assert!(warnings.len() == 1 && parts.iter().all(|part| warnings[0].contains(part)), "{warnings:?}");
+    // Balls that lose and find their contacts, in long steps.
+    let impacts = [
+        ("solver.max_step", "2e-4"),
+        ("solver.initial_step", "2e-4"),
+        ("solver.tolerance", "1e-2"),
+        ("effects.creep", "\"frictionless\""),
+        ("effects.damping", "0.0"),
+        (
+            "load.y.force",
+            "[[0, 1500], [\"2 ms\", -1500], [\"4 ms\", 1500], [\"6 ms\", -1500], [\"50 ms\", 1500]]",
+        ),
+    ];
+    let warnings = summary_of(&scratch, "radial", &impacts, "WARNING");
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("likely impacts: contacts opened or closed"),
+        "{warnings:?}"
+    );
+    // One that closes says nothing, whatever its friction.
+    for friction in ["0.08", "0.0"] {
+        let good = [("load.duration", "\"5 ms\""), ("friction.ball_race", friction)];
+        assert_eq!(summary_of(&scratch, "thrust", &good, "WARNING"), Vec::<String>::new());
+    }
+}
