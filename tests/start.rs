@@ -237,3 +237,21 @@ fn regression_a_load_beyond_every_bearing_has_no_equilibrium() {
     assert!(why.contains("beyond elastic") || why.contains("does not converge"), "{why}");
     assert!(!why.contains("NaN"), "{why}");
 }
+
+#[test]
+fn regression_a_ball_that_turns_without_end_is_no_balance() {
+    // A random scene whose first ball started at 4e156 rad/s: a ball that is infinitely fast has no creepage.
+    let text = "[bearing]\nballs = 16\nball_diameter = 0.01998384707553198\npitch_diameter = 0.12008582231592382\n\
+                inner_conformity = 0.5151678290431639\nouter_conformity = 0.5207428501843044\n\
+                diametral_clearance = 0.0000068088034856446494\n[friction]\nball_race = 0.006256584487471672\n\
+                [effects]\ncreep = \"kalker_table\"\n[inner]\ndrive = \"wrench\"\nmass = 0.5868501255173103\n\
+                inertia = [0.0021156834226813775, 0.0012694100536088265, 0.0012694100536088265]\n\
+                [load]\nduration = 0.005\ninner_speed = -126.81686614994825\nx = { displacement = 0.0 }\n\
+                y = { force = 21022.89972210027 }\nry = { rotation = 0.00016718915892818928 }\nrz = { rotation = 0.0 }\n";
+    let simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+    let outputs = simulation.outputs();
+    assert!(outputs.stored_energy.is_finite() && outputs.friction_power.is_finite(), "{outputs:?}");
+    let speeds = outputs.balls.iter().map(|ball| ball.angular_velocity.norm());
+    let (low, high) = speeds.fold((f64::INFINITY, 0.0f64), |(low, high), w| (low.min(w), high.max(w)));
+    assert!(low > 300.0 && high < 330.0, "{low} to {high} rad/s");
+}

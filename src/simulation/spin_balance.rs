@@ -89,6 +89,10 @@ fn balanced(around: &Surroundings<'_>, start: &BallMotion<f64>, own_orbit: bool)
         let limit = inner.load.min(outer.load) * contacts.inner.friction;
         (Vector4::new(force, moment.x, moment.y, moment.z), limit)
     };
+    // With no end to its speed a ball has no creepage either: such a balance is none.
+    let fastest = start.angular_velocity.norm();
+    let is_near =
+        |motion: &BallMotion<f64>| (motion.angular_velocity - start.angular_velocity).norm() <= fastest;
     let mut motion = *start;
     let (mut here, limit) = residual(&motion);
     if limit <= 0.0 {
@@ -128,7 +132,7 @@ fn balanced(around: &Surroundings<'_>, start: &BallMotion<f64>, own_orbit: bool)
             ..motion
         };
         let (there, _) = residual(&trial);
-        if there.norm() < 1.2 * here.norm() {
+        if is_near(&trial) && there.norm() < 1.2 * here.norm() {
             (motion, here) = (trial, there);
             step *= 1.5;
         } else {
