@@ -106,7 +106,8 @@ fn force_assembly(bencher: Bencher) {
         (race.pose, race.twist())
     });
     let conditions = Conditions { friction: 0.08 };
-    let boundary = Boundary { time: 0.0, motion, loads: Default::default(), conditions };
+    let frame = roulement::effects::frame::FrameMotion::default();
+    let boundary = Boundary { time: 0.0, motion, loads: Default::default(), conditions, frame };
     bencher.with_inputs(|| simulation.state().clone()).bench_local_values(|mut state| {
         make_consistent(simulation.model(), &mut state, &boundary);
         state

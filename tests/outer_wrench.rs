@@ -157,7 +157,7 @@ fn closed_form_contact_forces_on_the_outer_race_carry_load_and_weight_about_its_
     let place = orientation.inverse() * (input.resting.position - V::new(x, y, z));
     let lean = (orientation.inverse() * (input.resting.orientation * V::x())).normalize();
     let lean = UnitQuaternion::rotation_between(&V::x(), &lean).unwrap().scaled_axis();
-    let gravity = orientation.inverse() * model.gravity;
+    let gravity = orientation.inverse() * scene.effects.gravity.at(0.0);
     let written = format!("[{:e}, {:e}, {:e}]", gravity.x, gravity.y, gravity.z);
     let held = scene_of_inner(&[("effects.gravity", &written)]);
     let conditions = [place.x, place.y, place.z, lean.y, lean.z].map(Prescribed::Motion);

@@ -61,7 +61,7 @@ impl Flight {
         let load = BodyLoad { speed, ..BodyLoad::default() };
         let motion = PerRace { inner: (pose, *twist), outer: (outer, Twist::default()) };
         let conditions = Conditions { friction: 0.08 };
-        let boundary = Boundary { time: 0.0, motion, loads: PerRace::new(|_| load), conditions };
+        let boundary = Boundary { time: 0.0, motion, loads: PerRace::new(|_| load), conditions, frame: scene.frame_at(0.0) };
         make_consistent(&model, &mut state, &boundary);
         Self { model, state, boundary, workspace: Workspace::default(), h }
     }

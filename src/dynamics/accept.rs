@@ -1,11 +1,10 @@
 //! From solved equations to the next state, and from a motion to a consistent state.
 
-use nalgebra::Vector3;
-
 use super::ball::BallTrial;
 use super::neighbours::NeighbourTrial;
 use super::{Boundary, Workspace, body};
 use crate::contact::pair::PairForces;
+use crate::effects::ambient::Ambient;
 use crate::forces::{BallPair, Contacts, Pairs, Totals, between_cage_and_lands};
 use crate::model::Model;
 use crate::model::bodies::{Body, Race};
@@ -50,12 +49,14 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
     for (ball, trial) in state.balls.iter_mut().zip(&workspace.balls) {
         *ball = trial.end(model.bearing.ball.radius);
     }
+    let ambient = model.ambient(&boundary.frame);
     let solved = Solved { workspace, guide: model.cage_guide() };
     let totals = Totals::of(&solved, state.balls.len());
     let mut powers = Powers {
-        input: weight_power(model, &state.balls),
+        input: power_into_balls(&ambient, &state.balls),
         friction: totals.friction_power,
         damping: totals.damping_power,
+        around: power_lost_around(&ambient, &state.balls),
     };
     for ((body, state), (_, trial)) in state.bodies.iter_mut().zip(workspace.bodies.iter()) {
         let (turned, spin) = ((state.turned, state.turned_rest), state.rate.x);
@@ -91,10 +92,18 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }
 
-/// \[W] power of the weight of all balls.
-fn weight_power(model: &Model, balls: &[BallState]) -> f64 {
-    let power = |ball: &BallState| model.bearing.ball.mass * model.gravity.dot(&ball.velocity);
+/// \[W] power of weight and moving frame on all balls.
+fn power_into_balls(ambient: &Ambient, balls: &[BallState]) -> f64 {
+    let power = |ball: &BallState| ambient.power_into(&ball.motion());
     balls.iter().map(power).fold(0.0, |sum, power| sum + power)
+}
+
+/// \[W] power that all balls lose to the medium around them.
+pub fn power_lost_around(ambient: &Ambient, balls: &[BallState]) -> f64 {
+    if ambient.medium.is_none() {
+        return 0.0;
+    }
+    balls.iter().map(|ball| ambient.power_lost(&ball.motion())).fold(0.0, |sum, power| sum + power)
 }
 
 /// \[m] largest coordinate of a ball to expect: contacts cannot resolve less than its last digit.
@@ -157,24 +166,25 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     renew_polynomials(model, state, boundary);
     let contacts = Contacts::new(model, state, &boundary.conditions);
     let ball_model = &model.bearing.ball;
+    let ambient = model.ambient(&boundary.frame);
     for (index, ball) in state.balls.iter_mut().enumerate() {
-        let weight = Wrench { force: model.gravity * ball_model.mass, moment: Vector3::zeros() };
-        ball.total = contacts.on_ball(index, weight);
+        ball.total = contacts.on_ball(index, ambient.on_ball(&ball.motion()));
         ball.remainder = Wrench::default();
         ball.acceleration = ball.total.force / ball_model.mass;
         ball.angular_acceleration = ball.total.moment / ball_model.inertia;
     }
     let totals = Totals::of(&contacts, state.balls.len());
     let mut powers = Powers {
-        input: weight_power(model, &state.balls),
+        input: power_into_balls(&ambient, &state.balls),
         friction: totals.friction_power,
         damping: totals.damping_power,
+        around: power_lost_around(&ambient, &state.balls),
     };
     for ((body, state), (_, moved)) in state.bodies.iter_mut().zip(model.bodies.iter()) {
         state.bearing_wrench = totals.on(body);
         powers.input += match moved {
             Some(moved) => {
-                body::make_consistent(state, moved, &boundary.load_on(body, moved, &model.gravity))
+                body::make_consistent(state, moved, &boundary.load_on(body, moved, &ambient))
             }
             None => -state.twist().power(&state.bearing_wrench),
         };

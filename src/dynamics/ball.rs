@@ -9,6 +9,7 @@ use super::reaction::Reaction;
 use crate::contact::many::ContactGroup;
 use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
+use crate::effects::ambient::Ambient;
 use crate::forces::on_ball;
 use crate::kalker::scaled_law::Difference;
 use crate::model::Model;
@@ -27,6 +28,8 @@ pub struct Surroundings<'a> {
     pub model: &'a Model,
     /// Contact with each race.
     pub contacts: &'a PerRace<ContactModel<'a>>,
+    /// What acts from outside.
+    pub ambient: &'a Ambient,
     /// Differences of Kalker's polynomials from the table, by ball.
     pub differences: &'a [PerRace<Difference>],
     /// Motion of each race.
@@ -173,7 +176,7 @@ impl BallTrial {
     ) {
         let mut tangent = self.contacts_with_tangent(index, around, step);
         self.evaluate_pocket(index, around, step, Some(&mut tangent));
-        self.assemble(around.model, step, start, Some(tangent));
+        self.assemble(around.model, around.ambient, step, start, Some(tangent));
     }
 
     /// Evaluates the contacts with the races and returns their derivatives.
@@ -259,15 +262,19 @@ impl BallTrial {
     pub fn assemble(
         &mut self,
         model: &Model,
+        ambient: &Ambient,
         step: &HhtStep,
         start: &BallState,
         tangent: Option<Matrix6<f64>>,
     ) {
         let ball = &model.bearing.ball;
         let fraction = 1.0 - step.alpha_f;
-        let weight = Wrench { force: model.gravity * ball.mass, moment: Vector3::zeros() };
-        self.total = on_ball(self.pairs().map(|(_, pair)| pair.on_first()), weight);
+        let outside = ambient.on_ball(&self.motion);
+        self.total = on_ball(self.pairs().map(|(_, pair)| pair.on_first()), outside);
         let mut tangent = tangent;
+        if let (Some(tangent), true) = (&mut tangent, ambient.depends_on_motion()) {
+            *tangent += by_motion(ambient, &seed(&self.motion, step, ball.radius));
+        }
         if let Some(push) = &self.pushed {
             self.total = self.total.plus(push.wrench);
             tangent.iter_mut().for_each(|tangent| *tangent += push.tangent);
@@ -289,6 +296,13 @@ impl BallTrial {
                 Matrix6::from_diagonal(&inertia) - scale_moments(tangent, ball.radius) * fraction;
         }
     }
+}
+
+/// Derivatives of what acts from outside by the ball's unknowns.
+#[cold]
+fn by_motion(ambient: &Ambient, ball: &BallMotion<Dual<6>>) -> Matrix6<f64> {
+    let Wrench { force, moment } = ambient.on_ball(ball);
+    by_first(&force, &moment)
 }
 
 /// A contact with a race of given motion, and derivatives of force and moment on the ball by the ball's unknowns.

@@ -6,6 +6,7 @@ use super::directions::{D, SECOND_ROTATION, by_first, by_second, by_second_unkno
 use super::reaction::Reaction;
 use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
+use crate::effects::frame::MovingFrame;
 use crate::model::bodies::{Bodies, Constraint, PerRace, Race, RigidBody, tilt_component, tilt_direction};
 use crate::model::state::{BodyState, normalised};
 use crate::numerics::hht::HhtStep;
@@ -26,6 +27,8 @@ pub struct BodyLoad {
     pub applied: Wrench,
     /// [rad/s] prescribed spin speed.
     pub speed: f64,
+    /// The bearing's frame, where it moves.
+    pub moving: Option<MovingFrame>,
 }
 
 /// Lengths and time that a body's equations are scaled with.
@@ -208,6 +211,14 @@ impl BodyTrial {
             }
         }
 
+        if let Some(moving) = &load.moving {
+            let inertial = self.in_moving_frame(moving, body, step);
+            force += inertial.force;
+            material_moment += inertial.moment;
+            self.input_power += values(&inertial.force).dot(&self.end.velocity)
+                + values(&inertial.moment).dot(&self.end.rate);
+        }
+
         // total force (spatial) and moment (material) with the gyroscopic term
         let momentum = Vector3::from_fn(|i, _| self.rate[i].scale(body.inertia[i]));
         let seen = turn(&self.start_orientation.inverse(), &world_moment);
@@ -234,6 +245,29 @@ impl BodyTrial {
                 self.block[(3 + i, k)] = by_second_unknown(&rotation, k) / length;
             }
         }
+    }
+
+    /// Forces of inertia of a moving frame: force (spatial) and moment (material).
+    #[cold]
+    fn in_moving_frame(&self, frame: &MovingFrame, body: &RigidBody, step: &HhtStep) -> Wrench<D> {
+        let to_body = |v: &Vector3<f64>| rotate(&-self.rotation, &constant_vector(&(self.start_orientation.inverse() * v)));
+        let field = frame.seen(constant_vector).field(&self.position(step), &self.velocity(step));
+        Wrench {
+            force: field.map(|component| component.scale(body.mass)),
+            moment: frame.moment(&body.inertia, &self.rate, to_body),
+        }
+    }
+
+    /// Position with derivatives; directions 0 to 2 are those of the balls, which are minus the body's.
+    fn position(&self, step: &HhtStep) -> Vector3<D> {
+        let gain = -step.position_gain();
+        Vector3::from_fn(|i, _| D::variable(self.end.pose.position[i], i, gain))
+    }
+
+    /// Velocity with derivatives.
+    fn velocity(&self, step: &HhtStep) -> Vector3<D> {
+        let gain = -step.velocity_gain();
+        Vector3::from_fn(|i, _| D::variable(self.end.velocity[i], i, gain))
     }
 
     /// Motion with all axes, with derivatives by the rotation, for contacts of a cage.
@@ -304,6 +338,16 @@ pub fn make_consistent(state: &mut BodyState, body: &RigidBody, load: &BodyLoad)
     let mut moment = to_material * (state.bearing_wrench.moment + load.applied.moment);
     let momentum = state.rate.component_mul(&body.inertia);
     moment -= state.rate.cross(&momentum);
+    let mut inertial_power = 0.0;
+    if let Some(frame) = &load.moving {
+        let inertial = Wrench {
+            force: frame.field(&state.pose.position, &state.velocity) * body.mass,
+            moment: frame.moment(&body.inertia, &state.rate, |v| to_material * v),
+        };
+        force += inertial.force;
+        moment += inertial.moment;
+        inertial_power = inertial.force.dot(&state.velocity) + inertial.moment.dot(&state.rate);
+    }
     let mut power = load.applied.force.dot(&state.velocity)
         + load.applied.moment.dot(&(state.pose.orientation * state.rate));
     for (constraint, multiplier) in body.constraints.iter().zip(&mut state.multipliers) {
@@ -326,6 +370,9 @@ pub fn make_consistent(state: &mut BodyState, body: &RigidBody, load: &BodyLoad)
                 moment.x = 0.0;
             }
         }
+    }
+    if load.moving.is_some() {
+        power += inertial_power;
     }
     state.total = Wrench { force, moment };
     state.remainder = Wrench::default();

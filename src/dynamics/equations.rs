@@ -1,6 +1,6 @@
 //! The equations of one trial step: residual, Newton matrix and its solution.
 
-use nalgebra::{Vector3, Vector6};
+use nalgebra::Vector6;
 
 use super::ball::{BallTrial, Surroundings};
 use super::body::{BodyLoad, BodyScales, BodyTrial, RaceSeen};
@@ -9,6 +9,7 @@ use super::reaction::Reaction;
 use super::{Boundary, Workspace};
 use crate::contact::many::ContactGroup;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
+use crate::effects::ambient::Ambient;
 use crate::model::Model;
 use crate::model::bodies::{Body, PerRace, RigidBody};
 use crate::model::state::{BodyState, KeptMatrix, State, race_motion};
@@ -26,6 +27,8 @@ const CONSTRAINT_TOLERANCE: f64 = 1e-8;
 pub struct BearingStep<'a> {
     pub model: &'a Model,
     contacts: PerRace<ContactModel<'a>>,
+    /// What acts from outside at the end of the step.
+    ambient: Ambient,
     pub start: &'a State,
     pub step: HhtStep,
     pub boundary: &'a Boundary,
@@ -70,6 +73,7 @@ impl<'a> BearingStep<'a> {
         Self {
             model,
             contacts,
+            ambient: model.ambient(&boundary.frame),
             start,
             step: HhtStep::new(model.solver.alpha_f, h),
             boundary,
@@ -142,6 +146,7 @@ impl<'a> BearingStep<'a> {
         let around = Surroundings {
             model: self.model,
             contacts: &self.contacts,
+            ambient: &self.ambient,
             differences: &self.start.differences,
             races: PerRace::new(|race| RaceSeen::new(race, &self.races, &workspace.bodies)),
             cage: self.model.cage.as_ref().zip(workspace.cage.as_ref()),
@@ -177,7 +182,7 @@ impl<'a> BearingStep<'a> {
                     self.contact_values += 2;
                     trial.take_contacts(group, lane);
                     trial.evaluate_pocket(index, &around, step, None);
-                    trial.assemble(self.model, step, &self.start.balls[index], None);
+                    trial.assemble(self.model, &self.ambient, step, &self.start.balls[index], None);
                 }
             }
         }
@@ -190,6 +195,7 @@ impl<'a> BearingStep<'a> {
         let around = Surroundings {
             model: self.model,
             contacts: &self.contacts,
+            ambient: &self.ambient,
             differences: &self.start.differences,
             races: PerRace::new(|race| RaceSeen::new(race, &self.races, &workspace.bodies)),
             cage: self.model.cage.as_ref().zip(workspace.cage.as_ref()),
@@ -256,7 +262,7 @@ impl<'a> BearingStep<'a> {
         let bodies = self.model.bodies.iter().zip(self.start.bodies.iter());
         for (((body, model), (_, start)), (_, trial)) in bodies.zip(self.workspace.bodies.iter_mut()) {
             if let (Some(model), Some(trial)) = (model, trial) {
-                let load = self.boundary.load_on(body, model, &self.model.gravity);
+                let load = self.boundary.load_on(body, model, &self.ambient);
                 trial.assemble(model, start, &load, &sums[body.index()], &self.step, &scales);
                 norm = larger(norm, largest(trial.residual.rows(0, 6).iter()) / self.force_tolerance);
                 norm = larger(norm, trial.violation);
@@ -336,13 +342,14 @@ impl Workspace {
 }
 
 impl Boundary {
-    /// Load on a body from outside: applied wrench and weight.
-    pub fn load_on(&self, body: Body, moved: &RigidBody, gravity: &Vector3<f64>) -> BodyLoad {
+    /// Load on a body from outside: applied wrench, weight, and the moving frame.
+    pub fn load_on(&self, body: Body, moved: &RigidBody, ambient: &Ambient) -> BodyLoad {
         let mut load = match body {
             Body::Race(race) => self.loads[race],
             Body::Cage => BodyLoad::default(),
         };
-        load.applied.force += gravity * moved.mass;
+        load.applied.force += ambient.gravity * moved.mass;
+        load.moving = ambient.frame;
         load
     }
 }

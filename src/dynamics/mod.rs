@@ -17,6 +17,7 @@ mod sensitivity;
 use nalgebra::{DVector, Vector6};
 
 use crate::contact::many::ContactGroup;
+use crate::effects::frame::FrameMotion;
 use crate::forces::{BallContacts, Contacts};
 use crate::model::bodies::{Bodies, PerRace};
 use crate::model::state::{KeptMatrix, State};
@@ -26,7 +27,7 @@ use crate::numerics::lanes::WIDTH;
 use crate::numerics::motion::{Pose, Twist};
 use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure};
 use crate::numerics::ring::Ring;
-pub use accept::make_consistent;
+pub use accept::{make_consistent, power_lost_around};
 use accept::{accept, renew_polynomials};
 use ball::BallTrial;
 pub use body::BodyLoad;
@@ -48,6 +49,8 @@ pub struct Boundary {
     pub loads: PerRace<BodyLoad>,
     /// Conditions of every contact.
     pub conditions: Conditions,
+    /// Motion of the bearing's frame, and gravity in it.
+    pub frame: FrameMotion,
 }
 
 /// Buffers of a step, kept between steps.

@@ -3,10 +3,13 @@
 use std::fmt;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
+use super::frame::FrameInputs;
 use super::reports::Reports;
 use crate::schema::numbers::{Number, Parameter};
 use crate::schema::variable_units::Unit;
-use crate::schema::{BearingSection, Friction, SceneError};
+use crate::schema::{BearingSection, Friction, Group, SceneError};
 
 /// What is told about an effect.
 #[derive(Clone, Copy, Debug)]
@@ -73,6 +76,38 @@ pub struct Row {
     pub get: Getter,
 }
 
+/// Inputs of effects; those of an effect that is off stay as the scene has them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct EffectInputs {
+    /// Motion of the bearing's frame, and gravity.
+    pub frame: FrameInputs,
+}
+
+/// An input that an effect adds to the table of variables.
+#[derive(Clone, Debug)]
+pub struct InputRow {
+    /// Structured name.
+    pub name: String,
+    /// Unit.
+    pub unit: Unit,
+    /// \[unit] typical size.
+    pub nominal: f64,
+    /// \[unit] a small change, for derivatives.
+    pub change: f64,
+    /// One sentence.
+    pub description: String,
+    /// What it is given together with.
+    pub group: Group,
+    /// Which of the numbers that the functions below reach.
+    pub place: usize,
+    /// Value as set last.
+    pub get: fn(&EffectInputs, usize) -> f64,
+    /// [unit/s] rate as set last.
+    pub rate: fn(&EffectInputs, usize) -> f64,
+    /// Sets value and rate.
+    pub set: fn(&mut EffectInputs, usize, f64, f64),
+}
+
 /// An effect, by the struct of its keys; by default without numbers, checks and variables.
 pub trait Effect: Clone + 'static {
     /// What is told about it.
@@ -89,6 +124,11 @@ pub trait Effect: Clone + 'static {
     /// Names the key.
     fn agree(&self, _setup: &Setup<'_>) -> Result<(), SceneError> {
         Ok(())
+    }
+
+    /// Inputs of a package.
+    fn inputs(&self) -> Vec<InputRow> {
+        vec![]
     }
 
     /// Outputs of the bearing as a whole.
@@ -122,6 +162,8 @@ pub trait AnyEffect {
     fn parameters(&self) -> Vec<Parameter>;
     /// Place of the number of a key, if it is one of its own.
     fn number(&mut self, key: &str) -> Option<&mut f64>;
+    /// See [`Effect::inputs`].
+    fn inputs(&self) -> Vec<InputRow>;
     /// See [`Effect::rows`].
     fn rows(&self) -> Vec<Row>;
     /// See [`Effect::ball_rows`].
@@ -153,6 +195,10 @@ impl<T: Effect> AnyEffect for T {
 
     fn number(&mut self, key: &str) -> Option<&mut f64> {
         T::NUMBERS.iter().find(|number| number.key == key)?.value(self)
+    }
+
+    fn inputs(&self) -> Vec<InputRow> {
+        Effect::inputs(self)
     }
 
     fn rows(&self) -> Vec<Row> {

@@ -4,21 +4,29 @@ use nalgebra::Vector3;
 
 use super::effect::{Effect, Info};
 use super::keys::keys;
+use crate::schema::Components;
 use crate::schema::numbers::{Number, Place, Range};
 use crate::schema::units::Acceleration;
 
 const GRAVITY: Range = Range::closed(-1e6, 1e6, "m/s2");
 
 keys! {
-    /// [m/s2] acceleration of gravity, components along x, y, z; 0 is off.
-    "gravity" => acceleration: [Acceleration; 3] = [Acceleration(0.0); 3],
+    /// [m/s2] acceleration of gravity, components along x, y, z, each constant or a table; 0 is off.
+    "gravity" => acceleration: Components<Acceleration> = Components::default(),
+    ;
+    /// Is it an input of a package, and no parameter? With a frame that moves.
+    is_input: bool = false,
 }
 
 impl Settings {
-    /// [m/s2] acceleration of gravity.
-    pub fn vector(&self) -> Vector3<f64> {
-        Vector3::from(self.acceleration.map(|component| component.0))
+    /// [m/s2] acceleration of gravity at a time \[s].
+    pub fn at(&self, time: f64) -> Vector3<f64> {
+        self.acceleration.at(time)
     }
+}
+
+fn is_parameter(settings: &Settings) -> bool {
+    !settings.is_input
 }
 
 impl Effect for Settings {
@@ -31,19 +39,21 @@ impl Effect for Settings {
     };
 
     const NUMBERS: &'static [Number<Self>] = &[
-        Number::tunable("effects.gravity.x", GRAVITY, "acceleration of gravity along x", |s| {
-            Place::Value(Some(&mut s.acceleration[0].0))
+        Number::tunable_if("effects.gravity.x", GRAVITY, "acceleration of gravity along x", is_parameter, |s| {
+            Place::Schedule(&mut s.acceleration.0[0])
         }),
-        Number::tunable("effects.gravity.y", GRAVITY, "acceleration of gravity along y", |s| {
-            Place::Value(Some(&mut s.acceleration[1].0))
+        Number::tunable_if("effects.gravity.y", GRAVITY, "acceleration of gravity along y", is_parameter, |s| {
+            Place::Schedule(&mut s.acceleration.0[1])
         }),
-        Number::tunable("effects.gravity.z", GRAVITY, "acceleration of gravity along z", |s| {
-            Place::Value(Some(&mut s.acceleration[2].0))
+        Number::tunable_if("effects.gravity.z", GRAVITY, "acceleration of gravity along z", is_parameter, |s| {
+            Place::Schedule(&mut s.acceleration.0[2])
         }),
     ];
 
     fn setting(&self) -> Option<String> {
-        let components = self.acceleration.map(|component| component.0);
-        (components != [0.0; 3]).then(|| format!("{components:?} m/s2"))
+        let acceleration = &self.acceleration;
+        let [x, y, z] = self.at(0.0).into();
+        let over_time = if acceleration.is_table() { " at the start, then by a table" } else { "" };
+        (acceleration.largest() != 0.0).then(|| format!("{:?} m/s2{over_time}", [x, y, z]))
     }
 }

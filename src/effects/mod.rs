@@ -12,16 +12,18 @@
 //! 2. `INFO` says what it adds, which states it has and where it is from; its `example` must start (`tests/effects.rs`).
 //! 3. `NUMBERS` has a row per number: the range stands there alone, and makes it an FMI parameter if a package offers it.
 //! 4. `agree` refuses keys that do not go together. What it has to know of the rest of the scene is in [`Setup`].
-//! 5. `rows` and `ball_rows` are its outputs, empty while it is off; what they read joins [`Reports`].
+//! 5. `inputs` are what a master sets while it is on; their values join [`EffectInputs`]. `rows` and `ball_rows` are its outputs, empty while it is off; what they read joins [`Reports`].
 //! 6. Add `pub mod NAME;` and the word `NAME` to the list below. Validation, variables, parameters and the page of a
 //!    package come from that list. Value references follow its order: add at the end.
 //! 7. The physics hangs on at most one hook: `Model` takes from `scene.effects.NAME` what a step reads, as an `Option`.
 //! 8. Everything that moves the balls must be in the equilibrium too, or a run starts with a bounce.
 
+pub mod ambient;
 pub mod cage;
 pub mod creep;
 pub mod damping;
 mod effect;
+pub mod frame;
 pub mod full_complement;
 pub mod gravity;
 pub mod groove_slip;
@@ -38,7 +40,7 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 
 use crate::schema::SceneError;
 use crate::schema::numbers::Parameter;
-pub use effect::{AnyEffect, Effect, Getter, Info, Row, Setup};
+pub use effect::{AnyEffect, Effect, EffectInputs, Getter, Info, InputRow, Row, Setup};
 use keys::Keys;
 pub use reports::Reports;
 
@@ -75,7 +77,7 @@ macro_rules! effects {
     };
 }
 
-effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder }
+effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, frame, ambient }
 
 impl Effects {
     /// Checks all numbers against their ranges.
@@ -102,6 +104,11 @@ impl Effects {
     /// Place of the number of a key, if it is one of an effect.
     pub fn number(&mut self, key: &str) -> Option<&mut f64> {
         self.each_mut().into_iter().find_map(|effect| effect.number(key))
+    }
+
+    /// Inputs of a package.
+    pub fn inputs(&self) -> Vec<InputRow> {
+        self.each().into_iter().flat_map(AnyEffect::inputs).collect()
     }
 
     /// Outputs of a bearing with a number of balls, with or without every ball.

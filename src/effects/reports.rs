@@ -15,6 +15,8 @@ pub struct Reports<'a> {
     pub neighbours: Option<&'a NeighboursOutput>,
     /// Stiffness and damping of the running bearing.
     pub condensed: Option<&'a Condensed>,
+    /// \[W] power that the balls lose to the medium around them.
+    pub drag_power: f64,
 }
 
 /// A ball-race contact. Longitudinal is along the rolling direction, lateral transverse to it (frame C).

@@ -4,6 +4,7 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::{EquilibriumInput, Gyroscopic};
 use crate::contact::geometry::GrooveContact;
+use crate::effects::frame::MovingFrame;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::{Conditions, Model};
@@ -36,6 +37,8 @@ pub struct Shared {
     pub cage_speed: D,
     /// [m/s2] gravity on the balls; what it does along the orbit is left to friction.
     pub gravity: Vector3<D>,
+    /// The frame that the bearing is seen from, where it moves; places count from the outer race.
+    pub frame: Option<MovingFrame<D>>,
 }
 
 /// Forces on one ball, all relative to the outer race's frame.
@@ -125,7 +128,16 @@ pub fn balance(
 
     // inertia
     let centrifugal_force = (radius * shared.cage_speed.square()).scale(ball.mass);
-    let gyroscopic_moment = -(shared.cage_speed * spin[1]).scale(ball.inertia);
+    let mut gyroscopic_moment = -(shared.cage_speed * spin[1]).scale(ball.inertia);
+    let mut outside = shared.gravity.map(|c| c.scale(ball.mass));
+    if let Some(frame) = &shared.frame {
+        let tangent = constant_vector::<D>(&tangential);
+        let field = frame.field(&position, &tangent.map(|c| c * shared.cage_speed * radius));
+        outside += field.map(|c| c.scale(ball.mass));
+        // The moment along the orbit that the ball's spin asks for, turning with the frame; the others are left to friction.
+        let turned = frame.turn.x * spin[1] - frame.turn.dot(&constant_vector(&radial)) * spin[0];
+        gyroscopic_moment -= (turned + frame.change.dot(&tangent)).scale(ball.inertia);
+    }
     // friction forces along n x e_t whose moments about the centre give the gyroscopic moment
     let needed = gyroscopic_moment.scale(1.0 / ball.radius);
     let [inner_friction, outer_friction] = match input.gyroscopic {
@@ -143,7 +155,7 @@ pub fn balance(
     let tangent = constant_vector(&tangential);
     let inner_force = -inner.normal * inner_load + inner.normal.cross(&tangent) * inner_friction;
     let outer_force = -outer.normal * outer_load + outer.normal.cross(&tangent) * outer_friction;
-    let total = inner_force + outer_force + shared.gravity.map(|c| c.scale(ball.mass));
+    let total = inner_force + outer_force + outside;
     let (axial, radial_force) = (total.x, total.dot(&constant_vector(&radial)) + centrifugal_force);
     let mut residual = [axial * cosine - radial_force * sine, axial * sine + radial_force * cosine];
     if shared.cage_speed.value == 0.0 {

@@ -13,6 +13,7 @@ mod trial;
 use nalgebra::{SMatrix, UnitQuaternion, Vector3};
 use thiserror::Error;
 
+use crate::effects::frame::FrameMotion;
 use crate::model::Model;
 use crate::model::bearing::BeyondShoulder;
 use crate::model::bodies::Race;
@@ -61,6 +62,10 @@ pub struct EquilibriumInput {
     pub gyroscopic: Gyroscopic,
     /// [-] friction coefficient, for [`Gyroscopic::Friction`].
     pub friction: f64,
+    /// Motion of the frame that all of this is seen from, and gravity in it.
+    pub frame: FrameMotion,
+    /// \[m] where the bearing frame is in that frame.
+    pub origin: Vector3<f64>,
 }
 
 impl EquilibriumInput {
@@ -97,6 +102,8 @@ impl EquilibriumInput {
             resting: Pose { position, orientation },
             gyroscopic,
             friction: scene.friction.ball_race.at(time),
+            frame: scene.frame_at(time),
+            origin: Vector3::zeros(),
         }
     }
 }

@@ -1,13 +1,12 @@
 //! A quasi-static problem as equations: unknowns, residual, and the search for its root.
 
-use nalgebra::Vector3;
-
-use super::ball::Place;
-use super::trial::{SharedMatrix, SharedVector, Trial, evaluate, finish};
+use super::ball::{N_SHARED, Place, SHARED};
+use super::trial::{D, SharedMatrix, SharedVector, Trial, evaluate, finish, outside_of_race};
 use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
 use crate::model::bodies::Race;
 use crate::model::{Conditions, Model};
 use crate::numerics::motion::Pose;
+use crate::numerics::scalar::Single;
 use crate::numerics::size::{larger, largest};
 
 /// [-] accepted residual over the size of the forces at work.
@@ -44,8 +43,8 @@ pub struct Found {
 pub struct Problem<'a> {
     model: &'a Model,
     input: &'a EquilibriumInput,
-    /// \[N] weight of the race and what is fixed to it, where forces move it.
-    weight: Vector3<f64>,
+    /// [N, N m] what acts from outside on the race in the middle, where forces move it: its weight, a moving frame.
+    outside: [f64; 5],
     /// \[m] ball diameter.
     diameter: f64,
     /// [rad/s] mean orbital speed of unloaded balls.
@@ -69,20 +68,19 @@ impl<'a> Problem<'a> {
         let smallest = model.contact(Race::Inner, &Conditions { friction: 0.0 }).shape.stiffness(0.0)
             * (1e-6 * diameter).powf(1.5);
         let inertia_force = bearing.ball.mass * epicyclic * epicyclic * length;
-        let weight =
-            model.bodies[input.race].as_ref().map_or_else(Vector3::zeros, |body| model.gravity * body.mass);
         let mut problem = Self {
             model,
             input,
-            weight,
+            outside: [0.0; 5],
             diameter,
             epicyclic,
             speed_scale: input.inner_speed.abs().max(input.outer_speed.abs()),
             known_force: inertia_force.max(smallest),
             smallest,
         };
+        problem.outside = outside_of_race(model, input, &problem.centred()).map(D::value);
         for i in 0..5 {
-            if let Some(load) = problem.imposed_load(i) {
+            if let Some(load) = problem.imposed_load(i, &problem.outside) {
                 problem.known_force = larger(problem.known_force, load.abs() / problem.size(i));
             }
         }
@@ -94,10 +92,10 @@ impl<'a> Problem<'a> {
         if direction < 3 { 1.0 } else { self.model.race_length() }
     }
 
-    /// [N, N m] load on the race in a direction, its weight included; none where its motion is imposed.
-    fn imposed_load(&self, direction: usize) -> Option<f64> {
+    /// [N, N m] load on the race in a direction, what acts from outside included; none where its motion is imposed.
+    fn imposed_load(&self, direction: usize, outside: &[f64; 5]) -> Option<f64> {
         match self.input.conditions.get(direction) {
-            Some(Prescribed::Load(load)) => Some(load + self.weight.iter().nth(direction).unwrap_or(&0.0)),
+            Some(Prescribed::Load(load)) => Some(load + outside[direction]),
             _ => None,
         }
     }
@@ -124,7 +122,7 @@ impl<'a> Problem<'a> {
     pub fn pushed(&self) -> SharedVector {
         let mut loads = SharedVector::zeros();
         for i in 0..5 {
-            loads[i] = self.imposed_load(i).unwrap_or(0.0) / self.size(i);
+            loads[i] = self.imposed_load(i, &self.outside).unwrap_or(0.0) / self.size(i);
         }
         let mut way = loads.normalize() * (1e-3 * self.diameter);
         for i in 0..5 {
@@ -141,7 +139,9 @@ impl<'a> Problem<'a> {
 
     /// Unbalanced load of every free direction.
     fn unbalanced(&self, trial: &Trial) -> SharedVector {
-        SharedVector::from_fn(|i, _| self.imposed_load(i).map_or(0.0, |load| load - trial.load[i]))
+        let outside = trial.outside.map(D::value);
+        let of = |i| self.imposed_load(i, &outside).map_or(0.0, |load| load - trial.load[i]);
+        SharedVector::from_fn(|i, _| if i < 5 { of(i) } else { 0.0 })
     }
 
     /// [-] residual: unbalanced loads over a force `scale` \[N], excess of the cage speed over a load `weight` \[N].
@@ -256,6 +256,11 @@ impl<'a> Problem<'a> {
         const TYPICAL_STIFFNESS: f64 = 1e7;
         let mut matrix = here.tangent;
         let mut rhs = self.unbalanced(here);
+        for (i, outside) in here.outside.iter().enumerate() {
+            for k in 0..N_SHARED {
+                matrix[(i, k)] -= outside.derivatives[SHARED + k];
+            }
+        }
         for i in 0..5 {
             if let Prescribed::Load(_) = self.input.conditions[i] {
                 matrix[(i, i)] += shift * TYPICAL_STIFFNESS * self.size(i) * self.size(i);

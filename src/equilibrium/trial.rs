@@ -6,13 +6,15 @@ use super::ball::{
     BallBalance, DIRECTIONS, N_SHARED, Place, SHARED, Shared, bottom_of_outer_groove, middle_of_gap, settle,
 };
 use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
+use crate::effects::frame::MovingFrame;
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::Race;
 use crate::numerics::rotation::{from_rotation_vector, rotate, turn};
 use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, values};
 
-type D = Dual<DIRECTIONS>;
+/// A number with its derivatives.
+pub type D = Dual<DIRECTIONS>;
 /// Displacements x, y, z, ry, rz and cage speed.
 pub type SharedVector = SVector<f64, N_SHARED>;
 /// Derivatives by them.
@@ -24,6 +26,8 @@ pub struct Trial {
     pub load: SVector<f64, 5>,
     /// [N rad/s] weighted excess of the balls' own orbital speed over the cage speed.
     pub cage_excess: f64,
+    /// [N, N m] what acts on that race from outside, beside its loads: weight and the moving frame.
+    pub outside: [D; 5],
     /// Derivatives of load and cage excess by displacements and cage speed, balls eliminated.
     pub tangent: SharedMatrix,
     /// \[N] sum of the inner loads.
@@ -97,8 +101,54 @@ fn shared(model: &Model, input: &EquilibriumInput, unknowns: &SharedVector) -> S
         position: axes.seen(&position),
         axis: axes.seen(&axis),
         cage_speed: variable(unknowns, 5),
-        gravity: axes.gravity(&model.gravity),
+        gravity: axes.gravity(&input.frame.gravity),
+        frame: moving_frame(model, input, unknowns, &axes),
     }
+}
+
+/// The moving frame in the axes of the outer race, places counted from there.
+fn moving_frame(
+    model: &Model,
+    input: &EquilibriumInput,
+    unknowns: &SharedVector,
+    axes: &OuterAxes,
+) -> Option<MovingFrame<D>> {
+    let frame = model.ambient(&input.frame).frame?;
+    let mut outer = constant_vector::<D>(&input.origin);
+    if input.race == Race::Outer {
+        outer += Vector3::from_fn(|i, _| variable(unknowns, i));
+    }
+    let mut seen = frame.seen(|v| axes.seen(&constant_vector(v)));
+    seen.arm += axes.seen(&outer);
+    Some(seen)
+}
+
+/// Weight of the race that moves and the forces of inertia of a moving frame on it, where it is a body.
+pub fn outside_of_race(model: &Model, input: &EquilibriumInput, unknowns: &SharedVector) -> [D; 5] {
+    let Some(body) = model.bodies[input.race].as_ref() else {
+        return [D::constant(0.0); 5];
+    };
+    let ambient = model.ambient(&input.frame);
+    let mut force = constant_vector::<D>(&(ambient.gravity * body.mass));
+    let mut moment = constant_vector(&Vector3::zeros());
+    if let Some(frame) = &ambient.frame {
+        let moved = Vector3::from_fn(|i, _| variable(unknowns, i)) + constant_vector::<D>(&input.origin);
+        let field = frame.seen(constant_vector).field(&moved, &constant_vector(&Vector3::zeros()));
+        force += field.map(|c| c.scale(body.mass));
+        let tilt = Vector3::new(D::constant(0.0), variable(unknowns, 3), variable(unknowns, 4));
+        let rotation = from_rotation_vector(&tilt);
+        // A race that turns has the mean of its moments of inertia across its axis.
+        let across = 0.5 * (body.inertia.y + body.inertia.z);
+        let inertia = Vector3::new(body.inertia.x, across, across);
+        let speed = match input.race {
+            Race::Inner => input.inner_speed,
+            Race::Outer => input.outer_speed,
+        };
+        let rate = constant_vector(&(Vector3::x() * speed));
+        let in_body = frame.moment(&inertia, &rate, |v| rotate(&-rotation, &constant_vector(v)));
+        moment = rotate(&rotation, &in_body);
+    }
+    [force.x, force.y, force.z, moment.y, moment.z]
 }
 
 /// Axis of a race of rotation vector [0, ry, rz].
@@ -133,6 +183,7 @@ pub fn evaluate(
     let n = model.bearing.n_balls;
     let mut trial = Trial {
         load: SVector::zeros(),
+        outside: outside_of_race(model, input, unknowns),
         cage_excess: 0.0,
         tangent: SharedMatrix::zeros(),
         inner_load_sum: 0.0,
@@ -153,8 +204,9 @@ pub fn evaluate(
             })
         };
         // A free ball that would fall off the side of a groove stays where it is, as if without weight.
-        let weightless = Shared { gravity: constant_vector(&Vector3::zeros()), ..shared };
-        let fallen = || (values(&shared.gravity) != Vector3::zeros()).then(|| settled(&weightless)).flatten();
+        let weightless = Shared { gravity: constant_vector(&Vector3::zeros()), frame: None, ..shared };
+        let weighs = values(&shared.gravity) != Vector3::zeros() || shared.frame.is_some();
+        let fallen = || weighs.then(|| settled(&weightless)).flatten();
         let settled = settled(&shared).or_else(fallen);
         let Some((balance, place)) = settled else {
             return Err(EquilibriumError::Ball {

@@ -42,7 +42,7 @@ impl Changes {
             Some(InputKind::Force) => self.force,
             Some(InputKind::Moment) => self.force * self.length,
             Some(InputKind::Friction) => self.friction,
-            None => f64::NAN,
+            None => row.small_change().unwrap_or(f64::NAN),
         }
     }
 }

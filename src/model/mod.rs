@@ -11,11 +11,13 @@ use nalgebra::Vector3;
 
 use crate::contact::ContactModel;
 use crate::contact::ball_ball::BallBallModel;
+use crate::effects::ambient::{Ambient, AmbientSection, Medium};
+use crate::effects::frame::{FrameMotion, FrameSection, MovingFrame};
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::numerics::arrowhead::Offsets;
 use crate::scene::{Scene, Solver};
-use bearing::Bearing;
+use bearing::{Ball, Bearing};
 use bodies::{Bodies, PerRace, Race, RigidBody};
 use cage::CageModel;
 use raceways::RacewayContacts;
@@ -47,8 +49,10 @@ pub struct Model {
     pub epsilon_switch: f64,
     /// [s/m] Hunt-Crossley dissipation factor.
     pub damping: f64,
-    /// [m/s2] gravity.
-    pub gravity: Vector3<f64>,
+    /// \[m] arm of the bearing's frame, where that may move.
+    frame_arm: Option<Vector3<f64>>,
+    /// The medium around the balls, where its drag is simulated.
+    medium: Option<Medium>,
     /// Are condensed stiffness and damping reported?
     pub stiffness_outputs: bool,
     /// Time integration.
@@ -81,7 +85,8 @@ impl Model {
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,
             damping: scene.effects.damping.factor.0,
-            gravity: scene.effects.gravity.vector(),
+            frame_arm: scene.effects.frame.section.as_ref().map(FrameSection::arm),
+            medium: scene.effects.ambient.section.as_ref().map(AmbientSection::medium),
             stiffness_outputs: scene.effects.stiffness.on,
             solver: scene.solver,
         })
@@ -90,7 +95,6 @@ impl Model {
     /// Takes over the tunable numbers of a scene, those that each step reads.
     pub fn tune(&mut self, scene: &Scene) {
         self.damping = scene.effects.damping.factor.0;
-        self.gravity = scene.effects.gravity.vector();
         self.solver = scene.solver;
     }
 
@@ -121,6 +125,13 @@ impl Model {
     /// Contact models of both races.
     pub fn contacts(&self, conditions: &Conditions) -> PerRace<ContactModel<'_>> {
         PerRace::new(|race| self.contact(race, conditions))
+    }
+
+    /// What acts on balls and bodies from outside, in a frame of this motion.
+    pub fn ambient(&self, frame: &FrameMotion) -> Ambient {
+        let Ball { mass, inertia, radius } = self.bearing.ball;
+        let moving = self.frame_arm.map(|arm| MovingFrame::new(frame, arm));
+        Ambient { gravity: frame.gravity, frame: moving, medium: self.medium, mass, inertia, radius }
     }
 
     /// The race whose lands guide the cage; none where the balls do, or without a cage.

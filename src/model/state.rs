@@ -151,12 +151,14 @@ pub fn race_motion(pose: &Pose, twist: &Twist) -> RaceMotion<f64> {
 /// Powers at one instant \[W].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Powers {
-    /// Put in by races, applied loads, drives and gravity.
+    /// Put in by races, applied loads, drives, gravity and the motion of the frame.
     pub input: f64,
     /// Lost to friction in the contacts.
     pub friction: f64,
     /// Lost to contact damping.
     pub damping: f64,
+    /// Lost to what is around the bearing: drag of the medium.
+    pub around: f64,
 }
 
 /// Energies accumulated since the start \[J].
@@ -168,6 +170,8 @@ pub struct Energies {
     pub friction: f64,
     /// Lost to contact damping.
     pub damping: f64,
+    /// Lost to what is around the bearing.
+    pub around: f64,
 }
 
 impl Energies {
@@ -176,6 +180,7 @@ impl Energies {
         self.input += 0.5 * h * (before.input + after.input);
         self.friction += 0.5 * h * (before.friction + after.friction);
         self.damping += 0.5 * h * (before.damping + after.damping);
+        self.around += 0.5 * h * (before.around + after.around);
     }
 }
 

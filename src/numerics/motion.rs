@@ -3,6 +3,8 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
+use super::scalar::{Scalar, constant_vector};
+
 /// Position and orientation of a body frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
@@ -31,12 +33,19 @@ pub struct FrameInput {
 }
 
 /// Force and moment about a body's origin.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Wrench {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound(serialize = "S: Serialize", deserialize = "S: Deserialize<'de>"))]
+pub struct Wrench<S: Scalar = f64> {
     /// \[N] force.
-    pub force: Vector3<f64>,
+    pub force: Vector3<S>,
     /// [N m] moment.
-    pub moment: Vector3<f64>,
+    pub moment: Vector3<S>,
+}
+
+impl<S: Scalar> Default for Wrench<S> {
+    fn default() -> Self {
+        Self { force: constant_vector(&Vector3::zeros()), moment: constant_vector(&Vector3::zeros()) }
+    }
 }
 
 impl Default for Pose {

@@ -97,7 +97,7 @@ mod tests {
         assert_eq!((scene.title.as_str(), scene.bearing.balls), ("a \"title\"", 12));
         assert_eq!((scene.friction.ball_race.at(0.0), scene.bearing.pitch_diameter.0), (0.1, 0.06));
         assert!(scene.effects.groove_slip.on);
-        assert_eq!(scene.effects.gravity.acceleration.map(|g| g.0), [0.0, 0.0, -9.81]);
+        assert_eq!(scene.effects.gravity.acceleration, [0.0, 0.0, -9.81].into());
         assert!((scene.load.inner_speed.at(5e-4) - std::f64::consts::PI).abs() < 1e-12);
         assert_eq!(scene.load.conditions()[0], Condition::Motion(Schedule::Constant(1e-6)));
         // What was not named is as it was.

@@ -16,9 +16,10 @@ use serde::Deserialize;
 use crate::effects;
 pub use crate::effects::Effects;
 pub use crate::effects::cage::{CageSection, Guidance};
+pub use crate::effects::frame::FrameMotion;
 pub use crate::effects::creep::{CreepLaw, Regularised};
 pub use crate::schema::{
-    Accuracy, BearingSection, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver, Group,
+    Accuracy, BearingSection, Components, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver, Group,
     Groups, InputGivers, Interface, Load, Material, Misalignment, Orientation, RaceLoad, RaceSection,
     SceneError, Schedule, Solver, Start, Tilt, Translation, units,
 };
@@ -94,6 +95,7 @@ impl Scene {
         scene.source = text.to_string();
         scene.effects.creep.regularised = std::mem::take(&mut scene.regularised);
         scene.effects.cage.section = scene.cage.take();
+        scene.effects.gravity.is_input = scene.effects.frame.section.is_some();
         if scene.solver.follows != Follows::Nothing {
             let Scales { approach, frequency } = Scales::of(&scene);
             scene.solver.follow(frequency, approach);
@@ -109,6 +111,12 @@ impl Scene {
     /// See [`SceneError`].
     pub fn check(&self) -> Result<(), SceneError> {
         validate::validate(self)
+    }
+
+    /// Motion of the bearing's frame at a time \[s], and gravity in it.
+    pub fn frame_at(&self, time: f64) -> FrameMotion {
+        let motion = self.effects.frame.section.as_ref().map(|section| section.at(time)).unwrap_or_default();
+        FrameMotion { gravity: self.effects.gravity.at(time), ..motion }
     }
 
     /// What effects may have to agree with.

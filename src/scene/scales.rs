@@ -8,6 +8,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::{Condition, Drive, Scene, Schedule};
 use crate::contact::hertz::HertzContact;
+use crate::effects::frame::FrameSection;
 
 /// [-] approach of unloaded balls over their diameter: a bearing that carries next to nothing.
 const LEAST_APPROACH: f64 = 1e-5;
@@ -89,10 +90,12 @@ fn loads(scene: &Scene) -> [f64; 4] {
     }
     let moved = [&scene.inner, &scene.outer].into_iter().find(|race| race.drive == Drive::Wrench);
     let weight = moved.and_then(|race| race.mass).map_or(0.0, |mass| mass.0);
-    let [gx, gy, gz] = scene.effects.gravity.acceleration.map(|component| component.0.abs());
+    let [gx, gy, gz] = scene.effects.gravity.acceleration.0.each_ref().map(largest);
+    // In which direction a moving frame presses a race is not looked at.
+    let moving = scene.effects.frame.section.as_ref().map_or(0.0, FrameSection::largest_acceleration);
     [
         loads[0] + weight * gx,
-        (loads[1] + weight * gy).hypot(loads[2] + weight * gz),
+        (loads[1] + weight * (gy + moving)).hypot(loads[2] + weight * gz),
         loads[3].hypot(loads[4]),
         pressed,
     ]

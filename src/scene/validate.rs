@@ -23,10 +23,12 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
 fn inputs(scene: &Scene) -> Result<(), SceneError> {
     let driven = |drive| [&scene.inner, &scene.outer].iter().any(|race| race.drive == drive);
     let (wrench, pose) = (driven(Drive::Wrench), driven(Drive::Pose));
+    let frame = scene.effects.frame.section.is_some();
     for (group, has_input, needed) in [
         (Group::Loads, wrench, "a race with drive = \"wrench\""),
         (Group::Speeds, wrench, "a race with drive = \"wrench\""),
         (Group::Tilts, pose, "a race with drive = \"pose\""),
+        (Group::Frame, frame, "effects.frame"),
     ] {
         if scene.interface.inputs.of(group) == Giver::Master && !has_input {
             let why = format!("\"master\" needs {needed}: the package has no such input otherwise");

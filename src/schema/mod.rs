@@ -1,6 +1,7 @@
 //! What scenes are made of: quantities with units, schedules, sections, ranges of numbers, and why a scene is refused.
 
 mod accuracy;
+mod components;
 mod error;
 pub mod explain;
 mod inputs;
@@ -11,6 +12,7 @@ mod spelling;
 pub mod units;
 pub mod variable_units;
 
+pub use components::Components;
 pub use accuracy::{Accuracy, ErrorGoal, ErrorOf, Follows, SMALLEST_TOLERANCE, Solver};
 pub use error::SceneError;
 pub use inputs::{Giver, Group, Groups, InputGivers};

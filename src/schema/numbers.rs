@@ -170,7 +170,18 @@ impl<T> Number<T> {
         description: &'static str,
         place: fn(&mut T) -> Place<'_>,
     ) -> Self {
-        let offer = Offer { variability: Variability::Tunable, description, used: |_| true };
+        Self::tunable_if(key, range, description, |_| true, place)
+    }
+
+    /// A parameter that each step reads, offered where the scene makes use of it.
+    pub const fn tunable_if(
+        key: &'static str,
+        range: Range,
+        description: &'static str,
+        used: fn(&T) -> bool,
+        place: fn(&mut T) -> Place<'_>,
+    ) -> Self {
+        let offer = Offer { variability: Variability::Tunable, description, used };
         Self { key, range, place, offer: Some(offer) }
     }
 

@@ -57,6 +57,18 @@ impl Schedule {
         (value, rate / duration)
     }
 
+    /// \[1/s] rate of change of the value just before a time \[s]; before a table and after it, 0.
+    pub fn slope(&self, time: f64) -> f64 {
+        let Self::Table(points) = self else {
+            return 0.0;
+        };
+        let next = points.partition_point(|&(t, _)| t < time);
+        match (points.get(next), points.get(next.wrapping_sub(1))) {
+            (Some(&(t1, v1)), Some(&(t0, v0))) => (v1 - v0) / (t1 - t0),
+            _ => 0.0,
+        }
+    }
+
     /// Integral of the value from one time \[s] to another, exact for the straight pieces of a table.
     pub fn integral(&self, from: f64, to: f64) -> f64 {
         match self {

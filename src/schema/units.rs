@@ -166,6 +166,10 @@ quantities! {
     Moment = "N m", "a moment", ["2 N m", "500 N mm"];
     /// [rad/s]
     AngularVelocity = "rad/s", "an angular velocity", ["6000 rpm", "36000 deg/s"];
+    /// [rad/s2]
+    AngularAcceleration = "rad/s^2", "an angular acceleration", ["10 rad/s^2", "0.5 krad/s^2"];
+    /// [Pa s]
+    Viscosity = "Pa s", "a viscosity", ["18 uPa s", "20 mPa s"];
     /// [m/s]
     Velocity = "m/s", "a velocity", ["2 m/s", "500 mm/s"];
     /// [m/s2]

@@ -41,6 +41,8 @@ pub const RADIAN: Unit = unit("rad", "Angle", [0, 0, 0, 1]).shown("deg", DEGREE)
 /// Angular velocity.
 pub const RADIAN_PER_SECOND: Unit =
     unit("rad/s", "AngularVelocity", [0, 0, -1, 1]).shown("rev/min", 30.0 / std::f64::consts::PI);
+/// Angular acceleration.
+pub const RADIAN_PER_SECOND_SQUARED: Unit = unit("rad/s2", "AngularAcceleration", [0, 0, -2, 1]);
 /// Force.
 pub const NEWTON: Unit = unit("N", "Force", [1, 1, -2, 0]);
 /// Moment.
@@ -61,6 +63,8 @@ pub const KILOGRAM: Unit = unit("kg", "Mass", [1, 0, 0, 0]);
 pub const KILOGRAM_METRE_SQUARED: Unit = unit("kg.m2", "MomentOfInertia", [1, 2, 0, 0]);
 /// Density.
 pub const KILOGRAM_PER_CUBIC_METRE: Unit = unit("kg/m3", "Density", [1, -3, 0, 0]);
+/// Viscosity.
+pub const PASCAL_SECOND: Unit = unit("Pa.s", "Viscosity", [1, -1, -1, 0]);
 /// Dissipation factor of a contact.
 pub const SECOND_PER_METRE: Unit = unit("s/m", "DissipationFactor", [0, -1, 1, 0]);
 /// Stiffness, force by translation.
@@ -80,7 +84,7 @@ pub const NEWTON_METRE_SECOND_PER_METRE: Unit = unit("N.m.s/m", "MomentByVelocit
 /// Damping, moment by angular velocity.
 pub const NEWTON_METRE_SECOND_PER_RADIAN: Unit = unit("N.m.s/rad", "RotationalDamping", [1, 2, -1, -1]);
 /// Every unit, in the order of the model description.
-pub const ALL: [Unit; 26] = [
+pub const ALL: [Unit; 28] = [
     ONE,
     METRE,
     DIMENSION,
@@ -88,6 +92,7 @@ pub const ALL: [Unit; 26] = [
     METRE_PER_SECOND_SQUARED,
     RADIAN,
     RADIAN_PER_SECOND,
+    RADIAN_PER_SECOND_SQUARED,
     NEWTON,
     NEWTON_METRE,
     WATT,
@@ -98,6 +103,7 @@ pub const ALL: [Unit; 26] = [
     KILOGRAM,
     KILOGRAM_METRE_SQUARED,
     KILOGRAM_PER_CUBIC_METRE,
+    PASCAL_SECOND,
     SECOND_PER_METRE,
     NEWTON_PER_METRE,
     NEWTON_PER_RADIAN,

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::inputs::{Inputs, RaceInput};
 use super::path::{RacePath, Ramp};
 use crate::dynamics::{BodyLoad, Boundary};
+use crate::effects::frame::{FrameInputs, FrameMotion};
 use crate::model::Conditions;
 use crate::model::bodies::PerRace;
 use crate::model::state::State;
@@ -29,6 +30,8 @@ pub struct InputPaths {
     loads: PerRace<Ramp<7>>,
     /// Position and tilt of the frame of a race on a hinge.
     frames: PerRace<Ramp<6>>,
+    /// Motion of the bearing's frame, and gravity.
+    frame: FramePath,
     /// Where scripted motions of races began; none where there is no script or it is not played.
     pub anchors: PerRace<Option<Anchor>>,
 }
@@ -44,10 +47,16 @@ impl InputPaths {
                 let applied = Wrench { force: Vector3::new(fx, fy, fz), moment: Vector3::new(mx, my, mz) };
                 let [x, y, z, rx, ry, rz] = self.frames[race].smooth_at(time).into();
                 let frame = FrameInput { position: Vector3::new(x, y, z), tilt: Vector3::new(rx, ry, rz) };
-                BodyLoad { frame, applied, speed }
+                BodyLoad { frame, applied, speed, ..BodyLoad::default() }
             }),
             conditions,
+            frame: self.frame.at(time),
         }
+    }
+
+    /// Takes another motion of the bearing's frame from now on.
+    pub fn set_frame(&mut self, inputs: &Inputs) {
+        self.frame = FramePath::steady(&inputs.effects.frame);
     }
 
     /// Paths of a state that goes on as it is.
@@ -58,6 +67,7 @@ impl InputPaths {
             }),
             loads: PerRace::new(|race| Ramp::constant(load_components(&inputs[race]))),
             anchors: PerRace::new(|_| None),
+            frame: FramePath::steady(&inputs.effects.frame),
             frames: PerRace::new(|race| Ramp::constant(frame_components(&inputs[race]))),
         }
     }
@@ -84,9 +94,42 @@ impl InputPaths {
                 self.loads[race].towards(time, load_components(&inputs[race]), duration)
             }),
             anchors: self.anchors,
+            frame: self.frame.towards(time, &inputs.effects.frame, duration),
             frames: PerRace::new(|race| {
                 self.frames[race].smooth_towards(time, frame_components(&inputs[race]), duration)
             }),
+        }
+    }
+}
+
+/// Motion of the bearing's frame during a communication step: all components change linearly.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct FramePath {
+    components: Ramp<12>,
+    /// Is the angular acceleration that by which the angular velocity changes?
+    derived: bool,
+}
+
+impl FramePath {
+    /// A motion that stays as it is.
+    fn steady(inputs: &FrameInputs) -> Self {
+        Self { components: Ramp::constant(inputs.motion.components()), derived: false }
+    }
+
+    fn towards(&self, time: f64, inputs: &FrameInputs, duration: f64) -> Self {
+        let target = inputs.motion.components() + inputs.rate.components() * duration;
+        Self { components: self.components.towards(time, target, duration), derived: !inputs.accelerates }
+    }
+
+    /// Motion at a time \[s].
+    fn at(&self, time: f64) -> FrameMotion {
+        let motion = FrameMotion::of_components(&self.components.at(time));
+        match self.derived {
+            true => FrameMotion {
+                angular_acceleration: FrameMotion::of_components(&self.components.slope()).angular_velocity,
+                ..motion
+            },
+            false => motion,
         }
     }
 }

@@ -1,10 +1,11 @@
-//! Inputs of a bearing: motions, loads, speeds and friction.
+//! Inputs of a bearing: motions, loads, speeds, friction, and those of effects.
 
 use std::ops::{Index, IndexMut};
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use crate::effects::EffectInputs;
 use crate::model::Conditions;
 use crate::model::bodies::Race;
 use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
@@ -50,6 +51,8 @@ pub struct Inputs {
     pub outer: RaceInput,
     /// [-] friction coefficient of the ball-race contacts.
     pub friction: f64,
+    /// Inputs of effects.
+    pub effects: EffectInputs,
 }
 
 impl Inputs {

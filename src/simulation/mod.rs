@@ -123,12 +123,15 @@ impl Simulation {
 
     /// Goes on with a scene that differs in tunable parameters alone.
     pub fn tune(&mut self, scene: &Scene) {
-        let gravity = self.model.gravity;
+        let gravity = self.scene.effects.gravity.at(0.0);
         Arc::make_mut(&mut self.model).tune(scene);
         self.scene = Arc::new(scene.clone());
         self.state.matrix = KeptMatrix::default();
         // The next step begins with the forces of this moment: weight that has come or gone is one of them.
-        if self.model.gravity != gravity {
+        let tuned = self.scene.effects.gravity.at(0.0);
+        if tuned != gravity {
+            self.inputs.effects.frame.motion.gravity = tuned;
+            self.paths.set_frame(&self.inputs);
             self.settle();
         }
     }
@@ -180,7 +183,12 @@ impl Simulation {
 
     /// Sets the inputs of the next step.
     pub fn set_inputs(&mut self, inputs: Inputs) {
+        let effects = self.inputs.effects;
         self.inputs = inputs;
+        // Gravity is no input where the frame does not move: it stays that of the scene.
+        if self.scene.effects.frame.section.is_none() {
+            self.inputs.effects.frame = effects.frame;
+        }
     }
 
     /// Everything needed to come back to this point.
@@ -227,6 +235,9 @@ impl Simulation {
         inputs.outer.speed = scene.load.outer_speed.at(time);
         if scene.friction.ball_race.is_table() {
             inputs.friction = scene.friction.ball_race.at(time);
+        }
+        if scene.effects.frame.section.is_some() {
+            inputs.effects.frame.motion = scene.frame_at(time);
         }
         for race in Race::BOTH {
             inputs[race].applied = script::applied(scene, race, time);

@@ -6,7 +6,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::slip::{RollingOrbit, orbital_speed};
 use crate::contact::BallRaceContact;
+use crate::dynamics::power_lost_around;
 use crate::effects::Reports;
+use crate::effects::frame::FrameMotion;
 pub use crate::effects::reports::{
     BallOutput, CageOutput, Condensed, ContactOutput, NeighboursOutput, PocketOutput,
 };
@@ -65,13 +67,15 @@ pub struct Outputs {
     pub friction_power: f64,
     /// \[W] power lost to contact damping.
     pub damping_power: f64,
+    /// \[W] power that the balls lose to the medium around them.
+    pub drag_power: f64,
     /// [N m] friction torque of the bearing: against the inner race's rotation about its own axis.
     pub friction_torque: f64,
     /// \[J] kinetic and elastic energy.
     pub stored_energy: f64,
     /// \[J] work put in since the start.
     pub work: f64,
-    /// \[J] energy lost since the start to friction and contact damping.
+    /// \[J] energy lost since the start to friction, contact damping and the medium around the balls.
     pub dissipated: f64,
     /// Work of the integrator since the start.
     pub statistics: Statistics,
@@ -143,7 +147,8 @@ impl Outputs {
             damping_power: totals.damping_power,
             stored_energy: stored_energy(model, state, contacts),
             work: state.energies.input,
-            dissipated: state.energies.friction + state.energies.damping,
+            dissipated: state.energies.friction + state.energies.damping + state.energies.around,
+            drag_power: power_lost_around(&model.ambient(&FrameMotion::default()), &state.balls),
             statistics: state.statistics,
         }
     }
@@ -167,6 +172,7 @@ impl Outputs {
             cage: self.cage.as_ref(),
             neighbours: self.neighbours.as_ref(),
             condensed: self.condensed.as_ref(),
+            drag_power: self.drag_power,
         }
     }
 }

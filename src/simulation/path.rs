@@ -180,6 +180,11 @@ impl<const N: usize> Ramp<N> {
         self.from + (self.to - self.from) * (t * t * (3.0 - 2.0 * t))
     }
 
+    /// \[1/s] rate of change on the way.
+    pub fn slope(&self) -> SVector<f64, N> {
+        (self.to - self.from) / self.duration
+    }
+
     /// Value at a time \[s].
     pub fn at(&self, time: f64) -> SVector<f64, N> {
         let t = ((time - self.start_time) / self.duration).clamp(0.0, 1.0);

@@ -9,6 +9,7 @@ use super::input_paths::{Anchor, InputPaths};
 use super::inputs::{Inputs, RaceInput};
 use super::start::tilt_of;
 use crate::dynamics::Boundary;
+use crate::effects::frame::FrameSection;
 use crate::model::bodies::{PerRace, Race};
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::tilt;
@@ -20,6 +21,8 @@ pub struct Script {
     /// Wrenches on races that forces move.
     loads: PerRace<bool>,
     friction: bool,
+    /// Motion of the bearing's frame, and gravity.
+    frame: bool,
     /// Speeds of races that forces move.
     speeds: PerRace<bool>,
     /// Motions of races that forces do not move.
@@ -66,8 +69,17 @@ fn moves(scene: &Scene, race: Race) -> bool {
     tables || of_race(scene, race).1.is_table()
 }
 
+/// Does a table give the motion of the bearing's frame, or gravity in it?
+fn has_scripted_frame(scene: &Scene) -> bool {
+    let moves = scene.effects.frame.section.as_ref().is_some_and(FrameSection::is_scripted);
+    moves || scene.effects.gravity.acceleration.is_table()
+}
+
 /// Does anything in a scene change by itself with time?
 pub fn follows_time(scene: &Scene) -> bool {
+    if has_scripted_frame(scene) {
+        return true;
+    }
     let load = &scene.load;
     let misalignment =
         [&scene.inner, &scene.outer].map(|race| [&race.misalignment.ry, &race.misalignment.rz]);
@@ -97,6 +109,7 @@ pub fn scripted_groups(scene: &Scene) -> Groups {
         .with(Group::Speeds, inner.1 || outer.1)
         .with(Group::Tilts, inner.0 || outer.0)
         .with(Group::Friction, scene.friction.ball_race.is_table())
+        .with(Group::Frame, scene.effects.frame.section.is_some() && has_scripted_frame(scene))
 }
 
 /// Does a table give the wrench on this race?
@@ -125,6 +138,11 @@ impl Script {
         Self {
             loads: PerRace::new(|race| groups.contains(Group::Loads) && has_scripted_load(scene, race)),
             friction: given(Group::Friction),
+            // Gravity over time is no input where the frame does not move.
+            frame: match scene.effects.frame.section {
+                Some(_) => given(Group::Frame),
+                None => has_scripted_frame(scene),
+            },
             speeds: PerRace::new(speed),
             motions: PerRace::new(motion),
         }
@@ -133,7 +151,7 @@ impl Script {
     /// Does it give anything that an importer could have given, or a motion of a race without a body?
     pub fn gives_inputs(&self) -> bool {
         let of_race = |race: Race| self.loads[race] || self.speeds[race] || self.motions[race];
-        self.friction || Race::BOTH.into_iter().any(of_race)
+        self.friction || self.frame || Race::BOTH.into_iter().any(of_race)
     }
 
     /// \[s] times within a step at which a table bends, growing, not closer to one another or to the ends than `least`.
@@ -141,6 +159,12 @@ impl Script {
         let mut playing: Vec<&Schedule> = vec![];
         if self.friction {
             playing.push(&scene.friction.ball_race);
+        }
+        if self.frame {
+            playing.extend(&scene.effects.gravity.acceleration.0);
+            if let Some(frame) = &scene.effects.frame.section {
+                playing.extend(frame.schedules());
+            }
         }
         for race in Race::BOTH {
             let (section, speed) = of_race(scene, race);
@@ -199,6 +223,9 @@ impl Script {
         if self.friction {
             boundary.conditions.friction = scene.friction.ball_race.at(time);
         }
+        if self.frame {
+            boundary.frame = scene.frame_at(time);
+        }
     }
 
     /// Puts what the script gives at a time \[s] into the inputs.
@@ -219,6 +246,9 @@ impl Script {
         }
         if self.friction {
             inputs.friction = scene.friction.ball_race.at(time);
+        }
+        if self.frame {
+            inputs.effects.frame.motion = scene.frame_at(time);
         }
     }
 }

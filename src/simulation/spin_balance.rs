@@ -6,13 +6,16 @@
 //! their loads, and a second search at that speed is for the moments alone. From the velocities of rolling, where one contact carries all spin, `(M/tau - g_u) du = g` goes with growing
 //! `tau` from implicit steps in time, which friction keeps stable, to Newton's method.
 
-use nalgebra::{Matrix4, Matrix6, Vector4};
+use nalgebra::{Matrix4, Matrix6, Vector3, Vector4};
 
 use crate::analysis::condensed::{Orbit, ball_by_rate};
 use crate::contact::creep::Law;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
+use crate::effects::ambient::Ambient;
 use crate::model::Model;
 use crate::model::bodies::{PerRace, Race};
+use crate::numerics::motion::Wrench;
+use crate::numerics::scalar::{Dual, constant_vector};
 use crate::numerics::size::largest;
 
 /// \[s] first step in time: rolling takes microseconds.
@@ -33,6 +36,8 @@ pub struct Surroundings<'a> {
     pub contacts: PerRace<ContactModel<'a>>,
     /// Motion of each race.
     pub races: PerRace<RaceMotion<f64>>,
+    /// What acts from outside: drag, and the moment of a frame that turns.
+    pub ambient: Ambient,
 }
 
 /// Motions in balance of balls, from motions of the same places that roll. All keep theirs where one of those that are held by
@@ -75,7 +80,7 @@ pub fn balance(around: &Surroundings<'_>, balls: &mut [BallMotion<f64>]) {
 
 /// The motion of a ball in balance, with an orbital speed of its own or that of the start; none where no balance is found.
 fn balanced(around: &Surroundings<'_>, start: &BallMotion<f64>, own_orbit: bool) -> Option<BallMotion<f64>> {
-    let Surroundings { model, contacts, races } = around;
+    let Surroundings { model, contacts, races, ambient } = around;
     let (mass, radius) = (model.bearing.ball.mass, model.bearing.ball.radius);
     let inertia = model.bearing.ball.inertia / (radius * radius);
     let orbit = |motion: &BallMotion<f64>| Orbit::new(motion, &races.outer);
@@ -83,9 +88,14 @@ fn balanced(around: &Surroundings<'_>, start: &BallMotion<f64>, own_orbit: bool)
     // Force along the orbit, and moments over the radius beyond the gyroscopic moment.
     let residual = |motion: &BallMotion<f64>| -> (Vector4<f64>, f64) {
         let [inner, outer] = Race::BOTH.map(|race| contacts[race].evaluate(motion, &races[race]));
-        let moment = inner.ball_moment + outer.ball_moment + orbit(motion).gyroscopic_moment(model, motion);
+        let mut moment = inner.ball_moment + outer.ball_moment + orbit(motion).gyroscopic_moment(model, motion);
+        let mut force = if own_orbit { (inner.force + outer.force).dot(&tangential) } else { 0.0 };
+        if ambient.depends_on_motion() {
+            let outside = ambient.against_rolling(motion);
+            moment += outside.moment;
+            force += if own_orbit { outside.force.dot(&tangential) } else { 0.0 };
+        }
         let moment = moment / radius;
-        let force = if own_orbit { (inner.force + outer.force).dot(&tangential) } else { 0.0 };
         let limit = inner.load.min(outer.load) * contacts.inner.friction;
         (Vector4::new(force, moment.x, moment.y, moment.z), limit)
     };
@@ -104,7 +114,10 @@ fn balanced(around: &Surroundings<'_>, start: &BallMotion<f64>, own_orbit: bool)
             return rolls(contacts, races, &motion).then_some(motion);
         }
         let contact = |race: Race| ball_by_rate(&contacts[race], &motion, &races[race]);
-        let by_rate: Matrix6<f64> = contact(Race::Inner) + contact(Race::Outer);
+        let mut by_rate: Matrix6<f64> = contact(Race::Inner) + contact(Race::Outer);
+        if ambient.depends_on_motion() {
+            by_rate += outside_by_rate(ambient, &motion);
+        }
         let by_orbit = orbit(&motion).inertia_by_rate(model, &motion);
         // First row and column along the orbit, the others of moments over the radius and velocities of the surface.
         let velocities = by_rate.fixed_columns::<3>(0) * tangential + by_orbit.column(2);
@@ -140,6 +153,19 @@ fn balanced(around: &Surroundings<'_>, start: &BallMotion<f64>, own_orbit: bool)
         }
     }
     None
+}
+
+/// Derivatives of what acts from outside on the rolling of a ball by its velocity and angular velocity.
+fn outside_by_rate(ambient: &Ambient, motion: &BallMotion<f64>) -> Matrix6<f64> {
+    let variable = |v: &Vector3<f64>, first: usize| {
+        Vector3::from_fn(|i, _| Dual::<6>::variable(v[i], first + i, 1.0))
+    };
+    let Wrench { force, moment } = ambient.against_rolling(&BallMotion {
+        position: constant_vector(&motion.position),
+        velocity: variable(&motion.velocity, 0),
+        angular_velocity: variable(&motion.angular_velocity, 3),
+    });
+    Matrix6::from_fn(|i, k| if i < 3 { force[i].derivatives[k] } else { moment[i - 3].derivatives[k] })
 }
 
 /// Does a ball roll on both races?

@@ -2,6 +2,8 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::effects::EffectInputs;
+use crate::effects::frame::{FrameInputs, FrameMotion};
 use crate::equilibrium::{self, BallEquilibrium, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
@@ -38,6 +40,18 @@ pub fn from_equilibrium(scene: &Scene, model: &Model, time: f64) -> Result<(Inpu
         inner: spinning(pose(Race::Inner), problem.inner_speed, on(Race::Inner)),
         outer: spinning(pose(Race::Outer), problem.outer_speed, on(Race::Outer)),
         friction: problem.friction,
+        effects: EffectInputs {
+            frame: FrameInputs {
+                motion: problem.frame,
+                rate: FrameMotion::default(),
+                accelerates: scene
+                    .effects
+                    .frame
+                    .section
+                    .as_ref()
+                    .is_some_and(|section| section.angular_acceleration.is_some()),
+            },
+        },
     };
     if let Some(velocity) = scene.start.inner_velocity {
         inputs.inner.twist.velocity = Vector3::from(velocity.map(|component| component.0));
@@ -78,6 +92,8 @@ pub fn from_inputs(
     // Places are taken from the race that rests, wherever that is.
     let origin = inputs[resting].pose.position;
     problem.friction = inputs.friction;
+    problem.frame = inputs.effects.frame.motion;
+    problem.origin = origin;
     problem.resting =
         Pose { position: Vector3::zeros(), orientation: spin_free(&inputs[resting].pose.orientation) };
     let moves = race.section(scene).drive == Drive::Wrench;
@@ -167,6 +183,7 @@ fn state(
         let around = Surroundings {
             model,
             contacts: model.contacts(&inputs.conditions()),
+            ambient: model.ambient(&inputs.effects.frame.motion),
             races: PerRace::new(|race| races[race].motion()),
         };
         let mut motions: Vec<_> = balls.iter().map(BallState::motion).collect();

@@ -9,7 +9,6 @@ use roulement::interface::variables::Variables;
 use roulement::model::bodies::{Body, Race};
 use roulement::model::state::{BodyState, State, Statistics};
 use roulement::numerics::motion::Wrench;
-use roulement::scene::units::Acceleration;
 use roulement::scene::{CreepLaw, Scene};
 use roulement::simulation::outputs::{ContactOutput, Outputs};
 use roulement::simulation::{Simulation, Snapshot};
@@ -138,7 +137,7 @@ impl<'a> Case<'a> {
         let mut simulation = Simulation::new(scene).unwrap_or_else(|why| panic!("{}: {why}", self.name));
         if let Some(gravity) = self.late_gravity {
             let mut later = scene.clone();
-            later.effects.gravity.acceleration = gravity.map(Acceleration);
+            later.effects.gravity.acceleration = gravity.into();
             simulation.tune(&later);
         }
         if self.displaced != Vector3::zeros() {
@@ -380,6 +379,7 @@ fn residual(end: &Simulation, before: &State) -> f64 {
     let contacts = model.contacts(&end.inputs().conditions());
     let races = Race::BOTH.map(|race| state.race(race).motion());
     let ball = &model.bearing.ball;
+    let ambient = model.ambient(&end.inputs().effects.frame.motion);
     let mut worst = 0.0f64;
     let cage = model.cage.as_ref().zip(state.cage());
     let cage_motion = state.cage().map(BodyState::body_motion);
@@ -391,8 +391,9 @@ fn residual(end: &Simulation, before: &State) -> f64 {
             let contact = contacts[race].of_ball(state.difference(index, race));
             contact.evaluate(&now.motion(), &races[race as usize])
         });
-        let mut force = model.gravity * ball.mass + inner.force + outer.force;
-        let mut moment = inner.ball_moment + outer.ball_moment;
+        let outside = ambient.on_ball(&now.motion());
+        let mut force = outside.force + inner.force + outer.force;
+        let mut moment = outside.moment + inner.ball_moment + outer.ball_moment;
         let touching = cage
             .zip(cage_motion.as_ref())
             .and_then(|((cage, _), motion)| cage.pocket_contact(index, &now.motion(), motion));
@@ -432,9 +433,14 @@ fn residual(end: &Simulation, before: &State) -> f64 {
             on_cage.moment += land.moment;
         }
         let body = model.bodies.get(Body::Cage).unwrap().as_ref().unwrap();
-        let force = on_cage.force + model.gravity * body.mass;
+        let mut force = on_cage.force + ambient.gravity * body.mass;
         let momentum = now.rate.component_mul(&body.inertia);
-        let moment = now.pose.orientation.inverse() * on_cage.moment - now.rate.cross(&momentum);
+        let to_body = now.pose.orientation.inverse();
+        let mut moment = to_body * on_cage.moment - now.rate.cross(&momentum);
+        if let Some(frame) = &ambient.frame {
+            force += frame.field(&now.pose.position, &now.velocity) * body.mass;
+            moment += frame.moment(&body.inertia, &now.rate, |v| to_body * v);
+        }
         let linear = now.acceleration * body.mass - force * weight - old.total.force * (1.0 - weight)
             + old.remainder.force;
         let angular = now.rate_derivative.component_mul(&body.inertia)

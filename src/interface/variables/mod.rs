@@ -8,7 +8,7 @@ mod rows;
 
 use thiserror::Error;
 
-use crate::effects::Getter;
+use crate::effects::{Getter, InputRow};
 use crate::model::bodies::{PerRace, Race};
 use crate::scene::{Drive, Group, Scene};
 use crate::schema::numbers::{FRICTION, Parameter};
@@ -52,6 +52,8 @@ pub enum Source {
     Friction,
     /// The bearing as a whole.
     Bearing(FromOutputs),
+    /// An input of an effect.
+    Input(InputRow),
     /// What an effect reports.
     Effect(Getter),
     /// A number of the scene.
@@ -137,6 +139,7 @@ impl Variables {
         match &row.source {
             Source::Friction => inputs.friction,
             Source::Parameter(parameter) => parameter.start,
+            Source::Input(input) => (input.get)(&inputs.effects, input.place),
             Source::Bearing(get) => get(outputs),
             Source::Effect(getter) => getter.get(&outputs.reports()),
             Source::Race(race, quantity, component) => match (row.causality, &quantity.input) {
@@ -174,6 +177,7 @@ impl Variables {
             (Causality::Input, Source::Race(race, RaceVariable { input: Some(access), .. }, component)) => {
                 (access.rate)(&inputs[*race], *component)
             }
+            (Causality::Input, Source::Input(input)) => (input.rate)(&inputs.effects, input.place),
             _ => 0.0,
         };
         self.rows.iter().map(rate).collect()
@@ -218,6 +222,7 @@ impl Variables {
             match &row.source {
                 Source::Friction if FRICTION.contains(value) => inputs.friction = value,
                 Source::Friction => return Err(InputError::Friction(value)),
+                Source::Input(input) => (input.set)(&mut inputs.effects, input.place, value, rate),
                 Source::Race(race, RaceVariable { input: Some(access), .. }, component) => {
                     (access.set)(&mut races[*race], *component, value, rate);
                 }
@@ -241,11 +246,20 @@ impl Variable {
         }
     }
 
+    /// \[unit] a small change of an input of an effect; none for other variables.
+    pub fn small_change(&self) -> Option<f64> {
+        match &self.source {
+            Source::Input(input) => Some(input.change),
+            _ => None,
+        }
+    }
+
     /// What an input is given together with in a scene; none for other variables.
     pub fn group(&self, scene: &Scene) -> Option<Group> {
         match &self.source {
             _ if self.causality != Causality::Input => None,
             Source::Friction => Some(Group::Friction),
+            Source::Input(input) => Some(input.group),
             // A race with a given motion has its speed with it.
             Source::Race(race, RaceVariable { input: Some(access), .. }, _) => {
                 let section = if *race == Race::Inner { &scene.inner } else { &scene.outer };

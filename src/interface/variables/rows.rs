@@ -3,6 +3,7 @@
 use super::race_rows::RACE_VARIABLES;
 use super::race_setting::RaceMotion;
 use super::{Causality, FromOutputs, Kind, Source, Variable, Variables};
+use crate::effects::InputRow;
 use crate::model::bodies::Race;
 use crate::scene::Scene;
 use crate::schema::numbers::FRICTION;
@@ -14,7 +15,7 @@ fn limits(source: &Source) -> [Option<f64>; 2] {
         Source::Race(_, quantity, _) => quantity.limits,
         Source::Friction => [Some(FRICTION.low), Some(FRICTION.high)],
         Source::Parameter(parameter) => [Some(parameter.range.low), Some(parameter.range.high)],
-        Source::Bearing(_) | Source::Effect(_) => [None; 2],
+        Source::Bearing(_) | Source::Effect(_) | Source::Input(_) => [None; 2],
     }
 }
 
@@ -152,6 +153,10 @@ impl Variables {
 
     /// Adds what effects report.
     pub(super) fn add_effects(&mut self, scene: &Scene, every_ball: bool) {
+        for row in scene.effects.inputs() {
+            let InputRow { name, unit, nominal, description, .. } = row.clone();
+            self.add(name, unit, Causality::Input, nominal, description, Source::Input(row));
+        }
         for row in scene.effects.rows(scene.bearing.balls, every_ball) {
             let source = Source::Effect(row.get);
             self.add(row.name, row.unit, Causality::Output, row.nominal, row.description, source);
