@@ -62,6 +62,9 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
         ("effects.per_ball_outputs", 220, &["ball["]),
         ("effects.full_complement", 4, &["neighbours."]),
         ("effects.shoulder_outputs", 2, &["shoulder."]),
+        ("effects.frame", 9, &["frame."]),
+        ("effects.ambient", 1, &["ambient."]),
+        ("support", 6, &["outer.support."]),
     ];
     for effect in parse(OFF).effects.each() {
         let info = effect.info();
@@ -74,8 +77,13 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
         assert!(added.iter().all(|name| starts.iter().any(|start| name.starts_with(start))), "{added:?}");
         // Behind it are parameters, its own among them.
         let rest = on[..first_parameter].iter().chain(&on[first_parameter + count..]);
-        let others: Vec<_> = rest.filter(|name| !name.starts_with("cage.") || base.contains(name)).collect();
-        assert_eq!(others, base.iter().collect::<Vec<_>>(), "{}", info.key);
+        let own = ["cage.", "effects.frame.", "effects.ambient.", "outer.support."];
+        let is_own = |name: &str| own.iter().any(|start| name.starts_with(start));
+        let others: Vec<_> = rest.filter(|name| !is_own(name) || base.contains(name)).collect();
+        // Gravity is an input of a frame that moves, and no parameter.
+        let moves = info.key == "effects.frame";
+        let usual = base.iter().filter(|name| !(moves && name.starts_with("effects.gravity")));
+        assert_eq!(others, usual.collect::<Vec<_>>(), "{}", info.key);
     }
     // A cage adds its pockets to every ball.
     let both = parse(
@@ -109,8 +117,11 @@ fn what_is_told_about_an_effect_is_complete_and_its_example_switches_it_on() {
         for (other, effect) in on.effects.each().iter().enumerate().skip(1) {
             assert_eq!(effect.setting().is_some(), other == index, "{} by {}", effect.info().key, info.key);
         }
-        // The key is one of the scene file: no other would be read.
-        let key = info.key.strip_prefix("effects.").unwrap();
+        // The key is one of the scene file: no other would be read. A support is a section of a race.
+        let Some(key) = info.key.strip_prefix("effects.") else {
+            assert!(info.example.contains(&format!(".{}]", info.key)), "{}", info.example);
+            continue;
+        };
         assert!(info.example.contains(&format!("{key} = ")), "{}", info.example);
         let misspelt = info.example.replacen(&format!("{key} = "), &format!("{key}s = "), 1);
         let message = Scene::parse(&with(&misspelt)).unwrap_err().to_string();

@@ -136,7 +136,7 @@ const HEAVY: [(&str, &str); 11] = [
 #[test]
 fn closed_form_contact_forces_on_the_outer_race_carry_load_and_weight_about_its_own_origin() {
     let scene = outer(&HEAVY);
-    let (model, solution) = (Model::new(&scene).unwrap(), solve(&scene, Gyroscopic::None));
+    let solution = solve(&scene, Gyroscopic::None);
     let [x, y, z, ry, rz] = solution.displacement;
     let orientation = tilted(ry, rz);
     let (force, moment) = on_outer(&solution);

@@ -41,6 +41,7 @@ impl Flight {
         let outer = Pose::default();
         let mut state = State {
             differences: vec![],
+            supports: PerRace::default(),
             time: 0.0,
             balls,
             bodies: Bodies::new(
@@ -61,7 +62,13 @@ impl Flight {
         let load = BodyLoad { speed, ..BodyLoad::default() };
         let motion = PerRace { inner: (pose, *twist), outer: (outer, Twist::default()) };
         let conditions = Conditions { friction: 0.08 };
-        let boundary = Boundary { time: 0.0, motion, loads: PerRace::new(|_| load), conditions, frame: scene.frame_at(0.0) };
+        let boundary = Boundary {
+            time: 0.0,
+            motion,
+            loads: PerRace::new(|_| load),
+            conditions,
+            frame: scene.frame_at(0.0),
+        };
         make_consistent(&model, &mut state, &boundary);
         Self { model, state, boundary, workspace: Workspace::default(), h }
     }

@@ -117,7 +117,8 @@ impl System<f64, Unknowns<f64>> for &Balls<'_> {
         {
             let ball = self.motion(y);
             let [inner, outer] = self.contacts(time, &ball);
-            let acceleration = (inner.force + outer.force) / ball_model.mass + self.scene.effects.gravity.at(time);
+            let acceleration =
+                (inner.force + outer.force) / ball_model.mass + self.scene.effects.gravity.at(time);
             let angular_acceleration = (inner.ball_moment + outer.ball_moment) / ball_model.inertia;
             rate[0..3].copy_from_slice((ball.velocity / length).as_slice());
             rate[3..6].copy_from_slice((acceleration / (length * RATE)).as_slice());

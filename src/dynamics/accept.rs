@@ -2,6 +2,7 @@
 
 use super::ball::BallTrial;
 use super::neighbours::NeighbourTrial;
+use super::support::renew_supports;
 use super::{Boundary, Workspace, body};
 use crate::contact::pair::PairForces;
 use crate::effects::ambient::Ambient;
@@ -85,6 +86,7 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
         }
         state.count_turn(turned, 0.5 * step.h * (spin + state.rate.x));
     }
+    renew_supports(model, state, boundary, &mut powers);
     state.energies.add(&state.powers, &powers, step.h);
     state.powers = powers;
     let raceways = workspace.balls.iter().flat_map(|ball| ball.raceways.iter().copied());
@@ -184,11 +186,13 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
         state.bearing_wrench = totals.on(body);
         powers.input += match moved {
             Some(moved) => {
-                body::make_consistent(state, moved, &boundary.load_on(body, moved, &ambient))
+                let flange = boundary.flange(model, body);
+                body::make_consistent(state, moved, &boundary.load_on(body, moved, &ambient), flange)
             }
             None => -state.twist().power(&state.bearing_wrench),
         };
     }
+    renew_supports(model, state, boundary, &mut powers);
     state.powers = powers;
     let pairs = contacts.raceway_pairs().chain(contacts.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector, Matrix6, UnitQuaternion, Vector3};
 
 use super::directions::{D, SECOND_ROTATION, by_first, by_second, by_second_unknown, constant_race};
 use super::reaction::Reaction;
+use super::support::{Flange, on_race};
 use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
 use crate::effects::frame::MovingFrame;
@@ -60,11 +61,11 @@ pub struct BodyTrial {
     /// Motion as the balls see it, with derivatives by the rotation.
     pub motion: RaceMotion<D>,
     /// Rotation vector of the step, with derivatives.
-    rotation: Vector3<D>,
+    pub(super) rotation: Vector3<D>,
     /// Material angular velocity and acceleration, with derivatives.
     rate: Vector3<D>,
     rate_derivative: Vector3<D>,
-    start_orientation: UnitQuaternion<f64>,
+    pub(super) start_orientation: UnitQuaternion<f64>,
 }
 
 impl BodyTrial {
@@ -137,7 +138,7 @@ impl BodyTrial {
         &mut self,
         body: &RigidBody,
         start: &BodyState,
-        load: &BodyLoad,
+        (load, flange): (&BodyLoad, Option<Flange<'_>>),
         pairs: &Reaction,
         step: &HhtStep,
         scales: &BodyScales,
@@ -219,6 +220,12 @@ impl BodyTrial {
                 + values(&inertial.moment).dot(&self.end.rate);
         }
 
+        if let Some(flange) = &flange {
+            let held = self.held_by(flange, step);
+            force += held.force;
+            material_moment += held.moment;
+        }
+
         // total force (spatial) and moment (material) with the gyroscopic term
         let momentum = Vector3::from_fn(|i, _| self.rate[i].scale(body.inertia[i]));
         let seen = turn(&self.start_orientation.inverse(), &world_moment);
@@ -250,7 +257,9 @@ impl BodyTrial {
     /// Forces of inertia of a moving frame: force (spatial) and moment (material).
     #[cold]
     fn in_moving_frame(&self, frame: &MovingFrame, body: &RigidBody, step: &HhtStep) -> Wrench<D> {
-        let to_body = |v: &Vector3<f64>| rotate(&-self.rotation, &constant_vector(&(self.start_orientation.inverse() * v)));
+        let to_body = |v: &Vector3<f64>| {
+            rotate(&-self.rotation, &constant_vector(&(self.start_orientation.inverse() * v)))
+        };
         let field = frame.seen(constant_vector).field(&self.position(step), &self.velocity(step));
         Wrench {
             force: field.map(|component| component.scale(body.mass)),
@@ -259,13 +268,13 @@ impl BodyTrial {
     }
 
     /// Position with derivatives; directions 0 to 2 are those of the balls, which are minus the body's.
-    fn position(&self, step: &HhtStep) -> Vector3<D> {
+    pub(super) fn position(&self, step: &HhtStep) -> Vector3<D> {
         let gain = -step.position_gain();
         Vector3::from_fn(|i, _| D::variable(self.end.pose.position[i], i, gain))
     }
 
     /// Velocity with derivatives.
-    fn velocity(&self, step: &HhtStep) -> Vector3<D> {
+    pub(super) fn velocity(&self, step: &HhtStep) -> Vector3<D> {
         let gain = -step.velocity_gain();
         Vector3::from_fn(|i, _| D::variable(self.end.velocity[i], i, gain))
     }
@@ -332,12 +341,22 @@ impl<'a> RaceSeen<'a> {
 
 /// Accelerations and multipliers of a body that follow from its load and the wrench of its pairs, with the
 /// constrained directions at rest or in steady rotation. Returns the power of loads and constraints \[W].
-pub fn make_consistent(state: &mut BodyState, body: &RigidBody, load: &BodyLoad) -> f64 {
+pub fn make_consistent(
+    state: &mut BodyState,
+    body: &RigidBody,
+    load: &BodyLoad,
+    flange: Option<Flange<'_>>,
+) -> f64 {
     let mut force = state.bearing_wrench.force + load.applied.force;
     let to_material = state.pose.orientation.inverse();
     let mut moment = to_material * (state.bearing_wrench.moment + load.applied.moment);
     let momentum = state.rate.component_mul(&body.inertia);
     moment -= state.rate.cross(&momentum);
+    if let Some(flange) = &flange {
+        let held = on_race(flange, &state.pose, &state.twist());
+        force += held.force;
+        moment += held.moment;
+    }
     let mut inertial_power = 0.0;
     if let Some(frame) = &load.moving {
         let inertial = Wrench {

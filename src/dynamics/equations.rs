@@ -263,7 +263,8 @@ impl<'a> BearingStep<'a> {
         for (((body, model), (_, start)), (_, trial)) in bodies.zip(self.workspace.bodies.iter_mut()) {
             if let (Some(model), Some(trial)) = (model, trial) {
                 let load = self.boundary.load_on(body, model, &self.ambient);
-                trial.assemble(model, start, &load, &sums[body.index()], &self.step, &scales);
+                let flange = self.boundary.flange(self.model, body);
+                trial.assemble(model, start, (&load, flange), &sums[body.index()], &self.step, &scales);
                 norm = larger(norm, largest(trial.residual.rows(0, 6).iter()) / self.force_tolerance);
                 norm = larger(norm, trial.violation);
             }

@@ -52,7 +52,10 @@ impl BearingStep<'_> {
         for (body, offset) in Body::ALL.into_iter().zip(self.model.border_offsets()) {
             if let Some(offset) = offset {
                 border[offset..offset + BLOCK].iter_mut().for_each(|a| *a *= back);
-                if let Body::Race(race) = body {
+                // A race on a support has no prescribed spin.
+                if let Body::Race(race) = body
+                    && self.model.supports[race].is_none()
+                {
                     let gained = self.boundary.loads[race].speed - self.start.race(race).rate.x;
                     border[offset + 3] += gained / self.step.velocity_gain() * self.model.race_length();
                 }

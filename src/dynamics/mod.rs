@@ -13,6 +13,7 @@ mod matrix;
 mod neighbours;
 mod reaction;
 mod sensitivity;
+mod support;
 
 use nalgebra::{DVector, Vector6};
 
@@ -27,8 +28,8 @@ use crate::numerics::lanes::WIDTH;
 use crate::numerics::motion::{Pose, Twist};
 use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure};
 use crate::numerics::ring::Ring;
-pub use accept::{make_consistent, power_lost_around};
 use accept::{accept, renew_polynomials};
+pub use accept::{make_consistent, power_lost_around};
 use ball::BallTrial;
 pub use body::BodyLoad;
 use body::BodyTrial;

@@ -9,7 +9,7 @@ use super::frame::FrameInputs;
 use super::reports::Reports;
 use crate::schema::numbers::{Number, Parameter};
 use crate::schema::variable_units::Unit;
-use crate::schema::{BearingSection, Friction, Group, SceneError};
+use crate::schema::{BearingSection, Drive, Friction, Group, SceneError};
 
 /// What is told about an effect.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +37,8 @@ pub struct Setup<'a> {
     pub saturates: bool,
     /// Is there a cage?
     pub cage: bool,
+    /// How both races get their motion, inner first.
+    pub drives: [Drive; 2],
 }
 
 /// How the value of a variable is found in what is reported.

@@ -256,15 +256,24 @@ impl Effect for Settings {
         Number::checked("effects.frame.angular_acceleration.x", ANGULAR_ACCELERATION, |s| given(s, 0)),
         Number::checked("effects.frame.angular_acceleration.y", ANGULAR_ACCELERATION, |s| given(s, 1)),
         Number::checked("effects.frame.angular_acceleration.z", ANGULAR_ACCELERATION, |s| given(s, 2)),
-        Number::fixed("effects.frame.arm.x", ARM, "arm from the given point to the frame's origin along x", |s| {
-            arm(s, 0)
-        }),
-        Number::fixed("effects.frame.arm.y", ARM, "arm from the given point to the frame's origin along y", |s| {
-            arm(s, 1)
-        }),
-        Number::fixed("effects.frame.arm.z", ARM, "arm from the given point to the frame's origin along z", |s| {
-            arm(s, 2)
-        }),
+        Number::fixed(
+            "effects.frame.arm.x",
+            ARM,
+            "arm from the given point to the frame's origin along x",
+            |s| arm(s, 0),
+        ),
+        Number::fixed(
+            "effects.frame.arm.y",
+            ARM,
+            "arm from the given point to the frame's origin along y",
+            |s| arm(s, 1),
+        ),
+        Number::fixed(
+            "effects.frame.arm.z",
+            ARM,
+            "arm from the given point to the frame's origin along z",
+            |s| arm(s, 2),
+        ),
     ];
 
     fn setting(&self) -> Option<String> {

@@ -39,15 +39,27 @@ impl Effect for Settings {
     };
 
     const NUMBERS: &'static [Number<Self>] = &[
-        Number::tunable_if("effects.gravity.x", GRAVITY, "acceleration of gravity along x", is_parameter, |s| {
-            Place::Schedule(&mut s.acceleration.0[0])
-        }),
-        Number::tunable_if("effects.gravity.y", GRAVITY, "acceleration of gravity along y", is_parameter, |s| {
-            Place::Schedule(&mut s.acceleration.0[1])
-        }),
-        Number::tunable_if("effects.gravity.z", GRAVITY, "acceleration of gravity along z", is_parameter, |s| {
-            Place::Schedule(&mut s.acceleration.0[2])
-        }),
+        Number::tunable_if(
+            "effects.gravity.x",
+            GRAVITY,
+            "acceleration of gravity along x",
+            is_parameter,
+            |s| Place::Schedule(&mut s.acceleration.0[0]),
+        ),
+        Number::tunable_if(
+            "effects.gravity.y",
+            GRAVITY,
+            "acceleration of gravity along y",
+            is_parameter,
+            |s| Place::Schedule(&mut s.acceleration.0[1]),
+        ),
+        Number::tunable_if(
+            "effects.gravity.z",
+            GRAVITY,
+            "acceleration of gravity along z",
+            is_parameter,
+            |s| Place::Schedule(&mut s.acceleration.0[2]),
+        ),
     ];
 
     fn setting(&self) -> Option<String> {

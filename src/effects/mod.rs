@@ -32,6 +32,7 @@ pub mod per_ball;
 pub mod reports;
 pub mod shoulder;
 pub mod stiffness;
+pub mod support;
 
 use std::fmt;
 use std::sync::LazyLock;
@@ -77,7 +78,7 @@ macro_rules! effects {
     };
 }
 
-effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, frame, ambient }
+effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, frame, ambient, support }
 
 impl Effects {
     /// Checks all numbers against their ranges.

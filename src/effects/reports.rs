@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix6, Vector3};
 
+use super::support::SupportState;
 use crate::numerics::motion::{Pose, Twist};
 
 /// All of it, as the outputs of a state have it; an effect that is off reports nothing.
@@ -17,6 +18,8 @@ pub struct Reports<'a> {
     pub condensed: Option<&'a Condensed>,
     /// \[W] power that the balls lose to the medium around them.
     pub drag_power: f64,
+    /// Flexible supports of inner and outer race.
+    pub supports: [Option<&'a SupportState>; 2],
 }
 
 /// A ball-race contact. Longitudinal is along the rolling direction, lateral transverse to it (frame C).

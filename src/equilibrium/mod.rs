@@ -66,6 +66,9 @@ pub struct EquilibriumInput {
     pub frame: FrameMotion,
     /// \[m] where the bearing frame is in that frame.
     pub origin: Vector3<f64>,
+    /// Pose in the bearing frame of the flange that the race which moves rests on by its flexible support; without one, that race
+    /// is moved by its conditions alone.
+    pub flange: Option<Pose>,
 }
 
 impl EquilibriumInput {
@@ -104,6 +107,7 @@ impl EquilibriumInput {
             friction: scene.friction.ball_race.at(time),
             frame: scene.frame_at(time),
             origin: Vector3::zeros(),
+            flange: None,
         }
     }
 }

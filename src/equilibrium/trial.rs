@@ -7,11 +7,13 @@ use super::ball::{
 };
 use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
 use crate::effects::frame::MovingFrame;
+use crate::effects::support::{Relative, Support};
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::Race;
-use crate::numerics::rotation::{from_rotation_vector, rotate, turn};
-use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, values};
+use crate::numerics::motion::Pose;
+use crate::numerics::rotation::{conformal_product, from_rotation_vector, rotate, turn};
+use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, cross, values};
 
 /// A number with its derivatives.
 pub type D = Dual<DIRECTIONS>;
@@ -123,6 +125,40 @@ fn moving_frame(
     Some(seen)
 }
 
+/// Force and moment, world axes, of a support on the race that moves, which spins steadily.
+fn held_by(
+    support: &Support,
+    flange: &Pose,
+    input: &EquilibriumInput,
+    unknowns: &SharedVector,
+) -> [Vector3<D>; 2] {
+    let speed = match input.race {
+        Race::Inner => input.inner_speed,
+        Race::Outer => input.outer_speed,
+    };
+    let tilt =
+        from_rotation_vector(&Vector3::new(D::constant(0.0), variable(unknowns, 3), variable(unknowns, 4)));
+    let axis = flange.orientation * Vector3::x();
+    let upright = UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default();
+    // Race and flange have turned by the same angle about their own axes.
+    let turned = upright.inverse() * flange.orientation;
+    let displacement =
+        Vector3::from_fn(|i, _| variable(unknowns, i)) - constant_vector::<D>(&flange.position);
+    let turning = constant_vector::<D>(&(axis * speed));
+    let own = rotate(&tilt, &constant_vector(&(Vector3::x() * speed)));
+    let held = support.holds(
+        flange,
+        &Relative {
+            displacement,
+            rotation: turn(&turned.inverse(), &conformal_product(&upright.inverse(), &tilt)),
+            velocity: -cross(&turning, &displacement),
+            angular_velocity: own - turning,
+        },
+    );
+    let elastic = rotate(&tilt, &turn(&turned, &held.elastic_moment));
+    [held.force, elastic + held.damping_moment]
+}
+
 /// Weight of the race that moves and the forces of inertia of a moving frame on it, where it is a body.
 pub fn outside_of_race(model: &Model, input: &EquilibriumInput, unknowns: &SharedVector) -> [D; 5] {
     let Some(body) = model.bodies[input.race].as_ref() else {
@@ -147,6 +183,11 @@ pub fn outside_of_race(model: &Model, input: &EquilibriumInput, unknowns: &Share
         let rate = constant_vector(&(Vector3::x() * speed));
         let in_body = frame.moment(&inertia, &rate, |v| rotate(&-rotation, &constant_vector(v)));
         moment = rotate(&rotation, &in_body);
+    }
+    if let (Some(support), Some(flange)) = (&model.supports[input.race], &input.flange) {
+        let [held, turned] = held_by(support, flange, input, unknowns);
+        force += held;
+        moment += turned;
     }
     [force.x, force.y, force.z, moment.y, moment.z]
 }

@@ -10,6 +10,7 @@ use super::instance::Instance;
 use super::outcome::{Outcome, error};
 use super::state::Phase;
 use crate::interface::variables::{Causality, InputKind, Kind, Variable};
+use crate::scene::Level;
 use crate::simulation::inputs::Inputs;
 use crate::simulation::outputs::Outputs;
 use crate::simulation::{Simulation, SimulationError};
@@ -118,7 +119,9 @@ impl Instance {
         let failed = |why: SimulationError| error(format!("no directional derivatives here: {why}"));
         let base = self.simulation.inputs();
         let duration = self.state.before.as_ref().map(|before| self.simulation.time() - before.time());
-        let changes = changes(&self.simulation, duration);
+        // Equilibria know no duration.
+        let dynamic = self.simulation.scene().solver.level == Level::Dynamic;
+        let changes = changes(&self.simulation, duration.filter(|_| dynamic));
         let rows = self.variables.rows();
         let inputs: Vec<usize> = (0..rows.len())
             .filter(|&i| rows[i].causality == Causality::Input && rows[i].kind == Kind::Real)

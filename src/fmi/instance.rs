@@ -10,7 +10,7 @@ use crate::interface::contradiction::Contradiction;
 use crate::interface::model_description;
 use crate::interface::variables::{Causality, Kind, Source, Variables};
 use crate::model::bodies::Race;
-use crate::scene::{Giver, Group, Groups, Scene, Solver};
+use crate::scene::{Giver, Group, Groups, Level, Scene, Solver};
 use crate::schema::numbers::Variability;
 use crate::simulation::inputs::Inputs;
 use crate::simulation::{Simulation, follows_time, scripted_groups};
@@ -179,7 +179,16 @@ impl Instance {
         self.state.phase = Phase::StepComplete;
         self.announce_scripts();
         self.announce_goal();
+        self.announce_level();
         Ok(())
+    }
+
+    /// Tells that no motion is simulated, where that is so.
+    fn announce_level(&self) {
+        if self.simulation.scene().solver.level == Level::Equilibrium {
+            let what = "solver.level = \"equilibrium\": outputs are those of the equilibrium under the inputs of each step";
+            self.log.write(Status::Ok, what);
+        }
     }
 
     /// Tells what an error goal means here: a single run cannot measure its own error.

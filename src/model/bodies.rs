@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::effects::cage::CageSection;
 use crate::numerics::scalar::Scalar;
 use crate::scene::{Condition, Direction, Drive, RaceSection, Scene, Schedule};
+use crate::schema::SupportSection;
 
 /// A race.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -272,6 +273,12 @@ impl RigidBody {
         let tilt = [&section.misalignment.ry, &section.misalignment.rz];
         let tilts = tilt.into_iter().enumerate().map(|(i, angle)| Constraint::Tilt(i + 1, angle.clone()));
         Self::of_race(section, Drive::Hinge, place.chain(tilts))
+    }
+
+    /// A race on a flexible support.
+    pub(super) fn on_support(section: &SupportSection) -> Self {
+        let inertia = Vector3::from(section.inertia.map(|moment| moment.0));
+        Self { mass: section.mass.0, inertia, constraints: vec![] }
     }
 
     /// A race that turns at a prescribed speed under these constraints, if that is how it is driven.

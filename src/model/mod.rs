@@ -13,10 +13,11 @@ use crate::contact::ContactModel;
 use crate::contact::ball_ball::BallBallModel;
 use crate::effects::ambient::{Ambient, AmbientSection, Medium};
 use crate::effects::frame::{FrameMotion, FrameSection, MovingFrame};
+use crate::effects::support::Support;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::numerics::arrowhead::Offsets;
-use crate::scene::{Scene, Solver};
+use crate::scene::{Level, Scene, Solver};
 use bearing::{Ball, Bearing};
 use bodies::{Bodies, PerRace, Race, RigidBody};
 use cage::CageModel;
@@ -53,6 +54,8 @@ pub struct Model {
     frame_arm: Option<Vector3<f64>>,
     /// The medium around the balls, where its drag is simulated.
     medium: Option<Medium>,
+    /// Flexible supports of the races on their flanges.
+    pub supports: PerRace<Option<Support>>,
     /// Are condensed stiffness and damping reported?
     pub stiffness_outputs: bool,
     /// Time integration.
@@ -68,9 +71,14 @@ impl Model {
         let bearing = Bearing::new(scene);
         let section = scene.effects.cage.section.as_ref();
         let cage = section.map(|section| CageModel::new(section, scene, &bearing)).transpose()?;
+        let supports = &scene.effects.support.sections;
+        let [inner_support, outer_support] = supports.each_ref().map(Option::as_ref);
         let races = PerRace {
-            inner: RigidBody::under_wrench(Race::Inner, scene),
-            outer: RigidBody::under_wrench(Race::Outer, scene).or_else(|| RigidBody::on_hinge(&scene.outer)),
+            inner: RigidBody::under_wrench(Race::Inner, scene)
+                .or_else(|| inner_support.map(RigidBody::on_support)),
+            outer: RigidBody::under_wrench(Race::Outer, scene)
+                .or_else(|| RigidBody::on_hinge(&scene.outer))
+                .or_else(|| outer_support.map(RigidBody::on_support)),
         };
         Ok(Self {
             bodies: Bodies::new(races, section.map(|section| Some(RigidBody::cage(section)))),
@@ -84,8 +92,12 @@ impl Model {
             cage,
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,
-            damping: scene.effects.damping.factor.0,
+            damping: contact_damping(scene),
             frame_arm: scene.effects.frame.section.as_ref().map(FrameSection::arm),
+            supports: PerRace {
+                inner: inner_support.map(Support::from),
+                outer: outer_support.map(Support::from),
+            },
             medium: scene.effects.ambient.section.as_ref().map(AmbientSection::medium),
             stiffness_outputs: scene.effects.stiffness.on,
             solver: scene.solver,
@@ -94,7 +106,7 @@ impl Model {
 
     /// Takes over the tunable numbers of a scene, those that each step reads.
     pub fn tune(&mut self, scene: &Scene) {
-        self.damping = scene.effects.damping.factor.0;
+        self.damping = contact_damping(scene);
         self.solver = scene.solver;
     }
 
@@ -170,5 +182,13 @@ impl Model {
     /// \[m] length that turns moments of a body into forces of the size of the others.
     pub fn race_length(&self) -> f64 {
         0.5 * self.bearing.pitch_diameter
+    }
+}
+
+/// [s/m] dissipation factor of contacts; an equilibrium has no approach that it could damp.
+fn contact_damping(scene: &Scene) -> f64 {
+    match scene.solver.level {
+        Level::Dynamic => scene.effects.damping.factor.0,
+        Level::Equilibrium => 0.0,
     }
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::bodies::{Bodies, Body, PerRace, Race};
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
+use crate::effects::support::SupportState;
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::arrowhead::Eliminated;
 use crate::numerics::motion::{Pose, Twist, Wrench};
@@ -157,7 +158,7 @@ pub struct Powers {
     pub friction: f64,
     /// Lost to contact damping.
     pub damping: f64,
-    /// Lost to what is around the bearing: drag of the medium.
+    /// Lost to what is around the bearing: drag of the medium, dampers of supports.
     pub around: f64,
 }
 
@@ -240,6 +241,8 @@ pub struct State {
     pub balls: Vec<BallState>,
     /// Races, and the cage where it is simulated.
     pub bodies: Bodies<BodyState>,
+    /// Flexible supports of the races, where they rest on some.
+    pub supports: PerRace<Option<SupportState>>,
     /// By ball, the differences of Kalker's polynomials from the table at its contacts with the races; empty where they
     /// are not simulated.
     pub differences: Vec<PerRace<Difference>>,
@@ -261,6 +264,14 @@ impl State {
     /// The state of a race.
     pub fn race(&self, race: Race) -> &BodyState {
         &self.bodies[race]
+    }
+
+    /// Pose and twist that are given for a race: those of its flange where it rests on a support, else its own.
+    pub fn given_motion(&self, race: Race) -> (Pose, Twist) {
+        match &self.supports[race] {
+            Some(support) => (support.flange, support.flange_twist),
+            None => (self.race(race).pose, self.race(race).twist()),
+        }
     }
 
     /// The state of the cage, where it is simulated.

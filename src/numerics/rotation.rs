@@ -34,6 +34,21 @@ pub fn rotate<S: Scalar>(c: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
     (v * diagonal + c * c.dot(v).scale(2.0) + c.cross(v) * c0.scale(2.0)) * scale
 }
 
+/// Conformal vector of the rotation `first` after that of `c`: `R = R(first) R(c)`, of a turn below half a turn.
+#[inline(always)]
+pub fn conformal_product<S: Scalar>(first: &UnitQuaternion<f64>, c: &Vector3<S>) -> Vector3<S> {
+    // As quaternions of c: (c0, c)/(4 - c0).
+    let c0 = c0(c);
+    let over = S::one() / (S::constant(4.0) - c0);
+    let (scalar, vector) = (c0 * over, c * over);
+    // The quaternion of the smaller turn.
+    let sign = if first.w < 0.0 { -1.0 } else { 1.0 };
+    let (w, v): (f64, Vector3<S>) = (sign * first.w, (first.imag() * sign).map(S::constant));
+    let real = scalar.scale(w) - v.dot(&vector);
+    let imaginary = vector.map(|x| x.scale(w)) + v * scalar + v.cross(&vector);
+    imaginary * (S::constant(4.0) / (S::one() + real))
+}
+
 /// Tangent operator: material angular velocity `Omega = T(c) c'` (paper eq. 25).
 #[inline(always)]
 pub fn tangent<S: Scalar>(c: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
@@ -48,6 +63,12 @@ pub fn tangent<S: Scalar>(c: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
 pub fn tangent_inverse<S: Scalar>(c: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
     // T^-1 = 1/2 (c0 I + [c]x + c c^T/4)
     (v * c0(c) + c.cross(v) + c * c.dot(v).scale(0.25)) * S::constant(0.5)
+}
+
+/// Transposed inverse of the tangent operator: the moment in the body's axes of a potential whose gradient by c is `v`.
+#[inline(always)]
+pub fn tangent_inverse_transposed<S: Scalar>(c: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
+    (v * c0(c) - c.cross(v) + c * c.dot(v).scale(0.25)) * S::constant(0.5)
 }
 
 /// Rate of change of the tangent operator along `rate` = c', applied to `v`: `Omega' = T c'' + T' c'`.
@@ -151,6 +172,21 @@ mod tests {
             let v = Vector3::new(-0.2, 0.5, 0.9);
             let slope = (tangent(&(c + rate * h), &v) - tangent(&(c - rate * h), &v)) / (2.0 * h);
             assert!((slope - tangent_rate(&c, &rate, &v)).norm() < 1e-8, "{c}");
+        }
+    }
+
+    #[test]
+    fn identity_product_with_a_constant_rotation_and_transposed_inverse() {
+        for first in vectors().filter(|c| c.norm() < 3.5) {
+            for second in vectors().filter(|c| c.norm() < 0.5) {
+                let product = conformal_product(&to_quaternion(&first), &second);
+                assert!((product - compose(&first, &second)).norm() < 1e-13, "{first} {second}");
+                let other_sign = UnitQuaternion::new_unchecked(-to_quaternion(&first).into_inner());
+                assert!((conformal_product(&other_sign, &second) - product).norm() < 1e-15);
+            }
+            let (v, w) = (Vector3::new(0.3, -1.1, 0.7), Vector3::new(0.9, 0.2, -0.4));
+            let power = v.dot(&tangent_inverse(&first, &w));
+            assert!((tangent_inverse_transposed(&first, &v).dot(&w) - power).abs() < 1e-13);
         }
     }
 

@@ -16,12 +16,12 @@ use serde::Deserialize;
 use crate::effects;
 pub use crate::effects::Effects;
 pub use crate::effects::cage::{CageSection, Guidance};
-pub use crate::effects::frame::FrameMotion;
 pub use crate::effects::creep::{CreepLaw, Regularised};
+pub use crate::effects::frame::FrameMotion;
 pub use crate::schema::{
-    Accuracy, BearingSection, Components, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver, Group,
-    Groups, InputGivers, Interface, Load, Material, Misalignment, Orientation, RaceLoad, RaceSection,
-    SceneError, Schedule, Solver, Start, Tilt, Translation, units,
+    Accuracy, BearingSection, Components, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver,
+    Group, Groups, InputGivers, Interface, Level, Load, Material, Misalignment, Orientation, RaceLoad,
+    RaceSection, SceneError, Schedule, Solver, Start, Tilt, Translation, units,
 };
 use crate::schema::{Follows, explain};
 pub use scales::Scales;
@@ -95,6 +95,7 @@ impl Scene {
         scene.source = text.to_string();
         scene.effects.creep.regularised = std::mem::take(&mut scene.regularised);
         scene.effects.cage.section = scene.cage.take();
+        scene.effects.support.sections = [scene.inner.support.take(), scene.outer.support.take()];
         scene.effects.gravity.is_input = scene.effects.frame.section.is_some();
         if scene.solver.follows != Follows::Nothing {
             let Scales { approach, frequency } = Scales::of(&scene);
@@ -123,7 +124,8 @@ impl Scene {
     fn setup(&self) -> effects::Setup<'_> {
         let saturates = self.effects.creep.law.saturates();
         let cage = self.effects.cage.on;
-        effects::Setup { bearing: &self.bearing, friction: &self.friction, saturates, cage }
+        let drives = [self.inner.drive, self.outer.drive];
+        effects::Setup { bearing: &self.bearing, friction: &self.friction, saturates, cage, drives }
     }
 
     /// Reads a scene file.

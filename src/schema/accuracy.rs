@@ -33,6 +33,20 @@ pub struct Solver {
     pub goal: Option<ErrorGoal>,
     /// What follows the bearing's own frequency and load: see [`Solver::follow`].
     pub follows: Follows,
+    /// What is computed.
+    pub level: Level,
+}
+
+/// What a run computes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Level {
+    /// The motion in time.
+    #[default]
+    Dynamic,
+    /// The quasi-static equilibrium under the inputs of each row or communication point, balls rolling at their places of the
+    /// start: no inertia but centrifugal and gyroscopic, no contact damping, no history.
+    Equilibrium,
 }
 
 /// What of the settings follows the bearing, until [`Solver::follow`] has set it.
@@ -102,6 +116,7 @@ impl Default for Solver {
             matrix_reuse: REFACTOR_CONTRACTION,
             goal: None,
             follows: Follows::All { initial_step: true },
+            level: Level::Dynamic,
         }
     }
 }
@@ -265,6 +280,7 @@ struct SolverKeys {
     max_step: Option<Time>,
     min_step: Option<Time>,
     matrix_reuse: Option<f64>,
+    level: Level,
 }
 
 impl TryFrom<SolverKeys> for Solver {
@@ -301,6 +317,7 @@ impl TryFrom<SolverKeys> for Solver {
             matrix_reuse: keys.matrix_reuse.unwrap_or(goal.matrix_reuse),
             goal: goal.goal,
             follows,
+            level: keys.level,
         })
     }
 }

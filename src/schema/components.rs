@@ -30,7 +30,8 @@ impl<Q> Components<Q> {
 
     /// Bound of the vector's length at all times.
     pub fn largest(&self) -> f64 {
-        let largest = |schedule: &Schedule| schedule.values().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let largest =
+            |schedule: &Schedule| schedule.values().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let [x, y, z] = self.0.each_ref().map(largest);
         x.hypot(y).hypot(z)
     }

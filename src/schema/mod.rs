@@ -9,12 +9,14 @@ pub mod numbers;
 mod schedule;
 mod sections;
 mod spelling;
+mod support;
 pub mod units;
 pub mod variable_units;
 
+pub use accuracy::{Accuracy, ErrorGoal, ErrorOf, Follows, Level, SMALLEST_TOLERANCE, Solver};
 pub use components::Components;
-pub use accuracy::{Accuracy, ErrorGoal, ErrorOf, Follows, SMALLEST_TOLERANCE, Solver};
 pub use error::SceneError;
 pub use inputs::{Giver, Group, Groups, InputGivers};
 pub use schedule::Schedule;
 pub use sections::*;
+pub use support::{DirectionMatrix, SupportSection};

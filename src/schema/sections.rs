@@ -4,6 +4,7 @@ use serde::Deserialize;
 
 use super::inputs::InputGivers;
 use super::schedule::{self, Schedule};
+use super::support::SupportSection;
 use super::units::*;
 
 /// Internal geometry of the bearing.
@@ -124,6 +125,8 @@ pub struct RaceSection {
     pub shoulder_height: Option<[Length; 2]>,
     /// \[rad] contact angles at which the groove ends at the race's -x and +x side; not with `shoulder_height`.
     pub shoulder_angle: Option<[Angle; 2]>,
+    /// A flexible support of the race on its flange, until it joins its effect.
+    pub(crate) support: Option<SupportSection>,
 }
 
 /// Rotation vector [0, ry, rz] of a race's frame, constant or a scripted motion.

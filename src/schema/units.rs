@@ -170,6 +170,14 @@ quantities! {
     AngularAcceleration = "rad/s^2", "an angular acceleration", ["10 rad/s^2", "0.5 krad/s^2"];
     /// [Pa s]
     Viscosity = "Pa s", "a viscosity", ["18 uPa s", "20 mPa s"];
+    /// [N/m]
+    TranslationalStiffness = "N/m", "a stiffness", ["1e8 N/m", "100 N/um"];
+    /// [N m/rad]
+    RotationalStiffness = "N m/rad", "a stiffness against rotation", ["5e4 N m/rad", "50 kN m/rad"];
+    /// [N s/m]
+    TranslationalDamping = "N s/m", "a damping", ["500 N s/m", "0.5 N s/mm"];
+    /// [N m s/rad]
+    RotationalDamping = "N m s/rad", "a damping against rotation", ["0.5 N m s/rad", "500 N mm s/rad"];
     /// [m/s]
     Velocity = "m/s", "a velocity", ["2 m/s", "500 mm/s"];
     /// [m/s2]

@@ -63,7 +63,8 @@ impl InputPaths {
     pub fn steady(inputs: &Inputs, state: &State) -> Self {
         Self {
             races: PerRace::new(|race| {
-                RacePath::steady(state.time, &state.race(race).pose, &state.race(race).twist())
+                let (pose, twist) = state.given_motion(race);
+                RacePath::steady(state.time, &pose, &twist)
             }),
             loads: PerRace::new(|race| Ramp::constant(load_components(&inputs[race]))),
             anchors: PerRace::new(|_| None),

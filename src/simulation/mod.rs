@@ -8,10 +8,12 @@ mod limits;
 pub mod outputs;
 mod path;
 pub mod play;
+mod quasi_static;
 mod script;
 mod slip;
 mod spin_balance;
 mod start;
+mod supported;
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -25,7 +27,7 @@ use crate::forces::Contacts;
 use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::model::state::{KeptMatrix, State};
-use crate::scene::{Drive, Groups, Scene};
+use crate::scene::{Drive, Groups, Level, Scene};
 pub use error::SimulationError;
 use input_paths::InputPaths;
 use inputs::Inputs;
@@ -299,6 +301,9 @@ impl Simulation {
         let begin = self.state.time;
         if !(end > begin && end.is_finite()) {
             return Err(SimulationError::Backwards { from: begin, to: end });
+        }
+        if self.model.solver.level == Level::Equilibrium {
+            return self.advance_by_equilibria(end, inputs, scripted);
         }
         let script = Script::new(&self.scene, scripted);
         let mut given = self.inputs;

@@ -12,6 +12,7 @@ use crate::effects::frame::FrameMotion;
 pub use crate::effects::reports::{
     BallOutput, CageOutput, Condensed, ContactOutput, NeighboursOutput, PocketOutput,
 };
+use crate::effects::support::SupportState;
 use crate::forces::{BallContacts, Contacts, Totals};
 use crate::model::bearing;
 use crate::model::bodies::{Constraint, PerRace, Race, RigidBody, tilt_direction};
@@ -27,7 +28,8 @@ pub struct RaceOutput {
     pub pose: Pose,
     /// Twist.
     pub twist: Twist,
-    /// Force and moment of the bearing on the race, about its origin, world axes.
+    /// Force and moment of the bearing on the race, about its origin, world axes; of a race on a support, those of the support on
+    /// the flange about the flange's origin.
     pub wrench: Wrench,
     /// [N m] torque that keeps a race that forces move at its prescribed speed; for other races, the torque that balances
     /// the bearing's.
@@ -69,6 +71,8 @@ pub struct Outputs {
     pub damping_power: f64,
     /// \[W] power that the balls lose to the medium around them.
     pub drag_power: f64,
+    /// Flexible supports of inner and outer race, where they rest on some.
+    pub supports: [Option<SupportState>; 2],
     /// [N m] friction torque of the bearing: against the inner race's rotation about its own axis.
     pub friction_torque: f64,
     /// \[J] kinetic and elastic energy.
@@ -130,10 +134,11 @@ impl Outputs {
         let cage_speed = cage.map_or(mean_orbit, |(_, state)| state.rate.x);
         let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
         let rolling = RollingOrbit::mean(model, state, contacts, &races);
-        let [inner, outer] = Race::BOTH.map(|race| race_output(state.race(race), model, race));
+        let [inner, outer] = Race::BOTH.map(|race| race_output(state, model, race));
         Self {
             time: state.time,
-            friction_torque: -inner.wrench.moment.dot(&races.inner.axis) * sign(speeds[0]),
+            friction_torque: -state.race(Race::Inner).bearing_wrench.moment.dot(&races.inner.axis)
+                * sign(speeds[0]),
             inner,
             outer,
             balls,
@@ -148,6 +153,7 @@ impl Outputs {
             stored_energy: stored_energy(model, state, contacts),
             work: state.energies.input,
             dissipated: state.energies.friction + state.energies.damping + state.energies.around,
+            supports: [state.supports.inner, state.supports.outer],
             drag_power: power_lost_around(&model.ambient(&FrameMotion::default()), &state.balls),
             statistics: state.statistics,
         }
@@ -173,6 +179,7 @@ impl Outputs {
             neighbours: self.neighbours.as_ref(),
             condensed: self.condensed.as_ref(),
             drag_power: self.drag_power,
+            supports: self.supports.each_ref().map(Option::as_ref),
         }
     }
 }
@@ -212,6 +219,7 @@ fn stored_energy(model: &Model, state: &State, contacts: &Contacts) -> f64 {
                 + 0.5 * state.rate.component_mul(&body.inertia).dot(&state.rate);
         }
     }
+    state.supports.iter().flatten().for_each(|support| energy += support.energy);
     contacts.ball_pair_energies(model).for_each(|elastic| energy += elastic);
     contacts.land_energies(model).for_each(|elastic| energy += elastic);
     energy
@@ -278,18 +286,21 @@ fn spin_free_azimuth(race: &BodyState, offset: &Vector3<f64>) -> f64 {
     seen.z.atan2(seen.y)
 }
 
-fn race_output(state: &BodyState, model: &Model, race: Race) -> RaceOutput {
+fn race_output(state: &State, model: &Model, race: Race) -> RaceOutput {
+    let support = state.supports[race].as_ref();
+    let state = state.race(race);
+    let wrench = support.map_or(state.bearing_wrench, |support| support.wrench);
     let axis = state.pose.orientation * Vector3::x();
     let moved = model.bodies[race].as_ref();
     let spin = moved.and_then(|body| body.constraints.iter().position(|c| matches!(c, Constraint::Spin)));
     let drive_torque = match spin {
         Some(index) => state.multipliers[index],
-        None => -state.bearing_wrench.moment.dot(&axis),
+        None => -wrench.moment.dot(&axis),
     };
     RaceOutput {
         pose: state.pose,
         twist: state.twist(),
-        wrench: state.bearing_wrench,
+        wrench,
         drive_torque,
         reaction: moved.map_or_else(Wrench::default, |body| reaction(state, body, &axis)),
         turned: state.turned,

@@ -11,7 +11,7 @@ use super::start::tilt_of;
 use crate::dynamics::Boundary;
 use crate::effects::frame::FrameSection;
 use crate::model::bodies::{PerRace, Race};
-use crate::numerics::motion::{Pose, Twist, Wrench};
+use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 use crate::numerics::tilt;
 use crate::scene::{Drive, Group, Groups, RaceSection, Scene, Schedule};
 
@@ -300,6 +300,13 @@ fn motion(scene: &Scene, race: Race, anchor: &Anchor, time: f64) -> (Pose, Twist
     let angular_velocity =
         tilt::angular_velocity(&tilt, &Vector3::new(speed.at(time), tilt_rate.y, tilt_rate.z));
     (Pose { position, orientation }, Twist { velocity, angular_velocity })
+}
+
+/// Pose at a time \[s] of a race on a hinge, whose frame is somewhere.
+pub fn hinge(section: &RaceSection, frame: &FrameInput, time: f64) -> Pose {
+    let [ry, rz] = [&section.misalignment.ry, &section.misalignment.rz].map(|tilt| tilt.smooth_at(time).0);
+    let tilt = Vector3::new(0.0, ry, rz) + frame.tilt;
+    Pose { position: frame.position, orientation: UnitQuaternion::new(tilt) }
 }
 
 /// Sets the pose and twist of a race from the scene's script at a time \[s], as an importer does that reads the script at

@@ -88,7 +88,8 @@ fn balanced(around: &Surroundings<'_>, start: &BallMotion<f64>, own_orbit: bool)
     // Force along the orbit, and moments over the radius beyond the gyroscopic moment.
     let residual = |motion: &BallMotion<f64>| -> (Vector4<f64>, f64) {
         let [inner, outer] = Race::BOTH.map(|race| contacts[race].evaluate(motion, &races[race]));
-        let mut moment = inner.ball_moment + outer.ball_moment + orbit(motion).gyroscopic_moment(model, motion);
+        let mut moment =
+            inner.ball_moment + outer.ball_moment + orbit(motion).gyroscopic_moment(model, motion);
         let mut force = if own_orbit { (inner.force + outer.force).dot(&tangential) } else { 0.0 };
         if ambient.depends_on_motion() {
             let outside = ambient.against_rolling(motion);
@@ -157,9 +158,8 @@ fn balanced(around: &Surroundings<'_>, start: &BallMotion<f64>, own_orbit: bool)
 
 /// Derivatives of what acts from outside on the rolling of a ball by its velocity and angular velocity.
 fn outside_by_rate(ambient: &Ambient, motion: &BallMotion<f64>) -> Matrix6<f64> {
-    let variable = |v: &Vector3<f64>, first: usize| {
-        Vector3::from_fn(|i, _| Dual::<6>::variable(v[i], first + i, 1.0))
-    };
+    let variable =
+        |v: &Vector3<f64>, first: usize| Vector3::from_fn(|i, _| Dual::<6>::variable(v[i], first + i, 1.0));
     let Wrench { force, moment } = ambient.against_rolling(&BallMotion {
         position: constant_vector(&motion.position),
         velocity: variable(&motion.velocity, 0),

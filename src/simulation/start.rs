@@ -4,6 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::effects::EffectInputs;
 use crate::effects::frame::{FrameInputs, FrameMotion};
+use crate::effects::support::Support;
 use crate::equilibrium::{self, BallEquilibrium, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
@@ -15,7 +16,9 @@ use crate::scene::{Drive, Scene};
 use crate::simulation::cage_start;
 use crate::simulation::error::SimulationError;
 use crate::simulation::inputs::{Inputs, RaceInput};
+use crate::simulation::script::hinge;
 use crate::simulation::spin_balance::{Surroundings, balance};
+use crate::simulation::supported;
 
 /// Inputs and state of a scene at a time \[s] of its script: the equilibrium under the scene's load, every race spinning about its own
 /// axis at its scripted speed.
@@ -23,9 +26,24 @@ use crate::simulation::spin_balance::{Surroundings, balance};
 /// # Errors
 /// If there is no equilibrium under the scene's load.
 pub fn from_equilibrium(scene: &Scene, model: &Model, time: f64) -> Result<(Inputs, State), SimulationError> {
+    if supported::is_supported(model) {
+        return supported::from_scene(scene, model, time);
+    }
     let problem = EquilibriumInput::at(scene, Gyroscopic::Friction, time);
     let solution = equilibrium::solve(model, &problem)?;
-    let pose = |race: Race| if race == problem.race { pose_of(&solution) } else { problem.resting };
+    let inputs = base_inputs(scene, &problem, &solution);
+    let poses = PerRace { inner: inputs.inner.pose, outer: inputs.outer.pose };
+    let state = State { time, ..state(scene, model, &inputs, &solution, &poses)? };
+    Ok((inputs, state))
+}
+
+/// Inputs of a scene whose problem is solved.
+pub(super) fn base_inputs(
+    scene: &Scene,
+    problem: &EquilibriumInput,
+    solution: &equilibrium::Equilibrium,
+) -> Inputs {
+    let pose = |race: Race| if race == problem.race { pose_of(solution) } else { problem.resting };
     // What is applied is what the scene says; directions with an imposed motion are held by constraints.
     let load = |direction: usize| match problem.conditions[direction] {
         Prescribed::Load(load) => load,
@@ -56,8 +74,7 @@ pub fn from_equilibrium(scene: &Scene, model: &Model, time: f64) -> Result<(Inpu
     if let Some(velocity) = scene.start.inner_velocity {
         inputs.inner.twist.velocity = Vector3::from(velocity.map(|component| component.0));
     }
-    let state = State { time, ..state(scene, model, &inputs, &solution)? };
-    Ok((inputs, state))
+    inputs
 }
 
 /// State for given inputs: races with given motion are where the inputs put them, a race body is in equilibrium under
@@ -71,19 +88,10 @@ pub fn from_inputs(
     inputs: &mut Inputs,
     time: f64,
 ) -> Result<State, SimulationError> {
-    for (race, section) in [(Race::Inner, &scene.inner), (Race::Outer, &scene.outer)] {
-        // Its frame rests at the start.
-        if matches!(section.drive, Drive::Fixed | Drive::Hinge) {
-            let input = &mut inputs[race];
-            if section.drive == Drive::Hinge && input.frame != FrameInput::default() {
-                let [ry, rz] =
-                    [&section.misalignment.ry, &section.misalignment.rz].map(|tilt| tilt.smooth_at(0.0).0);
-                let tilt = Vector3::new(0.0, ry, rz) + input.frame.tilt;
-                input.pose = Pose { position: input.frame.position, orientation: UnitQuaternion::new(tilt) };
-            }
-            input.twist.angular_velocity = input.pose.orientation * Vector3::x() * input.speed;
-        }
+    if supported::is_supported(model) {
+        return supported::from_inputs(scene, model, inputs, time);
     }
+    place_fixed(scene, inputs);
     let mut problem = EquilibriumInput::at(scene, Gyroscopic::Friction, time);
     let (race, resting) = match problem.race {
         Race::Inner => (Race::Inner, Race::Outer),
@@ -122,11 +130,26 @@ pub fn from_inputs(
         let angular_velocity = orientation * Vector3::x() * input.speed;
         input.twist = Twist { velocity: Vector3::zeros(), angular_velocity };
     }
-    Ok(State { time, ..state(scene, model, inputs, &solution)? })
+    let poses = PerRace { inner: inputs.inner.pose, outer: inputs.outer.pose };
+    Ok(State { time, ..state(scene, model, inputs, &solution, &poses)? })
+}
+
+/// Puts races that are fixed or hinged into their frames, which rest at the start.
+pub(super) fn place_fixed(scene: &Scene, inputs: &mut Inputs) {
+    for (race, section) in [(Race::Inner, &scene.inner), (Race::Outer, &scene.outer)] {
+        // Its frame rests at the start.
+        if matches!(section.drive, Drive::Fixed | Drive::Hinge) {
+            let input = &mut inputs[race];
+            if section.drive == Drive::Hinge && input.frame != FrameInput::default() {
+                input.pose = hinge(section, &input.frame, 0.0);
+            }
+            input.twist.angular_velocity = input.pose.orientation * Vector3::x() * input.speed;
+        }
+    }
 }
 
 /// Pose of the race that moved into balance.
-fn pose_of(solution: &equilibrium::Equilibrium) -> Pose {
+pub(super) fn pose_of(solution: &equilibrium::Equilibrium) -> Pose {
     let [x, y, z, ry, rz] = solution.displacement;
     Pose { position: Vector3::new(x, y, z), orientation: UnitQuaternion::new(Vector3::new(0.0, ry, rz)) }
 }
@@ -138,31 +161,52 @@ fn spinning(pose: Pose, speed: f64, applied: Wrench) -> RaceInput {
     RaceInput { pose, twist, applied, speed, ..RaceInput::default() }
 }
 
-fn own_spin(input: &RaceInput) -> f64 {
+/// [rad/s] spin about its own axis.
+pub(super) fn own_spin(input: &RaceInput) -> f64 {
     input.twist.angular_velocity.dot(&(input.pose.orientation * Vector3::x()))
 }
 
 /// Orientation of a race without its turn about its own axis; that of the outer race is the equilibrium's frame.
-fn spin_free(race: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+pub(super) fn spin_free(race: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::rotation_between(&Vector3::x(), &(race * Vector3::x())).unwrap_or_default()
+}
+
+/// Twist of a race at a pose: a race on a support follows its flange, and spins about its own axis.
+fn twist_of(model: &Model, inputs: &Inputs, race: Race, pose: &Pose) -> Twist {
+    let given = &inputs[race];
+    if model.supports[race].is_none() {
+        return given.twist;
+    }
+    let axes = [given.pose.orientation, pose.orientation].map(|orientation| orientation * Vector3::x());
+    let spin = own_spin(given);
+    let angular_velocity = given.twist.angular_velocity + (axes[1] - axes[0]) * spin;
+    Twist { velocity: given.twist.velocity, angular_velocity }
 }
 
 /// The state of a solution: balls roll, races move as the inputs say.
 ///
 /// # Errors
 /// If a cage does not fit.
-fn state(
+pub(super) fn state(
     scene: &Scene,
     model: &Model,
     inputs: &Inputs,
     solution: &equilibrium::Equilibrium,
+    poses: &PerRace<Pose>,
 ) -> Result<State, SimulationError> {
-    let outer = &inputs.outer;
-    let frame = spin_free(&outer.pose.orientation);
     let races = PerRace::new(|race| {
         let n_constraints = model.bodies[race].as_ref().map_or(0, |body| body.constraints.len());
-        BodyState::new(inputs[race].pose, &inputs[race].twist, n_constraints)
+        BodyState::new(poses[race], &twist_of(model, inputs, race, &poses[race]), n_constraints)
     });
+    let supports = PerRace::new(|race| {
+        let flange = &inputs[race];
+        let body: &BodyState = &races[race];
+        let of =
+            |support: &Support| support.state((&flange.pose, &flange.twist), (&body.pose, &body.twist()));
+        model.supports[race].as_ref().map(of)
+    });
+    let outer = &races.outer;
+    let frame = spin_free(&outer.pose.orientation);
     let mut balls: Vec<BallState> = solution
         .balls
         .iter()
@@ -170,7 +214,7 @@ fn state(
             let (velocity, angular_velocity) = given_velocities(scene, ball);
             BallState {
                 position: outer.pose.position + frame * ball.position,
-                velocity: outer.twist.velocity + frame * velocity,
+                velocity: outer.velocity + frame * velocity,
                 angular_velocity: frame * angular_velocity,
                 acceleration: Vector3::zeros(),
                 angular_acceleration: Vector3::zeros(),
@@ -204,6 +248,7 @@ fn state(
     Ok(State {
         time: 0.0,
         bodies: Bodies::new(races, cage),
+        supports,
         differences: if model.polynomials(Race::Inner).is_some() {
             vec![Default::default(); balls.len()]
         } else {

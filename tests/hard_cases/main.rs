@@ -17,6 +17,7 @@ mod gates;
 #[path = "../common/laws.rs"]
 mod laws;
 mod loads;
+mod outside;
 #[path = "../common/random.rs"]
 mod random;
 mod refusals;

@@ -1,6 +1,7 @@
 //! Does the energy of a run close, and if not, why?
 
 use roulement::analysis::natural_frequency;
+use roulement::scene::Level;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::Outputs;
 
@@ -54,6 +55,10 @@ impl EnergyWatch {
 
     /// What to say where the energy does not close; none where it does.
     pub fn warning(&self, simulation: &Simulation) -> Option<String> {
+        // Equilibria have no history that work could be done in.
+        if simulation.scene().solver.level == Level::Equilibrium {
+            return None;
+        }
         let now = simulation.outputs();
         let (balance, turned_over) = (self.balance(now), now.work.abs().max(now.dissipated.abs()));
         if balance.abs() <= (TOLERANCE * turned_over).max(ROUNDING * now.stored_energy.abs()) {

@@ -344,3 +344,26 @@ fn a_run_whose_energy_does_not_close_says_so_with_the_cause() {
         assert_eq!(summary_of(&scratch, "thrust", &good, "WARNING"), Vec::<String>::new());
     }
 }
+
+#[test]
+fn run_at_the_level_equilibrium_writes_an_equilibrium_per_row() {
+    let scratch = Scratch::new("statics");
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/effects/statics.toml");
+    let output = roulement(&["run", scene, "-o", &scratch.path("out")]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && !said.contains("energy"), "{said}");
+    let mut table = csv::Reader::from_path(scratch.path("out/results.csv")).unwrap();
+    let header = table.headers().unwrap().clone();
+    let column = |name: &str| header.iter().position(|column| column == name).unwrap();
+    let [force, place, stiffness] =
+        ["inner.force.y [N]", "inner.position.y [m]", "stiffness.y.y [N/m]"].map(column);
+    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), 21);
+    let number = |row: usize, column: usize| rows[row][column].parse::<f64>().unwrap();
+    for row in 2..20 {
+        assert!((number(row, force) + 150.0 * row as f64).abs() < 1.0);
+        // The stiffness is the slope of the load deflection curve.
+        let slope = 300.0 / (number(row + 1, place) - number(row - 1, place));
+        assert!((number(row, stiffness) / slope - 1.0).abs() < 0.05, "{row}: {slope}");
+    }
+}

@@ -1,0 +1,68 @@
+//! `solver.level = "equilibrium"`: every row and communication point is the equilibrium under the present inputs.
+
+use super::inputs::Inputs;
+use super::outputs::Outputs;
+use super::script::{self, Script};
+use super::{Simulation, SimulationError, start};
+use crate::model::bodies::Race;
+use crate::model::state::State;
+use crate::scene::{Drive, Groups};
+
+impl Simulation {
+    /// Goes to the equilibrium at `end` \[s] under the inputs as set and what the script gives then; also gives the outputs of
+    /// equilibria under slightly different inputs.
+    ///
+    /// # Errors
+    /// If there is no equilibrium; the simulation then stays where it is.
+    pub(super) fn advance_by_equilibria(
+        &mut self,
+        end: f64,
+        perturbed: &[Inputs],
+        scripted: Groups,
+    ) -> Result<Vec<Outputs>, SimulationError> {
+        let script = Script::new(&self.scene, scripted);
+        script.begin(&mut self.paths, self.state.time);
+        let outputs = perturbed
+            .iter()
+            .map(|inputs| {
+                let mut other = self.clone();
+                other.go_to_equilibrium(&script, *inputs, end)?;
+                Ok(other.outputs)
+            })
+            .collect::<Result<_, SimulationError>>()?;
+        self.go_to_equilibrium(&script, self.inputs, end)?;
+        Ok(outputs)
+    }
+
+    fn go_to_equilibrium(
+        &mut self,
+        script: &Script,
+        mut inputs: Inputs,
+        end: f64,
+    ) -> Result<(), SimulationError> {
+        script.set_inputs(&self.scene, &self.paths, end, &mut inputs);
+        self.script_fixed_races(end, &mut inputs);
+        for (race, section) in [(Race::Inner, &self.scene.inner), (Race::Outer, &self.scene.outer)] {
+            if section.drive == Drive::Hinge {
+                inputs[race].pose = script::hinge(section, &inputs[race].frame, end);
+            }
+        }
+        let before = self.state.clone();
+        let state = start::from_inputs(&self.scene, &self.model, &mut inputs, end)?;
+        self.state = State {
+            control: before.control,
+            statistics: before.statistics,
+            energies: before.energies,
+            ..state
+        };
+        for ((_, body), (_, was)) in self.state.bodies.iter_mut().zip(before.bodies.iter()) {
+            let turned = 0.5 * (end - before.time) * (was.rate.x + body.rate.x);
+            body.count_turn((was.turned, was.turned_rest), turned);
+        }
+        self.inputs = inputs;
+        self.paths = self.paths.after_script(&inputs, &self.state);
+        self.check_room()?;
+        self.settle();
+        self.check_creep(&self.boundary(end))
+    }
+}
