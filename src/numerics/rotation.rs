@@ -121,6 +121,16 @@ pub fn compose(first: &Vector3<f64>, second: &Vector3<f64>) -> Vector3<f64> {
     from_quaternion(&(to_quaternion(first) * to_quaternion(second)))
 }
 
+/// The shortest rotation that carries the x axis to another one, exact for the smallest tilts: an arc cosine would lose those below
+/// 1e-8 rad.
+pub fn tilt_to(axis: &Vector3<f64>) -> UnitQuaternion<f64> {
+    let w = 1.0 + axis.x;
+    if w < 1e-6 {
+        return UnitQuaternion::rotation_between(&Vector3::x(), axis).unwrap_or_default();
+    }
+    UnitQuaternion::new_normalize(Quaternion::new(w, 0.0, -axis.z, axis.y))
+}
+
 /// Rotation matrix of a conformal rotation vector.
 pub fn matrix(c: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::from_columns(&[Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| rotate(c, &axis)))
@@ -187,6 +197,15 @@ mod tests {
             let (v, w) = (Vector3::new(0.3, -1.1, 0.7), Vector3::new(0.9, 0.2, -0.4));
             let power = v.dot(&tangent_inverse(&first, &w));
             assert!((tangent_inverse_transposed(&first, &v).dot(&w) - power).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn closed_form_the_shortest_tilt() {
+        for angle in [0.0, 1e-12, 1e-9, 1e-3, 1.0, 3.0] {
+            let exact = UnitQuaternion::new(Vector3::new(0.0, 0.6, -0.8) * angle);
+            let tilt = tilt_to(&(exact * Vector3::x()));
+            assert!((tilt.into_inner() - exact.into_inner()).norm() < 1e-15, "{angle}");
         }
     }
 

@@ -12,6 +12,7 @@ use crate::model::Model;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::state::State;
 use crate::numerics::motion::{Pose, Twist, Wrench};
+use crate::numerics::rotation::tilt_to;
 use crate::scene::{Drive, Scene};
 
 /// Most rounds of the deflection of a second race, and of the place of a flange under given loads.
@@ -235,5 +236,5 @@ fn deflect(
 
 /// Turn of a race about its own axis.
 fn own_turn(orientation: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-    spin_free(orientation).inverse() * orientation
+    tilt_to(&(orientation * Vector3::x())).inverse() * orientation
 }
