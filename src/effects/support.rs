@@ -248,7 +248,8 @@ impl Effect for Settings {
             }
             for (key, matrix) in [("stiffness", &section.stiffness.0), ("damping", &section.damping.0)] {
                 let key = format!("{race}.support.{key}");
-                if !((matrix - matrix.transpose()).amax() <= ROUNDING * matrix.amax()) {
+                let symmetric = (matrix - matrix.transpose()).amax() <= ROUNDING * matrix.amax();
+                if !symmetric {
                     return Err(SceneError::conflict(key, "the matrix must be symmetric"));
                 }
                 // Over the roots of its diagonal the matrix has no units.
