@@ -7,7 +7,8 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{UnitQuaternion, Vector3};
 use roulement::dynamics::{BodyLoad, Boundary, Workspace, make_consistent, try_step};
 use roulement::model::bodies::{Bodies, Constraint, PerRace, Race, RigidBody};
-use roulement::model::state::{BallState, BodyState, Energies, KeptMatrix, Powers, State, Statistics};
+use roulement::model::energies::{Energies, Powers};
+use roulement::model::state::{BallState, BodyState, KeptMatrix, State, Statistics};
 use roulement::model::{Conditions, Model};
 use roulement::numerics::motion::{Pose, Twist, Wrench};
 use roulement::numerics::rotation;
@@ -279,6 +280,7 @@ fn ball(position: Vector3<f64>, velocity: Vector3<f64>, angular_velocity: Vector
         angular_acceleration: Vector3::zeros(),
         total: Wrench::default(),
         remainder: Wrench::default(),
+        pressed: PerRace::default(),
     }
 }
 

@@ -6,10 +6,14 @@ use super::ball::BallTrial;
 use super::neighbours::NeighbourTrial;
 use super::{Boundary, Workspace, body};
 use crate::contact::pair::PairForces;
-use crate::forces::{BallPair, Contacts, Pairs, Totals, between_cage_and_lands};
+use crate::forces::{
+    BallPair, Contacts, Pairs, Totals, between_cage_and_lands, elastic_energy, kinetic_energy,
+    kinetic_energy_of, stored_energy,
+};
 use crate::model::Model;
-use crate::model::bodies::{Body, Race};
-use crate::model::state::{BallState, BodyState, Powers, State, axes_of};
+use crate::model::bodies::{Body, PerRace, Race};
+use crate::model::energies::{Energies, Powers, Pressed};
+use crate::model::state::{BallState, BodyState, State, axes_of};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::values;
@@ -43,20 +47,78 @@ impl Pairs for Solved<'_> {
     }
 }
 
-/// Takes over a solved step.
-pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep, workspace: &Workspace) {
+/// The end of a solved step: sums over its pairs, powers and stored energy.
+pub struct StepEnd {
+    totals: Totals,
+    powers: Powers,
+    /// Energies at the end.
+    energies: Energies,
+}
+
+impl StepEnd {
+    /// Of the step of `h` \[s] from a state that was solved with this workspace.
+    pub fn new(model: &Model, state: &State, boundary: &Boundary, h: f64, workspace: &Workspace) -> Self {
+        let solved = Solved { workspace, guide: model.cage_guide() };
+        let n_balls = workspace.balls.len();
+        let totals = Totals::of(&solved, n_balls);
+        let velocities = || workspace.balls.iter().map(|trial| &trial.motion);
+        let mut powers = Powers {
+            input: weight_power(model, velocities().map(|motion| motion.velocity)),
+            friction: totals.friction_power,
+            damping: totals.damping_power,
+        };
+        for (body, trial) in workspace.bodies.iter() {
+            match (body, trial) {
+                (_, Some(trial)) => powers.input += trial.input_power,
+                (Body::Race(race), None) => {
+                    powers.input -= boundary.motion[race].1.power(&totals.on(body));
+                }
+                // A cage is moved by forces alone.
+                (Body::Cage, None) => {}
+            }
+        }
+        let bodies = model.bodies.iter().zip(workspace.bodies.iter());
+        let moved = bodies.filter_map(|((_, body), (_, trial))| Some((body.as_ref()?, &trial.as_ref()?.end)));
+        let stored = kinetic_energy(model, velocities(), moved) + elastic_energy(model, &solved, n_balls);
+        let stiffened = |(ball, trial): (&BallState, &BallTrial)| {
+            let now = |race| Pressed::new(&trial.raceways[race]).stiffened(&ball.pressed[race]);
+            now(Race::Inner) + now(Race::Outer)
+        };
+        let stiffened = state.balls.iter().zip(&workspace.balls).map(stiffened);
+        let mut energies = state.energies;
+        energies.add((&state.powers, &powers), h, stiffened.fold(0.0, |sum, work| sum + work), stored);
+        Self { totals, powers, energies }
+    }
+
+    /// [-] energy that the step leaves unaccounted for, over what is allowed; 0 where nothing is asked for.
+    pub fn energy_error(&self, model: &Model, state: &State, h: f64, workspace: &Workspace) -> f64 {
+        let solver = &model.solver;
+        if solver.energy_error == 0.0 || h <= solver.energy_step.0 {
+            return 0.0;
+        }
+        let ball = &model.bearing.ball;
+        let of_ball = |(state, trial): (&BallState, &BallTrial)| {
+            (kinetic_energy_of(ball, &trial.motion) - kinetic_energy_of(ball, &state.motion())).abs()
+        };
+        let exchanged = state.balls.iter().zip(&workspace.balls).map(of_ball);
+        let exchanged = exchanged.fold(0.0, |sum, energy| sum + energy);
+        self.energies.error_since(&state.energies, exchanged, solver.energy_error)
+    }
+}
+
+/// Takes over a solved step that ends like this.
+pub fn accept(
+    model: &Model,
+    state: &mut State,
+    boundary: &Boundary,
+    step: &HhtStep,
+    (workspace, end): (&Workspace, &StepEnd),
+) {
     state.time = boundary.time;
     state.statistics.steps += 1;
     for (ball, trial) in state.balls.iter_mut().zip(&workspace.balls) {
         *ball = trial.end(model.bearing.ball.radius);
     }
-    let solved = Solved { workspace, guide: model.cage_guide() };
-    let totals = Totals::of(&solved, state.balls.len());
-    let mut powers = Powers {
-        input: weight_power(model, &state.balls),
-        friction: totals.friction_power,
-        damping: totals.damping_power,
-    };
     for ((body, state), (_, trial)) in state.bodies.iter_mut().zip(workspace.bodies.iter()) {
         let (turned, spin) = ((state.turned, state.turned_rest), state.rate.x);
         match (body, trial) {
@@ -70,31 +132,30 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
                         [values(&trial.motion.axis), y, z]
                     }
                 };
-                powers.input += trial.input_power;
             }
             (Body::Race(race), None) => {
                 let (pose, twist) = &boundary.motion[race];
                 *state = BodyState::new(*pose, twist, 0);
                 state.angular_velocity = twist.angular_velocity;
-                state.bearing_wrench = totals.on(body);
-                powers.input -= state.twist().power(&state.bearing_wrench);
+                state.bearing_wrench = end.totals.on(body);
             }
             // A cage is moved by forces alone.
             (Body::Cage, None) => {}
         }
         state.count_turn(turned, 0.5 * step.h * (spin + state.rate.x));
     }
-    state.energies.add(&state.powers, &powers, step.h);
-    state.powers = powers;
+    state.energies = end.energies;
+    state.powers = end.powers;
+    let solved = Solved { workspace, guide: model.cage_guide() };
     let raceways = workspace.balls.iter().flat_map(|ball| ball.raceways.iter().copied());
     let pairs = raceways.chain(solved.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }
 
 /// \[W] power of the weight of all balls.
-fn weight_power(model: &Model, balls: &[BallState]) -> f64 {
-    let power = |ball: &BallState| model.bearing.ball.mass * model.gravity.dot(&ball.velocity);
-    balls.iter().map(power).fold(0.0, |sum, power| sum + power)
+fn weight_power(model: &Model, velocities: impl Iterator<Item = Vector3<f64>>) -> f64 {
+    let power = |velocity: Vector3<f64>| model.bearing.ball.mass * model.gravity.dot(&velocity);
+    velocities.map(power).fold(0.0, |sum, power| sum + power)
 }
 
 /// \[m] largest coordinate of a ball to expect: contacts cannot resolve less than its last digit.
@@ -128,6 +189,7 @@ impl BallTrial {
             angular_acceleration: self.unknowns.fixed_rows::<3>(3) / radius,
             total: self.total,
             remainder: self.remainder,
+            pressed: PerRace::new(|race| Pressed::new(&self.raceways[race])),
         }
     }
 }
@@ -161,12 +223,14 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
         let weight = Wrench { force: model.gravity * ball_model.mass, moment: Vector3::zeros() };
         ball.total = contacts.on_ball(index, weight);
         ball.remainder = Wrench::default();
+        ball.pressed =
+            PerRace::new(|race| Pressed::new(&PairForces::from(&contacts.balls[index].raceways[race])));
         ball.acceleration = ball.total.force / ball_model.mass;
         ball.angular_acceleration = ball.total.moment / ball_model.inertia;
     }
     let totals = Totals::of(&contacts, state.balls.len());
     let mut powers = Powers {
-        input: weight_power(model, &state.balls),
+        input: weight_power(model, state.balls.iter().map(|ball| ball.velocity)),
         friction: totals.friction_power,
         damping: totals.damping_power,
     };
@@ -180,6 +244,7 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
         };
     }
     state.powers = powers;
+    state.energies.stored = stored_energy(model, state, &contacts);
     let pairs = contacts.raceway_pairs().chain(contacts.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }

@@ -26,8 +26,9 @@ use crate::numerics::lanes::WIDTH;
 use crate::numerics::motion::{Pose, Twist};
 use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure};
 use crate::numerics::ring::Ring;
+use crate::numerics::size::larger;
 pub use accept::make_consistent;
-use accept::{accept, renew_polynomials};
+use accept::{StepEnd, accept, renew_polynomials};
 use ball::BallTrial;
 pub use body::BodyLoad;
 use body::BodyTrial;
@@ -148,17 +149,24 @@ pub fn try_step(
     statistics.contact_values += equations.contact_values;
     statistics.contact_tangents += equations.contact_tangents;
     let mut control = state.control;
-    let failure = match solved {
+    let end = match solved {
         Err(failure) => {
             statistics.rejected_newton += 1;
             control.fail();
-            Some(StepFailure::Newton(failure, equations.worst_residual()))
+            Err(StepFailure::Newton(failure, equations.worst_residual()))
         }
-        Ok(()) if !control.judge(equations.local_error()) => {
-            statistics.rejected_error += 1;
-            Some(StepFailure::Error(equations.worst_error()))
+        Ok(()) => {
+            let local = equations.local_error();
+            let end = StepEnd::new(model, state, boundary, h, equations.workspace);
+            let energy = end.energy_error(model, state, h, equations.workspace);
+            match control.judge(larger(local, energy)) {
+                true => Ok(end),
+                false => {
+                    statistics.rejected_error += 1;
+                    Err(StepFailure::Error(equations.worst_error()))
+                }
+            }
         }
-        Ok(()) => None,
     };
     let step = equations.step;
     workspace.newton = buffers;
@@ -166,9 +174,6 @@ pub fn try_step(
     state.matrix = std::mem::take(&mut workspace.kept);
     state.statistics = statistics;
     state.control = control;
-    if let Some(failure) = failure {
-        return Err(failure);
-    }
-    accept(model, state, boundary, &step, workspace);
+    accept(model, state, boundary, &step, (workspace, &end?));
     Ok(())
 }

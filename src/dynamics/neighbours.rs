@@ -185,6 +185,7 @@ impl BearingStep<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::bodies::PerRace;
     use crate::model::state::BallState;
     use crate::numerics::motion::Wrench;
 
@@ -201,6 +202,7 @@ mod tests {
                 angular_acceleration: Vector3::new(1e4, -2e4 * side, 3e4),
                 total: Wrench::default(),
                 remainder: Wrench::default(),
+                pressed: PerRace::default(),
             };
             let mut trial = BallTrial::new(&start);
             trial.move_to(unknowns[ball], radius, step, &start);

@@ -3,6 +3,7 @@
 pub mod bearing;
 pub mod bodies;
 pub mod cage;
+pub mod energies;
 pub mod raceways;
 pub mod state;
 pub mod switch;

@@ -4,6 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::bodies::{Bodies, Body, PerRace, Race};
+use super::energies::{Energies, Powers, Pressed};
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::kalker::scaled_law::Difference;
@@ -29,6 +30,8 @@ pub struct BallState {
     pub total: Wrench,
     /// What the last step left of the equations of motion, within their tolerance.
     pub remainder: Wrench,
+    /// How it is pressed on the races.
+    pub pressed: PerRace<Pressed>,
 }
 
 impl BallState {
@@ -145,37 +148,6 @@ pub fn race_motion(pose: &Pose, twist: &Twist) -> RaceMotion<f64> {
         axis: pose.orientation * Vector3::x(),
         velocity: twist.velocity,
         angular_velocity: twist.angular_velocity,
-    }
-}
-
-/// Powers at one instant \[W].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Powers {
-    /// Put in by races, applied loads, drives and gravity.
-    pub input: f64,
-    /// Lost to friction in the contacts.
-    pub friction: f64,
-    /// Lost to contact damping.
-    pub damping: f64,
-}
-
-/// Energies accumulated since the start \[J].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Energies {
-    /// Work put in.
-    pub input: f64,
-    /// Lost to friction.
-    pub friction: f64,
-    /// Lost to contact damping.
-    pub damping: f64,
-}
-
-impl Energies {
-    /// Adds a step of `h` \[s] by the trapezoidal rule.
-    pub fn add(&mut self, before: &Powers, after: &Powers, h: f64) {
-        self.input += 0.5 * h * (before.input + after.input);
-        self.friction += 0.5 * h * (before.friction + after.friction);
-        self.damping += 0.5 * h * (before.damping + after.damping);
     }
 }
 

@@ -54,7 +54,7 @@ static BEARING: [Number<Scene>; 15] = [
 
 /// Cage friction, races, start, time integration and load: those after the effects.
 #[rustfmt::skip]
-static MOTION: [Number<Scene>; 56] = [
+static MOTION: [Number<Scene>; 57] = [
     Number::fixed("friction.ball_cage", FRICTION, "friction coefficient of the balls in their pockets", |s| Place::Value(s.friction.ball_cage.as_mut())),
     Number::fixed("friction.cage_race", FRICTION, "friction coefficient of the cage on the lands", |s| Place::Value(s.friction.cage_race.as_mut())),
     Number::fixed("friction.ball_ball", FRICTION, "friction coefficient of neighbouring balls", |s| Place::Value(s.friction.ball_ball.as_mut())),
@@ -116,6 +116,7 @@ static MOTION: [Number<Scene>; 56] = [
     Number::fixed("solver.min_step", STEP, "smallest internal step; a step that needs a smaller one is not finished",
         |s| Place::Value(Some(&mut s.solver.min_step.0))),
     Number::checked("solver.matrix_reuse", Range::closed(0.0, 1.0, ""), |s| Place::Value(Some(&mut s.solver.matrix_reuse))),
+    Number::checked("solver.energy_error", Range::closed(0.0, 1.0, ""), |s| Place::Value(Some(&mut s.solver.energy_error))),
     Number::checked("load.duration", Range::above(0.0, 1e6, "s"), |s| Place::Value(Some(&mut s.load.duration.0))),
     Number::checked("load.inner_speed", SPEED, |s| Place::Schedule(&mut s.load.inner_speed)),
     Number::checked("load.outer_speed", SPEED, |s| Place::Schedule(&mut s.load.outer_speed)),

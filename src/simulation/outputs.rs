@@ -10,7 +10,7 @@ use crate::effects::Reports;
 pub use crate::effects::reports::{
     BallOutput, CageOutput, Condensed, ContactOutput, NeighboursOutput, PocketOutput,
 };
-use crate::forces::{BallContacts, Contacts, Totals};
+use crate::forces::{BallContacts, Contacts, Totals, stored_energy};
 use crate::model::bearing;
 use crate::model::bodies::{Constraint, PerRace, Race, RigidBody, tilt_direction};
 use crate::model::cage::CageModel;
@@ -189,26 +189,6 @@ impl Index<Race> for BallOutput {
             Race::Outer => &self.outer,
         }
     }
-}
-
-/// \[J] kinetic energy of balls and of the bodies that forces move, and elastic energy of all contacts.
-fn stored_energy(model: &Model, state: &State, contacts: &Contacts) -> f64 {
-    let ball_model = &model.bearing.ball;
-    let mut energy = 0.0;
-    for (ball, contacts) in state.balls.iter().zip(&contacts.balls) {
-        energy += 0.5 * ball_model.mass * ball.velocity.norm_squared()
-            + 0.5 * ball_model.inertia * ball.angular_velocity.norm_squared();
-        contacts.elastic_energies(model).for_each(|elastic| energy += elastic);
-    }
-    for ((_, body), (_, state)) in model.bodies.iter().zip(state.bodies.iter()) {
-        if let Some(body) = body {
-            energy += 0.5 * body.mass * state.velocity.norm_squared()
-                + 0.5 * state.rate.component_mul(&body.inertia).dot(&state.rate);
-        }
-    }
-    contacts.ball_pair_energies(model).for_each(|elastic| energy += elastic);
-    contacts.land_energies(model).for_each(|elastic| energy += elastic);
-    energy
 }
 
 /// Contacts of neighbouring balls, where no cage keeps them apart.

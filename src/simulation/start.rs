@@ -6,7 +6,8 @@ use crate::equilibrium::{self, BallEquilibrium, EquilibriumInput, Gyroscopic, Pr
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{Bodies, PerRace, Race};
-use crate::model::state::{BallState, BodyState, Energies, KeptMatrix, Powers, State, Statistics};
+use crate::model::energies::{Energies, Powers};
+use crate::model::state::{BallState, BodyState, KeptMatrix, State, Statistics};
 use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 use crate::numerics::step_control::StepControl;
 use crate::scene::{Drive, Scene};
@@ -160,6 +161,7 @@ fn state(
                 angular_acceleration: Vector3::zeros(),
                 total: Wrench::default(),
                 remainder: Wrench::default(),
+                pressed: PerRace::default(),
             }
         })
         .collect();
