@@ -139,13 +139,8 @@ impl<'a> BearingStep<'a> {
     fn evaluate_balls(&mut self, unknowns: &[f64]) {
         let all = self.fresh || !self.balls_are_independent();
         let workspace = &mut *self.workspace;
-        let around = Surroundings {
-            model: self.model,
-            contacts: &self.contacts,
-            differences: &self.start.differences,
-            races: PerRace::new(|race| RaceSeen::new(race, &self.races, &workspace.bodies)),
-            cage: self.model.cage.as_ref().zip(workspace.cage.as_ref()),
-        };
+        let bodies = (&self.races, &workspace.bodies, workspace.cage.as_ref());
+        let around = Surroundings::new(self.model, &self.contacts, &self.start.differences, bodies);
         let step = &self.step;
         let radius = self.model.bearing.ball.radius;
         let mut motions = [BallMotion::at_rest(); WIDTH];
@@ -187,13 +182,8 @@ impl<'a> BearingStep<'a> {
     /// Evaluates the balls to be renewed where they are, with tangents.
     pub(super) fn evaluate_renewed(&mut self) {
         let workspace = &mut *self.workspace;
-        let around = Surroundings {
-            model: self.model,
-            contacts: &self.contacts,
-            differences: &self.start.differences,
-            races: PerRace::new(|race| RaceSeen::new(race, &self.races, &workspace.bodies)),
-            cage: self.model.cage.as_ref().zip(workspace.cage.as_ref()),
-        };
+        let bodies = (&self.races, &workspace.bodies, workspace.cage.as_ref());
+        let around = Surroundings::new(self.model, &self.contacts, &self.start.differences, bodies);
         let length = self.model.race_length();
         for (index, trial) in workspace.balls.iter_mut().enumerate().filter(|(_, trial)| trial.renewed) {
             self.contact_tangents += 2;
