@@ -12,7 +12,6 @@ use crate::model::bodies::{Body, Race};
 use crate::model::state::{BallState, BodyState, Powers, State, axes_of};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
-use crate::numerics::scalar::values;
 
 /// \[N] residual that is small enough for any bearing (paper section 5).
 const FORCE_TOLERANCE: f64 = 1e-6;
@@ -62,12 +61,12 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
         match (body, trial) {
             (_, Some(trial)) => {
                 state.clone_from(&trial.end);
-                state.angular_velocity = values(&trial.motion.angular_velocity);
+                state.angular_velocity = trial.turn.angular_velocity;
                 state.axes = match (body, &workspace.cage) {
                     (Body::Cage, Some(cage)) => cage.value.axes,
                     _ => {
                         let [_, y, z] = axes_of(&trial.end.pose.orientation);
-                        [values(&trial.motion.axis), y, z]
+                        [trial.turn.axis, y, z]
                     }
                 };
                 powers.input += trial.input_power;

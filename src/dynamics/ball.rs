@@ -204,7 +204,7 @@ impl BallTrial {
         self.reactions = [None; SLOTS];
         let values = PerRace::new(|race| {
             let contact = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));
-            match races[race].moved {
+            match races[race].moved() {
                 None => {
                     let seeded = seed(&self.motion, step, radius);
                     let (value, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);

@@ -131,6 +131,8 @@ pub struct Arrowhead {
     /// Turns of the blocks since they were eliminated.
     turns: Vec<OrbitTurn>,
     border: Option<LU<f64, Dyn, Dyn>>,
+    /// What all blocks leave in rows and columns of each two members, in world axes.
+    sums: Vec<Matrix6<f64>>,
     /// Loads on the members, and what they do, in world axes.
     worlds: Vec<Vector6<f64>>,
 }
@@ -147,7 +149,9 @@ impl Arrowhead {
         self.members.extend(members);
         self.turns.clear();
         let count = members.len();
-        let mut sums = [Matrix6::zeros(); SLOTS * SLOTS];
+        let sums = &mut self.sums;
+        sums.clear();
+        sums.resize(count * count, Matrix6::zeros());
         for (block, turn) in blocks {
             self.turns.push(turn);
             for (row, coupling) in block.couplings.iter().enumerate() {
