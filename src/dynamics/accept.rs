@@ -16,7 +16,6 @@ use crate::model::energies::{Energies, Powers, Pressed};
 use crate::model::state::{BallState, BodyState, State, axes_of};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
-use crate::numerics::scalar::values;
 
 /// \[N] residual that is small enough for any bearing (paper section 5).
 const FORCE_TOLERANCE: f64 = 1e-6;
@@ -124,12 +123,12 @@ pub fn accept(
         match (body, trial) {
             (_, Some(trial)) => {
                 state.clone_from(&trial.end);
-                state.angular_velocity = values(&trial.motion.angular_velocity);
+                state.angular_velocity = trial.turn.angular_velocity;
                 state.axes = match (body, &workspace.cage) {
                     (Body::Cage, Some(cage)) => cage.value.axes,
                     _ => {
                         let [_, y, z] = axes_of(&trial.end.pose.orientation);
-                        [values(&trial.motion.axis), y, z]
+                        [trial.turn.axis, y, z]
                     }
                 };
             }

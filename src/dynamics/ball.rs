@@ -12,7 +12,7 @@ use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::forces::on_ball;
 use crate::kalker::scaled_law::Difference;
 use crate::model::Model;
-use crate::model::bodies::{Body, PerRace, Race};
+use crate::model::bodies::{Bodies, Body, PerRace, Race};
 use crate::model::cage::CageModel;
 use crate::model::state::{BallState, stack};
 use crate::numerics::arrowhead::{Block, SLOTS};
@@ -35,7 +35,22 @@ pub struct Surroundings<'a> {
     pub cage: Option<(&'a CageModel, &'a CageTrial)>,
 }
 
-impl Surroundings<'_> {
+impl<'a> Surroundings<'a> {
+    /// Those of all balls; `bodies` are the motions of the races, the trials of bodies that forces move, and the cage.
+    pub fn new(
+        model: &'a Model,
+        contacts: &'a PerRace<ContactModel<'a>>,
+        differences: &'a [PerRace<Difference>],
+        (races, moved, cage): (
+            &'a PerRace<RaceMotion<f64>>,
+            &'a Bodies<Option<BodyTrial>>,
+            Option<&'a CageTrial>,
+        ),
+    ) -> Self {
+        let races = PerRace::new(|race| RaceSeen::new(race, races, moved));
+        Self { model, contacts, differences, races, cage: model.cage.as_ref().zip(cage) }
+    }
+
     /// Evaluates the contacts of some balls, the first of them ball `first`, with both races.
     pub fn evaluate_group(
         &self,
@@ -189,7 +204,7 @@ impl BallTrial {
         self.reactions = [None; SLOTS];
         let values = PerRace::new(|race| {
             let contact = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));
-            match races[race].moved {
+            match races[race].moved() {
                 None => {
                     let seeded = seed(&self.motion, step, radius);
                     let (value, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);

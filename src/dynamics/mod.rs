@@ -3,6 +3,7 @@
 mod accept;
 mod ball;
 mod body;
+mod body_sums;
 mod cage;
 mod directions;
 mod equations;
@@ -13,6 +14,7 @@ mod matrix;
 mod neighbours;
 mod reaction;
 mod sensitivity;
+mod step_turn;
 
 use nalgebra::{DVector, Vector6};
 
@@ -30,8 +32,8 @@ use crate::numerics::size::larger;
 pub use accept::make_consistent;
 use accept::{StepEnd, accept, renew_polynomials};
 use ball::BallTrial;
-pub use body::BodyLoad;
 use body::BodyTrial;
+pub use body_sums::BodyLoad;
 use cage::CageTrial;
 use equations::BearingStep;
 pub use failure::{FailureSite, Worst, failure_site};

@@ -75,6 +75,7 @@ impl Instance {
             self.simulation = rebuilt;
         }
         self.state = state.clone();
+        self.present = None;
         self.columns = None;
         Ok(())
     }

@@ -107,6 +107,8 @@ pub enum InputError {
 #[derive(Clone, Debug)]
 pub struct Variables {
     rows: Vec<Variable>,
+    /// Indices of the inputs among them: a few where every ball has variables of its own.
+    inputs: Vec<usize>,
 }
 
 impl Variables {
@@ -119,17 +121,24 @@ impl Variables {
 
     /// The variables that can change in a run, with or without those of every ball.
     pub fn moving(scene: &Scene, per_ball: bool) -> Self {
-        let mut table = Self { rows: vec![] };
+        let mut table = Self { rows: vec![], inputs: vec![] };
         table.add_race(scene, Race::Inner);
         table.add_race(scene, Race::Outer);
         table.add_bearing();
         table.add_effects(scene, per_ball);
+        let inputs = table.rows.iter().enumerate().filter(|(_, row)| row.causality == Causality::Input);
+        table.inputs = inputs.map(|(index, _)| index).collect();
         table
     }
 
     /// Rows; the index of a row is its value reference.
     pub fn rows(&self) -> &[Variable] {
         &self.rows
+    }
+
+    /// The inputs with their value references.
+    pub fn inputs_with_references(&self) -> impl Iterator<Item = (usize, &Variable)> + Clone {
+        self.inputs.iter().map(|&index| (index, &self.rows[index]))
     }
 
     /// Value of a row: inputs from the inputs as set, outputs from the outputs.
@@ -181,7 +190,7 @@ impl Variables {
 
     /// A race whose pose is an input.
     pub fn pose_is_given(&self, race: Race) -> bool {
-        self.rows.iter().any(|row| {
+        self.inputs_with_references().any(|(_, row)| {
             row.input_kind() == Some(InputKind::Velocity)
                 && matches!(row.source, Source::Race(of, _, _) if of == race)
         })
@@ -190,12 +199,12 @@ impl Variables {
     /// A race whose orientation is a quaternion of zeros among the values of all rows: an input that nothing is connected to.
     pub fn zero_quaternion(&self, values: &[f64]) -> Option<Race> {
         Race::BOTH.into_iter().find(|race| {
-            let mut components = self.rows.iter().zip(values).filter(|(row, _)| {
+            let mut components = self.inputs_with_references().filter(|(_, row)| {
                 row.input_kind() == Some(InputKind::Quaternion)
                     && matches!(row.source, Source::Race(of, _, _) if of == *race)
             });
-            components.next().is_some_and(|(_, first)| *first == 0.0)
-                && components.all(|(_, value)| *value == 0.0)
+            components.next().is_some_and(|(first, _)| values[first] == 0.0)
+                && components.all(|(index, _)| values[index] == 0.0)
         })
     }
 
@@ -206,10 +215,8 @@ impl Variables {
     pub fn inputs(&self, values: &[f64], rates: &[f64], base: &Inputs) -> Result<Inputs, InputError> {
         let mut inputs = *base;
         let mut races = PerRace::new(|race| RaceSetting::new(&base[race]));
-        for ((row, &value), &rate) in self.rows.iter().zip(values).zip(rates) {
-            if row.causality != Causality::Input {
-                continue;
-            }
+        for (index, row) in self.inputs_with_references() {
+            let (value, rate) = (values[index], rates[index]);
             for number in [value, rate] {
                 if !number.is_finite() {
                     return Err(InputError::NotFinite { name: row.name.clone(), value: number });
