@@ -91,6 +91,7 @@ fn by_rates(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<
         &RaceMotion {
             position: fixed(&race.position),
             axis: fixed(&race.axis),
+            across: race.across,
             velocity: fixed(&race.velocity),
             angular_velocity: variable(&race.angular_velocity, 6),
         },
@@ -129,6 +130,7 @@ impl Linear {
             &RaceMotion {
                 position: fixed(&race.position),
                 axis: turning(&race.axis),
+                across: race.across,
                 velocity: fixed(&race.velocity),
                 angular_velocity: turning(&race.angular_velocity),
             },

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::raceway::Raceway;
+use super::RaceMotion;
+use super::surface::Surface;
 use crate::numerics::scalar::{Scalar, cross, dot};
 
 /// \[m] distance from the groove centre below which the contact normal fades to zero.
@@ -28,10 +29,11 @@ pub struct GrooveContact<S: Scalar> {
 }
 
 impl<S: Scalar> GrooveContact<S> {
-    /// Contact of a ball of radius `ball_radius` \[m] whose centre is at `offset` \[m] from the race centre,
-    /// with a race of unit axis `axis`.
+    /// Contact of a ball whose centre is at `offset` \[m] from the centre of a race.
     #[inline(always)]
-    pub fn new(raceway: &Raceway, ball_radius: f64, offset: &Vector3<S>, axis: &Vector3<S>) -> Self {
+    pub fn new(surface: &Surface, offset: &Vector3<S>, race: &RaceMotion<S>) -> Self {
+        let Surface { raceway, ball_radius } = surface;
+        let axis = &race.axis;
         let axial = dot(offset, axis);
         let radial_vector = offset - axis * axial;
         let radius = dot(&radial_vector, &radial_vector).sqrt();
@@ -43,7 +45,7 @@ impl<S: Scalar> GrooveContact<S> {
         let distance = (out.square() + along.square() + S::constant(DISTANCE_FLOOR * DISTANCE_FLOOR)).sqrt();
         let (cos, sin) = (out / distance, along / distance);
         // A torus's second principal curvature: cosine of the normal's angle over the radius of the contact point.
-        let contact_radius = radius + cos.scale(ball_radius);
+        let contact_radius = radius + cos.scale(*ball_radius);
         Self {
             approach: distance - S::constant(raceway.groove_radius - ball_radius),
             normal: radial * cos + axis * sin,
@@ -79,12 +81,17 @@ impl<S: Scalar> GrooveContact<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::raceway::Raceway;
 
     #[test]
     fn limit_a_ball_on_the_groove_centre_touches_nothing() {
         let raceway = Raceway { groove_radius: 6.6e-3, groove_circle_radius: 0.0625, groove_offset: 0.0 };
         let centre = Vector3::new(0.0, raceway.groove_circle_radius, 0.0);
-        let contact = GrooveContact::new(&raceway, 6.35e-3, &centre, &Vector3::x());
+        let contact = GrooveContact::new(
+            &Surface { raceway, ball_radius: 6.35e-3 },
+            &centre,
+            &RaceMotion::resting(Vector3::zeros(), Vector3::x(), Vector3::y()),
+        );
         assert!((contact.approach - (6.35e-3 - raceway.groove_radius)).abs() < 2.0 * DISTANCE_FLOOR);
         let numbers = contact.normal.iter().chain([&contact.circumferential_curvature]);
         assert!(numbers.into_iter().all(|number| number.is_finite()), "{contact:?}");

@@ -114,6 +114,7 @@ impl BodyTrial {
         self.motion = RaceMotion {
             position: constant_vector(&position),
             axis: spatial(&constant_vector(&Vector3::x())),
+            across: orientation * Vector3::y(),
             velocity: constant_vector(&self.end.velocity),
             angular_velocity: spatial(&self.rate),
         };
@@ -124,6 +125,7 @@ impl BodyTrial {
         RaceMotion {
             position: self.end.pose.position,
             axis: values(&self.motion.axis),
+            across: self.motion.across,
             velocity: self.end.velocity,
             angular_velocity: values(&self.motion.angular_velocity),
         }

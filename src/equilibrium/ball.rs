@@ -3,6 +3,7 @@
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::{EquilibriumInput, Gyroscopic};
+use crate::contact::RaceMotion;
 use crate::contact::geometry::GrooveContact;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{PerRace, Race};
@@ -32,6 +33,8 @@ pub struct Shared {
     pub position: Vector3<D>,
     /// [-] axis of the inner race.
     pub axis: Vector3<D>,
+    /// [-] y axis of each race, which azimuths on it are counted from.
+    pub across: PerRace<Vector3<f64>>,
     /// [rad/s] cage speed.
     pub cage_speed: D,
     /// [m/s2] gravity on the balls; what it does along the orbit is left to friction.
@@ -97,11 +100,18 @@ pub fn balance(
     let radius = distance * cosine + D::constant(outer_groove.groove_circle_radius);
     let position =
         radial.map(|c| radius.scale(c)) + Vector3::new(axial_place, D::constant(0.0), D::constant(0.0));
-    let axis = constant_vector(&Vector3::x());
+    let [inner_race, outer_race] = [
+        RaceMotion::resting(shared.position, shared.axis, shared.across.inner),
+        RaceMotion::resting(
+            constant_vector(&Vector3::zeros()),
+            constant_vector(&Vector3::x()),
+            shared.across.outer,
+        ),
+    ];
     let contacts = model.contacts(&Conditions { friction: 0.0 });
     let offset = position - shared.position;
-    let inner = GrooveContact::new(contacts.inner.raceway, ball.radius, &offset, &shared.axis);
-    let outer = GrooveContact::new(contacts.outer.raceway, ball.radius, &position, &axis);
+    let inner = GrooveContact::new(&contacts.inner.surface, &offset, &inner_race);
+    let outer = GrooveContact::new(&contacts.outer.surface, &position, &outer_race);
     let stiffness = PerRace {
         inner: contacts.inner.shape.stiffness(inner.circumferential_curvature),
         outer: contacts.outer.shape.stiffness(outer.circumferential_curvature),

@@ -15,7 +15,7 @@ use thiserror::Error;
 
 use crate::model::Model;
 use crate::model::bearing::BeyondShoulder;
-use crate::model::bodies::Race;
+use crate::model::bodies::{PerRace, Race};
 use crate::numerics::motion::Pose;
 use crate::scene::{Condition, Scene};
 use problem::{Found, Problem, Progress};
@@ -57,6 +57,8 @@ pub struct EquilibriumInput {
     pub outer_speed: f64,
     /// Pose of the other race in the bearing frame, without its turn about its own axis; an outer race rests at the origin.
     pub resting: Pose,
+    /// \[rad] how far each race has turned about its own axis.
+    pub turned: PerRace<f64>,
     /// How the gyroscopic moment is carried.
     pub gyroscopic: Gyroscopic,
     /// [-] friction coefficient, for [`Gyroscopic::Friction`].
@@ -95,6 +97,7 @@ impl EquilibriumInput {
             inner_speed: scene.load.inner_speed.at(time),
             outer_speed: scene.load.outer_speed.at(time),
             resting: Pose { position, orientation },
+            turned: PerRace::default(),
             gyroscopic,
             friction: scene.friction.ball_race.at(time),
         }

@@ -8,7 +8,7 @@ use super::ball::{
 use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
-use crate::model::bodies::Race;
+use crate::model::bodies::{PerRace, Race};
 use crate::numerics::rotation::{from_rotation_vector, rotate, turn};
 use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, values};
 
@@ -96,9 +96,24 @@ fn shared(model: &Model, input: &EquilibriumInput, unknowns: &SharedVector) -> S
     Shared {
         position: axes.seen(&position),
         axis: axes.seen(&axis),
+        across: across(input, unknowns),
         cage_speed: variable(unknowns, 5),
         gravity: axes.gravity(&model.gravity),
     }
+}
+
+/// [-] y axes of both races in the frame of the outer one, which does not turn with it.
+fn across(input: &EquilibriumInput, unknowns: &SharedVector) -> PerRace<Vector3<f64>> {
+    let moved = UnitQuaternion::new(Vector3::new(0.0, unknowns[3], unknowns[4]));
+    let tilts = match input.race {
+        Race::Inner => PerRace { inner: moved, outer: input.resting.orientation },
+        Race::Outer => PerRace { inner: input.resting.orientation, outer: moved },
+    };
+    let frame = tilts.outer.inverse();
+    PerRace::new(|race| {
+        let (sin, cos) = input.turned[race].sin_cos();
+        frame * (tilts[race] * Vector3::new(0.0, cos, sin))
+    })
 }
 
 /// Axis of a race of rotation vector [0, ry, rz].

@@ -11,6 +11,7 @@ use nalgebra::Vector3;
 
 use crate::contact::ContactModel;
 use crate::contact::ball_ball::BallBallModel;
+use crate::contact::surface::Surface;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::numerics::arrowhead::Offsets;
@@ -107,9 +108,8 @@ impl Model {
         conditions: &Conditions,
     ) -> ContactModel<'a> {
         ContactModel {
-            raceway: self.bearing.raceway(race),
+            surface: Surface { raceway: *self.bearing.raceway(race), ball_radius: self.bearing.ball.radius },
             shape: &raceway.shape,
-            ball_radius: self.bearing.ball.radius,
             law: raceway.law(),
             across: raceway.across(),
             groove_bend: raceway.groove_bend,
