@@ -40,7 +40,7 @@ impl Condensed {
         let races = PerRace::new(|race| state.race(race).motion());
         let zero = Self { stiffness: Matrix6::zeros(), damping: Matrix6::zeros() };
         let add = |sum: Self, (index, ball): (usize, &BallState)| {
-            let contacts = PerRace::new(|race| contacts[race].of_ball(state.difference(index, race)));
+            let contacts = PerRace::new(|race| contacts[race].of_ball(index, state.difference(index, race)));
             contribution(model, &contacts, &races, ball).map_or(sum, |one| Self {
                 stiffness: sum.stiffness + one.stiffness,
                 damping: sum.damping + one.damping,

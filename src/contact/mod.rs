@@ -3,6 +3,7 @@
 pub mod ball_ball;
 pub mod body;
 pub mod creep;
+pub mod form;
 pub mod geometry;
 pub mod heathcote;
 pub mod hertz;
@@ -81,7 +82,7 @@ impl<S: Scalar> RaceMotion<S> {
 #[derive(Clone, Copy, Debug)]
 pub struct ContactModel<'a> {
     /// What the balls roll on, and their size.
-    pub surface: Surface,
+    pub surface: Surface<'a>,
     /// Shape of its contacts: stiffness, ellipse and creep coefficients over the approach.
     pub shape: &'a ContactShape,
     /// Creep law of rolling along the circumference.
@@ -204,7 +205,10 @@ impl ContactModel<'_> {
         let offset = ball.position - race.position;
         let geometry = GrooveContact::new(&self.surface, &offset, race);
         let depth = geometry.approach.positive_part();
-        let stiffness = self.shape.stiffness(geometry.circumferential_curvature);
+        let mut stiffness = self.shape.stiffness(geometry.circumferential_curvature);
+        if let Some(factor) = self.surface.of_balls::<S>(|size| size.stiffness) {
+            stiffness *= factor;
+        }
         let (arm, race_arm) = kinematics::arms(geometry.normal, self.surface.ball_radius, &offset);
         let rate = match self.damping == 0.0 {
             true => S::zero(),
@@ -274,7 +278,10 @@ impl ContactModel<'_> {
         // normal load
         let depth = geometry.approach.positive_part();
         let root = depth.sqrt();
-        let shape = self.shape.at(geometry.circumferential_curvature);
+        let mut shape = self.shape.at(geometry.circumferential_curvature);
+        if let Some(factor) = self.surface.of_balls::<S>(|size| size.stiffness) {
+            shape.stiffness *= factor;
+        }
         let load = NormalLoad::hertz(shape.stiffness, depth, root, surfaces.approach_rate, self.damping);
 
         // creep forces of the ball on the race, in the contact frame: x along the circumference
@@ -305,12 +312,14 @@ impl ContactModel<'_> {
         (contact, oblique)
     }
 
-    /// The contact of one ball, with its difference of Kalker's polynomials from the table, where they are simulated.
-    pub fn of_ball<'b>(&self, difference: Option<&'b Difference>) -> ContactModel<'b>
+    /// The contact of a ball (0 is the first), with its difference of Kalker's polynomials from the table, where they are
+    /// simulated.
+    pub fn of_ball<'b>(&self, ball: usize, difference: Option<&'b Difference>) -> ContactModel<'b>
     where
         Self: 'b,
     {
         ContactModel {
+            surface: self.surface.under(ball),
             law: match (self.law, difference) {
                 (Law::Table(table), Some(difference)) => Law::Frozen(table, &difference.value),
                 (Law::Kalker(kalker), Some(last)) => Law::Continued(kalker, &last.coefficients),

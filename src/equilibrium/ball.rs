@@ -81,15 +81,16 @@ fn arc_radius(model: &Model) -> f64 {
     model.bearing.outer.groove_radius - model.bearing.ball.radius
 }
 
-/// Balance of the ball at `azimuth` \[rad].
+/// Balance of a ball (0 is the first).
 pub fn balance(
     model: &Model,
     input: &EquilibriumInput,
     shared: &Shared,
-    azimuth: f64,
+    index: usize,
     place: &Place,
 ) -> BallBalance {
     let ball = &model.bearing.ball;
+    let azimuth = model.bearing.ball_azimuth(index);
     let (radial, tangential) = azimuth_directions(azimuth);
     let outer_groove = &model.bearing.outer;
     let angle = D::variable(place.x, 0, 1.0).scale(1.0 / arc_radius(model));
@@ -110,12 +111,18 @@ pub fn balance(
     ];
     let contacts = model.contacts(&Conditions { friction: 0.0 });
     let offset = position - shared.position;
-    let inner = GrooveContact::new(&contacts.inner.surface, &offset, &inner_race);
-    let outer = GrooveContact::new(&contacts.outer.surface, &position, &outer_race);
-    let stiffness = PerRace {
+    let surfaces = PerRace::new(|race| contacts[race].surface.under(index));
+    let inner = GrooveContact::new(&surfaces.inner, &offset, &inner_race);
+    let outer = GrooveContact::new(&surfaces.outer, &position, &outer_race);
+    let mut stiffness = PerRace {
         inner: contacts.inner.shape.stiffness(inner.circumferential_curvature),
         outer: contacts.outer.shape.stiffness(outer.circumferential_curvature),
     };
+    for race in Race::BOTH {
+        if let Some(factor) = surfaces[race].of_balls::<D>(|size| size.stiffness) {
+            stiffness[race] *= factor;
+        }
+    }
     let load = |contact: &GrooveContact<D>, stiffness: D| {
         let depth = contact.approach.positive_part();
         stiffness * depth * depth.sqrt()
@@ -209,15 +216,15 @@ pub fn bottom_of_outer_groove(
     model: &Model,
     input: &EquilibriumInput,
     shared: &Shared,
-    azimuth: f64,
+    index: usize,
 ) -> Place {
     let touching = Vector2::new(0.0, arc_radius(model));
-    let there = balance(model, input, shared, azimuth, &touching);
+    let there = balance(model, input, shared, index, &touching);
     let depth = (there.centrifugal_force.value / there.stiffness.outer.value).powf(2.0 / 3.0);
     touching + Vector2::new(0.0, depth)
 }
 
-/// Finds the place where the ball is in balance, starting from `place`; returns the balance there.
+/// Finds the place where a ball (0 is the first) is in balance, starting from `place`; returns the balance there.
 ///
 /// Newton's method with a Levenberg shift: the forces derive (nearly) from a potential that is convex but flat where
 /// contacts are open. `None` if the residual does not come below `tolerance` \[N].
@@ -225,7 +232,7 @@ pub fn settle(
     model: &Model,
     input: &EquilibriumInput,
     shared: &Shared,
-    azimuth: f64,
+    index: usize,
     place: &mut Place,
     tolerance: f64,
 ) -> Option<BallBalance> {
@@ -233,7 +240,7 @@ pub fn settle(
     let longest = 0.02 * diameter;
     let balance_radius = 0.5 * model.bearing.pitch_diameter;
     let norm = |b: &BallBalance| b.residual[0].value.hypot(b.residual[1].value);
-    let mut here = balance(model, input, shared, azimuth, place);
+    let mut here = balance(model, input, shared, index, place);
     let mut shift = 0.0;
     for _ in 0..MAX_ITERATIONS {
         let r = Vector2::new(here.residual[0].value, here.residual[1].value);
@@ -252,7 +259,7 @@ pub fn settle(
             }
         }
         let trial_place = step.map(|step| *place + step);
-        let trial = trial_place.map(|p| balance(model, input, shared, azimuth, &p));
+        let trial = trial_place.map(|p| balance(model, input, shared, index, &p));
         match (trial, trial_place) {
             (Some(trial), Some(p)) if norm(&trial) < norm(&here) || opens(&here, &trial) => {
                 *place = p;

@@ -148,6 +148,23 @@ pub enum EquilibriumError {
     /// A contact lies beyond the shoulder of its race.
     #[error("in equilibrium {0}")]
     BeyondShoulder(#[from] BeyondShoulder),
+    /// A wave of a race that no contact can follow.
+    #[error(
+        "form.{race}: its shortest wave, of order {order}, is shorter than the contact of ball {ball}, whose half width is seen \
+         from the axis under {span:.2e} rad: allowed are orders to {longest:.0}; take shorter waves out, as the contact does"
+    )]
+    ShortWave {
+        /// Inner or outer.
+        race: &'static str,
+        /// [-] order.
+        order: f64,
+        /// Ball, counted from 1.
+        ball: usize,
+        /// \[rad] half width of its contact over the radius of the race.
+        span: f64,
+        /// [-] largest order that is allowed.
+        longest: f64,
+    },
     /// Outer race control asks for more friction than there can be.
     #[error(
         "no equilibrium was found under outer race control, and there is one without gyroscopic moments: that of ball \
