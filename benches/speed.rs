@@ -91,6 +91,7 @@ fn contact_with_derivatives(bencher: Bencher, law: &str) {
     let race = RaceMotion {
         position: constant(&race.position),
         axis: constant(&race.axis),
+        across: race.across,
         velocity: constant(&race.velocity),
         angular_velocity: constant(&race.angular_velocity),
     };

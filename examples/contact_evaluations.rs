@@ -45,6 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let dual_race: RaceMotion<D> = RaceMotion {
         position: constant(&race.position),
         axis: constant(&race.axis),
+        across: race.across,
         velocity: constant(&race.velocity),
         angular_velocity: constant(&race.angular_velocity),
     };

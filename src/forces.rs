@@ -73,7 +73,9 @@ impl Contacts {
             let motion = ball.motion();
             BallContacts {
                 raceways: PerRace::new(|race| {
-                    contacts[race].of_ball(state.difference(index, race)).evaluate(&motion, &races[race])
+                    contacts[race]
+                        .of_ball(index, state.difference(index, race))
+                        .evaluate(&motion, &races[race])
                 }),
                 pocket: cage.as_ref().and_then(|(cage, seen)| cage.pocket_contact(index, &motion, seen)),
             }

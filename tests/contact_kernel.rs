@@ -89,6 +89,7 @@ fn motions_of<S: Scalar>(x: &[S; 18]) -> (BallMotion<S>, RaceMotion<S>) {
     let race = RaceMotion {
         position: vector(9),
         axis: tilt.map(|c| c / length),
+        across: Vector3::y(),
         velocity: Vector3::new(x[14], x[14], x[14]),
         angular_velocity: vector(15),
     };
@@ -207,7 +208,13 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             });
             let axis = Vector3::new(1.0, x[13], -x[12]).normalize();
             let (position, velocity) = (vector(&x, 9), Vector3::repeat(x[14]));
-            let race_motion = RaceMotion { position, axis, velocity, angular_velocity: vector(&x, 15) };
+            let race_motion = RaceMotion {
+                position,
+                axis,
+                across: Vector3::y(),
+                velocity,
+                angular_velocity: vector(&x, 15),
+            };
             let alone = motions.each_ref().map(|m| contact.evaluate(m, &race_motion));
             assert!(alone[0].load > 50.0 && alone[3].load == 0.0);
 
@@ -232,6 +239,7 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             let race = RaceMotion {
                 position: constant_vector(&race_motion.position),
                 axis: constant_vector(&race_motion.axis),
+                across: race_motion.across,
                 velocity: constant_vector(&race_motion.velocity),
                 angular_velocity: constant_vector(&race_motion.angular_velocity),
             };
@@ -371,6 +379,7 @@ fn invariant_friction_that_is_off_is_not_computed_and_forces_are_the_same() {
             let seen = RaceMotion {
                 position: vector(9),
                 axis: Vector3::x(),
+                across: Vector3::y(),
                 velocity: vector(12),
                 angular_velocity: vector(15),
             };

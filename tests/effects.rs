@@ -24,7 +24,11 @@ const OFF: &str = "[effects]\ncreep = \"frictionless\"\n";
 fn alone(example: &str) -> String {
     match example.contains("creep = ") || example.contains("heathcote_slip = ") {
         true => example.to_string(),
-        false => example.replacen("[effects]\n", "[effects]\ncreep = \"saturated\"\n", 1),
+        false if example.contains("[effects]\n") => {
+            example.replacen("[effects]\n", "[effects]\ncreep = \"saturated\"\n", 1)
+        }
+        // A section of its own.
+        false => format!("[effects]\ncreep = \"saturated\"\n{example}"),
     }
 }
 
@@ -110,11 +114,14 @@ fn what_is_told_about_an_effect_is_complete_and_its_example_switches_it_on() {
             assert_eq!(effect.setting().is_some(), other == index, "{} by {}", effect.info().key, info.key);
         }
         // The key is one of the scene file: no other would be read.
-        let key = info.key.strip_prefix("effects.").unwrap();
-        assert!(info.example.contains(&format!("{key} = ")), "{}", info.example);
-        let misspelt = info.example.replacen(&format!("{key} = "), &format!("{key}s = "), 1);
+        let (written, wrong, key) = match info.key.strip_prefix("effects.") {
+            Some(key) => (format!("{key} = "), format!("{key}s = "), key),
+            None => (format!("[{}]", info.key), format!("[{}s]", info.key), info.key),
+        };
+        assert!(info.example.contains(&written), "{}", info.example);
+        let misspelt = info.example.replacen(&written, &wrong, 1);
         let message = Scene::parse(&with(&misspelt)).unwrap_err().to_string();
-        for part in [&format!("effects.{key}s is no known key: did you mean"), key, "line"] {
+        for part in [&format!("{}s is no known key: did you mean", info.key), key, "line"] {
             assert!(message.contains(part), "{message}\nshould name {part}");
         }
     }

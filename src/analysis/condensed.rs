@@ -40,7 +40,7 @@ impl Condensed {
         let races = PerRace::new(|race| state.race(race).motion());
         let zero = Self { stiffness: Matrix6::zeros(), damping: Matrix6::zeros() };
         let add = |sum: Self, (index, ball): (usize, &BallState)| {
-            let contacts = PerRace::new(|race| contacts[race].of_ball(state.difference(index, race)));
+            let contacts = PerRace::new(|race| contacts[race].of_ball(index, state.difference(index, race)));
             contribution(model, &contacts, &races, ball).map_or(sum, |one| Self {
                 stiffness: sum.stiffness + one.stiffness,
                 damping: sum.damping + one.damping,
@@ -91,6 +91,7 @@ fn by_rates(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<
         &RaceMotion {
             position: fixed(&race.position),
             axis: fixed(&race.axis),
+            across: race.across,
             velocity: fixed(&race.velocity),
             angular_velocity: variable(&race.angular_velocity, 6),
         },
@@ -129,6 +130,7 @@ impl Linear {
             &RaceMotion {
                 position: fixed(&race.position),
                 axis: turning(&race.axis),
+                across: race.across,
                 velocity: fixed(&race.velocity),
                 angular_velocity: turning(&race.angular_velocity),
             },

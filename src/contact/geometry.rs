@@ -2,7 +2,9 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::raceway::Raceway;
+use super::RaceMotion;
+use super::form::Shift;
+use super::surface::Surface;
 use crate::numerics::scalar::{Scalar, cross, dot};
 
 /// \[m] distance from the groove centre below which the contact normal fades to zero.
@@ -17,7 +19,7 @@ pub struct GrooveContact<S: Scalar> {
     pub normal: Vector3<S>,
     /// [-] unit radial direction of the race through the ball centre.
     pub radial: Vector3<S>,
-    /// [-] circumferential direction: race axis x radial.
+    /// [-] circumferential direction: race axis x radial, and along the waves of a race that has some.
     pub circumferential: Vector3<S>,
     /// \[m] distance of the ball centre from the race axis.
     pub radius: S,
@@ -28,27 +30,65 @@ pub struct GrooveContact<S: Scalar> {
 }
 
 impl<S: Scalar> GrooveContact<S> {
-    /// Contact of a ball of radius `ball_radius` \[m] whose centre is at `offset` \[m] from the race centre,
-    /// with a race of unit axis `axis`.
+    /// Contact of a ball whose centre is at `offset` \[m] from the centre of a race.
     #[inline(always)]
-    pub fn new(raceway: &Raceway, ball_radius: f64, offset: &Vector3<S>, axis: &Vector3<S>) -> Self {
+    pub fn new(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> Self {
+        if surface.is_plain() {
+            Self::on(surface, offset, race, None)
+        } else {
+            Self::shaped(surface, offset, race)
+        }
+    }
+
+    /// Contact with a race that departs from a torus, or of balls that are not alike. Apart, so that a plain race does not pay for it.
+    #[inline(never)]
+    fn shaped(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> Self {
+        let shift = surface.form.map_or_else(Shift::none, |form| form.under(offset, race));
+        let mut contact = Self::on(surface, offset, race, Some(&shift));
+        if let Some(larger) = surface.of_balls(|size| size.larger) {
+            contact.approach += larger;
+        }
+        contact
+    }
+
+    /// Contact with a race whose groove circle is shifted where the ball is.
+    #[inline(always)]
+    fn on(
+        surface: &Surface<'_>,
+        offset: &Vector3<S>,
+        race: &RaceMotion<S>,
+        shift: Option<&Shift<S>>,
+    ) -> Self {
+        let Surface { raceway, ball_radius, .. } = surface;
+        let axis = &race.axis;
         let axial = dot(offset, axis);
         let radial_vector = offset - axis * axial;
         let radius = dot(&radial_vector, &radial_vector).sqrt();
         let radial = radial_vector.map(|component| component / radius);
         // From the groove centre of this azimuth to the ball centre.
-        let out = radius - S::constant(raceway.groove_circle_radius);
-        let along = axial - S::constant(raceway.groove_offset);
+        let mut out = radius - S::constant(raceway.groove_circle_radius);
+        let mut along = axial - S::constant(raceway.groove_offset);
+        if let Some(shift) = shift {
+            out -= shift.radial;
+            along -= shift.axial;
+        }
         // A ball on the groove centre touches nothing, in no direction: the floor, below rounding, spares a 0/0.
         let distance = (out.square() + along.square() + S::constant(DISTANCE_FLOOR * DISTANCE_FLOOR)).sqrt();
         let (cos, sin) = (out / distance, along / distance);
         // A torus's second principal curvature: cosine of the normal's angle over the radius of the contact point.
-        let contact_radius = radius + cos.scale(ball_radius);
+        let contact_radius = radius + cos.scale(*ball_radius);
+        let mut normal = radial * cos + axis * sin;
+        let mut circumferential = cross(axis, &radial);
+        if let Some(shift) = shift {
+            // The gradient of the approach, longer than 1 by half the square of the lean: 1e-8 for waves of a micrometre.
+            let lean = (cos * shift.radial_slope + sin * shift.axial_slope) / radius;
+            (normal, circumferential) = (normal - circumferential * lean, circumferential + normal * lean);
+        }
         Self {
             approach: distance - S::constant(raceway.groove_radius - ball_radius),
-            normal: radial * cos + axis * sin,
+            normal,
             radial,
-            circumferential: cross(axis, &radial),
+            circumferential,
             radius,
             distance,
             circumferential_curvature: -cos / contact_radius,
@@ -79,12 +119,17 @@ impl<S: Scalar> GrooveContact<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::raceway::Raceway;
 
     #[test]
     fn limit_a_ball_on_the_groove_centre_touches_nothing() {
         let raceway = Raceway { groove_radius: 6.6e-3, groove_circle_radius: 0.0625, groove_offset: 0.0 };
         let centre = Vector3::new(0.0, raceway.groove_circle_radius, 0.0);
-        let contact = GrooveContact::new(&raceway, 6.35e-3, &centre, &Vector3::x());
+        let contact = GrooveContact::new(
+            &Surface::plain(raceway, 6.35e-3),
+            &centre,
+            &RaceMotion::resting(Vector3::zeros(), Vector3::x(), Vector3::y()),
+        );
         assert!((contact.approach - (6.35e-3 - raceway.groove_radius)).abs() < 2.0 * DISTANCE_FLOOR);
         let numbers = contact.normal.iter().chain([&contact.circumferential_curvature]);
         assert!(numbers.into_iter().all(|number| number.is_finite()), "{contact:?}");

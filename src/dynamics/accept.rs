@@ -197,12 +197,13 @@ impl BallTrial {
 pub fn renew_polynomials(model: &Model, state: &mut State, boundary: &Boundary) {
     let contacts = model.contacts(&boundary.conditions);
     let State { balls, bodies, differences, statistics, .. } = state;
-    for (ball, differences) in balls.iter().zip(differences) {
+    for (index, (ball, differences)) in balls.iter().zip(differences).enumerate() {
         for race in Race::BOTH {
             let Some(kalker) = model.polynomials(race) else {
                 continue;
             };
-            let contact = contacts[race].evaluate(&ball.motion(), &bodies[race].motion());
+            let contact =
+                contacts[race].of_ball(index, None).evaluate(&ball.motion(), &bodies[race].motion());
             match contacts[race].renew(kalker, &contact, model.epsilon_switch, &mut differences[race]) {
                 Ok(solved) => statistics.polynomials += u64::from(solved),
                 Err(_) => statistics.polynomial_failures += 1,

@@ -61,10 +61,13 @@ impl<'a> Surroundings<'a> {
         for race in Race::BOTH {
             let (contact, seen) = (&self.contacts[race], self.races[race].motion);
             match self.differences.get(first..first + motions.len()) {
+                None if contact.surface.tells_balls() => {
+                    group[race].evaluate(&contact.of_ball(first, None), seen, motions);
+                }
                 None => group[race].evaluate(contact, seen, motions),
                 Some(differences) => {
                     for (lane, (motion, of_ball)) in motions.iter().zip(differences).enumerate() {
-                        let contact = contact.of_ball(Some(&of_ball[race]));
+                        let contact = contact.of_ball(first + lane, Some(&of_ball[race]));
                         group[race].set(lane, &contact.evaluate(motion, seen));
                     }
                 }
@@ -203,7 +206,7 @@ impl BallTrial {
         let mut tangent = Matrix6::zeros();
         self.reactions = [None; SLOTS];
         let values = PerRace::new(|race| {
-            let contact = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));
+            let contact = contacts[race].of_ball(index, differences.get(index).map(|of_ball| &of_ball[race]));
             match races[race].moved() {
                 None => {
                     let seeded = seed(&self.motion, step, radius);

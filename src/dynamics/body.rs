@@ -104,6 +104,7 @@ impl BodyTrial {
         self.motion = RaceMotion {
             position: constant_vector(&self.end.pose.position),
             axis: as_second(&turned.axis),
+            across: self.end.pose.orientation * Vector3::y(),
             velocity: constant_vector(&self.end.velocity),
             angular_velocity: as_second(&turned.angular_velocity),
         };
@@ -115,6 +116,7 @@ impl BodyTrial {
         RaceMotion {
             position: self.end.pose.position,
             axis: self.turn.axis,
+            across: self.end.pose.orientation * Vector3::y(),
             velocity: self.end.velocity,
             angular_velocity: self.turn.angular_velocity,
         }

@@ -22,6 +22,7 @@ pub mod cage;
 pub mod creep;
 pub mod damping;
 mod effect;
+pub mod form;
 pub mod full_complement;
 pub mod gravity;
 pub mod groove_slip;
@@ -75,7 +76,7 @@ macro_rules! effects {
     };
 }
 
-effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder }
+effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form }
 
 impl Effects {
     /// Checks all numbers against their ranges.

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::{EquilibriumInput, Gyroscopic};
+use crate::contact::RaceMotion;
 use crate::contact::geometry::GrooveContact;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{PerRace, Race};
@@ -32,6 +33,8 @@ pub struct Shared {
     pub position: Vector3<D>,
     /// [-] axis of the inner race.
     pub axis: Vector3<D>,
+    /// [-] y axis of each race, which azimuths on it are counted from.
+    pub across: PerRace<Vector3<f64>>,
     /// [rad/s] cage speed.
     pub cage_speed: D,
     /// [m/s2] gravity on the balls; what it does along the orbit is left to friction.
@@ -78,15 +81,16 @@ fn arc_radius(model: &Model) -> f64 {
     model.bearing.outer.groove_radius - model.bearing.ball.radius
 }
 
-/// Balance of the ball at `azimuth` \[rad].
+/// Balance of a ball (0 is the first).
 pub fn balance(
     model: &Model,
     input: &EquilibriumInput,
     shared: &Shared,
-    azimuth: f64,
+    index: usize,
     place: &Place,
 ) -> BallBalance {
     let ball = &model.bearing.ball;
+    let azimuth = model.bearing.ball_azimuth(index);
     let (radial, tangential) = azimuth_directions(azimuth);
     let outer_groove = &model.bearing.outer;
     let angle = D::variable(place.x, 0, 1.0).scale(1.0 / arc_radius(model));
@@ -97,15 +101,28 @@ pub fn balance(
     let radius = distance * cosine + D::constant(outer_groove.groove_circle_radius);
     let position =
         radial.map(|c| radius.scale(c)) + Vector3::new(axial_place, D::constant(0.0), D::constant(0.0));
-    let axis = constant_vector(&Vector3::x());
+    let [inner_race, outer_race] = [
+        RaceMotion::resting(shared.position, shared.axis, shared.across.inner),
+        RaceMotion::resting(
+            constant_vector(&Vector3::zeros()),
+            constant_vector(&Vector3::x()),
+            shared.across.outer,
+        ),
+    ];
     let contacts = model.contacts(&Conditions { friction: 0.0 });
     let offset = position - shared.position;
-    let inner = GrooveContact::new(contacts.inner.raceway, ball.radius, &offset, &shared.axis);
-    let outer = GrooveContact::new(contacts.outer.raceway, ball.radius, &position, &axis);
-    let stiffness = PerRace {
+    let surfaces = PerRace::new(|race| contacts[race].surface.under(index));
+    let inner = GrooveContact::new(&surfaces.inner, &offset, &inner_race);
+    let outer = GrooveContact::new(&surfaces.outer, &position, &outer_race);
+    let mut stiffness = PerRace {
         inner: contacts.inner.shape.stiffness(inner.circumferential_curvature),
         outer: contacts.outer.shape.stiffness(outer.circumferential_curvature),
     };
+    for race in Race::BOTH {
+        if let Some(factor) = surfaces[race].of_balls::<D>(|size| size.stiffness) {
+            stiffness[race] *= factor;
+        }
+    }
     let load = |contact: &GrooveContact<D>, stiffness: D| {
         let depth = contact.approach.positive_part();
         stiffness * depth * depth.sqrt()
@@ -199,15 +216,15 @@ pub fn bottom_of_outer_groove(
     model: &Model,
     input: &EquilibriumInput,
     shared: &Shared,
-    azimuth: f64,
+    index: usize,
 ) -> Place {
     let touching = Vector2::new(0.0, arc_radius(model));
-    let there = balance(model, input, shared, azimuth, &touching);
+    let there = balance(model, input, shared, index, &touching);
     let depth = (there.centrifugal_force.value / there.stiffness.outer.value).powf(2.0 / 3.0);
     touching + Vector2::new(0.0, depth)
 }
 
-/// Finds the place where the ball is in balance, starting from `place`; returns the balance there.
+/// Finds the place where a ball (0 is the first) is in balance, starting from `place`; returns the balance there.
 ///
 /// Newton's method with a Levenberg shift: the forces derive (nearly) from a potential that is convex but flat where
 /// contacts are open. `None` if the residual does not come below `tolerance` \[N].
@@ -215,7 +232,7 @@ pub fn settle(
     model: &Model,
     input: &EquilibriumInput,
     shared: &Shared,
-    azimuth: f64,
+    index: usize,
     place: &mut Place,
     tolerance: f64,
 ) -> Option<BallBalance> {
@@ -223,7 +240,7 @@ pub fn settle(
     let longest = 0.02 * diameter;
     let balance_radius = 0.5 * model.bearing.pitch_diameter;
     let norm = |b: &BallBalance| b.residual[0].value.hypot(b.residual[1].value);
-    let mut here = balance(model, input, shared, azimuth, place);
+    let mut here = balance(model, input, shared, index, place);
     let mut shift = 0.0;
     for _ in 0..MAX_ITERATIONS {
         let r = Vector2::new(here.residual[0].value, here.residual[1].value);
@@ -242,7 +259,7 @@ pub fn settle(
             }
         }
         let trial_place = step.map(|step| *place + step);
-        let trial = trial_place.map(|p| balance(model, input, shared, azimuth, &p));
+        let trial = trial_place.map(|p| balance(model, input, shared, index, &p));
         match (trial, trial_place) {
             (Some(trial), Some(p)) if norm(&trial) < norm(&here) || opens(&here, &trial) => {
                 *place = p;

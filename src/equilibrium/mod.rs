@@ -15,7 +15,7 @@ use thiserror::Error;
 
 use crate::model::Model;
 use crate::model::bearing::BeyondShoulder;
-use crate::model::bodies::Race;
+use crate::model::bodies::{PerRace, Race};
 use crate::numerics::motion::Pose;
 use crate::scene::{Condition, Scene};
 use problem::{Found, Problem, Progress};
@@ -57,6 +57,8 @@ pub struct EquilibriumInput {
     pub outer_speed: f64,
     /// Pose of the other race in the bearing frame, without its turn about its own axis; an outer race rests at the origin.
     pub resting: Pose,
+    /// \[rad] how far each race has turned about its own axis.
+    pub turned: PerRace<f64>,
     /// How the gyroscopic moment is carried.
     pub gyroscopic: Gyroscopic,
     /// [-] friction coefficient, for [`Gyroscopic::Friction`].
@@ -95,6 +97,7 @@ impl EquilibriumInput {
             inner_speed: scene.load.inner_speed.at(time),
             outer_speed: scene.load.outer_speed.at(time),
             resting: Pose { position, orientation },
+            turned: PerRace::default(),
             gyroscopic,
             friction: scene.friction.ball_race.at(time),
         }
@@ -145,6 +148,23 @@ pub enum EquilibriumError {
     /// A contact lies beyond the shoulder of its race.
     #[error("in equilibrium {0}")]
     BeyondShoulder(#[from] BeyondShoulder),
+    /// A wave of a race that no contact can follow.
+    #[error(
+        "form.{race}: its shortest wave, of order {order}, is shorter than the contact of ball {ball}, whose half width is seen \
+         from the axis under {span:.2e} rad: allowed are orders to {longest:.0}; take shorter waves out, as the contact does"
+    )]
+    ShortWave {
+        /// Inner or outer.
+        race: &'static str,
+        /// [-] order.
+        order: f64,
+        /// Ball, counted from 1.
+        ball: usize,
+        /// \[rad] half width of its contact over the radius of the race.
+        span: f64,
+        /// [-] largest order that is allowed.
+        longest: f64,
+    },
     /// Outer race control asks for more friction than there can be.
     #[error(
         "no equilibrium was found under outer race control, and there is one without gyroscopic moments: that of ball \

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::ball::Place;
 use super::trial::{SharedMatrix, SharedVector, Trial, evaluate, finish};
 use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
+use crate::contact::form::SHORTEST;
 use crate::model::bodies::Race;
 use crate::model::{Conditions, Model};
 use crate::numerics::motion::Pose;
@@ -304,6 +305,17 @@ impl<'a> Problem<'a> {
                 if load > 0.0 && !(least..=most).contains(&angle) {
                     let limit = if angle < least { least } else { most };
                     return Err(EquilibriumError::LeftGroove { ball: index + 1, race, angle, limit });
+                }
+            }
+        }
+        for (race, form) in
+            Race::BOTH.into_iter().filter_map(|race| Some((race, self.model.form[race].as_ref()?)))
+        {
+            for (index, ball) in solution.balls.iter().enumerate() {
+                let (order, span) = (form.order, ball.report.spans[race]);
+                if order * span > SHORTEST {
+                    let (race, ball, longest) = (race.name(), index + 1, (SHORTEST / span).floor());
+                    return Err(EquilibriumError::ShortWave { race, order, ball, span, longest });
                 }
             }
         }

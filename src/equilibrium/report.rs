@@ -10,7 +10,7 @@ use super::Equilibrium;
 use super::ball::BallBalance;
 use crate::contact::geometry::GrooveContact;
 use crate::contact::shoulder::largest_share;
-use crate::model::bodies::Race;
+use crate::model::bodies::{PerRace, Race};
 use crate::model::{Conditions, Model};
 use crate::numerics::scalar::{Dual, Single, values};
 
@@ -41,6 +41,8 @@ pub struct BallReport {
     pub inner_shoulder_share: f64,
     /// [-] share of the outer load beyond the shoulders of the outer race.
     pub outer_shoulder_share: f64,
+    /// [rad] half width of the contact with each race along rolling over the radius of the race there, where the race has waves.
+    pub(super) spans: PerRace<f64>,
 }
 
 impl BallReport {
@@ -57,6 +59,12 @@ impl BallReport {
             let semi_axis = shape.semi_axis_transverse * contact.approach.value.max(0.0).sqrt();
             model.bearing.shoulder_share(race, towards_x, semi_axis)
         };
+        let span = |race: Race, contact: &GrooveContact<Dual<8>>| {
+            let semi_axis =
+                contacts[race].shape.at(contact.circumferential_curvature.value).semi_axis_rolling;
+            let out = contact.normal.dot(&contact.radial).value * model.bearing.ball.radius;
+            semi_axis * contact.approach.value.max(0.0).sqrt() / (contact.radius.value + out)
+        };
         let inner_contact_angle = angle(&balance.inner, inner_axis, -1.0);
         let outer_contact_angle = angle(&balance.outer, &Vector3::x(), 1.0);
         Self {
@@ -72,6 +80,10 @@ impl BallReport {
             outer_hertz_stiffness: balance.stiffness.outer.value,
             inner_shoulder_share: share(Race::Inner, &balance.inner, -inner_contact_angle),
             outer_shoulder_share: share(Race::Outer, &balance.outer, outer_contact_angle),
+            spans: PerRace {
+                inner: span(Race::Inner, &balance.inner),
+                outer: span(Race::Outer, &balance.outer),
+            },
         }
     }
 

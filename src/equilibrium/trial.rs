@@ -8,7 +8,7 @@ use super::ball::{
 use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
-use crate::model::bodies::Race;
+use crate::model::bodies::{PerRace, Race};
 use crate::numerics::rotation::{from_rotation_vector, rotate, turn};
 use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, values};
 
@@ -96,9 +96,24 @@ fn shared(model: &Model, input: &EquilibriumInput, unknowns: &SharedVector) -> S
     Shared {
         position: axes.seen(&position),
         axis: axes.seen(&axis),
+        across: across(input, unknowns),
         cage_speed: variable(unknowns, 5),
         gravity: axes.gravity(&model.gravity),
     }
+}
+
+/// [-] y axes of both races in the frame of the outer one, which does not turn with it.
+fn across(input: &EquilibriumInput, unknowns: &SharedVector) -> PerRace<Vector3<f64>> {
+    let moved = UnitQuaternion::new(Vector3::new(0.0, unknowns[3], unknowns[4]));
+    let tilts = match input.race {
+        Race::Inner => PerRace { inner: moved, outer: input.resting.orientation },
+        Race::Outer => PerRace { inner: input.resting.orientation, outer: moved },
+    };
+    let frame = tilts.outer.inverse();
+    PerRace::new(|race| {
+        let (sin, cos) = input.turned[race].sin_cos();
+        frame * (tilts[race] * Vector3::new(0.0, cos, sin))
+    })
 }
 
 /// Axis of a race of rotation vector [0, ry, rz].
@@ -144,12 +159,12 @@ pub fn evaluate(
         // From where it was, from between the races, or from the bottom of the outer groove.
         let kept = start.map(|places| places[j]);
         let fresh: [&dyn Fn() -> Place; 2] = [&|| middle_of_gap(model, &shared, azimuth), &|| {
-            bottom_of_outer_groove(model, input, &shared, azimuth)
+            bottom_of_outer_groove(model, input, &shared, j)
         }];
         let settled = |shared: &Shared| {
             let starts = kept.into_iter().chain(fresh.iter().map(|place| place()));
             starts.into_iter().find_map(|mut place| {
-                settle(model, input, shared, azimuth, &mut place, tolerance).map(|balance| (balance, place))
+                settle(model, input, shared, j, &mut place, tolerance).map(|balance| (balance, place))
             })
         };
         // A free ball that would fall off the side of a groove stays where it is, as if without weight.

@@ -161,6 +161,15 @@ impl Bearing {
         }
     }
 
+    /// [1/m] curvature of a race along its circumference at the free contact angle; convex (inner race) positive.
+    pub fn circumferential_curvature(&self, race: Race) -> f64 {
+        let (orbit, cos) = (0.5 * self.pitch_diameter, self.free_contact_angle.cos());
+        match race {
+            Race::Inner => cos / (orbit - self.ball.radius * cos),
+            Race::Outer => -cos / (orbit + self.ball.radius * cos),
+        }
+    }
+
     /// \[rad] smallest and largest contact angle for which there is a groove: up to a right angle on either side; on the
     /// washers of a thrust bearing 30 degrees to either side of the free contact angle.
     pub fn contact_angles(&self) -> [f64; 2] {

@@ -12,6 +12,9 @@ use nalgebra::Vector3;
 
 use crate::contact::ContactModel;
 use crate::contact::ball_ball::BallBallModel;
+use crate::contact::form::Form;
+use crate::contact::surface::{BallSize, Surface};
+use crate::effects::form::Shape;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::numerics::arrowhead::Offsets;
@@ -48,6 +51,10 @@ pub struct Model {
     pub epsilon_switch: f64,
     /// [s/m] Hunt-Crossley dissipation factor.
     pub damping: f64,
+    /// Form of the races, where they depart from a torus.
+    pub form: PerRace<Option<Form>>,
+    /// Sizes of the balls on each race, where they are not alike.
+    sizes: Option<PerRace<Vec<BallSize>>>,
     /// [m/s2] gravity.
     pub gravity: Vector3<f64>,
     /// Are condensed stiffness and damping reported?
@@ -69,9 +76,19 @@ impl Model {
             inner: RigidBody::under_wrench(Race::Inner, scene),
             outer: RigidBody::under_wrench(Race::Outer, scene).or_else(|| RigidBody::on_hinge(&scene.outer)),
         };
+        let raceways = PerRace::try_new(|race| RacewayContacts::new(scene, &bearing, race))?;
+        let larger = scene.effects.form.larger_radii();
+        let size = |race: Race, larger: f64| BallSize {
+            larger,
+            stiffness: raceways[race]
+                .shape
+                .stiffness_of_larger(larger, bearing.circumferential_curvature(race)),
+        };
+        let sizes = |race: Race| larger.iter().map(|larger| size(race, *larger)).collect();
+        let sizes = (!larger.is_empty()).then(|| PerRace::new(sizes));
         Ok(Self {
             bodies: Bodies::new(races, section.map(|section| Some(RigidBody::cage(section)))),
-            raceways: PerRace::try_new(|race| RacewayContacts::new(scene, &bearing, race))?,
+            raceways,
             switch: None,
             ball_contact: cage.is_none().then(|| {
                 let material = (scene.ball.youngs_modulus.0, scene.ball.poisson_ratio);
@@ -82,6 +99,8 @@ impl Model {
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,
             damping: scene.effects.damping.factor.0,
+            form: PerRace::new(|race| scene.effects.form.of(race == Race::Inner).and_then(Shape::form)),
+            sizes,
             gravity: scene.effects.gravity.vector(),
             stiffness_outputs: scene.effects.stiffness.on,
             solver: scene.solver,
@@ -108,9 +127,14 @@ impl Model {
         conditions: &Conditions,
     ) -> ContactModel<'a> {
         ContactModel {
-            raceway: self.bearing.raceway(race),
+            surface: Surface {
+                raceway: *self.bearing.raceway(race),
+                ball_radius: self.bearing.ball.radius,
+                form: self.form[race].as_ref(),
+                sizes: self.sizes.as_ref().map(|sizes| &*sizes[race]),
+                ball: 0,
+            },
             shape: &raceway.shape,
-            ball_radius: self.bearing.ball.radius,
             law: raceway.law(),
             across: raceway.across(),
             groove_bend: raceway.groove_bend,

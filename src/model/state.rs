@@ -120,6 +120,7 @@ impl BodyState {
         RaceMotion {
             position: self.pose.position,
             axis: self.axes[0],
+            across: self.axes[1],
             velocity: self.velocity,
             angular_velocity: self.angular_velocity,
         }
@@ -146,6 +147,7 @@ pub fn race_motion(pose: &Pose, twist: &Twist) -> RaceMotion<f64> {
     RaceMotion {
         position: pose.position,
         axis: pose.orientation * Vector3::x(),
+        across: pose.orientation * Vector3::y(),
         velocity: twist.velocity,
         angular_velocity: twist.angular_velocity,
     }

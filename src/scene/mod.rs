@@ -17,6 +17,7 @@ use crate::effects;
 pub use crate::effects::Effects;
 pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
+use crate::effects::form::FormSection;
 pub use crate::schema::{
     Accuracy, BearingSection, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver, Group,
     Groups, InputGivers, Interface, Load, Material, Misalignment, Orientation, RaceLoad, RaceSection,
@@ -51,6 +52,9 @@ pub struct Scene {
     regularised: Regularised,
     /// The section of the cage, until it joins its effect.
     cage: Option<CageSection>,
+    /// The section of the form of races and balls, until it joins its effect.
+    #[serde(default)]
+    form: FormSection,
     /// Inner race.
     #[serde(default)]
     pub inner: RaceSection,
@@ -79,21 +83,23 @@ impl Scene {
     /// # Errors
     /// See [`SceneError`]; with the line.
     pub fn parse(text: &str) -> Result<Self, SceneError> {
-        Self::parse_of(text, None)
+        Self::parse_of(text, None, Path::new(""))
     }
 
     /// Reads a scene from the text of a file.
-    fn parse_of(text: &str, file: Option<&str>) -> Result<Self, SceneError> {
-        Self::read(text).map_err(|(error, spot)| explain::with_place(error, text, spot, file))
+    fn parse_of(text: &str, file: Option<&str>, folder: &Path) -> Result<Self, SceneError> {
+        Self::read(text, folder).map_err(|(error, spot)| explain::with_place(error, text, spot, file))
     }
 
-    /// Reads a scene; an error with the spot \[bytes] where the text cannot be read.
-    fn read(text: &str) -> Result<Self, (SceneError, Option<usize>)> {
+    /// Reads a scene whose files are in a folder; an error with the spot \[bytes] where the text cannot be read.
+    fn read(text: &str, folder: &Path) -> Result<Self, (SceneError, Option<usize>)> {
         let mut scene: Self = toml::from_str(text)
             .map_err(|why| (explain::format_error(text, &why), why.span().map(|span| span.start)))?;
         scene.source = text.to_string();
         scene.effects.creep.regularised = std::mem::take(&mut scene.regularised);
         scene.effects.cage.section = scene.cage.take();
+        scene.effects.form.section = std::mem::take(&mut scene.form);
+        scene.read_files(folder).map_err(|why| (why, None))?;
         if scene.solver.follows != Follows::Nothing {
             let Scales { approach, frequency } = Scales::of(&scene);
             scene.solver.follow(frequency, approach);
@@ -101,6 +107,24 @@ impl Scene {
         scene.solver.fit_to(scene.bearing.ball_diameter.0);
         scene.check().map_err(|why| (why, None))?;
         Ok(scene)
+    }
+
+    /// Reads the files that the scene names. Its text then has their numbers in their place, so that it stands alone.
+    fn read_files(&mut self, folder: &Path) -> Result<(), SceneError> {
+        let files = self.effects.form.section.read_files(folder)?;
+        if files.is_empty() {
+            return Ok(());
+        }
+        let mut table: toml::Table =
+            toml::from_str(&self.source).map_err(|why| explain::format_error(&self.source, &why))?;
+        for (race, profile) in files {
+            let shape = table.get_mut("form").and_then(|form| form.get_mut(race)?.get_mut("profile"));
+            if let Some(shape) = shape {
+                *shape = profile;
+            }
+        }
+        self.source = table.to_string();
+        Ok(())
     }
 
     /// Checks every value against its range, and the keys against one another.
@@ -125,7 +149,7 @@ impl Scene {
     pub fn load(path: &Path) -> Result<Self, SceneError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| SceneError::Read { path: path.display().to_string(), source })?;
-        Self::parse_of(&text, Some(&path.display().to_string()))
+        Self::parse_of(&text, Some(&path.display().to_string()), path.parent().unwrap_or(Path::new("")))
     }
 }
 

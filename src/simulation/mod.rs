@@ -12,6 +12,7 @@ mod script;
 mod slip;
 mod spin_balance;
 mod start;
+mod step_limits;
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -365,6 +366,9 @@ impl Simulation {
         let mut aside = Workspace::default();
         while self.state.time < end {
             let remaining = end - self.state.time;
+            if let Some(limit) = step_limits::largest_step(&self.model, &self.state) {
+                self.state.control.cap(limit);
+            }
             let h = self.state.control.step_within(remaining);
             // The last step ends at the communication point to the bit.
             let last = h >= remaining * (1.0 - 1e-9);

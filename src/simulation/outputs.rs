@@ -104,7 +104,11 @@ impl Outputs {
                 }
             });
             let output = |race: Race| {
-                let contact = models[race].completed(&contacts.raceways[race], &ball.motion(), &races[race]);
+                let contact = models[race].of_ball(index, None).completed(
+                    &contacts.raceways[race],
+                    &ball.motion(),
+                    &races[race],
+                );
                 contact_output(model, race, &contact, &races[race].axis)
             };
             BallOutput {

@@ -81,6 +81,7 @@ pub fn from_inputs(
     problem.friction = inputs.friction;
     problem.resting =
         Pose { position: Vector3::zeros(), orientation: spin_free(&inputs[resting].pose.orientation) };
+    problem.turned = PerRace::new(|race| turn_of(&inputs[race].pose.orientation));
     let moves = race.section(scene).drive == Drive::Wrench;
     let speed = |of: Race| if of == race && moves { inputs[of].speed } else { own_spin(&inputs[of]) };
     (problem.inner_speed, problem.outer_speed) = (speed(Race::Inner), speed(Race::Outer));
@@ -130,6 +131,12 @@ fn own_spin(input: &RaceInput) -> f64 {
 /// Orientation of a race without its turn about its own axis; that of the outer race is the equilibrium's frame.
 fn spin_free(race: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::rotation_between(&Vector3::x(), &(race * Vector3::x())).unwrap_or_default()
+}
+
+/// \[rad] turn of a race about its own axis beyond its tilt.
+fn turn_of(race: &UnitQuaternion<f64>) -> f64 {
+    let across = spin_free(race).inverse() * (race * Vector3::y());
+    across.z.atan2(across.y)
 }
 
 /// The state of a solution: balls roll, races move as the inputs say.

@@ -388,7 +388,7 @@ fn residual(end: &Simulation, before: &State) -> f64 {
     for (index, (now, old)) in state.balls.iter().zip(&before.balls).enumerate() {
         // Polynomials are those that the step was solved with.
         let [inner, outer] = Race::BOTH.map(|race| {
-            let contact = contacts[race].of_ball(state.difference(index, race));
+            let contact = contacts[race].of_ball(index, state.difference(index, race));
             contact.evaluate(&now.motion(), &races[race as usize])
         });
         let mut force = model.gravity * ball.mass + inner.force + outer.force;
