@@ -24,6 +24,8 @@ const OFF: &str = "[effects]\ncreep = \"frictionless\"\n";
 fn alone(example: &str) -> String {
     match example.contains("creep = ") || example.contains("heathcote_slip = ") {
         true => example.to_string(),
+        // Effects with a section of their own have no key of `[effects]`.
+        false if !example.contains("[effects]") => format!("[effects]\ncreep = \"saturated\"\n{example}"),
         false => example.replacen("[effects]\n", "[effects]\ncreep = \"saturated\"\n", 1),
     }
 }
@@ -62,6 +64,11 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
         ("effects.per_ball_outputs", 220, &["ball["]),
         ("effects.full_complement", 4, &["neighbours."]),
         ("effects.shoulder_outputs", 2, &["shoulder."]),
+        (
+            "growth",
+            11,
+            &["clearance", "contact_angle.free", "interference.", "seat_pressure.", "temperature_rise."],
+        ),
     ];
     for effect in parse(OFF).effects.each() {
         let info = effect.info();
@@ -74,7 +81,9 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
         assert!(added.iter().all(|name| starts.iter().any(|start| name.starts_with(start))), "{added:?}");
         // Behind it are parameters, its own among them.
         let rest = on[..first_parameter].iter().chain(&on[first_parameter + count..]);
-        let others: Vec<_> = rest.filter(|name| !name.starts_with("cage.") || base.contains(name)).collect();
+        let own = ["cage.", "growth.", "ball.thermal_expansion", "race.density", "race.thermal_expansion"];
+        let is_own = |name: &&String| own.iter().any(|start| name.starts_with(start)) && !base.contains(name);
+        let others: Vec<_> = rest.filter(|name| !is_own(name)).collect();
         assert_eq!(others, base.iter().collect::<Vec<_>>(), "{}", info.key);
     }
     // A cage adds its pockets to every ball.
@@ -110,11 +119,14 @@ fn what_is_told_about_an_effect_is_complete_and_its_example_switches_it_on() {
             assert_eq!(effect.setting().is_some(), other == index, "{} by {}", effect.info().key, info.key);
         }
         // The key is one of the scene file: no other would be read.
-        let key = info.key.strip_prefix("effects.").unwrap();
-        assert!(info.example.contains(&format!("{key} = ")), "{}", info.example);
-        let misspelt = info.example.replacen(&format!("{key} = "), &format!("{key}s = "), 1);
+        let (section, key, written) = match info.key.strip_prefix("effects.") {
+            Some(key) => ("effects.", key, format!("{key} = ")),
+            None => ("", info.key, format!("[{}]", info.key)),
+        };
+        assert!(info.example.contains(&written), "{}", info.example);
+        let misspelt = info.example.replacen(&written, &written.replacen(key, &format!("{key}s"), 1), 1);
         let message = Scene::parse(&with(&misspelt)).unwrap_err().to_string();
-        for part in [&format!("effects.{key}s is no known key: did you mean"), key, "line"] {
+        for part in [&format!("{section}{key}s is no known key: did you mean"), key, "line"] {
             assert!(message.contains(part), "{message}\nshould name {part}");
         }
     }

@@ -84,6 +84,8 @@ pub struct ContactModel<'a> {
     pub surface: Surface,
     /// Shape of its contacts: stiffness, ellipse and creep coefficients over the approach.
     pub shape: &'a ContactShape,
+    /// [-] Hertz stiffness over that of `shape`, whose dimensions growth has changed since.
+    pub stiffening: f64,
     /// Creep law of rolling along the circumference.
     pub law: Law<'a>,
     /// Rolling across it; none where there is no friction.
@@ -204,7 +206,7 @@ impl ContactModel<'_> {
         let offset = ball.position - race.position;
         let geometry = GrooveContact::new(&self.surface, &offset, race);
         let depth = geometry.approach.positive_part();
-        let stiffness = self.shape.stiffness(geometry.circumferential_curvature);
+        let stiffness = self.shape.stiffness(geometry.circumferential_curvature).scale(self.stiffening);
         let (arm, race_arm) = kinematics::arms(geometry.normal, self.surface.ball_radius, &offset);
         let rate = match self.damping == 0.0 {
             true => S::zero(),
@@ -275,7 +277,8 @@ impl ContactModel<'_> {
         let depth = geometry.approach.positive_part();
         let root = depth.sqrt();
         let shape = self.shape.at(geometry.circumferential_curvature);
-        let load = NormalLoad::hertz(shape.stiffness, depth, root, surfaces.approach_rate, self.damping);
+        let stiffness = shape.stiffness.scale(self.stiffening);
+        let load = NormalLoad::hertz(stiffness, depth, root, surfaces.approach_rate, self.damping);
 
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
@@ -290,7 +293,7 @@ impl ContactModel<'_> {
         let contact = BallRaceContact {
             geometry,
             load: load.total,
-            stiffness: shape.stiffness,
+            stiffness,
             semi_axes: [shape.semi_axis_rolling, shape.semi_axis_transverse],
             rolling_speed: rolling.speed,
             creepage: rolling.creepage,

@@ -6,9 +6,10 @@ use super::ball::BallTrial;
 use super::neighbours::NeighbourTrial;
 use super::{Boundary, Workspace, body};
 use crate::contact::pair::PairForces;
+use crate::effects::growth::Growth;
 use crate::forces::{BallPair, Contacts, Pairs, Totals, between_cage_and_lands};
 use crate::model::Model;
-use crate::model::bodies::{Body, Race};
+use crate::model::bodies::{Body, PerRace, Race};
 use crate::model::state::{BallState, BodyState, Powers, State, axes_of};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
@@ -84,11 +85,48 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
         }
         state.count_turn(turned, 0.5 * step.h * (spin + state.rate.x));
     }
+    if let Some(growth) = &model.growth {
+        powers.input += growth_power(model, growth, state, boundary, step.h, workspace);
+        state.warmth = Some(boundary.conditions.warmth);
+    }
     state.energies.add(&state.powers, &powers, step.h);
     state.powers = powers;
     let raceways = workspace.balls.iter().flat_map(|ball| ball.raceways.iter().copied());
     let pairs = raceways.chain(solved.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
+}
+
+/// \[W] power that rings and balls put in by their growth in a step of `h` \[s]: it presses contacts together or lets go of them.
+fn growth_power(
+    model: &Model,
+    growth: &Growth,
+    state: &State,
+    boundary: &Boundary,
+    h: f64,
+    workspace: &Workspace,
+) -> f64 {
+    let [before, now] = [state.warmth.unwrap_or_default(), boundary.conditions.warmth];
+    if before == now {
+        return 0.0;
+    }
+    let ball = growth.ball_radius(&now) - growth.ball_radius(&before);
+    let changes = PerRace::new(|race| {
+        let [old, new] = [before, now].map(|warmth| growth.raceway(race as usize, &warmth));
+        let closing = ball - (new.groove_radius - old.groove_radius);
+        let circle = new.groove_circle_radius - old.groove_circle_radius;
+        (closing, circle, new.groove_offset - old.groove_offset)
+    });
+    let contacts = workspace.contacts(model);
+    let mut work = 0.0;
+    for ball in &contacts.balls {
+        for race in Race::BOTH {
+            let (contact, (closing, circle, along)) = (&ball.raceways[race], changes[race]);
+            let (normal, axis) = (&contact.geometry.normal, &state.race(race).axes[0]);
+            let apart = normal.dot(&contact.geometry.radial) * circle + normal.dot(axis) * along;
+            work += contact.load * (closing - apart);
+        }
+    }
+    work / h
 }
 
 /// \[W] power of the weight of all balls.
@@ -180,6 +218,7 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
         };
     }
     state.powers = powers;
+    state.warmth = model.growth.as_ref().map(|_| boundary.conditions.warmth);
     let pairs = contacts.raceway_pairs().chain(contacts.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }

@@ -34,6 +34,10 @@ pub struct Setup<'a> {
     pub saturates: bool,
     /// Is there a cage?
     pub cage: bool,
+    /// May the inner and the outer race turn by the scene's script?
+    pub turning: [bool; 2],
+    /// [1/K] coefficients of thermal expansion of balls and races.
+    pub expansions: [f64; 2],
 }
 
 /// How the value of a variable is found in what is reported.

@@ -51,7 +51,7 @@ impl BallReport {
             let normal = values(&contact.normal) * sign;
             normal.dot(axis).atan2(normal.dot(&values(&contact.radial)))
         };
-        let contacts = model.contacts(&Conditions { friction: 0.0 });
+        let contacts = model.contacts(&Conditions::default());
         let share = |race: Race, contact: &GrooveContact<Dual<8>>, towards_x: f64| {
             let shape = contacts[race].shape.at(contact.circumferential_curvature.value);
             let semi_axis = shape.semi_axis_transverse * contact.approach.value.max(0.0).sqrt();
@@ -88,7 +88,7 @@ impl Equilibrium {
     /// \[Pa] largest contact pressure.
     pub fn peak_pressure(&self, model: &Model) -> f64 {
         let radius = model.bearing.ball.radius;
-        let contacts = model.contacts(&Conditions { friction: 0.0 });
+        let contacts = model.contacts(&Conditions::default());
         let mut largest = 0.0f64;
         for ball in &self.balls {
             let (b, orbit) = (&ball.report, ball.position.yz().norm());
@@ -117,7 +117,7 @@ impl Equilibrium {
         let [fx, fy, fz, my, mz] = self.load;
         let stiffness: Vec<Vec<f64>> =
             self.stiffness.row_iter().map(|row| row.iter().copied().collect()).collect();
-        json!({
+        let mut report = json!({
             "units": "SI: m, N, N m, rad, rad/s",
             "displacement": { "x": x, "y": y, "z": z, "ry": ry, "rz": rz },
             "race": self.race.name(),
@@ -143,7 +143,18 @@ impl Equilibrium {
                 "inner_shoulder_share": column(|b| b.inner_shoulder_share),
                 "outer_shoulder_share": column(|b| b.outer_shoulder_share),
             },
-        })
+        });
+        if let (Some(growth), Some(report)) = (&self.growth, report.as_object_mut()) {
+            let of_races = |[inner, outer]: [f64; 2]| json!({ "inner": inner, "outer": outer });
+            let grown = json!({
+                "clearance": growth.clearance,
+                "contact_angle": growth.contact_angle,
+                "interference": of_races(growth.interference),
+                "seat_pressure": of_races(growth.seat_pressure),
+            });
+            report.insert("growth".into(), grown);
+        }
+        report
     }
 }
 
@@ -161,6 +172,20 @@ impl fmt::Display for Equilibrium {
         writeln!(f, "              My {my:.5} N m  Mz {mz:.5} N m         is the opposite)")?;
         writeln!(f, "cage speed    {:.4} rad/s", self.cage_speed)?;
         writeln!(f, "residual      {:.2e} of the load, {} iterations\n", self.residual, self.iterations)?;
+        if let Some(growth) = &self.growth {
+            let (clearance, angle) = (growth.clearance * 1e6, growth.contact_angle.to_degrees());
+            writeln!(f, "clearance     {clearance:.3} um, free contact angle {angle:.4} deg (grown)")?;
+            for (race, (interference, pressure)) in
+                ["inner", "outer"].into_iter().zip(growth.interference.into_iter().zip(growth.seat_pressure))
+            {
+                let (interference, pressure) = (interference * 1e6, pressure * 1e-6);
+                writeln!(
+                    f,
+                    "seat          {race}: interference {interference:.3} um, pressure {pressure:.3} MPa"
+                )?;
+            }
+            writeln!(f)?;
+        }
         writeln!(f, "stiffness     external load Fx, Fy, Fz [N], My, Mz [N m] by x, y, z [m], ry, rz [rad]")?;
         for row in self.stiffness.row_iter() {
             let row: Vec<String> = row.iter().map(|value| format!("{value:12.4e}")).collect();

@@ -145,6 +145,7 @@ pub fn evaluate(
 ) -> Result<Trial, EquilibriumError> {
     let shared = shared(model, input, unknowns);
     let axes = OuterAxes::new(input, unknowns);
+    let contacts = model.contacts(&input.surroundings());
     let n = model.bearing.n_balls;
     let mut trial = Trial {
         load: SVector::zeros(),
@@ -158,7 +159,7 @@ pub fn evaluate(
         let azimuth = model.bearing.ball_azimuth(j);
         // From where it was, from between the races, or from the bottom of the outer groove.
         let kept = start.map(|places| places[j]);
-        let fresh: [&dyn Fn() -> Place; 2] = [&|| middle_of_gap(model, &shared, azimuth), &|| {
+        let fresh: [&dyn Fn() -> Place; 2] = [&|| middle_of_gap(&contacts, &shared, azimuth), &|| {
             bottom_of_outer_groove(model, input, &shared, azimuth)
         }];
         let settled = |shared: &Shared| {
@@ -251,6 +252,7 @@ pub fn finish(
         cage_speed,
         residual,
         iterations,
+        growth: model.growth.as_ref().map(|growth| growth.output(&input.surroundings().warmth)),
         balls,
     }
 }

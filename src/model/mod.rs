@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 use crate::contact::ContactModel;
 use crate::contact::ball_ball::BallBallModel;
 use crate::contact::surface::Surface;
+use crate::effects::growth::{Growth, Warmth};
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::numerics::arrowhead::Offsets;
@@ -23,10 +24,19 @@ use raceways::RacewayContacts;
 use switch::Switch;
 
 /// Conditions that may change from step to step and are the same in every contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Conditions {
     /// [-] friction coefficient of the ball-race contacts.
     pub friction: f64,
+    /// Temperatures and speeds that rings and balls have grown by; not used where growth is not simulated.
+    pub warmth: Warmth,
+}
+
+impl Conditions {
+    /// Those of a friction coefficient, where nothing has grown.
+    pub fn of_friction(friction: f64) -> Self {
+        Self { friction, ..Self::default() }
+    }
 }
 
 /// Everything that stays the same during a run.
@@ -44,6 +54,8 @@ pub struct Model {
     pub cage: Option<CageModel>,
     /// Neighbouring balls against each other, where no cage keeps them apart.
     pub ball_contact: Option<BallBallModel>,
+    /// Growth of rings and balls, where it is simulated.
+    pub growth: Option<Growth>,
     /// [-] change of creepages over sliding ones after which Kalker's polynomials are solved anew.
     pub epsilon_switch: f64,
     /// [s/m] Hunt-Crossley dissipation factor.
@@ -79,6 +91,7 @@ impl Model {
                 BallBallModel::new(bearing.ball.radius, material, friction)
             }),
             cage,
+            growth: scene.effects.growth.growth(&scene.bearing, &scene.ball, &scene.race),
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,
             damping: scene.effects.damping.factor.0,
@@ -107,9 +120,17 @@ impl Model {
         race: Race,
         conditions: &Conditions,
     ) -> ContactModel<'a> {
+        let (raceway_now, ball_radius, stiffening) = match &self.growth {
+            None => (*self.bearing.raceway(race), self.bearing.ball.radius, 1.0),
+            Some(growth) => {
+                let (index, warmth) = (race as usize, &conditions.warmth);
+                (growth.raceway(index, warmth), growth.ball_radius(warmth), growth.stiffening(index, warmth))
+            }
+        };
         ContactModel {
-            surface: Surface { raceway: *self.bearing.raceway(race), ball_radius: self.bearing.ball.radius },
+            surface: Surface { raceway: raceway_now, ball_radius },
             shape: &raceway.shape,
+            stiffening,
             law: raceway.law(),
             across: raceway.across(),
             groove_bend: raceway.groove_bend,

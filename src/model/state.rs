@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::bodies::{Bodies, Body, PerRace, Race};
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
+use crate::effects::growth::Warmth;
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::arrowhead::Eliminated;
 use crate::numerics::motion::{Pose, Twist, Wrench};
@@ -252,6 +253,8 @@ pub struct State {
     pub energies: Energies,
     /// Work since the start.
     pub statistics: Statistics,
+    /// Temperatures and speeds that rings and balls have grown by; none where growth is not simulated.
+    pub warmth: Option<Warmth>,
 }
 
 impl State {

@@ -17,6 +17,7 @@ use crate::effects;
 pub use crate::effects::Effects;
 pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
+use crate::effects::growth;
 pub use crate::schema::{
     Accuracy, BearingSection, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver, Group,
     Groups, InputGivers, Interface, Load, Material, Misalignment, Orientation, RaceLoad, RaceSection,
@@ -51,6 +52,8 @@ pub struct Scene {
     regularised: Regularised,
     /// The section of the cage, until it joins its effect.
     cage: Option<CageSection>,
+    /// The section of temperatures and fits, until it joins its effect.
+    growth: Option<growth::Section>,
     /// Inner race.
     #[serde(default)]
     pub inner: RaceSection,
@@ -94,6 +97,7 @@ impl Scene {
         scene.source = text.to_string();
         scene.effects.creep.regularised = std::mem::take(&mut scene.regularised);
         scene.effects.cage.section = scene.cage.take();
+        scene.effects.growth.section = scene.growth.take();
         if scene.solver.follows != Follows::Nothing {
             let Scales { approach, frequency } = Scales::of(&scene);
             scene.solver.follow(frequency, approach);
@@ -115,7 +119,17 @@ impl Scene {
     fn setup(&self) -> effects::Setup<'_> {
         let saturates = self.effects.creep.law.saturates();
         let cage = self.effects.cage.on;
-        effects::Setup { bearing: &self.bearing, friction: &self.friction, saturates, cage }
+        let turns = |race: &RaceSection, speed: &Schedule| {
+            race.drive == Drive::Pose || speed.values().into_iter().any(|speed| speed != 0.0)
+        };
+        effects::Setup {
+            bearing: &self.bearing,
+            friction: &self.friction,
+            saturates,
+            cage,
+            turning: [turns(&self.inner, &self.load.inner_speed), turns(&self.outer, &self.load.outer_speed)],
+            expansions: [&self.ball, &self.race].map(|material| material.thermal_expansion.0),
+        }
     }
 
     /// Reads a scene file.

@@ -172,6 +172,10 @@ quantities! {
     Acceleration = "m/s^2", "an acceleration", ["9.81 m/s^2", "9810 mm/s^2"];
     /// [s/m]
     DissipationFactor = "s/m", "a dissipation factor", ["0.02 s/m", "20 s/km"];
+    /// \[K] difference of two temperatures; there are no temperatures as such, whose zero would depend on the unit.
+    TemperatureRise = "K", "a difference of temperatures", ["40 K", "500 mK"];
+    /// [1/K]
+    ThermalExpansion = "1/K", "a coefficient of thermal expansion", ["12e-6 1/K", "0.012 1/kK"];
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::slip::{RollingOrbit, orbital_speed};
 use crate::contact::BallRaceContact;
 use crate::effects::Reports;
+use crate::effects::growth::GrowthOutput;
 pub use crate::effects::reports::{
     BallOutput, CageOutput, Condensed, ContactOutput, NeighboursOutput, PocketOutput,
 };
@@ -54,6 +55,8 @@ pub struct Outputs {
     pub neighbours: Option<NeighboursOutput>,
     /// Stiffness and damping of the running bearing, where they are asked for.
     pub condensed: Option<Condensed>,
+    /// The bearing as it has grown, where growth is simulated.
+    pub growth: Option<GrowthOutput>,
     /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
     pub cage_speed: f64,
     /// [-] 1 - cage speed over the orbital speed of balls that roll without slip at their contact angles on both races, their
@@ -125,7 +128,7 @@ impl Outputs {
         let mean_orbit = balls.iter().map(|ball| ball.orbital_speed).sum::<f64>() / balls.len() as f64;
         let cage_speed = cage.map_or(mean_orbit, |(_, state)| state.rate.x);
         let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
-        let rolling = RollingOrbit::mean(model, state, contacts, &races);
+        let rolling = RollingOrbit::mean(model, state, contacts, &races, models.inner.surface.ball_radius);
         let [inner, outer] = Race::BOTH.map(|race| race_output(state.race(race), model, race));
         Self {
             time: state.time,
@@ -136,6 +139,7 @@ impl Outputs {
             cage: cage_output,
             neighbours: neighbours(model, state, contacts),
             condensed: model.stiffness_outputs.then(|| Condensed::new(model, state, conditions)),
+            growth: model.growth.as_ref().map(|growth| growth.output(&conditions.warmth)),
             cage_speed,
             cage_slip: rolling.slip_of(cage_speed),
             ball_slip: rolling.slip_of(rolling.orbit),
@@ -167,6 +171,7 @@ impl Outputs {
             cage: self.cage.as_ref(),
             neighbours: self.neighbours.as_ref(),
             condensed: self.condensed.as_ref(),
+            growth: self.growth.as_ref(),
         }
     }
 }
