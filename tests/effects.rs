@@ -56,14 +56,16 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
     let base = names(&parse(OFF));
     let first_parameter = base.iter().position(|name| name == "bearing.ball_diameter").unwrap();
     // Effect, how many variables it adds, and how their names begin: 36 coefficients twice; of a cage without lands 22;
-    // of 10 balls 22 each; of neighbouring balls 4.
+    // of 10 balls 29 each; of neighbouring balls 4.
     let adding = [
         ("effects.stiffness_outputs", 72, &["stiffness.", "damping."][..]),
         ("effects.cage", 22, &["cage."]),
         ("effects.heathcote_slip", 1, &["power.groove"]),
-        ("effects.per_ball_outputs", 220, &["ball["]),
+        ("effects.per_ball_outputs", 290, &["ball["]),
         ("effects.full_complement", 4, &["neighbours."]),
-        ("effects.shoulder_outputs", 2, &["shoulder."]),
+        ("effects.shoulder_outputs", 4, &["shoulder."]),
+        ("effects.heat_outputs", 4, &["heat."]),
+        ("rating", 4, &["life."]),
         (
             "growth",
             11,
@@ -81,7 +83,14 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
         assert!(added.iter().all(|name| starts.iter().any(|start| name.starts_with(start))), "{added:?}");
         // Behind it are parameters, its own among them.
         let rest = on[..first_parameter].iter().chain(&on[first_parameter + count..]);
-        let own = ["cage.", "growth.", "ball.thermal_expansion", "race.density", "race.thermal_expansion"];
+        let own = [
+            "cage.",
+            "growth.",
+            "rating.",
+            "ball.thermal_expansion",
+            "race.density",
+            "race.thermal_expansion",
+        ];
         let is_own = |name: &&String| own.iter().any(|start| name.starts_with(start)) && !base.contains(name);
         let others: Vec<_> = rest.filter(|name| !is_own(name)).collect();
         assert_eq!(others, base.iter().collect::<Vec<_>>(), "{}", info.key);
@@ -92,7 +101,7 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
                       inertia = [1e-5, 6e-6, 6e-6]\npocket_clearance = 2e-4\nguided_by = \"balls\"\n",
     );
     let on = names(&both);
-    assert_eq!(on.len(), base.len() + 22 + 10 * (22 + 6) + 5);
+    assert_eq!(on.len(), base.len() + 22 + 10 * (29 + 6) + 5);
     assert_eq!(on.iter().filter(|name| name.contains("].pocket.")).count(), 60);
     assert_eq!(on.iter().collect::<BTreeSet<_>>().len(), on.len(), "names are unique");
 }

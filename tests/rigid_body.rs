@@ -57,6 +57,8 @@ impl Flight {
             energies: Energies::default(),
             statistics: Statistics::default(),
             warmth: None,
+            rating: None,
+            heat: None,
         };
         let speed = state.race(Race::Inner).rate.x;
         let load = BodyLoad { speed, ..BodyLoad::default() };

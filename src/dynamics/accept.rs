@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::ball::BallTrial;
 use super::neighbours::NeighbourTrial;
+use super::record::record;
 use super::{Boundary, Workspace, body};
 use crate::contact::pair::PairForces;
 use crate::effects::growth::Growth;
@@ -89,6 +90,7 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
         powers.input += growth_power(model, growth, state, boundary, step.h, workspace);
         state.warmth = Some(boundary.conditions.warmth);
     }
+    record(model, state, &solved, Some(step.h));
     state.energies.add(&state.powers, &powers, step.h);
     state.powers = powers;
     let raceways = workspace.balls.iter().flat_map(|ball| ball.raceways.iter().copied());
@@ -219,6 +221,7 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     }
     state.powers = powers;
     state.warmth = model.growth.as_ref().map(|_| boundary.conditions.warmth);
+    record(model, state, &contacts, None);
     let pairs = contacts.raceway_pairs().chain(contacts.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }

@@ -12,6 +12,7 @@ mod local_error;
 mod matrix;
 mod neighbours;
 mod reaction;
+mod record;
 mod sensitivity;
 
 use nalgebra::{DVector, Vector6};

@@ -27,8 +27,10 @@ pub mod full_complement;
 pub mod gravity;
 pub mod groove_slip;
 pub mod growth;
+pub mod heat;
 pub mod keys;
 pub mod per_ball;
+pub mod rating;
 pub mod reports;
 pub mod shoulder;
 pub mod stiffness;
@@ -77,7 +79,7 @@ macro_rules! effects {
     };
 }
 
-effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, growth }
+effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, growth, rating, heat }
 
 impl Effects {
     /// Checks all numbers against their ranges.

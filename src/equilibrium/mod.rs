@@ -14,6 +14,7 @@ use nalgebra::{SMatrix, UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use crate::effects::growth::{GrowthOutput, Rises, Warmth};
+use crate::effects::rating::LifeOutput;
 use crate::model::bearing::BeyondShoulder;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::{Conditions, Model};
@@ -233,6 +234,8 @@ pub struct Equilibrium {
     pub iterations: u32,
     /// The bearing as it has grown, where growth is simulated.
     pub growth: Option<GrowthOutput>,
+    /// Rating life under these loads, where it is asked for.
+    pub life: Option<LifeOutput>,
     /// Balls.
     pub balls: Vec<BallEquilibrium>,
 }

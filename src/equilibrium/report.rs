@@ -154,6 +154,15 @@ impl Equilibrium {
             });
             report.insert("growth".into(), grown);
         }
+        if let (Some(life), Some(report)) = (&self.life, report.as_object_mut()) {
+            let rated = json!({
+                "L10r": life.reference,
+                "modified": life.modified,
+                "equivalent_load": life.equivalent_load,
+                "static_safety": life.static_safety,
+            });
+            report.insert("life".into(), rated);
+        }
         report
     }
 }
@@ -185,6 +194,14 @@ impl fmt::Display for Equilibrium {
                 )?;
             }
             writeln!(f)?;
+        }
+        if let Some(life) = &self.life {
+            let (load, safety) = (life.equivalent_load, life.static_safety);
+            write!(f, "life          L10r {:.5e} million revolutions", life.reference)?;
+            if let Some(modified) = life.modified {
+                write!(f, ", modified {modified:.5e}")?;
+            }
+            writeln!(f, "; P {load:.2} N, static safety {safety:.3}\n")?;
         }
         writeln!(f, "stiffness     external load Fx, Fy, Fz [N], My, Mz [N m] by x, y, z [m], ry, rz [rad]")?;
         for row in self.stiffness.row_iter() {

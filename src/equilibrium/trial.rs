@@ -237,6 +237,10 @@ pub fn finish(
             }
         })
         .collect();
+    let life = model.rating.as_ref().map(|rating| {
+        let loads = trial.balances.iter().map(|ball| [ball.inner_load.value, ball.outer_load.value]);
+        rating.life(&rating.rates(loads, input.inner_speed - input.outer_speed))
+    });
     // With the cage speed following: eliminate the last unknown.
     let t = &trial.tangent;
     let pivot = t[(5, 5)];
@@ -253,6 +257,7 @@ pub fn finish(
         residual,
         iterations,
         growth: model.growth.as_ref().map(|growth| growth.output(&input.surroundings().warmth)),
+        life,
         balls,
     }
 }

@@ -100,6 +100,13 @@ impl Bearing {
         self.shoulders[race].share_beyond(towards_x, half_angle)
     }
 
+    /// \[rad] distance of a contact ellipse from the nearer end of the groove: contact angle \[rad] towards +x, transverse semi-axis
+    /// \[m]; negative where it is cut.
+    pub fn shoulder_margin(&self, race: Race, towards_x: f64, semi_axis: f64) -> f64 {
+        let half_angle = (semi_axis / self.ball.radius).min(1.0).asin();
+        self.shoulders[race].margin(towards_x, half_angle)
+    }
+
     /// Refuses contacts with a race that carry load beyond its shoulders, by ball: loads \[N] and contact angles \[rad] towards
     /// +x.
     ///

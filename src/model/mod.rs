@@ -13,6 +13,7 @@ use crate::contact::ContactModel;
 use crate::contact::ball_ball::BallBallModel;
 use crate::contact::surface::Surface;
 use crate::effects::growth::{Growth, Warmth};
+use crate::effects::rating::Rating;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::numerics::arrowhead::Offsets;
@@ -56,6 +57,10 @@ pub struct Model {
     pub ball_contact: Option<BallBallModel>,
     /// Growth of rings and balls, where it is simulated.
     pub growth: Option<Growth>,
+    /// Ratings of life, where it is asked for.
+    pub rating: Option<Rating>,
+    /// Is heat reported by part?
+    pub heat_outputs: bool,
     /// [-] change of creepages over sliding ones after which Kalker's polynomials are solved anew.
     pub epsilon_switch: f64,
     /// [s/m] Hunt-Crossley dissipation factor.
@@ -91,6 +96,8 @@ impl Model {
                 BallBallModel::new(bearing.ball.radius, material, friction)
             }),
             cage,
+            rating: scene.effects.rating.rating(&scene.bearing, &bearing.materials),
+            heat_outputs: scene.effects.heat.on,
             growth: scene.effects.growth.growth(&scene.bearing, &scene.ball, &scene.race),
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,

@@ -7,6 +7,7 @@ use super::bodies::{Bodies, Body, PerRace, Race};
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::effects::growth::Warmth;
+use crate::effects::{heat, rating};
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::arrowhead::Eliminated;
 use crate::numerics::motion::{Pose, Twist, Wrench};
@@ -255,6 +256,10 @@ pub struct State {
     pub statistics: Statistics,
     /// Temperatures and speeds that rings and balls have grown by; none where growth is not simulated.
     pub warmth: Option<Warmth>,
+    /// Loads since the start as life counts them; none where it is not asked for.
+    pub rating: Option<rating::Sums>,
+    /// Heat since the start by contact; none where it is not reported.
+    pub heat: Option<heat::Sums>,
 }
 
 impl State {

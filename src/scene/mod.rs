@@ -17,7 +17,7 @@ use crate::effects;
 pub use crate::effects::Effects;
 pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
-use crate::effects::growth;
+use crate::effects::{growth, rating};
 pub use crate::schema::{
     Accuracy, BearingSection, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver, Group,
     Groups, InputGivers, Interface, Load, Material, Misalignment, Orientation, RaceLoad, RaceSection,
@@ -54,6 +54,8 @@ pub struct Scene {
     cage: Option<CageSection>,
     /// The section of temperatures and fits, until it joins its effect.
     growth: Option<growth::Section>,
+    /// The section of the rating life, until it joins its effect.
+    rating: Option<rating::Section>,
     /// Inner race.
     #[serde(default)]
     pub inner: RaceSection,
@@ -98,6 +100,7 @@ impl Scene {
         scene.effects.creep.regularised = std::mem::take(&mut scene.regularised);
         scene.effects.cage.section = scene.cage.take();
         scene.effects.growth.section = scene.growth.take();
+        scene.effects.rating.section = scene.rating.take();
         if scene.solver.follows != Follows::Nothing {
             let Scales { approach, frequency } = Scales::of(&scene);
             scene.solver.follow(frequency, approach);

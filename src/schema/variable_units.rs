@@ -90,8 +90,10 @@ pub const NEWTON_METRE_SECOND_PER_RADIAN: Unit = unit("N.m.s/rad", "RotationalDa
 pub const KELVIN: Unit = unit("K", "TemperatureDifference", [0, 0, 0, 0]).kelvin(1);
 /// Coefficient of thermal expansion.
 pub const PER_KELVIN: Unit = unit("1/K", "ThermalExpansion", [0, 0, 0, 0]).kelvin(-1);
+/// Kinematic viscosity.
+pub const SQUARE_METRE_PER_SECOND: Unit = unit("m2/s", "KinematicViscosity", [0, 2, -1, 0]);
 /// Every unit, in the order of the model description.
-pub const ALL: [Unit; 28] = [
+pub const ALL: [Unit; 29] = [
     ONE,
     METRE,
     DIMENSION,
@@ -120,6 +122,7 @@ pub const ALL: [Unit; 28] = [
     NEWTON_METRE_SECOND_PER_RADIAN,
     KELVIN,
     PER_KELVIN,
+    SQUARE_METRE_PER_SECOND,
 ];
 
 /// Unit of a parameter of a scene, whose ranges name units as scene files write them.

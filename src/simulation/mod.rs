@@ -206,6 +206,8 @@ impl Simulation {
             })
             && snapshot.state.statistics.plausible()
             && snapshot.state.warmth.is_some() == self.state.warmth.is_some()
+            && snapshot.state.rating.is_some() == self.state.rating.is_some()
+            && snapshot.state.heat.is_some() == self.state.heat.is_some()
             && snapshot.inputs.rises.is_some() == self.inputs.rises.is_some();
         if same {
             self.inputs = snapshot.inputs;
@@ -293,6 +295,9 @@ impl Simulation {
         let begin = self.state.time;
         if !(end > begin && end.is_finite()) {
             return Err(SimulationError::Backwards { from: begin, to: end });
+        }
+        if let Some(heat) = &mut self.state.heat {
+            heat.mark(begin);
         }
         let script = Script::new(&self.scene, scripted);
         let mut given = self.inputs;

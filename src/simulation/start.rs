@@ -210,6 +210,8 @@ fn state(
         energies: Energies::default(),
         statistics: Statistics::default(),
         warmth: model.growth.map(|_| problem.surroundings().warmth),
+        rating: model.rating.map(|_| Default::default()),
+        heat: model.heat_outputs.then(Default::default),
     })
 }
 
