@@ -357,7 +357,11 @@ fn invariant_temperatures_as_inputs_do_what_the_script_does() {
     assert!(inputs.clone().all(|row| row.causality == Causality::Input && row.unit.name == "K"));
     let values: Vec<f64> =
         inputs.map(|row| names.value(row, by_inputs.inputs(), by_inputs.outputs())).collect();
-    assert_eq!(values, [1.5, 0.9, 1.2, 0.0, 0.0]);
+    let expected = [1.5, 0.9, 1.2, 0.0, 0.0];
+    assert!(
+        values.iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-12),
+        "{values:?}"
+    );
 }
 
 #[test]
@@ -383,7 +387,7 @@ fn invariant_sensitivities_of_a_step_by_temperatures_are_those_of_repeated_steps
         again.advance(1.1e-3).unwrap();
         thrust(&again)
     };
-    let difference = (repeated(0.1) - repeated(-0.1)) / 0.2;
+    let difference = (repeated(1e-3) - repeated(-1e-3)) / 2e-3;
     assert!(difference > 10.0, "{difference} N/K");
     assert!((linear / difference - 1.0).abs() < 1e-4, "{linear} {difference}");
 }

@@ -56,7 +56,7 @@ impl Flight {
             powers: Powers::default(),
             energies: Energies::default(),
             statistics: Statistics::default(),
-            warmth: None,
+            grown: None,
             rating: None,
             heat: None,
         };

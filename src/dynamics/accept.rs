@@ -7,10 +7,10 @@ use super::neighbours::NeighbourTrial;
 use super::record::record;
 use super::{Boundary, Workspace, body};
 use crate::contact::pair::PairForces;
-use crate::effects::growth::Growth;
+use crate::effects::growth::Grown;
 use crate::forces::{BallPair, Contacts, Pairs, Totals, between_cage_and_lands};
 use crate::model::Model;
-use crate::model::bodies::{Body, PerRace, Race};
+use crate::model::bodies::{Body, Race};
 use crate::model::state::{BallState, BodyState, Powers, State, axes_of};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
@@ -87,8 +87,9 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
         state.count_turn(turned, 0.5 * step.h * (spin + state.rate.x));
     }
     if let Some(growth) = &model.growth {
-        powers.input += growth_power(model, growth, state, boundary, step.h, workspace);
-        state.warmth = Some(boundary.conditions.warmth);
+        let grown = grown(&workspace.contacts(model), state, boundary);
+        state.energies.input += state.grown.map_or(0.0, |before| growth.work(&before, &grown));
+        state.grown = Some(grown);
     }
     record(model, state, &solved, Some(step.h));
     state.energies.add(&state.powers, &powers, step.h);
@@ -98,37 +99,18 @@ pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtS
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }
 
-/// \[W] power that rings and balls put in by their growth in a step of `h` \[s]: it presses contacts together or lets go of them.
-fn growth_power(
-    model: &Model,
-    growth: &Growth,
-    state: &State,
-    boundary: &Boundary,
-    h: f64,
-    workspace: &Workspace,
-) -> f64 {
-    let [before, now] = [state.warmth.unwrap_or_default(), boundary.conditions.warmth];
-    if before == now {
-        return 0.0;
-    }
-    let ball = growth.ball_radius(&now) - growth.ball_radius(&before);
-    let changes = PerRace::new(|race| {
-        let [old, new] = [before, now].map(|warmth| growth.raceway(race as usize, &warmth));
-        let closing = ball - (new.groove_radius - old.groove_radius);
-        let circle = new.groove_circle_radius - old.groove_circle_radius;
-        (closing, circle, new.groove_offset - old.groove_offset)
-    });
-    let contacts = workspace.contacts(model);
-    let mut work = 0.0;
+/// What rings and balls have grown by, and what these contacts set against it.
+fn grown(contacts: &Contacts, state: &State, boundary: &Boundary) -> Grown {
+    let mut grown = Grown { warmth: boundary.conditions.warmth, ..Grown::default() };
     for ball in &contacts.balls {
         for race in Race::BOTH {
-            let (contact, (closing, circle, along)) = (&ball.raceways[race], changes[race]);
+            let contact = &ball.raceways[race];
             let (normal, axis) = (&contact.geometry.normal, &state.race(race).axes[0]);
-            let apart = normal.dot(&contact.geometry.radial) * circle + normal.dot(axis) * along;
-            work += contact.load * (closing - apart);
+            let radial = normal.dot(&contact.geometry.radial);
+            grown.pushes[race as usize].add(contact.load, radial, normal.dot(axis));
         }
     }
-    work / h
+    grown
 }
 
 /// \[W] power of the weight of all balls.
@@ -220,7 +202,7 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
         };
     }
     state.powers = powers;
-    state.warmth = model.growth.as_ref().map(|_| boundary.conditions.warmth);
+    state.grown = model.growth.as_ref().map(|_| grown(&contacts, state, boundary));
     record(model, state, &contacts, None);
     let pairs = contacts.raceway_pairs().chain(contacts.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));

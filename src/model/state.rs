@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::bodies::{Bodies, Body, PerRace, Race};
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
-use crate::effects::growth::Warmth;
+use crate::effects::growth::Grown;
 use crate::effects::{heat, rating};
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::arrowhead::Eliminated;
@@ -254,8 +254,8 @@ pub struct State {
     pub energies: Energies,
     /// Work since the start.
     pub statistics: Statistics,
-    /// Temperatures and speeds that rings and balls have grown by; none where growth is not simulated.
-    pub warmth: Option<Warmth>,
+    /// What rings and balls have grown by; none where growth is not simulated.
+    pub grown: Option<Grown>,
     /// Loads since the start as life counts them; none where it is not asked for.
     pub rating: Option<rating::Sums>,
     /// Heat since the start by contact; none where it is not reported.

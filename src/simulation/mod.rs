@@ -205,7 +205,7 @@ impl Simulation {
                 Race::BOTH.into_iter().all(|race| of_ball[race].fits(self.model.polynomials(race)))
             })
             && snapshot.state.statistics.plausible()
-            && snapshot.state.warmth.is_some() == self.state.warmth.is_some()
+            && snapshot.state.grown.is_some() == self.state.grown.is_some()
             && snapshot.state.rating.is_some() == self.state.rating.is_some()
             && snapshot.state.heat.is_some() == self.state.heat.is_some()
             && snapshot.inputs.rises.is_some() == self.inputs.rises.is_some();
@@ -449,5 +449,5 @@ impl Simulation {
 
 /// Conditions of every contact of a state under these inputs.
 fn conditions(inputs: &Inputs, state: &State) -> Conditions {
-    Conditions { friction: inputs.friction, warmth: state.warmth.unwrap_or_default() }
+    Conditions { friction: inputs.friction, warmth: state.grown.unwrap_or_default().warmth }
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::effects::growth::Grown;
 use crate::equilibrium::{self, BallEquilibrium, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{Bodies, PerRace, Race};
@@ -209,7 +210,7 @@ fn state(
         powers: Powers::default(),
         energies: Energies::default(),
         statistics: Statistics::default(),
-        warmth: model.growth.map(|_| problem.surroundings().warmth),
+        grown: model.growth.map(|_| Grown { warmth: problem.surroundings().warmth, ..Grown::default() }),
         rating: model.rating.map(|_| Default::default()),
         heat: model.heat_outputs.then(Default::default),
     })

@@ -38,6 +38,35 @@ pub struct Warmth {
     pub spins: [f64; 2],
 }
 
+/// State of growth: where it has come to, and what it works against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Grown {
+    /// What rings and balls have grown by.
+    pub warmth: Warmth,
+    /// What the contacts of the inner and the outer race set against growth.
+    pub pushes: [Push; 2],
+}
+
+/// \[N] derivatives of the elastic energy of all contacts of a race by its dimensions and the balls'.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Push {
+    /// By the ball's radius, and by the groove's with the opposite sign.
+    pub closing: f64,
+    /// By the radius of the circle of groove centres.
+    pub circle: f64,
+    /// By the place of the groove along the axis.
+    pub along: f64,
+}
+
+impl Push {
+    /// Adds a contact of a load \[N]: radial and axial component of its normal, out of the ball.
+    pub fn add(&mut self, load: f64, radial: f64, axial: f64) {
+        self.closing += load;
+        self.circle -= load * radial;
+        self.along -= load * axial;
+    }
+}
+
 /// The effect as a scene has it: there is a section, or there is none.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
@@ -218,6 +247,23 @@ impl Growth {
         self.rings[index].stiffening.at(self.ball_radius(warmth), groove)
     }
 
+    /// \[J] work that growth puts into the contacts from one state to another: it presses them together, or lets go of them.
+    pub fn work(&self, from: &Grown, to: &Grown) -> f64 {
+        if from.warmth == to.warmth {
+            return 0.0;
+        }
+        let ball = self.ball_radius(&to.warmth) - self.ball_radius(&from.warmth);
+        let of_race = |race: usize| {
+            let [old, new] = [from, to].map(|grown| self.raceway(race, &grown.warmth));
+            let [before, now] = [from.pushes[race], to.pushes[race]];
+            let closing = ball - (new.groove_radius - old.groove_radius);
+            (before.closing + now.closing) * closing
+                + (before.circle + now.circle) * (new.groove_circle_radius - old.groove_circle_radius)
+                + (before.along + now.along) * (new.groove_offset - old.groove_offset)
+        };
+        0.5 * (of_race(0) + of_race(1))
+    }
+
     /// What is reported.
     pub fn output(&self, warmth: &Warmth) -> GrowthOutput {
         let [inner, outer] = [0, 1].map(|index| self.raceway(index, warmth));
@@ -256,7 +302,7 @@ impl Effect for Settings {
     const INFO: &'static Info = &Info {
         key: "growth",
         adds: "growth of rings and balls by temperature, by fits on shaft and in housing, and by rotation",
-        states: "none",
+        states: "what parts have grown by, and what contacts set against it (for the energy balance)",
         source: "Harris and Kotzalas 2006, ch. 3; Lame 1852; Timoshenko and Goodier, art. 32",
         example: "[growth]\ninner = \"50 K\"\nouter = \"30 K\"\nballs = \"40 K\"\n",
     };
