@@ -40,7 +40,7 @@ fn every_scene_says_its_purpose_and_runs_with_finite_numbers() {
             }
             std::ops::ControlFlow::<()>::Continue(())
         });
-        played.unwrap_or_else(|why| panic!("{name}: {why}"));
+        assert!(played.unwrap_or_else(|why| panic!("{name}: {why}")).is_continue());
         let outputs = simulation.outputs();
         assert_eq!(outputs.time, scene.load.duration.0, "{name}");
         let turned_over = outputs.work.abs().max(outputs.dissipated);

@@ -114,7 +114,7 @@ fn what_is_told_about_an_effect_is_complete_and_its_example_switches_it_on() {
     assert_eq!(keys.len(), effects.len());
     for (index, effect) in effects.iter().enumerate() {
         let info = effect.info();
-        for text in [info.key, info.adds, info.states, info.source, info.example] {
+        for text in [info.key, info.adds, info.states, info.source, info.price, info.example] {
             assert!(!text.trim().is_empty() && text.is_ascii(), "{info:?}");
         }
         let on = parse(&alone(info.example));
@@ -166,7 +166,7 @@ fn the_page_of_a_package_names_every_effect_on_or_off() {
             let row =
                 page.lines().find(|line| line.contains(&format!("<tr><td><code>{}</code></td>", info.key)));
             let row = row.unwrap_or_else(|| panic!("no row of {}", info.key));
-            for text in [info.adds, info.states, info.source] {
+            for text in [info.adds, info.states, info.source, info.price] {
                 assert!(row.contains(&escaped(text)), "{row}\nshould say {text}");
             }
         }

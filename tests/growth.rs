@@ -3,10 +3,12 @@
 #![allow(clippy::unwrap_used)]
 
 use roulement::Model;
+use roulement::contact::many::ContactGroup;
 use roulement::effects::growth::rings::{Cylinder, Fit};
 use roulement::equilibrium::{self, Equilibrium, EquilibriumInput, Gyroscopic};
 use roulement::interface::variables::{Causality, Variables};
 use roulement::model::bodies::Race;
+use roulement::numerics::lanes::WIDTH;
 use roulement::scene::{Groups, Scene};
 use roulement::simulation::Simulation;
 use roulement::simulation::inputs::Inputs;
@@ -278,8 +280,11 @@ fn independent_data_loads_of_every_ball() {
     }
 }
 
+/// Keys of a scene and their values.
+type Changes<'a> = &'a [(&'a str, &'a str)];
+
 /// T13 of the data: the preloaded bearing, held where the cold one carries 1500 N.
-fn preloaded(changes: &[(&str, &str)]) -> Scene {
+fn preloaded(changes: Changes<'_>) -> Scene {
     let case = Case::all().into_iter().find(|case| case.text("id") == "T13").unwrap();
     Scene::edited(&case.scene(true).source, changes.iter().copied()).unwrap()
 }
@@ -425,7 +430,11 @@ fn invariant_a_snapshot_in_the_middle_of_a_warming_goes_on_to_the_same_bits() {
 
 #[test]
 fn wrong_keys_are_refused_by_name_value_and_range() {
-    let cases: [(&[(&str, &str)], &[&str]); 11] = [
+    let cold = Scene::edited(&preloaded(&[]).source, [("growth", "")]).unwrap().source;
+    let message =
+        Scene::edited(&cold, [("interface.inputs.temperatures", "\"master\"")]).unwrap_err().to_string();
+    assert!(message.contains("interface.inputs.temperatures") && message.contains("[growth]"), "{message}");
+    let cases: [(Changes<'_>, &[&str]); 11] = [
         (&[("growth.inner", "\"50 degC\"")], &["growth.inner", "50 degC"]),
         (&[("growth.inner", "2000.0")], &["growth.inner = 2000", "[-300, 1000] K"]),
         (&[("growth.iner", "1.0")], &["growth.iner", "did you mean inner?"]),
@@ -455,6 +464,23 @@ fn wrong_keys_are_refused_by_name_value_and_range() {
         let message = Scene::edited(&plain, changes.iter().copied()).unwrap_err().to_string();
         for part in parts {
             assert!(message.contains(part), "{message}\nshould name {part}");
+        }
+    }
+}
+
+#[test]
+fn regression_warm_contacts_of_four_balls_at_a_time_are_those_of_one_to_the_bit() {
+    let mut simulation = Simulation::new(&preloaded(&[("load.inner_speed", "\"6000 rpm\"")])).unwrap();
+    simulation.advance(2e-4).unwrap();
+    let contacts = simulation.model().contacts(&simulation.conditions());
+    for race in Race::BOTH {
+        assert!(contacts[race].stiffening != 1.0);
+        let motion = simulation.state().race(race).motion();
+        let balls: [_; WIDTH] = std::array::from_fn(|lane| simulation.state().balls[3 * lane].motion());
+        let mut group = ContactGroup::filled(&contacts[race].evaluate(&balls[0], &motion));
+        group.evaluate(&contacts[race], &motion, &balls);
+        for (lane, ball) in balls.iter().enumerate() {
+            assert_eq!(group.contact(lane), contacts[race].evaluate(ball, &motion));
         }
     }
 }

@@ -16,8 +16,11 @@ const LOADS: &str = include_str!("data/life/life_ball_loads.json");
 const PUBLISHED: &str = include_str!("data/life/life_published_examples.csv");
 const FACTORS: &str = include_str!("data/life/life_a_iso.csv");
 
-/// Rows of a table by the names of its columns.
-fn rows(text: &str) -> Vec<Box<dyn Fn(&str) -> String + '_>> {
+/// Cells of a row by the names of its columns.
+type Row<'a> = Box<dyn Fn(&str) -> String + 'a>;
+
+/// Rows of a table.
+fn rows(text: &str) -> Vec<Row<'_>> {
     let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
     text.lines()
         .skip(1)
@@ -25,7 +28,7 @@ fn rows(text: &str) -> Vec<Box<dyn Fn(&str) -> String + '_>> {
             let (names, cells): (_, Vec<&str>) = (names.clone(), line.split(',').collect());
             Box::new(move |name: &str| {
                 cells[names.iter().position(|column| *column == name).unwrap()].to_string()
-            }) as Box<dyn Fn(&str) -> String>
+            }) as Row<'_>
         })
         .collect()
 }

@@ -106,8 +106,8 @@ fn grown(contacts: &Contacts, state: &State, boundary: &Boundary) -> Grown {
         for race in Race::BOTH {
             let contact = &ball.raceways[race];
             let (normal, axis) = (&contact.geometry.normal, &state.race(race).axes[0]);
-            let radial = normal.dot(&contact.geometry.radial);
-            grown.pushes[race as usize].add(contact.load, radial, normal.dot(axis));
+            let direction = [normal.dot(&contact.geometry.radial), normal.dot(axis)];
+            grown.pushes[race as usize].add(contact.load, contact.elastic_energy(), direction);
         }
     }
     grown

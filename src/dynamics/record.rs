@@ -22,7 +22,7 @@ pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, h: Option<f6
         let powers = powers(pairs, balls);
         match h {
             Some(h) => heat.add(powers, h),
-            None => heat.begin(powers),
+            None => heat.begin(powers, state.time),
         }
     }
 }

@@ -19,6 +19,8 @@ pub struct Info {
     pub states: &'static str,
     /// Author and year, or section of the paper.
     pub source: &'static str,
+    /// What it costs when on, measured: instructions of a step more than without it (`scripts/step-instructions` counts alike).
+    pub price: &'static str,
     /// Part of a scene that switches it on.
     pub example: &'static str,
 }

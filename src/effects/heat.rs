@@ -52,9 +52,10 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Takes the powers \[W] of this moment without a step.
-    pub fn begin(&mut self, powers: ByContact) {
+    /// Takes the powers \[W] of this moment, at a time \[s] that no step has led to.
+    pub fn begin(&mut self, powers: ByContact, time: f64) {
         self.powers = powers;
+        self.mark(time);
     }
 
     /// Adds a step of `h` \[s] by the trapezoidal rule, as the energy balance does.
@@ -110,6 +111,7 @@ impl Effect for Settings {
         adds: "report of the heat of friction that goes into races, balls and cage, as means between communication points",
         states: "energies lost to friction, by contact",
         source: "energy balance of the contacts; half of a contact's heat to each surface",
+        price: "0.5 % of a step (thrust case)",
         example: "[effects]\nheat_outputs = true\n",
     };
 

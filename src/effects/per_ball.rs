@@ -50,6 +50,7 @@ pub(super) fn motion_rows(ball: usize) -> Vec<Row> {
 
 type Contact = fn(&BallOutput) -> &ContactOutput;
 type FromContact = fn(&ContactOutput) -> f64;
+type FromBall = fn(&BallOutput) -> f64;
 
 /// Quantities of a contact with a race: name, unit, typical size, what it is, and its value.
 const QUANTITIES: [(&str, Unit, f64, &str, FromContact); 10] = [
@@ -85,6 +86,7 @@ impl Effect for Settings {
         adds: "report of every ball and its contacts",
         states: "none",
         source: "Bovet et al. 2013, sections 3.2 and 5",
+        price: "none in a step",
         example: "[effects]\nper_ball_outputs = true\n",
     };
 
@@ -97,7 +99,7 @@ impl Effect for Settings {
             return vec![];
         }
         let number = ball + 1;
-        let spins: [(&str, &str, fn(&BallOutput) -> f64); 3] = [
+        let spins: [(&str, &str, FromBall); 3] = [
             ("axial", "along the outer race's axis", |b| b.spin.x),
             ("radial", "radially away from the outer race's axis", |b| b.spin.y),
             ("tangential", "along the orbit", |b| b.spin.z),

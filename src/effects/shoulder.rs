@@ -44,6 +44,7 @@ impl Effect for Settings {
         adds: "report of the share of load that contact ellipses have beyond the shoulders of the races",
         states: "none",
         source: "Hertz's pressure, integrated beyond the edge of the groove",
+        price: "none in a step",
         example: "[effects]\nshoulder_outputs = true\n",
     };
 

@@ -55,7 +55,7 @@ impl BallReport {
         let share = |race: Race, contact: &GrooveContact<Dual<8>>, towards_x: f64| {
             let shape = contacts[race].shape.at(contact.circumferential_curvature.value);
             let semi_axis = shape.semi_axis_transverse * contact.approach.value.max(0.0).sqrt();
-            model.bearing.shoulder_share(race, towards_x, semi_axis)
+            model.bearing.shoulder(race, towards_x, semi_axis).0
         };
         let inner_contact_angle = angle(&balance.inner, inner_axis, -1.0);
         let outer_contact_angle = angle(&balance.outer, &Vector3::x(), 1.0);

@@ -28,8 +28,8 @@ fn drive(drive: Drive) -> &'static str {
 /// The row of an effect, on or off.
 fn effect(effect: &dyn AnyEffect) -> String {
     let (info, setting) = (effect.info(), effect.setting().unwrap_or_else(|| "off".into()));
-    let cells =
-        [&setting, info.adds, info.states, info.source].map(|text| format!("<td>{}</td>", escape(text)));
+    let cells = [&setting, info.adds, info.states, info.source, info.price]
+        .map(|text| format!("<td>{}</td>", escape(text)));
     format!("<tr><td><code>{}</code></td>{}</tr>\n", escape(info.key), cells.concat())
 }
 
@@ -106,7 +106,7 @@ pub fn page(scene: &Scene) -> String {
          <code>friction</code>, <code>temperatures</code>. Setting an input of such a group, or a derivative of one, ends the script of the whole \
          group; its other inputs stay at their last values. The log tells which scripts are played. An input that a script \
          gives reads as its value at the communication point, and directional derivatives by it are zero.</p>\n\
-         <h2>Effects</h2>\n<table><tr><th>key</th><th>here</th><th>adds</th><th>states</th><th>source</th></tr>\n\
+         <h2>Effects</h2>\n<table><tr><th>key</th><th>here</th><th>adds</th><th>states</th><th>source</th><th>price</th></tr>\n\
          {effects}</table>\n\
          <h2>Limits</h2>\n<ul><li>Rigid rings: the raceways do not bend; they grow by temperatures and fits only as <code>[growth]</code> says. No \
          lubricant film.</li>\n\

@@ -94,17 +94,12 @@ impl Bearing {
         }
     }
 
-    /// [-] share of a load beyond the shoulders of a race: contact angle \[rad] towards +x, transverse semi-axis \[m].
-    pub fn shoulder_share(&self, race: Race, towards_x: f64, semi_axis: f64) -> f64 {
+    /// [-] share of a load beyond the shoulders of a race, and \[rad] distance of its ellipse from the nearer end of the groove, negative
+    /// where it is cut: contact angle \[rad] towards +x, transverse semi-axis \[m].
+    pub fn shoulder(&self, race: Race, towards_x: f64, semi_axis: f64) -> (f64, f64) {
         let half_angle = (semi_axis / self.ball.radius).min(1.0).asin();
-        self.shoulders[race].share_beyond(towards_x, half_angle)
-    }
-
-    /// \[rad] distance of a contact ellipse from the nearer end of the groove: contact angle \[rad] towards +x, transverse semi-axis
-    /// \[m]; negative where it is cut.
-    pub fn shoulder_margin(&self, race: Race, towards_x: f64, semi_axis: f64) -> f64 {
-        let half_angle = (semi_axis / self.ball.radius).min(1.0).asin();
-        self.shoulders[race].margin(towards_x, half_angle)
+        let shoulders = &self.shoulders[race];
+        (shoulders.share_beyond(towards_x, half_angle), shoulders.margin(towards_x, half_angle))
     }
 
     /// Refuses contacts with a race that carry load beyond its shoulders, by ball: loads \[N] and contact angles \[rad] towards

@@ -361,6 +361,8 @@ fn contact_output(
     let root = contact.geometry.approach.max(0.0).sqrt();
     let [rolling, transverse] = contact.semi_axes.map(|axis| axis * root);
     let area = std::f64::consts::PI * rolling * transverse;
+    let (shoulder_share, shoulder_margin) =
+        model.bearing.shoulder(race, towards_x(contact, axis), transverse);
     ContactOutput {
         load: contact.load,
         contact_angle,
@@ -378,8 +380,8 @@ fn contact_output(
             .map_or(0.0, |curvature| -contact.creep.second_moment * curvature * contact.rolling_speed),
         semi_axis_rolling: rolling,
         semi_axis_transverse: transverse,
-        shoulder_share: model.bearing.shoulder_share(race, towards_x(contact, axis), transverse),
-        shoulder_margin: model.bearing.shoulder_margin(race, towards_x(contact, axis), transverse),
+        shoulder_share,
+        shoulder_margin,
         peak_pressure: if area > 0.0 { 1.5 * contact.load / area } else { 0.0 },
     }
 }

@@ -47,7 +47,7 @@ pub struct Grown {
     pub pushes: [Push; 2],
 }
 
-/// \[N] derivatives of the elastic energy of all contacts of a race by its dimensions and the balls'.
+/// Derivatives \[N] of the elastic energy of all contacts of a race by its dimensions and the balls'.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Push {
     /// By the ball's radius, and by the groove's with the opposite sign.
@@ -56,11 +56,14 @@ pub struct Push {
     pub circle: f64,
     /// By the place of the groove along the axis.
     pub along: f64,
+    /// \[J] the elastic energy itself, which stiffness changes in proportion.
+    pub energy: f64,
 }
 
 impl Push {
-    /// Adds a contact of a load \[N]: radial and axial component of its normal, out of the ball.
-    pub fn add(&mut self, load: f64, radial: f64, axial: f64) {
+    /// Adds a contact of a load \[N] and an elastic energy \[J]: radial and axial component of its normal, out of the ball.
+    pub fn add(&mut self, load: f64, energy: f64, [radial, axial]: [f64; 2]) {
+        self.energy += energy;
         self.closing += load;
         self.circle -= load * radial;
         self.along -= load * axial;
@@ -257,7 +260,9 @@ impl Growth {
             let [old, new] = [from, to].map(|grown| self.raceway(race, &grown.warmth));
             let [before, now] = [from.pushes[race], to.pushes[race]];
             let closing = ball - (new.groove_radius - old.groove_radius);
+            let [soft, stiff] = [from, to].map(|grown| self.stiffening(race, &grown.warmth));
             (before.closing + now.closing) * closing
+                + (before.energy / soft + now.energy / stiff) * (stiff - soft)
                 + (before.circle + now.circle) * (new.groove_circle_radius - old.groove_circle_radius)
                 + (before.along + now.along) * (new.groove_offset - old.groove_offset)
         };
@@ -304,6 +309,7 @@ impl Effect for Settings {
         adds: "growth of rings and balls by temperature, by fits on shaft and in housing, and by rotation",
         states: "what parts have grown by, and what contacts set against it (for the energy balance)",
         source: "Harris and Kotzalas 2006, ch. 3; Lame 1852; Timoshenko and Goodier, art. 32",
+        price: "4 % of a step (thrust case warming up), beside what warm contacts ask of the solver",
         example: "[growth]\ninner = \"50 K\"\nouter = \"30 K\"\nballs = \"40 K\"\n",
     };
 

@@ -254,6 +254,7 @@ impl Effect for Settings {
         adds: "report of rating life and static safety, from the loads of all balls since the start",
         states: "sums of powers of the loads over revolutions, the largest load",
         source: "ISO/TS 16281:2008, 4.3; ISO 281:2007; ISO 76",
+        price: "2.2 % of a step (thrust case)",
         example: "[rating]\nviscosity = \"20 mm^2/s\"\ncontamination = 0.5\n",
     };
 
