@@ -57,11 +57,14 @@ impl Flight {
             powers: Powers::default(),
             energies: Energies::default(),
             statistics: Statistics::default(),
+            grown: None,
+            rating: None,
+            heat: None,
         };
         let speed = state.race(Race::Inner).rate.x;
         let load = BodyLoad { speed, ..BodyLoad::default() };
         let motion = PerRace { inner: (pose, *twist), outer: (outer, Twist::default()) };
-        let conditions = Conditions { friction: 0.08 };
+        let conditions = Conditions::of_friction(0.08);
         let boundary = Boundary { time: 0.0, motion, loads: PerRace::new(|_| load), conditions };
         make_consistent(&model, &mut state, &boundary);
         Self { model, state, boundary, workspace: Workspace::default(), h }

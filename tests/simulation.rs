@@ -270,7 +270,7 @@ fn invariant_outputs_of_the_last_step_are_those_of_its_state() {
             simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
             simulation.advance(f64::from(point) * 1.3e-4).unwrap();
             let (model, state) = (simulation.model(), simulation.state());
-            let afresh = Outputs::new(model, state, &simulation.inputs().conditions());
+            let afresh = Outputs::new(model, state, &simulation.conditions());
             assert_eq!(*simulation.outputs(), afresh, "{}", simulation.scene().title);
         }
     }

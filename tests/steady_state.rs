@@ -95,7 +95,7 @@ fn distance_in_bands(simulation: &Simulation) -> f64 {
 /// its acceleration. Races, speed and friction are those of the run.
 fn static_loads(simulation: &Simulation, index: usize, fraction: f64, swing: bool) -> [f64; 2] {
     let (model, ball) = (simulation.model(), &simulation.state().balls[index]);
-    let contacts = Race::BOTH.map(|race| model.contact(race, &simulation.inputs().conditions()));
+    let contacts = Race::BOTH.map(|race| model.contact(race, &simulation.conditions()));
     let races = Race::BOTH.map(|race| simulation.state().race(race).motion());
     let (axis, offset) = (races[1].axis, ball.position - races[1].position);
     let across = offset - axis * offset.dot(&axis);

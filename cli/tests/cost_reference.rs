@@ -62,7 +62,7 @@ impl Balls<'_> {
     }
 
     fn contacts(&self, time: f64, ball: &BallMotion<f64>) -> [BallRaceContact<f64>; 2] {
-        let conditions = Conditions { friction: self.scene.friction.ball_race.at(0.0) };
+        let conditions = Conditions::of_friction(self.scene.friction.ball_race.at(0.0));
         let races = [(Race::Inner, self.inner(time)), (Race::Outer, Self::outer())];
         races.map(|(race, motion)| self.model.contact(race, &conditions).evaluate(ball, &motion))
     }

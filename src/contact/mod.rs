@@ -85,6 +85,8 @@ pub struct ContactModel<'a> {
     pub surface: Surface<'a>,
     /// Shape of its contacts: stiffness, ellipse and creep coefficients over the approach.
     pub shape: &'a ContactShape,
+    /// [-] Hertz stiffness over that of `shape`, whose dimensions growth has changed since.
+    pub stiffening: f64,
     /// Creep law of rolling along the circumference.
     pub law: Law<'a>,
     /// Rolling across it; none where there is no friction.
@@ -205,7 +207,7 @@ impl ContactModel<'_> {
         let offset = ball.position - race.position;
         let geometry = GrooveContact::new(&self.surface, &offset, race);
         let depth = geometry.approach.positive_part();
-        let mut stiffness = self.shape.stiffness(geometry.circumferential_curvature);
+        let mut stiffness = self.shape.stiffness(geometry.circumferential_curvature).scale(self.stiffening);
         if let Some(factor) = self.surface.of_balls::<S>(|size| size.stiffness) {
             stiffness *= factor;
         }
@@ -278,11 +280,12 @@ impl ContactModel<'_> {
         // normal load
         let depth = geometry.approach.positive_part();
         let root = depth.sqrt();
-        let mut shape = self.shape.at(geometry.circumferential_curvature);
+        let shape = self.shape.at(geometry.circumferential_curvature);
+        let mut stiffness = shape.stiffness.scale(self.stiffening);
         if let Some(factor) = self.surface.of_balls::<S>(|size| size.stiffness) {
-            shape.stiffness *= factor;
+            stiffness *= factor;
         }
-        let load = NormalLoad::hertz(shape.stiffness, depth, root, surfaces.approach_rate, self.damping);
+        let load = NormalLoad::hertz(stiffness, depth, root, surfaces.approach_rate, self.damping);
 
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
@@ -297,7 +300,7 @@ impl ContactModel<'_> {
         let contact = BallRaceContact {
             geometry,
             load: load.total,
-            stiffness: shape.stiffness,
+            stiffness,
             semi_axes: [shape.semi_axis_rolling, shape.semi_axis_transverse],
             rolling_speed: rolling.speed,
             creepage: rolling.creepage,

@@ -4,8 +4,10 @@ use nalgebra::Vector3;
 
 use super::ball::BallTrial;
 use super::neighbours::NeighbourTrial;
+use super::record::record;
 use super::{Boundary, Workspace, body};
 use crate::contact::pair::PairForces;
+use crate::effects::growth::Grown;
 use crate::forces::{
     BallPair, Contacts, Pairs, Totals, between_cage_and_lands, elastic_energy, kinetic_energy,
     kinetic_energy_of, stored_energy,
@@ -90,9 +92,18 @@ impl StepEnd {
     }
 
     /// [-] energy that the step leaves unaccounted for, over what is allowed; 0 where nothing is asked for.
-    pub fn energy_error(&self, model: &Model, state: &State, h: f64, workspace: &Workspace) -> f64 {
+    pub fn energy_error(
+        &self,
+        model: &Model,
+        state: &State,
+        boundary: &Boundary,
+        h: f64,
+        workspace: &Workspace,
+    ) -> f64 {
         let solver = &model.solver;
-        if solver.energy_error == 0.0 || h <= solver.energy_step.0 {
+        // The work of growth is known of an accepted step alone.
+        let grows = state.grown.is_some_and(|grown| grown.warmth != boundary.conditions.warmth);
+        if solver.energy_error == 0.0 || h <= solver.energy_step.0 || grows {
             return 0.0;
         }
         let ball = &model.bearing.ball;
@@ -146,9 +157,31 @@ pub fn accept(
     state.energies = end.energies;
     state.powers = end.powers;
     let solved = Solved { workspace, guide: model.cage_guide() };
+    if let Some(growth) = &model.growth {
+        let grown = grown(&workspace.contacts(model), state, boundary);
+        let work = state.grown.map_or(0.0, |before| growth.work(&before, &grown));
+        state.energies.input += work;
+        state.energies.unaccounted += work;
+        state.grown = Some(grown);
+    }
+    record(model, state, &solved, Some(step.h));
     let raceways = workspace.balls.iter().flat_map(|ball| ball.raceways.iter().copied());
     let pairs = raceways.chain(solved.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
+}
+
+/// What rings and balls have grown by, and what these contacts set against it.
+fn grown(contacts: &Contacts, state: &State, boundary: &Boundary) -> Grown {
+    let mut grown = Grown { warmth: boundary.conditions.warmth, ..Grown::default() };
+    for ball in &contacts.balls {
+        for race in Race::BOTH {
+            let contact = &ball.raceways[race];
+            let (normal, axis) = (&contact.geometry.normal, &state.race(race).axes[0]);
+            let direction = [normal.dot(&contact.geometry.radial), normal.dot(axis)];
+            grown.pushes[race as usize].add(contact.load, direction);
+        }
+    }
+    grown
 }
 
 /// \[W] power of the weight of all balls.
@@ -245,6 +278,8 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     }
     state.powers = powers;
     state.energies.stored = stored_energy(model, state, &contacts);
+    state.grown = model.growth.as_ref().map(|_| grown(&contacts, state, boundary));
+    record(model, state, &contacts, None);
     let pairs = contacts.raceway_pairs().chain(contacts.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }

@@ -246,7 +246,7 @@ impl BodyTrial {
     /// The same with derivatives by the rotation, after [`BodyTrial::differentiate`].
     pub fn body_motion(&self) -> Option<BodyMotion<D>> {
         let turn = self.derived.as_ref()?;
-        let RaceMotion { position, axis, velocity, angular_velocity } = self.motion;
+        let RaceMotion { position, axis, velocity, angular_velocity, .. } = self.motion;
         let axes = [axis, as_second(&turn.own_axis(1)), as_second(&turn.own_axis(2))];
         Some(BodyMotion { position, axes, velocity, angular_velocity })
     }

@@ -10,7 +10,7 @@ use super::{Boundary, Workspace};
 use crate::contact::many::ContactGroup;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::model::Model;
-use crate::model::bodies::{Body, PerRace, RigidBody};
+use crate::model::bodies::{Body, PerRace, Race, RigidBody};
 use crate::model::state::{BodyState, KeptMatrix, State, race_motion};
 use crate::numerics::arrowhead::{BLOCK, SLOTS};
 use crate::numerics::hht::HhtStep;
@@ -380,6 +380,19 @@ impl Workspace {
 }
 
 impl Boundary {
+    /// Takes the spins of the races, which rings grow by, from their motions and prescribed speeds.
+    pub fn see_spins(&mut self, model: &Model) {
+        if model.growth.is_some() {
+            self.conditions.warmth.spins = Race::BOTH.map(|race| match &model.bodies[race] {
+                Some(_) => self.loads[race].speed,
+                None => {
+                    let (pose, twist) = &self.motion[race];
+                    (pose.orientation.inverse() * twist.angular_velocity).x
+                }
+            });
+        }
+    }
+
     /// Load on a body from outside: applied wrench and weight.
     pub fn load_on(&self, body: Body, moved: &RigidBody, gravity: &Vector3<f64>) -> BodyLoad {
         let mut load = match body {

@@ -13,6 +13,7 @@ mod local_error;
 mod matrix;
 mod neighbours;
 mod reaction;
+mod record;
 mod sensitivity;
 mod step_turn;
 
@@ -160,7 +161,7 @@ pub fn try_step(
         Ok(()) => {
             let local = equations.local_error();
             let end = StepEnd::new(model, state, boundary, h, equations.workspace);
-            let energy = end.energy_error(model, state, h, equations.workspace);
+            let energy = end.energy_error(model, state, boundary, h, equations.workspace);
             match control.judge(larger(local, energy)) {
                 true => Ok(end),
                 false => {

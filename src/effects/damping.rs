@@ -16,6 +16,7 @@ impl Effect for Settings {
         adds: "loss of energy in the normal contacts of balls and races by their approach rate",
         states: "none",
         source: "Hunt and Crossley 1975",
+        price: "below 1 % of a step",
         example: "[effects]\ndamping = \"0.02 s/m\"\n",
     };
 

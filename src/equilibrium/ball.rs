@@ -3,11 +3,11 @@
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::{EquilibriumInput, Gyroscopic};
-use crate::contact::RaceMotion;
 use crate::contact::geometry::GrooveContact;
+use crate::contact::{ContactModel, RaceMotion};
+use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{PerRace, Race};
-use crate::model::{Conditions, Model};
 use crate::numerics::scalar::{Dual, Scalar, constant_vector};
 
 /// Directions of differentiation: ball axial and radial, x, y, z, ry, rz of the race that moves, cage speed.
@@ -76,9 +76,10 @@ pub struct BallBalance {
 /// slides along the outer groove moves along one coordinate, which Newton's method needs to follow a curved groove.
 pub type Place = Vector2<f64>;
 
-/// \[m] reference distance that turns the arc of a [`Place`] into an angle.
-fn arc_radius(model: &Model) -> f64 {
-    model.bearing.outer.groove_radius - model.bearing.ball.radius
+/// \[m] distance of the ball centre from the groove centre where a ball touches a race without load. That of the outer race turns
+/// the arc of a [`Place`] into an angle.
+fn arc_radius(contact: &ContactModel<'_>) -> f64 {
+    contact.surface.raceway.groove_radius - contact.surface.ball_radius
 }
 
 /// Balance of a ball (0 is the first).
@@ -92,8 +93,9 @@ pub fn balance(
     let ball = &model.bearing.ball;
     let azimuth = model.bearing.ball_azimuth(index);
     let (radial, tangential) = azimuth_directions(azimuth);
-    let outer_groove = &model.bearing.outer;
-    let angle = D::variable(place.x, 0, 1.0).scale(1.0 / arc_radius(model));
+    let contacts = model.contacts(&input.surroundings());
+    let (outer_groove, ball_radius) = (&contacts.outer.surface.raceway, contacts.outer.surface.ball_radius);
+    let angle = D::variable(place.x, 0, 1.0).scale(1.0 / arc_radius(&contacts.outer));
     let distance = D::variable(place.y, 1, 1.0);
     let sine = angle.map_smooth(|x| (x.sin(), x.cos()));
     let cosine = angle.map_smooth(|x| (x.cos(), -x.sin()));
@@ -109,14 +111,14 @@ pub fn balance(
             shared.across.outer,
         ),
     ];
-    let contacts = model.contacts(&Conditions { friction: 0.0 });
     let offset = position - shared.position;
     let surfaces = PerRace::new(|race| contacts[race].surface.under(index));
     let inner = GrooveContact::new(&surfaces.inner, &offset, &inner_race);
     let outer = GrooveContact::new(&surfaces.outer, &position, &outer_race);
+    let cold = |race: Race, curvature: D| contacts[race].shape.stiffness(curvature).scale(contacts[race].stiffening);
     let mut stiffness = PerRace {
-        inner: contacts.inner.shape.stiffness(inner.circumferential_curvature),
-        outer: contacts.outer.shape.stiffness(outer.circumferential_curvature),
+        inner: cold(Race::Inner, inner.circumferential_curvature),
+        outer: cold(Race::Outer, outer.circumferential_curvature),
     };
     for race in Race::BOTH {
         if let Some(factor) = surfaces[race].of_balls::<D>(|size| size.stiffness) {
@@ -132,7 +134,7 @@ pub fn balance(
     // rolling without slip at both contacts and without spin at the outer one (Jones's outer race control)
     let (inner_cos, inner_sin) = (-inner.normal.dot(&inner.radial), -inner.normal.dot(&shared.axis));
     let (outer_cos, outer_sin) = (outer.normal.dot(&outer.radial), outer.normal.x);
-    let g = D::constant(ball.radius) / radius;
+    let g = D::constant(ball_radius) / radius;
     let ratio =
         (D::one_minus(g * inner_cos)) / (D::constant(1.0) + inner_cos * outer_cos + inner_sin * outer_sin);
     let own_orbital_speed =
@@ -144,7 +146,7 @@ pub fn balance(
     let centrifugal_force = (radius * shared.cage_speed.square()).scale(ball.mass);
     let gyroscopic_moment = -(shared.cage_speed * spin[1]).scale(ball.inertia);
     // friction forces along n x e_t whose moments about the centre give the gyroscopic moment
-    let needed = gyroscopic_moment.scale(1.0 / ball.radius);
+    let needed = gyroscopic_moment.scale(1.0 / ball_radius);
     let [inner_friction, outer_friction] = match input.gyroscopic {
         Gyroscopic::None => [D::constant(0.0); 2],
         Gyroscopic::OuterRaceControl => [D::constant(0.0), needed],
@@ -164,15 +166,15 @@ pub fn balance(
     let (axial, radial_force) = (total.x, total.dot(&constant_vector(&radial)) + centrifugal_force);
     let mut residual = [axial * cosine - radial_force * sine, axial * sine + radial_force * cosine];
     if shared.cage_speed.value == 0.0 {
-        let middle = middle_of_gap(model, shared, azimuth);
-        residual[0] -= (angle.scale(arc_radius(model)) - D::constant(middle.x)).scale(IDLE_HOLD);
+        let middle = middle_of_gap(&contacts, shared, azimuth);
+        residual[0] -= (angle.scale(arc_radius(&contacts.outer)) - D::constant(middle.x)).scale(IDLE_HOLD);
         residual[1] -= (distance - D::constant(middle.y)).scale(IDLE_HOLD);
     }
     let (force, from, contact) = match input.race {
         Race::Inner => (inner_force, offset, &inner),
         Race::Outer => (outer_force, position, &outer),
     };
-    let arm = from + contact.normal.map(|c| c.scale(ball.radius));
+    let arm = from + contact.normal.map(|c| c.scale(ball_radius));
     BallBalance {
         residual,
         force,
@@ -191,9 +193,9 @@ pub fn balance(
 }
 
 /// Ball place with the same approach or gap at both races, on the line of the groove centres.
-pub fn middle_of_gap(model: &Model, shared: &Shared, azimuth: f64) -> Place {
+pub fn middle_of_gap(contacts: &PerRace<ContactModel<'_>>, shared: &Shared, azimuth: f64) -> Place {
     let (radial, _) = azimuth_directions(azimuth);
-    let (inner, outer) = (&model.bearing.inner, &model.bearing.outer);
+    let (inner, outer) = (&contacts.inner.surface.raceway, &contacts.outer.surface.raceway);
     let position = shared.position.map(|c| c.value);
     let axis = shared.axis.map(|c| c.value);
     // Groove centre of the inner race in the ball's plane, to first order in the tilt.
@@ -203,8 +205,7 @@ pub fn middle_of_gap(model: &Model, shared: &Shared, azimuth: f64) -> Place {
     let outer_centre = Vector2::new(outer.groove_offset, outer.groove_circle_radius);
     let line = inner_centre - outer_centre;
     let length = line.norm();
-    let (l_i, l_o) =
-        (inner.groove_radius - model.bearing.ball.radius, outer.groove_radius - model.bearing.ball.radius);
+    let (l_i, l_o) = (arc_radius(&contacts.inner), arc_radius(&contacts.outer));
     // Groove centres that coincide leave the direction open: any does.
     let angle = if length > 0.0 { line.x.atan2(line.y) } else { 0.0 };
     Vector2::new(angle * l_o, l_o + 0.5 * (length - l_i - l_o))
@@ -218,7 +219,7 @@ pub fn bottom_of_outer_groove(
     shared: &Shared,
     index: usize,
 ) -> Place {
-    let touching = Vector2::new(0.0, arc_radius(model));
+    let touching = Vector2::new(0.0, arc_radius(&model.contact(Race::Outer, &input.surroundings())));
     let there = balance(model, input, shared, index, &touching);
     let depth = (there.centrifugal_force.value / there.stiffness.outer.value).powf(2.0 / 3.0);
     touching + Vector2::new(0.0, depth)

@@ -13,9 +13,11 @@ mod trial;
 use nalgebra::{SMatrix, UnitQuaternion, Vector3};
 use thiserror::Error;
 
-use crate::model::Model;
+use crate::effects::growth::{GrowthOutput, Rises, Warmth};
+use crate::effects::rating::LifeOutput;
 use crate::model::bearing::BeyondShoulder;
 use crate::model::bodies::{PerRace, Race};
+use crate::model::{Conditions, Model};
 use crate::numerics::motion::Pose;
 use crate::scene::{Condition, Scene};
 use problem::{Found, Problem, Progress};
@@ -63,9 +65,17 @@ pub struct EquilibriumInput {
     pub gyroscopic: Gyroscopic,
     /// [-] friction coefficient, for [`Gyroscopic::Friction`].
     pub friction: f64,
+    /// \[K] rises of temperature; not used where growth is not simulated.
+    pub rises: Rises,
 }
 
 impl EquilibriumInput {
+    /// Conditions of every contact, without friction.
+    pub fn surroundings(&self) -> Conditions {
+        let warmth = Warmth { rises: self.rises, spins: [self.inner_speed, self.outer_speed] };
+        Conditions { friction: 0.0, warmth }
+    }
+
     /// The problem of a scene at time 0.
     pub fn from_scene(scene: &Scene, gyroscopic: Gyroscopic) -> Self {
         Self::at(scene, gyroscopic, 0.0)
@@ -100,6 +110,7 @@ impl EquilibriumInput {
             turned: PerRace::default(),
             gyroscopic,
             friction: scene.friction.ball_race.at(time),
+            rises: scene.effects.growth.rises(time).unwrap_or_default(),
         }
     }
 }
@@ -238,6 +249,10 @@ pub struct Equilibrium {
     pub residual: f64,
     /// Iterations on the displacements.
     pub iterations: u32,
+    /// The bearing as it has grown, where growth is simulated.
+    pub growth: Option<GrowthOutput>,
+    /// Rating life under these loads, where it is asked for.
+    pub life: Option<LifeOutput>,
     /// Balls.
     pub balls: Vec<BallEquilibrium>,
 }

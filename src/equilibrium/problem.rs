@@ -67,7 +67,7 @@ impl<'a> Problem<'a> {
         let diameter = 2.0 * bearing.ball.radius;
         let epicyclic =
             bearing.epicyclic_speed(bearing.free_contact_angle, input.inner_speed, input.outer_speed);
-        let smallest = model.contact(Race::Inner, &Conditions { friction: 0.0 }).shape.stiffness(0.0)
+        let smallest = model.contact(Race::Inner, &Conditions::default()).shape.stiffness(0.0)
             * (1e-6 * diameter).powf(1.5);
         let inertia_force = bearing.ball.mass * epicyclic * epicyclic * length;
         let weight =

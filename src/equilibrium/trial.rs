@@ -145,6 +145,7 @@ pub fn evaluate(
 ) -> Result<Trial, EquilibriumError> {
     let shared = shared(model, input, unknowns);
     let axes = OuterAxes::new(input, unknowns);
+    let contacts = model.contacts(&input.surroundings());
     let n = model.bearing.n_balls;
     let mut trial = Trial {
         load: SVector::zeros(),
@@ -158,7 +159,7 @@ pub fn evaluate(
         let azimuth = model.bearing.ball_azimuth(j);
         // From where it was, from between the races, or from the bottom of the outer groove.
         let kept = start.map(|places| places[j]);
-        let fresh: [&dyn Fn() -> Place; 2] = [&|| middle_of_gap(model, &shared, azimuth), &|| {
+        let fresh: [&dyn Fn() -> Place; 2] = [&|| middle_of_gap(&contacts, &shared, azimuth), &|| {
             bottom_of_outer_groove(model, input, &shared, j)
         }];
         let settled = |shared: &Shared| {
@@ -236,6 +237,10 @@ pub fn finish(
             }
         })
         .collect();
+    let life = model.rating.as_ref().map(|rating| {
+        let loads = trial.balances.iter().map(|ball| [ball.inner_load.value, ball.outer_load.value]);
+        rating.life(&rating.rates(loads, input.inner_speed - input.outer_speed))
+    });
     // With the cage speed following: eliminate the last unknown.
     let t = &trial.tangent;
     let pivot = t[(5, 5)];
@@ -251,6 +256,8 @@ pub fn finish(
         cage_speed,
         residual,
         iterations,
+        growth: model.growth.as_ref().map(|growth| growth.output(&input.surroundings().warmth)),
+        life,
         balls,
     }
 }

@@ -73,26 +73,11 @@ pub struct Bearing {
 }
 
 impl Bearing {
-    /// Builds the bearing of a scene (design conventions: groove centres from contact angle or clearance).
+    /// Builds the bearing of a scene.
     pub fn new(scene: &Scene) -> Self {
         let section = &scene.bearing;
         let (diameter, pitch) = (section.ball_diameter.0, section.pitch_diameter.0);
-        let (f_i, f_o) = (section.inner_conformity, section.outer_conformity);
-        // Distance A of the groove centres of a bearing without clearance.
-        let centre_distance = (f_i + f_o - 1.0) * diameter;
-        let (inner_circle, inner_offset, outer_circle, outer_offset) = match section.contact_angle {
-            Some(angle) => {
-                let (sin, cos) = angle.0.sin_cos();
-                let outer_circle = pitch / 2.0 - (f_o - 0.5) * diameter * cos;
-                let offsets = ((f_i - 0.5) * diameter * sin, -(f_o - 0.5) * diameter * sin);
-                (outer_circle + centre_distance * cos, offsets.0, outer_circle, offsets.1)
-            }
-            None => {
-                let clearance = section.diametral_clearance.map_or(0.0, |clearance| clearance.0);
-                let outer_circle = (pitch + diameter) / 2.0 + clearance / 4.0 - f_o * diameter;
-                (outer_circle + centre_distance - clearance / 2.0, 0.0, outer_circle, 0.0)
-            }
-        };
+        let [inner, outer] = section.raceways();
         let radius = diameter / 2.0;
         let mass = scene.ball.density.0 * 4.0 / 3.0 * PI * radius.powi(3);
         let materials = [&scene.ball, &scene.race].map(|m| (m.youngs_modulus.0, m.poisson_ratio));
@@ -102,25 +87,19 @@ impl Bearing {
             pitch_diameter: pitch,
             first_ball_azimuth: section.first_ball_azimuth.0,
             free_contact_angle: section.contact_angle.map_or(0.0, |angle| angle.0),
-            inner: Raceway {
-                groove_radius: f_i * diameter,
-                groove_circle_radius: inner_circle,
-                groove_offset: inner_offset,
-            },
-            outer: Raceway {
-                groove_radius: f_o * diameter,
-                groove_circle_radius: outer_circle,
-                groove_offset: outer_offset,
-            },
+            inner,
+            outer,
             shoulders: PerRace::new(|race| shoulders(scene, race)),
             materials: Pair::new(materials),
         }
     }
 
-    /// [-] share of a load beyond the shoulders of a race: contact angle \[rad] towards +x, transverse semi-axis \[m].
-    pub fn shoulder_share(&self, race: Race, towards_x: f64, semi_axis: f64) -> f64 {
+    /// [-] share of a load beyond the shoulders of a race, and \[rad] distance of its ellipse from the nearer end of the groove, negative
+    /// where it is cut: contact angle \[rad] towards +x, transverse semi-axis \[m].
+    pub fn shoulder(&self, race: Race, towards_x: f64, semi_axis: f64) -> (f64, f64) {
         let half_angle = (semi_axis / self.ball.radius).min(1.0).asin();
-        self.shoulders[race].share_beyond(towards_x, half_angle)
+        let shoulders = &self.shoulders[race];
+        (shoulders.share_beyond(towards_x, half_angle), shoulders.margin(towards_x, half_angle))
     }
 
     /// Refuses contacts with a race that carry load beyond its shoulders, by ball: loads \[N] and contact angles \[rad] towards

@@ -15,6 +15,8 @@ use crate::contact::ball_ball::BallBallModel;
 use crate::contact::form::Form;
 use crate::contact::surface::{BallSize, Surface};
 use crate::effects::form::Shape;
+use crate::effects::growth::{Growth, Warmth};
+use crate::effects::rating::Rating;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::ScaledKalker;
 use crate::numerics::arrowhead::Offsets;
@@ -26,10 +28,19 @@ use raceways::RacewayContacts;
 use switch::Switch;
 
 /// Conditions that may change from step to step and are the same in every contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Conditions {
     /// [-] friction coefficient of the ball-race contacts.
     pub friction: f64,
+    /// Temperatures and speeds that rings and balls have grown by; not used where growth is not simulated.
+    pub warmth: Warmth,
+}
+
+impl Conditions {
+    /// Those of a friction coefficient, where nothing has grown.
+    pub fn of_friction(friction: f64) -> Self {
+        Self { friction, ..Self::default() }
+    }
 }
 
 /// Everything that stays the same during a run.
@@ -47,6 +58,12 @@ pub struct Model {
     pub cage: Option<CageModel>,
     /// Neighbouring balls against each other, where no cage keeps them apart.
     pub ball_contact: Option<BallBallModel>,
+    /// Growth of rings and balls, where it is simulated.
+    pub growth: Option<Growth>,
+    /// Ratings of life, where it is asked for.
+    pub rating: Option<Rating>,
+    /// Is heat reported by part?
+    pub heat_outputs: bool,
     /// [-] change of creepages over sliding ones after which Kalker's polynomials are solved anew.
     pub epsilon_switch: f64,
     /// [s/m] Hunt-Crossley dissipation factor.
@@ -96,6 +113,9 @@ impl Model {
                 BallBallModel::new(bearing.ball.radius, material, friction)
             }),
             cage,
+            rating: scene.effects.rating.rating(&scene.bearing, &bearing.materials),
+            heat_outputs: scene.effects.heat.on,
+            growth: scene.effects.growth.growth(&scene.bearing, &scene.ball, &scene.race),
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,
             damping: scene.effects.damping.factor.0,
@@ -126,15 +146,23 @@ impl Model {
         race: Race,
         conditions: &Conditions,
     ) -> ContactModel<'a> {
+        let (raceway_now, ball_radius, stiffening) = match &self.growth {
+            None => (*self.bearing.raceway(race), self.bearing.ball.radius, 1.0),
+            Some(growth) => {
+                let (index, warmth) = (race as usize, &conditions.warmth);
+                (growth.raceway(index, warmth), growth.ball_radius(warmth), growth.stiffening(index, warmth))
+            }
+        };
         ContactModel {
             surface: Surface {
-                raceway: *self.bearing.raceway(race),
-                ball_radius: self.bearing.ball.radius,
+                raceway: raceway_now,
+                ball_radius,
                 form: self.form[race].as_ref(),
                 sizes: self.sizes.as_ref().map(|sizes| &*sizes[race]),
                 ball: 0,
             },
             shape: &raceway.shape,
+            stiffening,
             law: raceway.law(),
             across: raceway.across(),
             groove_bend: raceway.groove_bend,

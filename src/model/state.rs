@@ -7,6 +7,8 @@ use super::bodies::{Bodies, Body, PerRace, Race};
 use super::energies::{Energies, Powers, Pressed};
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
+use crate::effects::growth::Grown;
+use crate::effects::{heat, rating};
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::arrowhead::Eliminated;
 use crate::numerics::motion::{Pose, Twist, Wrench};
@@ -224,6 +226,12 @@ pub struct State {
     pub energies: Energies,
     /// Work since the start.
     pub statistics: Statistics,
+    /// What rings and balls have grown by; none where growth is not simulated.
+    pub grown: Option<Grown>,
+    /// Loads since the start as life counts them; none where it is not asked for.
+    pub rating: Option<rating::Sums>,
+    /// Heat since the start by contact; none where it is not reported.
+    pub heat: Option<heat::Sums>,
 }
 
 impl State {

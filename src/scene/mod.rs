@@ -18,6 +18,7 @@ pub use crate::effects::Effects;
 pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
 use crate::effects::form::FormSection;
+use crate::effects::{growth, rating};
 pub use crate::schema::{
     Accuracy, BearingSection, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver, Group,
     Groups, InputGivers, Interface, Load, Material, Misalignment, Orientation, RaceLoad, RaceSection,
@@ -55,6 +56,10 @@ pub struct Scene {
     /// The section of the form of races and balls, until it joins its effect.
     #[serde(default)]
     form: FormSection,
+    /// The section of temperatures and fits, until it joins its effect.
+    growth: Option<growth::Section>,
+    /// The section of the rating life, until it joins its effect.
+    rating: Option<rating::Section>,
     /// Inner race.
     #[serde(default)]
     pub inner: RaceSection,
@@ -100,6 +105,8 @@ impl Scene {
         scene.effects.cage.section = scene.cage.take();
         scene.effects.form.section = std::mem::take(&mut scene.form);
         scene.read_files(folder).map_err(|why| (why, None))?;
+        scene.effects.growth.section = scene.growth.take();
+        scene.effects.rating.section = scene.rating.take();
         if scene.solver.follows != Follows::Nothing {
             let Scales { approach, frequency } = Scales::of(&scene);
             scene.solver.follow(frequency, approach);
@@ -139,7 +146,17 @@ impl Scene {
     fn setup(&self) -> effects::Setup<'_> {
         let saturates = self.effects.creep.law.saturates();
         let cage = self.effects.cage.on;
-        effects::Setup { bearing: &self.bearing, friction: &self.friction, saturates, cage }
+        let turns = |race: &RaceSection, speed: &Schedule| {
+            race.drive == Drive::Pose || speed.values().into_iter().any(|speed| speed != 0.0)
+        };
+        effects::Setup {
+            bearing: &self.bearing,
+            friction: &self.friction,
+            saturates,
+            cage,
+            turning: [turns(&self.inner, &self.load.inner_speed), turns(&self.outer, &self.load.outer_speed)],
+            expansions: [&self.ball, &self.race].map(|material| material.thermal_expansion.0),
+        }
     }
 
     /// Reads a scene file.

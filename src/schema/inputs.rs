@@ -15,15 +15,17 @@ pub enum Group {
     Tilts,
     /// `friction`.
     Friction,
+    /// `temperature_rise`, of all parts.
+    Temperatures,
 }
 
 /// A set of groups.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Groups([bool; 4]);
+pub struct Groups([bool; 5]);
 
 impl Groups {
     /// All of them.
-    pub const ALL: Self = Self([true; 4]);
+    pub const ALL: Self = Self([true; 5]);
 
     /// Is a group in the set?
     pub fn contains(self, group: Group) -> bool {
@@ -61,6 +63,8 @@ pub struct InputGivers {
     pub tilts: Giver,
     /// Friction coefficient.
     pub friction: Giver,
+    /// Temperatures of all parts.
+    pub temperatures: Giver,
 }
 
 impl InputGivers {
@@ -71,6 +75,7 @@ impl InputGivers {
             Group::Speeds => self.speeds,
             Group::Tilts => self.tilts,
             Group::Friction => self.friction,
+            Group::Temperatures => self.temperatures,
         }
     }
 }

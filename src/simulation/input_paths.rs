@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::inputs::{Inputs, RaceInput};
 use super::path::{RacePath, Ramp};
 use crate::dynamics::{BodyLoad, Boundary};
+use crate::effects::growth::Warmth;
 use crate::model::Conditions;
 use crate::model::bodies::PerRace;
 use crate::model::state::State;
@@ -29,13 +30,18 @@ pub struct InputPaths {
     loads: PerRace<Ramp<7>>,
     /// Position and tilt of the frame of a race on a hinge.
     frames: PerRace<Ramp<6>>,
+    /// Rises of temperature; none where growth is not simulated.
+    rises: Option<Ramp<5>>,
     /// Where scripted motions of races began; none where there is no script or it is not played.
     pub anchors: PerRace<Option<Anchor>>,
 }
 
 impl InputPaths {
-    /// Boundary conditions at a time \[s].
-    pub fn boundary(&self, time: f64, conditions: Conditions) -> Boundary {
+    /// Boundary conditions at a time \[s], with a friction coefficient. Spins of races are left to
+    /// [`Boundary::see_spins`].
+    pub fn boundary(&self, time: f64, friction: f64) -> Boundary {
+        let rises = self.rises.map_or([0.0; 5], |rises| rises.at(time).into());
+        let conditions = Conditions { friction, warmth: Warmth { rises, ..Warmth::default() } };
         Boundary {
             time,
             motion: PerRace::new(|race| self.races[race].at(time)),
@@ -59,6 +65,7 @@ impl InputPaths {
             loads: PerRace::new(|race| Ramp::constant(load_components(&inputs[race]))),
             anchors: PerRace::new(|_| None),
             frames: PerRace::new(|race| Ramp::constant(frame_components(&inputs[race]))),
+            rises: inputs.rises.map(|rises| Ramp::constant(rises.into())),
         }
     }
 
@@ -87,6 +94,7 @@ impl InputPaths {
             frames: PerRace::new(|race| {
                 self.frames[race].smooth_towards(time, frame_components(&inputs[race]), duration)
             }),
+            rises: self.rises.zip(inputs.rises).map(|(now, next)| now.towards(time, next.into(), duration)),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::ops::{Index, IndexMut};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::model::Conditions;
+use crate::effects::growth::Rises;
 use crate::model::bodies::Race;
 use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 
@@ -50,13 +50,8 @@ pub struct Inputs {
     pub outer: RaceInput,
     /// [-] friction coefficient of the ball-race contacts.
     pub friction: f64,
-}
-
-impl Inputs {
-    /// Conditions of every contact.
-    pub fn conditions(&self) -> Conditions {
-        Conditions { friction: self.friction }
-    }
+    /// \[K] rises of temperature, which are reached by the end of the communication step; none where growth is not simulated.
+    pub rises: Option<Rises>,
 }
 
 impl Index<Race> for Inputs {

@@ -5,8 +5,11 @@ use std::ops::Index;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::slip::{RollingOrbit, orbital_speed};
-use crate::contact::BallRaceContact;
+use crate::contact::{BallRaceContact, RaceMotion};
 use crate::effects::Reports;
+use crate::effects::growth::GrowthOutput;
+use crate::effects::heat::HeatOutput;
+use crate::effects::rating::LifeOutput;
 pub use crate::effects::reports::{
     BallOutput, CageOutput, Condensed, ContactOutput, NeighboursOutput, PocketOutput,
 };
@@ -54,6 +57,12 @@ pub struct Outputs {
     pub neighbours: Option<NeighboursOutput>,
     /// Stiffness and damping of the running bearing, where they are asked for.
     pub condensed: Option<Condensed>,
+    /// The bearing as it has grown, where growth is simulated.
+    pub growth: Option<GrowthOutput>,
+    /// Rating life under the loads since the start, where it is asked for.
+    pub life: Option<LifeOutput>,
+    /// Heat of friction by part, means since the last communication point, where it is reported.
+    pub heat: Option<HeatOutput>,
     /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
     pub cage_speed: f64,
     /// [-] 1 - cage speed over the orbital speed of balls that roll without slip at their contact angles on both races, their
@@ -116,6 +125,11 @@ impl Outputs {
                 orbital_speed: orbital_speed(ball, outer),
                 position: ball.position,
                 angular_velocity: ball.angular_velocity,
+                spin: along_orbit(
+                    &races.outer,
+                    &(ball.position - outer.pose.position),
+                    &ball.angular_velocity,
+                ),
                 inner: output(Race::Inner),
                 outer: output(Race::Outer),
                 pocket,
@@ -129,7 +143,7 @@ impl Outputs {
         let mean_orbit = balls.iter().map(|ball| ball.orbital_speed).sum::<f64>() / balls.len() as f64;
         let cage_speed = cage.map_or(mean_orbit, |(_, state)| state.rate.x);
         let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
-        let rolling = RollingOrbit::mean(model, state, contacts, &races);
+        let rolling = RollingOrbit::mean(model, state, contacts, &races, models.inner.surface.ball_radius);
         let [inner, outer] = Race::BOTH.map(|race| race_output(state.race(race), model, race));
         Self {
             time: state.time,
@@ -140,6 +154,12 @@ impl Outputs {
             cage: cage_output,
             neighbours: neighbours(model, state, contacts),
             condensed: model.stiffness_outputs.then(|| Condensed::new(model, state, conditions)),
+            life: model.rating.as_ref().zip(state.rating.as_ref()).map(|(rating, sums)| rating.after(sums)),
+            heat: state
+                .heat
+                .as_ref()
+                .map(|heat| heat.output(state.time, model.cage_guide().map(|race| race as usize))),
+            growth: model.growth.as_ref().map(|growth| growth.output(&conditions.warmth)),
             cage_speed,
             cage_slip: rolling.slip_of(cage_speed),
             ball_slip: rolling.slip_of(rolling.orbit),
@@ -171,6 +191,9 @@ impl Outputs {
             cage: self.cage.as_ref(),
             neighbours: self.neighbours.as_ref(),
             condensed: self.condensed.as_ref(),
+            growth: self.growth.as_ref(),
+            life: self.life.as_ref(),
+            heat: self.heat.as_ref(),
         }
     }
 }
@@ -238,6 +261,14 @@ impl CageOutput {
             land_power: lands.iter().flatten().fold(0.0, |sum, pair| sum + pair.friction_power),
         }
     }
+}
+
+/// A vector by its components along the axis of a race, radially away from it at an offset \[m] from its origin, and along the
+/// circumference there.
+fn along_orbit(race: &RaceMotion<f64>, offset: &Vector3<f64>, vector: &Vector3<f64>) -> Vector3<f64> {
+    let axis = &race.axis;
+    let radial = (offset - axis * offset.dot(axis)).normalize();
+    Vector3::new(vector.dot(axis), vector.dot(&radial), vector.dot(&axis.cross(&radial)))
 }
 
 fn sign(x: f64) -> f64 {
@@ -314,6 +345,8 @@ fn contact_output(
     let root = contact.geometry.approach.max(0.0).sqrt();
     let [rolling, transverse] = contact.semi_axes.map(|axis| axis * root);
     let area = std::f64::consts::PI * rolling * transverse;
+    let (shoulder_share, shoulder_margin) =
+        model.bearing.shoulder(race, towards_x(contact, axis), transverse);
     ContactOutput {
         load: contact.load,
         contact_angle,
@@ -331,7 +364,8 @@ fn contact_output(
             .map_or(0.0, |curvature| -contact.creep.second_moment * curvature * contact.rolling_speed),
         semi_axis_rolling: rolling,
         semi_axis_transverse: transverse,
-        shoulder_share: model.bearing.shoulder_share(race, towards_x(contact, axis), transverse),
+        shoulder_share,
+        shoulder_margin,
         peak_pressure: if area > 0.0 { 1.5 * contact.load / area } else { 0.0 },
     }
 }

@@ -20,6 +20,8 @@ pub struct Script {
     /// Wrenches on races that forces move.
     loads: PerRace<bool>,
     friction: bool,
+    /// Temperatures of all parts, some of them by tables.
+    temperatures: bool,
     /// Speeds of races that forces move.
     speeds: PerRace<bool>,
     /// Motions of races that forces do not move.
@@ -79,6 +81,7 @@ pub fn follows_time(scene: &Scene) -> bool {
         .chain(always)
         .chain(misalignment.into_iter().flatten())
         .any(Schedule::is_table)
+        || scene.effects.growth.follows_time()
 }
 
 /// Groups of inputs for which a scene has a script; what has no input in a package, such as the speed of a race on a
@@ -97,6 +100,7 @@ pub fn scripted_groups(scene: &Scene) -> Groups {
         .with(Group::Speeds, inner.1 || outer.1)
         .with(Group::Tilts, inner.0 || outer.0)
         .with(Group::Friction, scene.friction.ball_race.is_table())
+        .with(Group::Temperatures, scene.effects.growth.follows_time())
 }
 
 /// Does a table give the wrench on this race?
@@ -125,6 +129,7 @@ impl Script {
         Self {
             loads: PerRace::new(|race| groups.contains(Group::Loads) && has_scripted_load(scene, race)),
             friction: given(Group::Friction),
+            temperatures: given(Group::Temperatures),
             speeds: PerRace::new(speed),
             motions: PerRace::new(motion),
         }
@@ -133,7 +138,7 @@ impl Script {
     /// Does it give anything that an importer could have given, or a motion of a race without a body?
     pub fn gives_inputs(&self) -> bool {
         let of_race = |race: Race| self.loads[race] || self.speeds[race] || self.motions[race];
-        self.friction || Race::BOTH.into_iter().any(of_race)
+        self.friction || self.temperatures || Race::BOTH.into_iter().any(of_race)
     }
 
     /// \[s] times within a step at which a table bends, growing, not closer to one another or to the ends than `least`.
@@ -141,6 +146,9 @@ impl Script {
         let mut playing: Vec<&Schedule> = vec![];
         if self.friction {
             playing.push(&scene.friction.ball_race);
+        }
+        if self.temperatures {
+            playing.extend(scene.effects.growth.schedules().into_iter().flatten());
         }
         for race in Race::BOTH {
             let (section, speed) = of_race(scene, race);
@@ -199,6 +207,9 @@ impl Script {
         if self.friction {
             boundary.conditions.friction = scene.friction.ball_race.at(time);
         }
+        if let (true, Some(rises)) = (self.temperatures, scene.effects.growth.rises(time)) {
+            boundary.conditions.warmth.rises = rises;
+        }
     }
 
     /// Puts what the script gives at a time \[s] into the inputs.
@@ -219,6 +230,9 @@ impl Script {
         }
         if self.friction {
             inputs.friction = scene.friction.ball_race.at(time);
+        }
+        if self.temperatures {
+            inputs.rises = scene.effects.growth.rises(time);
         }
     }
 }

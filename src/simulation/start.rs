@@ -2,12 +2,13 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::effects::growth::Grown;
 use crate::equilibrium::{self, BallEquilibrium, EquilibriumInput, Gyroscopic, Prescribed};
-use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{Bodies, PerRace, Race};
 use crate::model::energies::{Energies, Powers};
 use crate::model::state::{BallState, BodyState, KeptMatrix, State, Statistics};
+use crate::model::{Conditions, Model};
 use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 use crate::numerics::step_control::StepControl;
 use crate::scene::{Drive, Scene};
@@ -39,11 +40,12 @@ pub fn from_equilibrium(scene: &Scene, model: &Model, time: f64) -> Result<(Inpu
         inner: spinning(pose(Race::Inner), problem.inner_speed, on(Race::Inner)),
         outer: spinning(pose(Race::Outer), problem.outer_speed, on(Race::Outer)),
         friction: problem.friction,
+        rises: model.growth.map(|_| problem.rises),
     };
     if let Some(velocity) = scene.start.inner_velocity {
         inputs.inner.twist.velocity = Vector3::from(velocity.map(|component| component.0));
     }
-    let state = State { time, ..state(scene, model, &inputs, &solution)? };
+    let state = State { time, ..state(scene, model, &inputs, &problem, &solution)? };
     Ok((inputs, state))
 }
 
@@ -79,6 +81,7 @@ pub fn from_inputs(
     // Places are taken from the race that rests, wherever that is.
     let origin = inputs[resting].pose.position;
     problem.friction = inputs.friction;
+    problem.rises = inputs.rises.unwrap_or_default();
     problem.resting =
         Pose { position: Vector3::zeros(), orientation: spin_free(&inputs[resting].pose.orientation) };
     problem.turned = PerRace::new(|race| turn_of(&inputs[race].pose.orientation));
@@ -108,7 +111,7 @@ pub fn from_inputs(
         let angular_velocity = orientation * Vector3::x() * input.speed;
         input.twist = Twist { velocity: Vector3::zeros(), angular_velocity };
     }
-    Ok(State { time, ..state(scene, model, inputs, &solution)? })
+    Ok(State { time, ..state(scene, model, inputs, &problem, &solution)? })
 }
 
 /// Pose of the race that moved into balance.
@@ -147,6 +150,7 @@ fn state(
     scene: &Scene,
     model: &Model,
     inputs: &Inputs,
+    problem: &EquilibriumInput,
     solution: &equilibrium::Equilibrium,
 ) -> Result<State, SimulationError> {
     let outer = &inputs.outer;
@@ -175,7 +179,7 @@ fn state(
     if scene.start.balances_spin() {
         let around = Surroundings {
             model,
-            contacts: model.contacts(&inputs.conditions()),
+            contacts: model.contacts(&Conditions { friction: inputs.friction, ..problem.surroundings() }),
             races: PerRace::new(|race| races[race].motion()),
         };
         let mut motions: Vec<_> = balls.iter().map(BallState::motion).collect();
@@ -208,6 +212,9 @@ fn state(
         powers: Powers::default(),
         energies: Energies::default(),
         statistics: Statistics::default(),
+        grown: model.growth.map(|_| Grown { warmth: problem.surroundings().warmth, ..Grown::default() }),
+        rating: model.rating.map(|_| Default::default()),
+        heat: model.heat_outputs.then(Default::default),
     })
 }
 

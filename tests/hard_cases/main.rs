@@ -14,6 +14,7 @@ mod figures;
 mod free_oscillation;
 mod friction;
 mod gates;
+mod growth;
 #[path = "../common/laws.rs"]
 mod laws;
 mod loads;

@@ -9,6 +9,7 @@ mod rows;
 use thiserror::Error;
 
 use crate::effects::Getter;
+use crate::effects::growth::RISE;
 use crate::model::bodies::{PerRace, Race};
 use crate::scene::{Drive, Group, Scene};
 use crate::schema::numbers::{FRICTION, Parameter};
@@ -50,6 +51,8 @@ pub enum Source {
     Race(Race, &'static RaceVariable, usize),
     /// The friction coefficient.
     Friction,
+    /// Rise of the temperature of a part, by its index.
+    Rise(usize),
     /// The bearing as a whole.
     Bearing(FromOutputs),
     /// What an effect reports.
@@ -101,6 +104,14 @@ pub enum InputError {
     /// A negative friction coefficient, or one that no surface has.
     #[error("friction = {0} is out of range: allowed is {FRICTION}")]
     Friction(f64),
+    /// A rise of temperature that no bearing stands.
+    #[error("{name} = {value} K is out of range: allowed is {RISE}")]
+    Rise {
+        /// Variable.
+        name: String,
+        /// \[K] value.
+        value: f64,
+    },
 }
 
 /// The table of a scene.
@@ -126,6 +137,7 @@ impl Variables {
         table.add_race(scene, Race::Outer);
         table.add_bearing();
         table.add_effects(scene, per_ball);
+        table.add_temperatures(scene);
         let inputs = table.rows.iter().enumerate().filter(|(_, row)| row.causality == Causality::Input);
         table.inputs = inputs.map(|(index, _)| index).collect();
         table
@@ -145,6 +157,7 @@ impl Variables {
     pub fn value(&self, row: &Variable, inputs: &Inputs, outputs: &Outputs) -> f64 {
         match &row.source {
             Source::Friction => inputs.friction,
+            Source::Rise(part) => inputs.rises.map_or(0.0, |rises| rises[*part]),
             Source::Parameter(parameter) => parameter.start,
             Source::Bearing(get) => get(outputs),
             Source::Effect(getter) => getter.get(&outputs.reports()),
@@ -225,6 +238,12 @@ impl Variables {
             match &row.source {
                 Source::Friction if FRICTION.contains(value) => inputs.friction = value,
                 Source::Friction => return Err(InputError::Friction(value)),
+                Source::Rise(part) if RISE.contains(value) => {
+                    if let Some(rises) = &mut inputs.rises {
+                        rises[*part] = value;
+                    }
+                }
+                Source::Rise(_) => return Err(InputError::Rise { name: row.name.clone(), value }),
                 Source::Race(race, RaceVariable { input: Some(access), .. }, component) => {
                     (access.set)(&mut races[*race], *component, value, rate);
                 }
@@ -243,6 +262,7 @@ impl Variable {
         match &self.source {
             _ if self.causality != Causality::Input => None,
             Source::Friction => Some(InputKind::Friction),
+            Source::Rise(_) => Some(InputKind::Temperature),
             Source::Race(_, RaceVariable { input, .. }, _) => input.map(|access| access.kind),
             _ => None,
         }
@@ -253,6 +273,7 @@ impl Variable {
         match &self.source {
             _ if self.causality != Causality::Input => None,
             Source::Friction => Some(Group::Friction),
+            Source::Rise(_) => Some(Group::Temperatures),
             // A race with a given motion has its speed with it.
             Source::Race(race, RaceVariable { input: Some(access), .. }, _) => {
                 let section = if *race == Race::Inner { &scene.inner } else { &scene.outer };
