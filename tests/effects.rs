@@ -66,6 +66,7 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
         ("effects.per_ball_outputs", 220, &["ball["]),
         ("effects.full_complement", 4, &["neighbours."]),
         ("effects.shoulder_outputs", 2, &["shoulder."]),
+        ("defect", 4, &["frequency."]),
     ];
     for effect in parse(OFF).effects.each() {
         let info = effect.info();
@@ -116,6 +117,7 @@ fn what_is_told_about_an_effect_is_complete_and_its_example_switches_it_on() {
         // The key is one of the scene file: no other would be read.
         let (written, wrong, key) = match info.key.strip_prefix("effects.") {
             Some(key) => (format!("{key} = "), format!("{key}s = "), key),
+            // A section, or entries of a list.
             None => (format!("[{}]", info.key), format!("[{}s]", info.key), info.key),
         };
         assert!(info.example.contains(&written), "{}", info.example);

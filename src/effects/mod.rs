@@ -21,6 +21,7 @@
 pub mod cage;
 pub mod creep;
 pub mod damping;
+pub mod defects;
 mod effect;
 pub mod form;
 pub mod full_complement;
@@ -76,7 +77,7 @@ macro_rules! effects {
     };
 }
 
-effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form }
+effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form, defects }
 
 impl Effects {
     /// Checks all numbers against their ranges.

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix6, Vector3};
 
+use super::defects::Frequencies;
 use crate::numerics::motion::{Pose, Twist};
 
 /// All of it, as the outputs of a state have it; an effect that is off reports nothing.
@@ -15,6 +16,8 @@ pub struct Reports<'a> {
     pub neighbours: Option<&'a NeighboursOutput>,
     /// Stiffness and damping of the running bearing.
     pub condensed: Option<&'a Condensed>,
+    /// Frequencies of cage and damage.
+    pub frequencies: &'a Frequencies,
 }
 
 /// A ball-race contact. Longitudinal is along the rolling direction, lateral transverse to it (frame C).

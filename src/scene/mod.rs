@@ -17,6 +17,7 @@ use crate::effects;
 pub use crate::effects::Effects;
 pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
+use crate::effects::defects::DefectSection;
 use crate::effects::form::FormSection;
 pub use crate::schema::{
     Accuracy, BearingSection, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver, Group,
@@ -55,6 +56,9 @@ pub struct Scene {
     /// The section of the form of races and balls, until it joins its effect.
     #[serde(default)]
     form: FormSection,
+    /// Damage of races, until it joins its effect.
+    #[serde(default)]
+    defect: Vec<DefectSection>,
     /// Inner race.
     #[serde(default)]
     pub inner: RaceSection,
@@ -99,6 +103,7 @@ impl Scene {
         scene.effects.creep.regularised = std::mem::take(&mut scene.regularised);
         scene.effects.cage.section = scene.cage.take();
         scene.effects.form.section = std::mem::take(&mut scene.form);
+        scene.effects.defects.sections = std::mem::take(&mut scene.defect);
         scene.read_files(folder).map_err(|why| (why, None))?;
         if scene.solver.follows != Follows::Nothing {
             let Scales { approach, frequency } = Scales::of(&scene);

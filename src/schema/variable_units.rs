@@ -79,8 +79,10 @@ pub const NEWTON_SECOND_PER_RADIAN: Unit = unit("N.s/rad", "ForceByAngularVeloci
 pub const NEWTON_METRE_SECOND_PER_METRE: Unit = unit("N.m.s/m", "MomentByVelocity", [1, 1, -1, 0]);
 /// Damping, moment by angular velocity.
 pub const NEWTON_METRE_SECOND_PER_RADIAN: Unit = unit("N.m.s/rad", "RotationalDamping", [1, 2, -1, -1]);
+/// Frequency.
+pub const HERTZ: Unit = unit("Hz", "Frequency", [0, 0, -1, 0]);
 /// Every unit, in the order of the model description.
-pub const ALL: [Unit; 26] = [
+pub const ALL: [Unit; 27] = [
     ONE,
     METRE,
     DIMENSION,
@@ -107,6 +109,7 @@ pub const ALL: [Unit; 26] = [
     NEWTON_SECOND_PER_RADIAN,
     NEWTON_METRE_SECOND_PER_METRE,
     NEWTON_METRE_SECOND_PER_RADIAN,
+    HERTZ,
 ];
 
 /// Unit of a parameter of a scene, whose ranges name units as scene files write them.

@@ -7,6 +7,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::slip::{RollingOrbit, orbital_speed};
 use crate::contact::BallRaceContact;
 use crate::effects::Reports;
+use crate::effects::defects::Frequencies;
 pub use crate::effects::reports::{
     BallOutput, CageOutput, Condensed, ContactOutput, NeighboursOutput, PocketOutput,
 };
@@ -54,6 +55,8 @@ pub struct Outputs {
     pub neighbours: Option<NeighboursOutput>,
     /// Stiffness and damping of the running bearing, where they are asked for.
     pub condensed: Option<Condensed>,
+    /// Frequencies of cage and damage, by the mean contact angle on the outer race, weighted by load.
+    pub frequencies: Frequencies,
     /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
     pub cage_speed: f64,
     /// [-] 1 - cage speed over the orbital speed of balls that roll without slip at their contact angles on both races, their
@@ -130,6 +133,7 @@ impl Outputs {
         let cage_speed = cage.map_or(mean_orbit, |(_, state)| state.rate.x);
         let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
         let rolling = RollingOrbit::mean(model, state, contacts, &races);
+        let frequencies = frequencies(model, &balls, [cage_speed, speeds[0], speeds[1]]);
         let [inner, outer] = Race::BOTH.map(|race| race_output(state.race(race), model, race));
         Self {
             time: state.time,
@@ -140,6 +144,7 @@ impl Outputs {
             cage: cage_output,
             neighbours: neighbours(model, state, contacts),
             condensed: model.stiffness_outputs.then(|| Condensed::new(model, state, conditions)),
+            frequencies,
             cage_speed,
             cage_slip: rolling.slip_of(cage_speed),
             ball_slip: rolling.slip_of(rolling.orbit),
@@ -171,6 +176,7 @@ impl Outputs {
             cage: self.cage.as_ref(),
             neighbours: self.neighbours.as_ref(),
             condensed: self.condensed.as_ref(),
+            frequencies: &self.frequencies,
         }
     }
 }
@@ -193,6 +199,16 @@ impl Index<Race> for BallOutput {
             Race::Outer => &self.outer,
         }
     }
+}
+
+/// Frequencies of cage and damage at speeds of cage, inner and outer race [rad/s].
+fn frequencies(model: &Model, balls: &[BallOutput], speeds: [f64; 3]) -> Frequencies {
+    let bearing = &model.bearing;
+    let (load, cosine) = balls.iter().fold((0.0, 0.0), |(load, cosine), ball| {
+        (load + ball.outer.load, cosine + ball.outer.load * ball.outer.contact_angle.cos())
+    });
+    let cosine = if load > 0.0 { cosine / load } else { bearing.free_contact_angle.cos() };
+    Frequencies::new(speeds, balls.len(), 2.0 * bearing.ball.radius / bearing.pitch_diameter, cosine)
 }
 
 /// \[J] kinetic energy of balls and of the bodies that forces move, and elastic energy of all contacts.
