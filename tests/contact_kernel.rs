@@ -384,7 +384,7 @@ fn invariant_friction_that_is_off_is_not_computed_and_forces_are_the_same() {
                 angular_velocity: vector(15),
             };
             let mut contact = model.contact(race, &Conditions::of_friction(0.0));
-            contact.damping = damping;
+            contact.damping = damping.into();
             // Linear theory without stiffness computes everything, and has no force either.
             contact.law = Law::Saturated;
             let all = contact.evaluate(&ball, &seen);

@@ -73,6 +73,7 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
             11,
             &["clearance", "contact_angle.free", "interference.", "seat_pressure.", "temperature_rise."],
         ),
+        ("defect", 4, &["frequency."]),
     ];
     for effect in parse(OFF).effects.each() {
         let info = effect.info();

@@ -19,6 +19,7 @@
 use nalgebra::{Matrix2, Matrix2x6, Matrix4, Matrix4x6, Matrix6, Matrix6x2, Matrix6x4, Vector3, Vector4};
 
 use crate::contact::creep::Law;
+use crate::contact::normal::Damping;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 pub use crate::effects::reports::Condensed;
 use crate::model::bodies::{PerRace, Race};
@@ -168,8 +169,12 @@ fn contribution(
     }
     let linear = |model: &ContactModel<'_>, race: Race| Linear::new(model, &motion, &races[race]);
     let [inner, outer] = Race::BOTH.map(|race| linear(&contacts[race], race));
-    let smooth =
-        |race: Race| linear(&ContactModel { law: Law::Frictionless, damping: 0.0, ..contacts[race] }, race);
+    let smooth = |race: Race| {
+        linear(
+            &ContactModel { law: Law::Frictionless, damping: Damping::HuntCrossley(0.0), ..contacts[race] },
+            race,
+        )
+    };
     let [smooth_inner, smooth_outer] = Race::BOTH.map(smooth);
     let orbit = Orbit::new(&motion, &races.outer);
 

@@ -13,8 +13,9 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 
 use super::RaceMotion;
+use super::geometry::azimuth;
 use crate::numerics::periodic_spline::PeriodicSpline;
-use crate::numerics::scalar::{Scalar, cross, dot};
+use crate::numerics::scalar::Scalar;
 
 /// Points of the spline to the shortest wave: its values are then right within 3e-7 of the amplitude.
 const POINTS_PER_WAVE: usize = 64;
@@ -98,14 +99,10 @@ impl Form {
     /// The groove circle where a ball is, `offset` \[m] from the race's origin.
     #[inline(always)]
     pub(super) fn under<S: Scalar>(&self, offset: &Vector3<S>, race: &RaceMotion<S>) -> Shift<S> {
-        let y = race.across.map(S::constant);
-        let z = cross(&race.axis, &y);
-        let place = [dot(offset, &y), dot(offset, &z)];
-        let [radial, radial_slope, axial, axial_slope] = S::map_smooth_many(place, |[y, z]| {
-            let square = y * y + z * z;
-            let [w, v] = self.spline.at(z.atan2(y));
-            let by_place = |slope: f64| [-slope * z / square, slope * y / square];
-            ([w[0], w[1], v[0], v[1]], [w[1], w[2], v[1], v[2]].map(by_place))
+        let azimuth = azimuth(offset, race);
+        let [radial, radial_slope, axial, axial_slope] = S::map_smooth_many([azimuth], |[azimuth]| {
+            let [w, v] = self.spline.at(azimuth);
+            ([w[0], w[1], v[0], v[1]], [w[1], w[2], v[1], v[2]].map(|slope| [slope]))
         });
         Shift { radial, radial_slope, axial, axial_slope }
     }

@@ -4,6 +4,8 @@ use nalgebra::Vector3;
 
 use super::RaceMotion;
 use super::form::Shift;
+use super::normal::NormalLoad;
+use super::spall::Spalls;
 use super::surface::Surface;
 use crate::numerics::scalar::{Scalar, cross, dot};
 
@@ -27,6 +29,8 @@ pub struct GrooveContact<S: Scalar> {
     pub distance: S,
     /// [1/m] curvature of the raceway along its circumference at the contact; convex (inner race) positive.
     pub circumferential_curvature: S,
+    /// [-] change of the approach by a move along the normal; none where it is 1, without spalls.
+    pub gain: Option<S>,
 }
 
 impl<S: Scalar> GrooveContact<S> {
@@ -48,7 +52,50 @@ impl<S: Scalar> GrooveContact<S> {
         if let Some(larger) = surface.of_balls(|size| size.larger) {
             contact.approach += larger;
         }
+        if let Some(spalls) = surface.spalls {
+            contact.drop_into(spalls, offset, race, &shift);
+        }
         contact
+    }
+
+    /// Drops the ball into the spalls of the race.
+    #[inline(always)]
+    fn drop_into(&mut self, spalls: &Spalls, offset: &Vector3<S>, race: &RaceMotion<S>, shift: &Shift<S>) {
+        let around = cross(&race.axis, &self.radial);
+        let (cos, sin) = (dot(&self.normal, &self.radial), dot(&self.normal, &race.axis));
+        let drop = spalls.under(azimuth(offset, race), sin, cos, self.approach);
+        self.approach -= drop.depth;
+        // The gradient of what is left of the approach.
+        let up = race.axis * cos - self.radial * sin;
+        let along = drop.by_azimuth / self.radius
+            + drop.by_angle * shift.turn(cos, sin) / (self.distance * self.radius);
+        let gradient = self.normal * S::one_minus(drop.by_approach)
+            - around * along
+            - up * (drop.by_angle / self.distance);
+        let gain = dot(&gradient, &gradient).sqrt();
+        self.normal = gradient.map(|component| component / gain);
+        let across = self.circumferential - self.normal * dot(&self.circumferential, &self.normal);
+        let length = dot(&across, &across).sqrt();
+        self.circumferential = across.map(|component| component / length);
+        self.gain = Some(gain);
+    }
+
+    /// [m/s] rate of the approach, of that along the normal.
+    #[inline(always)]
+    pub(super) fn rate(&self, along_normal: S) -> S {
+        match self.gain {
+            None => along_normal,
+            Some(gain) => gain * along_normal,
+        }
+    }
+
+    /// The load whose force along the normal does the work of a load that goes with the approach.
+    #[inline(always)]
+    pub(super) fn force_of(&self, load: NormalLoad<S>) -> NormalLoad<S> {
+        match self.gain {
+            None => load,
+            Some(gain) => NormalLoad { total: load.total * gain, ..load },
+        }
     }
 
     /// Contact with a race whose groove circle is shifted where the ball is.
@@ -92,8 +139,21 @@ impl<S: Scalar> GrooveContact<S> {
             radius,
             distance,
             circumferential_curvature: -cos / contact_radius,
+            gain: None,
         }
     }
+}
+
+/// \[rad] azimuth at `offset` \[m] from the origin of a race, from its own y axis.
+#[inline(always)]
+pub(super) fn azimuth<S: Scalar>(offset: &Vector3<S>, race: &RaceMotion<S>) -> S {
+    let y = race.across.map(S::constant);
+    let z = cross(&race.axis, &y);
+    let [azimuth] = S::map_smooth_many([dot(offset, &y), dot(offset, &z)], |[y, z]| {
+        let square = y * y + z * z;
+        ([z.atan2(y)], [[-z / square, y / square]])
+    });
+    azimuth
 }
 
 impl<S: Scalar> GrooveContact<S> {
@@ -112,6 +172,7 @@ impl<S: Scalar> GrooveContact<S> {
             radius: f(self.radius, other.radius),
             distance: f(self.distance, other.distance),
             circumferential_curvature: f(self.circumferential_curvature, other.circumferential_curvature),
+            gain: self.gain.zip(other.gain).map(|(a, b)| f(a, b)),
         }
     }
 }

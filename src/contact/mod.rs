@@ -21,6 +21,7 @@ pub mod raceway;
 pub mod regularised;
 pub mod shape;
 pub mod shoulder;
+pub mod spall;
 pub mod surface;
 
 use nalgebra::Vector3;
@@ -32,7 +33,7 @@ use crate::numerics::scalar::{Scalar, Single, cross, dot};
 use creep::{CreepForces, Creepage, Law, LinearTheory};
 use geometry::GrooveContact;
 use kinematics::Surfaces;
-use normal::NormalLoad;
+use normal::{Damping, NormalLoad};
 use oblique::{Across, is_oblique};
 use shape::ContactShape;
 
@@ -93,8 +94,8 @@ pub struct ContactModel<'a> {
     pub across: Option<Across<'a>>,
     /// [-] friction coefficient.
     pub friction: f64,
-    /// [s/m] Hunt-Crossley dissipation factor.
-    pub damping: f64,
+    /// How energy is lost to the approach rate.
+    pub damping: Damping,
     /// [1/m] mean transverse curvature `1/(2 R)` of ball and groove where its slip (Heathcote) is simulated.
     pub groove_bend: Option<f64>,
 }
@@ -212,14 +213,15 @@ impl ContactModel<'_> {
             stiffness *= factor;
         }
         let (arm, race_arm) = kinematics::arms(geometry.normal, self.surface.ball_radius, &offset);
-        let rate = match self.damping == 0.0 {
+        let rate = match self.damping.is_none() {
             true => S::zero(),
             false => {
                 let bodies = [&race.velocity, &race.angular_velocity];
                 dot(&geometry.normal, &kinematics::slip(ball, bodies, [&arm, &race_arm]))
             }
         };
-        let load = NormalLoad::hertz(stiffness, depth, depth.sqrt(), rate, self.damping);
+        let load = NormalLoad::hertz(stiffness, depth, depth.sqrt(), geometry.rate(rate), self.damping);
+        let load = geometry.force_of(load);
         let (zero, none) = (S::zero(), Vector3::from_element(S::zero()));
         let force = -geometry.normal.map(|component| component * load.total);
         BallRaceContact {
@@ -285,7 +287,8 @@ impl ContactModel<'_> {
         if let Some(factor) = self.surface.of_balls::<S>(|size| size.stiffness) {
             stiffness *= factor;
         }
-        let load = NormalLoad::hertz(stiffness, depth, root, surfaces.approach_rate, self.damping);
+        let rate = geometry.rate(surfaces.approach_rate);
+        let load = geometry.force_of(NormalLoad::hertz(stiffness, depth, root, rate, self.damping));
 
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);

@@ -2,6 +2,7 @@
 
 use super::form::Form;
 use super::raceway::Raceway;
+use super::spall::Spalls;
 use crate::numerics::scalar::Scalar;
 
 /// Size of a ball against that of the bearing.
@@ -22,6 +23,8 @@ pub struct Surface<'a> {
     pub ball_radius: f64,
     /// How far the race departs from a torus; none if it does nowhere.
     pub form: Option<&'a Form>,
+    /// Its spalls, where it has some.
+    pub spalls: Option<&'a Spalls>,
     /// Sizes of the balls, where they differ.
     pub sizes: Option<&'a [BallSize]>,
     /// The ball that is looked at (0 is the first), or the first of several; needed where balls differ.
@@ -31,7 +34,7 @@ pub struct Surface<'a> {
 impl Surface<'_> {
     /// A race without form under balls that are alike.
     pub fn plain(raceway: Raceway, ball_radius: f64) -> Self {
-        Self { raceway, ball_radius, form: None, sizes: None, ball: 0 }
+        Self { raceway, ball_radius, form: None, spalls: None, sizes: None, ball: 0 }
     }
 
     /// Does it matter which ball is looked at?
@@ -48,7 +51,7 @@ impl Surface<'_> {
     /// Is the race a torus, and are the balls alike?
     #[inline(always)]
     pub(super) fn is_plain(&self) -> bool {
-        self.form.is_none() && self.sizes.is_none()
+        self.form.is_none() && self.sizes.is_none() && self.spalls.is_none()
     }
 
     /// A number of the size of the ball in each lane, where balls differ.

@@ -11,6 +11,7 @@ use super::directions::{D, DIRECTIONS, SECOND_ROTATION, by_first, by_second, sca
 use super::equations::BearingStep;
 use crate::contact::BallMotion;
 use crate::contact::ball_ball::BallBallModel;
+use crate::contact::normal::Damping;
 use crate::contact::pair::PairForces;
 use crate::forces::BallPair;
 use crate::model::Model;
@@ -54,7 +55,7 @@ impl NeighbourTrial {
     /// Evaluates the contact of two balls that have moved to the end of a step; with their derivatives if asked for.
     fn evaluate(
         &mut self,
-        (contact, damping): (&BallBallModel, f64),
+        (contact, damping): (&BallBallModel, Damping),
         balls: &mut [BallTrial],
         step: &HhtStep,
         with_tangent: bool,
@@ -218,7 +219,7 @@ mod tests {
         let evaluate = |unknowns: &[Vector6<f64>; 2], with_tangent: bool| {
             let mut balls = moved(unknowns, &step);
             let mut pair = NeighbourTrial::new((0, 1));
-            pair.evaluate((&contact, 0.02), &mut balls, &step, with_tangent);
+            pair.evaluate((&contact, 0.02.into()), &mut balls, &step, with_tangent);
             (pair, balls.map(|ball| ball.pushed.unwrap()))
         };
         let force = |push: &Push| -> Vector6<f64> {

@@ -47,7 +47,7 @@ pub struct CageSection {
     pub youngs_modulus: Option<Pressure>,
     /// [-] Poisson's ratio in the pockets; that of the races if not given.
     pub poisson_ratio: Option<f64>,
-    /// [s/m] Hunt-Crossley dissipation factor of the cage's contacts; `effects.damping` if not given.
+    /// [s/m] Hunt-Crossley dissipation factor of the cage's contacts; that of `effects.damping` if not given.
     pub damping: Option<DissipationFactor>,
 }
 

@@ -22,6 +22,7 @@
 pub mod cage;
 pub mod creep;
 pub mod damping;
+pub mod defects;
 mod effect;
 pub mod form;
 pub mod full_complement;
@@ -81,7 +82,7 @@ macro_rules! effects {
 }
 
 effects! {
-    creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form, growth, rating, heat
+    creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form, growth, rating, heat, defects
 }
 
 impl Effects {

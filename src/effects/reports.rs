@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix6, Vector3};
 
+use super::defects::Frequencies;
 use super::growth::GrowthOutput;
 use super::heat::HeatOutput;
 use super::rating::LifeOutput;
@@ -24,6 +25,8 @@ pub struct Reports<'a> {
     pub life: Option<&'a LifeOutput>,
     /// Heat of friction by part.
     pub heat: Option<&'a HeatOutput>,
+    /// Frequencies of cage and damage.
+    pub frequencies: &'a Frequencies,
 }
 
 /// A ball-race contact. Longitudinal is along the rolling direction, lateral transverse to it (frame C).

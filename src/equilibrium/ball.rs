@@ -127,7 +127,8 @@ pub fn balance(
     }
     let load = |contact: &GrooveContact<D>, stiffness: D| {
         let depth = contact.approach.positive_part();
-        stiffness * depth * depth.sqrt()
+        let load = stiffness * depth * depth.sqrt();
+        contact.gain.map_or(load, |gain| load * gain)
     };
     let (inner_load, outer_load) = (load(&inner, stiffness.inner), load(&outer, stiffness.outer));
 

@@ -8,7 +8,9 @@ use thiserror::Error;
 use super::bodies::{PerRace, Race};
 use crate::contact::materials::Pair;
 use crate::contact::raceway::Raceway;
+use crate::contact::shape::ContactShape;
 use crate::contact::shoulder::{Beyond, SMALL_LOAD, Shoulders};
+use crate::contact::spall::Whole;
 use crate::effects::shoulder::{DEFAULT_HEIGHT, default_ends};
 use crate::scene::Scene;
 
@@ -37,6 +39,9 @@ pub struct BeyondShoulder {
     /// What that says of the bearing.
     pub why: &'static str,
 }
+
+/// [-] approach over ball diameter of a typical load: 300 N on a ball of 10 mm.
+const TYPICAL_APPROACH: f64 = 5e-4;
 
 /// A ball: homogeneous sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -146,6 +151,21 @@ impl Bearing {
         match race {
             Race::Inner => cos / (orbit - self.ball.radius * cos),
             Race::Outer => -cos / (orbit + self.ball.radius * cos),
+        }
+    }
+
+    /// Contacts with a race at the free contact angle, of the shape that they have there.
+    pub fn whole_contact(&self, race: Race, shape: &ContactShape) -> Whole {
+        let (raceway, curvature) = (self.raceway(race), self.circumferential_curvature(race));
+        let at = shape.at(curvature);
+        let ball = 1.0 / self.ball.radius;
+        Whole {
+            curvatures: [ball + curvature, ball - 1.0 / raceway.groove_radius],
+            semi_axes: [at.semi_axis_rolling, at.semi_axis_transverse],
+            typical_approach: 2.0 * self.ball.radius * TYPICAL_APPROACH,
+            groove_radius: raceway.groove_radius,
+            circle_radius: raceway.groove_circle_radius,
+            side: if race == Race::Inner { -1.0 } else { 1.0 },
         }
     }
 

@@ -13,7 +13,10 @@ use nalgebra::Vector3;
 use crate::contact::ContactModel;
 use crate::contact::ball_ball::BallBallModel;
 use crate::contact::form::Form;
+use crate::contact::normal::Damping;
+use crate::contact::spall::Spalls;
 use crate::contact::surface::{BallSize, Surface};
+use crate::effects::defects::On;
 use crate::effects::form::Shape;
 use crate::effects::growth::{Growth, Warmth};
 use crate::effects::rating::Rating;
@@ -66,10 +69,12 @@ pub struct Model {
     pub heat_outputs: bool,
     /// [-] change of creepages over sliding ones after which Kalker's polynomials are solved anew.
     pub epsilon_switch: f64,
-    /// [s/m] Hunt-Crossley dissipation factor.
-    pub damping: f64,
+    /// How contacts of the balls with races and with each other lose energy.
+    pub damping: Damping,
     /// Form of the races, where they depart from a torus.
     pub form: PerRace<Option<Form>>,
+    /// Spalls of the races, where they have some.
+    pub spalls: PerRace<Option<Spalls>>,
     /// Sizes of the balls on each race, where they are not alike.
     sizes: Option<PerRace<Vec<BallSize>>>,
     /// [m/s2] gravity.
@@ -103,6 +108,13 @@ impl Model {
         };
         let sizes = |race: Race| larger.iter().map(|larger| size(race, *larger)).collect();
         let sizes = (!larger.is_empty()).then(|| PerRace::new(sizes));
+        let spalls = PerRace::new(|race| {
+            let on = match race {
+                Race::Inner => scene.effects.defects.on(On::Inner, bearing.free_contact_angle),
+                Race::Outer => scene.effects.defects.on(On::Outer, bearing.free_contact_angle),
+            };
+            Spalls::new(on, bearing.whole_contact(race, &raceways[race].shape))
+        });
         Ok(Self {
             bodies: Bodies::new(races, section.map(|section| Some(RigidBody::cage(section)))),
             raceways,
@@ -118,8 +130,9 @@ impl Model {
             growth: scene.effects.growth.growth(&scene.bearing, &scene.ball, &scene.race),
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,
-            damping: scene.effects.damping.factor.0,
+            damping: scene.effects.damping.law(),
             form: PerRace::new(|race| scene.effects.form.of(race == Race::Inner).and_then(Shape::form)),
+            spalls,
             sizes,
             gravity: scene.effects.gravity.vector(),
             stiffness_outputs: scene.effects.stiffness.on,
@@ -129,7 +142,7 @@ impl Model {
 
     /// Takes over the tunable numbers of a scene, those that each step reads.
     pub fn tune(&mut self, scene: &Scene) {
-        self.damping = scene.effects.damping.factor.0;
+        self.damping = scene.effects.damping.law();
         self.gravity = scene.effects.gravity.vector();
         self.solver = scene.solver;
     }
@@ -158,6 +171,7 @@ impl Model {
                 raceway: raceway_now,
                 ball_radius,
                 form: self.form[race].as_ref(),
+                spalls: self.spalls[race].as_ref(),
                 sizes: self.sizes.as_ref().map(|sizes| &*sizes[race]),
                 ball: 0,
             },

@@ -17,6 +17,7 @@ use crate::effects;
 pub use crate::effects::Effects;
 pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
+use crate::effects::defects::DefectSection;
 use crate::effects::form::FormSection;
 use crate::effects::{growth, rating};
 pub use crate::schema::{
@@ -60,6 +61,9 @@ pub struct Scene {
     growth: Option<growth::Section>,
     /// The section of the rating life, until it joins its effect.
     rating: Option<rating::Section>,
+    /// Damage of races, until it joins its effect.
+    #[serde(default)]
+    defect: Vec<DefectSection>,
     /// Inner race.
     #[serde(default)]
     pub inner: RaceSection,
@@ -104,6 +108,7 @@ impl Scene {
         scene.effects.creep.regularised = std::mem::take(&mut scene.regularised);
         scene.effects.cage.section = scene.cage.take();
         scene.effects.form.section = std::mem::take(&mut scene.form);
+        scene.effects.defects.sections = std::mem::take(&mut scene.defect);
         scene.read_files(folder).map_err(|why| (why, None))?;
         scene.effects.growth.section = scene.growth.take();
         scene.effects.rating.section = scene.rating.take();

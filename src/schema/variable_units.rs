@@ -92,8 +92,10 @@ pub const KELVIN: Unit = unit("K", "TemperatureDifference", [0, 0, 0, 0]).kelvin
 pub const PER_KELVIN: Unit = unit("1/K", "ThermalExpansion", [0, 0, 0, 0]).kelvin(-1);
 /// Kinematic viscosity.
 pub const SQUARE_METRE_PER_SECOND: Unit = unit("m2/s", "KinematicViscosity", [0, 2, -1, 0]);
+/// Frequency.
+pub const HERTZ: Unit = unit("Hz", "Frequency", [0, 0, -1, 0]);
 /// Every unit, in the order of the model description.
-pub const ALL: [Unit; 29] = [
+pub const ALL: [Unit; 30] = [
     ONE,
     METRE,
     DIMENSION,
@@ -123,6 +125,7 @@ pub const ALL: [Unit; 29] = [
     KELVIN,
     PER_KELVIN,
     SQUARE_METRE_PER_SECOND,
+    HERTZ,
 ];
 
 /// Unit of a parameter of a scene, whose ranges name units as scene files write them.

@@ -7,6 +7,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::slip::{RollingOrbit, orbital_speed};
 use crate::contact::{BallRaceContact, RaceMotion};
 use crate::effects::Reports;
+use crate::effects::defects::Frequencies;
 use crate::effects::growth::GrowthOutput;
 use crate::effects::heat::HeatOutput;
 use crate::effects::rating::LifeOutput;
@@ -63,6 +64,8 @@ pub struct Outputs {
     pub life: Option<LifeOutput>,
     /// Heat of friction by part, means since the last communication point, where it is reported.
     pub heat: Option<HeatOutput>,
+    /// Frequencies of cage and damage, by the mean contact angle on the outer race, weighted by load.
+    pub frequencies: Frequencies,
     /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
     pub cage_speed: f64,
     /// [-] 1 - cage speed over the orbital speed of balls that roll without slip at their contact angles on both races, their
@@ -144,6 +147,7 @@ impl Outputs {
         let cage_speed = cage.map_or(mean_orbit, |(_, state)| state.rate.x);
         let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
         let rolling = RollingOrbit::mean(model, state, contacts, &races, models.inner.surface.ball_radius);
+        let frequencies = frequencies(model, &balls, [cage_speed, speeds[0], speeds[1]]);
         let [inner, outer] = Race::BOTH.map(|race| race_output(state.race(race), model, race));
         Self {
             time: state.time,
@@ -160,6 +164,7 @@ impl Outputs {
                 .as_ref()
                 .map(|heat| heat.output(state.time, model.cage_guide().map(|race| race as usize))),
             growth: model.growth.as_ref().map(|growth| growth.output(&conditions.warmth)),
+            frequencies,
             cage_speed,
             cage_slip: rolling.slip_of(cage_speed),
             ball_slip: rolling.slip_of(rolling.orbit),
@@ -194,6 +199,7 @@ impl Outputs {
             growth: self.growth.as_ref(),
             life: self.life.as_ref(),
             heat: self.heat.as_ref(),
+            frequencies: &self.frequencies,
         }
     }
 }
@@ -216,6 +222,16 @@ impl Index<Race> for BallOutput {
             Race::Outer => &self.outer,
         }
     }
+}
+
+/// Frequencies of cage and damage at speeds of cage, inner and outer race [rad/s].
+fn frequencies(model: &Model, balls: &[BallOutput], speeds: [f64; 3]) -> Frequencies {
+    let bearing = &model.bearing;
+    let (load, cosine) = balls.iter().fold((0.0, 0.0), |(load, cosine), ball| {
+        (load + ball.outer.load, cosine + ball.outer.load * ball.outer.contact_angle.cos())
+    });
+    let cosine = if load > 0.0 { cosine / load } else { bearing.free_contact_angle.cos() };
+    Frequencies::new(speeds, balls.len(), 2.0 * bearing.ball.radius / bearing.pitch_diameter, cosine)
 }
 
 /// Contacts of neighbouring balls, where no cage keeps them apart.

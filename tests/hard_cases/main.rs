@@ -8,6 +8,7 @@ mod cage;
 mod communication;
 mod contact_loss;
 mod creep_laws;
+mod effects;
 mod equilibrium_scenes;
 mod extremes;
 mod figures;
