@@ -106,7 +106,7 @@ fn independent_data_a_ball_dropped_on_a_race_leaves_it_as_asked() {
     for row in rows.iter().step_by(3) {
         let [factor, speed, restitution] = [0, 1, 2].map(|i| row[i].parse::<f64>().unwrap());
         let model = Model::new(&scene(&factor.to_string()).unwrap()).unwrap();
-        let contact = model.contact(Race::Outer, &Conditions { friction: 0.0 });
+        let contact = model.contact(Race::Outer, &Conditions::of_friction(0.0));
         let ours = drop(&model, &contact, speed, model.bearing.ball.mass);
         assert!((ours - restitution).abs() < 1e-5, "{row:?}: {ours}");
     }
@@ -116,7 +116,7 @@ fn independent_data_a_ball_dropped_on_a_race_leaves_it_as_asked() {
     {
         let damping = format!("{{ restitution = {wanted}, at = \"0.2 m/s\", law = \"{law}\" }}");
         let model = Model::new(&scene(&damping).unwrap()).unwrap();
-        let contact = model.contact(Race::Outer, &Conditions { friction: 0.0 });
+        let contact = model.contact(Race::Outer, &Conditions::of_friction(0.0));
         let ours = drop(&model, &contact, 0.2, model.bearing.ball.mass);
         let tolerance = if law == "exact" { 1e-4 } else { 1e-3 };
         assert!((ours - given).abs() < tolerance, "{law}: {ours}");
@@ -130,7 +130,7 @@ fn independent_data_viscoelastic_restitution() {
         let [time, speed, mass, stiffness, restitution] =
             [0, 1, 2, 3, 4].map(|i| row[i].parse::<f64>().unwrap());
         let model = Model::new(&scene(&format!("{{ retardation_time = {time:e} }}")).unwrap()).unwrap();
-        let contact = model.contact(Race::Outer, &Conditions { friction: 0.0 });
+        let contact = model.contact(Race::Outer, &Conditions::of_friction(0.0));
         assert_eq!(contact.damping, Damping::Viscoelastic(time));
         // The data have another stiffness: the impact depends on mass over stiffness alone.
         let ball = BallMotion {

@@ -39,7 +39,7 @@ fn independent_data_drop_over_a_spall_is_that_of_boundary_elements() {
             defect(row[1], [length, width, depth], 0.3)
         );
         let model = Model::new(&Scene::parse(&text).unwrap()).unwrap();
-        let contact = model.contact(Race::Outer, &Conditions { friction: 0.0 });
+        let contact = model.contact(Race::Outer, &Conditions::of_friction(0.0));
         let race = RaceMotion::resting(Vector3::zeros(), Vector3::x(), Vector3::y());
         let raceway = &model.bearing.outer;
         let bottom = raceway.groove_circle_radius + raceway.groove_radius;
@@ -213,7 +213,7 @@ fn invariant_lanes_are_single_balls_to_the_bit_and_derivatives_are_differences()
     for on in ["outer", "inner"] {
         let simulation = Simulation::new(&running(on, "", "1 ms")).unwrap();
         let race = if on == "outer" { Race::Outer } else { Race::Inner };
-        let contact = simulation.model().contact(race, &Conditions { friction: 0.08 });
+        let contact = simulation.model().contact(race, &Conditions::of_friction(0.08));
         let seen = simulation.state().race(race).motion();
         let first = simulation.state().balls[0].motion();
         // Ball 1 at places before, over and behind the spall, 3 um deeper so that it still carries something there.
@@ -311,7 +311,7 @@ fn invariant_forces_over_a_spall_are_the_slopes_of_the_energy() {
             running(on, "", "1 ms").source.replace("saturated", "frictionless").replace("0.5 s/m", "0 s/m");
         let simulation = Simulation::new(&Scene::parse(&text).unwrap()).unwrap();
         let race = if on == "outer" { Race::Outer } else { Race::Inner };
-        let contact = simulation.model().contact(race, &Conditions { friction: 0.0 });
+        let contact = simulation.model().contact(race, &Conditions::of_friction(0.0));
         let seen = simulation.state().race(race).motion();
         let first = simulation.state().balls[0].motion();
         let out = if on == "outer" { 4e-6 } else { -4e-6 };

@@ -46,7 +46,11 @@ fn every_scene_says_its_purpose_and_runs_with_finite_numbers_and_its_energy_in_b
         assert!(turned_over > 0.0, "{name}: nothing moved");
         let imbalance = (outputs.stored_energy - stored + outputs.dissipated - outputs.work).abs();
         let size = turned_over + stored;
-        println!("{name}: {} steps, imbalance {:.1e} of {size:.2e} J", outputs.statistics.steps, imbalance / size);
+        println!(
+            "{name}: {} steps, imbalance {:.1e} of {size:.2e} J",
+            outputs.statistics.steps,
+            imbalance / size
+        );
         assert!(imbalance < 1e-3 * size, "{name}: {imbalance:e} of {size:e} J");
     }
 }

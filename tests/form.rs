@@ -238,7 +238,7 @@ fn invariant_lanes_are_single_balls_to_the_bit_and_derivatives_are_differences()
     let scene = thrust(&format!("{SIZES}\n{WAVES}\n{}", WAVES.replace("outer", "inner")), &[]);
     let simulation = Simulation::new(&scene).unwrap();
     for race in Race::BOTH {
-        let contact = simulation.model().contact(race, &Conditions { friction: 0.08 });
+        let contact = simulation.model().contact(race, &Conditions::of_friction(0.08));
         let seen = simulation.state().race(race).motion();
         let motions: Vec<_> = simulation.state().balls.iter().map(|ball| ball.motion()).collect();
         for first in [0, 4, 8] {

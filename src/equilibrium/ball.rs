@@ -115,7 +115,8 @@ pub fn balance(
     let surfaces = PerRace::new(|race| contacts[race].surface.under(index));
     let inner = GrooveContact::new(&surfaces.inner, &offset, &inner_race);
     let outer = GrooveContact::new(&surfaces.outer, &position, &outer_race);
-    let cold = |race: Race, curvature: D| contacts[race].shape.stiffness(curvature).scale(contacts[race].stiffening);
+    let cold =
+        |race: Race, curvature: D| contacts[race].shape.stiffness(curvature).scale(contacts[race].stiffening);
     let mut stiffness = PerRace {
         inner: cold(Race::Inner, inner.circumferential_curvature),
         outer: cold(Race::Outer, outer.circumferential_curvature),
