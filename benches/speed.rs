@@ -53,7 +53,7 @@ fn model_new(bencher: Bencher, law: &str) {
 #[divan::bench(args = LAWS)]
 fn contact_value(bencher: Bencher, law: &str) {
     let simulation = simulation(law);
-    let contact = simulation.model().contact(Race::Inner, &Conditions { friction: 0.08 });
+    let contact = simulation.model().contact(Race::Inner, &Conditions::of_friction(0.08));
     let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().race(Race::Inner).motion());
     bencher.bench_local(|| contact.evaluate(divan::black_box(&ball), divan::black_box(&race)));
 }
@@ -62,7 +62,7 @@ fn contact_value(bencher: Bencher, law: &str) {
 #[divan::bench(args = LAWS)]
 fn contact_values_together(bencher: Bencher, law: &str) {
     let simulation = simulation(law);
-    let contact = simulation.model().contact(Race::Inner, &Conditions { friction: 0.08 });
+    let contact = simulation.model().contact(Race::Inner, &Conditions::of_friction(0.08));
     let race = simulation.state().race(Race::Inner).motion();
     let balls: [_; WIDTH] = std::array::from_fn(|lane| simulation.state().balls[lane].motion());
     let mut group = ContactGroup::filled(&contact.evaluate(&balls[0], &race));
@@ -76,7 +76,7 @@ fn contact_values_together(bencher: Bencher, law: &str) {
 #[divan::bench(args = LAWS)]
 fn contact_with_derivatives(bencher: Bencher, law: &str) {
     let simulation = simulation(law);
-    let contact = simulation.model().contact(Race::Inner, &Conditions { friction: 0.08 });
+    let contact = simulation.model().contact(Race::Inner, &Conditions::of_friction(0.08));
     let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().race(Race::Inner).motion());
     type D = Dual<9>;
     let seed = |v: &Vector3<f64>, first: usize| -> Vector3<D> {
@@ -91,6 +91,7 @@ fn contact_with_derivatives(bencher: Bencher, law: &str) {
     let race = RaceMotion {
         position: constant(&race.position),
         axis: constant(&race.axis),
+        across: race.across,
         velocity: constant(&race.velocity),
         angular_velocity: constant(&race.angular_velocity),
     };
@@ -105,7 +106,7 @@ fn force_assembly(bencher: Bencher) {
         let race = simulation.state().race(race);
         (race.pose, race.twist())
     });
-    let conditions = Conditions { friction: 0.08 };
+    let conditions = Conditions::of_friction(0.08);
     let frame = roulement::effects::frame::FrameMotion::default();
     let boundary = Boundary { time: 0.0, motion, loads: Default::default(), conditions, frame };
     bencher.with_inputs(|| simulation.state().clone()).bench_local_values(|mut state| {

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         [("effects.creep", &*law), ("effects.heathcote_slip", heathcote), ("friction.ball_race", "2.0")];
     let scene = Scene::edited(include_str!("../scenes/thrust.toml"), effects)?;
     let simulation = Simulation::new(&scene)?;
-    let contact = simulation.model().contact(Race::Inner, &Conditions { friction: 0.08 });
+    let contact = simulation.model().contact(Race::Inner, &Conditions::of_friction(0.08));
     let (ball, race) = (simulation.state().balls[0].motion(), simulation.state().race(Race::Inner).motion());
     let dual_ball: BallMotion<D> = BallMotion {
         position: lift(&ball.position, 0),
@@ -45,6 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let dual_race: RaceMotion<D> = RaceMotion {
         position: constant(&race.position),
         axis: constant(&race.axis),
+        across: race.across,
         velocity: constant(&race.velocity),
         angular_velocity: constant(&race.angular_velocity),
     };

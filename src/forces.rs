@@ -1,9 +1,10 @@
 //! Forces of all pairs of bodies that touch, and their sums.
 
-use crate::contact::BallRaceContact;
 use crate::contact::pair::PairForces;
-use crate::model::bearing::neighbours;
-use crate::model::bodies::{Body, PerRace, Race};
+use crate::contact::{BallMotion, BallRaceContact};
+use crate::effects::support::SupportState;
+use crate::model::bearing::{Ball, neighbours};
+use crate::model::bodies::{Body, PerRace, Race, RigidBody};
 use crate::model::state::{BallState, BodyState, State};
 use crate::model::{Conditions, Model};
 use crate::numerics::motion::Wrench;
@@ -73,7 +74,9 @@ impl Contacts {
             let motion = ball.motion();
             BallContacts {
                 raceways: PerRace::new(|race| {
-                    contacts[race].of_ball(state.difference(index, race)).evaluate(&motion, &races[race])
+                    contacts[race]
+                        .of_ball(index, state.difference(index, race))
+                        .evaluate(&motion, &races[race])
                 }),
                 pocket: cage.as_ref().and_then(|(cage, seen)| cage.pocket_contact(index, &motion, seen)),
             }
@@ -95,23 +98,9 @@ impl Contacts {
         self.ball_pairs.iter().filter_map(move |pair| pair.on(ball))
     }
 
-    /// \[J] elastic energy of each contact of two balls.
-    pub fn ball_pair_energies(&self, model: &Model) -> impl Iterator<Item = f64> {
-        let contact = model.ball_contact.as_ref();
-        self.ball_pairs.iter().filter_map(move |pair| Some(contact?.elastic_energy(pair.forces.approach)))
-    }
-
     /// Forces between all balls and races.
     pub fn raceway_pairs(&self) -> impl Iterator<Item = PairForces> {
         self.balls.iter().flat_map(|ball| ball.raceways.iter().map(PairForces::from))
-    }
-
-    /// \[J] elastic energy of each contact of cage and lands.
-    pub fn land_energies(&self, model: &Model) -> impl Iterator<Item = f64> {
-        let land = model.cage.as_ref().and_then(|cage| cage.land.as_ref());
-        let pairs = self.lands.iter().flatten();
-        land.into_iter()
-            .flat_map(move |(_, land)| pairs.clone().map(|pair| land.elastic_energy(pair.approach)))
     }
 }
 
@@ -126,15 +115,6 @@ fn touching_balls(model: &Model, state: &State) -> Vec<BallPair> {
         Some(BallPair { first, second, forces })
     };
     neighbours(state.balls.len()).filter_map(touching).collect()
-}
-
-impl BallContacts {
-    /// \[J] elastic energy of each contact.
-    pub fn elastic_energies(&self, model: &Model) -> impl Iterator<Item = f64> {
-        let pocket = model.cage.as_ref().zip(self.pocket.as_ref());
-        let of_pocket = pocket.map(|(cage, pair)| cage.pocket.elastic_energy(pair.approach));
-        self.raceways.iter().map(BallRaceContact::elastic_energy).chain(of_pocket)
-    }
 }
 
 /// Pairs of bodies that touch, in one order for all sums: by ball, between balls, then between bodies.
@@ -172,6 +152,58 @@ pub fn between_cage_and_lands(
 ) -> impl Iterator<Item = (Body, Body, PairForces)> {
     let pairs = lands.iter().flatten();
     guide.into_iter().flat_map(move |race| pairs.clone().map(move |pair| (Body::Cage, race.into(), *pair)))
+}
+
+/// \[J] elastic energy of all pairs of a bearing with `n_balls` balls.
+pub fn elastic_energy(model: &Model, pairs: &impl Pairs, n_balls: usize) -> f64 {
+    let of_body = |(body, pair): (Body, PairForces)| match body {
+        Body::Race(_) => pair.elastic_energy(),
+        Body::Cage => model.cage.as_ref().map_or(0.0, |cage| cage.pocket.elastic_energy(pair.approach)),
+    };
+    let mut energy = 0.0;
+    for ball in 0..n_balls {
+        pairs.of_ball(ball).for_each(|pair| energy += of_body(pair));
+    }
+    pairs.between_balls().for_each(|pair| energy += pair.forces.elastic_energy());
+    if let Some((_, land)) = model.cage.as_ref().and_then(|cage| cage.land.as_ref()) {
+        pairs.between_bodies().for_each(|(_, _, pair)| energy += land.elastic_energy(pair.approach));
+    }
+    energy
+}
+
+/// \[J] kinetic energy of a ball.
+pub fn kinetic_energy_of(ball: &Ball, motion: &BallMotion<f64>) -> f64 {
+    0.5 * ball.mass * motion.velocity.norm_squared()
+        + 0.5 * ball.inertia * motion.angular_velocity.norm_squared()
+}
+
+/// \[J] kinetic energy of balls and of the bodies that forces move.
+pub fn kinetic_energy<'a>(
+    model: &Model,
+    balls: impl Iterator<Item = &'a BallMotion<f64>>,
+    bodies: impl Iterator<Item = (&'a RigidBody, &'a BodyState)>,
+) -> f64 {
+    let of_ball = |motion: &BallMotion<f64>| kinetic_energy_of(&model.bearing.ball, motion);
+    let of_body = |(body, state): (&RigidBody, &BodyState)| {
+        0.5 * body.mass * state.velocity.norm_squared()
+            + 0.5 * state.rate.component_mul(&body.inertia).dot(&state.rate)
+    };
+    balls.map(of_ball).chain(bodies.map(of_body)).fold(0.0, |sum, energy| sum + energy)
+}
+
+/// \[J] kinetic and elastic energy of a state with these contacts, that of supports included.
+pub fn stored_energy(model: &Model, state: &State, contacts: &Contacts) -> f64 {
+    let motions: Vec<_> = state.balls.iter().map(BallState::motion).collect();
+    let bodies = model.bodies.iter().zip(state.bodies.iter());
+    let moved = bodies.filter_map(|((_, body), (_, state))| Some((body.as_ref()?, state)));
+    kinetic_energy(model, motions.iter(), moved)
+        + elastic_energy(model, contacts, motions.len())
+        + supports_energy(&state.supports)
+}
+
+/// \[J] energy stored in the flexible supports of the races.
+pub fn supports_energy(supports: &PerRace<Option<SupportState>>) -> f64 {
+    supports.iter().flatten().fold(0.0, |sum, support| sum + support.energy)
 }
 
 /// Sums over all pairs of a bearing.

@@ -67,7 +67,7 @@ fn boundary(state: &State, frame: FrameMotion, friction: f64) -> Boundary {
         time: state.time,
         motion,
         loads: PerRace::new(|_| BodyLoad::default()),
-        conditions: roulement::model::Conditions { friction },
+        conditions: roulement::model::Conditions::of_friction(friction),
         frame,
     }
 }

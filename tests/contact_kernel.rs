@@ -70,7 +70,7 @@ fn evaluate<S: Scalar>(
     race: Race,
     x: &[S; 18],
 ) -> BallRaceContact<S> {
-    let mut contact = model.contact(race, &Conditions { friction: 0.08 });
+    let mut contact = model.contact(race, &Conditions::of_friction(0.08));
     (contact.law, contact.groove_bend) = (law, bend);
     evaluate_contact(&contact, x)
 }
@@ -89,6 +89,7 @@ fn motions_of<S: Scalar>(x: &[S; 18]) -> (BallMotion<S>, RaceMotion<S>) {
     let race = RaceMotion {
         position: vector(9),
         axis: tilt.map(|c| c / length),
+        across: Vector3::y(),
         velocity: Vector3::new(x[14], x[14], x[14]),
         angular_velocity: vector(15),
     };
@@ -188,7 +189,7 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
     let laws = Laws::new();
     for (name, law, bend) in all(&laws) {
         for race in Race::BOTH {
-            let mut contact = model.contact(race, &Conditions { friction: 0.08 });
+            let mut contact = model.contact(race, &Conditions::of_friction(0.08));
             (contact.law, contact.groove_bend) = (law, bend);
             // One ball as it is, one that slides, one that spins, one that touches nothing.
             let changes = [(0.0, 0.0, 0.0), (0.0, 0.4, 0.0), (1e-6, 0.0, 300.0), (-3e-5, 0.1, -5.0)];
@@ -207,7 +208,13 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             });
             let axis = Vector3::new(1.0, x[13], -x[12]).normalize();
             let (position, velocity) = (vector(&x, 9), Vector3::repeat(x[14]));
-            let race_motion = RaceMotion { position, axis, velocity, angular_velocity: vector(&x, 15) };
+            let race_motion = RaceMotion {
+                position,
+                axis,
+                across: Vector3::y(),
+                velocity,
+                angular_velocity: vector(&x, 15),
+            };
             let alone = motions.each_ref().map(|m| contact.evaluate(m, &race_motion));
             assert!(alone[0].load > 50.0 && alone[3].load == 0.0);
 
@@ -232,6 +239,7 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             let race = RaceMotion {
                 position: constant_vector(&race_motion.position),
                 axis: constant_vector(&race_motion.axis),
+                across: race_motion.across,
                 velocity: constant_vector(&race_motion.velocity),
                 angular_velocity: constant_vector(&race_motion.angular_velocity),
             };
@@ -264,7 +272,7 @@ fn oblique_motion(race: Race, turning: f64) -> [f64; 18] {
 
 /// A contact of a model as it is, at the 18 numbers of [`motion`].
 fn as_simulated<S: Scalar>(model: &Model, race: Race, x: &[S; 18]) -> BallRaceContact<S> {
-    let contact = model.contact(race, &Conditions { friction: 0.08 });
+    let contact = model.contact(race, &Conditions::of_friction(0.08));
     evaluate_contact(&contact, x)
 }
 
@@ -312,7 +320,7 @@ fn invariant_oblique_contacts_beside_straight_ones_have_the_bits_of_one() {
     for law in FRICTION {
         let model = model_of(law);
         for race in Race::BOTH {
-            let contact = model.contact(race, &Conditions { friction: 0.08 });
+            let contact = model.contact(race, &Conditions::of_friction(0.08));
             let cosine =
                 |turning: f64| as_simulated(&model, race, &oblique_motion(race, turning)).rolling_cosine;
             let straight = if cosine(-150.0).abs() > cosine(150.0).abs() { -150.0 } else { 150.0 };
@@ -371,11 +379,12 @@ fn invariant_friction_that_is_off_is_not_computed_and_forces_are_the_same() {
             let seen = RaceMotion {
                 position: vector(9),
                 axis: Vector3::x(),
+                across: Vector3::y(),
                 velocity: vector(12),
                 angular_velocity: vector(15),
             };
-            let mut contact = model.contact(race, &Conditions { friction: 0.0 });
-            contact.damping = damping;
+            let mut contact = model.contact(race, &Conditions::of_friction(0.0));
+            contact.damping = damping.into();
             // Linear theory without stiffness computes everything, and has no force either.
             contact.law = Law::Saturated;
             let all = contact.evaluate(&ball, &seen);

@@ -24,7 +24,11 @@ const OFF: &str = "[effects]\ncreep = \"frictionless\"\n";
 fn alone(example: &str) -> String {
     match example.contains("creep = ") || example.contains("heathcote_slip = ") {
         true => example.to_string(),
-        false => example.replacen("[effects]\n", "[effects]\ncreep = \"saturated\"\n", 1),
+        false if example.contains("[effects]\n") => {
+            example.replacen("[effects]\n", "[effects]\ncreep = \"saturated\"\n", 1)
+        }
+        // A section of its own.
+        false => format!("[effects]\ncreep = \"saturated\"\n{example}"),
     }
 }
 
@@ -54,14 +58,22 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
     let base = names(&parse(OFF));
     let first_parameter = base.iter().position(|name| name == "bearing.ball_diameter").unwrap();
     // Effect, how many variables it adds, and how their names begin: 36 coefficients twice; of a cage without lands 22;
-    // of 10 balls 22 each; of neighbouring balls 4.
+    // of 10 balls 29 each; of neighbouring balls 4.
     let adding = [
         ("effects.stiffness_outputs", 72, &["stiffness.", "damping."][..]),
         ("effects.cage", 22, &["cage."]),
         ("effects.heathcote_slip", 1, &["power.groove"]),
-        ("effects.per_ball_outputs", 220, &["ball["]),
+        ("effects.per_ball_outputs", 290, &["ball["]),
         ("effects.full_complement", 4, &["neighbours."]),
-        ("effects.shoulder_outputs", 2, &["shoulder."]),
+        ("effects.shoulder_outputs", 4, &["shoulder."]),
+        ("effects.heat_outputs", 4, &["heat."]),
+        ("rating", 4, &["life."]),
+        (
+            "growth",
+            11,
+            &["clearance", "contact_angle.free", "interference.", "seat_pressure.", "temperature_rise."],
+        ),
+        ("defect", 4, &["frequency."]),
         ("effects.frame", 9, &["frame."]),
         ("effects.ambient", 1, &["ambient."]),
         ("support", 6, &["outer.support."]),
@@ -77,9 +89,19 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
         assert!(added.iter().all(|name| starts.iter().any(|start| name.starts_with(start))), "{added:?}");
         // Behind it are parameters, its own among them.
         let rest = on[..first_parameter].iter().chain(&on[first_parameter + count..]);
-        let own = ["cage.", "effects.frame.", "effects.ambient.", "outer.support."];
-        let is_own = |name: &str| own.iter().any(|start| name.starts_with(start));
-        let others: Vec<_> = rest.filter(|name| !is_own(name) || base.contains(name)).collect();
+        let own = [
+            "cage.",
+            "growth.",
+            "rating.",
+            "ball.thermal_expansion",
+            "race.density",
+            "race.thermal_expansion",
+            "effects.frame.",
+            "effects.ambient.",
+            "outer.support.",
+        ];
+        let is_own = |name: &&String| own.iter().any(|start| name.starts_with(start)) && !base.contains(name);
+        let others: Vec<_> = rest.filter(|name| !is_own(name)).collect();
         // Gravity is an input of a frame that moves, and no parameter.
         let moves = info.key == "effects.frame";
         let usual = base.iter().filter(|name| !(moves && name.starts_with("effects.gravity")));
@@ -91,7 +113,7 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
                       inertia = [1e-5, 6e-6, 6e-6]\npocket_clearance = 2e-4\nguided_by = \"balls\"\n",
     );
     let on = names(&both);
-    assert_eq!(on.len(), base.len() + 22 + 10 * (22 + 6) + 5);
+    assert_eq!(on.len(), base.len() + 22 + 10 * (29 + 6) + 5);
     assert_eq!(on.iter().filter(|name| name.contains("].pocket.")).count(), 60);
     assert_eq!(on.iter().collect::<BTreeSet<_>>().len(), on.len(), "names are unique");
 }
@@ -104,7 +126,7 @@ fn what_is_told_about_an_effect_is_complete_and_its_example_switches_it_on() {
     assert_eq!(keys.len(), effects.len());
     for (index, effect) in effects.iter().enumerate() {
         let info = effect.info();
-        for text in [info.key, info.adds, info.states, info.source, info.example] {
+        for text in [info.key, info.adds, info.states, info.source, info.price, info.example] {
             assert!(!text.trim().is_empty() && text.is_ascii(), "{info:?}");
         }
         let on = parse(&alone(info.example));
@@ -118,14 +140,18 @@ fn what_is_told_about_an_effect_is_complete_and_its_example_switches_it_on() {
             assert_eq!(effect.setting().is_some(), other == index, "{} by {}", effect.info().key, info.key);
         }
         // The key is one of the scene file: no other would be read. A support is a section of a race.
-        let Some(key) = info.key.strip_prefix("effects.") else {
-            assert!(info.example.contains(&format!(".{}]", info.key)), "{}", info.example);
-            continue;
+        let (section, key, written) = match info.key.strip_prefix("effects.") {
+            Some(key) => ("effects.", key, format!("{key} = ")),
+            None if info.key == "support" => {
+                assert!(info.example.contains(&format!(".{}]", info.key)), "{}", info.example);
+                continue;
+            }
+            None => ("", info.key, format!("[{}]", info.key)),
         };
-        assert!(info.example.contains(&format!("{key} = ")), "{}", info.example);
-        let misspelt = info.example.replacen(&format!("{key} = "), &format!("{key}s = "), 1);
+        assert!(info.example.contains(&written), "{}", info.example);
+        let misspelt = info.example.replacen(&written, &written.replacen(key, &format!("{key}s"), 1), 1);
         let message = Scene::parse(&with(&misspelt)).unwrap_err().to_string();
-        for part in [&format!("effects.{key}s is no known key: did you mean"), key, "line"] {
+        for part in [&format!("{section}{key}s is no known key: did you mean"), key, "line"] {
             assert!(message.contains(part), "{message}\nshould name {part}");
         }
     }
@@ -156,7 +182,7 @@ fn the_page_of_a_package_names_every_effect_on_or_off() {
             let row =
                 page.lines().find(|line| line.contains(&format!("<tr><td><code>{}</code></td>", info.key)));
             let row = row.unwrap_or_else(|| panic!("no row of {}", info.key));
-            for text in [info.adds, info.states, info.source] {
+            for text in [info.adds, info.states, info.source, info.price] {
                 assert!(row.contains(&escaped(text)), "{row}\nshould say {text}");
             }
         }

@@ -163,7 +163,7 @@ fn bearings_of_close_conformity_are_simulated() {
     for race in Race::BOTH {
         let ratio = simulation
             .model()
-            .contact(race, &Conditions { friction: 0.08 })
+            .contact(race, &Conditions::of_friction(0.08))
             .shape
             .typical_patch(0.3)
             .axis_ratio;

@@ -42,7 +42,8 @@ fn run(scene: &Scene, duration: f64) -> Simulation {
 fn forces(simulation: &Simulation, ball: usize, race: Race) -> [[f64; 3]; 2] {
     let (model, state) = (simulation.model(), simulation.state());
     let kalker = model.polynomials(race).unwrap();
-    let frozen = model.contact(race, &Conditions { friction: 0.08 }).of_ball(state.difference(ball, race));
+    let frozen =
+        model.contact(race, &Conditions::of_friction(0.08)).of_ball(ball, state.difference(ball, race));
     let direct = roulement::contact::ContactModel { law: Law::Kalker(kalker), ..frozen };
     [frozen, direct].map(|contact| {
         let contact = contact.evaluate(&state.balls[ball].motion(), &state.race(race).motion());
@@ -113,11 +114,11 @@ fn invariant_the_wrench_on_a_race_is_the_sum_of_the_reported_contact_forces() {
     let simulation = run(&polynomials(3, 0.01), 0.5e-3);
     let (model, state, outputs) = (simulation.model(), simulation.state(), simulation.outputs());
     for race in Race::BOTH {
-        let contact = model.contact(race, &Conditions { friction: 0.08 });
+        let contact = model.contact(race, &Conditions::of_friction(0.08));
         let motion = state.race(race).motion();
         let mut sum = -outputs[race].wrench.force;
         for (j, ball) in state.balls.iter().enumerate() {
-            let forces = contact.of_ball(state.difference(j, race)).evaluate(&ball.motion(), &motion);
+            let forces = contact.of_ball(j, state.difference(j, race)).evaluate(&ball.motion(), &motion);
             let reported = &outputs.balls[j][race];
             let creep = forces.creep.longitudinal.hypot(forces.creep.lateral);
             let shown = reported.force_longitudinal.hypot(reported.force_lateral);

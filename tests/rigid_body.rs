@@ -7,7 +7,8 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{UnitQuaternion, Vector3};
 use roulement::dynamics::{BodyLoad, Boundary, Workspace, make_consistent, try_step};
 use roulement::model::bodies::{Bodies, Constraint, PerRace, Race, RigidBody};
-use roulement::model::state::{BallState, BodyState, Energies, KeptMatrix, Powers, State, Statistics};
+use roulement::model::energies::{Energies, Powers};
+use roulement::model::state::{BallState, BodyState, KeptMatrix, State, Statistics};
 use roulement::model::{Conditions, Model};
 use roulement::numerics::motion::{Pose, Twist, Wrench};
 use roulement::numerics::rotation;
@@ -57,11 +58,14 @@ impl Flight {
             powers: Powers::default(),
             energies: Energies::default(),
             statistics: Statistics::default(),
+            grown: None,
+            rating: None,
+            heat: None,
         };
         let speed = state.race(Race::Inner).rate.x;
         let load = BodyLoad { speed, ..BodyLoad::default() };
         let motion = PerRace { inner: (pose, *twist), outer: (outer, Twist::default()) };
-        let conditions = Conditions { friction: 0.08 };
+        let conditions = Conditions::of_friction(0.08);
         let boundary = Boundary {
             time: 0.0,
             motion,
@@ -286,6 +290,7 @@ fn ball(position: Vector3<f64>, velocity: Vector3<f64>, angular_velocity: Vector
         angular_acceleration: Vector3::zeros(),
         total: Wrench::default(),
         remainder: Wrench::default(),
+        pressed: PerRace::default(),
     }
 }
 

@@ -270,7 +270,7 @@ fn invariant_outputs_of_the_last_step_are_those_of_its_state() {
             simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
             simulation.advance(f64::from(point) * 1.3e-4).unwrap();
             let (model, state) = (simulation.model(), simulation.state());
-            let afresh = Outputs::new(model, state, &simulation.inputs().conditions());
+            let afresh = Outputs::new(model, state, &simulation.conditions());
             assert_eq!(*simulation.outputs(), afresh, "{}", simulation.scene().title);
         }
     }
@@ -289,4 +289,35 @@ fn invariant_what_is_not_a_number_is_never_a_solution() {
         assert_eq!((state.time, &state.balls), (before.time, &before.balls));
         simulation = Simulation::new(&Scene::parse(THRUST).unwrap()).unwrap();
     }
+}
+
+/// Balls without friction under tilt and centrifugal force: nothing is put in but what the changing stiffness of contacts does.
+#[test]
+fn invariant_energy_closes_without_friction_at_any_contact_angle() {
+    let scene = scene(
+        THRUST,
+        &[
+            ("effects.creep", "\"frictionless\""),
+            ("effects.damping", ""),
+            ("bearing.contact_angle", ""),
+            ("bearing.diametral_clearance", "\"-1 um\""),
+            ("load.x", "{ force = 130 }"),
+            ("load.y", "{ force = 440 }"),
+            ("load.ry", "{ rotation = 0.0009 }"),
+            ("load.inner_speed", "4000"),
+            ("load.duration", "\"2 ms\""),
+            ("solver", "{ max_step = \"0.2 us\", tolerance = 1e-9 }"),
+        ],
+    );
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let stored = simulation.outputs().stored_energy;
+    simulation.advance_scripted(2e-3).unwrap();
+    let last = simulation.outputs();
+    let balance = last.work - last.dissipated - (last.stored_energy - stored);
+    // The stiffness of the contacts alone put in 40 times as much.
+    assert!(
+        last.work.abs() > 1e-7 && balance.abs() < 0.025 * last.work.abs(),
+        "{balance:e} of {:e}",
+        last.work
+    );
 }

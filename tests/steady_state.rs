@@ -95,7 +95,7 @@ fn distance_in_bands(simulation: &Simulation) -> f64 {
 /// its acceleration. Races, speed and friction are those of the run.
 fn static_loads(simulation: &Simulation, index: usize, fraction: f64, swing: bool) -> [f64; 2] {
     let (model, ball) = (simulation.model(), &simulation.state().balls[index]);
-    let contacts = Race::BOTH.map(|race| model.contact(race, &simulation.inputs().conditions()));
+    let contacts = Race::BOTH.map(|race| model.contact(race, &simulation.conditions()));
     let races = Race::BOTH.map(|race| simulation.state().race(race).motion());
     let (axis, offset) = (races[1].axis, ball.position - races[1].position);
     let across = offset - axis * offset.dot(&axis);
@@ -114,12 +114,8 @@ fn static_loads(simulation: &Simulation, index: usize, fraction: f64, swing: boo
         let position = races[1].position + axis * place.x + radial * place.y;
         let (mut sum, mut loads) = (centrifugal, [0.0; 2]);
         for race in 0..2 {
-            let contact = GrooveContact::new(
-                contacts[race].raceway,
-                model.bearing.ball.radius,
-                &(position - races[race].position),
-                &races[race].axis,
-            );
+            let contact =
+                GrooveContact::new(&contacts[race].surface, &(position - races[race].position), &races[race]);
             let stiffness = contacts[race].shape.stiffness(contact.circumferential_curvature);
             loads[race] = stiffness * contact.approach.max(0.0).powf(1.5);
             sum += transverse(&contact) * friction[race] - contact.normal * loads[race];

@@ -255,7 +255,7 @@ fn independent_data_eigenfrequencies_of_a_kicked_race() {
                     time: 0.0,
                     motion: PerRace::new(|race| (inputs[race].pose, inputs[race].twist)),
                     loads: PerRace::new(|_| BodyLoad::default()),
-                    conditions: inputs.conditions(),
+                    conditions: simulation.conditions(),
                     frame: Default::default(),
                 };
                 make_consistent(&model, &mut state, &boundary);

@@ -38,12 +38,18 @@ impl Balls<'_> {
         let (angle, rate) = tilt.smooth_at(time);
         let axis = UnitQuaternion::new(Vector3::y() * angle) * Vector3::x();
         let angular_velocity = axis * self.scene.load.inner_speed.at(time) + Vector3::y() * rate;
-        RaceMotion { position: self.inner_position, axis, velocity: Vector3::zeros(), angular_velocity }
+        let across = Vector3::y();
+        RaceMotion {
+            position: self.inner_position,
+            axis,
+            across,
+            velocity: Vector3::zeros(),
+            angular_velocity,
+        }
     }
 
     fn outer() -> RaceMotion<f64> {
-        let zero = Vector3::zeros();
-        RaceMotion { position: zero, axis: Vector3::x(), velocity: zero, angular_velocity: zero }
+        RaceMotion::resting(Vector3::zeros(), Vector3::x(), Vector3::y())
     }
 
     fn motion(&self, y: &[f64]) -> BallMotion<f64> {
@@ -56,7 +62,7 @@ impl Balls<'_> {
     }
 
     fn contacts(&self, time: f64, ball: &BallMotion<f64>) -> [BallRaceContact<f64>; 2] {
-        let conditions = Conditions { friction: self.scene.friction.ball_race.at(0.0) };
+        let conditions = Conditions::of_friction(self.scene.friction.ball_race.at(0.0));
         let races = [(Race::Inner, self.inner(time)), (Race::Outer, Self::outer())];
         races.map(|(race, motion)| self.model.contact(race, &conditions).evaluate(ball, &motion))
     }

@@ -1,11 +1,12 @@
 //! Numerical errors that are measured on the scene at hand: rounds of refinement, chaos, and the program's `run --error`.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 use std::ops::ControlFlow;
-use std::path::PathBuf;
-use std::process::{Command, Output};
 use std::sync::OnceLock;
 
+use common::{Scratch, edited};
 use roulement::scene::{ErrorGoal, ErrorOf, Scene, Solver};
 use roulement::simulation::Simulation;
 use roulement::simulation::play::{Rows, play};
@@ -13,43 +14,6 @@ use roulement_cli::error::{Difference, Estimate, Judgement, Lengths, Rounds, Run
 use roulement_cli::report::figures::Figures;
 use roulement_cli::report::means::Blocks;
 use roulement_cli::report::quantities::{COUNT, Parts, QUANTITIES};
-
-/// A directory of its own for a test, removed at the end.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("roulement-error-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).display().to_string()
-    }
-
-    fn read(&self, name: &str) -> String {
-        std::fs::read_to_string(self.path(name)).unwrap()
-    }
-
-    /// Runs a scene into a directory.
-    fn run(&self, scene: &Scene, to: &str, options: &[&str]) -> Output {
-        std::fs::write(self.path("scene.toml"), &scene.source).unwrap();
-        let arguments = ["run", &self.path("scene.toml"), "-o", &self.path(to)];
-        Command::new(env!("CARGO_BIN_EXE_roulement")).args(arguments).args(options).output().unwrap()
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn scene(name: &str, changes: &[(&str, &str)]) -> Scene {
-    let path = format!("{}/../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    Scene::edited(&std::fs::read_to_string(path).unwrap(), changes.iter().copied()).unwrap()
-}
 
 /// A start of the thrust case that has something to be wrong about: the load rises within 0.1 ms.
 fn short(changes: &[(&str, &str)]) -> Scene {
@@ -59,7 +23,7 @@ fn short(changes: &[(&str, &str)]) -> Scene {
         ("load.output_interval", "\"20 us\""),
         ("load.x.force", "[[0.0, 1500], [\"0.5 ms\", 1500], [\"0.6 ms\", 1700]]"),
     ];
-    scene("thrust", &own.iter().chain(changes).copied().collect::<Vec<_>>())
+    edited("thrust", &own.iter().chain(changes).copied().collect::<Vec<_>>())
 }
 
 /// Columns of a table by name: a name and values of each.
@@ -78,7 +42,7 @@ fn column<'a>(table: &'a [(String, Vec<String>)], name: &str) -> &'a [String] {
 /// A run of 1 s in which every quantity is 1 but for what is added to the friction power.
 fn synthetic(solver: Solver, added: impl Fn(f64) -> f64) -> Run {
     let index = QUANTITIES.iter().position(|quantity| quantity.name == "friction power").unwrap();
-    let mut outputs = Simulation::new(&scene("thrust", &[])).unwrap().outputs().clone();
+    let mut outputs = Simulation::new(&edited("thrust", &[])).unwrap().outputs().clone();
     let mut blocks = Blocks::new(Parts { cage: false, moving_outer: false }, 1.0);
     let mut samples = Vec::new();
     for row in 0..=1000 {
@@ -185,7 +149,7 @@ fn closed_form_chaos_is_told_from_coarse_steps_and_has_an_interval() {
 
 #[test]
 fn invariant_the_files_are_those_of_the_finest_run_and_its_figures_have_error_bars() {
-    let scratch = Scratch::new("finest");
+    let scratch = Scratch::new("error-finest");
     let coarse = short(&[]);
     let output = scratch.run(&coarse, "measured", &["--error", "1e-2"]);
     let summary = String::from_utf8(output.stdout).unwrap();
@@ -213,7 +177,7 @@ fn invariant_the_files_are_those_of_the_finest_run_and_its_figures_have_error_ba
 
 #[test]
 fn independent_reference_errors_are_below_the_error_bars_and_below_the_goal() {
-    let scratch = Scratch::new("reference");
+    let scratch = Scratch::new("error-reference");
     let coarse = short(&[("solver", "{ accuracy = { error = 2e-3 } }")]);
     let output = scratch.run(&coarse, "measured", &["--rounds", "9"]);
     let summary = String::from_utf8_lossy(&output.stdout);
@@ -254,7 +218,7 @@ fn independent_reference_errors_are_below_the_error_bars_and_below_the_goal() {
 
 #[test]
 fn a_goal_that_is_not_met_or_makes_no_sense_is_said() {
-    let scratch = Scratch::new("unmet");
+    let scratch = Scratch::new("error-unmet");
     let output = scratch.run(&short(&[]), "out", &["--error", "1e-6", "--rounds", "2"]);
     let summary = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(3), "{summary}");
@@ -306,7 +270,7 @@ impl Errors {
 
     /// And the run and that of an eighth.
     fn and_runs(name: &'static str) -> (Self, [Run; 2]) {
-        let scene = scene(&format!("error/{name}"), &[]);
+        let scene = edited(&format!("error/{name}"), &[]);
         assert!(!scene.source.contains("[solver]"));
         let (run, estimate) = played(&scene, scene.solver);
         let fine = played(&scene, scene.solver.refined(3)).0;
@@ -371,7 +335,7 @@ fn invariant_a_run_up_through_its_resonance_keeps_its_means_and_says_what_blows_
     assert!(run_up.means < 2.0 * means && run_up.histories.max(run_up.torque) < 10.0 * histories);
 
     // Measured with one pair of runs, every mean is right within its error bar: those that agree by chance, too.
-    let scene = scene("error/run_up", &[]);
+    let scene = edited("error/run_up", &[]);
     let half = played(&scene, scene.solver.refined(1)).0;
     let truth = Difference::of(&half, &fine);
     let pair = Difference::of(&run, &half);
@@ -399,11 +363,11 @@ fn invariant_a_run_up_through_its_resonance_keeps_its_means_and_says_what_blows_
 
 #[test]
 fn invariant_blows_are_said_where_a_cage_rattles_and_not_where_there_is_none() {
-    let scratch = Scratch::new("blows");
+    let scratch = Scratch::new("error-blows");
     let none = [("effects.cage", ""), ("cage", ""), ("friction.ball_cage", ""), ("friction.cage_race", "")];
     for (changes, strike) in [(&[][..], true), (&none[..], false)] {
         let own = [("load.duration", "\"6 ms\"")];
-        let scene = scene("error/rattling_cage", &[&own[..], changes].concat());
+        let scene = edited("error/rattling_cage", &[&own[..], changes].concat());
         let summary = String::from_utf8(scratch.run(&scene, "out", &[]).stdout).unwrap();
         let line = summary.lines().find(|line| line.starts_with("error, estimate  histories ")).unwrap();
         let [histories, means] = ["histories ", "means "].map(|name| {

@@ -19,6 +19,7 @@
 use nalgebra::{Matrix2, Matrix2x6, Matrix4, Matrix4x6, Matrix6, Matrix6x2, Matrix6x4, Vector3, Vector4};
 
 use crate::contact::creep::Law;
+use crate::contact::normal::Damping;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 pub use crate::effects::reports::Condensed;
 use crate::model::bodies::{PerRace, Race};
@@ -40,7 +41,7 @@ impl Condensed {
         let races = PerRace::new(|race| state.race(race).motion());
         let zero = Self { stiffness: Matrix6::zeros(), damping: Matrix6::zeros() };
         let add = |sum: Self, (index, ball): (usize, &BallState)| {
-            let contacts = PerRace::new(|race| contacts[race].of_ball(state.difference(index, race)));
+            let contacts = PerRace::new(|race| contacts[race].of_ball(index, state.difference(index, race)));
             contribution(model, &contacts, &races, ball).map_or(sum, |one| Self {
                 stiffness: sum.stiffness + one.stiffness,
                 damping: sum.damping + one.damping,
@@ -91,6 +92,7 @@ fn by_rates(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<
         &RaceMotion {
             position: fixed(&race.position),
             axis: fixed(&race.axis),
+            across: race.across,
             velocity: fixed(&race.velocity),
             angular_velocity: variable(&race.angular_velocity, 6),
         },
@@ -129,6 +131,7 @@ impl Linear {
             &RaceMotion {
                 position: fixed(&race.position),
                 axis: turning(&race.axis),
+                across: race.across,
                 velocity: fixed(&race.velocity),
                 angular_velocity: turning(&race.angular_velocity),
             },
@@ -166,8 +169,12 @@ fn contribution(
     }
     let linear = |model: &ContactModel<'_>, race: Race| Linear::new(model, &motion, &races[race]);
     let [inner, outer] = Race::BOTH.map(|race| linear(&contacts[race], race));
-    let smooth =
-        |race: Race| linear(&ContactModel { law: Law::Frictionless, damping: 0.0, ..contacts[race] }, race);
+    let smooth = |race: Race| {
+        linear(
+            &ContactModel { law: Law::Frictionless, damping: Damping::HuntCrossley(0.0), ..contacts[race] },
+            race,
+        )
+    };
     let [smooth_inner, smooth_outer] = Race::BOTH.map(smooth);
     let orbit = Orbit::new(&motion, &races.outer);
 

@@ -3,3 +3,4 @@
 pub mod condensed;
 pub mod natural_frequency;
 pub mod single_contact;
+pub mod stick_slip;

@@ -7,7 +7,7 @@
 use super::BallMotion;
 use super::hertz::HertzContact;
 use super::materials::Pair;
-use super::normal::NormalLoad;
+use super::normal::{Damping, NormalLoad};
 use super::pair::PairForces;
 use crate::numerics::scalar::{Single, cross, dot};
 
@@ -43,13 +43,13 @@ impl BallBallModel {
         self.diameter - (second.position - first.position).norm()
     }
 
-    /// Forces between two balls with a Hunt-Crossley dissipation factor [s/m]; `None` where they do not touch.
+    /// Forces between two balls with some damping; a number is a Hunt-Crossley dissipation factor [s/m]. `None` where they do not touch.
     #[inline(always)]
     pub fn evaluate<S: Single>(
         &self,
         first: &BallMotion<S>,
         second: &BallMotion<S>,
-        damping: f64,
+        damping: impl Into<Damping>,
     ) -> Option<PairForces<S>> {
         let offset = second.position - first.position;
         let distance = dot(&offset, &offset).sqrt();
@@ -63,7 +63,8 @@ impl BallBallModel {
 
         let relative = first.velocity - second.velocity;
         let stiffness = S::constant(self.stiffness);
-        let load = NormalLoad::hertz(stiffness, approach, approach.sqrt(), dot(&normal, &relative), damping);
+        let load =
+            NormalLoad::hertz(stiffness, approach, approach.sqrt(), dot(&normal, &relative), damping.into());
 
         let turning = first.angular_velocity + second.angular_velocity;
         let slip = relative + cross(&turning, &arm);

@@ -2,7 +2,11 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::raceway::Raceway;
+use super::RaceMotion;
+use super::form::Shift;
+use super::normal::NormalLoad;
+use super::spall::Spalls;
+use super::surface::Surface;
 use crate::numerics::scalar::{Scalar, cross, dot};
 
 /// \[m] distance from the groove centre below which the contact normal fades to zero.
@@ -17,7 +21,7 @@ pub struct GrooveContact<S: Scalar> {
     pub normal: Vector3<S>,
     /// [-] unit radial direction of the race through the ball centre.
     pub radial: Vector3<S>,
-    /// [-] circumferential direction: race axis x radial.
+    /// [-] circumferential direction: race axis x radial, and along the waves of a race that has some.
     pub circumferential: Vector3<S>,
     /// \[m] distance of the ball centre from the race axis.
     pub radius: S,
@@ -25,35 +29,131 @@ pub struct GrooveContact<S: Scalar> {
     pub distance: S,
     /// [1/m] curvature of the raceway along its circumference at the contact; convex (inner race) positive.
     pub circumferential_curvature: S,
+    /// [-] change of the approach by a move along the normal; none where it is 1, without spalls.
+    pub gain: Option<S>,
 }
 
 impl<S: Scalar> GrooveContact<S> {
-    /// Contact of a ball of radius `ball_radius` \[m] whose centre is at `offset` \[m] from the race centre,
-    /// with a race of unit axis `axis`.
+    /// Contact of a ball whose centre is at `offset` \[m] from the centre of a race.
     #[inline(always)]
-    pub fn new(raceway: &Raceway, ball_radius: f64, offset: &Vector3<S>, axis: &Vector3<S>) -> Self {
+    pub fn new(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> Self {
+        if surface.is_plain() {
+            Self::on(surface, offset, race, None)
+        } else {
+            Self::shaped(surface, offset, race)
+        }
+    }
+
+    /// Contact with a race that departs from a torus, or of balls that are not alike. Apart, so that a plain race does not pay for it.
+    #[inline(never)]
+    fn shaped(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> Self {
+        let shift = surface.form.map_or_else(Shift::none, |form| form.under(offset, race));
+        let mut contact = Self::on(surface, offset, race, Some(&shift));
+        if let Some(larger) = surface.of_balls(|size| size.larger) {
+            contact.approach += larger;
+        }
+        if let Some(spalls) = surface.spalls {
+            contact.drop_into(spalls, offset, race, &shift);
+        }
+        contact
+    }
+
+    /// Drops the ball into the spalls of the race.
+    #[inline(always)]
+    fn drop_into(&mut self, spalls: &Spalls, offset: &Vector3<S>, race: &RaceMotion<S>, shift: &Shift<S>) {
+        let around = cross(&race.axis, &self.radial);
+        let (cos, sin) = (dot(&self.normal, &self.radial), dot(&self.normal, &race.axis));
+        let drop = spalls.under(azimuth(offset, race), sin, cos, self.approach);
+        self.approach -= drop.depth;
+        // The gradient of what is left of the approach.
+        let up = race.axis * cos - self.radial * sin;
+        let along = drop.by_azimuth / self.radius
+            + drop.by_angle * shift.turn(cos, sin) / (self.distance * self.radius);
+        let gradient = self.normal * S::one_minus(drop.by_approach)
+            - around * along
+            - up * (drop.by_angle / self.distance);
+        let gain = dot(&gradient, &gradient).sqrt();
+        self.normal = gradient.map(|component| component / gain);
+        let across = self.circumferential - self.normal * dot(&self.circumferential, &self.normal);
+        let length = dot(&across, &across).sqrt();
+        self.circumferential = across.map(|component| component / length);
+        self.gain = Some(gain);
+    }
+
+    /// [m/s] rate of the approach, of that along the normal.
+    #[inline(always)]
+    pub(super) fn rate(&self, along_normal: S) -> S {
+        match self.gain {
+            None => along_normal,
+            Some(gain) => gain * along_normal,
+        }
+    }
+
+    /// The load whose force along the normal does the work of a load that goes with the approach.
+    #[inline(always)]
+    pub(super) fn force_of(&self, load: NormalLoad<S>) -> NormalLoad<S> {
+        match self.gain {
+            None => load,
+            Some(gain) => NormalLoad { total: load.total * gain, ..load },
+        }
+    }
+
+    /// Contact with a race whose groove circle is shifted where the ball is.
+    #[inline(always)]
+    fn on(
+        surface: &Surface<'_>,
+        offset: &Vector3<S>,
+        race: &RaceMotion<S>,
+        shift: Option<&Shift<S>>,
+    ) -> Self {
+        let Surface { raceway, ball_radius, .. } = surface;
+        let axis = &race.axis;
         let axial = dot(offset, axis);
         let radial_vector = offset - axis * axial;
         let radius = dot(&radial_vector, &radial_vector).sqrt();
         let radial = radial_vector.map(|component| component / radius);
         // From the groove centre of this azimuth to the ball centre.
-        let out = radius - S::constant(raceway.groove_circle_radius);
-        let along = axial - S::constant(raceway.groove_offset);
+        let mut out = radius - S::constant(raceway.groove_circle_radius);
+        let mut along = axial - S::constant(raceway.groove_offset);
+        if let Some(shift) = shift {
+            out -= shift.radial;
+            along -= shift.axial;
+        }
         // A ball on the groove centre touches nothing, in no direction: the floor, below rounding, spares a 0/0.
         let distance = (out.square() + along.square() + S::constant(DISTANCE_FLOOR * DISTANCE_FLOOR)).sqrt();
         let (cos, sin) = (out / distance, along / distance);
         // A torus's second principal curvature: cosine of the normal's angle over the radius of the contact point.
-        let contact_radius = radius + cos.scale(ball_radius);
+        let contact_radius = radius + cos.scale(*ball_radius);
+        let mut normal = radial * cos + axis * sin;
+        let mut circumferential = cross(axis, &radial);
+        if let Some(shift) = shift {
+            // The gradient of the approach, longer than 1 by half the square of the lean: 1e-8 for waves of a micrometre.
+            let lean = (cos * shift.radial_slope + sin * shift.axial_slope) / radius;
+            (normal, circumferential) = (normal - circumferential * lean, circumferential + normal * lean);
+        }
         Self {
             approach: distance - S::constant(raceway.groove_radius - ball_radius),
-            normal: radial * cos + axis * sin,
+            normal,
             radial,
-            circumferential: cross(axis, &radial),
+            circumferential,
             radius,
             distance,
             circumferential_curvature: -cos / contact_radius,
+            gain: None,
         }
     }
+}
+
+/// \[rad] azimuth at `offset` \[m] from the origin of a race, from its own y axis.
+#[inline(always)]
+pub(super) fn azimuth<S: Scalar>(offset: &Vector3<S>, race: &RaceMotion<S>) -> S {
+    let y = race.across.map(S::constant);
+    let z = cross(&race.axis, &y);
+    let [azimuth] = S::map_smooth_many([dot(offset, &y), dot(offset, &z)], |[y, z]| {
+        let square = y * y + z * z;
+        ([z.atan2(y)], [[-z / square, y / square]])
+    });
+    azimuth
 }
 
 impl<S: Scalar> GrooveContact<S> {
@@ -72,6 +172,7 @@ impl<S: Scalar> GrooveContact<S> {
             radius: f(self.radius, other.radius),
             distance: f(self.distance, other.distance),
             circumferential_curvature: f(self.circumferential_curvature, other.circumferential_curvature),
+            gain: self.gain.zip(other.gain).map(|(a, b)| f(a, b)),
         }
     }
 }
@@ -79,12 +180,17 @@ impl<S: Scalar> GrooveContact<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::raceway::Raceway;
 
     #[test]
     fn limit_a_ball_on_the_groove_centre_touches_nothing() {
         let raceway = Raceway { groove_radius: 6.6e-3, groove_circle_radius: 0.0625, groove_offset: 0.0 };
         let centre = Vector3::new(0.0, raceway.groove_circle_radius, 0.0);
-        let contact = GrooveContact::new(&raceway, 6.35e-3, &centre, &Vector3::x());
+        let contact = GrooveContact::new(
+            &Surface::plain(raceway, 6.35e-3),
+            &centre,
+            &RaceMotion::resting(Vector3::zeros(), Vector3::x(), Vector3::y()),
+        );
         assert!((contact.approach - (6.35e-3 - raceway.groove_radius)).abs() < 2.0 * DISTANCE_FLOOR);
         let numbers = contact.normal.iter().chain([&contact.circumferential_curvature]);
         assert!(numbers.into_iter().all(|number| number.is_finite()), "{contact:?}");

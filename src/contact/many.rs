@@ -123,6 +123,7 @@ fn in_lanes(race: &RaceMotion<f64>) -> RaceMotion<Lanes> {
     RaceMotion {
         position: constant_vector(&race.position),
         axis: constant_vector(&race.axis),
+        across: race.across,
         velocity: constant_vector(&race.velocity),
         angular_velocity: constant_vector(&race.angular_velocity),
     }

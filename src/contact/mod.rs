@@ -3,6 +3,7 @@
 pub mod ball_ball;
 pub mod body;
 pub mod creep;
+pub mod form;
 pub mod geometry;
 pub mod heathcote;
 pub mod hertz;
@@ -20,17 +21,19 @@ pub mod raceway;
 pub mod regularised;
 pub mod shape;
 pub mod shoulder;
+pub mod spall;
+pub mod surface;
 
 use nalgebra::Vector3;
 
-use crate::contact::raceway::Raceway;
+use crate::contact::surface::Surface;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::{Difference, ScaledKalker};
 use crate::numerics::scalar::{Scalar, Single, cross, dot};
 use creep::{CreepForces, Creepage, Law, LinearTheory};
 use geometry::GrooveContact;
 use kinematics::Surfaces;
-use normal::NormalLoad;
+use normal::{Damping, NormalLoad};
 use oblique::{Across, is_oblique};
 use shape::ContactShape;
 
@@ -59,29 +62,40 @@ pub struct RaceMotion<S: Scalar> {
     pub position: Vector3<S>,
     /// [-] unit vector of the race's own axis.
     pub axis: Vector3<S>,
+    /// [-] unit vector of the race's own y axis, which azimuths on it are counted from. Plain numbers: as derivatives it costs
+    /// more than 1 % of a step in every scene, and its turn changes too little within a step for Newton's method to notice.
+    pub across: Vector3<f64>,
     /// [m/s] velocity of the origin.
     pub velocity: Vector3<S>,
     /// [rad/s] angular velocity.
     pub angular_velocity: Vector3<S>,
 }
 
+impl<S: Scalar> RaceMotion<S> {
+    /// A race that rests: origin \[m], its own axis and its own y axis.
+    pub fn resting(position: Vector3<S>, axis: Vector3<S>, across: Vector3<f64>) -> Self {
+        let still = Vector3::from_element(S::zero());
+        Self { position, axis, across, velocity: still, angular_velocity: still }
+    }
+}
+
 /// Constants of a ball-race contact during a step.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactModel<'a> {
-    /// The raceway.
-    pub raceway: &'a Raceway,
+    /// What the balls roll on, and their size.
+    pub surface: Surface<'a>,
     /// Shape of its contacts: stiffness, ellipse and creep coefficients over the approach.
     pub shape: &'a ContactShape,
-    /// \[m] ball radius.
-    pub ball_radius: f64,
+    /// [-] Hertz stiffness over that of `shape`, whose dimensions growth has changed since.
+    pub stiffening: f64,
     /// Creep law of rolling along the circumference.
     pub law: Law<'a>,
     /// Rolling across it; none where there is no friction.
     pub across: Option<Across<'a>>,
     /// [-] friction coefficient.
     pub friction: f64,
-    /// [s/m] Hunt-Crossley dissipation factor.
-    pub damping: f64,
+    /// How energy is lost to the approach rate.
+    pub damping: Damping,
     /// [1/m] mean transverse curvature `1/(2 R)` of ball and groove where its slip (Heathcote) is simulated.
     pub groove_bend: Option<f64>,
 }
@@ -192,18 +206,22 @@ impl ContactModel<'_> {
     #[inline(always)]
     fn pressed<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
         let offset = ball.position - race.position;
-        let geometry = GrooveContact::new(self.raceway, self.ball_radius, &offset, &race.axis);
+        let geometry = GrooveContact::new(&self.surface, &offset, race);
         let depth = geometry.approach.positive_part();
-        let stiffness = self.shape.stiffness(geometry.circumferential_curvature);
-        let (arm, race_arm) = kinematics::arms(geometry.normal, self.ball_radius, &offset);
-        let rate = match self.damping == 0.0 {
+        let mut stiffness = self.shape.stiffness(geometry.circumferential_curvature).scale(self.stiffening);
+        if let Some(factor) = self.surface.of_balls::<S>(|size| size.stiffness) {
+            stiffness *= factor;
+        }
+        let (arm, race_arm) = kinematics::arms(geometry.normal, self.surface.ball_radius, &offset);
+        let rate = match self.damping.is_none() {
             true => S::zero(),
             false => {
                 let bodies = [&race.velocity, &race.angular_velocity];
                 dot(&geometry.normal, &kinematics::slip(ball, bodies, [&arm, &race_arm]))
             }
         };
-        let load = NormalLoad::hertz(stiffness, depth, depth.sqrt(), rate, self.damping);
+        let load = NormalLoad::hertz(stiffness, depth, depth.sqrt(), geometry.rate(rate), self.damping);
+        let load = geometry.force_of(load);
         let (zero, none) = (S::zero(), Vector3::from_element(S::zero()));
         let force = -geometry.normal.map(|component| component * load.total);
         BallRaceContact {
@@ -251,10 +269,10 @@ impl ContactModel<'_> {
         race: &RaceMotion<S>,
     ) -> (BallRaceContact<S>, bool) {
         let offset = ball.position - race.position;
-        let geometry = GrooveContact::new(self.raceway, self.ball_radius, &offset, &race.axis);
+        let geometry = GrooveContact::new(&self.surface, &offset, race);
         let surfaces = Surfaces::new(
             ball,
-            self.ball_radius,
+            self.surface.ball_radius,
             [&race.velocity, &race.angular_velocity],
             &offset,
             geometry.normal,
@@ -265,7 +283,12 @@ impl ContactModel<'_> {
         let depth = geometry.approach.positive_part();
         let root = depth.sqrt();
         let shape = self.shape.at(geometry.circumferential_curvature);
-        let load = NormalLoad::hertz(shape.stiffness, depth, root, surfaces.approach_rate, self.damping);
+        let mut stiffness = shape.stiffness.scale(self.stiffening);
+        if let Some(factor) = self.surface.of_balls::<S>(|size| size.stiffness) {
+            stiffness *= factor;
+        }
+        let rate = geometry.rate(surfaces.approach_rate);
+        let load = geometry.force_of(NormalLoad::hertz(stiffness, depth, root, rate, self.damping));
 
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
@@ -280,7 +303,7 @@ impl ContactModel<'_> {
         let contact = BallRaceContact {
             geometry,
             load: load.total,
-            stiffness: shape.stiffness,
+            stiffness,
             semi_axes: [shape.semi_axis_rolling, shape.semi_axis_transverse],
             rolling_speed: rolling.speed,
             creepage: rolling.creepage,
@@ -295,12 +318,14 @@ impl ContactModel<'_> {
         (contact, oblique)
     }
 
-    /// The contact of one ball, with its difference of Kalker's polynomials from the table, where they are simulated.
-    pub fn of_ball<'b>(&self, difference: Option<&'b Difference>) -> ContactModel<'b>
+    /// The contact of a ball (0 is the first), with its difference of Kalker's polynomials from the table, where they are
+    /// simulated.
+    pub fn of_ball<'b>(&self, ball: usize, difference: Option<&'b Difference>) -> ContactModel<'b>
     where
         Self: 'b,
     {
         ContactModel {
+            surface: self.surface.under(ball),
             law: match (self.law, difference) {
                 (Law::Table(table), Some(difference)) => Law::Frozen(table, &difference.value),
                 (Law::Kalker(kalker), Some(last)) => Law::Continued(kalker, &last.coefficients),

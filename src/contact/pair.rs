@@ -44,6 +44,13 @@ impl<S: Scalar> PairForces<S> {
 }
 
 impl PairForces {
+    /// \[J] elastic energy of a Hertz contact.
+    #[inline(always)]
+    pub fn elastic_energy(&self) -> f64 {
+        let depth = self.approach.max(0.0);
+        0.4 * self.stiffness * (depth * depth * depth.sqrt())
+    }
+
     /// Force and moment on the first body.
     #[inline(always)]
     pub fn on_first(&self) -> Wrench {

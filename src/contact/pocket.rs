@@ -119,7 +119,8 @@ impl PocketModel {
         // normal load
         let root = approach.sqrt();
         let shape = self.shape.constant::<S>();
-        let load = NormalLoad::hertz(shape.stiffness, approach, root, surfaces.approach_rate, self.damping);
+        let load =
+            NormalLoad::hertz(shape.stiffness, approach, root, surfaces.approach_rate, self.damping.into());
 
         // creep forces of the ball on the cage, in the contact frame: x along the pocket
         let x = if self.sphere_circle.is_some() { across(&normal, &axis, &cage.axes[0]) } else { axis };

@@ -270,6 +270,15 @@ impl ContactShape {
         each_property!(property of self.properties => x.polynomial(&property.0))
     }
 
+    /// [-] Hertz stiffness of a ball whose radius is larger by a length \[m] over that of the others, at a circumferential curvature
+    /// of the raceway [1/m].
+    pub fn stiffness_of_larger(&self, larger: f64, curvature: f64) -> f64 {
+        let other = 1.0 / (1.0 / self.ball_curvature + larger);
+        let transverse = self.transverse_curvature + (other - self.ball_curvature);
+        let hertz = HertzContact::new(other + curvature, transverse, self.compliance);
+        hertz.stiffness / self.hertz(curvature).stiffness
+    }
+
     /// The exact Hertz contact at a circumferential curvature of the raceway [1/m], not interpolated.
     pub fn hertz(&self, curvature: f64) -> HertzContact {
         HertzContact::new(self.ball_curvature + curvature, self.transverse_curvature, self.compliance)

@@ -14,6 +14,13 @@ pub fn largest_share(contacts: impl Iterator<Item = (f64, f64)> + Clone) -> f64 
     contacts.filter(|(load, _)| *load > SMALL_LOAD * largest).fold(0.0, |most, (_, share)| share.max(most))
 }
 
+/// \[rad] smallest margin of a race among contacts that carry load, by their loads \[N] and margins; a right angle where none does.
+pub fn least_margin(contacts: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
+    let largest = contacts.clone().fold(0.0, |largest: f64, (load, _)| largest.max(load));
+    let loaded = contacts.filter(|(load, _)| *load > SMALL_LOAD * largest);
+    loaded.fold(std::f64::consts::FRAC_PI_2, |least, (_, margin)| margin.min(least))
+}
+
 /// Ends of a groove as contact angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shoulders {
@@ -46,6 +53,12 @@ impl Shoulders {
             0.25 * (1.0 - t).powi(2) * (2.0 + t)
         };
         share(self.ends[0] + towards_x) + share(self.ends[1] - towards_x)
+    }
+
+    /// \[rad] distance of an ellipse, of a contact at an angle \[rad] towards +x with a half angle of its ellipse \[rad], from the
+    /// nearer end of the groove; negative where it is cut.
+    pub fn margin(&self, towards_x: f64, half_angle: f64) -> f64 {
+        (self.ends[0] + towards_x).min(self.ends[1] - towards_x) - half_angle
     }
 
     /// Is a contact at an angle \[rad] towards +x beyond a shoulder?

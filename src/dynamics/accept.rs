@@ -2,17 +2,24 @@
 
 use super::ball::BallTrial;
 use super::neighbours::NeighbourTrial;
-use super::support::renew_supports;
+use super::record::record;
+use super::support::supports_of;
 use super::{Boundary, Workspace, body};
+use crate::contact::BallMotion;
 use crate::contact::pair::PairForces;
 use crate::effects::ambient::Ambient;
-use crate::forces::{BallPair, Contacts, Pairs, Totals, between_cage_and_lands};
+use crate::effects::growth::Grown;
+use crate::effects::support::SupportState;
+use crate::forces::{
+    BallPair, Contacts, Pairs, Totals, between_cage_and_lands, elastic_energy, kinetic_energy,
+    kinetic_energy_of, stored_energy, supports_energy,
+};
 use crate::model::Model;
-use crate::model::bodies::{Body, Race};
-use crate::model::state::{BallState, BodyState, Powers, State, axes_of};
+use crate::model::bodies::{Body, PerRace, Race};
+use crate::model::energies::{Energies, Powers, Pressed};
+use crate::model::state::{BallState, BodyState, State, axes_of};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
-use crate::numerics::scalar::values;
 
 /// \[N] residual that is small enough for any bearing (paper section 5).
 const FORCE_TOLERANCE: f64 = 1e-6;
@@ -43,69 +50,162 @@ impl Pairs for Solved<'_> {
     }
 }
 
-/// Takes over a solved step.
-pub fn accept(model: &Model, state: &mut State, boundary: &Boundary, step: &HhtStep, workspace: &Workspace) {
+/// The end of a solved step: sums over its pairs, powers and stored energy.
+pub struct StepEnd {
+    totals: Totals,
+    powers: Powers,
+    /// Energies at the end.
+    energies: Energies,
+    /// Flexible supports of the races.
+    supports: PerRace<Option<SupportState>>,
+}
+
+impl StepEnd {
+    /// Of the step of `h` \[s] from a state that was solved with this workspace.
+    pub fn new(model: &Model, state: &State, boundary: &Boundary, h: f64, workspace: &Workspace) -> Self {
+        let solved = Solved { workspace, guide: model.cage_guide() };
+        let n_balls = workspace.balls.len();
+        let totals = Totals::of(&solved, n_balls);
+        let motions = || workspace.balls.iter().map(|trial| &trial.motion);
+        let ambient = model.ambient(&boundary.frame);
+        let mut powers = Powers {
+            input: power_into_balls(&ambient, motions().copied()),
+            friction: totals.friction_power,
+            damping: totals.damping_power,
+            around: power_lost_around(&ambient, motions().copied()),
+        };
+        for (body, trial) in workspace.bodies.iter() {
+            match (body, trial) {
+                (_, Some(trial)) => powers.input += trial.input_power,
+                (Body::Race(race), None) => {
+                    powers.input -= boundary.motion[race].1.power(&totals.on(body));
+                }
+                // A cage is moved by forces alone.
+                (Body::Cage, None) => {}
+            }
+        }
+        let bodies = model.bodies.iter().zip(workspace.bodies.iter());
+        let moved = bodies.filter_map(|((_, body), (_, trial))| Some((body.as_ref()?, &trial.as_ref()?.end)));
+        let of_race = |race: Race| workspace.bodies[race].as_ref().map(|trial| &trial.end);
+        let supports = supports_of(model, of_race, boundary, &mut powers);
+        let stored = kinetic_energy(model, motions(), moved)
+            + elastic_energy(model, &solved, n_balls)
+            + supports_energy(&supports);
+        let stiffened = |(ball, trial): (&BallState, &BallTrial)| {
+            let now = |race| Pressed::new(&trial.raceways[race]).stiffened(&ball.pressed[race]);
+            now(Race::Inner) + now(Race::Outer)
+        };
+        let stiffened = state.balls.iter().zip(&workspace.balls).map(stiffened);
+        let mut energies = state.energies;
+        energies.add((&state.powers, &powers), h, stiffened.fold(0.0, |sum, work| sum + work), stored);
+        Self { totals, powers, energies, supports }
+    }
+
+    /// [-] energy that the step leaves unaccounted for, over what is allowed; 0 where nothing is asked for.
+    pub fn energy_error(
+        &self,
+        model: &Model,
+        state: &State,
+        boundary: &Boundary,
+        h: f64,
+        workspace: &Workspace,
+    ) -> f64 {
+        let solver = &model.solver;
+        // The work of growth is known of an accepted step alone.
+        let grows = state.grown.is_some_and(|grown| grown.warmth != boundary.conditions.warmth);
+        if solver.energy_error == 0.0 || h <= solver.energy_step.0 || grows {
+            return 0.0;
+        }
+        let ball = &model.bearing.ball;
+        let of_ball = |(state, trial): (&BallState, &BallTrial)| {
+            (kinetic_energy_of(ball, &trial.motion) - kinetic_energy_of(ball, &state.motion())).abs()
+        };
+        let exchanged = state.balls.iter().zip(&workspace.balls).map(of_ball);
+        let exchanged = exchanged.fold(0.0, |sum, energy| sum + energy);
+        self.energies.error_since(&state.energies, exchanged, solver.energy_error)
+    }
+}
+
+/// Takes over a solved step that ends like this.
+pub fn accept(
+    model: &Model,
+    state: &mut State,
+    boundary: &Boundary,
+    step: &HhtStep,
+    (workspace, end): (&Workspace, &StepEnd),
+) {
     state.time = boundary.time;
     state.statistics.steps += 1;
     for (ball, trial) in state.balls.iter_mut().zip(&workspace.balls) {
         *ball = trial.end(model.bearing.ball.radius);
     }
-    let ambient = model.ambient(&boundary.frame);
-    let solved = Solved { workspace, guide: model.cage_guide() };
-    let totals = Totals::of(&solved, state.balls.len());
-    let mut powers = Powers {
-        input: power_into_balls(&ambient, &state.balls),
-        friction: totals.friction_power,
-        damping: totals.damping_power,
-        around: power_lost_around(&ambient, &state.balls),
-    };
     for ((body, state), (_, trial)) in state.bodies.iter_mut().zip(workspace.bodies.iter()) {
         let (turned, spin) = ((state.turned, state.turned_rest), state.rate.x);
         match (body, trial) {
             (_, Some(trial)) => {
                 state.clone_from(&trial.end);
-                state.angular_velocity = values(&trial.motion.angular_velocity);
+                state.angular_velocity = trial.turn.angular_velocity;
                 state.axes = match (body, &workspace.cage) {
                     (Body::Cage, Some(cage)) => cage.value.axes,
                     _ => {
                         let [_, y, z] = axes_of(&trial.end.pose.orientation);
-                        [values(&trial.motion.axis), y, z]
+                        [trial.turn.axis, y, z]
                     }
                 };
-                powers.input += trial.input_power;
             }
             (Body::Race(race), None) => {
                 let (pose, twist) = &boundary.motion[race];
                 *state = BodyState::new(*pose, twist, 0);
                 state.angular_velocity = twist.angular_velocity;
-                state.bearing_wrench = totals.on(body);
-                powers.input -= state.twist().power(&state.bearing_wrench);
+                state.bearing_wrench = end.totals.on(body);
             }
             // A cage is moved by forces alone.
             (Body::Cage, None) => {}
         }
         state.count_turn(turned, 0.5 * step.h * (spin + state.rate.x));
     }
-    renew_supports(model, state, boundary, &mut powers);
-    state.energies.add(&state.powers, &powers, step.h);
-    state.powers = powers;
+    state.supports = end.supports;
+    state.energies = end.energies;
+    state.powers = end.powers;
+    let solved = Solved { workspace, guide: model.cage_guide() };
+    if let Some(growth) = &model.growth {
+        let grown = grown(&workspace.contacts(model), state, boundary);
+        let work = state.grown.map_or(0.0, |before| growth.work(&before, &grown));
+        state.energies.input += work;
+        state.energies.unaccounted += work;
+        state.grown = Some(grown);
+    }
+    record(model, state, &solved, Some(step.h));
     let raceways = workspace.balls.iter().flat_map(|ball| ball.raceways.iter().copied());
     let pairs = raceways.chain(solved.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }
 
+/// What rings and balls have grown by, and what these contacts set against it.
+fn grown(contacts: &Contacts, state: &State, boundary: &Boundary) -> Grown {
+    let mut grown = Grown { warmth: boundary.conditions.warmth, ..Grown::default() };
+    for ball in &contacts.balls {
+        for race in Race::BOTH {
+            let contact = &ball.raceways[race];
+            let (normal, axis) = (&contact.geometry.normal, &state.race(race).axes[0]);
+            let direction = [normal.dot(&contact.geometry.radial), normal.dot(axis)];
+            grown.pushes[race as usize].add(contact.load, direction);
+        }
+    }
+    grown
+}
+
 /// \[W] power of weight and moving frame on all balls.
-fn power_into_balls(ambient: &Ambient, balls: &[BallState]) -> f64 {
-    let power = |ball: &BallState| ambient.power_into(&ball.motion());
-    balls.iter().map(power).fold(0.0, |sum, power| sum + power)
+fn power_into_balls(ambient: &Ambient, balls: impl Iterator<Item = BallMotion<f64>>) -> f64 {
+    balls.map(|ball| ambient.power_into(&ball)).fold(0.0, |sum, power| sum + power)
 }
 
 /// \[W] power that all balls lose to the medium around them.
-pub fn power_lost_around(ambient: &Ambient, balls: &[BallState]) -> f64 {
+pub fn power_lost_around(ambient: &Ambient, balls: impl Iterator<Item = BallMotion<f64>>) -> f64 {
     if ambient.medium.is_none() {
         return 0.0;
     }
-    balls.iter().map(|ball| ambient.power_lost(&ball.motion())).fold(0.0, |sum, power| sum + power)
+    balls.map(|ball| ambient.power_lost(&ball)).fold(0.0, |sum, power| sum + power)
 }
 
 /// \[m] largest coordinate of a ball to expect: contacts cannot resolve less than its last digit.
@@ -139,6 +239,7 @@ impl BallTrial {
             angular_acceleration: self.unknowns.fixed_rows::<3>(3) / radius,
             total: self.total,
             remainder: self.remainder,
+            pressed: PerRace::new(|race| Pressed::new(&self.raceways[race])),
         }
     }
 }
@@ -147,12 +248,13 @@ impl BallTrial {
 pub fn renew_polynomials(model: &Model, state: &mut State, boundary: &Boundary) {
     let contacts = model.contacts(&boundary.conditions);
     let State { balls, bodies, differences, statistics, .. } = state;
-    for (ball, differences) in balls.iter().zip(differences) {
+    for (index, (ball, differences)) in balls.iter().zip(differences).enumerate() {
         for race in Race::BOTH {
             let Some(kalker) = model.polynomials(race) else {
                 continue;
             };
-            let contact = contacts[race].evaluate(&ball.motion(), &bodies[race].motion());
+            let contact =
+                contacts[race].of_ball(index, None).evaluate(&ball.motion(), &bodies[race].motion());
             match contacts[race].renew(kalker, &contact, model.epsilon_switch, &mut differences[race]) {
                 Ok(solved) => statistics.polynomials += u64::from(solved),
                 Err(_) => statistics.polynomial_failures += 1,
@@ -172,15 +274,17 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     for (index, ball) in state.balls.iter_mut().enumerate() {
         ball.total = contacts.on_ball(index, ambient.on_ball(&ball.motion()));
         ball.remainder = Wrench::default();
+        ball.pressed =
+            PerRace::new(|race| Pressed::new(&PairForces::from(&contacts.balls[index].raceways[race])));
         ball.acceleration = ball.total.force / ball_model.mass;
         ball.angular_acceleration = ball.total.moment / ball_model.inertia;
     }
     let totals = Totals::of(&contacts, state.balls.len());
     let mut powers = Powers {
-        input: power_into_balls(&ambient, &state.balls),
+        input: power_into_balls(&ambient, state.balls.iter().map(BallState::motion)),
         friction: totals.friction_power,
         damping: totals.damping_power,
-        around: power_lost_around(&ambient, &state.balls),
+        around: power_lost_around(&ambient, state.balls.iter().map(BallState::motion)),
     };
     for ((body, state), (_, moved)) in state.bodies.iter_mut().zip(model.bodies.iter()) {
         state.bearing_wrench = totals.on(body);
@@ -192,8 +296,11 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
             None => -state.twist().power(&state.bearing_wrench),
         };
     }
-    renew_supports(model, state, boundary, &mut powers);
+    state.supports = supports_of(model, |race| Some(state.race(race)), boundary, &mut powers);
     state.powers = powers;
+    state.energies.stored = stored_energy(model, state, &contacts);
+    state.grown = model.growth.as_ref().map(|_| grown(&contacts, state, boundary));
+    record(model, state, &contacts, None);
     let pairs = contacts.raceway_pairs().chain(contacts.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }

@@ -13,7 +13,7 @@ use crate::effects::ambient::Ambient;
 use crate::forces::on_ball;
 use crate::kalker::scaled_law::Difference;
 use crate::model::Model;
-use crate::model::bodies::{Body, PerRace, Race};
+use crate::model::bodies::{Bodies, Body, PerRace, Race};
 use crate::model::cage::CageModel;
 use crate::model::state::{BallState, stack};
 use crate::numerics::arrowhead::{Block, SLOTS};
@@ -38,7 +38,22 @@ pub struct Surroundings<'a> {
     pub cage: Option<(&'a CageModel, &'a CageTrial)>,
 }
 
-impl Surroundings<'_> {
+impl<'a> Surroundings<'a> {
+    /// Those of all balls: contacts with the races and what acts from outside; `bodies` are the motions of the races, the trials of bodies that forces move, and the cage.
+    pub fn new(
+        model: &'a Model,
+        (contacts, ambient): (&'a PerRace<ContactModel<'a>>, &'a Ambient),
+        differences: &'a [PerRace<Difference>],
+        (races, moved, cage): (
+            &'a PerRace<RaceMotion<f64>>,
+            &'a Bodies<Option<BodyTrial>>,
+            Option<&'a CageTrial>,
+        ),
+    ) -> Self {
+        let races = PerRace::new(|race| RaceSeen::new(race, races, moved));
+        Self { model, contacts, ambient, differences, races, cage: model.cage.as_ref().zip(cage) }
+    }
+
     /// Evaluates the contacts of some balls, the first of them ball `first`, with both races.
     pub fn evaluate_group(
         &self,
@@ -49,10 +64,13 @@ impl Surroundings<'_> {
         for race in Race::BOTH {
             let (contact, seen) = (&self.contacts[race], self.races[race].motion);
             match self.differences.get(first..first + motions.len()) {
+                None if contact.surface.tells_balls() => {
+                    group[race].evaluate(&contact.of_ball(first, None), seen, motions);
+                }
                 None => group[race].evaluate(contact, seen, motions),
                 Some(differences) => {
                     for (lane, (motion, of_ball)) in motions.iter().zip(differences).enumerate() {
-                        let contact = contact.of_ball(Some(&of_ball[race]));
+                        let contact = contact.of_ball(first + lane, Some(&of_ball[race]));
                         group[race].set(lane, &contact.evaluate(motion, seen));
                     }
                 }
@@ -191,8 +209,8 @@ impl BallTrial {
         let mut tangent = Matrix6::zeros();
         self.reactions = [None; SLOTS];
         let values = PerRace::new(|race| {
-            let contact = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));
-            match races[race].moved {
+            let contact = contacts[race].of_ball(index, differences.get(index).map(|of_ball| &of_ball[race]));
+            match races[race].moved() {
                 None => {
                     let seeded = seed(&self.motion, step, radius);
                     let (value, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);

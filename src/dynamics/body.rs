@@ -1,47 +1,24 @@
 //! A body that forces move, in one trial step: motion from its unknown accelerations, residual, constraints.
 
-use nalgebra::{DMatrix, DVector, Matrix6, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix6, Vector3};
 
-use super::directions::{D, SECOND_ROTATION, by_first, by_second, by_second_unknown, constant_race};
+use super::body_sums::{Along, BodyLoad, BodyStep, Held, Sums, in_moving_frame};
+use super::directions::{D, by_first, by_second, by_second_unknown, constant_race};
 use super::reaction::Reaction;
+use super::step_turn::{OWN_ROTATION, Own, StepTurn, as_second};
 use super::support::{Flange, on_race};
 use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
-use crate::effects::frame::MovingFrame;
-use crate::model::bodies::{Bodies, Constraint, PerRace, Race, RigidBody, tilt_component, tilt_direction};
+use crate::model::bodies::{Bodies, Constraint, PerRace, Race, RigidBody, tilt_direction};
 use crate::model::state::{BodyState, normalised};
 use crate::numerics::hht::HhtStep;
-use crate::numerics::motion::{FrameInput, Pose, Wrench};
-use crate::numerics::rotation::{from_rotation_vector, rotate, to_quaternion, turn};
+use crate::numerics::motion::{Pose, Wrench};
+use crate::numerics::rotation::to_quaternion;
 use crate::numerics::scalar::{Scalar, constant_vector, values};
 use crate::numerics::size::larger;
 
 /// [rad/s] accepted violation of a speed constraint (paper section 5).
 const SPEED_TOLERANCE: f64 = 1e-8;
-
-/// Load and drive on a body from outside the bearing at the end of a step.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct BodyLoad {
-    /// Where the frame of a race on a hinge is.
-    pub frame: FrameInput,
-    /// Applied wrench and weight, world axes.
-    pub applied: Wrench,
-    /// [rad/s] prescribed spin speed.
-    pub speed: f64,
-    /// The bearing's frame, where it moves.
-    pub moving: Option<MovingFrame>,
-}
-
-/// Lengths and time that a body's equations are scaled with.
-#[derive(Clone, Copy, Debug)]
-pub struct BodyScales {
-    /// \[m] turns moments into forces.
-    pub length: f64,
-    /// \[m] accepted violation of a position constraint.
-    pub length_tolerance: f64,
-    /// \[s] end of the step.
-    pub time: f64,
-}
 
 /// A body in a trial step. The rotation of the step is a conformal vector (paper section 2).
 #[derive(Clone, Debug)]
@@ -56,23 +33,24 @@ pub struct BodyTrial {
     pub violation: f64,
     /// \[W] power of applied loads and constraints at the end of the step.
     pub input_power: f64,
-    /// Tangent of the residual by accelerations (angular ones times `length`) and multipliers (moments over `length`).
+    /// Tangent of the residual by accelerations (angular ones times `length`) and multipliers (moments over `length`), as
+    /// computed last.
     pub block: DMatrix<f64>,
-    /// Motion as the balls see it, with derivatives by the rotation.
-    pub motion: RaceMotion<D>,
-    /// Rotation vector of the step, with derivatives.
-    pub(super) rotation: Vector3<D>,
-    /// Material angular velocity and acceleration, with derivatives.
-    rate: Vector3<D>,
-    rate_derivative: Vector3<D>,
-    pub(super) start_orientation: UnitQuaternion<f64>,
+    /// Rotation of the step.
+    pub turn: StepTurn<f64>,
+    /// Rotation vector that it was made from.
+    turn_vector: Vector3<f64>,
+    /// The rotation with derivatives, where those were asked for.
+    derived: Option<StepTurn<Own>>,
+    /// Motion as the balls see it, with derivatives by the rotation, where those were asked for.
+    motion: RaceMotion<D>,
 }
 
 impl BodyTrial {
     /// Buffers for a body, as at the start of a step.
     pub fn new(body: &RigidBody, start: &BodyState) -> Self {
         let rows = 6 + body.constraints.len();
-        let zero = constant_vector(&Vector3::zeros());
+        let zero = Vector3::zeros();
         Self {
             end: start.clone(),
             unknowns: vec![0.0; rows],
@@ -80,11 +58,10 @@ impl BodyTrial {
             violation: 0.0,
             input_power: 0.0,
             block: DMatrix::zeros(rows, rows),
+            turn: StepTurn::new(&zero, zero, zero, start.pose.orientation),
+            turn_vector: zero,
+            derived: None,
             motion: constant_race(&start.motion()),
-            rotation: zero,
-            rate: zero,
-            rate_derivative: zero,
-            start_orientation: start.pose.orientation,
         }
     }
 
@@ -101,196 +78,199 @@ impl BodyTrial {
         // Newmark's formulas on the material rate, whose increment is a rotation vector of the step (Bruls, Cardona and
         // Arnold 2012): a steady spin is then an exact solution. With c'' as the unknown it is not, since c' grows
         // with c although the speed is constant; at 6000 rpm and 10 us that made the drive torque 2 % too low.
-        let turn_vector = step.displacement(&start.rate, &start.rate_derivative, &angular);
+        self.turn_vector = step.displacement(&start.rate, &start.rate_derivative, &angular);
         let rate = step.velocity(&start.rate, &start.rate_derivative, &angular);
-        let variable = |v: &Vector3<f64>, gain: f64| {
-            Vector3::from_fn(|i, _| D::variable(v[i], SECOND_ROTATION + i, gain))
-        };
-        self.rotation = from_rotation_vector(&variable(&turn_vector, step.position_gain() / length));
-        self.rate = variable(&rate, step.velocity_gain() / length);
-        self.rate_derivative = variable(&angular, 1.0 / length);
-        self.start_orientation = start.pose.orientation;
-        let orientation = normalised(start.pose.orientation * to_quaternion(&values(&self.rotation)));
+        self.turn = StepTurn::new(&self.turn_vector, rate, angular, start.pose.orientation);
+        self.derived = None;
+        let orientation = normalised(start.pose.orientation * to_quaternion(&self.turn.rotation));
         self.end.pose = Pose { position, orientation };
-        self.end.rate = values(&self.rate);
-        self.end.rate_derivative = values(&self.rate_derivative);
-        let spatial = |v: &Vector3<D>| turn(&start.pose.orientation, &rotate(&self.rotation, v));
-        self.motion = RaceMotion {
-            position: constant_vector(&position),
-            axis: spatial(&constant_vector(&Vector3::x())),
-            velocity: constant_vector(&self.end.velocity),
-            angular_velocity: spatial(&self.rate),
+        self.end.rate = rate;
+        self.end.rate_derivative = angular;
+    }
+
+    /// Adds derivatives to the motion, where they are not there yet.
+    pub fn differentiate(&mut self, start: &BodyState, step: &HhtStep, length: f64) {
+        if self.derived.is_some() {
+            return;
+        }
+        let variable = |v: &Vector3<f64>, gain: f64| {
+            Vector3::from_fn(|i, _| Own::variable(v[i], OWN_ROTATION + i, gain))
         };
+        let turned = StepTurn::new(
+            &variable(&self.turn_vector, step.position_gain() / length),
+            variable(&self.turn.rate, step.velocity_gain() / length),
+            variable(&self.turn.rate_derivative, 1.0 / length),
+            start.pose.orientation,
+        );
+        self.motion = RaceMotion {
+            position: constant_vector(&self.end.pose.position),
+            axis: as_second(&turned.axis),
+            across: self.end.pose.orientation * Vector3::y(),
+            velocity: constant_vector(&self.end.velocity),
+            angular_velocity: as_second(&turned.angular_velocity),
+        };
+        self.derived = Some(turned);
     }
 
     /// Motion as the balls see it.
     pub fn motion_value(&self) -> RaceMotion<f64> {
         RaceMotion {
             position: self.end.pose.position,
-            axis: values(&self.motion.axis),
+            axis: self.turn.axis,
+            across: self.end.pose.orientation * Vector3::y(),
             velocity: self.end.velocity,
-            angular_velocity: values(&self.motion.angular_velocity),
+            angular_velocity: self.turn.angular_velocity,
         }
     }
 
-    /// Residual and tangent for force and moment of all pairs on the body.
-    pub fn assemble(
-        &mut self,
-        body: &RigidBody,
-        start: &BodyState,
-        (load, flange): (&BodyLoad, Option<Flange<'_>>),
-        pairs: &Reaction,
-        step: &HhtStep,
-        scales: &BodyScales,
-    ) {
+    /// The same with derivatives by the rotation, after [`BodyTrial::differentiate`].
+    pub fn motion(&self) -> &RaceMotion<D> {
+        debug_assert!(self.derived.is_some(), "derivatives of this motion were not computed");
+        &self.motion
+    }
+
+    /// Residual under the sum of all pairs on the body.
+    pub fn assemble(&mut self, given: &BodyStep<'_>, pairs: &Wrench) {
+        let BodyStep { body, start, load, flange, step, scales } = given;
         let (fraction, length) = (1.0 - step.alpha_f, scales.length);
-        let motion = &self.motion;
-        let mut force = pairs.force + constant_vector(&load.applied.force);
-        let mut world_moment = pairs.moment + constant_vector(&load.applied.moment);
-        let mut material_moment = Vector3::from_element(D::constant(0.0));
-        self.block.fill(0.0);
-        self.violation = 0.0;
-        self.input_power = load.applied.force.dot(&self.end.velocity)
-            + load.applied.moment.dot(&values(&motion.angular_velocity));
-
-        // constraints: value, direction of the reaction, and multiplier with its penalty (paper eq. 3, 4)
+        let Self { end, turn, residual, violation, input_power, unknowns, .. } = self;
+        *violation = 0.0;
+        *input_power =
+            load.applied.force.dot(&end.velocity) + load.applied.moment.dot(&turn.angular_velocity);
+        let mut sums = Sums { force: pairs.force, moment: pairs.moment, drive: 0.0 };
+        sums.add_load(&load.applied);
         for (k, constraint) in body.constraints.iter().enumerate() {
-            let row = 6 + k;
-            let unknown = self.unknowns[row];
-            let (value, gain, scale, inertia, direction) = match constraint {
-                Constraint::Position(axis, schedule) => {
-                    let target = schedule.smooth_at(scales.time).0 + load.frame.position[*axis];
-                    let direction = Vector3::from_fn(|i, _| if i == *axis { 1.0 } else { 0.0 });
-                    // Directions 0 to 2 are those of the balls, which are minus the race's.
-                    let position = D::variable(self.end.pose.position[*axis], *axis, -step.position_gain());
-                    let value = position - D::constant(target);
-                    (value, step.position_gain(), 1.0, body.mass, Along::Force(direction))
-                }
-                Constraint::Tilt(axis, _) => {
-                    let (other, sign) = tilt_component(*axis);
-                    let target = body.tilt_target(*axis, scales.time, &load.frame.tilt);
-                    let value = motion.axis[other].scale(sign) - D::constant(target);
-                    let direction = tilt_direction(*axis, &motion.axis);
-                    (value, step.position_gain(), length, body.inertia[*axis], Along::Moment(direction))
-                }
-                Constraint::Spin => {
-                    let value = self.rate[0] - D::constant(load.speed);
-                    (value, step.velocity_gain(), length, body.inertia[0], Along::Drive)
-                }
+            let held = Held::new(given, constraint, unknowns[6 + k], turn, &end.pose.position);
+            sums.hold(&held);
+            end.multipliers[k] = held.multiplier;
+            residual[6 + k] = held.value * held.scale / held.gain;
+            let (size, power) = match &held.direction {
+                Along::Force(axis) => (held.value.abs() / scales.length_tolerance, end.velocity[*axis]),
+                Along::Moment(direction) => (
+                    held.value.abs() * length / scales.length_tolerance,
+                    direction.dot(&turn.angular_velocity),
+                ),
+                Along::Drive => (held.value.abs() / SPEED_TOLERANCE, end.rate[0]),
             };
-            let penalty = inertia / gain;
-            let multiplier = D::constant(unknown * scale) + value.scale(penalty);
-            self.end.multipliers[k] = multiplier.value;
-            self.residual[row] = value.value * scale / gain;
-            for i in 0..6 {
-                self.block[(row, i)] = by_second_unknown(&value, i) * scale / gain;
-            }
-            let (column, power) = match &direction {
-                Along::Force(direction) => {
-                    force += direction.map(D::constant) * multiplier;
-                    self.violation = larger(self.violation, value.value.abs() / scales.length_tolerance);
-                    ((*direction, Vector3::zeros()), direction.dot(&self.end.velocity))
-                }
-                Along::Moment(direction) => {
-                    world_moment += direction * multiplier;
-                    self.violation =
-                        larger(self.violation, value.value.abs() * length / scales.length_tolerance);
-                    let material = self.end.pose.orientation.inverse() * values(direction);
-                    ((Vector3::zeros(), material), values(direction).dot(&values(&motion.angular_velocity)))
-                }
-                Along::Drive => {
-                    material_moment[0] += multiplier;
-                    self.violation = larger(self.violation, value.value.abs() / SPEED_TOLERANCE);
-                    ((Vector3::zeros(), Vector3::x()), self.end.rate[0])
-                }
-            };
-            self.input_power += power * multiplier.value;
-            // The unknown is the multiplier over `scale`; the moment rows are divided by `length`.
-            for i in 0..3 {
-                self.block[(i, row)] = -fraction * column.0[i] * scale;
-                self.block[(3 + i, row)] = -fraction * column.1[i] * scale / length;
-            }
+            *violation = larger(*violation, size);
+            *input_power += power * held.multiplier;
         }
-
-        if let Some(moving) = &load.moving {
-            let inertial = self.in_moving_frame(moving, body, step);
-            force += inertial.force;
-            material_moment += inertial.moment;
-            self.input_power += values(&inertial.force).dot(&self.end.velocity)
-                + values(&inertial.moment).dot(&self.end.rate);
+        let mut moment = sums.material_moment(turn, body);
+        if let Some(frame) = &load.moving {
+            let inertial = in_moving_frame(frame, body, turn, (&end.pose.position, &end.velocity));
+            sums.force += inertial.force;
+            moment += inertial.moment;
+            *input_power += inertial.force.dot(&end.velocity) + inertial.moment.dot(&end.rate);
         }
-
-        if let Some(flange) = &flange {
-            let held = self.held_by(flange, step);
-            force += held.force;
-            material_moment += held.moment;
+        if let Some(flange) = flange {
+            let held = flange.holds(turn, (&end.pose.position, &end.velocity));
+            sums.force += held.force;
+            moment += held.moment;
         }
-
-        // total force (spatial) and moment (material) with the gyroscopic term
-        let momentum = Vector3::from_fn(|i, _| self.rate[i].scale(body.inertia[i]));
-        let seen = turn(&self.start_orientation.inverse(), &world_moment);
-        material_moment += rotate(&-self.rotation, &seen) - self.rate.cross(&momentum);
-        self.end.total = Wrench { force: values(&force), moment: values(&material_moment) };
-        self.end.bearing_wrench = Wrench { force: values(&pairs.force), moment: values(&pairs.moment) };
+        end.total = Wrench { force: sums.force, moment };
+        end.bearing_wrench = *pairs;
 
         // What the last step left of these rows is made good here: added up it would move a body that nothing else holds.
         let owed = &start.remainder;
         for i in 0..3 {
-            let translation = self.end.acceleration[i] * body.mass
-                - fraction * force[i].value
+            let translation = end.acceleration[i] * body.mass
+                - fraction * sums.force[i]
                 - step.alpha_f * start.total.force[i]
                 + owed.force[i];
-            let rotation =
-                self.rate_derivative[i].scale(body.inertia[i]) - material_moment[i].scale(fraction);
-            self.residual[i] = translation;
-            let rest = rotation.value - step.alpha_f * start.total.moment[i] + owed.moment[i];
-            self.residual[3 + i] = rest / length;
-            (self.end.remainder.force[i], self.end.remainder.moment[i]) = (translation, rest);
+            let rotation = turn.rate_derivative[i].scale(body.inertia[i]) - moment[i].scale(fraction);
+            let rest = rotation - step.alpha_f * start.total.moment[i] + owed.moment[i];
+            residual[i] = translation;
+            residual[3 + i] = rest / length;
+            (end.remainder.force[i], end.remainder.moment[i]) = (translation, rest);
+        }
+    }
+
+    /// Tangent of the residual that was assembled last, with the derivatives of reactions that have some by the body's own
+    /// unknowns; after [`BodyTrial::differentiate`].
+    pub fn assemble_block<'a>(
+        &mut self,
+        given: &BodyStep<'_>,
+        reactions: impl Iterator<Item = &'a Reaction> + Clone,
+    ) {
+        let BodyStep { body, load, flange, step, scales, .. } = given;
+        let (fraction, length) = (1.0 - step.alpha_f, scales.length);
+        let Self { end, derived, block, unknowns, .. } = self;
+        let Some(turn) = derived else {
+            debug_assert!(false, "derivatives of this motion were not computed");
+            return;
+        };
+        let own = |sum: &Vector3<f64>, part: fn(&Reaction) -> &Vector3<D>| {
+            Vector3::from_fn(|i, _| {
+                let by = |k: usize| reactions.clone().map(|one| by_second_unknown(&part(one)[i], k)).sum();
+                Own { value: sum[i], derivatives: std::array::from_fn(by) }
+            })
+        };
+        let mut sums = Sums {
+            force: own(&end.bearing_wrench.force, |reaction| &reaction.force),
+            moment: own(&end.bearing_wrench.moment, |reaction| &reaction.moment),
+            drive: Own::constant(0.0),
+        };
+        sums.add_load(&load.applied);
+        let place = &end.pose.position;
+        let position = Vector3::from_fn(|i, _| Own::variable(place[i], i, step.position_gain()));
+        block.fill(0.0);
+        for (k, constraint) in body.constraints.iter().enumerate() {
+            let row = 6 + k;
+            let held = Held::new(given, constraint, unknowns[row], turn, &position);
+            sums.hold(&held);
+            let (force, moment) = match &held.direction {
+                Along::Force(axis) => (unit(*axis), Vector3::zeros()),
+                Along::Moment(direction) => {
+                    (Vector3::zeros(), end.pose.orientation.inverse() * values(direction))
+                }
+                Along::Drive => (Vector3::zeros(), Vector3::x()),
+            };
+            // The unknown is the multiplier over `scale`; the moment rows are divided by `length`.
+            for i in 0..3 {
+                block[(i, row)] = -fraction * force[i] * held.scale;
+                block[(3 + i, row)] = -fraction * moment[i] * held.scale / length;
+            }
+            for i in 0..6 {
+                block[(row, i)] = held.value.derivatives[i] * held.scale / held.gain;
+            }
+        }
+        let mut moment = sums.material_moment(turn, body);
+        if load.moving.is_some() || flange.is_some() {
+            let velocity = Vector3::from_fn(|i, _| Own::variable(end.velocity[i], i, step.velocity_gain()));
+            let inertial =
+                load.moving.as_ref().map(|frame| in_moving_frame(frame, body, turn, (&position, &velocity)));
+            let held = flange.as_ref().map(|flange| flange.holds(turn, (&position, &velocity)));
+            for wrench in [inertial, held].into_iter().flatten() {
+                sums.force += wrench.force;
+                moment += wrench.moment;
+            }
+        }
+        for i in 0..3 {
+            let rotation = turn.rate_derivative[i].scale(body.inertia[i]) - moment[i].scale(fraction);
             for k in 0..6 {
                 let inertia = if i == k { body.mass } else { 0.0 };
-                self.block[(i, k)] = inertia - fraction * by_second_unknown(&force[i], k);
-                self.block[(3 + i, k)] = by_second_unknown(&rotation, k) / length;
+                block[(i, k)] = inertia - fraction * sums.force[i].derivatives[k];
+                block[(3 + i, k)] = rotation.derivatives[k] / length;
             }
         }
     }
 
-    /// Forces of inertia of a moving frame: force (spatial) and moment (material).
-    #[cold]
-    fn in_moving_frame(&self, frame: &MovingFrame, body: &RigidBody, step: &HhtStep) -> Wrench<D> {
-        let to_body = |v: &Vector3<f64>| {
-            rotate(&-self.rotation, &constant_vector(&(self.start_orientation.inverse() * v)))
-        };
-        let field = frame.seen(constant_vector).field(&self.position(step), &self.velocity(step));
-        Wrench {
-            force: field.map(|component| component.scale(body.mass)),
-            moment: frame.moment(&body.inertia, &self.rate, to_body),
-        }
-    }
-
-    /// Position with derivatives; directions 0 to 2 are those of the balls, which are minus the body's.
-    pub(super) fn position(&self, step: &HhtStep) -> Vector3<D> {
-        let gain = -step.position_gain();
-        Vector3::from_fn(|i, _| D::variable(self.end.pose.position[i], i, gain))
-    }
-
-    /// Velocity with derivatives.
-    pub(super) fn velocity(&self, step: &HhtStep) -> Vector3<D> {
-        let gain = -step.velocity_gain();
-        Vector3::from_fn(|i, _| D::variable(self.end.velocity[i], i, gain))
-    }
-
-    /// Motion with all axes, with derivatives by the rotation, for contacts of a cage.
-    pub fn body_motion(&self) -> BodyMotion<D> {
-        let axis = |axis: Vector3<f64>| {
-            turn(&self.start_orientation, &rotate(&self.rotation, &constant_vector(&axis)))
-        };
-        let axes = [axis(Vector3::x()), axis(Vector3::y()), axis(Vector3::z())];
+    /// Motion with all axes, for contacts of a cage.
+    pub fn body_motion_value(&self) -> BodyMotion<f64> {
         BodyMotion {
-            position: constant_vector(&self.end.pose.position),
-            axes,
-            velocity: constant_vector(&self.end.velocity),
-            angular_velocity: turn(&self.start_orientation, &rotate(&self.rotation, &self.rate)),
+            position: self.end.pose.position,
+            axes: [self.turn.axis, self.turn.own_axis(1), self.turn.own_axis(2)],
+            velocity: self.end.velocity,
+            angular_velocity: self.turn.angular_velocity,
         }
+    }
+
+    /// The same with derivatives by the rotation, after [`BodyTrial::differentiate`].
+    pub fn body_motion(&self) -> Option<BodyMotion<D>> {
+        let turn = self.derived.as_ref()?;
+        let RaceMotion { position, axis, velocity, angular_velocity, .. } = self.motion;
+        let axes = [axis, as_second(&turn.own_axis(1)), as_second(&turn.own_axis(2))];
+        Some(BodyMotion { position, axes, velocity, angular_velocity })
     }
 
     /// Derivatives of this body's residual by the unknowns of the other body of a pair, from the reaction on this one.
@@ -319,8 +299,8 @@ impl BodyTrial {
 pub struct RaceSeen<'a> {
     /// Its motion.
     pub motion: &'a RaceMotion<f64>,
-    /// Its motion with derivatives by the rotation, where forces move it.
-    pub moved: Option<&'a RaceMotion<D>>,
+    /// Its trial, where forces move it.
+    trial: Option<&'a BodyTrial>,
 }
 
 impl<'a> RaceSeen<'a> {
@@ -330,12 +310,17 @@ impl<'a> RaceSeen<'a> {
         motions: &'a PerRace<RaceMotion<f64>>,
         bodies: &'a Bodies<Option<BodyTrial>>,
     ) -> Self {
-        Self { motion: &motions[race], moved: bodies[race].as_ref().map(|trial| &trial.motion) }
+        Self { motion: &motions[race], trial: bodies[race].as_ref() }
+    }
+
+    /// Its motion with derivatives by the rotation, where forces move it; after [`BodyTrial::differentiate`].
+    pub fn moved(&self) -> Option<&'a RaceMotion<D>> {
+        self.trial.map(BodyTrial::motion)
     }
 
     /// Motion with derivatives by the rotation, all zero where it is prescribed.
     pub fn with_derivatives(&self) -> RaceMotion<D> {
-        self.moved.copied().unwrap_or_else(|| constant_race(self.motion))
+        self.moved().copied().unwrap_or_else(|| constant_race(self.motion))
     }
 }
 
@@ -400,13 +385,7 @@ pub fn make_consistent(
     power
 }
 
-/// Direction of the reaction of a constraint.
-#[allow(clippy::large_enum_variant)]
-enum Along {
-    /// World direction of a force.
-    Force(Vector3<f64>),
-    /// World direction of a moment.
-    Moment(Vector3<D>),
-    /// The body's own axis.
-    Drive,
+/// [-] unit vector along a world axis.
+fn unit(axis: usize) -> Vector3<f64> {
+    Vector3::from_fn(|i, _| if i == axis { 1.0 } else { 0.0 })
 }

@@ -5,17 +5,18 @@ use nalgebra::{Matrix6, Vector3};
 use super::body::{BodyTrial, RaceSeen};
 use super::directions::{D, exchange_bodies};
 use super::reaction::Reaction;
+use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
 use crate::contact::land::LandModel;
 use crate::contact::pair::PairForces;
 use crate::model::cage::CageModel;
 use crate::numerics::hht::HhtStep;
-use crate::numerics::scalar::values;
+use crate::numerics::scalar::constant_vector;
 
 /// A cage in a trial step.
 #[derive(Clone, Debug)]
 pub struct CageTrial {
-    /// Motion with derivatives by the cage's rotation.
+    /// Motion with derivatives by the cage's rotation, as asked for last.
     pub motion: BodyMotion<D>,
     /// Motion without derivatives.
     pub value: BodyMotion<f64>,
@@ -37,12 +38,17 @@ pub struct LandReactions {
 }
 
 impl CageTrial {
-    /// A cage that has moved to the end of a step.
+    /// A cage at the start of a step.
     pub fn new(body: &BodyTrial) -> Self {
-        let motion = body.body_motion();
+        let value = body.body_motion_value();
         Self {
-            value: motion_value(&motion),
-            motion,
+            motion: BodyMotion {
+                position: constant_vector(&value.position),
+                axes: value.axes.each_ref().map(constant_vector),
+                velocity: constant_vector(&value.velocity),
+                angular_velocity: constant_vector(&value.angular_velocity),
+            },
+            value,
             lands: [None; 2],
             race_by_cage: Matrix6::zeros(),
             cage_by_race: Matrix6::zeros(),
@@ -51,35 +57,34 @@ impl CageTrial {
 
     /// Takes over the motion of the body at the end of a step.
     pub fn see(&mut self, body: &BodyTrial) {
-        self.motion = body.body_motion();
-        self.value = motion_value(&self.motion);
+        self.value = body.body_motion_value();
     }
 
-    /// Evaluates the contacts with the lands and returns their reactions, with derivatives if asked for.
-    pub fn touch_lands(
-        &mut self,
+    /// Takes over its derivatives.
+    pub fn see_derivatives(&mut self, body: &BodyTrial) {
+        if let Some(motion) = body.body_motion() {
+            self.motion = motion;
+        }
+    }
+
+    /// Evaluates the contacts with the lands.
+    pub fn touch_lands(&mut self, model: &CageModel, race: &RaceMotion<f64>) {
+        self.lands = model.land_contacts(&self.value, |_| *race);
+    }
+
+    /// Reactions of the lands that it touches, with their derivatives.
+    pub fn land_reactions(
+        &self,
         model: &CageModel,
         race: &RaceSeen<'_>,
         step: &HhtStep,
-        with_tangent: bool,
     ) -> [Option<LandReactions>; 2] {
-        self.race_by_cage.fill(0.0);
-        self.cage_by_race.fill(0.0);
-        self.lands = model.land_contacts(&self.value, |_| *race.motion);
         let Some((_, land)) = &model.land else {
             return [None; 2];
         };
         [0, 1].map(|side: usize| {
-            let pair = self.lands[side].as_ref()?;
-            let constant = LandReactions {
-                on_cage: Reaction::constant_on_first(pair),
-                on_race: Reaction::constant_on_second(pair),
-            };
-            if !with_tangent {
-                return Some(constant);
-            }
-            let exact = self.with_derivatives(land, land.positions[side], race, step);
-            Some(exact.unwrap_or(constant))
+            self.lands[side].as_ref()?;
+            self.with_derivatives(land, land.positions[side], race, step)
         })
     }
 
@@ -108,14 +113,5 @@ impl CageTrial {
             },
             on_race: Reaction::on_second(&pair),
         })
-    }
-}
-
-fn motion_value(motion: &BodyMotion<D>) -> BodyMotion<f64> {
-    BodyMotion {
-        position: values(&motion.position),
-        axes: motion.axes.each_ref().map(values),
-        velocity: values(&motion.velocity),
-        angular_velocity: values(&motion.angular_velocity),
     }
 }

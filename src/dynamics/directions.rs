@@ -38,6 +38,7 @@ pub fn constant_race<S: Scalar>(motion: &RaceMotion<f64>) -> RaceMotion<S> {
     RaceMotion {
         position: constant_vector(&motion.position),
         axis: constant_vector(&motion.axis),
+        across: motion.across,
         velocity: constant_vector(&motion.velocity),
         angular_velocity: constant_vector(&motion.angular_velocity),
     }

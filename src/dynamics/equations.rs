@@ -3,15 +3,15 @@
 use nalgebra::Vector6;
 
 use super::ball::{BallTrial, Surroundings};
-use super::body::{BodyLoad, BodyScales, BodyTrial, RaceSeen};
+use super::body::{BodyTrial, RaceSeen};
+use super::body_sums::{BodyLoad, BodyScales, BodyStep};
 use super::cage::CageTrial;
-use super::reaction::Reaction;
 use super::{Boundary, Workspace};
 use crate::contact::many::ContactGroup;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::effects::ambient::Ambient;
 use crate::model::Model;
-use crate::model::bodies::{Body, PerRace, RigidBody};
+use crate::model::bodies::{Body, PerRace, Race, RigidBody};
 use crate::model::state::{BodyState, KeptMatrix, State, race_motion};
 use crate::numerics::arrowhead::{BLOCK, SLOTS};
 use crate::numerics::hht::HhtStep;
@@ -143,14 +143,9 @@ impl<'a> BearingStep<'a> {
     fn evaluate_balls(&mut self, unknowns: &[f64]) {
         let all = self.fresh || !self.balls_are_independent();
         let workspace = &mut *self.workspace;
-        let around = Surroundings {
-            model: self.model,
-            contacts: &self.contacts,
-            ambient: &self.ambient,
-            differences: &self.start.differences,
-            races: PerRace::new(|race| RaceSeen::new(race, &self.races, &workspace.bodies)),
-            cage: self.model.cage.as_ref().zip(workspace.cage.as_ref()),
-        };
+        let bodies = (&self.races, &workspace.bodies, workspace.cage.as_ref());
+        let acts = (&self.contacts, &self.ambient);
+        let around = Surroundings::new(self.model, acts, &self.start.differences, bodies);
         let step = &self.step;
         let radius = self.model.bearing.ball.radius;
         let mut motions = [BallMotion::at_rest(); WIDTH];
@@ -192,14 +187,9 @@ impl<'a> BearingStep<'a> {
     /// Evaluates the balls to be renewed where they are, with tangents.
     pub(super) fn evaluate_renewed(&mut self) {
         let workspace = &mut *self.workspace;
-        let around = Surroundings {
-            model: self.model,
-            contacts: &self.contacts,
-            ambient: &self.ambient,
-            differences: &self.start.differences,
-            races: PerRace::new(|race| RaceSeen::new(race, &self.races, &workspace.bodies)),
-            cage: self.model.cage.as_ref().zip(workspace.cage.as_ref()),
-        };
+        let bodies = (&self.races, &workspace.bodies, workspace.cage.as_ref());
+        let acts = (&self.contacts, &self.ambient);
+        let around = Surroundings::new(self.model, acts, &self.start.differences, bodies);
         let length = self.model.race_length();
         for (index, trial) in workspace.balls.iter_mut().enumerate().filter(|(_, trial)| trial.renewed) {
             self.contact_tangents += 2;
@@ -212,9 +202,8 @@ impl<'a> BearingStep<'a> {
         }
     }
 
-    /// Sums the reactions of all pairs on the bodies that forces move and sets the couplings of balls with new tangents and,
-    /// if asked for, of the lands.
-    fn scatter(&mut self, with_lands: bool) -> [Reaction; SLOTS] {
+    /// Sums the forces of all pairs on the bodies that forces move, and sets the couplings of balls with new tangents.
+    fn scatter(&mut self) -> [Wrench; SLOTS] {
         let length = self.model.race_length();
         let mut sums = [Wrench::default(); SLOTS];
         let Workspace { balls, bodies, cage, .. } = &mut *self.workspace;
@@ -232,44 +221,96 @@ impl<'a> BearingStep<'a> {
                 }
             }
         }
-        let mut sums = sums.map(|sum| Reaction::constant(&sum));
-        if let (Some(model), Some(cage), Some(Some(body))) =
-            (&self.model.cage, cage.as_mut(), bodies.get(Body::Cage))
+        if let (Some(model), Some(cage)) = (&self.model.cage, cage.as_mut())
             && let Some(guide) = model.guide()
         {
-            let seen = RaceSeen::new(guide, &self.races, bodies);
-            let lands = cage.touch_lands(model, &seen, &self.step, with_lands);
-            for land in lands.iter().flatten() {
-                sums[Body::from(guide).index()].add(&land.on_race);
-                sums[Body::Cage.index()].add(&land.on_cage);
-                if let (true, Some(race)) = (with_lands, &bodies[guide]) {
-                    cage.race_by_cage += race.coupling(&land.on_race, &self.step, length);
-                    cage.cage_by_race += body.coupling(&land.on_cage, &self.step, length);
-                }
+            cage.touch_lands(model, &self.races[guide]);
+            for pair in cage.lands.iter().flatten() {
+                let on_race = &mut sums[Body::from(guide).index()];
+                *on_race = on_race.plus(Wrench { force: -pair.force, moment: pair.other_moment });
+                let on_cage = &mut sums[Body::Cage.index()];
+                *on_cage = on_cage.plus(pair.on_first());
             }
         }
         sums
     }
 
-    /// Residuals and tangents of the bodies under these forces; returns the largest norm.
-    fn assemble_bodies(&mut self, sums: &[Reaction; SLOTS]) -> f64 {
-        let scales = BodyScales {
-            length: self.model.race_length(),
-            length_tolerance: CONSTRAINT_TOLERANCE * 2.0 * self.model.bearing.ball.radius,
-            time: self.boundary.time,
-        };
+    /// What a body that forces move is given in this step.
+    fn given<'b>(&'b self, body: Body, model: &'b RigidBody, start: &'b BodyState) -> BodyStep<'b> {
+        BodyStep {
+            body: model,
+            start,
+            load: self.boundary.load_on(body, model, &self.ambient),
+            flange: self.boundary.flange(self.model, body),
+            step: &self.step,
+            scales: BodyScales {
+                length: self.model.race_length(),
+                length_tolerance: CONSTRAINT_TOLERANCE * 2.0 * self.model.bearing.ball.radius,
+                time: self.boundary.time,
+            },
+        }
+    }
+
+    /// Residuals of the bodies under these forces; returns the largest norm.
+    fn assemble_bodies(&mut self, sums: &[Wrench; SLOTS]) -> f64 {
         let mut norm = 0.0;
+        let mut trials = std::mem::take(&mut self.workspace.bodies);
         let bodies = self.model.bodies.iter().zip(self.start.bodies.iter());
-        for (((body, model), (_, start)), (_, trial)) in bodies.zip(self.workspace.bodies.iter_mut()) {
+        for (((body, model), (_, start)), (_, trial)) in bodies.zip(trials.iter_mut()) {
             if let (Some(model), Some(trial)) = (model, trial) {
-                let load = self.boundary.load_on(body, model, &self.ambient);
-                let flange = self.boundary.flange(self.model, body);
-                trial.assemble(model, start, (&load, flange), &sums[body.index()], &self.step, &scales);
+                trial.assemble(&self.given(body, model, start), &sums[body.index()]);
                 norm = larger(norm, largest(trial.residual.rows(0, 6).iter()) / self.force_tolerance);
                 norm = larger(norm, trial.violation);
             }
         }
+        self.workspace.bodies = trials;
         norm
+    }
+
+    /// Adds derivatives to the motion of the bodies.
+    pub(super) fn differentiate_bodies(&mut self) {
+        let length = self.model.race_length();
+        let Workspace { bodies, cage, .. } = &mut *self.workspace;
+        for ((body, trial), (_, start)) in bodies.iter_mut().zip(self.start.bodies.iter()) {
+            if let Some(trial) = trial {
+                trial.differentiate(start, &self.step, length);
+                if let (Body::Cage, Some(cage)) = (body, cage.as_mut()) {
+                    cage.see_derivatives(trial);
+                }
+            }
+        }
+    }
+
+    /// Tangents of the bodies whose residuals were assembled last, and their couplings to each other by the lands.
+    pub(super) fn assemble_blocks(&mut self) {
+        let length = self.model.race_length();
+        let mut trials = std::mem::take(&mut self.workspace.bodies);
+        let mut lands = [None; 2];
+        let guide = self.model.cage_guide();
+        if let (Some(model), Some(cage), Some(guide)) =
+            (&self.model.cage, self.workspace.cage.as_mut(), guide)
+        {
+            lands = cage.land_reactions(model, &RaceSeen::new(guide, &self.races, &trials), &self.step);
+            cage.race_by_cage.fill(0.0);
+            cage.cage_by_race.fill(0.0);
+            if let (Some(race), Some(Some(own))) = (&trials[guide], trials.get(Body::Cage)) {
+                for land in lands.iter().flatten() {
+                    cage.race_by_cage += race.coupling(&land.on_race, &self.step, length);
+                    cage.cage_by_race += own.coupling(&land.on_cage, &self.step, length);
+                }
+            }
+        }
+        let bodies = self.model.bodies.iter().zip(self.start.bodies.iter());
+        for (((body, model), (_, start)), (_, trial)) in bodies.zip(trials.iter_mut()) {
+            if let (Some(model), Some(trial)) = (model, trial) {
+                let reactions = lands.iter().flatten().filter_map(|land| match body {
+                    Body::Cage => Some(&land.on_cage),
+                    Body::Race(race) => (Some(race) == guide).then_some(&land.on_race),
+                });
+                trial.assemble_block(&self.given(body, model, start), reactions);
+            }
+        }
+        self.workspace.bodies = trials;
     }
 }
 
@@ -286,6 +327,10 @@ impl Equations for BearingStep<'_> {
         self.renewals += u64::from(renewed && !with_tangent);
         // bodies first: the balls see them move
         self.move_bodies(unknowns);
+        let factorises = !independent && (renewed || !self.workspace.factorised);
+        if factorises {
+            self.differentiate_bodies();
+        }
         self.evaluate_neighbours(unknowns, with_tangent);
         self.evaluate_balls(unknowns);
         let mut norm = 0.0f64;
@@ -293,14 +338,13 @@ impl Equations for BearingStep<'_> {
             norm = larger(norm, largest(&trial.residual) / self.force_tolerance);
         }
         if !independent {
-            let sums = self.scatter(renewed || !self.workspace.factorised);
+            let sums = self.scatter();
             norm = larger(norm, self.assemble_bodies(&sums));
-            self.workspace.list_members(self.model.border_offsets());
         }
         if renewed {
             self.eliminate_renewed();
         }
-        if !independent && !self.workspace.factorised {
+        if factorises {
             self.factorise();
         }
         norm
@@ -343,6 +387,19 @@ impl Workspace {
 }
 
 impl Boundary {
+    /// Takes the spins of the races, which rings grow by, from their motions and prescribed speeds.
+    pub fn see_spins(&mut self, model: &Model) {
+        if model.growth.is_some() {
+            self.conditions.warmth.spins = Race::BOTH.map(|race| match &model.bodies[race] {
+                Some(_) => self.loads[race].speed,
+                None => {
+                    let (pose, twist) = &self.motion[race];
+                    (pose.orientation.inverse() * twist.angular_velocity).x
+                }
+            });
+        }
+    }
+
     /// Load on a body from outside: applied wrench, weight, and the moving frame.
     pub fn load_on(&self, body: Body, moved: &RigidBody, ambient: &Ambient) -> BodyLoad {
         let mut load = match body {

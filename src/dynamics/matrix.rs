@@ -122,6 +122,7 @@ impl BearingStep<'_> {
 
     /// Eliminates the balls whose derivatives are new; without any matrix if one of them is singular.
     pub(super) fn eliminate_renewed(&mut self) {
+        self.workspace.list_members(self.model.border_offsets());
         let origin = self.races_origin();
         let Workspace { balls, kept, members, neighbours, factorised, .. } = &mut *self.workspace;
         if !neighbours.is_empty() {
@@ -148,8 +149,10 @@ impl BearingStep<'_> {
         kept.step = self.step.h;
     }
 
-    /// Factorises the rows of the bodies, with what the balls leave in them.
+    /// Factorises the rows of the bodies, with what the balls leave in them; the bodies have derivatives.
     pub(super) fn factorise(&mut self) {
+        self.assemble_blocks();
+        self.workspace.list_members(self.model.border_offsets());
         let origin = self.races_origin();
         let guide = self.model.cage_guide().map(Body::from);
         let (offsets, rows) = (self.model.border_offsets(), self.model.border_size());
@@ -193,6 +196,7 @@ impl BearingStep<'_> {
     pub(super) fn correct(&mut self, correction: &mut [f64]) -> bool {
         if self.corrections > 0 && self.keeps_matrices() && self.mark_worn() {
             self.renewals += 1;
+            self.differentiate_bodies();
             self.evaluate_renewed();
             self.eliminate_renewed();
             if !self.balls_are_independent() {

@@ -3,6 +3,7 @@
 mod accept;
 mod ball;
 mod body;
+mod body_sums;
 mod cage;
 mod directions;
 mod equations;
@@ -12,7 +13,9 @@ mod local_error;
 mod matrix;
 mod neighbours;
 mod reaction;
+mod record;
 mod sensitivity;
+mod step_turn;
 mod support;
 
 use nalgebra::{DVector, Vector6};
@@ -28,11 +31,12 @@ use crate::numerics::lanes::WIDTH;
 use crate::numerics::motion::{Pose, Twist};
 use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure};
 use crate::numerics::ring::Ring;
-use accept::{accept, renew_polynomials};
+use crate::numerics::size::larger;
+use accept::{StepEnd, accept, renew_polynomials};
 pub use accept::{make_consistent, power_lost_around};
 use ball::BallTrial;
-pub use body::BodyLoad;
 use body::BodyTrial;
+pub use body_sums::BodyLoad;
 use cage::CageTrial;
 use equations::BearingStep;
 pub use failure::{FailureSite, Worst, failure_site};
@@ -152,17 +156,24 @@ pub fn try_step(
     statistics.contact_values += equations.contact_values;
     statistics.contact_tangents += equations.contact_tangents;
     let mut control = state.control;
-    let failure = match solved {
+    let end = match solved {
         Err(failure) => {
             statistics.rejected_newton += 1;
             control.fail();
-            Some(StepFailure::Newton(failure, equations.worst_residual()))
+            Err(StepFailure::Newton(failure, equations.worst_residual()))
         }
-        Ok(()) if !control.judge(equations.local_error()) => {
-            statistics.rejected_error += 1;
-            Some(StepFailure::Error(equations.worst_error()))
+        Ok(()) => {
+            let local = equations.local_error();
+            let end = StepEnd::new(model, state, boundary, h, equations.workspace);
+            let energy = end.energy_error(model, state, boundary, h, equations.workspace);
+            match control.judge(larger(local, energy)) {
+                true => Ok(end),
+                false => {
+                    statistics.rejected_error += 1;
+                    Err(StepFailure::Error(equations.worst_error()))
+                }
+            }
         }
-        Ok(()) => None,
     };
     let step = equations.step;
     workspace.newton = buffers;
@@ -170,9 +181,6 @@ pub fn try_step(
     state.matrix = std::mem::take(&mut workspace.kept);
     state.statistics = statistics;
     state.control = control;
-    if let Some(failure) = failure {
-        return Err(failure);
-    }
-    accept(model, state, boundary, &step, workspace);
+    accept(model, state, boundary, &step, (workspace, &end?));
     Ok(())
 }

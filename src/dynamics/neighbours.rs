@@ -11,6 +11,7 @@ use super::directions::{D, DIRECTIONS, SECOND_ROTATION, by_first, by_second, sca
 use super::equations::BearingStep;
 use crate::contact::BallMotion;
 use crate::contact::ball_ball::BallBallModel;
+use crate::contact::normal::Damping;
 use crate::contact::pair::PairForces;
 use crate::forces::BallPair;
 use crate::model::Model;
@@ -54,7 +55,7 @@ impl NeighbourTrial {
     /// Evaluates the contact of two balls that have moved to the end of a step; with their derivatives if asked for.
     fn evaluate(
         &mut self,
-        (contact, damping): (&BallBallModel, f64),
+        (contact, damping): (&BallBallModel, Damping),
         balls: &mut [BallTrial],
         step: &HhtStep,
         with_tangent: bool,
@@ -185,6 +186,7 @@ impl BearingStep<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::bodies::PerRace;
     use crate::model::state::BallState;
     use crate::numerics::motion::Wrench;
 
@@ -201,6 +203,7 @@ mod tests {
                 angular_acceleration: Vector3::new(1e4, -2e4 * side, 3e4),
                 total: Wrench::default(),
                 remainder: Wrench::default(),
+                pressed: PerRace::default(),
             };
             let mut trial = BallTrial::new(&start);
             trial.move_to(unknowns[ball], radius, step, &start);
@@ -216,7 +219,7 @@ mod tests {
         let evaluate = |unknowns: &[Vector6<f64>; 2], with_tangent: bool| {
             let mut balls = moved(unknowns, &step);
             let mut pair = NeighbourTrial::new((0, 1));
-            pair.evaluate((&contact, 0.02), &mut balls, &step, with_tangent);
+            pair.evaluate((&contact, 0.02.into()), &mut balls, &step, with_tangent);
             (pair, balls.map(|ball| ball.pushed.unwrap()))
         };
         let force = |push: &Push| -> Vector6<f64> {

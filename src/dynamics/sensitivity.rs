@@ -5,7 +5,7 @@
 //! once for all perturbations by eliminating the balls; `R_p dp` is the residual of the perturbed step with the unknowns of
 //! the step itself. What is left is of second order, and even: it cancels between two perturbations of opposite sign.
 
-use super::accept::accept;
+use super::accept::{StepEnd, accept};
 use super::equations::BearingStep;
 use super::{Boundary, Workspace};
 use crate::model::Model;
@@ -42,7 +42,8 @@ pub fn advance_perturbed<'a>(
         }
         equations.residual(&unknowns, false);
         let step = equations.step;
-        accept(model, state, &boundary, &step, workspace);
+        let end = StepEnd::new(model, state, &boundary, h, workspace);
+        accept(model, state, &boundary, &step, (workspace, &end));
     }
     regular
 }

@@ -1,18 +1,16 @@
-//! A race on a flexible support in one trial step: what the support does to it, with derivatives.
+//! A race on a flexible support in one trial step: what the support does to it, with derivatives or without.
 
 use nalgebra::Vector3;
 
 use super::Boundary;
-use super::body::BodyTrial;
-use super::directions::D;
+use super::step_turn::StepTurn;
 use crate::effects::support::{Held, Relative, Support, SupportState};
 use crate::model::Model;
-use crate::model::bodies::{Body, Race};
-use crate::model::state::{Powers, State};
-use crate::numerics::hht::HhtStep;
+use crate::model::bodies::{Body, PerRace, Race};
+use crate::model::energies::Powers;
+use crate::model::state::BodyState;
 use crate::numerics::motion::{Pose, Twist, Wrench};
-use crate::numerics::rotation::{conformal_product, rotate, turn};
-use crate::numerics::scalar::{constant_vector, cross};
+use crate::numerics::scalar::{Scalar, constant_vector, cross};
 
 /// The flange of a race on a support.
 #[derive(Clone, Copy, Debug)]
@@ -36,44 +34,46 @@ impl Boundary {
     }
 }
 
-impl BodyTrial {
-    /// Force (spatial) and moment (material) of a support.
+impl Flange<'_> {
+    /// Force (spatial) and moment (material) of the support on a race at a position \[m] with a velocity [m/s].
     #[cold]
-    pub(super) fn held_by(&self, flange: &Flange<'_>, step: &HhtStep) -> Wrench<D> {
-        let Flange { support, pose, twist } = flange;
-        let [place, velocity, turning] =
-            [pose.position, twist.velocity, twist.angular_velocity].map(|v| constant_vector::<D>(&v));
-        let displacement = self.position(step) - place;
+    pub(super) fn holds<S: Scalar>(
+        &self,
+        turn: &StepTurn<S>,
+        (position, velocity): (&Vector3<S>, &Vector3<S>),
+    ) -> Wrench<S> {
+        let Flange { support, pose, twist } = self;
+        let [place, moving, turning] =
+            [pose.position, twist.velocity, twist.angular_velocity].map(|v| constant_vector::<S>(&v));
+        let displacement = position - place;
         let Held { force, elastic_moment, damping_moment } = support.holds(
             pose,
             &Relative {
                 displacement,
-                rotation: conformal_product(
-                    &(pose.orientation.inverse() * self.start_orientation),
-                    &self.rotation,
-                ),
-                velocity: self.velocity(step) - velocity - cross(&turning, &displacement),
-                angular_velocity: self.motion.angular_velocity - turning,
+                rotation: turn.relative_to(&pose.orientation),
+                velocity: velocity - moving - cross(&turning, &displacement),
+                angular_velocity: turn.angular_velocity - turning,
             },
         );
-        let damping = turn(&self.start_orientation.inverse(), &damping_moment);
-        Wrench { force, moment: elastic_moment + rotate(&-self.rotation, &damping) }
+        Wrench { force, moment: elastic_moment + turn.material(&damping_moment) }
     }
 }
 
-/// Supports of a state whose bodies are where they are; adds their powers.
-pub(super) fn renew_supports(model: &Model, state: &mut State, boundary: &Boundary, powers: &mut Powers) {
-    for race in Race::BOTH {
-        let Some(support) = &model.supports[race] else {
-            continue;
-        };
+/// Supports of races that are where `bodies` are; adds their powers.
+pub(super) fn supports_of<'a>(
+    model: &Model,
+    bodies: impl Fn(Race) -> Option<&'a BodyState>,
+    boundary: &Boundary,
+    powers: &mut Powers,
+) -> PerRace<Option<SupportState>> {
+    PerRace::new(|race| {
+        let (support, body) = (model.supports[race].as_ref()?, bodies(race)?);
         let (pose, twist) = &boundary.motion[race];
-        let body = state.race(race);
-        let now: SupportState = support.state((pose, twist), (&body.pose, &body.twist()));
+        let now = support.state((pose, twist), (&body.pose, &body.twist()));
         powers.input += now.power_into();
         powers.around += now.lost;
-        state.supports[race] = Some(now);
-    }
+        Some(now)
+    })
 }
 
 /// Force (spatial) and moment (material) of a support on a race at a pose with a twist.

@@ -47,7 +47,7 @@ pub struct CageSection {
     pub youngs_modulus: Option<Pressure>,
     /// [-] Poisson's ratio in the pockets; that of the races if not given.
     pub poisson_ratio: Option<f64>,
-    /// [s/m] Hunt-Crossley dissipation factor of the cage's contacts; `effects.damping` if not given.
+    /// [s/m] Hunt-Crossley dissipation factor of the cage's contacts; that of `effects.damping` if not given.
     pub damping: Option<DissipationFactor>,
 }
 
@@ -76,6 +76,7 @@ impl Effect for Settings {
         adds: "a rigid cage that the balls touch in its pockets, guided by lands of a race or by the balls",
         states: "pose, velocity and angular velocity of the cage",
         source: "Bovet et al. 2013, section 4.2; lands after Gupta 1984 and Lundberg",
+        price: "167 % of a step of 10 balls (thrust case against scenes/cage.toml)",
         example: "[effects]\ncage = true\n[cage]\nmass = \"20 g\"\ninertia = [1.1e-5, 6e-6, 6e-6]\n\
                   pocket_clearance = \"0.2 mm\"\nguided_by = \"balls\"\n",
     };

@@ -22,6 +22,8 @@ pub struct Info {
     pub states: &'static str,
     /// Author and year, or section of the paper.
     pub source: &'static str,
+    /// What it costs when on, measured: instructions of a step more than without it (`scripts/step-instructions` counts alike).
+    pub price: &'static str,
     /// Part of a scene that switches it on.
     pub example: &'static str,
 }
@@ -39,6 +41,10 @@ pub struct Setup<'a> {
     pub cage: bool,
     /// How both races get their motion, inner first.
     pub drives: [Drive; 2],
+    /// May the inner and the outer race turn by the scene's script?
+    pub turning: [bool; 2],
+    /// [1/K] coefficients of thermal expansion of balls and races.
+    pub expansions: [f64; 2],
 }
 
 /// How the value of a variable is found in what is reported.

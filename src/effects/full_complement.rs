@@ -21,6 +21,7 @@ impl Effect for Settings {
         adds: "report of the contacts of neighbouring balls, which act wherever there is no cage",
         states: "none",
         source: "Hertz 1882, two equal spheres; Coulomb friction",
+        price: "none in a step",
         example: "[effects]\nfull_complement = true\n",
     };
 

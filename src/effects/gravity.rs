@@ -35,6 +35,7 @@ impl Effect for Settings {
         adds: "weight of the balls, of the cage, and of races that forces move",
         states: "none",
         source: "body force in the equations of motion; Bovet et al. 2013, section 2",
+        price: "0.3 % of a step (thrust case)",
         example: "[effects]\ngravity = [0, -9.81, 0]\n",
     };
 

@@ -4,14 +4,16 @@ use serde::de::MapAccess;
 
 /// A part of the keys of `[effects]`.
 pub trait Keys: Default {
-    /// Their names.
-    const NAMES: &'static [&'static str];
+    /// Their names; none of an effect that has a section of its own.
+    const NAMES: &'static [&'static str] = &[];
 
     /// Reads the value of one of them.
     ///
     /// # Errors
     /// Those of the value.
-    fn read<'de, A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error>;
+    fn read<'de, A: MapAccess<'de>>(&mut self, _key: &str, _map: &mut A) -> Result<(), A::Error> {
+        Ok(())
+    }
 }
 
 /// Defines the struct `Settings` of an effect: keys of `[effects]` as `"key" => field: type = default`, then fields that

@@ -8,8 +8,9 @@
 //! numbers with their ranges, its checks, its outputs, and what the model takes from it. To add one:
 //!
 //! 1. Write `src/effects/NAME.rs`: its keys of `[effects]` by the macro `keys!` (a section of many keys is one key whose type
-//!    is a struct: `[effects.NAME]` in a scene), and `impl Effect for Settings`.
-//! 2. `INFO` says what it adds, which states it has and where it is from; its `example` must start (`tests/effects.rs`).
+//!    is a struct: `[effects.NAME]` in a scene; one that stands by itself, `[NAME]`, is a field of `Scene` that moves into
+//!    `Settings` where a scene is read), and `impl Effect for Settings`.
+//! 2. `INFO` says what it adds, which states it has, where it is from and what it costs; its `example` must start (`tests/effects.rs`).
 //! 3. `NUMBERS` has a row per number: the range stands there alone, and makes it an FMI parameter if a package offers it.
 //! 4. `agree` refuses keys that do not go together. What it has to know of the rest of the scene is in [`Setup`].
 //! 5. `inputs` are what a master sets while it is on; their values join [`EffectInputs`]. `rows` and `ball_rows` are its outputs, empty while it is off; what they read joins [`Reports`].
@@ -22,13 +23,18 @@ pub mod ambient;
 pub mod cage;
 pub mod creep;
 pub mod damping;
+pub mod defects;
 mod effect;
+pub mod form;
 pub mod frame;
 pub mod full_complement;
 pub mod gravity;
 pub mod groove_slip;
+pub mod growth;
+pub mod heat;
 pub mod keys;
 pub mod per_ball;
+pub mod rating;
 pub mod reports;
 pub mod shoulder;
 pub mod stiffness;
@@ -78,7 +84,10 @@ macro_rules! effects {
     };
 }
 
-effects! { creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, frame, ambient, support }
+effects! {
+    creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form, growth, rating, heat, defects,
+    frame, ambient, support,
+}
 
 impl Effects {
     /// Checks all numbers against their ranges.

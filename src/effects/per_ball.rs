@@ -4,7 +4,7 @@ use super::effect::{Effect, Getter, Info, Row};
 use super::keys::keys;
 use super::reports::{BallOutput, ContactOutput};
 use crate::schema::variable_units::{
-    NEWTON, NEWTON_METRE, ONE, PASCAL, PER_METRE, RADIAN, RADIAN_PER_SECOND, Unit, WATT,
+    METRE, NEWTON, NEWTON_METRE, ONE, PASCAL, PER_METRE, RADIAN, RADIAN_PER_SECOND, Unit, WATT,
 };
 
 keys! {
@@ -50,6 +50,7 @@ pub(super) fn motion_rows(ball: usize) -> Vec<Row> {
 
 type Contact = fn(&BallOutput) -> &ContactOutput;
 type FromContact = fn(&ContactOutput) -> f64;
+type FromBall = fn(&BallOutput) -> f64;
 
 /// Quantities of a contact with a race: name, unit, typical size, what it is, and its value.
 const QUANTITIES: [(&str, Unit, f64, &str, FromContact); 10] = [
@@ -85,10 +86,42 @@ impl Effect for Settings {
         adds: "report of every ball and its contacts",
         states: "none",
         source: "Bovet et al. 2013, sections 3.2 and 5",
+        price: "none in a step",
         example: "[effects]\nper_ball_outputs = true\n",
     };
 
     fn setting(&self) -> Option<String> {
         self.on.then(|| "on".into())
+    }
+
+    fn ball_rows(&self, ball: usize) -> Vec<Row> {
+        if !self.on {
+            return vec![];
+        }
+        let number = ball + 1;
+        let spins: [(&str, &str, FromBall); 3] = [
+            ("axial", "along the outer race's axis", |b| b.spin.x),
+            ("radial", "radially away from the outer race's axis", |b| b.spin.y),
+            ("tangential", "along the orbit", |b| b.spin.z),
+        ];
+        let mut rows: Vec<Row> = spins
+            .into_iter()
+            .map(|(name, along, get)| {
+                let description = format!("angular velocity of ball {number} {along}");
+                ball_row(ball, &format!("spin.{name}"), RADIAN_PER_SECOND, 1000.0, description, get)
+            })
+            .collect();
+        let races: [(&str, Contact); 2] = [("inner", |b| &b.inner), ("outer", |b| &b.outer)];
+        let axes: [(&str, FromContact); 2] =
+            [("rolling", |c| c.semi_axis_rolling), ("transverse", |c| c.semi_axis_transverse)];
+        for (race, contact) in races {
+            for (axis, get) in axes {
+                let description =
+                    format!("{axis} semi-axis of the contact ellipse of ball {number} and the {race} race");
+                let name = format!("{race}.semi_axis_{axis}");
+                rows.push(ball_row(ball, &name, METRE, 1e-4, description, move |b| get(contact(b))));
+            }
+        }
+        rows
     }
 }

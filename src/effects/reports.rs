@@ -2,6 +2,10 @@
 
 use nalgebra::{Matrix6, Vector3};
 
+use super::defects::Frequencies;
+use super::growth::GrowthOutput;
+use super::heat::HeatOutput;
+use super::rating::LifeOutput;
 use super::support::SupportState;
 use crate::numerics::motion::{Pose, Twist};
 
@@ -16,6 +20,14 @@ pub struct Reports<'a> {
     pub neighbours: Option<&'a NeighboursOutput>,
     /// Stiffness and damping of the running bearing.
     pub condensed: Option<&'a Condensed>,
+    /// The bearing as it has grown.
+    pub growth: Option<&'a GrowthOutput>,
+    /// Rating life.
+    pub life: Option<&'a LifeOutput>,
+    /// Heat of friction by part.
+    pub heat: Option<&'a HeatOutput>,
+    /// Frequencies of cage and damage.
+    pub frequencies: &'a Frequencies,
     /// \[W] power that the balls lose to the medium around them.
     pub drag_power: f64,
     /// Flexible supports of inner and outer race.
@@ -55,6 +67,8 @@ pub struct ContactOutput {
     pub shoulder_share: f64,
     /// \[Pa] peak pressure.
     pub peak_pressure: f64,
+    /// \[rad] distance of the ellipse from the nearer end of the groove; negative where it is cut.
+    pub shoulder_margin: f64,
 }
 
 /// A ball's contact with its cage pocket.
@@ -120,6 +134,8 @@ pub struct BallOutput {
     pub position: Vector3<f64>,
     /// [rad/s] angular velocity, world axes.
     pub angular_velocity: Vector3<f64>,
+    /// [rad/s] angular velocity along the outer race's axis, radially away from it, and along the orbit.
+    pub spin: Vector3<f64>,
     /// Contact with the inner race.
     pub inner: ContactOutput,
     /// Contact with the outer race.

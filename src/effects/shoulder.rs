@@ -6,8 +6,8 @@ use super::effect::{Effect, Getter, Info, Row};
 use super::keys::keys;
 use super::per_ball::ball_row;
 use super::reports::{BallOutput, ContactOutput};
-use crate::contact::shoulder::largest_share;
-use crate::schema::variable_units::ONE;
+use crate::contact::shoulder::{largest_share, least_margin};
+use crate::schema::variable_units::{ONE, RADIAN};
 
 /// [-] height of a shoulder over the ball diameter, where it is not given. Bearings of published cases roll within it (a 218 at
 /// 15,000 rpm at 57 degrees, one of the reference cases at 60, the end is at 65); under 0.25 they would not.
@@ -44,6 +44,7 @@ impl Effect for Settings {
         adds: "report of the share of load that contact ellipses have beyond the shoulders of the races",
         states: "none",
         source: "Hertz's pressure, integrated beyond the edge of the groove",
+        price: "none in a step",
         example: "[effects]\nshoulder_outputs = true\n",
     };
 
@@ -62,7 +63,20 @@ impl Effect for Settings {
                 largest_share(contacts.map(|contact| (contact.load, contact.shoulder_share)))
             }),
         };
-        if self.on { RACES.into_iter().map(row).collect() } else { vec![] }
+        let margin = |(race, contact): (&str, Contact)| Row {
+            name: format!("shoulder.{race}.margin"),
+            unit: RADIAN,
+            nominal: 0.1,
+            description: format!(
+                "smallest distance of a ball's contact ellipse from a shoulder of the {race} race; negative where it is cut"
+            ),
+            get: Getter::new(move |reports| {
+                let contacts = reports.balls.iter().map(contact);
+                least_margin(contacts.map(|contact| (contact.load, contact.shoulder_margin)))
+            }),
+        };
+        let rows = RACES.into_iter().map(row).chain(RACES.into_iter().map(margin));
+        if self.on { rows.collect() } else { vec![] }
     }
 
     fn ball_rows(&self, ball: usize) -> Vec<Row> {

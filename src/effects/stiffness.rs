@@ -68,6 +68,7 @@ impl Effect for Settings {
         adds: "report of the stiffness and damping of the running bearing, 6 x 6 each, balls condensed out",
         states: "none",
         source: "exact derivatives of the contact laws, condensed (docs/model.md)",
+        price: "42 % of a run with rows every ten steps (thrust case)",
         example: "[effects]\nstiffness_outputs = true\n",
     };
 

@@ -4,10 +4,11 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::{EquilibriumInput, Gyroscopic};
 use crate::contact::geometry::GrooveContact;
+use crate::contact::{ContactModel, RaceMotion};
 use crate::effects::frame::MovingFrame;
+use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{PerRace, Race};
-use crate::model::{Conditions, Model};
 use crate::numerics::scalar::{Dual, Scalar, constant_vector};
 
 /// Directions of differentiation: ball axial and radial, x, y, z, ry, rz of the race that moves, cage speed.
@@ -33,6 +34,8 @@ pub struct Shared {
     pub position: Vector3<D>,
     /// [-] axis of the inner race.
     pub axis: Vector3<D>,
+    /// [-] y axis of each race, which azimuths on it are counted from.
+    pub across: PerRace<Vector3<f64>>,
     /// [rad/s] cage speed.
     pub cage_speed: D,
     /// [m/s2] gravity on the balls; what it does along the orbit is left to friction.
@@ -76,23 +79,26 @@ pub struct BallBalance {
 /// slides along the outer groove moves along one coordinate, which Newton's method needs to follow a curved groove.
 pub type Place = Vector2<f64>;
 
-/// \[m] reference distance that turns the arc of a [`Place`] into an angle.
-fn arc_radius(model: &Model) -> f64 {
-    model.bearing.outer.groove_radius - model.bearing.ball.radius
+/// \[m] distance of the ball centre from the groove centre where a ball touches a race without load. That of the outer race turns
+/// the arc of a [`Place`] into an angle.
+fn arc_radius(contact: &ContactModel<'_>) -> f64 {
+    contact.surface.raceway.groove_radius - contact.surface.ball_radius
 }
 
-/// Balance of the ball at `azimuth` \[rad].
+/// Balance of a ball (0 is the first).
 pub fn balance(
     model: &Model,
     input: &EquilibriumInput,
     shared: &Shared,
-    azimuth: f64,
+    index: usize,
     place: &Place,
 ) -> BallBalance {
     let ball = &model.bearing.ball;
+    let azimuth = model.bearing.ball_azimuth(index);
     let (radial, tangential) = azimuth_directions(azimuth);
-    let outer_groove = &model.bearing.outer;
-    let angle = D::variable(place.x, 0, 1.0).scale(1.0 / arc_radius(model));
+    let contacts = model.contacts(&input.surroundings());
+    let (outer_groove, ball_radius) = (&contacts.outer.surface.raceway, contacts.outer.surface.ball_radius);
+    let angle = D::variable(place.x, 0, 1.0).scale(1.0 / arc_radius(&contacts.outer));
     let distance = D::variable(place.y, 1, 1.0);
     let sine = angle.map_smooth(|x| (x.sin(), x.cos()));
     let cosine = angle.map_smooth(|x| (x.cos(), -x.sin()));
@@ -100,25 +106,40 @@ pub fn balance(
     let radius = distance * cosine + D::constant(outer_groove.groove_circle_radius);
     let position =
         radial.map(|c| radius.scale(c)) + Vector3::new(axial_place, D::constant(0.0), D::constant(0.0));
-    let axis = constant_vector(&Vector3::x());
-    let contacts = model.contacts(&Conditions { friction: 0.0 });
+    let [inner_race, outer_race] = [
+        RaceMotion::resting(shared.position, shared.axis, shared.across.inner),
+        RaceMotion::resting(
+            constant_vector(&Vector3::zeros()),
+            constant_vector(&Vector3::x()),
+            shared.across.outer,
+        ),
+    ];
     let offset = position - shared.position;
-    let inner = GrooveContact::new(contacts.inner.raceway, ball.radius, &offset, &shared.axis);
-    let outer = GrooveContact::new(contacts.outer.raceway, ball.radius, &position, &axis);
-    let stiffness = PerRace {
-        inner: contacts.inner.shape.stiffness(inner.circumferential_curvature),
-        outer: contacts.outer.shape.stiffness(outer.circumferential_curvature),
+    let surfaces = PerRace::new(|race| contacts[race].surface.under(index));
+    let inner = GrooveContact::new(&surfaces.inner, &offset, &inner_race);
+    let outer = GrooveContact::new(&surfaces.outer, &position, &outer_race);
+    let cold =
+        |race: Race, curvature: D| contacts[race].shape.stiffness(curvature).scale(contacts[race].stiffening);
+    let mut stiffness = PerRace {
+        inner: cold(Race::Inner, inner.circumferential_curvature),
+        outer: cold(Race::Outer, outer.circumferential_curvature),
     };
+    for race in Race::BOTH {
+        if let Some(factor) = surfaces[race].of_balls::<D>(|size| size.stiffness) {
+            stiffness[race] *= factor;
+        }
+    }
     let load = |contact: &GrooveContact<D>, stiffness: D| {
         let depth = contact.approach.positive_part();
-        stiffness * depth * depth.sqrt()
+        let load = stiffness * depth * depth.sqrt();
+        contact.gain.map_or(load, |gain| load * gain)
     };
     let (inner_load, outer_load) = (load(&inner, stiffness.inner), load(&outer, stiffness.outer));
 
     // rolling without slip at both contacts and without spin at the outer one (Jones's outer race control)
     let (inner_cos, inner_sin) = (-inner.normal.dot(&inner.radial), -inner.normal.dot(&shared.axis));
     let (outer_cos, outer_sin) = (outer.normal.dot(&outer.radial), outer.normal.x);
-    let g = D::constant(ball.radius) / radius;
+    let g = D::constant(ball_radius) / radius;
     let ratio =
         (D::one_minus(g * inner_cos)) / (D::constant(1.0) + inner_cos * outer_cos + inner_sin * outer_sin);
     let own_orbital_speed =
@@ -139,7 +160,7 @@ pub fn balance(
         gyroscopic_moment -= (turned + frame.change.dot(&tangent)).scale(ball.inertia);
     }
     // friction forces along n x e_t whose moments about the centre give the gyroscopic moment
-    let needed = gyroscopic_moment.scale(1.0 / ball.radius);
+    let needed = gyroscopic_moment.scale(1.0 / ball_radius);
     let [inner_friction, outer_friction] = match input.gyroscopic {
         Gyroscopic::None => [D::constant(0.0); 2],
         Gyroscopic::OuterRaceControl => [D::constant(0.0), needed],
@@ -159,15 +180,15 @@ pub fn balance(
     let (axial, radial_force) = (total.x, total.dot(&constant_vector(&radial)) + centrifugal_force);
     let mut residual = [axial * cosine - radial_force * sine, axial * sine + radial_force * cosine];
     if shared.cage_speed.value == 0.0 {
-        let middle = middle_of_gap(model, shared, azimuth);
-        residual[0] -= (angle.scale(arc_radius(model)) - D::constant(middle.x)).scale(IDLE_HOLD);
+        let middle = middle_of_gap(&contacts, shared, azimuth);
+        residual[0] -= (angle.scale(arc_radius(&contacts.outer)) - D::constant(middle.x)).scale(IDLE_HOLD);
         residual[1] -= (distance - D::constant(middle.y)).scale(IDLE_HOLD);
     }
     let (force, from, contact) = match input.race {
         Race::Inner => (inner_force, offset, &inner),
         Race::Outer => (outer_force, position, &outer),
     };
-    let arm = from + contact.normal.map(|c| c.scale(ball.radius));
+    let arm = from + contact.normal.map(|c| c.scale(ball_radius));
     BallBalance {
         residual,
         force,
@@ -186,9 +207,9 @@ pub fn balance(
 }
 
 /// Ball place with the same approach or gap at both races, on the line of the groove centres.
-pub fn middle_of_gap(model: &Model, shared: &Shared, azimuth: f64) -> Place {
+pub fn middle_of_gap(contacts: &PerRace<ContactModel<'_>>, shared: &Shared, azimuth: f64) -> Place {
     let (radial, _) = azimuth_directions(azimuth);
-    let (inner, outer) = (&model.bearing.inner, &model.bearing.outer);
+    let (inner, outer) = (&contacts.inner.surface.raceway, &contacts.outer.surface.raceway);
     let position = shared.position.map(|c| c.value);
     let axis = shared.axis.map(|c| c.value);
     // Groove centre of the inner race in the ball's plane, to first order in the tilt.
@@ -198,8 +219,7 @@ pub fn middle_of_gap(model: &Model, shared: &Shared, azimuth: f64) -> Place {
     let outer_centre = Vector2::new(outer.groove_offset, outer.groove_circle_radius);
     let line = inner_centre - outer_centre;
     let length = line.norm();
-    let (l_i, l_o) =
-        (inner.groove_radius - model.bearing.ball.radius, outer.groove_radius - model.bearing.ball.radius);
+    let (l_i, l_o) = (arc_radius(&contacts.inner), arc_radius(&contacts.outer));
     // Groove centres that coincide leave the direction open: any does.
     let angle = if length > 0.0 { line.x.atan2(line.y) } else { 0.0 };
     Vector2::new(angle * l_o, l_o + 0.5 * (length - l_i - l_o))
@@ -211,15 +231,15 @@ pub fn bottom_of_outer_groove(
     model: &Model,
     input: &EquilibriumInput,
     shared: &Shared,
-    azimuth: f64,
+    index: usize,
 ) -> Place {
-    let touching = Vector2::new(0.0, arc_radius(model));
-    let there = balance(model, input, shared, azimuth, &touching);
+    let touching = Vector2::new(0.0, arc_radius(&model.contact(Race::Outer, &input.surroundings())));
+    let there = balance(model, input, shared, index, &touching);
     let depth = (there.centrifugal_force.value / there.stiffness.outer.value).powf(2.0 / 3.0);
     touching + Vector2::new(0.0, depth)
 }
 
-/// Finds the place where the ball is in balance, starting from `place`; returns the balance there.
+/// Finds the place where a ball (0 is the first) is in balance, starting from `place`; returns the balance there.
 ///
 /// Newton's method with a Levenberg shift: the forces derive (nearly) from a potential that is convex but flat where
 /// contacts are open. `None` if the residual does not come below `tolerance` \[N].
@@ -227,7 +247,7 @@ pub fn settle(
     model: &Model,
     input: &EquilibriumInput,
     shared: &Shared,
-    azimuth: f64,
+    index: usize,
     place: &mut Place,
     tolerance: f64,
 ) -> Option<BallBalance> {
@@ -235,7 +255,7 @@ pub fn settle(
     let longest = 0.02 * diameter;
     let balance_radius = 0.5 * model.bearing.pitch_diameter;
     let norm = |b: &BallBalance| b.residual[0].value.hypot(b.residual[1].value);
-    let mut here = balance(model, input, shared, azimuth, place);
+    let mut here = balance(model, input, shared, index, place);
     let mut shift = 0.0;
     for _ in 0..MAX_ITERATIONS {
         let r = Vector2::new(here.residual[0].value, here.residual[1].value);
@@ -254,7 +274,7 @@ pub fn settle(
             }
         }
         let trial_place = step.map(|step| *place + step);
-        let trial = trial_place.map(|p| balance(model, input, shared, azimuth, &p));
+        let trial = trial_place.map(|p| balance(model, input, shared, index, &p));
         match (trial, trial_place) {
             (Some(trial), Some(p)) if norm(&trial) < norm(&here) || opens(&here, &trial) => {
                 *place = p;

@@ -14,9 +14,11 @@ use nalgebra::{SMatrix, UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use crate::effects::frame::FrameMotion;
-use crate::model::Model;
+use crate::effects::growth::{GrowthOutput, Rises, Warmth};
+use crate::effects::rating::LifeOutput;
 use crate::model::bearing::BeyondShoulder;
-use crate::model::bodies::Race;
+use crate::model::bodies::{PerRace, Race};
+use crate::model::{Conditions, Model};
 use crate::numerics::motion::Pose;
 use crate::scene::{Condition, Scene};
 use problem::{Found, Problem, Progress};
@@ -58,10 +60,14 @@ pub struct EquilibriumInput {
     pub outer_speed: f64,
     /// Pose of the other race in the bearing frame, without its turn about its own axis; an outer race rests at the origin.
     pub resting: Pose,
+    /// \[rad] how far each race has turned about its own axis.
+    pub turned: PerRace<f64>,
     /// How the gyroscopic moment is carried.
     pub gyroscopic: Gyroscopic,
     /// [-] friction coefficient, for [`Gyroscopic::Friction`].
     pub friction: f64,
+    /// \[K] rises of temperature; not used where growth is not simulated.
+    pub rises: Rises,
     /// Motion of the frame that all of this is seen from, and gravity in it.
     pub frame: FrameMotion,
     /// \[m] where the bearing frame is in that frame.
@@ -72,6 +78,12 @@ pub struct EquilibriumInput {
 }
 
 impl EquilibriumInput {
+    /// Conditions of every contact, without friction.
+    pub fn surroundings(&self) -> Conditions {
+        let warmth = Warmth { rises: self.rises, spins: [self.inner_speed, self.outer_speed] };
+        Conditions { friction: 0.0, warmth }
+    }
+
     /// The problem of a scene at time 0.
     pub fn from_scene(scene: &Scene, gyroscopic: Gyroscopic) -> Self {
         Self::at(scene, gyroscopic, 0.0)
@@ -103,8 +115,10 @@ impl EquilibriumInput {
             inner_speed: scene.load.inner_speed.at(time),
             outer_speed: scene.load.outer_speed.at(time),
             resting: Pose { position, orientation },
+            turned: PerRace::default(),
             gyroscopic,
             friction: scene.friction.ball_race.at(time),
+            rises: scene.effects.growth.rises(time).unwrap_or_default(),
             frame: scene.frame_at(time),
             origin: Vector3::zeros(),
             flange: None,
@@ -156,6 +170,23 @@ pub enum EquilibriumError {
     /// A contact lies beyond the shoulder of its race.
     #[error("in equilibrium {0}")]
     BeyondShoulder(#[from] BeyondShoulder),
+    /// A wave of a race that no contact can follow.
+    #[error(
+        "form.{race}: its shortest wave, of order {order}, is shorter than the contact of ball {ball}, whose half width is seen \
+         from the axis under {span:.2e} rad: allowed are orders to {longest:.0}; take shorter waves out, as the contact does"
+    )]
+    ShortWave {
+        /// Inner or outer.
+        race: &'static str,
+        /// [-] order.
+        order: f64,
+        /// Ball, counted from 1.
+        ball: usize,
+        /// \[rad] half width of its contact over the radius of the race.
+        span: f64,
+        /// [-] largest order that is allowed.
+        longest: f64,
+    },
     /// Outer race control asks for more friction than there can be.
     #[error(
         "no equilibrium was found under outer race control, and there is one without gyroscopic moments: that of ball \
@@ -229,6 +260,10 @@ pub struct Equilibrium {
     pub residual: f64,
     /// Iterations on the displacements.
     pub iterations: u32,
+    /// The bearing as it has grown, where growth is simulated.
+    pub growth: Option<GrowthOutput>,
+    /// Rating life under these loads, where it is asked for.
+    pub life: Option<LifeOutput>,
     /// Balls.
     pub balls: Vec<BallEquilibrium>,
 }

@@ -3,6 +3,7 @@
 use super::ball::{N_SHARED, Place, SHARED};
 use super::trial::{D, SharedMatrix, SharedVector, Trial, evaluate, finish, outside_of_race};
 use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
+use crate::contact::form::SHORTEST;
 use crate::model::bodies::Race;
 use crate::model::{Conditions, Model};
 use crate::numerics::motion::Pose;
@@ -65,7 +66,7 @@ impl<'a> Problem<'a> {
         let diameter = 2.0 * bearing.ball.radius;
         let epicyclic =
             bearing.epicyclic_speed(bearing.free_contact_angle, input.inner_speed, input.outer_speed);
-        let smallest = model.contact(Race::Inner, &Conditions { friction: 0.0 }).shape.stiffness(0.0)
+        let smallest = model.contact(Race::Inner, &Conditions::default()).shape.stiffness(0.0)
             * (1e-6 * diameter).powf(1.5);
         let inertia_force = bearing.ball.mass * epicyclic * epicyclic * length;
         let mut problem = Self {
@@ -309,6 +310,17 @@ impl<'a> Problem<'a> {
                 if load > 0.0 && !(least..=most).contains(&angle) {
                     let limit = if angle < least { least } else { most };
                     return Err(EquilibriumError::LeftGroove { ball: index + 1, race, angle, limit });
+                }
+            }
+        }
+        for (race, form) in
+            Race::BOTH.into_iter().filter_map(|race| Some((race, self.model.form[race].as_ref()?)))
+        {
+            for (index, ball) in solution.balls.iter().enumerate() {
+                let (order, span) = (form.order, ball.report.spans[race]);
+                if order * span > SHORTEST {
+                    let (race, ball, longest) = (race.name(), index + 1, (SHORTEST / span).floor());
+                    return Err(EquilibriumError::ShortWave { race, order, ball, span, longest });
                 }
             }
         }

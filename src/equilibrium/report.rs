@@ -10,7 +10,7 @@ use super::Equilibrium;
 use super::ball::BallBalance;
 use crate::contact::geometry::GrooveContact;
 use crate::contact::shoulder::largest_share;
-use crate::model::bodies::Race;
+use crate::model::bodies::{PerRace, Race};
 use crate::model::{Conditions, Model};
 use crate::numerics::scalar::{Dual, Single, values};
 
@@ -41,6 +41,8 @@ pub struct BallReport {
     pub inner_shoulder_share: f64,
     /// [-] share of the outer load beyond the shoulders of the outer race.
     pub outer_shoulder_share: f64,
+    /// [rad] half width of the contact with each race along rolling over the radius of the race there, where the race has waves.
+    pub(super) spans: PerRace<f64>,
 }
 
 impl BallReport {
@@ -51,11 +53,17 @@ impl BallReport {
             let normal = values(&contact.normal) * sign;
             normal.dot(axis).atan2(normal.dot(&values(&contact.radial)))
         };
-        let contacts = model.contacts(&Conditions { friction: 0.0 });
+        let contacts = model.contacts(&Conditions::default());
         let share = |race: Race, contact: &GrooveContact<Dual<8>>, towards_x: f64| {
             let shape = contacts[race].shape.at(contact.circumferential_curvature.value);
             let semi_axis = shape.semi_axis_transverse * contact.approach.value.max(0.0).sqrt();
-            model.bearing.shoulder_share(race, towards_x, semi_axis)
+            model.bearing.shoulder(race, towards_x, semi_axis).0
+        };
+        let span = |race: Race, contact: &GrooveContact<Dual<8>>| {
+            let semi_axis =
+                contacts[race].shape.at(contact.circumferential_curvature.value).semi_axis_rolling;
+            let out = contact.normal.dot(&contact.radial).value * model.bearing.ball.radius;
+            semi_axis * contact.approach.value.max(0.0).sqrt() / (contact.radius.value + out)
         };
         let inner_contact_angle = angle(&balance.inner, inner_axis, -1.0);
         let outer_contact_angle = angle(&balance.outer, &Vector3::x(), 1.0);
@@ -72,6 +80,10 @@ impl BallReport {
             outer_hertz_stiffness: balance.stiffness.outer.value,
             inner_shoulder_share: share(Race::Inner, &balance.inner, -inner_contact_angle),
             outer_shoulder_share: share(Race::Outer, &balance.outer, outer_contact_angle),
+            spans: PerRace {
+                inner: span(Race::Inner, &balance.inner),
+                outer: span(Race::Outer, &balance.outer),
+            },
         }
     }
 
@@ -88,7 +100,7 @@ impl Equilibrium {
     /// \[Pa] largest contact pressure.
     pub fn peak_pressure(&self, model: &Model) -> f64 {
         let radius = model.bearing.ball.radius;
-        let contacts = model.contacts(&Conditions { friction: 0.0 });
+        let contacts = model.contacts(&Conditions::default());
         let mut largest = 0.0f64;
         for ball in &self.balls {
             let (b, orbit) = (&ball.report, ball.position.yz().norm());
@@ -117,7 +129,7 @@ impl Equilibrium {
         let [fx, fy, fz, my, mz] = self.load;
         let stiffness: Vec<Vec<f64>> =
             self.stiffness.row_iter().map(|row| row.iter().copied().collect()).collect();
-        json!({
+        let mut report = json!({
             "units": "SI: m, N, N m, rad, rad/s",
             "displacement": { "x": x, "y": y, "z": z, "ry": ry, "rz": rz },
             "race": self.race.name(),
@@ -143,7 +155,27 @@ impl Equilibrium {
                 "inner_shoulder_share": column(|b| b.inner_shoulder_share),
                 "outer_shoulder_share": column(|b| b.outer_shoulder_share),
             },
-        })
+        });
+        if let (Some(growth), Some(report)) = (&self.growth, report.as_object_mut()) {
+            let of_races = |[inner, outer]: [f64; 2]| json!({ "inner": inner, "outer": outer });
+            let grown = json!({
+                "clearance": growth.clearance,
+                "contact_angle": growth.contact_angle,
+                "interference": of_races(growth.interference),
+                "seat_pressure": of_races(growth.seat_pressure),
+            });
+            report.insert("growth".into(), grown);
+        }
+        if let (Some(life), Some(report)) = (&self.life, report.as_object_mut()) {
+            let rated = json!({
+                "L10r": life.reference,
+                "modified": life.modified,
+                "equivalent_load": life.equivalent_load,
+                "static_safety": life.static_safety,
+            });
+            report.insert("life".into(), rated);
+        }
+        report
     }
 }
 
@@ -161,6 +193,28 @@ impl fmt::Display for Equilibrium {
         writeln!(f, "              My {my:.5} N m  Mz {mz:.5} N m         is the opposite)")?;
         writeln!(f, "cage speed    {:.4} rad/s", self.cage_speed)?;
         writeln!(f, "residual      {:.2e} of the load, {} iterations\n", self.residual, self.iterations)?;
+        if let Some(growth) = &self.growth {
+            let (clearance, angle) = (growth.clearance * 1e6, growth.contact_angle.to_degrees());
+            writeln!(f, "clearance     {clearance:.3} um, free contact angle {angle:.4} deg (grown)")?;
+            for (race, (interference, pressure)) in
+                ["inner", "outer"].into_iter().zip(growth.interference.into_iter().zip(growth.seat_pressure))
+            {
+                let (interference, pressure) = (interference * 1e6, pressure * 1e-6);
+                writeln!(
+                    f,
+                    "seat          {race}: interference {interference:.3} um, pressure {pressure:.3} MPa"
+                )?;
+            }
+            writeln!(f)?;
+        }
+        if let Some(life) = &self.life {
+            let (load, safety) = (life.equivalent_load, life.static_safety);
+            write!(f, "life          L10r {:.5e} million revolutions", life.reference)?;
+            if let Some(modified) = life.modified {
+                write!(f, ", modified {modified:.5e}")?;
+            }
+            writeln!(f, "; P {load:.2} N, static safety {safety:.3}\n")?;
+        }
         writeln!(f, "stiffness     external load Fx, Fy, Fz [N], My, Mz [N m] by x, y, z [m], ry, rz [rad]")?;
         for row in self.stiffness.row_iter() {
             let row: Vec<String> = row.iter().map(|value| format!("{value:12.4e}")).collect();

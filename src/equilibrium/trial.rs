@@ -10,7 +10,7 @@ use crate::effects::frame::MovingFrame;
 use crate::effects::support::{Relative, Support};
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
-use crate::model::bodies::Race;
+use crate::model::bodies::{PerRace, Race};
 use crate::numerics::motion::Pose;
 use crate::numerics::rotation::{conformal_product, from_rotation_vector, rotate, tilt_to, turn};
 use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, cross, values};
@@ -102,6 +102,7 @@ fn shared(model: &Model, input: &EquilibriumInput, unknowns: &SharedVector) -> S
     Shared {
         position: axes.seen(&position),
         axis: axes.seen(&axis),
+        across: across(input, unknowns),
         cage_speed: variable(unknowns, 5),
         gravity: axes.gravity(&input.frame.gravity),
         frame: moving_frame(model, input, unknowns, &axes),
@@ -192,6 +193,20 @@ pub fn outside_of_race(model: &Model, input: &EquilibriumInput, unknowns: &Share
     [force.x, force.y, force.z, moment.y, moment.z]
 }
 
+/// [-] y axes of both races in the frame of the outer one, which does not turn with it.
+fn across(input: &EquilibriumInput, unknowns: &SharedVector) -> PerRace<Vector3<f64>> {
+    let moved = UnitQuaternion::new(Vector3::new(0.0, unknowns[3], unknowns[4]));
+    let tilts = match input.race {
+        Race::Inner => PerRace { inner: moved, outer: input.resting.orientation },
+        Race::Outer => PerRace { inner: input.resting.orientation, outer: moved },
+    };
+    let frame = tilts.outer.inverse();
+    PerRace::new(|race| {
+        let (sin, cos) = input.turned[race].sin_cos();
+        frame * (tilts[race] * Vector3::new(0.0, cos, sin))
+    })
+}
+
 /// Axis of a race of rotation vector [0, ry, rz].
 fn tilted_axis(ry: D, rz: D) -> Vector3<D> {
     let square = ry.square() + rz.square();
@@ -221,6 +236,7 @@ pub fn evaluate(
 ) -> Result<Trial, EquilibriumError> {
     let shared = shared(model, input, unknowns);
     let axes = OuterAxes::new(input, unknowns);
+    let contacts = model.contacts(&input.surroundings());
     let n = model.bearing.n_balls;
     let mut trial = Trial {
         load: SVector::zeros(),
@@ -235,13 +251,13 @@ pub fn evaluate(
         let azimuth = model.bearing.ball_azimuth(j);
         // From where it was, from between the races, or from the bottom of the outer groove.
         let kept = start.map(|places| places[j]);
-        let fresh: [&dyn Fn() -> Place; 2] = [&|| middle_of_gap(model, &shared, azimuth), &|| {
-            bottom_of_outer_groove(model, input, &shared, azimuth)
+        let fresh: [&dyn Fn() -> Place; 2] = [&|| middle_of_gap(&contacts, &shared, azimuth), &|| {
+            bottom_of_outer_groove(model, input, &shared, j)
         }];
         let settled = |shared: &Shared| {
             let starts = kept.into_iter().chain(fresh.iter().map(|place| place()));
             starts.into_iter().find_map(|mut place| {
-                settle(model, input, shared, azimuth, &mut place, tolerance).map(|balance| (balance, place))
+                settle(model, input, shared, j, &mut place, tolerance).map(|balance| (balance, place))
             })
         };
         // A free ball that would fall off the side of a groove stays where it is, as if without weight.
@@ -314,6 +330,10 @@ pub fn finish(
             }
         })
         .collect();
+    let life = model.rating.as_ref().map(|rating| {
+        let loads = trial.balances.iter().map(|ball| [ball.inner_load.value, ball.outer_load.value]);
+        rating.life(&rating.rates(loads, input.inner_speed - input.outer_speed))
+    });
     // With the cage speed following: eliminate the last unknown.
     let t = &trial.tangent;
     let pivot = t[(5, 5)];
@@ -329,6 +349,8 @@ pub fn finish(
         cage_speed,
         residual,
         iterations,
+        growth: model.growth.as_ref().map(|growth| growth.output(&input.surroundings().warmth)),
+        life,
         balls,
     }
 }

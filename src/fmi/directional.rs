@@ -30,6 +30,9 @@ struct Changes {
     length: f64,
 }
 
+/// [1/K] thermal expansion whose growth at the pitch radius measures changes of temperatures.
+const STEEL_EXPANSION: f64 = 12e-6;
+
 impl Changes {
     /// \[unit] change of an input; not a number for other variables, which are no knowns.
     fn of(&self, row: &Variable) -> f64 {
@@ -43,6 +46,7 @@ impl Changes {
             Some(InputKind::Force) => self.force,
             Some(InputKind::Moment) => self.force * self.length,
             Some(InputKind::Friction) => self.friction,
+            Some(InputKind::Temperature) => self.displacement / (STEEL_EXPANSION * self.length),
             None => row.small_change().unwrap_or(f64::NAN),
         }
     }

@@ -31,6 +31,8 @@ pub struct Instance {
     pub state: State,
     /// \[s] defined end of the experiment.
     pub stop: Option<f64>,
+    /// Values of all variables at this point, if a step has led here.
+    pub present: Option<Vec<f64>>,
     /// Derivatives of outputs by inputs at this point, if they were asked for.
     pub columns: Option<Vec<Vec<f64>>>,
     /// What was warned of.
@@ -74,6 +76,7 @@ impl Instance {
             simulation,
             state: State::new(values),
             stop: None,
+            present: None,
             columns: None,
             warned: Warned::default(),
         })
@@ -101,6 +104,7 @@ impl Instance {
             self.simulation.set_start_time(start);
         }
         self.stop = stop;
+        self.present = None;
         Ok(())
     }
 
@@ -235,6 +239,7 @@ impl Instance {
         self.simulation = simulation;
         self.state.applied.clone_from(&values);
         self.state.values = values;
+        self.present = None;
         self.columns = None;
         self.state.changed = false;
         Ok(())
@@ -324,6 +329,7 @@ impl Instance {
         let values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
         self.state = State::new(values);
         self.stop = None;
+        self.present = None;
         self.columns = None;
         self.warned = Warned::default();
     }
@@ -354,9 +360,10 @@ impl Instance {
             let row = &self.variables.rows()[index];
             *value = match row.causality {
                 Causality::Input | Causality::Parameter => self.state.values[index],
-                Causality::Output | Causality::Local => {
-                    self.variables.value(row, self.simulation.inputs(), self.simulation.outputs())
-                }
+                Causality::Output | Causality::Local => match &self.present {
+                    Some(present) => present[index],
+                    None => self.variables.value(row, self.simulation.inputs(), self.simulation.outputs()),
+                },
             };
         }
         Ok(())

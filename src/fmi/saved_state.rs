@@ -9,7 +9,7 @@ use super::state::State;
 use crate::simulation::Snapshot;
 
 /// First bytes of a serialised state: what it is, and the version of its form.
-const MAGIC: &[u8; 8] = b"rlmtFMU7";
+const MAGIC: &[u8; 8] = b"rlmtFMU8";
 /// Bytes of the checksum.
 const CHECKSUM: usize = 32;
 
@@ -75,6 +75,7 @@ impl Instance {
             self.simulation = rebuilt;
         }
         self.state = state.clone();
+        self.present = None;
         self.columns = None;
         Ok(())
     }

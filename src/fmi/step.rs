@@ -33,13 +33,16 @@ impl Instance {
             return error(format!("the communication step to {end} s is beyond the stop time {stop} s"));
         }
         let inputs = self.next_inputs()?;
+        // Whatever happens from here on, these are no longer the present values.
+        let mut present = self.present.take();
         if self.state.changed {
             self.simulation.tune(&self.scene_with(&self.state.values)?);
+            present = None;
             self.state.applied.clone_from(&self.state.values);
             self.state.changed = false;
         }
-        self.state.previous_outputs =
-            self.variables.values(self.simulation.inputs(), self.simulation.outputs());
+        self.state.previous_outputs = present
+            .unwrap_or_else(|| self.variables.values(self.simulation.inputs(), self.simulation.outputs()));
         self.state.played = self.played();
         let before = self.state.before.insert(self.simulation.snapshot());
         self.columns = None;
@@ -57,12 +60,12 @@ impl Instance {
             return Err((Status::Discard, format!("a result is not a number after {now} s")));
         }
         let scene = self.simulation.scene();
-        for (row, (value, set)) in self.variables.rows().iter().zip(values.iter().zip(&mut self.state.values))
-        {
+        for (index, row) in self.variables.inputs_with_references() {
             if row.group(scene).is_some_and(|group| self.state.played.contains(group)) {
-                *set = *value;
+                self.state.values[index] = values[index];
             }
         }
+        self.present = Some(values);
         advanced.map_err(|why| (Status::Discard, why.to_string()))
     }
 

@@ -28,8 +28,8 @@ fn drive(drive: Drive) -> &'static str {
 /// The row of an effect, on or off.
 fn effect(effect: &dyn AnyEffect) -> String {
     let (info, setting) = (effect.info(), effect.setting().unwrap_or_else(|| "off".into()));
-    let cells =
-        [&setting, info.adds, info.states, info.source].map(|text| format!("<td>{}</td>", escape(text)));
+    let cells = [&setting, info.adds, info.states, info.source, info.price]
+        .map(|text| format!("<td>{}</td>", escape(text)));
     format!("<tr><td><code>{}</code></td>{}</tr>\n", escape(info.key), cells.concat())
 }
 
@@ -96,19 +96,20 @@ pub fn page(scene: &Scene) -> String {
          <h2>Steps</h2>\n<p>Inputs are those at the start of a communication step; outputs those at its end. A race whose \
          pose is given moves, without a jump, along a cubic from where it is to where the given pose leads with the given \
          twist (and its derivative, if given by fmi2SetRealInputDerivatives) by the end of the step. Applied wrenches and \
-         speeds move linearly to the given values within the step. Steps may vary; they are divided internally by error \
+         speeds move linearly to the given values within the step, and so do temperatures. Steps may vary; they are divided internally by error \
          control. A step that cannot be finished ends with fmi2Discard at the last time reached. The FMU state holds \
          everything: a replay gives the same bits. fmi2GetDirectionalDerivative gives the derivatives of all real outputs \
          by all inputs over the last step.</p>\n\
          <p>What the scene gives as a table over time is played here too, exactly in every internal step, unless \
          <code>interface.inputs</code> of the scene leaves it to the master: applied loads (<code>loads</code>), the \
          speed of a race under a wrench (<code>speeds</code>), poses, twists and speed in pose drive (<code>tilts</code>), \
-         <code>friction</code>. Setting an input of such a group, or a derivative of one, ends the script of the whole \
+         <code>friction</code>, <code>temperatures</code>. Setting an input of such a group, or a derivative of one, ends the script of the whole \
          group; its other inputs stay at their last values. The log tells which scripts are played. An input that a script \
          gives reads as its value at the communication point, and directional derivatives by it are zero.</p>\n\
-         <h2>Effects</h2>\n<table><tr><th>key</th><th>here</th><th>adds</th><th>states</th><th>source</th></tr>\n\
+         <h2>Effects</h2>\n<table><tr><th>key</th><th>here</th><th>adds</th><th>states</th><th>source</th><th>price</th></tr>\n\
          {effects}</table>\n\
-         <h2>Limits</h2>\n<ul><li>Rigid rings: the raceways do not bend; no thermal growth, no lubricant film.</li>\n\
+         <h2>Limits</h2>\n<ul><li>Rigid rings: the raceways do not bend; they grow by temperatures and fits only as <code>[growth]</code> says. No \
+         lubricant film.</li>\n\
          <li>A shaft on the bearing is moved by leapfrog, or at least by velocity first and then position: stable while a \
          step is shorter than the reciprocal of its angular frequency on the bearing (70 us for a shaft of 1 kg). A force held \
          constant over the step, position and velocity both from it, is unstable in all but steps a hundred times shorter; \

@@ -150,7 +150,7 @@ fn unit_definitions(xml: &mut Xml) -> std::io::Result<()> {
 fn unit_definition(xml: &mut Xml, unit: &Unit) -> std::io::Result<()> {
     xml.create_element("Unit").with_attribute(("name", unit.name)).write_inner_content(|xml| {
         let mut base = xml.create_element("BaseUnit");
-        for (name, exponent) in ["kg", "m", "s", "rad"].into_iter().zip(unit.exponents) {
+        for (name, exponent) in ["kg", "m", "s", "rad", "K"].into_iter().zip(unit.exponents) {
             if exponent != 0 {
                 base = base.with_attribute((name, exponent.to_string().as_str()));
             }
@@ -207,8 +207,7 @@ fn default_experiment(xml: &mut Xml, simulation: &Simulation) -> std::io::Result
         step = step.min(round_down(1.0 / (POINTS_PER_PASSAGE * frequency)));
     }
     if scene.inner.drive == Drive::Pose {
-        let condensed =
-            Condensed::new(simulation.model(), simulation.state(), &simulation.inputs().conditions());
+        let condensed = Condensed::new(simulation.model(), simulation.state(), &simulation.conditions());
         let stiffness = (0..3).map(|axis| condensed.stiffness[(axis, axis)]).fold(0.0, f64::max);
         let mass = scene.inner.mass.map_or(SHAFT_MASS, |mass| mass.0);
         if stiffness > 0.0 {

@@ -80,6 +80,8 @@ pub struct HalfSpace {
     influences: [Vec<f32>; 3],
     /// Cells along the axes x and y of the ellipse.
     n: [usize; 2],
+    /// [-] area of a cell over c squared.
+    cell_area: f64,
 }
 
 /// The solution at one creepage.
@@ -87,12 +89,31 @@ pub struct HalfSpace {
 pub struct Tractions {
     /// Tractions over mu p0, cell by cell.
     pub tractions: Vec<[f64; 2]>,
+    /// Which cells stick.
+    pub sticking: Vec<bool>,
     /// Net forces.
     pub forces: ScaledForces,
     /// [-] adhesion area over contact area.
     pub stick: f64,
     /// Sweeps spent.
     pub sweeps: u32,
+}
+
+/// State of a cell, for pictures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellState {
+    /// [-] place of its centre over c.
+    pub place: [f64; 2],
+    /// [-] area over c squared.
+    pub area: f64,
+    /// [-] Coulomb's bound over mu p0: the pressure over p0.
+    pub bound: f64,
+    /// [-] traction over mu p0.
+    pub traction: [f64; 2],
+    /// [-] slip over the rolling speed, times G/(mu p0).
+    pub slip: [f64; 2],
+    /// Does it stick?
+    pub sticks: bool,
 }
 
 /// Displacement at an offset from the centre of a rectangle of half sides (hx, hy) under unit traction, times G: the
@@ -163,7 +184,7 @@ impl HalfSpace {
                 }
             }
         }
-        Ok(Self { cells, influences, n })
+        Ok(Self { cells, influences, n, cell_area: 4.0 * half.0 * half.1 })
     }
 
     /// Adds the slip that a change of traction of one cell makes everywhere.
@@ -226,13 +247,38 @@ impl HalfSpace {
                 relaxation *= RELAXATION;
             }
             if change < TOLERANCE {
-                return Ok(self.finish(tractions, &sticking, sweep));
+                return Ok(self.finish(tractions, sticking, sweep));
             }
         }
         Err(HalfSpaceError::NoConvergence { change, sweeps: MAX_SWEEPS })
     }
 
-    fn finish(&self, tractions: Vec<[f64; 2]>, sticking: &[bool], sweeps: u32) -> Tractions {
+    /// State of every cell of a solution at its creepages.
+    pub fn states(&self, creepage: &ScaledCreepage, solution: &Tractions) -> Vec<CellState> {
+        let [n, rows] = self.n;
+        let mut slips = Slips { x: vec![0.0; rows * n], y: vec![0.0; rows * n] };
+        for (cell, traction) in self.cells.iter().zip(&solution.tractions) {
+            self.add(&mut slips, cell, *traction);
+        }
+        let state = |(cell, (traction, sticks)): (&Cell, (&[f64; 2], &bool))| {
+            let place = cell.j * n + cell.i;
+            CellState {
+                place: [cell.x, cell.y],
+                area: self.cell_area,
+                bound: cell.bound,
+                traction: *traction,
+                slip: [
+                    creepage.x - (creepage.spin + creepage.curvature * cell.y) * cell.y
+                        + f64::from(slips.x[place]),
+                    creepage.y + creepage.spin * cell.x + f64::from(slips.y[place]),
+                ],
+                sticks: *sticks,
+            }
+        };
+        self.cells.iter().zip(solution.tractions.iter().zip(&solution.sticking)).map(state).collect()
+    }
+
+    fn finish(&self, tractions: Vec<[f64; 2]>, sticking: Vec<bool>, sweeps: u32) -> Tractions {
         // The cells' own sum of bounds stands for mu Q: what the staircase of the edge loses cancels.
         let limit: f64 = self.cells.iter().map(|cell| cell.bound).sum();
         let mut forces = ScaledForces::default();
@@ -243,7 +289,7 @@ impl HalfSpace {
             forces.second_moment += cell.y * cell.y * f[0] / limit;
         }
         let stick = sticking.iter().filter(|sticks| **sticks).count() as f64 / sticking.len() as f64;
-        Tractions { tractions, forces, stick, sweeps }
+        Tractions { tractions, sticking, forces, stick, sweeps }
     }
 }
 

@@ -8,7 +8,9 @@ use thiserror::Error;
 use super::bodies::{PerRace, Race};
 use crate::contact::materials::Pair;
 use crate::contact::raceway::Raceway;
+use crate::contact::shape::ContactShape;
 use crate::contact::shoulder::{Beyond, SMALL_LOAD, Shoulders};
+use crate::contact::spall::Whole;
 use crate::effects::shoulder::{DEFAULT_HEIGHT, default_ends};
 use crate::scene::Scene;
 
@@ -37,6 +39,9 @@ pub struct BeyondShoulder {
     /// What that says of the bearing.
     pub why: &'static str,
 }
+
+/// [-] approach over ball diameter of a typical load: 300 N on a ball of 10 mm.
+const TYPICAL_APPROACH: f64 = 5e-4;
 
 /// A ball: homogeneous sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,26 +78,11 @@ pub struct Bearing {
 }
 
 impl Bearing {
-    /// Builds the bearing of a scene (design conventions: groove centres from contact angle or clearance).
+    /// Builds the bearing of a scene.
     pub fn new(scene: &Scene) -> Self {
         let section = &scene.bearing;
         let (diameter, pitch) = (section.ball_diameter.0, section.pitch_diameter.0);
-        let (f_i, f_o) = (section.inner_conformity, section.outer_conformity);
-        // Distance A of the groove centres of a bearing without clearance.
-        let centre_distance = (f_i + f_o - 1.0) * diameter;
-        let (inner_circle, inner_offset, outer_circle, outer_offset) = match section.contact_angle {
-            Some(angle) => {
-                let (sin, cos) = angle.0.sin_cos();
-                let outer_circle = pitch / 2.0 - (f_o - 0.5) * diameter * cos;
-                let offsets = ((f_i - 0.5) * diameter * sin, -(f_o - 0.5) * diameter * sin);
-                (outer_circle + centre_distance * cos, offsets.0, outer_circle, offsets.1)
-            }
-            None => {
-                let clearance = section.diametral_clearance.map_or(0.0, |clearance| clearance.0);
-                let outer_circle = (pitch + diameter) / 2.0 + clearance / 4.0 - f_o * diameter;
-                (outer_circle + centre_distance - clearance / 2.0, 0.0, outer_circle, 0.0)
-            }
-        };
+        let [inner, outer] = section.raceways();
         let radius = diameter / 2.0;
         let mass = scene.ball.density.0 * 4.0 / 3.0 * PI * radius.powi(3);
         let materials = [&scene.ball, &scene.race].map(|m| (m.youngs_modulus.0, m.poisson_ratio));
@@ -102,25 +92,19 @@ impl Bearing {
             pitch_diameter: pitch,
             first_ball_azimuth: section.first_ball_azimuth.0,
             free_contact_angle: section.contact_angle.map_or(0.0, |angle| angle.0),
-            inner: Raceway {
-                groove_radius: f_i * diameter,
-                groove_circle_radius: inner_circle,
-                groove_offset: inner_offset,
-            },
-            outer: Raceway {
-                groove_radius: f_o * diameter,
-                groove_circle_radius: outer_circle,
-                groove_offset: outer_offset,
-            },
+            inner,
+            outer,
             shoulders: PerRace::new(|race| shoulders(scene, race)),
             materials: Pair::new(materials),
         }
     }
 
-    /// [-] share of a load beyond the shoulders of a race: contact angle \[rad] towards +x, transverse semi-axis \[m].
-    pub fn shoulder_share(&self, race: Race, towards_x: f64, semi_axis: f64) -> f64 {
+    /// [-] share of a load beyond the shoulders of a race, and \[rad] distance of its ellipse from the nearer end of the groove, negative
+    /// where it is cut: contact angle \[rad] towards +x, transverse semi-axis \[m].
+    pub fn shoulder(&self, race: Race, towards_x: f64, semi_axis: f64) -> (f64, f64) {
         let half_angle = (semi_axis / self.ball.radius).min(1.0).asin();
-        self.shoulders[race].share_beyond(towards_x, half_angle)
+        let shoulders = &self.shoulders[race];
+        (shoulders.share_beyond(towards_x, half_angle), shoulders.margin(towards_x, half_angle))
     }
 
     /// Refuses contacts with a race that carry load beyond its shoulders, by ball: loads \[N] and contact angles \[rad] towards
@@ -158,6 +142,30 @@ impl Bearing {
         match race {
             Race::Inner => &self.inner,
             Race::Outer => &self.outer,
+        }
+    }
+
+    /// [1/m] curvature of a race along its circumference at the free contact angle; convex (inner race) positive.
+    pub fn circumferential_curvature(&self, race: Race) -> f64 {
+        let (orbit, cos) = (0.5 * self.pitch_diameter, self.free_contact_angle.cos());
+        match race {
+            Race::Inner => cos / (orbit - self.ball.radius * cos),
+            Race::Outer => -cos / (orbit + self.ball.radius * cos),
+        }
+    }
+
+    /// Contacts with a race at the free contact angle, of the shape that they have there.
+    pub fn whole_contact(&self, race: Race, shape: &ContactShape) -> Whole {
+        let (raceway, curvature) = (self.raceway(race), self.circumferential_curvature(race));
+        let at = shape.at(curvature);
+        let ball = 1.0 / self.ball.radius;
+        Whole {
+            curvatures: [ball + curvature, ball - 1.0 / raceway.groove_radius],
+            semi_axes: [at.semi_axis_rolling, at.semi_axis_transverse],
+            typical_approach: 2.0 * self.ball.radius * TYPICAL_APPROACH,
+            groove_radius: raceway.groove_radius,
+            circle_radius: raceway.groove_circle_radius,
+            side: if race == Race::Inner { -1.0 } else { 1.0 },
         }
     }
 

@@ -36,7 +36,7 @@ impl CageModel {
         let poisson = section.poisson_ratio.unwrap_or(scene.race.poisson_ratio);
         let materials = [(scene.ball.youngs_modulus.0, scene.ball.poisson_ratio), (youngs, poisson)];
         let friction = |given: Option<f64>| given.unwrap_or_else(|| scene.friction.ball_race.at(0.0));
-        let damping = section.damping.unwrap_or(scene.effects.damping.factor).0;
+        let damping = section.damping.map_or(scene.effects.damping.factor(), |factor| factor.0);
         let clearance = section.pocket_clearance.0;
         let pocket = PocketModel::new(
             bearing.ball.radius,

@@ -3,6 +3,7 @@
 pub mod bearing;
 pub mod bodies;
 pub mod cage;
+pub mod energies;
 pub mod raceways;
 pub mod state;
 pub mod switch;
@@ -11,8 +12,16 @@ use nalgebra::Vector3;
 
 use crate::contact::ContactModel;
 use crate::contact::ball_ball::BallBallModel;
+use crate::contact::form::Form;
+use crate::contact::normal::Damping;
+use crate::contact::spall::Spalls;
+use crate::contact::surface::{BallSize, Surface};
 use crate::effects::ambient::{Ambient, AmbientSection, Medium};
+use crate::effects::defects::On;
+use crate::effects::form::Shape;
 use crate::effects::frame::{FrameMotion, FrameSection, MovingFrame};
+use crate::effects::growth::{Growth, Warmth};
+use crate::effects::rating::Rating;
 use crate::effects::support::Support;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::ScaledKalker;
@@ -25,10 +34,19 @@ use raceways::RacewayContacts;
 use switch::Switch;
 
 /// Conditions that may change from step to step and are the same in every contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Conditions {
     /// [-] friction coefficient of the ball-race contacts.
     pub friction: f64,
+    /// Temperatures and speeds that rings and balls have grown by; not used where growth is not simulated.
+    pub warmth: Warmth,
+}
+
+impl Conditions {
+    /// Those of a friction coefficient, where nothing has grown.
+    pub fn of_friction(friction: f64) -> Self {
+        Self { friction, ..Self::default() }
+    }
 }
 
 /// Everything that stays the same during a run.
@@ -46,10 +64,22 @@ pub struct Model {
     pub cage: Option<CageModel>,
     /// Neighbouring balls against each other, where no cage keeps them apart.
     pub ball_contact: Option<BallBallModel>,
+    /// Growth of rings and balls, where it is simulated.
+    pub growth: Option<Growth>,
+    /// Ratings of life, where it is asked for.
+    pub rating: Option<Rating>,
+    /// Is heat reported by part?
+    pub heat_outputs: bool,
     /// [-] change of creepages over sliding ones after which Kalker's polynomials are solved anew.
     pub epsilon_switch: f64,
-    /// [s/m] Hunt-Crossley dissipation factor.
-    pub damping: f64,
+    /// How contacts of the balls with races and with each other lose energy.
+    pub damping: Damping,
+    /// Form of the races, where they depart from a torus.
+    pub form: PerRace<Option<Form>>,
+    /// Spalls of the races, where they have some.
+    pub spalls: PerRace<Option<Spalls>>,
+    /// Sizes of the balls on each race, where they are not alike.
+    sizes: Option<PerRace<Vec<BallSize>>>,
     /// \[m] arm of the bearing's frame, where that may move.
     frame_arm: Option<Vector3<f64>>,
     /// The medium around the balls, where its drag is simulated.
@@ -80,9 +110,26 @@ impl Model {
                 .or_else(|| RigidBody::on_hinge(&scene.outer))
                 .or_else(|| outer_support.map(RigidBody::on_support)),
         };
+        let raceways = PerRace::try_new(|race| RacewayContacts::new(scene, &bearing, race))?;
+        let larger = scene.effects.form.larger_radii();
+        let size = |race: Race, larger: f64| BallSize {
+            larger,
+            stiffness: raceways[race]
+                .shape
+                .stiffness_of_larger(larger, bearing.circumferential_curvature(race)),
+        };
+        let sizes = |race: Race| larger.iter().map(|larger| size(race, *larger)).collect();
+        let sizes = (!larger.is_empty()).then(|| PerRace::new(sizes));
+        let spalls = PerRace::new(|race| {
+            let on = match race {
+                Race::Inner => scene.effects.defects.on(On::Inner, bearing.free_contact_angle),
+                Race::Outer => scene.effects.defects.on(On::Outer, bearing.free_contact_angle),
+            };
+            Spalls::new(on, bearing.whole_contact(race, &raceways[race].shape))
+        });
         Ok(Self {
             bodies: Bodies::new(races, section.map(|section| Some(RigidBody::cage(section)))),
-            raceways: PerRace::try_new(|race| RacewayContacts::new(scene, &bearing, race))?,
+            raceways,
             switch: None,
             ball_contact: cage.is_none().then(|| {
                 let material = (scene.ball.youngs_modulus.0, scene.ball.poisson_ratio);
@@ -90,9 +137,15 @@ impl Model {
                 BallBallModel::new(bearing.ball.radius, material, friction)
             }),
             cage,
+            rating: scene.effects.rating.rating(&scene.bearing, &bearing.materials),
+            heat_outputs: scene.effects.heat.on,
+            growth: scene.effects.growth.growth(&scene.bearing, &scene.ball, &scene.race),
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,
             damping: contact_damping(scene),
+            form: PerRace::new(|race| scene.effects.form.of(race == Race::Inner).and_then(Shape::form)),
+            spalls,
+            sizes,
             frame_arm: scene.effects.frame.section.as_ref().map(FrameSection::arm),
             supports: PerRace {
                 inner: inner_support.map(Support::from),
@@ -122,10 +175,24 @@ impl Model {
         race: Race,
         conditions: &Conditions,
     ) -> ContactModel<'a> {
+        let (raceway_now, ball_radius, stiffening) = match &self.growth {
+            None => (*self.bearing.raceway(race), self.bearing.ball.radius, 1.0),
+            Some(growth) => {
+                let (index, warmth) = (race as usize, &conditions.warmth);
+                (growth.raceway(index, warmth), growth.ball_radius(warmth), growth.stiffening(index, warmth))
+            }
+        };
         ContactModel {
-            raceway: self.bearing.raceway(race),
+            surface: Surface {
+                raceway: raceway_now,
+                ball_radius,
+                form: self.form[race].as_ref(),
+                spalls: self.spalls[race].as_ref(),
+                sizes: self.sizes.as_ref().map(|sizes| &*sizes[race]),
+                ball: 0,
+            },
             shape: &raceway.shape,
-            ball_radius: self.bearing.ball.radius,
+            stiffening,
             law: raceway.law(),
             across: raceway.across(),
             groove_bend: raceway.groove_bend,
@@ -185,10 +252,10 @@ impl Model {
     }
 }
 
-/// [s/m] dissipation factor of contacts; an equilibrium has no approach that it could damp.
-fn contact_damping(scene: &Scene) -> f64 {
+/// How contacts lose energy; an equilibrium has no approach that damping could act on.
+fn contact_damping(scene: &Scene) -> Damping {
     match scene.solver.level {
-        Level::Dynamic => scene.effects.damping.factor.0,
-        Level::Equilibrium => 0.0,
+        Level::Dynamic => scene.effects.damping.law(),
+        Level::Equilibrium => Damping::HuntCrossley(0.0),
     }
 }

@@ -4,9 +4,12 @@ use nalgebra::{UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::bodies::{Bodies, Body, PerRace, Race};
+use super::energies::{Energies, Powers, Pressed};
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
+use crate::effects::growth::Grown;
 use crate::effects::support::SupportState;
+use crate::effects::{heat, rating};
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::arrowhead::Eliminated;
 use crate::numerics::motion::{Pose, Twist, Wrench};
@@ -30,6 +33,8 @@ pub struct BallState {
     pub total: Wrench,
     /// What the last step left of the equations of motion, within their tolerance.
     pub remainder: Wrench,
+    /// How it is pressed on the races.
+    pub pressed: PerRace<Pressed>,
 }
 
 impl BallState {
@@ -118,6 +123,7 @@ impl BodyState {
         RaceMotion {
             position: self.pose.position,
             axis: self.axes[0],
+            across: self.axes[1],
             velocity: self.velocity,
             angular_velocity: self.angular_velocity,
         }
@@ -144,44 +150,9 @@ pub fn race_motion(pose: &Pose, twist: &Twist) -> RaceMotion<f64> {
     RaceMotion {
         position: pose.position,
         axis: pose.orientation * Vector3::x(),
+        across: pose.orientation * Vector3::y(),
         velocity: twist.velocity,
         angular_velocity: twist.angular_velocity,
-    }
-}
-
-/// Powers at one instant \[W].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Powers {
-    /// Put in by races, applied loads, drives, gravity and the motion of the frame.
-    pub input: f64,
-    /// Lost to friction in the contacts.
-    pub friction: f64,
-    /// Lost to contact damping.
-    pub damping: f64,
-    /// Lost to what is around the bearing: drag of the medium, dampers of supports.
-    pub around: f64,
-}
-
-/// Energies accumulated since the start \[J].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Energies {
-    /// Work put in.
-    pub input: f64,
-    /// Lost to friction.
-    pub friction: f64,
-    /// Lost to contact damping.
-    pub damping: f64,
-    /// Lost to what is around the bearing.
-    pub around: f64,
-}
-
-impl Energies {
-    /// Adds a step of `h` \[s] by the trapezoidal rule.
-    pub fn add(&mut self, before: &Powers, after: &Powers, h: f64) {
-        self.input += 0.5 * h * (before.input + after.input);
-        self.friction += 0.5 * h * (before.friction + after.friction);
-        self.damping += 0.5 * h * (before.damping + after.damping);
-        self.around += 0.5 * h * (before.around + after.around);
     }
 }
 
@@ -258,6 +229,12 @@ pub struct State {
     pub energies: Energies,
     /// Work since the start.
     pub statistics: Statistics,
+    /// What rings and balls have grown by; none where growth is not simulated.
+    pub grown: Option<Grown>,
+    /// Loads since the start as life counts them; none where it is not asked for.
+    pub rating: Option<rating::Sums>,
+    /// Heat since the start by contact; none where it is not reported.
+    pub heat: Option<heat::Sums>,
 }
 
 impl State {

@@ -13,7 +13,7 @@
 //! An eliminated block turns about the x axis with its ball: in a frame that turns along it hardly changes, and serves many
 //! matrices. Border rows have three forces in world axes and three moments in the axes of their member.
 
-use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix3, Matrix6, Vector6};
+use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix3, Matrix6, SMatrix, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::orbit_turn::OrbitTurn;
@@ -59,47 +59,17 @@ pub struct Member {
 }
 
 impl Member {
-    /// Its rows from world axes.
-    fn rows(&self, world: &Vector6<f64>) -> Vector6<f64> {
-        let mut rows = *world;
-        rows.fixed_rows_mut::<3>(3).copy_from(&(self.axes * world.fixed_rows::<3>(3)));
-        rows
+    /// Vectors with moments in its own axes, from those in world axes, column by column.
+    fn own<const C: usize>(&self, world: &SMatrix<f64, BLOCK, C>) -> SMatrix<f64, BLOCK, C> {
+        let mut own = *world;
+        own.fixed_rows_mut::<3>(3).copy_from(&(self.axes * world.fixed_rows::<3>(3)));
+        own
     }
 
-    /// Its unknowns in world axes.
-    fn world(&self, rows: &Vector6<f64>) -> Vector6<f64> {
-        let mut world = *rows;
-        world.fixed_rows_mut::<3>(3).copy_from(&self.axes.tr_mul(&rows.fixed_rows::<3>(3)));
-        world
-    }
-
-    /// A matrix with its rows, from one with rows in world axes.
-    fn by_rows(&self, world: &Matrix6<f64>) -> Matrix6<f64> {
-        let mut matrix = *world;
-        matrix.fixed_rows_mut::<3>(3).copy_from(&(self.axes * world.fixed_rows::<3>(3)));
-        matrix
-    }
-
-    /// A matrix with its columns, from one with columns in world axes.
-    fn by_columns(&self, world: &Matrix6<f64>) -> Matrix6<f64> {
-        let mut matrix = *world;
-        let columns = world.fixed_columns::<3>(3) * self.axes.transpose();
-        matrix.fixed_columns_mut::<3>(3).copy_from(&columns);
-        matrix
-    }
-
-    /// The same the other way round: with rows in world axes, from one with its own.
-    fn world_rows(&self, matrix: &Matrix6<f64>) -> Matrix6<f64> {
-        let mut world = *matrix;
-        world.fixed_rows_mut::<3>(3).copy_from(&self.axes.tr_mul(&matrix.fixed_rows::<3>(3)));
-        world
-    }
-
-    /// With columns in world axes, from one with its own.
-    fn world_columns(&self, matrix: &Matrix6<f64>) -> Matrix6<f64> {
-        let mut world = *matrix;
-        let columns = matrix.fixed_columns::<3>(3) * self.axes;
-        world.fixed_columns_mut::<3>(3).copy_from(&columns);
+    /// The same the other way round.
+    fn world<const C: usize>(&self, own: &SMatrix<f64, BLOCK, C>) -> SMatrix<f64, BLOCK, C> {
+        let mut world = *own;
+        world.fixed_rows_mut::<3>(3).copy_from(&self.axes.tr_mul(&own.fixed_rows::<3>(3)));
         world
     }
 }
@@ -131,13 +101,14 @@ impl Eliminated {
         if !inverse.iter().all(|v| v.is_finite()) {
             return None;
         }
-        let right = |member: &Member| inverse * member.world_columns(&block.right[member.slot]);
+        let right =
+            |member: &Member| inverse * member.world(&block.right[member.slot].transpose()).transpose();
         let coupling = |member: &Member| {
-            let left = member.world_rows(&block.left[member.slot]);
+            let left = member.world(&block.left[member.slot]);
             let rest = |other: &Member| {
                 let mut rest = -(left * right(other));
                 if other.slot == member.slot {
-                    rest += member.world_columns(&member.world_rows(&block.own[member.slot]));
+                    rest += member.world(&member.world(&block.own[member.slot]).transpose()).transpose();
                 }
                 rest
             };
@@ -160,6 +131,8 @@ pub struct Arrowhead {
     /// Turns of the blocks since they were eliminated.
     turns: Vec<OrbitTurn>,
     border: Option<LU<f64, Dyn, Dyn>>,
+    /// What all blocks leave in rows and columns of each two members, in world axes.
+    sums: Vec<Matrix6<f64>>,
     /// Loads on the members, and what they do, in world axes.
     worlds: Vec<Vector6<f64>>,
 }
@@ -176,7 +149,9 @@ impl Arrowhead {
         self.members.extend(members);
         self.turns.clear();
         let count = members.len();
-        let mut sums = [Matrix6::zeros(); SLOTS * SLOTS];
+        let sums = &mut self.sums;
+        sums.clear();
+        sums.resize(count * count, Matrix6::zeros());
         for (block, turn) in blocks {
             self.turns.push(turn);
             for (row, coupling) in block.couplings.iter().enumerate() {
@@ -187,7 +162,7 @@ impl Arrowhead {
         }
         for (row, a) in members.iter().enumerate() {
             for (column, b) in members.iter().enumerate() {
-                let rest = a.by_rows(&b.by_columns(&sums[count * row + column]));
+                let rest = a.own(&b.own(&sums[count * row + column].transpose()).transpose());
                 let mut view = border.fixed_view_mut::<BLOCK, BLOCK>(a.from, b.from);
                 view += rest;
             }
@@ -212,7 +187,7 @@ impl Arrowhead {
         }
         for (member, load) in self.members.iter().zip(&self.worlds) {
             let mut rows = border.fixed_rows_mut::<BLOCK>(member.from);
-            rows += member.rows(load);
+            rows += member.own(load);
         }
         if let Some(lu) = &self.border
             && !lu.solve_mut(border)

@@ -64,6 +64,10 @@ impl Scalar for Lanes {
         Self([value; WIDTH])
     }
     #[inline(always)]
+    fn by_lane(of: impl FnMut(usize) -> f64) -> Self {
+        Self::from_fn(of)
+    }
+    #[inline(always)]
     fn scale(self, factor: f64) -> Self {
         self.map(|x| x * factor)
     }

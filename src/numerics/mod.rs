@@ -7,6 +7,7 @@ pub mod lanes;
 pub mod motion;
 pub mod newton;
 pub mod orbit_turn;
+pub mod periodic_spline;
 pub mod ring;
 pub mod rotation;
 pub mod scalar;

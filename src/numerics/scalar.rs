@@ -26,6 +26,9 @@ pub trait Scalar:
     /// A constant: all derivatives are zero.
     fn constant(value: f64) -> Self;
 
+    /// A constant for each of the numbers that are computed with together, by its place among them.
+    fn by_lane(of: impl FnMut(usize) -> f64) -> Self;
+
     /// Multiplies by a constant.
     fn scale(self, factor: f64) -> Self;
 
@@ -141,6 +144,10 @@ impl Scalar for f64 {
         value
     }
     #[inline(always)]
+    fn by_lane(mut of: impl FnMut(usize) -> f64) -> Self {
+        of(0)
+    }
+    #[inline(always)]
     fn scale(self, factor: f64) -> Self {
         self * factor
     }
@@ -226,6 +233,10 @@ impl<const N: usize> Scalar for Dual<N> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self { value, derivatives: [0.0; N] }
+    }
+    #[inline(always)]
+    fn by_lane(mut of: impl FnMut(usize) -> f64) -> Self {
+        Self::constant(of(0))
     }
     #[inline(always)]
     fn scale(self, factor: f64) -> Self {

@@ -34,8 +34,14 @@ pub struct StepControl {
 impl StepControl {
     /// Begins with the largest quantised step not above `initial_step` \[s].
     pub fn new(initial_step: f64, min_step: f64, max_step: f64) -> Self {
-        let notch = ((initial_step / max_step).log2() * NOTCHES_PER_OCTAVE + 1e-9).floor().min(0.0) as i32;
+        let notch = notch_below(initial_step, max_step);
         Self { max_step, min_step, notch, last_error: 1.0, growth_blocked: 0 }
+    }
+
+    /// Goes on with the largest quantised step not above a limit \[s], where the present one is; but not with one below the
+    /// smallest allowed.
+    pub fn cap(&mut self, limit: f64) {
+        self.notch = self.notch.min(notch_below(limit.max(self.min_step), self.max_step));
     }
 
     /// \[s] present step size.
@@ -102,9 +108,29 @@ impl StepControl {
     }
 }
 
+/// The largest quantised step not above a step \[s].
+fn notch_below(step: f64, max_step: f64) -> i32 {
+    ((step / max_step).log2() * NOTCHES_PER_OCTAVE + 1e-9).floor().min(0.0) as i32
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_cap_takes_the_next_quantised_step_below_and_growth_goes_on_from_there() {
+        let mut control = StepControl::new(1e-5, 1e-9, 1e-5);
+        control.cap(f64::INFINITY);
+        assert_eq!(control.step(), 1e-5);
+        control.cap(3e-6);
+        let capped = control.step();
+        assert!(capped <= 3e-6 && capped > 2.5e-6, "{capped}");
+        control.cap(4e-6);
+        assert_eq!(control.step(), capped);
+        assert!(control.judge(1e-6) && control.step() > capped);
+        control.cap(0.0);
+        assert!(control.above_minimum() && control.step() < 1.2e-9);
+    }
 
     #[test]
     fn invariant_steps_are_quantised_bounded_and_end_at_the_point() {

@@ -42,7 +42,7 @@ impl Scene {
             change(&mut table, key, value).map_err(|why| SceneError::Change { key: key.to_string(), why })?;
         }
         // Lines of the changed text are not those that the reader of a message has.
-        Self::read(&table.to_string()).map_err(|(error, _)| error)
+        Self::read(&table.to_string(), std::path::Path::new("")).map_err(|(error, _)| error)
     }
 }
 

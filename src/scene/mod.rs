@@ -17,7 +17,10 @@ use crate::effects;
 pub use crate::effects::Effects;
 pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
+use crate::effects::defects::DefectSection;
+use crate::effects::form::FormSection;
 pub use crate::effects::frame::FrameMotion;
+use crate::effects::{growth, rating};
 pub use crate::schema::{
     Accuracy, BearingSection, Components, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver,
     Group, Groups, InputGivers, Interface, Level, Load, Material, Misalignment, Orientation, RaceLoad,
@@ -52,6 +55,16 @@ pub struct Scene {
     regularised: Regularised,
     /// The section of the cage, until it joins its effect.
     cage: Option<CageSection>,
+    /// The section of the form of races and balls, until it joins its effect.
+    #[serde(default)]
+    form: FormSection,
+    /// The section of temperatures and fits, until it joins its effect.
+    growth: Option<growth::Section>,
+    /// The section of the rating life, until it joins its effect.
+    rating: Option<rating::Section>,
+    /// Damage of races, until it joins its effect.
+    #[serde(default)]
+    defect: Vec<DefectSection>,
     /// Inner race.
     #[serde(default)]
     pub inner: RaceSection,
@@ -80,16 +93,16 @@ impl Scene {
     /// # Errors
     /// See [`SceneError`]; with the line.
     pub fn parse(text: &str) -> Result<Self, SceneError> {
-        Self::parse_of(text, None)
+        Self::parse_of(text, None, Path::new(""))
     }
 
     /// Reads a scene from the text of a file.
-    fn parse_of(text: &str, file: Option<&str>) -> Result<Self, SceneError> {
-        Self::read(text).map_err(|(error, spot)| explain::with_place(error, text, spot, file))
+    fn parse_of(text: &str, file: Option<&str>, folder: &Path) -> Result<Self, SceneError> {
+        Self::read(text, folder).map_err(|(error, spot)| explain::with_place(error, text, spot, file))
     }
 
-    /// Reads a scene; an error with the spot \[bytes] where the text cannot be read.
-    fn read(text: &str) -> Result<Self, (SceneError, Option<usize>)> {
+    /// Reads a scene whose files are in a folder; an error with the spot \[bytes] where the text cannot be read.
+    fn read(text: &str, folder: &Path) -> Result<Self, (SceneError, Option<usize>)> {
         let mut scene: Self = toml::from_str(text)
             .map_err(|why| (explain::format_error(text, &why), why.span().map(|span| span.start)))?;
         scene.source = text.to_string();
@@ -97,6 +110,11 @@ impl Scene {
         scene.effects.cage.section = scene.cage.take();
         scene.effects.support.sections = [scene.inner.support.take(), scene.outer.support.take()];
         scene.effects.gravity.is_input = scene.effects.frame.section.is_some();
+        scene.effects.form.section = std::mem::take(&mut scene.form);
+        scene.effects.defects.sections = std::mem::take(&mut scene.defect);
+        scene.read_files(folder).map_err(|why| (why, None))?;
+        scene.effects.growth.section = scene.growth.take();
+        scene.effects.rating.section = scene.rating.take();
         if scene.solver.follows != Follows::Nothing {
             let Scales { approach, frequency } = Scales::of(&scene);
             scene.solver.follow(frequency, approach);
@@ -104,6 +122,24 @@ impl Scene {
         scene.solver.fit_to(scene.bearing.ball_diameter.0);
         scene.check().map_err(|why| (why, None))?;
         Ok(scene)
+    }
+
+    /// Reads the files that the scene names. Its text then has their numbers in their place, so that it stands alone.
+    fn read_files(&mut self, folder: &Path) -> Result<(), SceneError> {
+        let files = self.effects.form.section.read_files(folder)?;
+        if files.is_empty() {
+            return Ok(());
+        }
+        let mut table: toml::Table =
+            toml::from_str(&self.source).map_err(|why| explain::format_error(&self.source, &why))?;
+        for (race, profile) in files {
+            let shape = table.get_mut("form").and_then(|form| form.get_mut(race)?.get_mut("profile"));
+            if let Some(shape) = shape {
+                *shape = profile;
+            }
+        }
+        self.source = table.to_string();
+        Ok(())
     }
 
     /// Checks every value against its range, and the keys against one another.
@@ -124,8 +160,18 @@ impl Scene {
     fn setup(&self) -> effects::Setup<'_> {
         let saturates = self.effects.creep.law.saturates();
         let cage = self.effects.cage.on;
-        let drives = [self.inner.drive, self.outer.drive];
-        effects::Setup { bearing: &self.bearing, friction: &self.friction, saturates, cage, drives }
+        let turns = |race: &RaceSection, speed: &Schedule| {
+            race.drive == Drive::Pose || speed.values().into_iter().any(|speed| speed != 0.0)
+        };
+        effects::Setup {
+            bearing: &self.bearing,
+            friction: &self.friction,
+            saturates,
+            cage,
+            drives: [self.inner.drive, self.outer.drive],
+            turning: [turns(&self.inner, &self.load.inner_speed), turns(&self.outer, &self.load.outer_speed)],
+            expansions: [&self.ball, &self.race].map(|material| material.thermal_expansion.0),
+        }
     }
 
     /// Reads a scene file.
@@ -135,7 +181,7 @@ impl Scene {
     pub fn load(path: &Path) -> Result<Self, SceneError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| SceneError::Read { path: path.display().to_string(), source })?;
-        Self::parse_of(&text, Some(&path.display().to_string()))
+        Self::parse_of(&text, Some(&path.display().to_string()), path.parent().unwrap_or(Path::new("")))
     }
 }
 

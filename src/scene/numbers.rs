@@ -1,6 +1,7 @@
 //! The one table of the numbers of a scene, but for those of its effects, which stand with them.
 
 use super::{Drive, RaceLoad, Scene, SceneError, Schedule};
+use crate::effects::growth::EXPANSION;
 use crate::schema::SMALLEST_TOLERANCE;
 use crate::schema::numbers::{FRICTION, Number, POISSON_RATIO, Parameter, Place, Range, YOUNGS_MODULUS};
 
@@ -22,7 +23,7 @@ pub(super) const STEP: Range = Range::closed(1e-15, 1e-2, "s");
 
 /// Bearing and materials: those before the effects.
 #[rustfmt::skip]
-static BEARING: [Number<Scene>; 15] = [
+static BEARING: [Number<Scene>; 17] = [
     Number::checked("bearing.balls", Range::closed(1.0, 200.0, ""), |s| Place::Read(vec![s.bearing.balls as f64])),
     Number::fixed("bearing.ball_diameter", Range::closed(1e-4, 1.0, "m"), "ball diameter",
         |s| Place::Value(Some(&mut s.bearing.ball_diameter.0))),
@@ -43,18 +44,22 @@ static BEARING: [Number<Scene>; 15] = [
     Number::fixed("ball.poisson_ratio", POISSON_RATIO, "Poisson's ratio of the balls",
         |s| Place::Value(Some(&mut s.ball.poisson_ratio))),
     Number::fixed("ball.density", DENSITY, "density of the balls", |s| Place::Value(Some(&mut s.ball.density.0))),
+    Number::fixed_if("ball.thermal_expansion", EXPANSION, "coefficient of thermal expansion of the balls", grows,
+        |s| Place::Value(Some(&mut s.ball.thermal_expansion.0))),
     Number::fixed("race.youngs_modulus", YOUNGS_MODULUS, "Young's modulus of the races",
         |s| Place::Value(Some(&mut s.race.youngs_modulus.0))),
     Number::fixed("race.poisson_ratio", POISSON_RATIO, "Poisson's ratio of the races",
         |s| Place::Value(Some(&mut s.race.poisson_ratio))),
-    Number::checked("race.density", DENSITY, |s| Place::Value(Some(&mut s.race.density.0))),
+    Number::fixed_if("race.density", DENSITY, "density of the races", grows, |s| Place::Value(Some(&mut s.race.density.0))),
+    Number::fixed_if("race.thermal_expansion", EXPANSION, "coefficient of thermal expansion of the races", grows,
+        |s| Place::Value(Some(&mut s.race.thermal_expansion.0))),
     // A package has it as an input.
     Number::checked("friction.ball_race", FRICTION, |s| Place::Schedule(&mut s.friction.ball_race)),
 ];
 
 /// Cage friction, races, start, time integration and load: those after the effects.
 #[rustfmt::skip]
-static MOTION: [Number<Scene>; 56] = [
+static MOTION: [Number<Scene>; 57] = [
     Number::fixed("friction.ball_cage", FRICTION, "friction coefficient of the balls in their pockets", |s| Place::Value(s.friction.ball_cage.as_mut())),
     Number::fixed("friction.cage_race", FRICTION, "friction coefficient of the cage on the lands", |s| Place::Value(s.friction.cage_race.as_mut())),
     Number::fixed("friction.ball_ball", FRICTION, "friction coefficient of neighbouring balls", |s| Place::Value(s.friction.ball_ball.as_mut())),
@@ -116,6 +121,7 @@ static MOTION: [Number<Scene>; 56] = [
     Number::fixed("solver.min_step", STEP, "smallest internal step; a step that needs a smaller one is not finished",
         |s| Place::Value(Some(&mut s.solver.min_step.0))),
     Number::checked("solver.matrix_reuse", Range::closed(0.0, 1.0, ""), |s| Place::Value(Some(&mut s.solver.matrix_reuse))),
+    Number::checked("solver.energy_error", Range::closed(0.0, 1.0, ""), |s| Place::Value(Some(&mut s.solver.energy_error))),
     Number::checked("load.duration", Range::above(0.0, 1e6, "s"), |s| Place::Value(Some(&mut s.load.duration.0))),
     Number::checked("load.inner_speed", SPEED, |s| Place::Schedule(&mut s.load.inner_speed)),
     Number::checked("load.outer_speed", SPEED, |s| Place::Schedule(&mut s.load.outer_speed)),
@@ -140,6 +146,11 @@ static MOTION: [Number<Scene>; 56] = [
     Number::checked("load.outer.rz.moment", MOMENT, |s| outer(s, |load| &load.rz.moment)),
     Number::checked("load.outer.rz.rotation", TILT, |s| outer(s, |load| &load.rz.rotation)),
 ];
+
+/// Do temperatures and fits change the dimensions?
+fn grows(scene: &Scene) -> bool {
+    scene.effects.growth.section.is_some()
+}
 
 fn inner_moves(scene: &Scene) -> bool {
     scene.inner.drive == Drive::Wrench

@@ -28,6 +28,7 @@ fn inputs(scene: &Scene) -> Result<(), SceneError> {
         (Group::Loads, wrench, "a race with drive = \"wrench\""),
         (Group::Speeds, wrench, "a race with drive = \"wrench\""),
         (Group::Tilts, pose, "a race with drive = \"pose\""),
+        (Group::Temperatures, scene.effects.growth.section.is_some(), "a section [growth]"),
         (Group::Frame, frame, "effects.frame"),
     ] {
         if scene.interface.inputs.of(group) == Giver::Master && !has_input {

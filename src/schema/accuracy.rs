@@ -29,6 +29,11 @@ pub struct Solver {
     /// [-] a Newton correction that leaves more than this fraction of the residual asks for a new matrix: 0 computes a
     /// matrix for every correction, 1 keeps one until it no longer lowers the residual.
     pub matrix_reuse: f64,
+    /// [-] part of the energy that a run puts in or loses which it may leave unaccounted for: steps are held down to keep it;
+    /// 0 does not look at energy. A default where steps and tolerance are not given.
+    pub energy_error: f64,
+    /// \[s] steps up to this are not shortened for that.
+    pub energy_step: Time,
     /// Error that `roulement run` measures and keeps, if the scene states one.
     pub goal: Option<ErrorGoal>,
     /// What follows the bearing's own frequency and load: see [`Solver::follow`].
@@ -54,6 +59,8 @@ pub enum Level {
 pub enum Follows {
     /// Nothing: the settings are as they were given.
     Nothing,
+    /// The step down to which energy is looked at, of a named goal.
+    Energy,
     /// First and largest step, of an error goal.
     Steps,
     /// First and largest step and the tolerance: nothing was given. Is the first step given?
@@ -114,12 +121,19 @@ impl Default for Solver {
             max_step: Time(1e-5),
             min_step: Time(0.0),
             matrix_reuse: REFACTOR_CONTRACTION,
+            energy_error: USUAL_ENERGY_ERROR,
+            energy_step: Time(0.0),
             goal: None,
             follows: Follows::All { initial_step: true },
             level: Level::Dynamic,
         }
     }
 }
+
+/// [-] energy unaccounted for where nothing is said: half of what `roulement run` says something about.
+const USUAL_ENERGY_ERROR: f64 = 5e-3;
+/// [-] smallest step that energy asks for, in periods of a ball between its races: an impact takes half a period.
+const ENERGY_PERIODS: f64 = 0.003;
 
 /// [-] tolerance where nothing is said: the cheapest that kept means within 1 % and histories within 2 % in the scenes of
 /// scenes/error and scenes/cost, but for chaotic ones (`docs/accuracy-cost.md`).
@@ -149,8 +163,9 @@ impl Solver {
     /// its diameter.
     pub fn follow(&mut self, frequency: f64, approach: f64) {
         let [max_step, initial_step] = PERIODS.map(|periods| (periods / frequency).clamp(1e-9, 1e-3));
+        self.energy_step = Time(ENERGY_PERIODS / frequency);
         match std::mem::replace(&mut self.follows, Follows::Nothing) {
-            Follows::Nothing => {}
+            Follows::Nothing | Follows::Energy => {}
             Follows::Steps => {
                 self.max_step = Time(self.max_step.0.min(max_step));
                 self.initial_step = Time(self.initial_step.0.min(initial_step));
@@ -204,7 +219,7 @@ impl Accuracy {
         let steps = |max_step, tolerance| Solver {
             max_step: Time(max_step),
             tolerance,
-            follows: Follows::Nothing,
+            follows: Follows::Energy,
             ..Solver::default()
         };
         match self {
@@ -280,6 +295,7 @@ struct SolverKeys {
     max_step: Option<Time>,
     min_step: Option<Time>,
     matrix_reuse: Option<f64>,
+    energy_error: Option<f64>,
     level: Level,
 }
 
@@ -302,9 +318,10 @@ impl TryFrom<SolverKeys> for Solver {
         let max_step = keys.max_step.unwrap_or(goal.max_step);
         let limited = keys.max_step.is_some() || keys.tolerance.is_some();
         let follows = match goal.follows {
+            _ if limited && keys.energy_error.is_some() => Follows::Energy,
             _ if limited => Follows::Nothing,
             Follows::All { .. } => Follows::All { initial_step: keys.initial_step.is_none() },
-            Follows::Steps if keys.initial_step.is_some() => Follows::Nothing,
+            Follows::Steps if keys.initial_step.is_some() => Follows::Energy,
             follows => follows,
         };
         Ok(Self {
@@ -315,6 +332,8 @@ impl TryFrom<SolverKeys> for Solver {
             max_step,
             min_step: keys.min_step.unwrap_or(Time(goal.min_step.si().min(max_step.si()))),
             matrix_reuse: keys.matrix_reuse.unwrap_or(goal.matrix_reuse),
+            energy_error: keys.energy_error.unwrap_or(if limited { 0.0 } else { goal.energy_error }),
+            energy_step: goal.energy_step,
             goal: goal.goal,
             follows,
             level: keys.level,
@@ -354,6 +373,8 @@ mod tests {
                 max_step: Time(3e-6),
                 alpha_f: 0.2,
                 initial_step: Time(goal.solver().initial_step.0.min(3e-6)),
+                energy_error: 0.0,
+                follows: Follows::Nothing,
                 ..goal.solver()
             };
             assert_eq!(mixed, expected);
@@ -383,6 +404,22 @@ mod tests {
         // An error goal begins with no larger steps than the bearing takes.
         assert_eq!(followed("accuracy = { error = 1e-3 }", 400e3, 1e-3), (1e-5, 0.075e-6, 1e-7));
         assert_eq!(followed("accuracy = { error = 1e-3 }\nmax_step = 4e-5", 400e3, 1e-3), (4e-5, 1e-6, 1e-7));
+    }
+
+    #[test]
+    fn energy_is_looked_at_unless_steps_are_given() {
+        let looks = |text: &str| {
+            let mut solver = parse(text).unwrap();
+            solver.follow(30e3, 1e-3);
+            (solver.energy_error, solver.energy_step.0)
+        };
+        for text in ["", "accuracy = \"fast\"", "accuracy = { error = 1e-3 }", "initial_step = 1e-7"] {
+            assert_eq!(looks(text), (USUAL_ENERGY_ERROR, 1e-7), "{text}");
+        }
+        assert_eq!(looks("max_step = 1e-5").0, 0.0);
+        assert_eq!(looks("accuracy = \"fast\"\ntolerance = 1e-6").0, 0.0);
+        assert_eq!(looks("max_step = 1e-5\nenergy_error = 0.01"), (0.01, 1e-7));
+        assert_eq!(looks("energy_error = 0"), (0.0, 1e-7));
     }
 
     #[test]

@@ -15,17 +15,19 @@ pub enum Group {
     Tilts,
     /// `friction`.
     Friction,
+    /// `temperature_rise`, of all parts.
+    Temperatures,
     /// Motion of the bearing's frame and gravity in it, as `frame.angular_velocity`.
     Frame,
 }
 
 /// A set of groups.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Groups([bool; 5]);
+pub struct Groups([bool; Group::VARIANTS.len()]);
 
 impl Groups {
     /// All of them.
-    pub const ALL: Self = Self([true; 5]);
+    pub const ALL: Self = Self([true; Group::VARIANTS.len()]);
 
     /// Is a group in the set?
     pub fn contains(self, group: Group) -> bool {
@@ -63,6 +65,8 @@ pub struct InputGivers {
     pub tilts: Giver,
     /// Friction coefficient.
     pub friction: Giver,
+    /// Temperatures of all parts.
+    pub temperatures: Giver,
     /// Motion of the frame.
     pub frame: Giver,
 }
@@ -75,6 +79,7 @@ impl InputGivers {
             Group::Speeds => self.speeds,
             Group::Tilts => self.tilts,
             Group::Friction => self.friction,
+            Group::Temperatures => self.temperatures,
             Group::Frame => self.frame,
         }
     }

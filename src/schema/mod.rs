@@ -6,7 +6,7 @@ mod error;
 pub mod explain;
 mod inputs;
 pub mod numbers;
-mod schedule;
+pub mod schedule;
 mod sections;
 mod spelling;
 mod support;

@@ -6,6 +6,7 @@ use super::inputs::InputGivers;
 use super::schedule::{self, Schedule};
 use super::support::SupportSection;
 use super::units::*;
+use crate::contact::raceway::Raceway;
 
 /// Internal geometry of the bearing.
 #[derive(Clone, Debug, Deserialize)]
@@ -33,6 +34,33 @@ pub struct BearingSection {
 }
 
 impl BearingSection {
+    /// Inner and outer raceway (design conventions: groove centres from contact angle or clearance).
+    pub fn raceways(&self) -> [Raceway; 2] {
+        let (diameter, pitch) = (self.ball_diameter.0, self.pitch_diameter.0);
+        let (f_i, f_o) = (self.inner_conformity, self.outer_conformity);
+        // Distance A of the groove centres of a bearing without clearance.
+        let centre_distance = (f_i + f_o - 1.0) * diameter;
+        let (inner_circle, inner_offset, outer_circle, outer_offset) = match self.contact_angle {
+            Some(angle) => {
+                let (sin, cos) = angle.0.sin_cos();
+                let outer_circle = pitch / 2.0 - (f_o - 0.5) * diameter * cos;
+                let offsets = ((f_i - 0.5) * diameter * sin, -(f_o - 0.5) * diameter * sin);
+                (outer_circle + centre_distance * cos, offsets.0, outer_circle, offsets.1)
+            }
+            None => {
+                let clearance = self.diametral_clearance.map_or(0.0, |clearance| clearance.0);
+                let outer_circle = (pitch + diameter) / 2.0 + clearance / 4.0 - f_o * diameter;
+                (outer_circle + centre_distance - clearance / 2.0, 0.0, outer_circle, 0.0)
+            }
+        };
+        let raceway = |conformity: f64, groove_circle_radius: f64, groove_offset: f64| Raceway {
+            groove_radius: conformity * diameter,
+            groove_circle_radius,
+            groove_offset,
+        };
+        [raceway(f_i, inner_circle, inner_offset), raceway(f_o, outer_circle, outer_offset)]
+    }
+
     /// Largest number of balls of a diameter \[m] that fit on an orbit of another diameter \[m] side by side.
     pub fn most_balls(ball: f64, orbit: f64) -> usize {
         let half_angle = (ball / orbit).min(1.0).asin();
@@ -63,11 +91,18 @@ pub struct Material {
     pub poisson_ratio: f64,
     /// [kg/m3] density.
     pub density: Density,
+    /// [1/K] coefficient of thermal expansion.
+    pub thermal_expansion: ThermalExpansion,
 }
 
 impl Default for Material {
     fn default() -> Self {
-        Self { youngs_modulus: Pressure(206e9), poisson_ratio: 0.3, density: Density(7800.0) }
+        Self {
+            youngs_modulus: Pressure(206e9),
+            poisson_ratio: 0.3,
+            density: Density(7800.0),
+            thermal_expansion: ThermalExpansion(12e-6),
+        }
     }
 }
 

@@ -182,8 +182,14 @@ quantities! {
     Velocity = "m/s", "a velocity", ["2 m/s", "500 mm/s"];
     /// [m/s2]
     Acceleration = "m/s^2", "an acceleration", ["9.81 m/s^2", "9810 mm/s^2"];
+    /// [m2/s]
+    KinematicViscosity = "m^2/s", "a kinematic viscosity", ["68 mm^2/s", "6.8e-5 m^2/s"];
     /// [s/m]
     DissipationFactor = "s/m", "a dissipation factor", ["0.02 s/m", "20 s/km"];
+    /// \[K] difference of two temperatures; there are no temperatures as such, whose zero would depend on the unit.
+    TemperatureRise = "K", "a difference of temperatures", ["40 K", "500 mK"];
+    /// [1/K]
+    ThermalExpansion = "1/K", "a coefficient of thermal expansion", ["12e-6 1/K", "0.012 1/kK"];
 }
 
 #[cfg(test)]

@@ -7,20 +7,27 @@ pub struct Unit {
     pub name: &'static str,
     /// Quantity measured in it: the name of the FMI type.
     pub quantity: &'static str,
-    /// Exponents of kg, m, s, rad.
-    pub exponents: [i8; 4],
+    /// Exponents of kg, m, s, rad, K.
+    pub exponents: [i8; 5],
     /// Display unit and how many of it make one unit, where another one is customary.
     pub display: Option<(&'static str, f64)>,
 }
 
 const fn unit(name: &'static str, quantity: &'static str, exponents: [i8; 4]) -> Unit {
-    Unit { name, quantity, exponents, display: None }
+    let [kilogram, metre, second, radian] = exponents;
+    Unit { name, quantity, exponents: [kilogram, metre, second, radian, 0], display: None }
 }
 
 impl Unit {
     /// This unit with a display unit, `factor` of which make one.
     const fn shown(mut self, display: &'static str, factor: f64) -> Self {
         self.display = Some((display, factor));
+        self
+    }
+
+    /// This unit times a power of the kelvin.
+    const fn kelvin(mut self, exponent: i8) -> Self {
+        self.exponents[4] = exponent;
         self
     }
 }
@@ -83,8 +90,16 @@ pub const NEWTON_SECOND_PER_RADIAN: Unit = unit("N.s/rad", "ForceByAngularVeloci
 pub const NEWTON_METRE_SECOND_PER_METRE: Unit = unit("N.m.s/m", "MomentByVelocity", [1, 1, -1, 0]);
 /// Damping, moment by angular velocity.
 pub const NEWTON_METRE_SECOND_PER_RADIAN: Unit = unit("N.m.s/rad", "RotationalDamping", [1, 2, -1, -1]);
+/// Difference of temperatures.
+pub const KELVIN: Unit = unit("K", "TemperatureDifference", [0, 0, 0, 0]).kelvin(1);
+/// Coefficient of thermal expansion.
+pub const PER_KELVIN: Unit = unit("1/K", "ThermalExpansion", [0, 0, 0, 0]).kelvin(-1);
+/// Kinematic viscosity.
+pub const SQUARE_METRE_PER_SECOND: Unit = unit("m2/s", "KinematicViscosity", [0, 2, -1, 0]);
+/// Frequency.
+pub const HERTZ: Unit = unit("Hz", "Frequency", [0, 0, -1, 0]);
 /// Every unit, in the order of the model description.
-pub const ALL: [Unit; 28] = [
+pub const ALL: [Unit; 32] = [
     ONE,
     METRE,
     DIMENSION,
@@ -113,6 +128,10 @@ pub const ALL: [Unit; 28] = [
     NEWTON_SECOND_PER_RADIAN,
     NEWTON_METRE_SECOND_PER_METRE,
     NEWTON_METRE_SECOND_PER_RADIAN,
+    KELVIN,
+    PER_KELVIN,
+    SQUARE_METRE_PER_SECOND,
+    HERTZ,
 ];
 
 /// Unit of a parameter of a scene, whose ranges name units as scene files write them.

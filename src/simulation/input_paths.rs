@@ -7,6 +7,7 @@ use super::inputs::{Inputs, RaceInput};
 use super::path::{RacePath, Ramp};
 use crate::dynamics::{BodyLoad, Boundary};
 use crate::effects::frame::{FrameInputs, FrameMotion};
+use crate::effects::growth::Warmth;
 use crate::model::Conditions;
 use crate::model::bodies::PerRace;
 use crate::model::state::State;
@@ -30,6 +31,8 @@ pub struct InputPaths {
     loads: PerRace<Ramp<7>>,
     /// Position and tilt of the frame of a race on a hinge.
     frames: PerRace<Ramp<6>>,
+    /// Rises of temperature; none where growth is not simulated.
+    rises: Option<Ramp<5>>,
     /// Motion of the bearing's frame, and gravity.
     frame: FramePath,
     /// Where scripted motions of races began; none where there is no script or it is not played.
@@ -37,8 +40,11 @@ pub struct InputPaths {
 }
 
 impl InputPaths {
-    /// Boundary conditions at a time \[s].
-    pub fn boundary(&self, time: f64, conditions: Conditions) -> Boundary {
+    /// Boundary conditions at a time \[s], with a friction coefficient. Spins of races are left to
+    /// [`Boundary::see_spins`].
+    pub fn boundary(&self, time: f64, friction: f64) -> Boundary {
+        let rises = self.rises.map_or([0.0; 5], |rises| rises.at(time).into());
+        let conditions = Conditions { friction, warmth: Warmth { rises, ..Warmth::default() } };
         Boundary {
             time,
             motion: PerRace::new(|race| self.races[race].at(time)),
@@ -70,6 +76,7 @@ impl InputPaths {
             anchors: PerRace::new(|_| None),
             frame: FramePath::steady(&inputs.effects.frame),
             frames: PerRace::new(|race| Ramp::constant(frame_components(&inputs[race]))),
+            rises: inputs.rises.map(|rises| Ramp::constant(rises.into())),
         }
     }
 
@@ -99,6 +106,7 @@ impl InputPaths {
             frames: PerRace::new(|race| {
                 self.frames[race].smooth_towards(time, frame_components(&inputs[race]), duration)
             }),
+            rises: self.rises.zip(inputs.rises).map(|(now, next)| now.towards(time, next.into(), duration)),
         }
     }
 }

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::EffectInputs;
-use crate::model::Conditions;
+use crate::effects::growth::Rises;
 use crate::model::bodies::Race;
 use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 
@@ -51,15 +51,10 @@ pub struct Inputs {
     pub outer: RaceInput,
     /// [-] friction coefficient of the ball-race contacts.
     pub friction: f64,
+    /// \[K] rises of temperature, which are reached by the end of the communication step; none where growth is not simulated.
+    pub rises: Option<Rises>,
     /// Inputs of effects.
     pub effects: EffectInputs,
-}
-
-impl Inputs {
-    /// Conditions of every contact.
-    pub fn conditions(&self) -> Conditions {
-        Conditions { friction: self.friction }
-    }
 }
 
 impl Index<Race> for Inputs {

@@ -81,7 +81,9 @@ impl Simulation {
         }
         for (index, ball) in self.state.balls.iter().enumerate() {
             for race in Race::BOTH {
-                let contact = contacts[race].evaluate(&ball.motion(), &self.state.race(race).motion());
+                let contact = contacts[race]
+                    .of_ball(index, None)
+                    .evaluate(&ball.motion(), &self.state.race(race).motion());
                 let force = contact.creep.longitudinal.hypot(contact.creep.lateral);
                 let limit = contacts[race].friction * contact.load;
                 if force > limit {

@@ -13,6 +13,7 @@ mod script;
 mod slip;
 mod spin_balance;
 mod start;
+mod step_limits;
 mod supported;
 
 use std::cmp::Ordering;
@@ -24,9 +25,9 @@ use crate::dynamics::{
     Boundary, StepFailure, Workspace, advance_perturbed, failure_site, make_consistent, try_step,
 };
 use crate::forces::Contacts;
-use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::model::state::{KeptMatrix, State};
+use crate::model::{Conditions, Model};
 use crate::scene::{Drive, Groups, Level, Scene};
 pub use error::SimulationError;
 use input_paths::InputPaths;
@@ -94,7 +95,7 @@ impl Simulation {
         let model = Arc::new(model);
         let (inputs, state) = start::from_equilibrium(scene, &model, time)?;
         let paths = InputPaths::steady(&inputs, &state);
-        let outputs = Outputs::new(&model, &state, &inputs.conditions());
+        let outputs = Outputs::new(&model, &state, &conditions(&inputs, &state));
         let mut simulation = Self {
             scene: Arc::new(scene.clone()),
             model,
@@ -150,7 +151,7 @@ impl Simulation {
     fn settle(&mut self) {
         let boundary = self.boundary(self.state.time);
         make_consistent(&self.model, &mut self.state, &boundary);
-        self.outputs = Outputs::new(&self.model, &self.state, &self.inputs.conditions());
+        self.outputs = Outputs::new(&self.model, &self.state, &self.conditions());
     }
 
     /// \[s] time.
@@ -214,12 +215,16 @@ impl Simulation {
             && snapshot.state.differences.iter().all(|of_ball| {
                 Race::BOTH.into_iter().all(|race| of_ball[race].fits(self.model.polynomials(race)))
             })
-            && snapshot.state.statistics.plausible();
+            && snapshot.state.statistics.plausible()
+            && snapshot.state.grown.is_some() == self.state.grown.is_some()
+            && snapshot.state.rating.is_some() == self.state.rating.is_some()
+            && snapshot.state.heat.is_some() == self.state.heat.is_some()
+            && snapshot.inputs.rises.is_some() == self.inputs.rises.is_some();
         if same {
             self.inputs = snapshot.inputs;
             self.state.clone_from(&snapshot.state);
             self.paths.clone_from(&snapshot.paths);
-            self.outputs = Outputs::new(&self.model, &self.state, &self.inputs.conditions());
+            self.outputs = Outputs::new(&self.model, &self.state, &self.conditions());
         }
         same
     }
@@ -240,6 +245,9 @@ impl Simulation {
         }
         if scene.effects.frame.section.is_some() {
             inputs.effects.frame.motion = scene.frame_at(time);
+        }
+        if scene.effects.growth.follows_time() {
+            inputs.rises = scene.effects.growth.rises(time);
         }
         for race in Race::BOTH {
             inputs[race].applied = script::applied(scene, race, time);
@@ -305,6 +313,9 @@ impl Simulation {
         if self.model.solver.level == Level::Equilibrium {
             return self.advance_by_equilibria(end, inputs, scripted);
         }
+        if let Some(heat) = &mut self.state.heat {
+            heat.mark(begin);
+        }
         let script = Script::new(&self.scene, scripted);
         let mut given = self.inputs;
         self.script_fixed_races(begin, &mut given);
@@ -325,9 +336,9 @@ impl Simulation {
         // The last step's own evaluation, where it was accepted.
         let contacts = match &result {
             Ok(()) => self.workspace.contacts(&self.model),
-            Err(_) => Contacts::new(&self.model, &self.state, &self.inputs.conditions()),
+            Err(_) => Contacts::new(&self.model, &self.state, &self.conditions()),
         };
-        self.outputs = Outputs::of(&self.model, &self.state, &contacts, &self.inputs.conditions());
+        self.outputs = Outputs::of(&self.model, &self.state, &contacts, &self.conditions());
         if script.gives_inputs() {
             self.paths = self.paths.after_script(&self.inputs, &self.state);
         }
@@ -335,7 +346,7 @@ impl Simulation {
         let outputs = |p: &Perturbed| {
             let mut inputs = p.inputs;
             script.set_inputs(&self.scene, &p.paths, p.state.time, &mut inputs);
-            Outputs::new(&self.model, &p.state, &inputs.conditions())
+            Outputs::new(&self.model, &p.state, &conditions(&inputs, &p.state))
         };
         Ok(perturbed.iter().map(outputs).collect())
     }
@@ -381,6 +392,9 @@ impl Simulation {
         let mut aside = Workspace::default();
         while self.state.time < end {
             let remaining = end - self.state.time;
+            if let Some(limit) = step_limits::largest_step(&self.model, &self.state) {
+                self.state.control.cap(limit);
+            }
             let h = self.state.control.step_within(remaining);
             // The last step ends at the communication point to the bit.
             let last = h >= remaining * (1.0 - 1e-9);
@@ -390,6 +404,7 @@ impl Simulation {
             }
             let mut boundary = self.boundary(next);
             script.impose(&self.scene, &self.paths, &mut boundary);
+            boundary.see_spins(&self.model);
             let start = (!perturbed.is_empty()).then(|| self.state.clone());
             let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
             let (cause, worst) = match tried {
@@ -398,10 +413,11 @@ impl Simulation {
                     if let Some(mut start) = start {
                         // Renewed by the step itself.
                         start.differences.clone_from(&self.state.differences);
-                        let scene = &self.scene;
+                        let (scene, model) = (&self.scene, &self.model);
                         let perturbed = perturbed.iter_mut().map(|p| {
-                            let mut boundary = p.paths.boundary(boundary.time, p.inputs.conditions());
+                            let mut boundary = p.paths.boundary(boundary.time, p.inputs.friction);
                             script.impose(scene, &p.paths, &mut boundary);
+                            boundary.see_spins(model);
                             (&mut p.state, boundary)
                         });
                         let accepted = &self.workspace;
@@ -423,7 +439,7 @@ impl Simulation {
                 Err(StepFailure::Error(worst)) => ("the local error stays above solver.tolerance", worst),
             };
             if !self.state.control.above_minimum() {
-                let outputs = Outputs::new(&self.model, &self.state, &self.inputs.conditions());
+                let outputs = Outputs::new(&self.model, &self.state, &self.conditions());
                 let site = failure_site(&self.model, &self.state, &boundary, worst, &self.workspace);
                 let ball = &outputs.balls[site.ball - 1];
                 return Err(SimulationError::StepTooSmall {
@@ -440,6 +456,18 @@ impl Simulation {
     }
 
     fn boundary(&self, time: f64) -> Boundary {
-        self.paths.boundary(time, self.inputs.conditions())
+        let mut boundary = self.paths.boundary(time, self.inputs.friction);
+        boundary.see_spins(&self.model);
+        boundary
     }
+
+    /// Conditions of every contact at the time reached.
+    pub fn conditions(&self) -> Conditions {
+        conditions(&self.inputs, &self.state)
+    }
+}
+
+/// Conditions of every contact of a state under these inputs.
+fn conditions(inputs: &Inputs, state: &State) -> Conditions {
+    Conditions { friction: inputs.friction, warmth: state.grown.unwrap_or_default().warmth }
 }

@@ -5,15 +5,19 @@ use std::ops::Index;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::slip::{RollingOrbit, orbital_speed};
-use crate::contact::BallRaceContact;
+use crate::contact::{BallRaceContact, RaceMotion};
 use crate::dynamics::power_lost_around;
 use crate::effects::Reports;
+use crate::effects::defects::Frequencies;
 use crate::effects::frame::FrameMotion;
+use crate::effects::growth::GrowthOutput;
+use crate::effects::heat::HeatOutput;
+use crate::effects::rating::LifeOutput;
 pub use crate::effects::reports::{
     BallOutput, CageOutput, Condensed, ContactOutput, NeighboursOutput, PocketOutput,
 };
 use crate::effects::support::SupportState;
-use crate::forces::{BallContacts, Contacts, Totals};
+use crate::forces::{BallContacts, Contacts, Totals, stored_energy};
 use crate::model::bearing;
 use crate::model::bodies::{Constraint, PerRace, Race, RigidBody, tilt_direction};
 use crate::model::cage::CageModel;
@@ -58,6 +62,14 @@ pub struct Outputs {
     pub neighbours: Option<NeighboursOutput>,
     /// Stiffness and damping of the running bearing, where they are asked for.
     pub condensed: Option<Condensed>,
+    /// The bearing as it has grown, where growth is simulated.
+    pub growth: Option<GrowthOutput>,
+    /// Rating life under the loads since the start, where it is asked for.
+    pub life: Option<LifeOutput>,
+    /// Heat of friction by part, means since the last communication point, where it is reported.
+    pub heat: Option<HeatOutput>,
+    /// Frequencies of cage and damage, by the mean contact angle on the outer race, weighted by load.
+    pub frequencies: Frequencies,
     /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
     pub cage_speed: f64,
     /// [-] 1 - cage speed over the orbital speed of balls that roll without slip at their contact angles on both races, their
@@ -112,7 +124,11 @@ impl Outputs {
                 }
             });
             let output = |race: Race| {
-                let contact = models[race].completed(&contacts.raceways[race], &ball.motion(), &races[race]);
+                let contact = models[race].of_ball(index, None).completed(
+                    &contacts.raceways[race],
+                    &ball.motion(),
+                    &races[race],
+                );
                 contact_output(model, race, &contact, &races[race].axis)
             };
             BallOutput {
@@ -120,6 +136,11 @@ impl Outputs {
                 orbital_speed: orbital_speed(ball, outer),
                 position: ball.position,
                 angular_velocity: ball.angular_velocity,
+                spin: along_orbit(
+                    &races.outer,
+                    &(ball.position - outer.pose.position),
+                    &ball.angular_velocity,
+                ),
                 inner: output(Race::Inner),
                 outer: output(Race::Outer),
                 pocket,
@@ -133,7 +154,8 @@ impl Outputs {
         let mean_orbit = balls.iter().map(|ball| ball.orbital_speed).sum::<f64>() / balls.len() as f64;
         let cage_speed = cage.map_or(mean_orbit, |(_, state)| state.rate.x);
         let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
-        let rolling = RollingOrbit::mean(model, state, contacts, &races);
+        let rolling = RollingOrbit::mean(model, state, contacts, &races, models.inner.surface.ball_radius);
+        let frequencies = frequencies(model, &balls, [cage_speed, speeds[0], speeds[1]]);
         let [inner, outer] = Race::BOTH.map(|race| race_output(state, model, race));
         Self {
             time: state.time,
@@ -145,6 +167,13 @@ impl Outputs {
             cage: cage_output,
             neighbours: neighbours(model, state, contacts),
             condensed: model.stiffness_outputs.then(|| Condensed::new(model, state, conditions)),
+            life: model.rating.as_ref().zip(state.rating.as_ref()).map(|(rating, sums)| rating.after(sums)),
+            heat: state
+                .heat
+                .as_ref()
+                .map(|heat| heat.output(state.time, model.cage_guide().map(|race| race as usize))),
+            growth: model.growth.as_ref().map(|growth| growth.output(&conditions.warmth)),
+            frequencies,
             cage_speed,
             cage_slip: rolling.slip_of(cage_speed),
             ball_slip: rolling.slip_of(rolling.orbit),
@@ -154,7 +183,10 @@ impl Outputs {
             work: state.energies.input,
             dissipated: state.energies.friction + state.energies.damping + state.energies.around,
             supports: [state.supports.inner, state.supports.outer],
-            drag_power: power_lost_around(&model.ambient(&FrameMotion::default()), &state.balls),
+            drag_power: power_lost_around(
+                &model.ambient(&FrameMotion::default()),
+                state.balls.iter().map(BallState::motion),
+            ),
             statistics: state.statistics,
         }
     }
@@ -178,6 +210,10 @@ impl Outputs {
             cage: self.cage.as_ref(),
             neighbours: self.neighbours.as_ref(),
             condensed: self.condensed.as_ref(),
+            growth: self.growth.as_ref(),
+            life: self.life.as_ref(),
+            heat: self.heat.as_ref(),
+            frequencies: &self.frequencies,
             drag_power: self.drag_power,
             supports: self.supports.each_ref().map(Option::as_ref),
         }
@@ -204,25 +240,14 @@ impl Index<Race> for BallOutput {
     }
 }
 
-/// \[J] kinetic energy of balls and of the bodies that forces move, and elastic energy of all contacts.
-fn stored_energy(model: &Model, state: &State, contacts: &Contacts) -> f64 {
-    let ball_model = &model.bearing.ball;
-    let mut energy = 0.0;
-    for (ball, contacts) in state.balls.iter().zip(&contacts.balls) {
-        energy += 0.5 * ball_model.mass * ball.velocity.norm_squared()
-            + 0.5 * ball_model.inertia * ball.angular_velocity.norm_squared();
-        contacts.elastic_energies(model).for_each(|elastic| energy += elastic);
-    }
-    for ((_, body), (_, state)) in model.bodies.iter().zip(state.bodies.iter()) {
-        if let Some(body) = body {
-            energy += 0.5 * body.mass * state.velocity.norm_squared()
-                + 0.5 * state.rate.component_mul(&body.inertia).dot(&state.rate);
-        }
-    }
-    state.supports.iter().flatten().for_each(|support| energy += support.energy);
-    contacts.ball_pair_energies(model).for_each(|elastic| energy += elastic);
-    contacts.land_energies(model).for_each(|elastic| energy += elastic);
-    energy
+/// Frequencies of cage and damage at speeds of cage, inner and outer race [rad/s].
+fn frequencies(model: &Model, balls: &[BallOutput], speeds: [f64; 3]) -> Frequencies {
+    let bearing = &model.bearing;
+    let (load, cosine) = balls.iter().fold((0.0, 0.0), |(load, cosine), ball| {
+        (load + ball.outer.load, cosine + ball.outer.load * ball.outer.contact_angle.cos())
+    });
+    let cosine = if load > 0.0 { cosine / load } else { bearing.free_contact_angle.cos() };
+    Frequencies::new(speeds, balls.len(), 2.0 * bearing.ball.radius / bearing.pitch_diameter, cosine)
 }
 
 /// Contacts of neighbouring balls, where no cage keeps them apart.
@@ -268,6 +293,14 @@ impl CageOutput {
             land_power: lands.iter().flatten().fold(0.0, |sum, pair| sum + pair.friction_power),
         }
     }
+}
+
+/// A vector by its components along the axis of a race, radially away from it at an offset \[m] from its origin, and along the
+/// circumference there.
+fn along_orbit(race: &RaceMotion<f64>, offset: &Vector3<f64>, vector: &Vector3<f64>) -> Vector3<f64> {
+    let axis = &race.axis;
+    let radial = (offset - axis * offset.dot(axis)).normalize();
+    Vector3::new(vector.dot(axis), vector.dot(&radial), vector.dot(&axis.cross(&radial)))
 }
 
 fn sign(x: f64) -> f64 {
@@ -347,6 +380,8 @@ fn contact_output(
     let root = contact.geometry.approach.max(0.0).sqrt();
     let [rolling, transverse] = contact.semi_axes.map(|axis| axis * root);
     let area = std::f64::consts::PI * rolling * transverse;
+    let (shoulder_share, shoulder_margin) =
+        model.bearing.shoulder(race, towards_x(contact, axis), transverse);
     ContactOutput {
         load: contact.load,
         contact_angle,
@@ -364,7 +399,8 @@ fn contact_output(
             .map_or(0.0, |curvature| -contact.creep.second_moment * curvature * contact.rolling_speed),
         semi_axis_rolling: rolling,
         semi_axis_transverse: transverse,
-        shoulder_share: model.bearing.shoulder_share(race, towards_x(contact, axis), transverse),
+        shoulder_share,
+        shoulder_margin,
         peak_pressure: if area > 0.0 { 1.5 * contact.load / area } else { 0.0 },
     }
 }

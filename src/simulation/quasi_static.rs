@@ -63,6 +63,11 @@ impl Simulation {
         self.paths = self.paths.after_script(&inputs, &self.state);
         self.check_room()?;
         self.settle();
+        if let (Some(mut sums), Some(now)) = (before.rating, &self.state.rating) {
+            sums.add_until(now, end - before.time);
+            self.state.rating = Some(sums);
+            self.outputs = Outputs::new(&self.model, &self.state, &self.conditions());
+        }
         self.check_creep(&self.boundary(end))
     }
 }

@@ -21,6 +21,8 @@ pub struct Script {
     /// Wrenches on races that forces move.
     loads: PerRace<bool>,
     friction: bool,
+    /// Temperatures of all parts, some of them by tables.
+    temperatures: bool,
     /// Motion of the bearing's frame, and gravity.
     frame: bool,
     /// Speeds of races that forces move.
@@ -91,6 +93,7 @@ pub fn follows_time(scene: &Scene) -> bool {
         .chain(always)
         .chain(misalignment.into_iter().flatten())
         .any(Schedule::is_table)
+        || scene.effects.growth.follows_time()
 }
 
 /// Groups of inputs for which a scene has a script; what has no input in a package, such as the speed of a race on a
@@ -109,6 +112,7 @@ pub fn scripted_groups(scene: &Scene) -> Groups {
         .with(Group::Speeds, inner.1 || outer.1)
         .with(Group::Tilts, inner.0 || outer.0)
         .with(Group::Friction, scene.friction.ball_race.is_table())
+        .with(Group::Temperatures, scene.effects.growth.follows_time())
         .with(Group::Frame, scene.effects.frame.section.is_some() && has_scripted_frame(scene))
 }
 
@@ -138,6 +142,7 @@ impl Script {
         Self {
             loads: PerRace::new(|race| groups.contains(Group::Loads) && has_scripted_load(scene, race)),
             friction: given(Group::Friction),
+            temperatures: given(Group::Temperatures),
             // Gravity over time is no input where the frame does not move.
             frame: match scene.effects.frame.section {
                 Some(_) => given(Group::Frame),
@@ -151,7 +156,7 @@ impl Script {
     /// Does it give anything that an importer could have given, or a motion of a race without a body?
     pub fn gives_inputs(&self) -> bool {
         let of_race = |race: Race| self.loads[race] || self.speeds[race] || self.motions[race];
-        self.friction || self.frame || Race::BOTH.into_iter().any(of_race)
+        self.friction || self.temperatures || self.frame || Race::BOTH.into_iter().any(of_race)
     }
 
     /// \[s] times within a step at which a table bends, growing, not closer to one another or to the ends than `least`.
@@ -159,6 +164,9 @@ impl Script {
         let mut playing: Vec<&Schedule> = vec![];
         if self.friction {
             playing.push(&scene.friction.ball_race);
+        }
+        if self.temperatures {
+            playing.extend(scene.effects.growth.schedules().into_iter().flatten());
         }
         if self.frame {
             playing.extend(&scene.effects.gravity.acceleration.0);
@@ -223,6 +231,9 @@ impl Script {
         if self.friction {
             boundary.conditions.friction = scene.friction.ball_race.at(time);
         }
+        if let (true, Some(rises)) = (self.temperatures, scene.effects.growth.rises(time)) {
+            boundary.conditions.warmth.rises = rises;
+        }
         if self.frame {
             boundary.frame = scene.frame_at(time);
         }
@@ -246,6 +257,9 @@ impl Script {
         }
         if self.friction {
             inputs.friction = scene.friction.ball_race.at(time);
+        }
+        if self.temperatures {
+            inputs.rises = scene.effects.growth.rises(time);
         }
         if self.frame {
             inputs.effects.frame.motion = scene.frame_at(time);

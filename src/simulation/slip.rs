@@ -25,14 +25,15 @@ pub(super) struct RollingOrbit {
 }
 
 impl RollingOrbit {
-    /// Means over the balls; the unloaded bearing's without a loaded ball.
+    /// Means over the balls of a radius \[m]; the unloaded bearing's without a loaded ball.
     pub(super) fn mean(
         model: &Model,
         state: &State,
         contacts: &Contacts,
         races: &PerRace<RaceMotion<f64>>,
+        radius: f64,
     ) -> Self {
-        let (outer, radius) = (state.race(Race::Outer), model.bearing.ball.radius);
+        let outer = state.race(Race::Outer);
         let speeds = PerRace::new(|race| state.race(race).rate.x);
         let (mut rolling, mut orbit, mut weight) = (0.0, 0.0, 0.0);
         for (ball, contacts) in state.balls.iter().zip(&contacts.balls) {

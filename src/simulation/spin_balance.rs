@@ -47,19 +47,21 @@ pub fn balance(around: &Surroundings<'_>, balls: &mut [BallMotion<f64>]) {
     if matches!(around.contacts.inner.law, Law::Frictionless) {
         return;
     }
-    let load =
-        |ball: &BallMotion<f64>, race: Race| around.contacts[race].evaluate(ball, &around.races[race]).load;
-    let is_held = |ball: &BallMotion<f64>| Race::BOTH.into_iter().all(|race| load(ball, race) > 0.0);
-    let held: Vec<usize> = (0..balls.len()).filter(|&ball| is_held(&balls[ball])).collect();
+    let load = |ball: usize, motion: &BallMotion<f64>, race: Race| {
+        around.contacts[race].of_ball(ball, None).evaluate(motion, &around.races[race]).load
+    };
+    let is_held = |ball: usize| Race::BOTH.into_iter().all(|race| load(ball, &balls[ball], race) > 0.0);
+    let held: Vec<usize> = (0..balls.len()).filter(|&ball| is_held(ball)).collect();
     let along =
         |motion: &BallMotion<f64>| motion.velocity.dot(&Orbit::new(motion, &around.races.outer).tangential);
     // Loads, and loads times own orbital speeds over those of rolling.
     let mut sums = [0.0; 2];
-    for ball in held.iter().map(|&ball| &balls[ball]) {
-        let Some(own) = balanced(around, ball, true) else {
+    for &index in &held {
+        let ball = &balls[index];
+        let Some(own) = balanced(around, index, ball, true) else {
             return;
         };
-        let weight = load(ball, Race::Inner) * along(ball).abs();
+        let weight = load(index, ball, Race::Inner) * along(ball).abs();
         sums = [sums[0] + weight, sums[1] + weight * along(&own) / along(ball)];
     }
     // A bearing at rest has no speed to change.
@@ -69,7 +71,7 @@ pub fn balance(around: &Surroundings<'_>, balls: &mut [BallMotion<f64>]) {
     }
     let at_common_speed = |&ball: &usize| {
         let common = BallMotion { velocity: balls[ball].velocity * faster, ..balls[ball] };
-        Some((ball, balanced(around, &common, false)?))
+        Some((ball, balanced(around, ball, &common, false)?))
     };
     if let Some(found) = held.iter().map(at_common_speed).collect::<Option<Vec<_>>>() {
         for (ball, motion) in found {
@@ -78,9 +80,15 @@ pub fn balance(around: &Surroundings<'_>, balls: &mut [BallMotion<f64>]) {
     }
 }
 
-/// The motion of a ball in balance, with an orbital speed of its own or that of the start; none where no balance is found.
-fn balanced(around: &Surroundings<'_>, start: &BallMotion<f64>, own_orbit: bool) -> Option<BallMotion<f64>> {
-    let Surroundings { model, contacts, races, ambient } = around;
+/// The motion of a ball (0 is the first) in balance, with an orbital speed of its own or that of the start; none where no balance is found.
+fn balanced(
+    around: &Surroundings<'_>,
+    ball: usize,
+    start: &BallMotion<f64>,
+    own_orbit: bool,
+) -> Option<BallMotion<f64>> {
+    let Surroundings { model, races, ambient, .. } = around;
+    let contacts = &PerRace::new(|race| around.contacts[race].of_ball(ball, None));
     let (mass, radius) = (model.bearing.ball.mass, model.bearing.ball.radius);
     let inertia = model.bearing.ball.inertia / (radius * radius);
     let orbit = |motion: &BallMotion<f64>| Orbit::new(motion, &races.outer);

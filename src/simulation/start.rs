@@ -4,12 +4,14 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::effects::EffectInputs;
 use crate::effects::frame::{FrameInputs, FrameMotion};
+use crate::effects::growth::Grown;
 use crate::effects::support::Support;
 use crate::equilibrium::{self, BallEquilibrium, EquilibriumInput, Gyroscopic, Prescribed};
-use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{Bodies, PerRace, Race};
-use crate::model::state::{BallState, BodyState, Energies, KeptMatrix, Powers, State, Statistics};
+use crate::model::energies::{Energies, Powers};
+use crate::model::state::{BallState, BodyState, KeptMatrix, State, Statistics};
+use crate::model::{Conditions, Model};
 use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 use crate::numerics::step_control::StepControl;
 use crate::scene::{Drive, Scene};
@@ -31,15 +33,16 @@ pub fn from_equilibrium(scene: &Scene, model: &Model, time: f64) -> Result<(Inpu
     }
     let problem = EquilibriumInput::at(scene, Gyroscopic::Friction, time);
     let solution = equilibrium::solve(model, &problem)?;
-    let inputs = base_inputs(scene, &problem, &solution);
+    let inputs = base_inputs(scene, model, &problem, &solution);
     let poses = PerRace { inner: inputs.inner.pose, outer: inputs.outer.pose };
-    let state = State { time, ..state(scene, model, &inputs, &solution, &poses)? };
+    let state = State { time, ..state(scene, model, &inputs, &problem, &solution, &poses)? };
     Ok((inputs, state))
 }
 
 /// Inputs of a scene whose problem is solved.
 pub(super) fn base_inputs(
     scene: &Scene,
+    model: &Model,
     problem: &EquilibriumInput,
     solution: &equilibrium::Equilibrium,
 ) -> Inputs {
@@ -58,6 +61,7 @@ pub(super) fn base_inputs(
         inner: spinning(pose(Race::Inner), problem.inner_speed, on(Race::Inner)),
         outer: spinning(pose(Race::Outer), problem.outer_speed, on(Race::Outer)),
         friction: problem.friction,
+        rises: model.growth.map(|_| problem.rises),
         effects: EffectInputs {
             frame: FrameInputs {
                 motion: problem.frame,
@@ -102,8 +106,10 @@ pub fn from_inputs(
     problem.friction = inputs.friction;
     problem.frame = inputs.effects.frame.motion;
     problem.origin = origin;
+    problem.rises = inputs.rises.unwrap_or_default();
     problem.resting =
         Pose { position: Vector3::zeros(), orientation: spin_free(&inputs[resting].pose.orientation) };
+    problem.turned = PerRace::new(|race| turn_of(&inputs[race].pose.orientation));
     let moves = race.section(scene).drive == Drive::Wrench;
     let speed = |of: Race| if of == race && moves { inputs[of].speed } else { own_spin(&inputs[of]) };
     (problem.inner_speed, problem.outer_speed) = (speed(Race::Inner), speed(Race::Outer));
@@ -131,7 +137,7 @@ pub fn from_inputs(
         input.twist = Twist { velocity: Vector3::zeros(), angular_velocity };
     }
     let poses = PerRace { inner: inputs.inner.pose, outer: inputs.outer.pose };
-    Ok(State { time, ..state(scene, model, inputs, &solution, &poses)? })
+    Ok(State { time, ..state(scene, model, inputs, &problem, &solution, &poses)? })
 }
 
 /// Puts races that are fixed or hinged into their frames, which rest at the start.
@@ -183,6 +189,12 @@ fn twist_of(model: &Model, inputs: &Inputs, race: Race, pose: &Pose) -> Twist {
     Twist { velocity: given.twist.velocity, angular_velocity }
 }
 
+/// \[rad] turn of a race about its own axis beyond its tilt.
+pub(super) fn turn_of(race: &UnitQuaternion<f64>) -> f64 {
+    let across = spin_free(race).inverse() * (race * Vector3::y());
+    across.z.atan2(across.y)
+}
+
 /// The state of a solution: balls roll, races move as the inputs say.
 ///
 /// # Errors
@@ -191,6 +203,7 @@ pub(super) fn state(
     scene: &Scene,
     model: &Model,
     inputs: &Inputs,
+    problem: &EquilibriumInput,
     solution: &equilibrium::Equilibrium,
     poses: &PerRace<Pose>,
 ) -> Result<State, SimulationError> {
@@ -220,13 +233,14 @@ pub(super) fn state(
                 angular_acceleration: Vector3::zeros(),
                 total: Wrench::default(),
                 remainder: Wrench::default(),
+                pressed: PerRace::default(),
             }
         })
         .collect();
     if scene.start.balances_spin() {
         let around = Surroundings {
             model,
-            contacts: model.contacts(&inputs.conditions()),
+            contacts: model.contacts(&Conditions { friction: inputs.friction, ..problem.surroundings() }),
             ambient: model.ambient(&inputs.effects.frame.motion),
             races: PerRace::new(|race| races[race].motion()),
         };
@@ -261,6 +275,9 @@ pub(super) fn state(
         powers: Powers::default(),
         energies: Energies::default(),
         statistics: Statistics::default(),
+        grown: model.growth.map(|_| Grown { warmth: problem.surroundings().warmth, ..Grown::default() }),
+        rating: model.rating.map(|_| Default::default()),
+        heat: model.heat_outputs.then(Default::default),
     })
 }
 

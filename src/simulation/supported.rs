@@ -5,12 +5,12 @@ use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::SimulationError;
 use super::inputs::Inputs;
-use super::start::{base_inputs, own_spin, place_fixed, pose_of, spin_free, state};
+use super::start::{base_inputs, own_spin, place_fixed, pose_of, spin_free, state, turn_of};
 use crate::equilibrium::{self, Equilibrium, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::forces::{Contacts, Totals};
-use crate::model::Model;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::state::State;
+use crate::model::{Conditions, Model};
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::rotation::tilt_to;
 use crate::scene::{Drive, Scene};
@@ -36,7 +36,7 @@ pub fn is_supported(model: &Model) -> bool {
 pub fn from_scene(scene: &Scene, model: &Model, time: f64) -> Result<(Inputs, State), SimulationError> {
     let problem = EquilibriumInput::at(scene, Gyroscopic::Friction, time);
     let stiff = equilibrium::solve(model, &problem)?;
-    let mut inputs = base_inputs(scene, &problem, &stiff);
+    let mut inputs = base_inputs(scene, model, &problem, &stiff);
     let given = problem.conditions;
     let loads = |i: usize| match given[i] {
         Prescribed::Load(load) => Some(load),
@@ -138,7 +138,11 @@ fn solve(
             inner_speed: speeds.inner,
             outer_speed: speeds.outer,
             resting: Pose { position: Vector3::zeros(), orientation: spin_free(&held.orientation) },
+            turned: PerRace::new(|of| {
+                turn_of(if of == resting { &held.orientation } else { &inputs[of].pose.orientation })
+            }),
             friction: inputs.friction,
+            rises: inputs.rises.unwrap_or_default(),
             frame: inputs.effects.frame.motion,
             origin,
             ..scripted.clone()
@@ -173,8 +177,10 @@ fn solve(
             let angular_velocity = poses[race].orientation * Vector3::x() * inputs[race].speed;
             inputs[race].twist = Twist { velocity: Vector3::zeros(), angular_velocity };
         }
-        let mut start = State { time, ..state(scene, model, inputs, &solution, &poses)? };
-        let change = deflect(model, inputs, resting, &mut start, &solution, under_wrench(race));
+        let mut start = State { time, ..state(scene, model, inputs, &problem, &solution, &poses)? };
+        let conditions = Conditions { friction: inputs.friction, ..problem.surroundings() };
+        let change =
+            deflect(model, (inputs, &conditions), resting, &mut start, &solution, under_wrench(race));
         let Some((pose, size)) = change else {
             return Ok((start, solution));
         };
@@ -188,7 +194,7 @@ fn solve(
 /// Pose of a resting race on a support under what the bearing does to it, and by how much that differs \[m]; none without a support.
 fn deflect(
     model: &Model,
-    inputs: &Inputs,
+    (inputs, conditions): (&Inputs, &Conditions),
     race: Race,
     state: &mut State,
     solution: &Equilibrium,
@@ -196,7 +202,7 @@ fn deflect(
 ) -> Option<(Pose, f64)> {
     let support = model.supports[race].as_ref()?;
     let body = model.bodies[race].as_ref()?;
-    let contacts = Contacts::new(model, state, &inputs.conditions());
+    let contacts = Contacts::new(model, state, conditions);
     let Wrench { mut force, moment } = Totals::of(&contacts, state.balls.len()).on(race.into());
     let ambient = model.ambient(&inputs.effects.frame.motion);
     let pose = state.race(race).pose;

@@ -219,7 +219,7 @@ fn closed_form_reported_forces_are_those_of_the_pairs() {
     }
     // They are in the bearing's power and in the balance of every ball, which has no weight here.
     assert!(simulation.outputs().friction_power > power);
-    let contacts = Contacts::new(simulation.model(), simulation.state(), &simulation.inputs().conditions());
+    let contacts = Contacts::new(simulation.model(), simulation.state(), &simulation.conditions());
     for (index, (ball, of_races)) in balls.iter().zip(&contacts.balls).enumerate() {
         let races = of_races.raceways.inner.force + of_races.raceways.outer.force;
         let expected = races + forces[index];

@@ -48,6 +48,7 @@ fn pressed_race(k: usize) -> RaceMotion<f64> {
     RaceMotion {
         position: cage.position - across * (HALF_CLEARANCE + 20e-6),
         axis: (Vector3::x() + vector(k + 7) * 1e-3).normalize(),
+        across: Vector3::y(),
         velocity: vector(k + 8) * 0.1,
         angular_velocity: Vector3::x() * 600.0 + vector(k + 9),
     }
@@ -158,6 +159,7 @@ fn identity_derivatives_of_both_contacts_agree_with_differences() {
         let fixed = |race: &RaceMotion<f64>| RaceMotion {
             position: constant_vector::<Dual<1>>(&race.position),
             axis: constant_vector(&race.axis),
+            across: race.across,
             velocity: constant_vector(&race.velocity),
             angular_velocity: constant_vector(&race.angular_velocity),
         };

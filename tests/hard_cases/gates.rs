@@ -376,7 +376,7 @@ pub fn converged(name: &str, simulation: &Simulation) {
 fn residual(end: &Simulation, before: &State) -> f64 {
     let (model, state) = (end.model(), end.state());
     let weight = 1.0 - model.solver.alpha_f;
-    let contacts = model.contacts(&end.inputs().conditions());
+    let contacts = model.contacts(&end.conditions());
     let races = Race::BOTH.map(|race| state.race(race).motion());
     let ball = &model.bearing.ball;
     let ambient = model.ambient(&end.inputs().effects.frame.motion);
@@ -384,11 +384,11 @@ fn residual(end: &Simulation, before: &State) -> f64 {
     let cage = model.cage.as_ref().zip(state.cage());
     let cage_motion = state.cage().map(BodyState::body_motion);
     let mut on_cage = Wrench::default();
-    let neighbours = Contacts::new(model, state, &end.inputs().conditions());
+    let neighbours = Contacts::new(model, state, &end.conditions());
     for (index, (now, old)) in state.balls.iter().zip(&before.balls).enumerate() {
         // Polynomials are those that the step was solved with.
         let [inner, outer] = Race::BOTH.map(|race| {
-            let contact = contacts[race].of_ball(state.difference(index, race));
+            let contact = contacts[race].of_ball(index, state.difference(index, race));
             contact.evaluate(&now.motion(), &races[race as usize])
         });
         let outside = ambient.on_ball(&now.motion());

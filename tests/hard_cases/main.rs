@@ -8,12 +8,14 @@ mod cage;
 mod communication;
 mod contact_loss;
 mod creep_laws;
+mod effects;
 mod equilibrium_scenes;
 mod extremes;
 mod figures;
 mod free_oscillation;
 mod friction;
 mod gates;
+mod growth;
 #[path = "../common/laws.rs"]
 mod laws;
 mod loads;

@@ -175,7 +175,7 @@ impl Case {
         Self {
             model: model.clone(),
             state: state.clone(),
-            outputs: Outputs::new(model, state, &Conditions { friction: 0.07 }),
+            outputs: Outputs::new(model, state, &Conditions::of_friction(0.07)),
             balls: state.balls.iter().map(contacts).collect(),
             pockets: state.balls.iter().enumerate().map(pocket).collect(),
             lands: dimensions.land(&cage, &races),

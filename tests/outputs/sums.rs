@@ -250,7 +250,7 @@ fn closed_form_without_a_cage_the_mean_orbit_is_the_cage_speed() {
     for (j, ball) in state.balls.iter_mut().enumerate() {
         ball.velocity *= 1.0 + 0.01 * j as f64;
     }
-    let outputs = Outputs::new(simulation.model(), &state, &Conditions { friction: 0.08 });
+    let outputs = Outputs::new(simulation.model(), &state, &Conditions::of_friction(0.08));
     let speeds = outputs.balls.iter().map(|ball| {
         let p = ball.position;
         let state = state.balls.iter().find(|state| state.position == p).unwrap();
@@ -315,7 +315,7 @@ fn closed_form_slip_by_the_contact_angles_of_both_races() {
                 ball.velocity = along * (own * orbit);
                 ball.angular_velocity = V::x() * own + spin * (0.9 * speed);
             }
-            let outputs = Outputs::new(simulation.model(), &state, &Conditions { friction: 0.08 });
+            let outputs = Outputs::new(simulation.model(), &state, &Conditions::of_friction(0.08));
             close("ball slip", outputs.ball_slip, behind, 1e-12, 1.0);
             close("cage slip", outputs.cage_slip, behind, 1e-12, 1.0);
         }

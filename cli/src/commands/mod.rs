@@ -2,6 +2,7 @@
 
 mod contact;
 mod cost;
+mod field;
 mod identify;
 mod player;
 mod run;
@@ -57,6 +58,8 @@ enum Command {
         #[arg(long)]
         name: Option<String>,
     },
+    /// Write where chosen contacts of a run stick and slip at chosen times; CSV.
+    Field(field::Options),
     /// Evaluate single rolling contacts of a CSV table; prints CSV.
     Contact(contact::Options),
     /// Identify the spin coupling of the regularised creep law against Kalker's nonlinear theory.
@@ -138,6 +141,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
             write_fmu(&load(&scene)?, &name, &libraries, &output)?;
             say(&format!("{}\n", output.display()))?;
         }
+        Command::Field(options) => field::run(&options)?,
         Command::Contact(options) => contact::run(&options)?,
         Command::Identify(options) => identify::run(&options)?,
         Command::Cost(options) => cost::run(options)?,

@@ -64,7 +64,7 @@ impl EnergyWatch {
         if balance.abs() <= (TOLERANCE * turned_over).max(ROUNDING * now.stored_energy.abs()) {
             return None;
         }
-        let (state, conditions) = (simulation.state(), simulation.inputs().conditions());
+        let (state, conditions) = (simulation.state(), simulation.conditions());
         let frequency = natural_frequency::of_ball(simulation.model(), state, &conditions, self.largest_load);
         let steps = state.statistics.steps.max(1) as f64;
         let step = (now.time - self.begin) / steps;

@@ -5,6 +5,7 @@ pub mod figures;
 pub mod interval;
 pub mod limits;
 pub mod means;
+mod number;
 pub mod plots;
 pub mod quantities;
 pub mod results;

@@ -13,6 +13,8 @@ use roulement::scene::units::{Quantity, Time};
 use roulement::simulation::inputs::Inputs;
 use roulement::simulation::outputs::Outputs;
 
+use super::number;
+
 /// Why results could not be written.
 #[derive(Debug, Error)]
 pub enum ResultsError {
@@ -98,6 +100,8 @@ pub struct ResultsWriter {
     /// Rows of the variable table that are written.
     chosen: Vec<usize>,
     window: Window,
+    /// Text of a row.
+    line: Vec<u8>,
     file: File,
     path: String,
 }
@@ -126,8 +130,8 @@ impl ResultsWriter {
         });
         let header: Vec<String> = std::iter::once("time [s]".to_string()).chain(header).collect();
         let file = File::create(path).map_err(|source| ResultsError::Write { path: name.clone(), source })?;
-        let mut table = Self { variables, chosen, window: choice.window, file, path: name };
-        table.write_line(&header)?;
+        let mut table = Self { variables, chosen, window: choice.window, line: vec![], file, path: name };
+        table.write_header(&header)?;
         Ok(table)
     }
 
@@ -140,21 +144,28 @@ impl ResultsWriter {
             return Ok(());
         }
         let rows = self.variables.rows();
-        let values = self.chosen.iter().map(|&i| self.variables.value(&rows[i], inputs, outputs));
-        let line: Vec<String> =
-            std::iter::once(outputs.time).chain(values).map(|value| value.to_string()).collect();
-        self.write_line(&line)
+        self.line.clear();
+        number::append(&mut self.line, outputs.time);
+        for &i in &self.chosen {
+            self.line.push(b',');
+            number::append(&mut self.line, self.variables.value(&rows[i], inputs, outputs));
+        }
+        self.line.push(b'\n');
+        // At once: a program that is killed leaves whole lines.
+        self.file.write_all(&self.line).map_err(|source| self.failed(source))
     }
 
-    /// Writes a line at once: a program that is killed leaves whole lines.
-    fn write_line(&mut self, fields: &[String]) -> Result<(), ResultsError> {
+    fn write_header(&mut self, names: &[String]) -> Result<(), ResultsError> {
         let mut writer = csv::Writer::from_writer(vec![]);
         let line = writer
-            .write_record(fields)
+            .write_record(names)
             .map_err(io::Error::from)
             .and_then(|()| writer.into_inner().map_err(|why| io::Error::other(why.to_string())));
-        line.and_then(|line| self.file.write_all(&line))
-            .map_err(|source| ResultsError::Write { path: self.path.clone(), source })
+        line.and_then(|line| self.file.write_all(&line)).map_err(|source| self.failed(source))
+    }
+
+    fn failed(&self, source: io::Error) -> ResultsError {
+        ResultsError::Write { path: self.path.clone(), source }
     }
 
     /// Makes sure that every row is on the disk.

@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn cost_studies_the_levers_that_are_asked_for_and_ends_with_advice() {
     let scratch = Scratch::new("only");
-    let text = edited("cost/thrust", &[("load.duration", "\"1 ms\"")]);
+    let text = edited("cost/thrust", &[("load.duration", "\"1 ms\"")]).source;
     std::fs::write(scratch.path("short.toml"), text).unwrap();
     let arguments =
         ["cost", &scratch.path("short.toml"), "-o", &scratch.path("out"), "--only", "goal,step-cap"];
@@ -39,7 +39,7 @@ fn cost_says_whether_its_window_has_settled_and_how_long_the_scene_should_run() 
             ("inner.mass", ""),
             ("inner.inertia", ""),
         ];
-        std::fs::write(scratch.path("drift.toml"), edited("cost/thrust", &changes)).unwrap();
+        std::fs::write(scratch.path("drift.toml"), edited("cost/thrust", &changes).source).unwrap();
         let output =
             roulement(&["cost", &scratch.path("drift.toml"), "-o", &scratch.path("out"), "--only", "level"]);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -72,7 +72,7 @@ fn cost_says_whether_its_window_has_settled_and_how_long_the_scene_should_run() 
 #[test]
 fn cost_writes_table_plots_and_report() {
     let scratch = Scratch::new("cost");
-    let text = edited("cost/thrust", &[("load.duration", "\"1 ms\"")]);
+    let text = edited("cost/thrust", &[("load.duration", "\"1 ms\"")]).source;
     std::fs::write(scratch.path("short.toml"), text).unwrap();
     let output = roulement(&["cost", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -75,7 +75,7 @@ fn defaults_and_numbers_without_sense_are_told_of() {
     let scratch = Scratch::new("notes");
     let file = scratch.path("scene.toml");
     let told = |changes: &[(&str, &str)], command: &[&str]| {
-        std::fs::write(&file, edited("thrust", changes)).unwrap();
+        std::fs::write(&file, edited("thrust", changes).source).unwrap();
         let output = roulement(&[&[command[0], &file], &command[1..]].concat());
         assert!(output.status.success());
         String::from_utf8(output.stderr).unwrap()

@@ -36,7 +36,7 @@ fn equilibrium_text_has_units() {
 #[test]
 fn run_writes_table_plots_and_summary() {
     let scratch = Scratch::new("run");
-    let text = edited("thrust", &[("load.duration", "\"2 ms\"")]);
+    let text = edited("thrust", &[("load.duration", "\"2 ms\"")]).source;
     std::fs::write(scratch.path("short.toml"), text).unwrap();
     let output = roulement(&["run", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -94,7 +94,8 @@ fn prints_say_whose_force_it_is() {
     assert!(json["load_is"].as_str().unwrap().contains("external load on the inner race"));
     assert_eq!(json["race"], "inner");
     let scratch = Scratch::new("whose");
-    std::fs::write(scratch.path("short.toml"), edited("thrust", &[("load.duration", "\"0.1 ms\"")])).unwrap();
+    std::fs::write(scratch.path("short.toml"), edited("thrust", &[("load.duration", "\"0.1 ms\"")]).source)
+        .unwrap();
     let output = roulement(&["run", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(
@@ -109,7 +110,7 @@ fn prints_say_whose_force_it_is() {
         ("load.outer.x.force", "\"-1500 N\""),
         ("load.duration", "\"0.1 ms\""),
     ];
-    std::fs::write(scratch.path("outer.toml"), edited("thrust", &outer)).unwrap();
+    std::fs::write(scratch.path("outer.toml"), edited("thrust", &outer).source).unwrap();
     let output = roulement(&["equilibrium", &scratch.path("outer.toml")]);
     let text = String::from_utf8(output.stdout).unwrap();
     for part in ["outer race    x -", "external load Fx -1500.000 N", "(on the outer race;"] {
@@ -136,7 +137,7 @@ fn an_interrupted_run_keeps_what_it_has() {
         ("solver.min_step", "\"9 us\""),
         ("solver.tolerance", "1e-12"),
     ];
-    std::fs::write(scratch.path("hard.toml"), edited("thrust", &steps)).unwrap();
+    std::fs::write(scratch.path("hard.toml"), edited("thrust", &steps).source).unwrap();
     let output = roulement(&["run", &scratch.path("hard.toml"), "-o", &scratch.path("out")]);
     assert!(!output.status.success());
     let message = String::from_utf8(output.stderr).unwrap();
@@ -149,7 +150,8 @@ fn an_interrupted_run_keeps_what_it_has() {
 #[test]
 fn columns_and_window_choose_what_is_written() {
     let scratch = Scratch::new("columns");
-    std::fs::write(scratch.path("short.toml"), edited("thrust", &[("load.duration", "\"3 ms\"")])).unwrap();
+    std::fs::write(scratch.path("short.toml"), edited("thrust", &[("load.duration", "\"3 ms\"")]).source)
+        .unwrap();
     let run = |more: &[&str]| {
         let arguments = ["run", &scratch.path("short.toml"), "-o", &scratch.path("out")];
         roulement(&[&arguments[..], more].concat())
@@ -179,7 +181,8 @@ fn columns_and_window_choose_what_is_written() {
 /// A run that takes long, once some of its rows are in its table.
 #[cfg(unix)]
 fn long_run(scratch: &Scratch) -> std::process::Child {
-    let text = edited("thrust", &[("load.duration", "\"1000 s\""), ("load.output_interval", "\"20 us\"")]);
+    let text =
+        edited("thrust", &[("load.duration", "\"1000 s\""), ("load.output_interval", "\"20 us\"")]).source;
     std::fs::write(scratch.path("long.toml"), text).unwrap();
     let child = Command::new(env!("CARGO_BIN_EXE_roulement"))
         .args(["run", &scratch.path("long.toml"), "-o", &scratch.path("out")])
@@ -247,7 +250,8 @@ fn a_killed_run_leaves_whole_rows() {
 #[test]
 fn a_full_device_is_an_error_and_no_panic() {
     let scratch = Scratch::new("full");
-    std::fs::write(scratch.path("short.toml"), edited("thrust", &[("load.duration", "\"1 ms\"")])).unwrap();
+    std::fs::write(scratch.path("short.toml"), edited("thrust", &[("load.duration", "\"1 ms\"")]).source)
+        .unwrap();
     let run = |full: bool| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_roulement"));
         command.args(["run", &scratch.path("short.toml"), "-o", &scratch.path("out")]);
@@ -275,7 +279,7 @@ fn a_full_device_is_an_error_and_no_panic() {
 
 /// Lines of the summary of a run that begin with a word.
 fn summary_of(scratch: &Scratch, name: &str, changes: &[(&str, &str)], word: &str) -> Vec<String> {
-    std::fs::write(scratch.path("scene.toml"), edited(name, changes)).unwrap();
+    std::fs::write(scratch.path("scene.toml"), edited(name, changes).source).unwrap();
     let output = roulement(&["run", &scratch.path("scene.toml"), "-o", &scratch.path("out")]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).unwrap();

@@ -8,6 +8,7 @@ mod rows;
 
 use thiserror::Error;
 
+use crate::effects::growth::RISE;
 use crate::effects::{Getter, InputRow};
 use crate::model::bodies::{PerRace, Race};
 use crate::scene::{Drive, Group, Scene};
@@ -50,6 +51,8 @@ pub enum Source {
     Race(Race, &'static RaceVariable, usize),
     /// The friction coefficient.
     Friction,
+    /// Rise of the temperature of a part, by its index.
+    Rise(usize),
     /// The bearing as a whole.
     Bearing(FromOutputs),
     /// An input of an effect.
@@ -103,12 +106,22 @@ pub enum InputError {
     /// A negative friction coefficient, or one that no surface has.
     #[error("friction = {0} is out of range: allowed is {FRICTION}")]
     Friction(f64),
+    /// A rise of temperature that no bearing stands.
+    #[error("{name} = {value} K is out of range: allowed is {RISE}")]
+    Rise {
+        /// Variable.
+        name: String,
+        /// \[K] value.
+        value: f64,
+    },
 }
 
 /// The table of a scene.
 #[derive(Clone, Debug)]
 pub struct Variables {
     rows: Vec<Variable>,
+    /// Indices of the inputs among them: a few where every ball has variables of its own.
+    inputs: Vec<usize>,
 }
 
 impl Variables {
@@ -121,11 +134,14 @@ impl Variables {
 
     /// The variables that can change in a run, with or without those of every ball.
     pub fn moving(scene: &Scene, per_ball: bool) -> Self {
-        let mut table = Self { rows: vec![] };
+        let mut table = Self { rows: vec![], inputs: vec![] };
         table.add_race(scene, Race::Inner);
         table.add_race(scene, Race::Outer);
         table.add_bearing();
         table.add_effects(scene, per_ball);
+        table.add_temperatures(scene);
+        let inputs = table.rows.iter().enumerate().filter(|(_, row)| row.causality == Causality::Input);
+        table.inputs = inputs.map(|(index, _)| index).collect();
         table
     }
 
@@ -134,10 +150,16 @@ impl Variables {
         &self.rows
     }
 
+    /// The inputs with their value references.
+    pub fn inputs_with_references(&self) -> impl Iterator<Item = (usize, &Variable)> + Clone {
+        self.inputs.iter().map(|&index| (index, &self.rows[index]))
+    }
+
     /// Value of a row: inputs from the inputs as set, outputs from the outputs.
     pub fn value(&self, row: &Variable, inputs: &Inputs, outputs: &Outputs) -> f64 {
         match &row.source {
             Source::Friction => inputs.friction,
+            Source::Rise(part) => inputs.rises.map_or(0.0, |rises| rises[*part]),
             Source::Parameter(parameter) => parameter.start,
             Source::Input(input) => (input.get)(&inputs.effects, input.place),
             Source::Bearing(get) => get(outputs),
@@ -185,7 +207,7 @@ impl Variables {
 
     /// A race whose pose is an input.
     pub fn pose_is_given(&self, race: Race) -> bool {
-        self.rows.iter().any(|row| {
+        self.inputs_with_references().any(|(_, row)| {
             row.input_kind() == Some(InputKind::Velocity)
                 && matches!(row.source, Source::Race(of, _, _) if of == race)
         })
@@ -194,12 +216,12 @@ impl Variables {
     /// A race whose orientation is a quaternion of zeros among the values of all rows: an input that nothing is connected to.
     pub fn zero_quaternion(&self, values: &[f64]) -> Option<Race> {
         Race::BOTH.into_iter().find(|race| {
-            let mut components = self.rows.iter().zip(values).filter(|(row, _)| {
+            let mut components = self.inputs_with_references().filter(|(_, row)| {
                 row.input_kind() == Some(InputKind::Quaternion)
                     && matches!(row.source, Source::Race(of, _, _) if of == *race)
             });
-            components.next().is_some_and(|(_, first)| *first == 0.0)
-                && components.all(|(_, value)| *value == 0.0)
+            components.next().is_some_and(|(first, _)| values[first] == 0.0)
+                && components.all(|(index, _)| values[index] == 0.0)
         })
     }
 
@@ -210,10 +232,8 @@ impl Variables {
     pub fn inputs(&self, values: &[f64], rates: &[f64], base: &Inputs) -> Result<Inputs, InputError> {
         let mut inputs = *base;
         let mut races = PerRace::new(|race| RaceSetting::new(&base[race]));
-        for ((row, &value), &rate) in self.rows.iter().zip(values).zip(rates) {
-            if row.causality != Causality::Input {
-                continue;
-            }
+        for (index, row) in self.inputs_with_references() {
+            let (value, rate) = (values[index], rates[index]);
             for number in [value, rate] {
                 if !number.is_finite() {
                     return Err(InputError::NotFinite { name: row.name.clone(), value: number });
@@ -223,6 +243,12 @@ impl Variables {
                 Source::Friction if FRICTION.contains(value) => inputs.friction = value,
                 Source::Friction => return Err(InputError::Friction(value)),
                 Source::Input(input) => (input.set)(&mut inputs.effects, input.place, value, rate),
+                Source::Rise(part) if RISE.contains(value) => {
+                    if let Some(rises) = &mut inputs.rises {
+                        rises[*part] = value;
+                    }
+                }
+                Source::Rise(_) => return Err(InputError::Rise { name: row.name.clone(), value }),
                 Source::Race(race, RaceVariable { input: Some(access), .. }, component) => {
                     (access.set)(&mut races[*race], *component, value, rate);
                 }
@@ -241,6 +267,7 @@ impl Variable {
         match &self.source {
             _ if self.causality != Causality::Input => None,
             Source::Friction => Some(InputKind::Friction),
+            Source::Rise(_) => Some(InputKind::Temperature),
             Source::Race(_, RaceVariable { input, .. }, _) => input.map(|access| access.kind),
             _ => None,
         }
@@ -260,6 +287,7 @@ impl Variable {
             _ if self.causality != Causality::Input => None,
             Source::Friction => Some(Group::Friction),
             Source::Input(input) => Some(input.group),
+            Source::Rise(_) => Some(Group::Temperatures),
             // A race with a given motion has its speed with it.
             Source::Race(race, RaceVariable { input: Some(access), .. }, _) => {
                 let section = if *race == Race::Inner { &scene.inner } else { &scene.outer };

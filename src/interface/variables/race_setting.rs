@@ -87,6 +87,8 @@ pub enum InputKind {
     Moment,
     /// [-] a friction coefficient.
     Friction,
+    /// \[K] a rise of temperature.
+    Temperature,
 }
 
 /// Inputs of a race while they are being set, component by component.

@@ -4,6 +4,7 @@ use super::race_rows::RACE_VARIABLES;
 use super::race_setting::RaceMotion;
 use super::{Causality, FromOutputs, Kind, Source, Variable, Variables};
 use crate::effects::InputRow;
+use crate::effects::growth::{PARTS, RISE};
 use crate::model::bodies::Race;
 use crate::scene::Scene;
 use crate::schema::numbers::FRICTION;
@@ -15,6 +16,7 @@ fn limits(source: &Source) -> [Option<f64>; 2] {
         Source::Race(_, quantity, _) => quantity.limits,
         Source::Friction => [Some(FRICTION.low), Some(FRICTION.high)],
         Source::Parameter(parameter) => [Some(parameter.range.low), Some(parameter.range.high)],
+        Source::Rise(_) => [Some(RISE.low), Some(RISE.high)],
         Source::Bearing(_) | Source::Effect(_) | Source::Input(_) => [None; 2],
     }
 }
@@ -149,6 +151,19 @@ impl Variables {
         count("integrator.newton_iterations", "Newton iterations since the start", |o| {
             o.statistics.newton.iterations as f64
         });
+    }
+
+    /// Adds the temperatures that rings and balls grow by, where they do.
+    pub(super) fn add_temperatures(&mut self, scene: &Scene) {
+        if scene.effects.growth.section.is_none() {
+            return;
+        }
+        let names = ["the inner ring", "the outer ring", "the balls", "the shaft", "the housing"];
+        for (part, (key, name)) in PARTS.into_iter().zip(names).enumerate() {
+            let description = format!("rise of the temperature of {name} over that of the given dimensions");
+            let name = format!("temperature_rise.{key}");
+            self.add(name, units::KELVIN, Causality::Input, 10.0, description, Source::Rise(part));
+        }
     }
 
     /// Adds what effects report.

@@ -1,0 +1,130 @@
+//! `roulement field`: where chosen contacts stick and slip at chosen times of a run.
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args;
+use roulement::analysis::stick_slip::{Field, field};
+use roulement::model::bodies::Race;
+use roulement::scene::units::{Quantity, Time};
+use roulement::simulation::Simulation;
+
+use super::{load, tell};
+
+/// Options of `roulement field`.
+#[derive(Args)]
+pub struct Options {
+    /// Scene file.
+    scene: PathBuf,
+    /// Contacts, such as `1.inner,4.outer`: ball, counted from 1, and race.
+    #[arg(long, value_delimiter = ',', required = true)]
+    contacts: Vec<Contact>,
+    /// Times, such as `5 ms,10 ms`; the end of the run if not given.
+    #[arg(long, value_delimiter = ',')]
+    times: Vec<Moment>,
+    /// Cells across the ellipse, 8 to 128.
+    #[arg(long, default_value_t = 32, value_parser = clap::value_parser!(u16).range(8..=128))]
+    cells: u16,
+    /// Table to write.
+    #[arg(short, long, default_value = "field.csv")]
+    output: PathBuf,
+}
+
+/// A contact of a ball and a race.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Contact {
+    /// Counted from 1.
+    ball: usize,
+    race: Race,
+}
+
+impl FromStr for Contact {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wanted = || format!("{text} is no contact: write ball and race, such as 1.inner or 4.outer");
+        let (ball, race) = text.trim().split_once('.').ok_or_else(wanted)?;
+        let race = Race::BOTH.into_iter().find(|known| known.name() == race).ok_or_else(wanted)?;
+        let ball = ball.parse().ok().filter(|ball| *ball > 0).ok_or_else(wanted)?;
+        Ok(Self { ball, race })
+    }
+}
+
+/// \[s] a time, a number or a text with a unit.
+#[derive(Clone, Copy, Debug)]
+struct Moment(f64);
+
+impl FromStr for Moment {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let time = text.trim().parse().or_else(|_| Time::DIMENSION.parse(text.trim()))?;
+        if time >= 0.0 { Ok(Self(time)) } else { Err(format!("{text} is before the start")) }
+    }
+}
+
+/// Simulates a scene up to each of the times and writes the fields of the contacts there.
+///
+/// # Errors
+/// If the simulation cannot start or go on, a ball is not there, or the table cannot be written.
+pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    let scene = load(&options.scene)?;
+    if let Some(contact) = options.contacts.iter().find(|contact| contact.ball > scene.bearing.balls) {
+        return Err(format!(
+            "--contacts: ball {} is not there: allowed is [1, {}]",
+            contact.ball, scene.bearing.balls
+        )
+        .into());
+    }
+    let mut times: Vec<f64> = options.times.iter().map(|moment| moment.0).collect();
+    if times.is_empty() {
+        times.push(scene.load.duration.0);
+    }
+    times.sort_by(f64::total_cmp);
+    let mut simulation = Simulation::new(&scene)?;
+    let cannot_write = |why: csv::Error| format!("{}: {why}", options.output.display());
+    let mut table = csv::Writer::from_path(&options.output).map_err(cannot_write)?;
+    let header = "time [s],ball [1],race,x [m],y [m],area [m2],pressure [Pa],traction.x [Pa],traction.y [Pa],slip.x [m/s],\
+                  slip.y [m/s],sticks [1]";
+    table.write_record(header.split(',')).map_err(cannot_write)?;
+    for time in times {
+        if time > simulation.time() {
+            simulation.advance_scripted(time)?;
+        }
+        for Contact { ball, race } in &options.contacts {
+            let (model, state, conditions) =
+                (simulation.model(), simulation.state(), simulation.conditions());
+            let what = format!("{:.6} ms, ball {ball} on the {} race", simulation.time() * 1e3, race.name());
+            let Some(field) = field(model, state, &conditions, (ball - 1, *race), options.cells.into())?
+            else {
+                tell([format!("{what}: no load, or no friction")]);
+                continue;
+            };
+            write(&mut table, simulation.time(), *ball, *race, &field).map_err(cannot_write)?;
+            let [a, b] = field.semi_axes.map(|axis| axis * 1e6);
+            tell([format!("{what}: {:.1} % sticks, ellipse {a:.1} x {b:.1} um", 100.0 * field.stick)]);
+        }
+    }
+    table.flush().map_err(|why| format!("{}: {why}", options.output.display()))?;
+    Ok(())
+}
+
+fn write(
+    table: &mut csv::Writer<std::fs::File>,
+    time: f64,
+    ball: usize,
+    race: Race,
+    field: &Field,
+) -> Result<(), csv::Error> {
+    for point in &field.points {
+        let ([x, y], [tx, ty], [sx, sy]) = (point.place, point.traction, point.slip);
+        let sticks = f64::from(u8::from(point.sticks));
+        let mut record = vec![time.to_string(), ball.to_string(), race.name().to_string()];
+        record.extend(
+            [x, y, point.area, point.pressure, tx, ty, sx, sy, sticks].map(|value| value.to_string()),
+        );
+        table.write_record(record)?;
+    }
+    Ok(())
+}

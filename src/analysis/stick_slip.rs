@@ -1,0 +1,101 @@
+//! Where a contact of a running bearing sticks and where it slips: pressure, tractions and slip over its ellipse, as in figure 1b
+//! of the paper.
+//!
+//! The half-space solver computes them from load, ellipse and creepages that the contact has in the simulation, whatever law its
+//! forces there are of.
+
+use crate::contact::BallRaceContact;
+use crate::kalker::half_space::{CellState, HalfSpace, HalfSpaceError, cells};
+use crate::kalker::{Patch, ScaledCreepage, ScaledForces};
+use crate::model::bodies::Race;
+use crate::model::state::State;
+use crate::model::{Conditions, Model};
+
+/// The field of one contact, in frame C: x along rolling, y transverse.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// \[m] semi-axes of the ellipse along and transverse to rolling.
+    pub semi_axes: [f64; 2],
+    /// [-] forces of the ball on the race over mu Q, spin moment over mu Q c, by these tractions.
+    pub forces: ScaledForces,
+    /// [-] adhesion area over contact area.
+    pub stick: f64,
+    /// Cells of the grid.
+    pub points: Vec<FieldPoint>,
+}
+
+/// A cell of the grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldPoint {
+    /// \[m] place from the middle of the ellipse.
+    pub place: [f64; 2],
+    /// [m2] area.
+    pub area: f64,
+    /// \[Pa] pressure.
+    pub pressure: f64,
+    /// \[Pa] traction of the ball on the race.
+    pub traction: [f64; 2],
+    /// [m/s] slip of the ball over the race; that of cells that stick is what the solver leaves.
+    pub slip: [f64; 2],
+    /// Does it stick?
+    pub sticks: bool,
+}
+
+/// The field of the contact of a ball (0 is the first) with a race in a state, on about `n` times `n` cells; none of a contact
+/// that carries no load, or has no friction.
+///
+/// # Errors
+/// See [`HalfSpaceError`].
+pub fn field(
+    model: &Model,
+    state: &State,
+    conditions: &Conditions,
+    (ball, race): (usize, Race),
+    n: usize,
+) -> Result<Option<Field>, HalfSpaceError> {
+    let (motion, race_motion) = (state.balls[ball].motion(), state.race(race).motion());
+    let contacts = model.contact(race, conditions);
+    let contacts = contacts.of_ball(ball, state.difference(ball, race));
+    let contact = contacts.completed(&contacts.evaluate(&motion, &race_motion), &motion, &race_motion);
+    let rolling = conditions.friction > 0.0 && contact.load > 0.0;
+    if rolling { of_contact(model, conditions.friction, &contact, n).map(Some) } else { Ok(None) }
+}
+
+fn of_contact(
+    model: &Model,
+    friction: f64,
+    contact: &BallRaceContact<f64>,
+    n: usize,
+) -> Result<Field, HalfSpaceError> {
+    let materials = &model.bearing.materials;
+    let root = contact.geometry.approach.sqrt();
+    let semi_axes @ [a, b] = contact.semi_axes.map(|axis| axis * root);
+    let mean = (a * b).sqrt();
+    let pressure = 1.5 * contact.load / (std::f64::consts::PI * a * b);
+    // Frame C has x along the rolling direction; the kernel's x is along the circumference.
+    let along = if contact.rolling_cosine < 0.0 { -1.0 } else { 1.0 };
+    let scale = materials.shear_modulus / (friction * pressure);
+    let creepage = ScaledCreepage {
+        x: along * contact.creepage.longitudinal * scale,
+        y: along * contact.creepage.lateral * scale,
+        spin: contact.creepage.spin * mean * scale,
+        curvature: along * contact.creepage.curvature.unwrap_or(0.0) * mean * mean * scale,
+    };
+    let patch = Patch { axis_ratio: a / b, poisson_ratio: materials.poisson_ratio, rolling_angle: 0.0 };
+    let grid = HalfSpace::with_cells(&patch, cells(&patch, n))?;
+    let solution = grid.solve(&creepage, None)?;
+    let point = |cell: CellState| FieldPoint {
+        place: cell.place.map(|place| place * mean),
+        area: cell.area * mean * mean,
+        pressure: pressure * cell.bound,
+        traction: cell.traction.map(|traction| traction * friction * pressure),
+        slip: cell.slip.map(|slip| slip / scale * contact.rolling_speed),
+        sticks: cell.sticks,
+    };
+    Ok(Field {
+        semi_axes,
+        forces: solution.forces,
+        stick: solution.stick,
+        points: grid.states(&creepage, &solution).into_iter().map(point).collect(),
+    })
+}

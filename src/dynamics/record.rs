@@ -1,0 +1,57 @@
+//! What a run keeps of its steps for reports: heat by contact, powers of loads. Nothing of it acts back on the motion.
+
+use crate::contact::pair::PairForces;
+use crate::effects::heat::ByContact;
+use crate::forces::{BallPair, Pairs};
+use crate::model::Model;
+use crate::model::bodies::{Body, Race};
+use crate::model::state::State;
+
+/// Takes over the pairs at the end of a step of `h` \[s], or of a state that no step has led to.
+pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, h: Option<f64>) {
+    let (balls, spins) = (state.balls.len(), Race::BOTH.map(|race| state.race(race).rate.x));
+    if let (Some(rating), Some(sums)) = (&model.rating, &mut state.rating) {
+        let loads = (0..balls).map(|ball| loads_of(pairs.of_ball(ball)));
+        let rates = rating.rates(loads, spins[0] - spins[1]);
+        match h {
+            Some(h) => sums.add(rates, h),
+            None => sums.begin(rates),
+        }
+    }
+    if let Some(heat) = &mut state.heat {
+        let powers = powers(pairs, balls);
+        match h {
+            Some(h) => heat.add(powers, h),
+            None => heat.begin(powers, state.time),
+        }
+    }
+}
+
+/// \[N] loads of a ball on the inner and the outer race.
+fn loads_of(pairs: impl Iterator<Item = (Body, PairForces)>) -> [f64; 2] {
+    let mut loads = [0.0; 2];
+    for (body, pair) in pairs {
+        if let Body::Race(race) = body {
+            loads[race as usize] = pair.load;
+        }
+    }
+    loads
+}
+
+/// \[W] powers lost to friction, by what touches.
+fn powers(pairs: &impl Pairs, balls: usize) -> ByContact {
+    let mut powers = ByContact::default();
+    for (body, pair) in (0..balls).flat_map(|ball| pairs.of_ball(ball)) {
+        match body {
+            Body::Race(race) => powers.races[race as usize] += pair.friction_power,
+            Body::Cage => powers.pockets += pair.friction_power,
+        }
+    }
+    for BallPair { forces, .. } in pairs.between_balls() {
+        powers.balls += forces.friction_power;
+    }
+    for (_, _, pair) in pairs.between_bodies() {
+        powers.lands += pair.friction_power;
+    }
+    powers
+}

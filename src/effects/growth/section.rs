@@ -1,0 +1,269 @@
+//! The section `[growth]`: its keys, their ranges, and what they must agree in.
+
+use serde::Deserialize;
+
+use super::Settings;
+use crate::effects::effect::Setup;
+use crate::schema::numbers::{Number, POISSON_RATIO, Place, Range, YOUNGS_MODULUS};
+use crate::schema::schedule::{self, Schedule};
+use crate::schema::units::{Density, Length, Pressure, TemperatureRise, ThermalExpansion};
+use crate::schema::{BearingSection, Material, SceneError};
+
+/// Temperatures over that of the given dimensions, and fits.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table of inner, outer, balls, rotation, shaft, housing")]
+pub struct Section {
+    /// \[K] rise of the inner ring, constant or a table over time.
+    #[serde(deserialize_with = "schedule::deserialize::<TemperatureRise, _>")]
+    pub inner: Schedule,
+    /// \[K] rise of the outer ring.
+    #[serde(deserialize_with = "schedule::deserialize::<TemperatureRise, _>")]
+    pub outer: Schedule,
+    /// \[K] rise of the balls.
+    #[serde(deserialize_with = "schedule::deserialize::<TemperatureRise, _>")]
+    pub balls: Schedule,
+    /// Do rings and what they are fitted to grow by their rotation?
+    pub rotation: bool,
+    /// What the inner ring sits on.
+    pub shaft: Option<Partner>,
+    /// What the outer ring sits in.
+    pub housing: Option<Partner>,
+}
+
+/// Shaft or housing; steel if its material is not given.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Partner {
+    /// \[m] diametral interference of the fit at given dimensions; negative is a gap. Without it the ring is not held by its
+    /// seat: it grows by its own temperature and rotation.
+    pub interference: Option<Length>,
+    /// \[m] diameter of the seat: bore of the inner ring, outside of the outer ring.
+    pub diameter: Length,
+    /// \[m] bore of a hollow shaft; 0 is a solid one.
+    pub bore: Option<Length>,
+    /// \[m] outside diameter of the housing.
+    pub outside: Option<Length>,
+    /// \[Pa] Young's modulus.
+    #[serde(default = "steel_modulus")]
+    pub youngs_modulus: Pressure,
+    /// [-] Poisson's ratio.
+    #[serde(default = "steel_ratio")]
+    pub poisson_ratio: f64,
+    /// [kg/m3] density.
+    #[serde(default = "steel_density")]
+    pub density: Density,
+    /// [1/K] coefficient of thermal expansion.
+    #[serde(default = "steel_expansion")]
+    pub thermal_expansion: ThermalExpansion,
+    /// \[K] rise of its temperature.
+    #[serde(default, deserialize_with = "schedule::deserialize::<TemperatureRise, _>")]
+    pub rise: Schedule,
+}
+
+fn steel_modulus() -> Pressure {
+    Material::default().youngs_modulus
+}
+
+fn steel_ratio() -> f64 {
+    Material::default().poisson_ratio
+}
+
+fn steel_density() -> Density {
+    Material::default().density
+}
+
+fn steel_expansion() -> ThermalExpansion {
+    Material::default().thermal_expansion
+}
+
+/// Rises of temperature: from the coldest there is to where bearing steel has long lost its hardness.
+pub const RISE: Range = Range::closed(-300.0, 1000.0, "K");
+/// Coefficients of thermal expansion; a few glasses shrink.
+pub const EXPANSION: Range = Range::closed(-1e-5, 1e-4, "1/K");
+const INTERFERENCE: Range = Range::closed(-0.01, 0.01, "m");
+const DIAMETER: Range = Range::above(0.0, 1e3, "m");
+const DENSITY: Range = Range::closed(1.0, 1e5, "kg/m3");
+
+fn section(settings: &mut Settings, of: impl Fn(&mut Section) -> &mut Schedule) -> Place<'_> {
+    settings.section.as_mut().map_or(Place::Value(None), |section| Place::Schedule(of(section)))
+}
+
+/// Rows of a partner under the key of its section.
+macro_rules! partner_numbers {
+    ($partner:ident, $key:literal, $ring:literal) => {
+        [
+            Number::fixed(
+                concat!("growth.", $key, ".interference"),
+                INTERFERENCE,
+                concat!("diametral interference of the ", $ring, " ring on its seat"),
+                |s| {
+                    Place::Value(
+                        $partner(s).and_then(|p| p.interference.as_mut()).map(|length| &mut length.0),
+                    )
+                },
+            ),
+            Number::fixed(
+                concat!("growth.", $key, ".diameter"),
+                DIAMETER,
+                concat!("diameter of the seat of the ", $ring, " ring"),
+                |s| Place::Value($partner(s).map(|p| &mut p.diameter.0)),
+            ),
+            Number::fixed(
+                concat!("growth.", $key, ".bore"),
+                Range::closed(0.0, 1e3, "m"),
+                concat!("bore of the ", $key),
+                |s| Place::Value($partner(s).and_then(|p| p.bore.as_mut()).map(|length| &mut length.0)),
+            ),
+            Number::fixed(
+                concat!("growth.", $key, ".outside"),
+                DIAMETER,
+                concat!("outside diameter of the ", $key),
+                |s| Place::Value($partner(s).and_then(|p| p.outside.as_mut()).map(|length| &mut length.0)),
+            ),
+            Number::fixed(
+                concat!("growth.", $key, ".youngs_modulus"),
+                YOUNGS_MODULUS,
+                concat!("Young's modulus of the ", $key),
+                |s| Place::Value($partner(s).map(|p| &mut p.youngs_modulus.0)),
+            ),
+            Number::fixed(
+                concat!("growth.", $key, ".poisson_ratio"),
+                POISSON_RATIO,
+                concat!("Poisson's ratio of the ", $key),
+                |s| Place::Value($partner(s).map(|p| &mut p.poisson_ratio)),
+            ),
+            Number::fixed(
+                concat!("growth.", $key, ".density"),
+                DENSITY,
+                concat!("density of the ", $key),
+                |s| Place::Value($partner(s).map(|p| &mut p.density.0)),
+            ),
+            Number::fixed(
+                concat!("growth.", $key, ".thermal_expansion"),
+                EXPANSION,
+                concat!("coefficient of thermal expansion of the ", $key),
+                |s| Place::Value($partner(s).map(|p| &mut p.thermal_expansion.0)),
+            ),
+            // A package has it as an input.
+            Number::checked(concat!("growth.", $key, ".rise"), RISE, |s| {
+                $partner(s).map_or(Place::Value(None), |p| Place::Schedule(&mut p.rise))
+            }),
+        ]
+    };
+}
+
+fn shaft(settings: &mut Settings) -> Option<&mut Partner> {
+    settings.section.as_mut()?.shaft.as_mut()
+}
+
+fn housing(settings: &mut Settings) -> Option<&mut Partner> {
+    settings.section.as_mut()?.housing.as_mut()
+}
+
+/// Numbers of the section. Rises of temperature are inputs of a package, not parameters.
+pub const NUMBERS: &[Number<Settings>] = {
+    const RISES: [Number<Settings>; 3] = [
+        Number::checked("growth.inner", RISE, |s| section(s, |section| &mut section.inner)),
+        Number::checked("growth.outer", RISE, |s| section(s, |section| &mut section.outer)),
+        Number::checked("growth.balls", RISE, |s| section(s, |section| &mut section.balls)),
+    ];
+    const SHAFT: [Number<Settings>; 9] = partner_numbers!(shaft, "shaft", "inner");
+    const HOUSING: [Number<Settings>; 9] = partner_numbers!(housing, "housing", "outer");
+    let [a, b, c] = RISES;
+    let [d, e, f, g, h, i, j, k, l] = SHAFT;
+    let [m, n, o, p, q, r, s, t, u] = HOUSING;
+    &[a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u]
+};
+
+impl Section {
+    /// Checks its keys against one another and the bearing.
+    ///
+    /// # Errors
+    /// Names the key.
+    pub(super) fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {
+        let bearing = setup.bearing;
+        let [inner, outer] = bearing.raceways();
+        let bottoms = [
+            2.0 * (inner.groove_circle_radius - inner.groove_radius),
+            2.0 * (outer.groove_circle_radius + outer.groove_radius),
+        ];
+        for (index, (key, partner)) in
+            [("shaft", &self.shaft), ("housing", &self.housing)].into_iter().enumerate()
+        {
+            let Some(partner) = partner else {
+                if self.rotation && setup.turning[index] {
+                    let why = format!(
+                        "the {} race turns and rotation = true: give the diameter of its seat, growth.{key}.diameter",
+                        ["inner", "outer"][index]
+                    );
+                    return Err(SceneError::conflict(format!("growth.{key}"), why));
+                }
+                continue;
+            };
+            partner.agree(&format!("growth.{key}"), index == 0, bottoms[index])?;
+        }
+        self.grooves_stay_wider_than_balls(bearing, setup.expansions)
+    }
+
+    /// Grooves that heat has made narrower than their balls are none.
+    fn grooves_stay_wider_than_balls(
+        &self,
+        bearing: &BearingSection,
+        [ball, race]: [f64; 2],
+    ) -> Result<(), SceneError> {
+        let extreme = |schedule: &Schedule, expansion: f64, worst: fn(f64, f64) -> f64, start: f64| {
+            schedule.values().into_iter().map(|rise| expansion * rise).fold(start, worst)
+        };
+        let largest_ball = 1.0 + extreme(&self.balls, ball, f64::max, f64::NEG_INFINITY);
+        for (key, ring, conformity) in [
+            ("inner", &self.inner, bearing.inner_conformity),
+            ("outer", &self.outer, bearing.outer_conformity),
+        ] {
+            let smallest_groove = 2.0 * conformity * (1.0 + extreme(ring, race, f64::min, f64::INFINITY));
+            let wider = smallest_groove > largest_ball;
+            if !wider {
+                let why = format!(
+                    "at these temperatures the balls are wider than the groove of bearing.{key}_conformity = {conformity}"
+                );
+                return Err(SceneError::conflict("growth.balls", why));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Partner {
+    /// Seat between the bottom \[m] of the raceway, a diameter, and the other surface of shaft or housing.
+    fn agree(&self, key: &str, is_shaft: bool, bottom: f64) -> Result<(), SceneError> {
+        let seat = self.diameter.0;
+        let (other, given, wrong) =
+            if is_shaft { ("outside", self.outside, "shaft") } else { ("bore", self.bore, "housing") };
+        if given.is_some() {
+            return Err(SceneError::conflict(format!("{key}.{other}"), format!("no {wrong} has it")));
+        }
+        let range = if is_shaft {
+            Range::above(0.0, bottom * (1.0 - LEAST_WALL), "m")
+        } else {
+            Range::closed(bottom * (1.0 + LEAST_WALL), 1e3, "m")
+        };
+        range.check(&format!("{key}.diameter"), seat)?;
+        if is_shaft {
+            let bore = self.bore.map_or(0.0, |bore| bore.0);
+            return Range::closed(0.0, seat * (1.0 - LEAST_WALL), "m").check(&format!("{key}.bore"), bore);
+        }
+        match (self.outside, self.interference) {
+            (Some(outside), _) => {
+                let range = Range::closed(seat * (1.0 + LEAST_WALL), 1e3, "m");
+                range.check(&format!("{key}.outside"), outside.0)
+            }
+            (None, Some(_)) => {
+                let why = "needed with an interference: the housing's outside diameter";
+                Err(SceneError::conflict(format!("{key}.outside"), why))
+            }
+            (None, None) => Ok(()),
+        }
+    }
+}
+
+/// [-] least thickness of a wall over the diameter: thinner ones are no rings.
+const LEAST_WALL: f64 = 1e-3;

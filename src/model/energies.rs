@@ -1,0 +1,155 @@
+//! What a run puts in, loses and stores, and what a step leaves of it unaccounted for.
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::pair::PairForces;
+
+/// Powers at one instant \[W].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Powers {
+    /// Put in by races, applied loads, drives, gravity and the motion of the frame.
+    pub input: f64,
+    /// Lost to friction in the contacts.
+    pub friction: f64,
+    /// Lost to contact damping.
+    pub damping: f64,
+    /// Lost to what is around the bearing: drag of the medium, dampers of supports.
+    pub around: f64,
+}
+
+/// Energies \[J]: sums since the start, and what is stored now.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energies {
+    /// Work put in, by contacts whose stiffness changes too.
+    pub input: f64,
+    /// Lost to friction.
+    pub friction: f64,
+    /// Lost to contact damping.
+    pub damping: f64,
+    /// Lost to what is around the bearing.
+    pub around: f64,
+    /// Kinetic and elastic energy now.
+    pub stored: f64,
+    /// Put in, but neither lost nor stored.
+    pub unaccounted: f64,
+}
+
+impl Energies {
+    /// [-] of the stored energy: less is rounding, where nearly nothing is put in or lost.
+    const ROUNDING: f64 = 1e-6;
+    /// [-] what a step may take of the energy that the run may still leave unaccounted for.
+    const SHARE: f64 = 0.1;
+    /// [-] of the kinetic energy exchanged in a step: steps of some 1/200 of a period.
+    const OF_EXCHANGE: f64 = 1e-4;
+
+    /// Adds a step of `h` \[s] by the trapezoidal rule: from powers before and after it, what changes of stiffness put in \[J],
+    /// and the energy stored at its end \[J].
+    pub fn add(&mut self, (before, after): (&Powers, &Powers), h: f64, stiffened: f64, stored: f64) {
+        let integral = |before: f64, after: f64| 0.5 * h * (before + after);
+        let input = integral(before.input, after.input) + stiffened;
+        let friction = integral(before.friction, after.friction);
+        let damping = integral(before.damping, after.damping);
+        let around = integral(before.around, after.around);
+        self.input += input;
+        self.friction += friction;
+        self.damping += damping;
+        self.around += around;
+        self.unaccounted += input - friction - damping - around - (stored - self.stored);
+        self.stored = stored;
+    }
+
+    /// [-] energy that one step left unaccounted for over what it may leave, so that no more than a part `allowed` of what a
+    /// run puts in or loses is unaccounted for: half that part of its own losses, a share of what the run has left, or a small
+    /// part of the kinetic energy that came and went (`exchanged` \[J]), which even a run that loses nothing need not beat.
+    pub fn error_since(&self, before: &Self, exchanged: f64, allowed: f64) -> f64 {
+        let lost = |energies: &Self| energies.friction + energies.damping + energies.around;
+        let turned_over = self.input.abs().max(lost(self));
+        let in_step = lost(self) - lost(before);
+        let room = (allowed * turned_over).max(Self::ROUNDING * self.stored) - before.unaccounted.abs();
+        let of_step = self.unaccounted - before.unaccounted;
+        // What makes good an earlier error is welcome.
+        if self.unaccounted.abs() <= before.unaccounted.abs() {
+            return 0.0;
+        }
+        let may = (0.5 * allowed * in_step).max(Self::SHARE * room).max(Self::OF_EXCHANGE * exchanged);
+        of_step.abs() / may.max(f64::MIN_POSITIVE)
+    }
+}
+
+/// A ball on a race: what the energy of a Hertz contact `0.4 K delta^2.5` is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pressed {
+    /// [N/m^1.5] Hertz stiffness K.
+    stiffness: f64,
+    /// [m^2.5] approach to the power 2.5; 0 without contact.
+    depth: f64,
+}
+
+impl Pressed {
+    /// Of a contact as it is now.
+    pub fn new(contact: &PairForces) -> Self {
+        let approach = contact.approach.max(0.0);
+        Self { stiffness: contact.stiffness, depth: approach * approach * approach.sqrt() }
+    }
+
+    /// \[J] what a step puts in as the stiffness changes from that at its start: the curvature of a raceway, and the stiffness
+    /// with it, depends on the contact angle, but the normal force does no work on that change.
+    pub fn stiffened(&self, start: &Self) -> f64 {
+        0.2 * (self.depth + start.depth) * (self.stiffness - start.stiffness)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A run that lost 1 J of 1 J put in so far, but for what it left unaccounted for.
+    fn after(unaccounted: f64) -> Energies {
+        Energies { input: 1.0 + unaccounted, friction: 1.0, stored: 5.0, unaccounted, ..Energies::default() }
+    }
+
+    #[test]
+    fn closed_form_energy_of_a_step() {
+        let (before, now) = (after(0.0), Powers { input: 3.0, friction: 2.0, damping: 0.5, around: 0.4 });
+        let start = Powers { input: 1.0, friction: 1.0, damping: 0.5, around: 0.0 };
+        let mut energies = before;
+        energies.add((&start, &now), 0.1, 0.01, 5.05);
+        assert!((energies.input - 1.21).abs() < 1e-15 && (energies.friction - 1.15).abs() < 1e-15);
+        assert!((energies.damping - 0.05).abs() < 1e-15 && energies.stored == 5.05);
+        assert!((energies.around - 0.02).abs() < 1e-15);
+        // 0.2 + 0.01 put in, 0.15 + 0.05 + 0.02 lost, 0.05 stored
+        assert!((energies.unaccounted + 0.06).abs() < 1e-14);
+    }
+
+    #[test]
+    fn closed_form_a_step_may_leave_its_share() {
+        let error = |before: f64, of_step: f64, lost: f64, exchanged: f64| {
+            let start = after(before);
+            let mut end = start;
+            end.unaccounted += of_step;
+            end.input += of_step + lost;
+            end.friction += lost;
+            end.error_since(&start, exchanged, 0.01)
+        };
+        // A tenth of the 0.01 J that may be left, half a percent of what it lost, or a ten-thousandth of what came and went.
+        assert!((error(0.0, 1e-3, 0.0, 0.0) - 1.0).abs() < 0.01);
+        assert!((error(0.0, 1e-3, 0.4, 0.0) - 0.5).abs() < 0.01);
+        assert!((error(0.0, 1e-3, 0.0, 20.0) - 0.5).abs() < 0.01);
+        // Nothing is left, and nothing came and went; what makes good an earlier error is welcome.
+        assert!(error(0.02, 1e-3, 0.0, 0.0) > 1e6);
+        assert_eq!(error(0.02, -1e-3, 0.0, 0.0), 0.0);
+        assert!(error(0.0, f64::NAN, 0.0, 0.0).is_nan());
+    }
+
+    #[test]
+    fn closed_form_work_of_a_stiffness_that_changes() {
+        let pressed = |stiffness: f64, approach: f64| {
+            Pressed::new(&PairForces { stiffness, approach, ..PairForces::none() })
+        };
+        // At a constant approach the whole change of 0.4 K delta^2.5 is work of the stiffness.
+        let (soft, stiff) = (pressed(1e9, 4e-6), pressed(1.1e9, 4e-6));
+        assert!((stiff.stiffened(&soft) / (0.4 * 1e8 * 4e-6f64.powf(2.5)) - 1.0).abs() < 1e-12);
+        assert_eq!(stiff.stiffened(&stiff), 0.0);
+        assert_eq!(pressed(1e9, -1e-6).stiffened(&pressed(2e9, -2e-6)), 0.0);
+    }
+}
