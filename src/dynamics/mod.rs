@@ -13,6 +13,7 @@ mod local_error;
 mod matrix;
 mod neighbours;
 mod reaction;
+mod repair;
 mod sensitivity;
 mod step_turn;
 
