@@ -300,7 +300,7 @@ impl<'a> BearingStep<'a> {
                     Body::Cage => Some(&land.on_cage),
                     Body::Race(race) => (Some(race) == guide).then_some(&land.on_race),
                 });
-                trial.assemble_block(&self.given(body, model, start), reactions);
+                trial.assemble_block(&self.given(body, model, start), &reactions);
             }
         }
         self.workspace.bodies = trials;
