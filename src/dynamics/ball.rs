@@ -209,7 +209,7 @@ impl BallTrial {
         let seeded = seed(&self.motion, step, model.bearing.ball.radius);
         let mut tangent = Matrix6::zeros();
         let values = PerRace::new(|race| {
-            let contact = contacts[race].of_ball(differences.get(index).map(|of_ball| &of_ball[race]));
+            let contact = contacts[race].of_ball(index, differences.get(index).map(|of_ball| &of_ball[race]));
             let (value, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);
             tangent += by_ball;
             value
