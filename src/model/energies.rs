@@ -18,8 +18,10 @@ pub struct Powers {
 /// Energies \[J]: sums since the start, and what is stored now.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
-    /// Work put in, by contacts whose stiffness changes too.
+    /// Work put in.
     pub input: f64,
+    /// Put in by contacts whose stiffness changes with the contact angle.
+    pub stiffened: f64,
     /// Lost to friction.
     pub friction: f64,
     /// Lost to contact damping.
@@ -42,13 +44,14 @@ impl Energies {
     /// and the energy stored at its end \[J].
     pub fn add(&mut self, (before, after): (&Powers, &Powers), h: f64, stiffened: f64, stored: f64) {
         let integral = |before: f64, after: f64| 0.5 * h * (before + after);
-        let input = integral(before.input, after.input) + stiffened;
+        let input = integral(before.input, after.input);
         let [friction, damping] = [(before.friction, after.friction), (before.damping, after.damping)]
             .map(|(before, after)| integral(before, after));
         self.input += input;
+        self.stiffened += stiffened;
         self.friction += friction;
         self.damping += damping;
-        self.unaccounted += input - friction - damping - (stored - self.stored);
+        self.unaccounted += input + stiffened - friction - damping - (stored - self.stored);
         self.stored = stored;
     }
 
@@ -99,7 +102,7 @@ mod tests {
 
     /// A run that lost 1 J of 1 J put in so far, but for what it left unaccounted for.
     fn after(unaccounted: f64) -> Energies {
-        Energies { input: 1.0 + unaccounted, friction: 1.0, damping: 0.0, stored: 5.0, unaccounted }
+        Energies { input: 1.0 + unaccounted, friction: 1.0, stored: 5.0, unaccounted, ..Energies::default() }
     }
 
     #[test]
@@ -108,7 +111,8 @@ mod tests {
         let start = Powers { input: 1.0, friction: 1.0, damping: 0.5 };
         let mut energies = before;
         energies.add((&start, &now), 0.1, 0.01, 5.05);
-        assert!((energies.input - 1.21).abs() < 1e-15 && (energies.friction - 1.15).abs() < 1e-15);
+        assert!((energies.input - 1.2).abs() < 1e-15 && energies.stiffened == 0.01);
+        assert!((energies.friction - 1.15).abs() < 1e-15);
         assert!((energies.damping - 0.05).abs() < 1e-15 && energies.stored == 5.05);
         // 0.2 + 0.01 put in, 0.15 + 0.05 lost, 0.05 stored
         assert!((energies.unaccounted + 0.04).abs() < 1e-14);

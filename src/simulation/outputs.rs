@@ -83,6 +83,8 @@ pub struct Outputs {
     pub stored_energy: f64,
     /// \[J] work put in since the start.
     pub work: f64,
+    /// \[J] what contacts put in whose stiffness changes with the contact angle, since the start; no part of the work.
+    pub stiffened: f64,
     /// \[J] energy lost since the start to friction and contact damping.
     pub dissipated: f64,
     /// Work of the integrator since the start.
@@ -172,6 +174,7 @@ impl Outputs {
             damping_power: totals.damping_power,
             stored_energy: stored_energy(model, state, contacts),
             work: state.energies.input,
+            stiffened: state.energies.stiffened,
             dissipated: state.energies.friction + state.energies.damping,
             statistics: state.statistics,
         }
