@@ -8,6 +8,7 @@ use roulement::contact::many::ContactGroup;
 use roulement::contact::{BallMotion, RaceMotion};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use roulement::model::bodies::Race;
+use roulement::model::state::BallState;
 use roulement::model::{Conditions, Model};
 use roulement::numerics::scalar::{Dual, constant_vector};
 use roulement::scene::Scene;
@@ -240,7 +241,7 @@ fn invariant_lanes_are_single_balls_to_the_bit_and_derivatives_are_differences()
     for race in Race::BOTH {
         let contact = simulation.model().contact(race, &Conditions::of_friction(0.08));
         let seen = simulation.state().race(race).motion();
-        let motions: Vec<_> = simulation.state().balls.iter().map(|ball| ball.motion()).collect();
+        let motions: Vec<_> = simulation.state().balls.iter().map(BallState::motion).collect();
         for first in [0, 4, 8] {
             let some = &motions[first..(first + 4).min(motions.len())];
             let alone: Vec<_> = (0..some.len())

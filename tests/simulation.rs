@@ -88,6 +88,25 @@ fn invariant_kept_matrices_change_costs_and_not_results() {
 }
 
 #[test]
+fn regression_balls_at_the_edge_of_the_load_zone_cost_few_corrections() {
+    let fast = [("solver.accuracy", "\"fast\""), ("solver.tolerance", ""), ("solver.max_step", "")];
+    let (repaired, history) = run(&scene(RADIAL, &fast), 100);
+    // 4.5 corrections a step; 7.2 where thrown balls were not brought back alone first.
+    let statistics = repaired.state().statistics;
+    assert!((statistics.newton.iterations as f64) < 5.0 * statistics.steps as f64, "{statistics:?}");
+    assert_eq!(statistics.rejected_newton, 0);
+    let nothing_kept = [fast[0], fast[1], fast[2], ("solver.matrix_reuse", "0.0")];
+    let (all, reference) = run(&scene(RADIAL, &nothing_kept), 100);
+    assert_eq!(all.state().statistics.steps, statistics.steps);
+    let (last, expected) = (&history[100], &reference[100]);
+    // Both solve to nine digits of the load in every step.
+    assert!((last.inner.pose.position - expected.inner.pose.position).norm() < 1e-12);
+    for (ball, other) in last.balls.iter().zip(&expected.balls) {
+        assert!((ball.position - other.position).norm() < 1e-10);
+    }
+}
+
+#[test]
 fn closed_form_steady_thrust_load_and_race_speed() {
     // Where spin slides on both races, nothing but contact damping ends the axial swing of the start; here it sticks on one.
     let (_, history) = run(&scene(THRUST, &[("start.spin_balance", "false")]), 500);

@@ -1,5 +1,6 @@
-//! CPU time and work of fixed steps of 1e-5 s on the thrust case: `step_cost DRIVE LAW BALLS INTERVAL STEPS`, with DRIVE
-//! pose or wrench and a communication INTERVAL of so many steps. See `scripts/step-cost`.
+//! CPU time and work of fixed steps of 1e-5 s: `step_cost CASE LAW BALLS INTERVAL STEPS`, with a communication INTERVAL of so many
+//! steps. CASE is the thrust scene with its inner race in drive `pose` or `wrench`, or another scene, `cage` or `radial`, or `fast`: the radial
+//! one with that goal, for as long as these steps would take. These have BALLS of their own. LAW may end in `+heathcote`. See `scripts/step-cost`.
 
 use std::error::Error;
 
@@ -14,18 +15,29 @@ const SETTLING: u32 = 500;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [drive, law, balls, interval, steps] = &arguments[..] else {
-        return Err("usage: step_cost DRIVE LAW BALLS INTERVAL STEPS".into());
+    let [case, law, balls, interval, steps] = &arguments[..] else {
+        return Err("usage: step_cost CASE LAW BALLS INTERVAL STEPS".into());
     };
     let (interval, steps): (u32, u32) = (interval.parse()?, steps.parse()?);
     // A large tolerance keeps the step at its cap; more balls need a larger pitch circle.
     let n_balls: f64 = balls.parse()?;
-    let text = include_str!("../../scenes/thrust.toml")
-        .replace("drive = \"wrench\"", &format!("drive = \"{drive}\""))
-        .replace("\"saturated\"", &format!("\"{law}\""))
-        .replace("balls = 10 ", &format!("balls = {balls} "))
-        .replace("\"46 mm\"", &format!("\"{} mm\"", 46f64.max(4.6 * n_balls)))
-        .replace("max_step = \"10 us\"", "max_step = \"10 us\"\ntolerance = 1e-2");
+    let text = match case.as_str() {
+        "cage" => include_str!("../../scenes/cage.toml").to_string(),
+        "radial" | "fast" => include_str!("../../scenes/radial.toml").replace("tolerance = 1e-6\n", ""),
+        drive => include_str!("../../scenes/thrust.toml")
+            .replace("drive = \"wrench\"", &format!("drive = \"{drive}\""))
+            .replace("balls = 10 ", &format!("balls = {balls} "))
+            .replace("\"46 mm\"", &format!("\"{} mm\"", 46f64.max(4.6 * n_balls))),
+    };
+    let law = match law.strip_suffix("+heathcote") {
+        Some(law) => format!("\"{law}\"\nheathcote_slip = true"),
+        None => format!("\"{law}\""),
+    };
+    let steps_of_case = match case.as_str() {
+        "fast" => "accuracy = \"fast\"",
+        _ => "max_step = \"10 us\"\ntolerance = 1e-2",
+    };
+    let text = text.replace("\"saturated\"", &law).replace("max_step = \"10 us\"", steps_of_case);
     let mut simulation = Simulation::new(&Scene::parse(&text)?)?;
     let run = |simulation: &mut Simulation, from: u32, to: u32| -> Result<(), Box<dyn Error>> {
         for point in (from + interval..=to).step_by(interval as usize) {

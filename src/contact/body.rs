@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::numerics::scalar::Scalar;
+use crate::numerics::scalar::{Scalar, constant_vector};
 
 /// Motion of a rigid body, in world axes.
 #[derive(Clone, Copy, Debug)]
@@ -15,4 +15,16 @@ pub struct BodyMotion<S: Scalar> {
     pub velocity: Vector3<S>,
     /// [rad/s] angular velocity.
     pub angular_velocity: Vector3<S>,
+}
+
+impl BodyMotion<f64> {
+    /// The same motion without derivatives, as numbers that could have some.
+    pub fn constant<S: Scalar>(&self) -> BodyMotion<S> {
+        BodyMotion {
+            position: constant_vector(&self.position),
+            axes: self.axes.each_ref().map(constant_vector),
+            velocity: constant_vector(&self.velocity),
+            angular_velocity: constant_vector(&self.angular_velocity),
+        }
+    }
 }

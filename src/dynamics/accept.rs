@@ -20,6 +20,7 @@ use crate::model::energies::{Energies, Powers, Pressed};
 use crate::model::state::{BallState, BodyState, State, axes_of};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
+use crate::numerics::step_control::LARGEST_CUT;
 
 /// \[N] residual that is small enough for any bearing (paper section 5).
 const FORCE_TOLERANCE: f64 = 1e-6;
@@ -113,7 +114,9 @@ impl StepEnd {
         let solver = &model.solver;
         // The work of growth is known of an accepted step alone.
         let grows = state.grown.is_some_and(|grown| grown.warmth != boundary.conditions.warmth);
-        if solver.energy_error == 0.0 || h <= solver.energy_step.0 || grows {
+        // A step that is cut for its energy must not end the run.
+        let shortest = solver.energy_step.0.max(solver.min_step.0 / LARGEST_CUT);
+        if solver.energy_error == 0.0 || h <= shortest || grows {
             return 0.0;
         }
         let ball = &model.bearing.ball;

@@ -39,7 +39,8 @@ pub struct Surroundings<'a> {
 }
 
 impl<'a> Surroundings<'a> {
-    /// Those of all balls: contacts with the races and what acts from outside; `bodies` are the motions of the races, the trials of bodies that forces move, and the cage.
+    /// Those of all balls: contacts with the races and what acts from outside; `bodies` are the motions of the races, the trials of
+    /// bodies that forces move, and the cage.
     pub fn new(
         model: &'a Model,
         (contacts, ambient): (&'a PerRace<ContactModel<'a>>, &'a Ambient),
@@ -106,6 +107,8 @@ pub struct BallTrial {
     pub renewed: bool,
     /// [-] largest component of its residual over the tolerance, before the last correction.
     pub before: f64,
+    /// How far it was moved alone before a correction, where it was.
+    pub repaired: Option<Vector6<f64>>,
     /// Reactions on the bodies with their derivatives, where those were asked for.
     reactions: [Option<Reaction>; SLOTS],
 }
@@ -142,6 +145,7 @@ impl BallTrial {
             block: Block::default(),
             renewed: false,
             before: 0.0,
+            repaired: None,
             reactions: [None; SLOTS],
         }
     }
@@ -195,6 +199,37 @@ impl BallTrial {
         let mut tangent = self.contacts_with_tangent(index, around, step);
         self.evaluate_pocket(index, around, step, Some(&mut tangent));
         self.assemble(around.model, around.ambient, step, start, Some(tangent));
+    }
+
+    /// Evaluates contacts, residual and their derivatives by the ball's own unknowns alone.
+    pub fn evaluate_alone(
+        &mut self,
+        index: usize,
+        around: &Surroundings<'_>,
+        step: &HhtStep,
+        start: &BallState,
+    ) {
+        let Surroundings { model, contacts, ambient, differences, races, cage } = around;
+        let seeded = seed(&self.motion, step, model.bearing.ball.radius);
+        let mut tangent = Matrix6::zeros();
+        let values = PerRace::new(|race| {
+            let contact = contacts[race].of_ball(index, differences.get(index).map(|of_ball| &of_ball[race]));
+            let (value, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);
+            tangent += by_ball;
+            value
+        });
+        self.raceways = PerRace::new(|race| PairForces::from(&values[race]));
+        self.contacts = Some(values);
+        self.reactions = [None; SLOTS];
+        if let Some((cage, trial)) = cage {
+            self.pocket = cage.pocket_contact(index, &self.motion, &trial.value);
+            if self.pocket.is_some()
+                && let Some(forces) = cage.pocket_contact(index, &seeded, &trial.value.constant())
+            {
+                tangent += by_first(&forces.force, &forces.moment);
+            }
+        }
+        self.assemble(model, ambient, step, start, Some(tangent));
     }
 
     /// Evaluates the contacts with the races and returns their derivatives.

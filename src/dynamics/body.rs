@@ -190,7 +190,7 @@ impl BodyTrial {
     pub fn assemble_block<'a>(
         &mut self,
         given: &BodyStep<'_>,
-        reactions: impl Iterator<Item = &'a Reaction> + Clone,
+        reactions: &(impl Iterator<Item = &'a Reaction> + Clone),
     ) {
         let BodyStep { body, load, flange, step, scales, .. } = given;
         let (fraction, length) = (1.0 - step.alpha_f, scales.length);

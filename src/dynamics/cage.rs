@@ -11,7 +11,6 @@ use crate::contact::land::LandModel;
 use crate::contact::pair::PairForces;
 use crate::model::cage::CageModel;
 use crate::numerics::hht::HhtStep;
-use crate::numerics::scalar::constant_vector;
 
 /// A cage in a trial step.
 #[derive(Clone, Debug)]
@@ -42,12 +41,7 @@ impl CageTrial {
     pub fn new(body: &BodyTrial) -> Self {
         let value = body.body_motion_value();
         Self {
-            motion: BodyMotion {
-                position: constant_vector(&value.position),
-                axes: value.axes.each_ref().map(constant_vector),
-                velocity: constant_vector(&value.velocity),
-                angular_velocity: constant_vector(&value.angular_velocity),
-            },
+            motion: value.constant(),
             value,
             lands: [None; 2],
             race_by_cage: Matrix6::zeros(),

@@ -26,14 +26,14 @@ const CONSTRAINT_TOLERANCE: f64 = 1e-8;
 /// The equations of one trial step.
 pub struct BearingStep<'a> {
     pub model: &'a Model,
-    contacts: PerRace<ContactModel<'a>>,
+    pub(super) contacts: PerRace<ContactModel<'a>>,
     /// What acts from outside at the end of the step.
-    ambient: Ambient,
+    pub(super) ambient: Ambient,
     pub start: &'a State,
     pub step: HhtStep,
     pub boundary: &'a Boundary,
     /// Motion of the races at the end of the step.
-    races: PerRace<RaceMotion<f64>>,
+    pub(super) races: PerRace<RaceMotion<f64>>,
     pub force_tolerance: f64,
     pub workspace: &'a mut Workspace,
     /// Ball-race contacts evaluated without derivatives.
@@ -203,7 +203,7 @@ impl<'a> BearingStep<'a> {
     }
 
     /// Sums the forces of all pairs on the bodies that forces move, and sets the couplings of balls with new tangents.
-    fn scatter(&mut self) -> [Wrench; SLOTS] {
+    pub(super) fn scatter(&mut self) -> [Wrench; SLOTS] {
         let length = self.model.race_length();
         let mut sums = [Wrench::default(); SLOTS];
         let Workspace { balls, bodies, cage, .. } = &mut *self.workspace;
@@ -252,7 +252,7 @@ impl<'a> BearingStep<'a> {
     }
 
     /// Residuals of the bodies under these forces; returns the largest norm.
-    fn assemble_bodies(&mut self, sums: &[Wrench; SLOTS]) -> f64 {
+    pub(super) fn assemble_bodies(&mut self, sums: &[Wrench; SLOTS]) -> f64 {
         let mut norm = 0.0;
         let mut trials = std::mem::take(&mut self.workspace.bodies);
         let bodies = self.model.bodies.iter().zip(self.start.bodies.iter());
@@ -307,7 +307,7 @@ impl<'a> BearingStep<'a> {
                     Body::Cage => Some(&land.on_cage),
                     Body::Race(race) => (Some(race) == guide).then_some(&land.on_race),
                 });
-                trial.assemble_block(&self.given(body, model, start), reactions);
+                trial.assemble_block(&self.given(body, model, start), &reactions);
             }
         }
         self.workspace.bodies = trials;

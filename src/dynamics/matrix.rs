@@ -194,7 +194,22 @@ impl BearingStep<'_> {
 
     /// Writes the Newton correction of the present residual; false if the matrix is singular.
     pub(super) fn correct(&mut self, correction: &mut [f64]) -> bool {
-        if self.corrections > 0 && self.keeps_matrices() && self.mark_worn() {
+        self.workspace.balls.iter_mut().for_each(|trial| trial.repaired = None);
+        let mut renewed = false;
+        if self.keeps_matrices() {
+            let repaired = !self.balls_are_independent() && self.repair_balls();
+            renewed = self.corrections > 0 && self.mark_worn();
+            if repaired {
+                // Their blocks are for contacts as they were.
+                for trial in self.workspace.balls.iter_mut() {
+                    trial.renewed = (renewed && trial.renewed) || trial.repaired.is_some();
+                }
+                let sums = self.scatter();
+                self.assemble_bodies(&sums);
+                renewed = true;
+            }
+        }
+        if renewed {
             self.renewals += 1;
             self.differentiate_bodies();
             self.evaluate_renewed();
@@ -263,7 +278,8 @@ impl BearingStep<'_> {
             ring.solve(x, y, offsets)
         };
         let (of_balls, border) = correction.split_at_mut(BLOCK * x.len());
-        for (chunk, x) in of_balls.chunks_exact_mut(BLOCK).zip(x.iter()) {
+        for ((chunk, x), trial) in of_balls.chunks_exact_mut(BLOCK).zip(x.iter()).zip(balls.iter()) {
+            let x = trial.repaired.map_or(*x, |moved| moved + x);
             chunk.copy_from_slice(x.as_slice());
         }
         border.copy_from_slice(y.as_slice());

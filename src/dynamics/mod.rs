@@ -14,6 +14,7 @@ mod matrix;
 mod neighbours;
 mod reaction;
 mod record;
+mod repair;
 mod sensitivity;
 mod step_turn;
 mod support;

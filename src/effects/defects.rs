@@ -111,7 +111,7 @@ impl Effect for Settings {
         adds: "spalls of the races that balls drop into, and the frequencies of damage from the running cage speed",
         states: "none",
         source: "fit of elastic boundary elements (contact::spall); frequencies after Harris 2001, chapter 25",
-        price: "steps that see the edge while a ball is near; 3 % of a step elsewhere",
+        price: "a step that sees the edge while a ball is near; not measured",
         example: "[[defect]]\non = \"outer\"\nlength = \"1 mm\"\nwidth = \"3 mm\"\ndepth = \"0.1 mm\"\n",
     };
 

@@ -252,7 +252,7 @@ impl Effect for Settings {
         adds: "waves and measured profiles of the races, radial and axial, and balls of different sizes",
         states: "none",
         source: "Wardle 1988; Johnson 1985, chapter 4 for the contact",
-        price: "12 % of a step (thrust case, one wave on a race)",
+        price: "not measured; steps that see every wave",
         example: "[form]\nouter = [{ order = 9, amplitude = \"0.3 um\" }]\n",
     };
 

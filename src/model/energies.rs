@@ -20,8 +20,10 @@ pub struct Powers {
 /// Energies \[J]: sums since the start, and what is stored now.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
-    /// Work put in, by contacts whose stiffness changes too.
+    /// Work put in.
     pub input: f64,
+    /// Put in by contacts whose stiffness changes with the contact angle.
+    pub stiffened: f64,
     /// Lost to friction.
     pub friction: f64,
     /// Lost to contact damping.
@@ -46,15 +48,16 @@ impl Energies {
     /// and the energy stored at its end \[J].
     pub fn add(&mut self, (before, after): (&Powers, &Powers), h: f64, stiffened: f64, stored: f64) {
         let integral = |before: f64, after: f64| 0.5 * h * (before + after);
-        let input = integral(before.input, after.input) + stiffened;
+        let input = integral(before.input, after.input);
         let friction = integral(before.friction, after.friction);
         let damping = integral(before.damping, after.damping);
         let around = integral(before.around, after.around);
         self.input += input;
+        self.stiffened += stiffened;
         self.friction += friction;
         self.damping += damping;
         self.around += around;
-        self.unaccounted += input - friction - damping - around - (stored - self.stored);
+        self.unaccounted += input + stiffened - friction - damping - around - (stored - self.stored);
         self.stored = stored;
     }
 
@@ -114,7 +117,8 @@ mod tests {
         let start = Powers { input: 1.0, friction: 1.0, damping: 0.5, around: 0.0 };
         let mut energies = before;
         energies.add((&start, &now), 0.1, 0.01, 5.05);
-        assert!((energies.input - 1.21).abs() < 1e-15 && (energies.friction - 1.15).abs() < 1e-15);
+        assert!((energies.input - 1.2).abs() < 1e-15 && energies.stiffened == 0.01);
+        assert!((energies.friction - 1.15).abs() < 1e-15);
         assert!((energies.damping - 0.05).abs() < 1e-15 && energies.stored == 5.05);
         assert!((energies.around - 0.02).abs() < 1e-15);
         // 0.2 + 0.01 put in, 0.15 + 0.05 + 0.02 lost, 0.05 stored

@@ -91,16 +91,17 @@ mod tests {
     #[test]
     fn invariant_points_are_met_and_derivatives_go_on_across_them() {
         for n in [4, 5, 7, 64] {
-            let values: Vec<[f64; 1]> = (0..n).map(|i| [(i as f64 * 1.7).sin() + 0.1 * i as f64]).collect();
+            let values: Vec<[f64; 1]> =
+                (0..n).map(|i| [(f64::from(i) * 1.7).sin() + 0.1 * f64::from(i)]).collect();
             let spline = PeriodicSpline::through(&values).unwrap();
             for (i, [value]) in values.iter().enumerate() {
-                let angle = TAU * i as f64 / n as f64;
+                let angle = TAU * i as f64 / f64::from(n);
                 let [before, after] = [-1e-9, 1e-9].map(|off| spline.at(angle + off)[0][0]);
                 assert!((before - value).abs() < 1e-7 && (after - value).abs() < 1e-7, "{n} {i}");
                 let [[_, slope, bend]] = spline.at(angle - 1e-12);
                 let [[_, next_slope, next_bend]] = spline.at(angle + 1e-12);
-                assert!((slope - next_slope).abs() < 1e-8 * n as f64, "{n} {i}");
-                assert!((bend - next_bend).abs() < 1e-7 * (n * n) as f64, "{n} {i}");
+                assert!((slope - next_slope).abs() < 1e-8 * f64::from(n), "{n} {i}");
+                assert!((bend - next_bend).abs() < 1e-7 * f64::from(n * n), "{n} {i}");
             }
         }
         assert!(PeriodicSpline::<1>::through(&[[0.0]; 3]).is_none());

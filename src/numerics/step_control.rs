@@ -12,6 +12,8 @@ const NOTCHES_PER_OCTAVE: f64 = 4.0;
 /// Largest growth and shrinkage of one step, in notches.
 const MAX_GROWTH: i32 = 4;
 const MAX_SHRINKAGE: i32 = 12;
+/// [-] a rejected step is tried again with no less than this part of it.
+pub const LARGEST_CUT: f64 = 0.125;
 /// [-] an accepted step with an error below this keeps its size or grows. When a contact closes the error jumps from almost
 /// zero, and the proportional part would cut the step. A step cut in the middle of an impact breaks the symmetry between
 /// approach and rebound: a bearing with bouncing balls gained 2.7 % of energy in 1e5 steps.
@@ -41,7 +43,9 @@ impl StepControl {
     /// Goes on with the largest quantised step not above a limit \[s], where the present one is; but not with one below the
     /// smallest allowed.
     pub fn cap(&mut self, limit: f64) {
-        self.notch = self.notch.min(notch_below(limit.max(self.min_step), self.max_step));
+        let lowest =
+            ((self.min_step / self.max_step).log2() * NOTCHES_PER_OCTAVE - 1e-9).ceil().min(0.0) as i32;
+        self.notch = self.notch.min(notch_below(limit, self.max_step).max(lowest));
     }
 
     /// \[s] present step size.

@@ -30,7 +30,7 @@ pub struct Solver {
     /// matrix for every correction, 1 keeps one until it no longer lowers the residual.
     pub matrix_reuse: f64,
     /// [-] part of the energy that a run puts in or loses which it may leave unaccounted for: steps are held down to keep it;
-    /// 0 does not look at energy. A default where steps and tolerance are not given.
+    /// 0, the default, does not look at energy.
     pub energy_error: f64,
     /// \[s] steps up to this are not shortened for that.
     pub energy_step: Time,
@@ -59,7 +59,7 @@ pub enum Level {
 pub enum Follows {
     /// Nothing: the settings are as they were given.
     Nothing,
-    /// The step down to which energy is looked at, of a named goal.
+    /// The step down to which energy is looked at.
     Energy,
     /// First and largest step, of an error goal.
     Steps,
@@ -121,7 +121,7 @@ impl Default for Solver {
             max_step: Time(1e-5),
             min_step: Time(0.0),
             matrix_reuse: REFACTOR_CONTRACTION,
-            energy_error: USUAL_ENERGY_ERROR,
+            energy_error: 0.0,
             energy_step: Time(0.0),
             goal: None,
             follows: Follows::All { initial_step: true },
@@ -130,8 +130,6 @@ impl Default for Solver {
     }
 }
 
-/// [-] energy unaccounted for where nothing is said: half of what `roulement run` says something about.
-const USUAL_ENERGY_ERROR: f64 = 5e-3;
 /// [-] smallest step that energy asks for, in periods of a ball between its races: an impact takes half a period.
 const ENERGY_PERIODS: f64 = 0.003;
 
@@ -219,7 +217,7 @@ impl Accuracy {
         let steps = |max_step, tolerance| Solver {
             max_step: Time(max_step),
             tolerance,
-            follows: Follows::Energy,
+            follows: Follows::Nothing,
             ..Solver::default()
         };
         match self {
@@ -318,10 +316,14 @@ impl TryFrom<SolverKeys> for Solver {
         let max_step = keys.max_step.unwrap_or(goal.max_step);
         let limited = keys.max_step.is_some() || keys.tolerance.is_some();
         let follows = match goal.follows {
+            Follows::Nothing if keys.energy_error.is_some() => Follows::Energy,
             _ if limited && keys.energy_error.is_some() => Follows::Energy,
             _ if limited => Follows::Nothing,
             Follows::All { .. } => Follows::All { initial_step: keys.initial_step.is_none() },
-            Follows::Steps if keys.initial_step.is_some() => Follows::Energy,
+            Follows::Steps if keys.initial_step.is_some() => match keys.energy_error {
+                Some(_) => Follows::Energy,
+                None => Follows::Nothing,
+            },
             follows => follows,
         };
         Ok(Self {
@@ -332,7 +334,7 @@ impl TryFrom<SolverKeys> for Solver {
             max_step,
             min_step: keys.min_step.unwrap_or(Time(goal.min_step.si().min(max_step.si()))),
             matrix_reuse: keys.matrix_reuse.unwrap_or(goal.matrix_reuse),
-            energy_error: keys.energy_error.unwrap_or(if limited { 0.0 } else { goal.energy_error }),
+            energy_error: keys.energy_error.unwrap_or(goal.energy_error),
             energy_step: goal.energy_step,
             goal: goal.goal,
             follows,
@@ -373,8 +375,6 @@ mod tests {
                 max_step: Time(3e-6),
                 alpha_f: 0.2,
                 initial_step: Time(goal.solver().initial_step.0.min(3e-6)),
-                energy_error: 0.0,
-                follows: Follows::Nothing,
                 ..goal.solver()
             };
             assert_eq!(mixed, expected);
@@ -407,19 +407,18 @@ mod tests {
     }
 
     #[test]
-    fn energy_is_looked_at_unless_steps_are_given() {
+    fn energy_is_looked_at_where_the_scene_asks_for_it() {
         let looks = |text: &str| {
             let mut solver = parse(text).unwrap();
-            solver.follow(30e3, 1e-3);
+            if solver.follows != Follows::Nothing {
+                solver.follow(30e3, 1e-3);
+            }
             (solver.energy_error, solver.energy_step.0)
         };
-        for text in ["", "accuracy = \"fast\"", "accuracy = { error = 1e-3 }", "initial_step = 1e-7"] {
-            assert_eq!(looks(text), (USUAL_ENERGY_ERROR, 1e-7), "{text}");
+        for text in ["", "accuracy = \"fast\"", "accuracy = { error = 1e-3 }", "max_step = 1e-7"] {
+            assert_eq!(looks(text).0, 0.0, "{text}");
+            assert_eq!(looks(&format!("{text}\nenergy_error = 0.01")), (0.01, 1e-7), "{text}");
         }
-        assert_eq!(looks("max_step = 1e-5").0, 0.0);
-        assert_eq!(looks("accuracy = \"fast\"\ntolerance = 1e-6").0, 0.0);
-        assert_eq!(looks("max_step = 1e-5\nenergy_error = 0.01"), (0.01, 1e-7));
-        assert_eq!(looks("energy_error = 0"), (0.0, 1e-7));
     }
 
     #[test]

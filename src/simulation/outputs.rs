@@ -91,7 +91,9 @@ pub struct Outputs {
     pub stored_energy: f64,
     /// \[J] work put in since the start.
     pub work: f64,
-    /// \[J] energy lost since the start to friction, contact damping and the medium around the balls.
+    /// \[J] what contacts put in whose stiffness changes with the contact angle, since the start; no part of the work.
+    pub stiffened: f64,
+    /// \[J] energy lost since the start to friction, contact damping, the medium around the balls and dampers of supports.
     pub dissipated: f64,
     /// Work of the integrator since the start.
     pub statistics: Statistics,
@@ -181,6 +183,7 @@ impl Outputs {
             damping_power: totals.damping_power,
             stored_energy: stored_energy(model, state, contacts),
             work: state.energies.input,
+            stiffened: state.energies.stiffened,
             dissipated: state.energies.friction + state.energies.damping + state.energies.around,
             supports: [state.supports.inner, state.supports.outer],
             drag_power: power_lost_around(

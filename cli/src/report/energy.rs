@@ -48,9 +48,10 @@ impl EnergyWatch {
         self.begin
     }
 
-    /// \[J] work put in less what was lost and what is stored since the start.
+    /// \[J] what was put in, by contacts whose stiffness changes too, less what was lost and what is stored since the start.
     pub fn balance(&self, now: &Outputs) -> f64 {
-        now.work - now.dissipated - (now.stored_energy - self.stored_at_start.unwrap_or(now.stored_energy))
+        let stored = now.stored_energy - self.stored_at_start.unwrap_or(now.stored_energy);
+        now.work + now.stiffened - now.dissipated - stored
     }
 
     /// What to say where the energy does not close; none where it does.

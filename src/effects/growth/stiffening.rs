@@ -2,8 +2,9 @@
 //!
 //! Tables of a raceway's contacts ([`crate::contact::shape`]) are those of cold dimensions. What growth changes of them are the
 //! radius of the ball and, above all, the difference of the curvatures of ball and groove, which is small: balls of ceramic in
-//! races of steel lose 2 % of it in 100 K. Stiffness is nearly a product of powers of both: its logarithm over that of the table is a
-//! polynomial of second order in the logarithms of both changes; what is left out is below 1e-7 at 100 K (tested). The curvature of the raceway along its circumference is exact anyway.
+//! races of steel lose 2 % of it in 100 K. Stiffness is nearly a product of powers of both: its logarithm over that of the table
+//! is a polynomial of second order in the logarithms of both changes; what is left out is below 1e-7 at 100 K (tested). The
+//! curvature of the raceway along its circumference is exact anyway.
 
 use crate::contact::hertz::HertzContact;
 use crate::contact::raceway::Raceway;
