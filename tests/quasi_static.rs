@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, unsafe_code)]
 #![allow(clippy::undocumented_unsafe_blocks)] // every pointer in here lives through its call
 
+use roulement::effects::rating::Sums;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::fmi::v2::Status;
 use roulement::model::bodies::Race;
@@ -56,6 +57,29 @@ fn invariant_every_row_is_the_equilibrium_under_its_load() {
         close(*turned, 50.0 * std::f64::consts::PI * time, 1e-9, "turned");
         assert_eq!((outputs.work, outputs.dissipated, outputs.damping_power), (0.0, 0.0, 0.0));
     }
+}
+
+#[test]
+fn identity_life_over_rows_is_that_of_the_loads_of_all_rows() {
+    let scene = Scene::parse(&format!("{STATICS}\n[rating]\n")).unwrap();
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let rating = simulation.model().rating.unwrap();
+    let rates = |simulation: &Simulation| {
+        let outputs = simulation.outputs();
+        let loads = outputs.balls.iter().map(|ball| [ball.inner.load, ball.outer.load]);
+        let [inner, outer] = Race::BOTH.map(|race| simulation.state().race(race).rate.x);
+        rating.rates(loads, inner - outer)
+    };
+    let mut sums = Sums::default();
+    sums.begin(rates(&simulation));
+    for row in 1..=4 {
+        simulation.advance_scripted(0.2 * f64::from(row)).unwrap();
+        sums.add(rates(&simulation), 0.2);
+        let (life, expected) = (simulation.outputs().life.unwrap().reference, rating.after(&sums).reference);
+        close(life, expected, 1e-9 * expected, "life");
+    }
+    // The load has grown: its last value alone would give less.
+    assert!(rating.life(&rates(&simulation)).reference < 0.7 * rating.after(&sums).reference);
 }
 
 #[test]
