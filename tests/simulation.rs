@@ -340,3 +340,24 @@ fn invariant_energy_closes_without_friction_at_any_contact_angle() {
         last.work
     );
 }
+
+/// A thrust that halves within 0.1 ms, with steps that are long for the bounce that follows.
+const LET_GO: &str = "[bearing]\nballs = 12\nball_diameter = \"33 mm\"\npitch_diameter = \"153 mm\"\ncontact_angle = \"39 deg\"\n\
+    [friction]\nball_race = 0.018\n[effects]\ncreep = \"kalker_table\"\ndamping = 0.05\n\
+    [inner]\ndrive = \"wrench\"\nmass = 58\ninertia = [0.34, 0.21, 0.21]\n[solver]\naccuracy = \"fast\"\n\
+    [load]\nduration = \"5 ms\"\noutput_interval = \"0.1 ms\"\ninner_speed = -77\ny = { force = 3700 }\n\
+    x = { force = [[0, 103e3], [\"2 ms\", 103e3], [\"2.1 ms\", 51.5e3]] }\n";
+
+#[test]
+fn invariant_energy_closes_where_steps_look_at_it() {
+    let open = |changes: &[(&str, &str)]| {
+        let (simulation, history) = run(&scene(LET_GO, changes), 50);
+        let last = simulation.outputs();
+        let stored = last.stored_energy - history[0].stored_energy;
+        let balance = last.work + last.stiffened - last.dissipated - stored;
+        (balance.abs() / last.work.abs().max(last.dissipated), last.statistics.steps)
+    };
+    let ((blind, steps), (looking, more)) = (open(&[]), open(&[("solver.energy_error", "5e-3")]));
+    assert!(blind > 0.02, "{blind} in {steps} steps");
+    assert!(looking < 0.01 && more < 20 * steps, "{looking} in {more} steps, {blind} in {steps}");
+}

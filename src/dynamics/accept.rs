@@ -85,20 +85,24 @@ impl StepEnd {
                 (Body::Cage, None) => {}
             }
         }
-        let bodies = model.bodies.iter().zip(workspace.bodies.iter());
-        let moved = bodies.filter_map(|((_, body), (_, trial))| Some((body.as_ref()?, &trial.as_ref()?.end)));
         let of_race = |race: Race| workspace.bodies[race].as_ref().map(|trial| &trial.end);
         let supports = supports_of(model, of_race, boundary, &mut powers);
-        let stored = kinetic_energy(model, motions(), moved)
-            + elastic_energy(model, &solved, n_balls)
-            + supports_energy(&supports);
         let stiffened = |(ball, trial): (&BallState, &BallTrial)| {
             let now = |race| Pressed::new(&trial.raceways[race]).stiffened(&ball.pressed[race]);
             now(Race::Inner) + now(Race::Outer)
         };
         let stiffened = state.balls.iter().zip(&workspace.balls).map(stiffened);
         let mut energies = state.energies;
-        energies.add((&state.powers, &powers), h, stiffened.fold(0.0, |sum, work| sum + work), stored);
+        let left = energies.add((&state.powers, &powers), h, stiffened.fold(0.0, |sum, work| sum + work));
+        if model.solver.energy_error > 0.0 {
+            let bodies = model.bodies.iter().zip(workspace.bodies.iter());
+            let moved =
+                bodies.filter_map(|((_, body), (_, trial))| Some((body.as_ref()?, &trial.as_ref()?.end)));
+            let stored = kinetic_energy(model, motions(), moved)
+                + elastic_energy(model, &solved, n_balls)
+                + supports_energy(&supports);
+            energies.close(left, stored);
+        }
         Self { totals, powers, energies, supports }
     }
 

@@ -30,9 +30,9 @@ pub struct Energies {
     pub damping: f64,
     /// Lost to what is around the bearing.
     pub around: f64,
-    /// Kinetic and elastic energy now.
+    /// Kinetic and elastic energy at the end of the last step, where the steps look at energy.
     pub stored: f64,
-    /// Put in, but neither lost nor stored.
+    /// Put in, but neither lost nor stored, there.
     pub unaccounted: f64,
 }
 
@@ -44,9 +44,9 @@ impl Energies {
     /// [-] of the kinetic energy exchanged in a step: steps of some 1/200 of a period.
     const OF_EXCHANGE: f64 = 1e-4;
 
-    /// Adds a step of `h` \[s] by the trapezoidal rule: from powers before and after it, what changes of stiffness put in \[J],
-    /// and the energy stored at its end \[J].
-    pub fn add(&mut self, (before, after): (&Powers, &Powers), h: f64, stiffened: f64, stored: f64) {
+    /// Adds a step of `h` \[s] by the trapezoidal rule: from powers before and after it, and what changes of stiffness put in \[J].
+    /// Returns what that leaves to be stored \[J].
+    pub fn add(&mut self, (before, after): (&Powers, &Powers), h: f64, stiffened: f64) -> f64 {
         let integral = |before: f64, after: f64| 0.5 * h * (before + after);
         let input = integral(before.input, after.input);
         let friction = integral(before.friction, after.friction);
@@ -57,7 +57,12 @@ impl Energies {
         self.friction += friction;
         self.damping += damping;
         self.around += around;
-        self.unaccounted += input + stiffened - friction - damping - around - (stored - self.stored);
+        input + stiffened - friction - damping - around
+    }
+
+    /// Compares what a step left to be stored with what is stored at its end \[J].
+    pub fn close(&mut self, left: f64, stored: f64) {
+        self.unaccounted += left - (stored - self.stored);
         self.stored = stored;
     }
 
@@ -116,7 +121,8 @@ mod tests {
         let (before, now) = (after(0.0), Powers { input: 3.0, friction: 2.0, damping: 0.5, around: 0.4 });
         let start = Powers { input: 1.0, friction: 1.0, damping: 0.5, around: 0.0 };
         let mut energies = before;
-        energies.add((&start, &now), 0.1, 0.01, 5.05);
+        let left = energies.add((&start, &now), 0.1, 0.01);
+        energies.close(left, 5.05);
         assert!((energies.input - 1.2).abs() < 1e-15 && energies.stiffened == 0.01);
         assert!((energies.friction - 1.15).abs() < 1e-15);
         assert!((energies.damping - 0.05).abs() < 1e-15 && energies.stored == 5.05);
