@@ -22,7 +22,7 @@ APPLIED = vector("inner.applied_force") + vector("inner.applied_moment")
 # Changes that the wrench answers with some newtons: far above the solver's residual, far below what bends the contacts.
 CHANGE = {"position": 2e-8, "orientation": 5e-7, "angle": 1e-6, "velocity": 2e-5, "angular_velocity": 1e-3}
 CHANGE |= {"rotation": 1e-6, "rotation_rate": 1e-3}
-CHANGE |= {"applied_force": 1.0, "applied_moment": 1e-2, "speed": 1e-2, "friction": 1e-3}
+CHANGE |= {"applied_force": 1.0, "applied_moment": 1e-2, "speed": 1e-2, "friction": 3e-4}
 
 
 def change(name):
