@@ -29,7 +29,7 @@ pub struct Field {
 pub struct FieldPoint {
     /// \[m] place from the middle of the ellipse.
     pub place: [f64; 2],
-    /// [m2] area.
+    /// \[m2] area.
     pub area: f64,
     /// \[Pa] pressure.
     pub pressure: f64,

@@ -3,7 +3,7 @@
 //! Each part has one temperature and expands freely: a ring takes the radius of its groove circle, the radius and the place of
 //! its groove along, a ball its diameter. A fit and rotation widen the groove circle by the displacement of the raceway's bottom
 //! ([`rings`]). Nothing is moved back to touch: the change of preload is the effect. Contacts get their stiffness of warm dimensions
-//! ([`stiffening`]). Mass and inertia, ellipses and creep coefficients, pockets, and gaps between balls stay those of the cold
+//! (`stiffening.rs`). Mass and inertia, ellipses and creep coefficients, pockets, and gaps between balls stay those of the cold
 //! bearing: they change by a thousandth in 100 K.
 
 pub mod rings;
