@@ -114,7 +114,7 @@ fn static_loads(simulation: &Simulation, index: usize, fraction: f64, swing: boo
         let position = races[1].position + axis * place.x + radial * place.y;
         let (mut sum, mut loads) = (centrifugal, [0.0; 2]);
         for race in 0..2 {
-            let contact =
+            let (contact, _) =
                 GrooveContact::new(&contacts[race].surface, &(position - races[race].position), &races[race]);
             let stiffness = contacts[race].shape.stiffness(contact.circumferential_curvature);
             loads[race] = stiffness * contact.approach.max(0.0).powf(1.5);

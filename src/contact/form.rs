@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 
 use super::RaceMotion;
-use super::geometry::azimuth;
+use super::shift::{Shift, azimuth};
 use crate::numerics::periodic_spline::PeriodicSpline;
 use crate::numerics::scalar::Scalar;
 
@@ -45,26 +45,6 @@ pub struct Form {
     spline: PeriodicSpline<2>,
     /// [-] order of the shortest wave.
     pub order: f64,
-}
-
-/// The groove circle at an azimuth.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Shift<S> {
-    /// \[m] more radius.
-    pub radial: S,
-    /// \[m/rad] its slope.
-    pub radial_slope: S,
-    /// \[m] further along the axis.
-    pub axial: S,
-    /// \[m/rad] its slope.
-    pub axial_slope: S,
-}
-
-impl<S: Scalar> Shift<S> {
-    /// No shift.
-    pub(super) fn none() -> Self {
-        Self { radial: S::zero(), radial_slope: S::zero(), axial: S::zero(), axial_slope: S::zero() }
-    }
 }
 
 impl Form {

@@ -3,8 +3,7 @@
 use nalgebra::Vector3;
 
 use super::RaceMotion;
-use super::form::Shift;
-use super::normal::NormalLoad;
+use super::shift::{Shift, azimuth};
 use super::spall::Spalls;
 use super::surface::Surface;
 use crate::numerics::scalar::{Scalar, cross, dot};
@@ -29,38 +28,40 @@ pub struct GrooveContact<S: Scalar> {
     pub distance: S,
     /// [1/m] curvature of the raceway along its circumference at the contact; convex (inner race) positive.
     pub circumferential_curvature: S,
-    /// [-] change of the approach by a move along the normal; none where it is 1, without spalls.
-    pub gain: Option<S>,
 }
 
 impl<S: Scalar> GrooveContact<S> {
-    /// Contact of a ball whose centre is at `offset` \[m] from the centre of a race.
+    /// Contact of a ball whose centre is at `offset` \[m] from the centre of a race; and [-] the change of its approach by a move along
+    /// the normal, which is 1 but for spalls.
     #[inline(always)]
-    pub fn new(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> Self {
-        if surface.is_plain() {
-            Self::on(surface, offset, race, None)
-        } else {
-            Self::shaped(surface, offset, race)
-        }
-    }
-
-    /// Contact with a race that departs from a torus, or of balls that are not alike. Apart, so that a plain race does not pay for it.
-    #[inline(never)]
-    fn shaped(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> Self {
+    pub fn new(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> (Self, S) {
         let shift = surface.form.map_or_else(Shift::none, |form| form.under(offset, race));
         let mut contact = Self::on(surface, offset, race, Some(&shift));
+        let mut gain = S::one();
         if let Some(larger) = surface.of_balls(|size| size.larger) {
             contact.approach += larger;
         }
         if let Some(spalls) = surface.spalls {
-            contact.drop_into(spalls, offset, race, &shift);
+            gain = contact.drop_into(spalls, offset, race, &shift);
         }
-        contact
+        (contact, gain)
     }
 
-    /// Drops the ball into the spalls of the race.
+    /// The same with a torus under balls that are alike, for less.
     #[inline(always)]
-    fn drop_into(&mut self, spalls: &Spalls, offset: &Vector3<S>, race: &RaceMotion<S>, shift: &Shift<S>) {
+    pub(super) fn plain(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> Self {
+        Self::on(surface, offset, race, None)
+    }
+
+    /// Drops the ball into the spalls of the race; returns the change of the approach by a move along the normal.
+    #[inline(always)]
+    fn drop_into(
+        &mut self,
+        spalls: &Spalls,
+        offset: &Vector3<S>,
+        race: &RaceMotion<S>,
+        shift: &Shift<S>,
+    ) -> S {
         let around = cross(&race.axis, &self.radial);
         let (cos, sin) = (dot(&self.normal, &self.radial), dot(&self.normal, &race.axis));
         let drop = spalls.under(azimuth(offset, race), sin, cos, self.approach);
@@ -77,25 +78,7 @@ impl<S: Scalar> GrooveContact<S> {
         let across = self.circumferential - self.normal * dot(&self.circumferential, &self.normal);
         let length = dot(&across, &across).sqrt();
         self.circumferential = across.map(|component| component / length);
-        self.gain = Some(gain);
-    }
-
-    /// [m/s] rate of the approach, of that along the normal.
-    #[inline(always)]
-    pub(super) fn rate(&self, along_normal: S) -> S {
-        match self.gain {
-            None => along_normal,
-            Some(gain) => gain * along_normal,
-        }
-    }
-
-    /// The load whose force along the normal does the work of a load that goes with the approach.
-    #[inline(always)]
-    pub(super) fn force_of(&self, load: NormalLoad<S>) -> NormalLoad<S> {
-        match self.gain {
-            None => load,
-            Some(gain) => NormalLoad { total: load.total * gain, ..load },
-        }
+        gain
     }
 
     /// Contact with a race whose groove circle is shifted where the ball is.
@@ -139,21 +122,8 @@ impl<S: Scalar> GrooveContact<S> {
             radius,
             distance,
             circumferential_curvature: -cos / contact_radius,
-            gain: None,
         }
     }
-}
-
-/// \[rad] azimuth at `offset` \[m] from the origin of a race, from its own y axis.
-#[inline(always)]
-pub(super) fn azimuth<S: Scalar>(offset: &Vector3<S>, race: &RaceMotion<S>) -> S {
-    let y = race.across.map(S::constant);
-    let z = cross(&race.axis, &y);
-    let [azimuth] = S::map_smooth_many([dot(offset, &y), dot(offset, &z)], |[y, z]| {
-        let square = y * y + z * z;
-        ([z.atan2(y)], [[-z / square, y / square]])
-    });
-    azimuth
 }
 
 impl<S: Scalar> GrooveContact<S> {
@@ -172,7 +142,6 @@ impl<S: Scalar> GrooveContact<S> {
             radius: f(self.radius, other.radius),
             distance: f(self.distance, other.distance),
             circumferential_curvature: f(self.circumferential_curvature, other.circumferential_curvature),
-            gain: self.gain.zip(other.gain).map(|(a, b)| f(a, b)),
         }
     }
 }
@@ -186,7 +155,7 @@ mod tests {
     fn limit_a_ball_on_the_groove_centre_touches_nothing() {
         let raceway = Raceway { groove_radius: 6.6e-3, groove_circle_radius: 0.0625, groove_offset: 0.0 };
         let centre = Vector3::new(0.0, raceway.groove_circle_radius, 0.0);
-        let contact = GrooveContact::new(
+        let (contact, _) = GrooveContact::new(
             &Surface::plain(raceway, 6.35e-3),
             &centre,
             &RaceMotion::resting(Vector3::zeros(), Vector3::x(), Vector3::y()),

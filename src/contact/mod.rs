@@ -20,6 +20,7 @@ pub mod pocket;
 pub mod raceway;
 pub mod regularised;
 pub mod shape;
+mod shift;
 pub mod shoulder;
 pub mod spall;
 pub mod surface;
@@ -202,16 +203,83 @@ impl ContactModel<'_> {
         }
     }
 
+    /// Is the race a torus under balls that are alike, with the usual damping?
+    #[inline(always)]
+    fn is_usual(&self) -> bool {
+        self.surface.is_plain() && matches!(self.damping, Damping::HuntCrossley(_))
+    }
+
+    /// [N/m^1.5] Hertz stiffness of these balls, of that of the shape where the contact is.
+    #[inline(always)]
+    pub fn stiffness_of<S: Scalar>(&self, of_shape: S) -> S {
+        let stiffness = of_shape.scale(self.stiffening);
+        match self.surface.of_balls::<S>(|size| size.stiffness) {
+            None => stiffness,
+            Some(factor) => stiffness * factor,
+        }
+    }
+
+    /// Where the ball touches, and the gain of [`GrooveContact::new`].
+    #[inline(always)]
+    fn touch<S: Scalar, const SHAPED: bool>(
+        &self,
+        offset: &Vector3<S>,
+        race: &RaceMotion<S>,
+    ) -> (GrooveContact<S>, S) {
+        match SHAPED {
+            true => GrooveContact::new(&self.surface, offset, race),
+            false => (GrooveContact::plain(&self.surface, offset, race), S::one()),
+        }
+    }
+
+    /// Hertz stiffness and normal load by the stiffness of the shape, the depth and its root, the approach rate along the normal
+    /// and the gain of [`GrooveContact::new`]: the load does the work along the normal of one that goes with the approach.
+    #[inline(always)]
+    fn normal_load<S: Scalar, const SHAPED: bool>(
+        &self,
+        of_shape: S,
+        [depth, root]: [S; 2],
+        rate: S,
+        gain: S,
+    ) -> (S, NormalLoad<S>) {
+        if SHAPED {
+            let stiffness = self.stiffness_of(of_shape);
+            let load = NormalLoad::hertz(stiffness, depth, root, gain * rate, self.damping);
+            (stiffness, NormalLoad { total: load.total * gain, ..load })
+        } else {
+            let stiffness = of_shape.scale(self.stiffening);
+            let (Damping::HuntCrossley(factor) | Damping::Viscoelastic(factor)) = self.damping;
+            (stiffness, NormalLoad::damped(stiffness * depth * root, rate, factor))
+        }
+    }
+
     /// A contact that carries its normal load alone.
     #[inline(always)]
     fn pressed<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
-        let offset = ball.position - race.position;
-        let geometry = GrooveContact::new(&self.surface, &offset, race);
-        let depth = geometry.approach.positive_part();
-        let mut stiffness = self.shape.stiffness(geometry.circumferential_curvature).scale(self.stiffening);
-        if let Some(factor) = self.surface.of_balls::<S>(|size| size.stiffness) {
-            stiffness *= factor;
+        if self.is_usual() {
+            self.pressed_on::<S, false>(ball, race)
+        } else {
+            self.pressed_shaped(ball, race)
         }
+    }
+
+    /// The same on any surface with any damping, apart, so that the usual contact does not pay for it.
+    #[cold]
+    #[inline(never)]
+    fn pressed_shaped<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        self.pressed_on::<S, true>(ball, race)
+    }
+
+    #[inline(always)]
+    fn pressed_on<S: Scalar, const SHAPED: bool>(
+        &self,
+        ball: &BallMotion<S>,
+        race: &RaceMotion<S>,
+    ) -> BallRaceContact<S> {
+        let offset = ball.position - race.position;
+        let (geometry, gain) = self.touch::<S, SHAPED>(&offset, race);
+        let depth = geometry.approach.positive_part();
+        let of_shape = self.shape.stiffness(geometry.circumferential_curvature);
         let (arm, race_arm) = kinematics::arms(geometry.normal, self.surface.ball_radius, &offset);
         let rate = match self.damping.is_none() {
             true => S::zero(),
@@ -220,8 +288,7 @@ impl ContactModel<'_> {
                 dot(&geometry.normal, &kinematics::slip(ball, bodies, [&arm, &race_arm]))
             }
         };
-        let load = NormalLoad::hertz(stiffness, depth, depth.sqrt(), geometry.rate(rate), self.damping);
-        let load = geometry.force_of(load);
+        let (stiffness, load) = self.normal_load::<S, SHAPED>(of_shape, [depth, depth.sqrt()], rate, gain);
         let (zero, none) = (S::zero(), Vector3::from_element(S::zero()));
         let force = -geometry.normal.map(|component| component * load.total);
         BallRaceContact {
@@ -249,8 +316,18 @@ impl ContactModel<'_> {
     /// A contact with its creep forces.
     #[inline(always)]
     fn rolling<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
-        let (contact, oblique) = self.rolling_along::<S, false>(ball, race);
+        if !self.is_usual() {
+            return self.rolling_shaped(ball, race);
+        }
+        let (contact, oblique) = self.rolling_along::<S, false, false>(ball, race);
         if oblique { self.rolling_obliquely(ball, race) } else { contact }
+    }
+
+    /// The same on any surface with any damping, apart, so that the usual contact does not pay for it.
+    #[cold]
+    #[inline(never)]
+    fn rolling_shaped<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        self.rolling_along::<S, false, true>(ball, race).0
     }
 
     /// [`Self::rolling`] where rolling across the circumference has a share. Seldom: it computes everything once more, because what
@@ -258,18 +335,19 @@ impl ContactModel<'_> {
     #[cold]
     #[inline(never)]
     fn rolling_obliquely<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
-        self.rolling_along::<S, true>(ball, race).0
+        self.rolling_along::<S, true, false>(ball, race).0
     }
 
-    /// A contact with its creep forces along the circumference, or with those across mixed in; and whether those have a share.
+    /// A contact with its creep forces along the circumference, or with those across mixed in; and whether those have a share. On any
+    /// surface they are mixed in where they have.
     #[inline(always)]
-    fn rolling_along<S: Scalar, const MIXED: bool>(
+    fn rolling_along<S: Scalar, const MIXED: bool, const SHAPED: bool>(
         &self,
         ball: &BallMotion<S>,
         race: &RaceMotion<S>,
     ) -> (BallRaceContact<S>, bool) {
         let offset = ball.position - race.position;
-        let geometry = GrooveContact::new(&self.surface, &offset, race);
+        let (geometry, gain) = self.touch::<S, SHAPED>(&offset, race);
         let surfaces = Surfaces::new(
             ball,
             self.surface.ball_radius,
@@ -283,19 +361,17 @@ impl ContactModel<'_> {
         let depth = geometry.approach.positive_part();
         let root = depth.sqrt();
         let shape = self.shape.at(geometry.circumferential_curvature);
-        let mut stiffness = shape.stiffness.scale(self.stiffening);
-        if let Some(factor) = self.surface.of_balls::<S>(|size| size.stiffness) {
-            stiffness *= factor;
-        }
-        let rate = geometry.rate(surfaces.approach_rate);
-        let load = geometry.force_of(NormalLoad::hertz(stiffness, depth, root, rate, self.damping));
+        let rate = surfaces.approach_rate;
+        let (stiffness, load) = self.normal_load::<S, SHAPED>(shape.stiffness, [depth, root], rate, gain);
 
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
         let theory = LinearTheory::new(&shape, depth, root, load.total, self.friction, rolling.cosine);
         let oblique = self.across.is_some() && is_oblique(rolling.speed, rolling.speed_across);
         let mut creep = theory.forces(self.law, &rolling.creepage);
-        if MIXED && let Some(across) = &self.across {
+        if (MIXED || SHAPED && oblique)
+            && let Some(across) = &self.across
+        {
             creep = across.mixed(&creep, &theory, rolling.speed_across / rolling.speed, &rolling.creepage);
         }
 

@@ -13,7 +13,6 @@
 //! found together. The force on the ball is the derivative of the energy by its place, with a normal turned by the drop's
 //! slope, so that no energy is made; as `b` follows the approach, it is a few per cent off Hertz's load at the edges.
 
-use super::form::Shift;
 use crate::numerics::scalar::{Dual, Scalar, Single, SmoothMap, Values};
 
 /// Exponent of the sum of what carries the ball.
@@ -229,14 +228,6 @@ impl SmoothMap<3, 4> for Spalls {
     fn with_gradient(&self, x: [f64; 3]) -> ([f64; 4], [[f64; 3]; 4]) {
         let results = self.at([0, 1, 2].map(|i: usize| Dual::<3>::variable(x[i], i, 1.0)));
         (results.map(|result| result.value), results.map(|result| result.derivatives))
-    }
-}
-
-impl<S: Scalar> Shift<S> {
-    /// Change of the angle of the contact, in radians times its distance from the groove's centre, along the circumference.
-    #[inline(always)]
-    pub(super) fn turn(&self, cos: S, sin: S) -> S {
-        sin * self.radial_slope - cos * self.axial_slope
     }
 }
 

@@ -115,26 +115,20 @@ pub fn balance(
         ),
     ];
     let offset = position - shared.position;
-    let surfaces = PerRace::new(|race| contacts[race].surface.under(index));
-    let inner = GrooveContact::new(&surfaces.inner, &offset, &inner_race);
-    let outer = GrooveContact::new(&surfaces.outer, &position, &outer_race);
-    let cold =
-        |race: Race, curvature: D| contacts[race].shape.stiffness(curvature).scale(contacts[race].stiffening);
-    let mut stiffness = PerRace {
-        inner: cold(Race::Inner, inner.circumferential_curvature),
-        outer: cold(Race::Outer, outer.circumferential_curvature),
+    let here = PerRace::new(|race| contacts[race].of_ball(index, None));
+    let (inner, inner_gain) = GrooveContact::new(&here.inner.surface, &offset, &inner_race);
+    let (outer, outer_gain) = GrooveContact::new(&here.outer.surface, &position, &outer_race);
+    let stiffness_of = |model: &ContactModel<'_>, contact: &GrooveContact<D>| {
+        model.stiffness_of(model.shape.stiffness(contact.circumferential_curvature))
     };
-    for race in Race::BOTH {
-        if let Some(factor) = surfaces[race].of_balls::<D>(|size| size.stiffness) {
-            stiffness[race] *= factor;
-        }
-    }
-    let load = |contact: &GrooveContact<D>, stiffness: D| {
+    let stiffness =
+        PerRace { inner: stiffness_of(&here.inner, &inner), outer: stiffness_of(&here.outer, &outer) };
+    let load = |contact: &GrooveContact<D>, gain: D, stiffness: D| {
         let depth = contact.approach.positive_part();
-        let load = stiffness * depth * depth.sqrt();
-        contact.gain.map_or(load, |gain| load * gain)
+        stiffness * depth * depth.sqrt() * gain
     };
-    let (inner_load, outer_load) = (load(&inner, stiffness.inner), load(&outer, stiffness.outer));
+    let inner_load = load(&inner, inner_gain, stiffness.inner);
+    let outer_load = load(&outer, outer_gain, stiffness.outer);
 
     // rolling without slip at both contacts and without spin at the outer one (Jones's outer race control)
     let (inner_cos, inner_sin) = (-inner.normal.dot(&inner.radial), -inner.normal.dot(&shared.axis));
