@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 
 use crate::contact::ContactModel;
 use crate::contact::ball_ball::BallBallModel;
+use crate::contact::creep::Law;
 use crate::contact::form::Form;
 use crate::contact::normal::Damping;
 use crate::contact::spall::Spalls;
@@ -216,6 +217,11 @@ impl Model {
     /// The race whose lands guide the cage; none where the balls do, or without a cage.
     pub fn cage_guide(&self) -> Option<Race> {
         self.cage.as_ref().and_then(CageModel::guide)
+    }
+
+    /// Creep law of the balls on a race; Kalker's polynomials give their table.
+    pub fn law(&self, race: Race) -> Law<'_> {
+        self.raceways[race].law()
     }
 
     /// Kalker's polynomials on a race, where they are simulated.

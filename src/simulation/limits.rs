@@ -75,10 +75,10 @@ impl Simulation {
 
     /// Refuses contacts that linear theory does not reach: their creep force is above what friction can carry.
     pub(super) fn check_creep(&self, boundary: &Boundary) -> Result<(), SimulationError> {
-        let contacts = self.model.contacts(&boundary.conditions);
-        if !matches!(contacts.inner.law, Law::Linear) {
+        if !matches!(self.model.law(Race::Inner), Law::Linear) {
             return Ok(());
         }
+        let contacts = self.model.contacts(&boundary.conditions);
         for (index, ball) in self.state.balls.iter().enumerate() {
             for race in Race::BOTH {
                 let contact = contacts[race]
