@@ -1,7 +1,7 @@
 //! What estimates of effects look at, of a scene: its equilibrium at time 0, with every race at the largest speed of its script.
 
 use crate::contact::shoulder::{largest_share, least_margin};
-use crate::effects::estimate::{ContactEstimate, Estimate, Outline, RingEstimate, Verdict};
+use crate::effects::estimate::{BallEstimate, ContactEstimate, Estimate, Outline, RingEstimate, Verdict};
 use crate::effects::growth::Warmth;
 use crate::effects::growth::rings::Cylinder;
 use crate::equilibrium::{
@@ -51,10 +51,16 @@ pub fn of(scene: &Scene, model: &Model) -> Result<Estimate, EstimateError> {
     let loads = || solution.balls.iter().map(|ball| ball.report.inner_load).filter(|load| *load > 0.0);
     let most = solution.balls.iter().max_by(|a, b| a.report.inner_load.total_cmp(&b.report.inner_load));
     let most = most.filter(|ball| ball.report.inner_load > 0.0).ok_or(EstimateError::Unloaded)?;
-    let approaches = solution.balls.iter().map(|ball| {
-        let report = &ball.report;
-        report.inner_approach.max(0.0) + report.outer_approach.max(0.0)
-    });
+    let approaches = |ball: &BallEquilibrium| {
+        [ball.report.inner_approach, ball.report.outer_approach].map(|approach| approach.max(0.0))
+    };
+    let depth = |ball: &BallEquilibrium| approaches(ball).into_iter().sum::<f64>();
+    let deepest = solution.balls.iter().max_by(|a, b| depth(a).total_cmp(&depth(b))).unwrap_or(most);
+    let contacts = model.contacts(&input.surroundings());
+    let distance = |race: Race| {
+        let surface = &contacts[race].surface;
+        surface.raceway.groove_radius - surface.ball_radius + approaches(deepest)[race as usize]
+    };
     let bearing = &model.bearing;
     let places = ellipses(model, &input, &solution);
     let shoulders = |race: Race| {
@@ -71,7 +77,13 @@ pub fn of(scene: &Scene, model: &Model) -> Result<Estimate, EstimateError> {
     let outline = outline(scene);
     Ok(Estimate {
         threshold: scene.effects.auto.threshold(),
-        deepest: approaches.fold(0.0, f64::max),
+        deepest: depth(deepest),
+        deepest_ball: BallEstimate {
+            loads: [deepest.report.inner_load, deepest.report.outer_load],
+            approaches: approaches(deepest),
+            angles: [deepest.report.inner_contact_angle, deepest.report.outer_contact_angle],
+            distances: Race::BOTH.map(distance),
+        },
         loads: [largest, loads().fold(largest, f64::min)],
         contact_angle: most.report.inner_contact_angle,
         centrifugal_force: most.report.centrifugal_force,

@@ -1,5 +1,6 @@
 //! What an estimate of an effect may know of a bearing under its load, and what it says: whether the effect matters there.
 
+use nalgebra::{Matrix2, Vector2};
 use serde::Serialize;
 
 /// [-] share above which an effect matters, where the scene gives none (`effects.auto_threshold`).
@@ -60,6 +61,43 @@ impl Outline {
     }
 }
 
+/// The ball with the largest approaches, by its contacts with the inner and the outer race.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BallEstimate {
+    /// \[N] loads.
+    pub loads: [f64; 2],
+    /// \[m] approaches.
+    pub approaches: [f64; 2],
+    /// \[rad] contact angles.
+    pub angles: [f64; 2],
+    /// \[m] distances of the ball's centre from the grooves' centres.
+    pub distances: [f64; 2],
+}
+
+impl BallEstimate {
+    /// \[m] changes of its approaches while its races are held and their grooves move away from the axis, to first order: the ball
+    /// goes to where all forces on it are in balance again, its centrifugal force as before.
+    fn approaches_by(&self, outwards: [f64; 2]) -> [f64; 2] {
+        // Towards the contact, axial and radial: inner forces point out of the axis, outer ones into it.
+        let towards = |race: usize| {
+            let (sine, cosine) = self.angles[race].sin_cos();
+            Vector2::new(sine, cosine) * if race == 0 { 1.0 } else { -1.0 }
+        };
+        // A force towards a groove's centre turns with the line to it.
+        let stiffness = |race: usize| {
+            let (n, load) = (towards(race), self.loads[race]);
+            let along = 1.5 * load / self.approaches[race].max(f64::MIN_POSITIVE);
+            let turning = load / self.distances[race];
+            n * n.transpose() * (along - turning) + Matrix2::identity() * turning
+        };
+        let [inner, outer] = [0, 1].map(stiffness);
+        let moved = outwards.map(|outwards| Vector2::new(0.0, outwards));
+        let push = inner * moved[0] + outer * moved[1];
+        let ball = (inner + outer).lu().solve(&push).unwrap_or_else(Vector2::zeros);
+        [0, 1].map(|race| towards(race).dot(&(moved[race] - ball)))
+    }
+}
+
 /// A bearing in the equilibrium under its load, every race at the largest speed of its script.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
@@ -69,6 +107,8 @@ pub struct Estimate {
     pub contacts: Vec<ContactEstimate>,
     /// \[m] largest sum of a ball's approaches at both races.
     pub deepest: f64,
+    /// The ball that has it.
+    pub deepest_ball: BallEstimate,
     /// \[N] largest and least load of a ball on the inner race, among those that have one.
     pub loads: [f64; 2],
     /// \[rad] contact angle of the ball with the largest load at the inner race.
@@ -108,10 +148,19 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// [-] what an interference \[m] of raceways and balls does to the deepest approach while the races are held where they are, over
-    /// that approach.
-    pub fn deepens(&self, radial: f64) -> f64 {
-        radial.abs() * self.contact_angle.cos() / self.deepest
+    /// [-] change of the deepest approach over itself while races are held and their grooves move away from the axis \[m], inner first;
+    /// and its closed form, with a ball that stays at its contact angle and is as stiff as the races are far apart.
+    pub fn deepens(&self, outwards: [f64; 2]) -> [f64; 2] {
+        let change: f64 = self.deepest_ball.approaches_by(outwards).into_iter().sum();
+        let [inner, outer] = outwards;
+        [change.abs() / self.deepest, (inner - outer).abs() * self.contact_angle.cos() / self.deepest]
+    }
+
+    /// [-] change of the deepest ball's load on the inner race over itself, by a height \[m] of that race; and its closed form. Loads go
+    /// with the power 3/2 of approaches.
+    pub fn reloads(&self, height: f64) -> [f64; 2] {
+        let [inner, _] = self.deepest_ball.approaches_by([height, 0.0]);
+        [1.5 * inner.abs() / self.deepest_ball.approaches[0], 1.5 * height / self.deepest]
     }
 }
 
@@ -140,6 +189,9 @@ pub struct Verdict {
     pub standing: Standing,
     /// Value in `unit`.
     pub value: f64,
+    /// Its closed form, where the value looks closer: as if balls stayed at their contact angles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closed_form: Option<f64>,
     /// Unit of value and threshold; empty for a share.
     pub unit: &'static str,
     /// Value beyond which it matters.
@@ -169,6 +221,7 @@ impl Verdict {
             subject,
             standing: if on { Standing::On } else { Standing::Off },
             value,
+            closed_form: None,
             unit: "",
             threshold,
             matters: value > threshold,
@@ -176,6 +229,12 @@ impl Verdict {
             write: "",
             auto: None,
         }
+    }
+
+    /// With the closed form of the value.
+    #[must_use]
+    pub fn closer_than(self, closed_form: f64) -> Self {
+        Self { closed_form: Some(closed_form), ..self }
     }
 
     /// With what to write in the scene.

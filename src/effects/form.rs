@@ -294,8 +294,7 @@ impl Effect for Settings {
     fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
         let on = self.setting().is_some();
         let height = if on { self.section.height() } else { TYPICAL_HEIGHT };
-        // Loads go with the power 3/2 of approaches.
-        let share = 1.5 * height / estimate.deepest;
+        let [share, closed] = estimate.reloads(height);
         let sentence = format!(
             "{} um of waviness {} loads by {} at held races",
             digits(height * 1e6),
@@ -303,7 +302,11 @@ impl Effect for Settings {
             percent(share)
         );
         let verdict = Verdict::share("form", "waviness", on, (share, estimate.threshold), sentence);
-        vec![verdict.written("[form] with waves or profiles; amplitudes are not known here")]
+        vec![
+            verdict
+                .closer_than(closed)
+                .written("[form] with waves or profiles; amplitudes are not known here"),
+        ]
     }
 
     fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {

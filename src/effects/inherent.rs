@@ -26,6 +26,7 @@ pub fn verdicts(estimate: &Estimate) -> Vec<Verdict> {
         subject,
         standing,
         value,
+        closed_form: None,
         unit: "",
         threshold,
         matters: value > threshold,

@@ -17,7 +17,9 @@
 //! 6. Add `pub mod NAME;` and the word `NAME` to the list below. Validation, variables, parameters and the page of a
 //!    package come from that list. Value references follow its order: add at the end.
 //! 7. The physics hangs on at most one hook: `Model` takes from `scene.effects.NAME` what a step reads, as an `Option`.
-//! 8. Everything that moves the balls must be in the equilibrium too, or a run starts with a bounce.
+//! 8. `matters` says from an [`Estimate`] how much it would change, or changes, with `ESTIMATE` in words; `tests/estimates.rs` compares
+//!    that with what switching it on does. `switch` is for effects that `effects.auto` can switch on.
+//! 9. Everything that moves the balls must be in the equilibrium too, or a run starts with a bounce.
 
 pub mod ambient;
 pub mod auto;

@@ -85,6 +85,7 @@ impl Oil {
             subject,
             standing: Standing::Missing,
             value,
+            closed_form: None,
             unit: "",
             threshold,
             matters: value > threshold,

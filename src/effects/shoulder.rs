@@ -70,6 +70,7 @@ impl Effect for Settings {
             subject: "shoulders",
             standing: if self.on { Standing::On } else { Standing::Off },
             value: margin,
+            closed_form: None,
             unit: "rad",
             threshold: 0.0,
             matters: margin < 0.0,

@@ -106,9 +106,9 @@ fn write_text(out: &mut String, scene: &Scene, verdicts: &[Verdict]) -> std::fmt
             } else {
                 String::new()
             };
-            writeln!(out, "  {:<26} {value:>11}  {against:<18} {}", verdict.subject, verdict.sentence)?;
+            writeln!(out, "  {:<25} {value:>9}  {against:<20}  {}", verdict.subject, verdict.sentence)?;
             if verdict.standing == Standing::Off && verdict.matters {
-                writeln!(out, "  {:<26} {:>11}  {:<18} write {}", "", "", "", verdict.write)?;
+                writeln!(out, "  {:<58}  write {}", "", verdict.write)?;
             }
         }
     }

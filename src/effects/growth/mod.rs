@@ -308,29 +308,27 @@ const TYPICAL_RISE: f64 = 10.0;
 impl Settings {
     /// What temperatures and fits do to the approach of balls and races that are held where they are.
     fn by_temperature(&self, estimate: &Estimate) -> Verdict {
-        let of = |value: f64, sentence: String| {
-            let value = (value, estimate.threshold);
-            Verdict::share("growth", "growth by temperature", self.section.is_some(), value, sentence)
-        };
-        if self.section.is_some() {
-            let change = estimate.clearance_change;
-            let share = estimate.deepens(0.5 * change);
-            let sentence = format!(
-                "temperatures and fits change the clearance by up to {} um: at held races {} of the deepest approach",
-                digits(change * 1e6),
-                percent(share)
-            );
-            return of(share, sentence);
-        }
+        let on = self.section.is_some();
         let ring = &estimate.rings[0];
-        let share = estimate.deepens(TYPICAL_RISE * ring.expansion * ring.bottom);
-        let sentence = format!(
-            "10 K between the inner ring and the rest change the deepest approach at held races by {}; friction alone warms the \
-             bearing by about {} K",
-            percent(share),
-            digits(estimate.heating())
-        );
-        of(share, sentence)
+        let change =
+            if on { 0.5 * estimate.clearance_change } else { TYPICAL_RISE * ring.expansion * ring.bottom };
+        let [share, closed] = estimate.deepens([change, 0.0]);
+        let sentence = if on {
+            format!(
+                "temperatures and fits change the clearance by up to {} um: at held races the deepest approach by {}",
+                digits(2e6 * change),
+                percent(share)
+            )
+        } else {
+            format!(
+                "10 K between the inner ring and the rest change the deepest approach at held races by {}; friction alone warms \
+                 the bearing by about {} K",
+                percent(share),
+                digits(estimate.heating())
+            )
+        };
+        Verdict::share("growth", "growth by temperature", on, (share, estimate.threshold), sentence)
+            .closer_than(closed)
             .written("[growth] with inner, outer, balls: rises of temperature in K, not known here")
     }
 
@@ -338,9 +336,10 @@ impl Settings {
     fn by_rotation(&self, estimate: &Estimate) -> Verdict {
         let on = self.section.as_ref().is_some_and(|section| section.rotation);
         let [inner, outer] = estimate.rings.each_ref().map(|ring| ring.spun * ring.speed * ring.speed);
-        let share = estimate.deepens(inner - outer);
+        let [share, closed] = estimate.deepens([inner, outer]);
         let sentence = format!(
-            "rotation widens the inner raceway by {} um and the outer one by {} um in radius: at held races {} of the deepest approach",
+            "rotation widens the inner raceway by {} um and the outer one by {} um in radius: at held races the deepest approach \
+             changes by {}",
             digits(inner * 1e6),
             digits(outer * 1e6),
             percent(share)
@@ -351,7 +350,10 @@ impl Settings {
         };
         let known = self.section.as_ref().is_some_and(seats);
         Verdict::share(ROTATION, "growth by rotation", on, (share, estimate.threshold), sentence)
-            .written("[growth] rotation = true, with the diameter of the turning ring's seat in [growth.shaft] or [growth.housing]")
+            .closer_than(closed)
+            .written(
+                "[growth] rotation = true, with the diameter of the turning ring's seat in [growth.shaft] or [growth.housing]",
+            )
             .automatic(known.then_some(ROTATION))
     }
 }
