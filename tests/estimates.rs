@@ -484,7 +484,12 @@ fn effects_that_matter_are_switched_on_where_the_data_are_there() {
         !thrust.effects.groove_slip.on
             && thrust.effects.each().iter().filter(|e| e.setting().is_some()).count() == 1
     );
-    assert!(notes.len() == 1 && notes[0].contains("no effect is switched"), "{notes:?}");
+    assert!(
+        notes[0] == "auto: no effect is switched"
+            && notes[1]
+                .ends_with("at hand: waviness, growth by temperature, support, film, rolling resistance"),
+        "{notes:?}"
+    );
     // The word alone: the default creep law, without the groove slip that comes with it.
     let (thrust, notes) = found_out(THRUST, &[("effects", "\"auto\"")]);
     assert!(

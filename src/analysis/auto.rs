@@ -38,7 +38,16 @@ pub fn resolve(mut scene: Scene) -> Result<(Scene, Vec<String>), EstimateError> 
     });
     let mut notes: Vec<String> = said.collect();
     if notes.is_empty() {
-        notes.push("auto: no effect is switched: those that matter are on already, or lack data".into());
+        notes.push("auto: no effect is switched".into());
+    }
+    let lacking: Vec<&str> = verdicts
+        .iter()
+        .filter(|verdict| verdict.is_missed() && switched(verdict).is_none())
+        .map(|verdict| verdict.subject)
+        .collect();
+    if !lacking.is_empty() {
+        let lacking = lacking.join(", ");
+        notes.push(format!("auto: would matter and cannot be switched on with the data at hand: {lacking}"));
     }
     scene.settle_effects(&switches);
     Ok((scene, notes))

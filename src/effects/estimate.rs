@@ -289,9 +289,3 @@ pub fn missed(verdicts: &[Verdict]) -> Vec<String> {
     };
     verdicts.iter().filter(|verdict| verdict.is_missed()).map(line).collect()
 }
-
-/// What is on and does not matter, a line each.
-pub fn idle(verdicts: &[Verdict]) -> Vec<String> {
-    let line = |verdict: &Verdict| format!("{}: {}", verdict.subject, verdict.sentence);
-    verdicts.iter().filter(|verdict| verdict.is_idle()).map(line).collect()
-}

@@ -13,8 +13,8 @@ const GRAVITY: Range = Range::closed(-1e6, 1e6, "m/s2");
 
 /// [m/s2] standard gravity.
 const STANDARD: f64 = 9.80665;
-/// [-] threshold over that of other effects: a weight is known exactly, and acts at all times.
-const FINENESS: f64 = 0.2;
+/// [-] threshold of other effects over its own: a weight is known exactly, and acts at all times.
+const FINENESS: f64 = 5.0;
 
 keys! {
     /// [m/s2] acceleration of gravity, components along x, y, z, each constant or a table; 0 is off.
@@ -81,7 +81,7 @@ impl Effect for Settings {
             percent(share),
             digits(estimate.load)
         );
-        let value = (share, FINENESS * estimate.threshold);
+        let value = (share, estimate.threshold / FINENESS);
         let verdict = Verdict::share("effects.gravity", "gravity", on, value, sentence);
         vec![verdict.written("[effects] gravity = [0, -9.81, 0]; its direction is not known here")]
     }

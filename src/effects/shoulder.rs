@@ -35,6 +35,8 @@ keys! {
 }
 
 const KEY: &str = "effects.shoulder_outputs";
+/// What its estimate is of.
+pub const SUBJECT: &str = "shoulders";
 
 type Contact = fn(&BallOutput) -> &ContactOutput;
 
@@ -67,7 +69,7 @@ impl Effect for Settings {
         };
         vec![Verdict {
             key: Some(KEY),
-            subject: "shoulders",
+            subject: SUBJECT,
             standing: if self.on { Standing::On } else { Standing::Off },
             value: margin,
             closed_form: None,

@@ -6,7 +6,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use roulement::analysis::estimate;
-use roulement::effects::estimate::{Standing, Verdict, digits, idle, missed};
+use roulement::effects::estimate::{Standing, Verdict, digits, missed};
+use roulement::effects::shoulder::SUBJECT as SHOULDERS;
 use roulement::model::Model;
 use roulement::scene::Scene;
 use serde_json::{Map, Value, json};
@@ -47,9 +48,11 @@ pub fn announce(scene: &Scene, model: &Model) {
     tell([scene.effects.simulated()].into_iter().chain(lines));
 }
 
-/// What is on and did not matter, a line each.
-pub fn idle_in(scene: &Scene, model: &Model) -> Vec<String> {
-    estimate::verdicts(scene, model).map_or(vec![], |verdicts| idle(&verdicts))
+/// What was on in a run and did not matter, a line each; `cut` tells whether a shoulder cut a contact in it.
+pub fn idle_in(scene: &Scene, model: &Model, cut: bool) -> Vec<String> {
+    let Ok(verdicts) = estimate::verdicts(scene, model) else { return vec![] };
+    let idle = verdicts.iter().filter(|verdict| verdict.is_idle() && !(cut && verdict.subject == SHOULDERS));
+    idle.map(|verdict| format!("{}: {}", verdict.subject, verdict.sentence)).collect()
 }
 
 fn to_json(scene: &Scene, verdicts: &[Verdict]) -> Result<Value, serde_json::Error> {

@@ -144,9 +144,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Fmu { scene, output, library, name } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
             let name = name.unwrap_or_else(|| name_of(&output));
-            let scene = load(&scene)?;
-            write_fmu(&scene, &name, &libraries, &output)?;
-            effects::announce(&scene, &Model::new(&scene)?);
+            write_fmu(&load(&scene)?, &name, &libraries, &output)?;
             say(&format!("{}\n", output.display()))?;
         }
         Command::Effects(options) => effects::run(&options)?,

@@ -166,7 +166,7 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Res
             if run.estimate.has_blows() { BLOWS } else { "" }
         )?;
     }
-    for line in idle_in(simulation.scene(), simulation.model()) {
+    for line in idle_in(simulation.scene(), simulation.model(), limits.over_shoulders != [0.0; 2]) {
         writeln!(out, "did not matter   {line}")?;
     }
     let s = &now.statistics;
