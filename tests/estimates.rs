@@ -390,10 +390,15 @@ fn groove_slip_in_runs(names: &[&str], law: &str, window: [f64; 2]) {
             friction_power(&scene, window)
         });
         let (_, verdicts) = estimate_of(&case.with(&[]));
-        let (ours, truth) = (value(&verdicts, "groove slip"), (with - without) / with);
+        let verdict = find(&verdicts, "groove slip");
+        let (ours, truth) = (verdict.value, (with - without) / with);
         println!("{name}: {without} {with} W");
         // Shares below the threshold are those of spin that takes another part of the power; only that they are small is promised.
-        if ours < 0.05 {
+        if verdict.sentence.contains("makes up to") {
+            // Friction does not hold these balls.
+            println!("{name:<12} groove slip up to {ours:.4} {truth:.4}");
+            assert!(truth < 2.0 * ours, "{name}: {ours} for {truth}");
+        } else if ours < 0.05 {
             assert!(truth < 0.05, "{name}: {ours} for {truth}");
             println!("{name:<12} groove slip {ours:.4} {truth:.4}");
         } else {
@@ -411,7 +416,20 @@ fn invariant_groove_slip_is_within_a_factor_of_two_in_short_runs() {
 #[test]
 #[ignore = "minutes; scripts/soak runs it"]
 fn invariant_groove_slip_is_within_a_factor_of_two_in_long_runs() {
-    let names = ["thrust", "radial", "combined", "218", "7206 fast", "load zone", "unbalance", "oil mist"];
+    let names = [
+        "thrust",
+        "radial",
+        "combined",
+        "218",
+        "load zone",
+        "unbalance",
+        "oil mist",
+        "miniature",
+        "spindle",
+        "high speed",
+        "6206 light",
+        "7206 fast",
+    ];
     groove_slip_in_runs(&names, "\"kalker_table\"", [20e-3, 30e-3]);
 }
 

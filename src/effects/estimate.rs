@@ -148,6 +148,13 @@ pub struct Estimate {
 }
 
 impl Estimate {
+    /// [-] gyroscopic moment of the ball with the largest load over what friction on the inner race can hold; 0 without friction.
+    pub fn gyroscopic(&self) -> f64 {
+        let [largest, _] = self.loads;
+        let held = self.friction * self.ball_radius * largest;
+        if held > 0.0 { self.gyroscopic_moment.abs() / held } else { 0.0 }
+    }
+
     /// [-] change of the deepest approach over itself while races are held and their grooves move away from the axis \[m], inner first;
     /// and its closed form, with a ball that stays at its contact angle and is as stiff as the races are far apart.
     pub fn deepens(&self, outwards: [f64; 2]) -> [f64; 2] {

@@ -61,7 +61,9 @@ impl Effect for Settings {
         let share = if with > 0.0 { ((with - without) / with).max(0.0) } else { 0.0 };
         let [spin, groove] = powers_alone(estimate);
         let sentence = format!(
-            "slip of bent grooves makes {} of the friction power; alone it would take {} W, and spin {} W",
+            "slip of bent grooves makes {}{} of the friction power; alone it would take {} W, and spin {} W",
+            // Balls that friction does not hold turn, and lose power by that which is no part of the estimate.
+            if estimate.gyroscopic() > 1.0 { "up to " } else { "" },
             percent(share),
             digits(groove),
             digits(spin)

@@ -39,8 +39,7 @@ pub fn verdicts(estimate: &Estimate) -> Vec<Verdict> {
     };
     let [largest, _] = estimate.loads;
     let centrifugal = estimate.centrifugal_force / largest;
-    let moment = estimate.gyroscopic_moment.abs();
-    let gyroscopic = moment / (estimate.friction * estimate.ball_radius * largest);
+    let gyroscopic = estimate.gyroscopic();
     let bending = ring_bending(estimate);
     let mut verdicts = vec![always(
         "centrifugal force",
@@ -55,7 +54,7 @@ pub fn verdicts(estimate: &Estimate) -> Vec<Verdict> {
     if estimate.friction > 0.0 {
         let sentence = format!(
             "{} N m on the most loaded ball: {} of what friction on the inner race can hold",
-            digits(moment),
+            digits(estimate.gyroscopic_moment.abs()),
             percent(gyroscopic)
         );
         verdicts.push(always("gyroscopic moment", gyroscopic, sentence));
