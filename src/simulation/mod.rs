@@ -23,6 +23,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::analysis::auto;
 use crate::dynamics::{Boundary, Workspace, make_consistent};
 use crate::model::bodies::Race;
 use crate::model::state::{KeptMatrix, State};
@@ -75,10 +76,14 @@ impl Simulation {
     /// # Errors
     /// See [`SimulationError`].
     pub fn starting_at(scene: &Scene, time: f64) -> Result<Self, SimulationError> {
+        if scene.effects.auto.on {
+            let (scene, _) = auto::resolve(scene.clone())?;
+            return Self::of_model(&scene, Model::new(&scene)?, time);
+        }
         Self::of_model(scene, Model::new(scene)?, time)
     }
 
-    /// The same with a model that was built for the scene already.
+    /// The same with a model that was built for the scene already, whose effects are as they are written.
     ///
     /// # Errors
     /// See [`SimulationError`].
