@@ -596,3 +596,14 @@ fn what_is_on_is_judged_as_it_is_set() {
     let usual = of(&judged(RADIAL, &[]), "support");
     assert!(soft.0 == Standing::On && (soft.1 / usual.1 - 2.0).abs() < 1e-6, "{soft:?} {usual:?}");
 }
+
+#[test]
+fn a_load_that_grows_from_nothing_is_looked_at_where_it_has_grown() {
+    let table = "[[0, 0], [\"1 ms\", 0], [\"2 ms\", 1500], [\"3 ms\", 3000]]";
+    let (growing, _) = estimate_of(&scene(RADIAL, &[("load.y.force", table)]));
+    let (constant, _) = estimate_of(&scene(RADIAL, &[]));
+    assert_eq!(growing, constant);
+    let unloaded = scene(RADIAL, &[("load.y.force", "0")]);
+    let why = estimate::of(&unloaded, &Model::new(&unloaded).unwrap()).unwrap_err().to_string();
+    assert!(why.contains("no ball is loaded"), "{why}");
+}
