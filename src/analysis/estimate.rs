@@ -1,4 +1,5 @@
-//! What estimates of effects look at, of a scene: its equilibrium at time 0, with every race at the largest speed of its script.
+//! What estimates of effects look at, of a scene: its equilibrium at time 0, or where its loads have a point at which a ball carries
+//! load first, with every race at the largest speed of its script.
 
 use crate::contact::shoulder::{largest_share, least_margin};
 use crate::effects::estimate::{BallEstimate, ContactEstimate, Estimate, Outline, RingEstimate, Verdict};
@@ -22,7 +23,7 @@ pub enum EstimateError {
     #[error("no estimates of effects: {0}")]
     Equilibrium(#[from] EquilibriumError),
     /// No ball carries load between the races.
-    #[error("no estimates of effects: no ball is loaded at time 0")]
+    #[error("no estimates of effects: no ball is loaded at any point of the scene's loads")]
     Unloaded,
 }
 
@@ -39,15 +40,32 @@ pub fn verdicts(scene: &Scene, model: &Model) -> Result<Vec<Verdict>, EstimateEr
 /// # Errors
 /// See [`EstimateError`].
 pub fn of(scene: &Scene, model: &Model) -> Result<Estimate, EstimateError> {
+    let directions = Race::loaded(scene).directions(scene);
+    let schedules = directions.into_iter().flat_map(|direction| [direction.load, direction.motion]).flatten();
+    let mut times: Vec<f64> =
+        schedules.flat_map(|schedule| schedule.knots(0.0, f64::INFINITY).collect::<Vec<_>>()).collect();
+    times.sort_by(f64::total_cmp);
+    let mut found = at(scene, model, 0.0);
+    for time in times {
+        if !matches!(found, Err(EstimateError::Unloaded)) {
+            break;
+        }
+        found = at(scene, model, time);
+    }
+    found
+}
+
+/// What they look at, at a time \[s] of the scene's loads.
+fn at(scene: &Scene, model: &Model, time: f64) -> Result<Estimate, EstimateError> {
     let speeds = [&scene.load.inner_speed, &scene.load.outer_speed].map(fastest);
-    let at = |gyroscopic| {
+    let problem = |gyroscopic| {
         let [inner_speed, outer_speed] = speeds;
-        EquilibriumInput { inner_speed, outer_speed, ..EquilibriumInput::from_scene(scene, gyroscopic) }
+        EquilibriumInput { inner_speed, outer_speed, ..EquilibriumInput::at(scene, gyroscopic, time) }
     };
     // Where friction at the outer race cannot hold the balls, that at both does what it can.
-    let input = at(Gyroscopic::OuterRaceControl);
+    let input = problem(Gyroscopic::OuterRaceControl);
     let solution = equilibrium::solve(model, &input)
-        .or_else(|_| equilibrium::solve(model, &at(Gyroscopic::Friction)))?;
+        .or_else(|_| equilibrium::solve(model, &problem(Gyroscopic::Friction)))?;
     let loads = || solution.balls.iter().map(|ball| ball.report.inner_load).filter(|load| *load > 0.0);
     let most = solution.balls.iter().max_by(|a, b| a.report.inner_load.total_cmp(&b.report.inner_load));
     let most = most.filter(|ball| ball.report.inner_load > 0.0).ok_or(EstimateError::Unloaded)?;
@@ -90,7 +108,7 @@ pub fn of(scene: &Scene, model: &Model) -> Result<Estimate, EstimateError> {
         gyroscopic_moment: most.report.gyroscopic_moment,
         ball_radius: bearing.ball.radius,
         orbital_velocity: 0.5 * bearing.pitch_diameter * solution.cage_speed.abs(),
-        friction: scene.friction.ball_race.at(0.0),
+        friction: input.friction,
         saturates: scene.effects.creep.law.saturates(),
         // Moments load balls, too.
         load: forces.max(largest),

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use super::estimate::{ContactEstimate, Estimate, Standing, Verdict, digits, percent};
+use super::estimate::{ContactEstimate, Estimate, Standing, Verdict, digits};
 
 /// An oil, and the roughness that it has to part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,9 +107,9 @@ impl Oil {
         let (power, dry) = (self.rolling_power(estimate), estimate.friction_power());
         let share = power / dry.max(f64::MIN_POSITIVE);
         let resistance = format!(
-            "{} W ({name}), {} of the dry friction power of {} W",
+            "{} W ({name}), {} times the dry friction power of {} W",
             digits(power),
-            percent(share),
+            digits(share),
             digits(dry)
         );
         let mut verdicts = vec![verdict("film", (ratio, MIXED[0]), film)];

@@ -90,7 +90,10 @@ fn write_text(out: &mut String, scene: &Scene, verdicts: &[Verdict]) -> std::fmt
         writeln!(out, "{}", scene.title)?;
     }
     writeln!(out, "{}", scene.effects.simulated())?;
-    writeln!(out, "estimates of the equilibrium at time 0, every race at the largest speed of its script")?;
+    writeln!(
+        out,
+        "estimates of the equilibrium at the start, every race at the largest speed of its script"
+    )?;
     for (heading, is_in) in GROUPS {
         let of: Vec<_> = verdicts.iter().filter(|verdict| is_in(verdict)).collect();
         if of.is_empty() {
