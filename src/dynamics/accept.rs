@@ -171,6 +171,7 @@ pub fn accept(
         }
         state.count_turn(turned, 0.5 * step.h * (spin + state.rate.x));
     }
+    state.orientations.clone_from(&boundary.orientations);
     state.supports = end.supports;
     state.energies = end.energies;
     state.powers = end.powers;
@@ -253,8 +254,8 @@ impl BallTrial {
 
 /// Solves Kalker's polynomials anew where the creepages of a contact have moved.
 pub fn renew_polynomials(model: &Model, state: &mut State, boundary: &Boundary) {
-    let contacts = model.contacts(&boundary.conditions);
-    let State { balls, bodies, differences, statistics, .. } = state;
+    let State { balls, bodies, differences, statistics, orientations, .. } = state;
+    let contacts = model.contacts_facing(&boundary.conditions, orientations.as_ref());
     for (index, (ball, differences)) in balls.iter().zip(differences).enumerate() {
         for race in Race::BOTH {
             let Some(kalker) = model.polynomials(race) else {

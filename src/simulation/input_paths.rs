@@ -41,7 +41,7 @@ pub struct InputPaths {
 
 impl InputPaths {
     /// Boundary conditions at a time \[s], with a friction coefficient. Spins of races are left to
-    /// [`Boundary::see_spins`].
+    /// [`Boundary::see_spins`], damaged balls to [`Boundary::turn_balls`].
     pub fn boundary(&self, time: f64, friction: f64) -> Boundary {
         let rises = self.rises.map_or([0.0; 5], |rises| rises.at(time).into());
         let conditions = Conditions { friction, warmth: Warmth { rises, ..Warmth::default() } };
@@ -57,6 +57,7 @@ impl InputPaths {
             }),
             conditions,
             frame: self.frame.at(time),
+            orientations: None,
         }
     }
 

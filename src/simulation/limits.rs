@@ -75,7 +75,8 @@ impl Simulation {
 
     /// Refuses contacts that linear theory does not reach: their creep force is above what friction can carry.
     pub(super) fn check_creep(&self, boundary: &Boundary) -> Result<(), SimulationError> {
-        let contacts = self.model.contacts(&boundary.conditions);
+        let orientations = self.state.orientations.as_ref();
+        let contacts = self.model.contacts_facing(&boundary.conditions, orientations);
         if !matches!(contacts.inner.law, Law::Linear) {
             return Ok(());
         }

@@ -206,6 +206,7 @@ impl Simulation {
         let constraints = |state: &State| -> Vec<usize> {
             state.bodies.iter().map(|(_, body)| body.multipliers.len()).collect()
         };
+        let damaged = |state: &State| state.orientations.as_ref().map(Vec::len);
         let same = snapshot.state.balls.len() == self.state.balls.len()
             && constraints(&snapshot.state) == constraints(&self.state)
             && snapshot.state.control.fits(&self.state.control)
@@ -219,6 +220,7 @@ impl Simulation {
             && snapshot.state.grown.is_some() == self.state.grown.is_some()
             && snapshot.state.rating.is_some() == self.state.rating.is_some()
             && snapshot.state.heat.is_some() == self.state.heat.is_some()
+            && damaged(&snapshot.state) == damaged(&self.state)
             && snapshot.inputs.rises.is_some() == self.inputs.rises.is_some();
         if same {
             self.inputs = snapshot.inputs;
@@ -405,6 +407,7 @@ impl Simulation {
             let mut boundary = self.boundary(next);
             script.impose(&self.scene, &self.paths, &mut boundary);
             boundary.see_spins(&self.model);
+            boundary.turn_balls(&self.model, &self.state);
             let start = (!perturbed.is_empty()).then(|| self.state.clone());
             let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
             let (cause, worst) = match tried {
@@ -418,6 +421,7 @@ impl Simulation {
                             let mut boundary = p.paths.boundary(boundary.time, p.inputs.friction);
                             script.impose(scene, &p.paths, &mut boundary);
                             boundary.see_spins(model);
+                            boundary.turn_balls(model, &p.state);
                             (&mut p.state, boundary)
                         });
                         let accepted = &self.workspace;
