@@ -7,6 +7,7 @@ mod contacts;
 mod cost;
 mod refusals;
 mod runs;
+mod spectrum;
 
 use std::path::Path;
 use std::process::Command;
