@@ -63,7 +63,7 @@ pub fn nearest(named: &[Named; 5], frequency: f64, spacing: f64) -> Option<(Stri
         let most =
             if beside.is_none() && name != bpfo.0 || base < 8.0 * spacing { MULTIPLES } else { HIGHEST };
         let around = (frequency / base).round().clamp(1.0, f64::from(most)) as u32;
-        for multiple in around.saturating_sub(1).max(1)..=around {
+        for multiple in 1..=around {
             let text = if multiple == 1 { name.to_string() } else { format!("{multiple} x {name}") };
             let line = f64::from(multiple) * base;
             for (sign, by) in [(" + ", 1.0), (" - ", -1.0)] {
