@@ -39,7 +39,7 @@ pub struct Damage<'a> {
     /// Their spalls.
     pub spalls: &'a BallSpalls,
     /// Orientation of each damaged ball.
-    pub orientations: &'a [UnitQuaternion<f64>],
+    pub orientations: &'a Vec<UnitQuaternion<f64>>,
 }
 
 /// Drop \[m], its derivative by the normal \[m], which is along the ball's surface, and by the approach [-].

@@ -255,15 +255,14 @@ impl BallTrial {
 /// Solves Kalker's polynomials anew where the creepages of a contact have moved.
 pub fn renew_polynomials(model: &Model, state: &mut State, boundary: &Boundary) {
     let State { balls, bodies, differences, statistics, orientations, .. } = state;
-    let contacts = model.contacts_facing(&boundary.conditions, orientations.as_ref());
-    for (index, (ball, differences)) in balls.iter().zip(differences).enumerate() {
-        for race in Race::BOTH {
-            let Some(kalker) = model.polynomials(race) else {
-                continue;
-            };
-            let contact =
-                contacts[race].of_ball(index, None).evaluate(&ball.motion(), &bodies[race].motion());
-            match contacts[race].renew(kalker, &contact, model.epsilon_switch, &mut differences[race]) {
+    for race in Race::BOTH {
+        let Some(kalker) = model.polynomials(race) else {
+            continue;
+        };
+        let model_of_race = model.contact(race, &boundary.conditions).facing(orientations.as_ref());
+        for (index, (ball, differences)) in balls.iter().zip(&mut *differences).enumerate() {
+            let contact = model_of_race.of_ball(index, None).evaluate(&ball.motion(), &bodies[race].motion());
+            match model_of_race.renew(kalker, &contact, model.epsilon_switch, &mut differences[race]) {
                 Ok(solved) => statistics.polynomials += u64::from(solved),
                 Err(_) => statistics.polynomial_failures += 1,
             }
@@ -298,8 +297,8 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
         state.bearing_wrench = totals.on(body);
         powers.input += match moved {
             Some(moved) => {
-                let flange = boundary.flange(model, body);
-                body::make_consistent(state, moved, &boundary.load_on(body, moved, &ambient), flange)
+                let around = (boundary.flange(model, body), ambient.frame.as_ref());
+                body::make_consistent(state, moved, &boundary.load_on(body, moved, &ambient), around)
             }
             None => -state.twist().power(&state.bearing_wrench),
         };

@@ -198,7 +198,7 @@ impl BallTrial {
     ) {
         let mut tangent = self.contacts_with_tangent(index, around, step);
         self.evaluate_pocket(index, around, step, Some(&mut tangent));
-        self.assemble(around.model, around.ambient, step, start, Some(tangent));
+        self.assemble(around.model, around.ambient, step, start, Some(&mut tangent));
     }
 
     /// Evaluates contacts, residual and their derivatives by the ball's own unknowns alone.
@@ -229,7 +229,7 @@ impl BallTrial {
                 tangent += by_first(&forces.force, &forces.moment);
             }
         }
-        self.assemble(model, ambient, step, start, Some(tangent));
+        self.assemble(model, ambient, step, start, Some(&mut tangent));
     }
 
     /// Evaluates the contacts with the races and returns their derivatives.
@@ -318,19 +318,18 @@ impl BallTrial {
         ambient: &Ambient,
         step: &HhtStep,
         start: &BallState,
-        tangent: Option<Matrix6<f64>>,
+        mut tangent: Option<&mut Matrix6<f64>>,
     ) {
         let ball = &model.bearing.ball;
         let fraction = 1.0 - step.alpha_f;
         let outside = ambient.on_ball(&self.motion);
         self.total = on_ball(self.pairs().map(|(_, pair)| pair.on_first()), outside);
-        let mut tangent = tangent;
         if let (Some(tangent), true) = (&mut tangent, ambient.depends_on_motion()) {
-            *tangent += by_motion(ambient, &seed(&self.motion, step, ball.radius));
+            **tangent += by_motion(ambient, &seed(&self.motion, step, ball.radius));
         }
         if let Some(push) = &self.pushed {
             self.total = self.total.plus(push.wrench);
-            tangent.iter_mut().for_each(|tangent| *tangent += push.tangent);
+            tangent.iter_mut().for_each(|tangent| **tangent += push.tangent);
         }
         let blended = start.total.blend(&self.total, fraction);
         let acceleration = Vector3::new(self.unknowns[0], self.unknowns[1], self.unknowns[2]);
@@ -346,7 +345,7 @@ impl BallTrial {
             let rotational = ball.inertia / (ball.radius * ball.radius);
             let inertia = stack(&Vector3::repeat(ball.mass), &Vector3::repeat(rotational));
             self.block.diagonal =
-                Matrix6::from_diagonal(&inertia) - scale_moments(tangent, ball.radius) * fraction;
+                Matrix6::from_diagonal(&inertia) - scale_moments(*tangent, ball.radius) * fraction;
         }
     }
 }

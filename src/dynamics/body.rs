@@ -9,6 +9,7 @@ use super::step_turn::{OWN_ROTATION, Own, StepTurn, as_second};
 use super::support::{Flange, on_race};
 use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
+use crate::effects::frame::MovingFrame;
 use crate::model::bodies::{Bodies, Constraint, PerRace, Race, RigidBody, tilt_direction};
 use crate::model::state::{BodyState, normalised};
 use crate::numerics::hht::HhtStep;
@@ -131,7 +132,7 @@ impl BodyTrial {
 
     /// Residual under the sum of all pairs on the body.
     pub fn assemble(&mut self, given: &BodyStep<'_>, pairs: &Wrench) {
-        let BodyStep { body, start, load, flange, step, scales } = given;
+        let BodyStep { body, start, load, flange, moving, step, scales } = given;
         let (fraction, length) = (1.0 - step.alpha_f, scales.length);
         let Self { end, turn, residual, violation, input_power, unknowns, .. } = self;
         *violation = 0.0;
@@ -156,7 +157,7 @@ impl BodyTrial {
             *input_power += power * held.multiplier;
         }
         let mut moment = sums.material_moment(turn, body);
-        if let Some(frame) = &load.moving {
+        if let Some(frame) = moving {
             let inertial = in_moving_frame(frame, body, turn, (&end.pose.position, &end.velocity));
             sums.force += inertial.force;
             moment += inertial.moment;
@@ -192,7 +193,7 @@ impl BodyTrial {
         given: &BodyStep<'_>,
         reactions: &(impl Iterator<Item = &'a Reaction> + Clone),
     ) {
-        let BodyStep { body, load, flange, step, scales, .. } = given;
+        let BodyStep { body, load, flange, moving, step, scales, .. } = given;
         let (fraction, length) = (1.0 - step.alpha_f, scales.length);
         let Self { end, derived, block, unknowns, .. } = self;
         let Some(turn) = derived else {
@@ -235,10 +236,9 @@ impl BodyTrial {
             }
         }
         let mut moment = sums.material_moment(turn, body);
-        if load.moving.is_some() || flange.is_some() {
+        if moving.is_some() || flange.is_some() {
             let velocity = Vector3::from_fn(|i, _| Own::variable(end.velocity[i], i, step.velocity_gain()));
-            let inertial =
-                load.moving.as_ref().map(|frame| in_moving_frame(frame, body, turn, (&position, &velocity)));
+            let inertial = moving.map(|frame| in_moving_frame(frame, body, turn, (&position, &velocity)));
             let held = flange.as_ref().map(|flange| flange.holds(turn, (&position, &velocity)));
             for wrench in [inertial, held].into_iter().flatten() {
                 sums.force += wrench.force;
@@ -330,7 +330,7 @@ pub fn make_consistent(
     state: &mut BodyState,
     body: &RigidBody,
     load: &BodyLoad,
-    flange: Option<Flange<'_>>,
+    (flange, moving): (Option<Flange<'_>>, Option<&MovingFrame>),
 ) -> f64 {
     let mut force = state.bearing_wrench.force + load.applied.force;
     let to_material = state.pose.orientation.inverse();
@@ -343,7 +343,7 @@ pub fn make_consistent(
         moment += held.moment;
     }
     let mut inertial_power = 0.0;
-    if let Some(frame) = &load.moving {
+    if let Some(frame) = moving {
         let inertial = Wrench {
             force: frame.field(&state.pose.position, &state.velocity) * body.mass,
             moment: frame.moment(&body.inertia, &state.rate, |v| to_material * v),
@@ -375,7 +375,7 @@ pub fn make_consistent(
             }
         }
     }
-    if load.moving.is_some() {
+    if moving.is_some() {
         power += inertial_power;
     }
     state.total = Wrench { force, moment };

@@ -20,8 +20,6 @@ pub struct BodyLoad {
     pub applied: Wrench,
     /// [rad/s] prescribed spin speed.
     pub speed: f64,
-    /// The bearing's frame, where it moves.
-    pub moving: Option<MovingFrame>,
 }
 
 /// Lengths and time that a body's equations are scaled with.
@@ -46,6 +44,8 @@ pub struct BodyStep<'a> {
     pub load: BodyLoad,
     /// The flange of its support, where it rests on one.
     pub flange: Option<Flange<'a>>,
+    /// The bearing's frame, where it moves.
+    pub moving: Option<&'a MovingFrame>,
     /// The step.
     pub step: &'a HhtStep,
     /// What its equations are scaled with.

@@ -245,6 +245,7 @@ impl<'a> BearingStep<'a> {
             start,
             load: self.boundary.load_on(body, model, &self.ambient),
             flange: self.boundary.flange(self.model, body),
+            moving: self.ambient.frame.as_ref(),
             step: &self.step,
             scales: BodyScales {
                 length: self.model.race_length(),
@@ -411,14 +412,13 @@ impl Boundary {
         }
     }
 
-    /// Load on a body from outside: applied wrench, weight, and the moving frame.
+    /// Load on a body from outside: applied wrench and weight.
     pub fn load_on(&self, body: Body, moved: &RigidBody, ambient: &Ambient) -> BodyLoad {
         let mut load = match body {
             Body::Race(race) => self.loads[race],
             Body::Cage => BodyLoad::default(),
         };
         load.applied.force += ambient.gravity * moved.mass;
-        load.moving = ambient.frame;
         load
     }
 }

@@ -14,6 +14,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use crate::contact::ContactModel;
 use crate::contact::ball_ball::BallBallModel;
 use crate::contact::ball_spall::Damage;
+use crate::contact::creep::Law;
 use crate::contact::form::Form;
 use crate::contact::normal::Damping;
 use crate::contact::spall::Spalls;
@@ -174,7 +175,7 @@ impl Model {
     /// Contact model of the balls with a race; Kalker's polynomials give its table, to which each ball's difference is
     /// added ([`ContactModel::of_ball`]). Damaged balls face as at the start ([`ContactModel::facing`]).
     pub fn contact(&self, race: Race, conditions: &Conditions) -> ContactModel<'_> {
-        self.contact_of(&self.raceways[race], race, conditions)
+        self.contact_of(&self.raceways[race], race, conditions, None)
     }
 
     fn contact_of<'a>(
@@ -182,6 +183,7 @@ impl Model {
         raceway: &'a RacewayContacts,
         race: Race,
         conditions: &Conditions,
+        orientations: Option<&'a Vec<UnitQuaternion<f64>>>,
     ) -> ContactModel<'a> {
         let (raceway_now, ball_radius, stiffening) = match &self.growth {
             None => (*self.bearing.raceway(race), self.bearing.ball.radius, 1.0),
@@ -196,10 +198,10 @@ impl Model {
                 ball_radius,
                 form: self.form[race].as_ref(),
                 spalls: self.spalls[race].as_ref(),
-                damage: self
-                    .damaged
-                    .as_ref()
-                    .map(|damaged| Damage { spalls: &damaged.spalls[race], orientations: &damaged.at_start }),
+                damage: self.damaged.as_ref().map(|damaged| Damage {
+                    spalls: &damaged.spalls[race],
+                    orientations: orientations.unwrap_or(&damaged.at_start),
+                }),
                 sizes: self.sizes.as_ref().map(|sizes| &*sizes[race]),
                 ball: 0,
             },
@@ -224,7 +226,7 @@ impl Model {
         conditions: &Conditions,
         orientations: Option<&'a Vec<UnitQuaternion<f64>>>,
     ) -> PerRace<ContactModel<'a>> {
-        PerRace::new(|race| self.contact(race, conditions).facing(orientations))
+        PerRace::new(|race| self.contact_of(&self.raceways[race], race, conditions, orientations))
     }
 
     /// What acts on balls and bodies from outside, in a frame of this motion.
@@ -237,6 +239,11 @@ impl Model {
     /// The race whose lands guide the cage; none where the balls do, or without a cage.
     pub fn cage_guide(&self) -> Option<Race> {
         self.cage.as_ref().and_then(CageModel::guide)
+    }
+
+    /// Creep law of the balls on a race; Kalker's polynomials give their table.
+    pub fn law(&self, race: Race) -> Law<'_> {
+        self.raceways[race].law()
     }
 
     /// Kalker's polynomials on a race, where they are simulated.

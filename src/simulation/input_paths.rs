@@ -53,7 +53,7 @@ impl InputPaths {
                 let applied = Wrench { force: Vector3::new(fx, fy, fz), moment: Vector3::new(mx, my, mz) };
                 let [x, y, z, rx, ry, rz] = self.frames[race].smooth_at(time).into();
                 let frame = FrameInput { position: Vector3::new(x, y, z), tilt: Vector3::new(rx, ry, rz) };
-                BodyLoad { frame, applied, speed, ..BodyLoad::default() }
+                BodyLoad { frame, applied, speed }
             }),
             conditions,
             frame: self.frame.at(time),

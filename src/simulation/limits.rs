@@ -75,11 +75,11 @@ impl Simulation {
 
     /// Refuses contacts that linear theory does not reach: their creep force is above what friction can carry.
     pub(super) fn check_creep(&self, boundary: &Boundary) -> Result<(), SimulationError> {
-        let orientations = self.state.orientations.as_ref();
-        let contacts = self.model.contacts_facing(&boundary.conditions, orientations);
-        if !matches!(contacts.inner.law, Law::Linear) {
+        if !matches!(self.model.law(Race::Inner), Law::Linear) {
             return Ok(());
         }
+        let orientations = self.state.orientations.as_ref();
+        let contacts = self.model.contacts_facing(&boundary.conditions, orientations);
         for (index, ball) in self.state.balls.iter().enumerate() {
             for race in Race::BOTH {
                 let contact = contacts[race]
