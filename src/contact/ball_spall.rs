@@ -42,6 +42,14 @@ pub struct Damage<'a> {
     pub orientations: &'a Vec<UnitQuaternion<f64>>,
 }
 
+impl Damage<'_> {
+    /// Each spall with the orientation of its ball.
+    #[inline(always)]
+    pub(super) fn each(&self) -> impl Iterator<Item = (&OnBall, &UnitQuaternion<f64>)> {
+        self.spalls.0.iter().map(|spall| (spall, &self.orientations[spall.damaged]))
+    }
+}
+
 /// Drop \[m], its derivative by the normal \[m], which is along the ball's surface, and by the approach [-].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Drop<S: Scalar> {
@@ -77,11 +85,17 @@ impl OnBall {
         self.hole.typical_half_axis()
     }
 
-    /// The drop where a ball, the first of several, is touched along a normal, at an approach \[m] before this spall.
+    /// [-] 1 for the ball that has it, of several from a first one on; 0 for the others.
+    #[inline(always)]
+    pub(super) fn owner<S: Scalar>(&self, first: usize) -> S {
+        S::by_lane(|lane| if first + lane == self.ball { 1.0 } else { 0.0 })
+    }
+
+    /// The drop where its ball, which `owner` marks among several, is touched along a normal, at an approach \[m] before this spall.
     #[inline(always)]
     pub(super) fn under<S: Scalar>(
         &self,
-        first: usize,
+        owner: S,
         orientation: &UnitQuaternion<f64>,
         normal: &Vector3<S>,
         approach: S,
@@ -99,10 +113,9 @@ impl OnBall {
                 [[-along / square, out / square, 0.0], [by_radius * out, by_radius * along, radius / whole]],
             )
         });
-        // Other balls are whole. They are computed alike: several at a time have to be the same bits as one.
-        let has_it = S::by_lane(|lane| if first + lane == self.ball { 1.0 } else { 0.0 });
+        // Other balls are whole.
         let [depth, by_azimuth, by_angle, by_approach] =
-            S::apply(&self.hole, [azimuth, angle, approach]).map(|x| x * has_it);
+            S::apply(&self.hole, [azimuth, angle, approach]).map(|x| x * owner);
         let of_azimuth = (axes[1] * out - axes[0] * along) * (by_azimuth / square);
         let towards = (axes[0] * out + axes[1] * along) * (across / radius);
         let of_angle = (axes[2] * radius - towards) * (by_angle / (square + across.square()));
@@ -135,7 +148,7 @@ mod tests {
         let spall = spall();
         let turned = UnitQuaternion::new(Vector3::new(0.3, -1.2, 0.7));
         let [out, along, across] = spall.axes.map(|axis| turned * axis);
-        let drop = |normal: &Vector3<f64>| spall.under(3, &turned, normal, 5e-6);
+        let drop = |normal: &Vector3<f64>| spall.under(1.0, &turned, normal, 5e-6);
         let middle = drop(&out);
         assert!(middle.depth > 3e-6 && middle.by_normal.norm() < 1e-12, "{middle:?}");
         for (s, y) in [(0.0, 0.0), (0.05, 0.0), (0.1, 0.03), (-0.11, -0.1), (0.09, 0.15)] {
@@ -150,7 +163,7 @@ mod tests {
                 assert!((ours - difference).abs() < 1e-7 + 1e-4 * ours.abs(), "{s} {y}: {ours} {difference}");
                 let by = |i: usize| Dual::<1>::variable(normal[i], 0, tangent[i]);
                 let dual = Vector3::new(by(0), by(1), by(2));
-                let exact = spall.under(3, &turned, &dual, Dual::constant(5e-6));
+                let exact = spall.under(Dual::constant(1.0), &turned, &dual, Dual::constant(5e-6));
                 assert!((exact.depth.derivatives[0] - ours).abs() < 1e-9 + 1e-9 * ours.abs());
                 for i in 0..3 {
                     let second = (after.by_normal[i] - before.by_normal[i]) / 2e-6;
@@ -158,8 +171,9 @@ mod tests {
                     assert!((ours - second).abs() < 1e-4 + 1e-3 * ours.abs(), "{s} {y}: {ours} {second}");
                 }
             }
-            let other = spall.under(2, &turned, &normal, 5e-6);
+            let other = spall.under(0.0, &turned, &normal, 5e-6);
             assert_eq!((other.depth, other.by_approach, other.by_normal.norm()), (0.0, 0.0, 0.0));
+            assert_eq!([2, 3, 4].map(|ball| spall.owner::<f64>(ball)), [0.0, 1.0, 0.0]);
         }
         // Behind the ball, and at the poles.
         for normal in [-out, across, -across] {

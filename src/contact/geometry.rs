@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::RaceMotion;
+use super::ball_spall::Damage;
 use super::shift::{Shift, azimuth};
 use super::surface::Surface;
 use crate::numerics::scalar::{Scalar, cross, dot};
@@ -118,29 +119,41 @@ impl<S: Scalar> GrooveContact<S> {
                 - around * along
                 - up * (drop.by_angle / self.distance);
         }
-        let turning = surface.damage.map(|damage| {
-            let normal = self.radial * cos + race.axis * sin;
-            let mut turning = Vector3::from_element(S::zero());
-            for spall in &damage.spalls.0 {
-                let orientation = &damage.orientations[spall.damaged];
-                let drop = spall.under(surface.ball, orientation, &normal, self.approach);
-                self.approach -= drop.depth;
-                // The normal turns with the azimuth of the ball, and with its place in the groove.
-                let rest = S::one_minus(drop.by_approach);
-                let by_angle = dot(&drop.by_normal, &up) / self.distance;
-                let by_azimuth = dot(&drop.by_normal, &around) * cos;
-                let along = (by_azimuth + by_angle * shift.turn(cos, sin)) / self.radius;
-                gradient = gradient * rest - around * along - up * by_angle;
-                turning = turning * rest + cross(&normal, &drop.by_normal);
+        // Whole balls beside a damaged one have to be the same bits as alone: theirs stays what it was.
+        let mut changed = if surface.spalls.is_some() { S::one() } else { S::zero() };
+        let mut turning = None;
+        for (spall, orientation) in surface.damage.iter().flat_map(Damage::each) {
+            let owner = spall.owner::<S>(surface.ball);
+            if !owner.any_beyond(0.5, S::one()) {
+                continue;
             }
-            turning
-        });
+            let normal = self.radial * cos + race.axis * sin;
+            let drop = spall.under(owner, orientation, &normal, self.approach);
+            self.approach -= drop.depth;
+            // The normal turns with the azimuth of the ball, and with its place in the groove.
+            let rest = S::one_minus(drop.by_approach);
+            let by_angle = dot(&drop.by_normal, &up) / self.distance;
+            let by_azimuth = dot(&drop.by_normal, &around) * cos;
+            let along = (by_azimuth + by_angle * shift.turn(cos, sin)) / self.radius;
+            gradient = gradient * rest - around * along - up * by_angle;
+            let turned = cross(&normal, &drop.by_normal);
+            turning = Some(turning.map_or(turned, |before: Vector3<S>| before * rest + turned));
+            changed = S::one().where_positive(owner, changed);
+        }
+        if !changed.any_beyond(0.5, S::one()) {
+            return Lean::none();
+        }
         let gain = dot(&gradient, &gradient).sqrt();
-        self.normal = gradient.map(|component| component / gain);
-        let across = self.circumferential - self.normal * dot(&self.circumferential, &self.normal);
+        let normal = gradient.map(|component| component / gain);
+        let across = self.circumferential - normal * dot(&self.circumferential, &normal);
         let length = dot(&across, &across).sqrt();
-        self.circumferential = across.map(|component| component / length);
-        Lean { gain, turning }
+        let across = across.map(|component| component / length);
+        let select = |new: &Vector3<S>, old: &Vector3<S>| {
+            new.zip_map(old, |new, old| new.where_positive(changed, old))
+        };
+        self.normal = select(&normal, &self.normal);
+        self.circumferential = select(&across, &self.circumferential);
+        Lean { gain: gain.where_positive(changed, S::one()), turning }
     }
 
     /// Contact with a race whose groove circle is shifted where the ball is.

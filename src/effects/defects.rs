@@ -148,7 +148,7 @@ impl Effect for Settings {
         adds: "spalls of races and balls, by which balls drop towards a race, and the frequencies of damage from the running cage speed",
         states: "the orientation of each ball with a spall",
         source: "fit of elastic boundary elements (contact::spall); frequencies after Harris 2001, chapter 25",
-        price: "of a step of a 6206 at 3000 rpm, no ball near / one over it: 2 / 38 % for a spall of a race, 38 / 93 % for one of a ball; near it \
+        price: "of a step of a 6206 at 3000 rpm, no ball near / one over it: 3 / 38 % for a spall of a race, 15 / 53 % for one of a ball; near it \
                 steps are 6 times shorter",
         example: "[[defect]]\non = \"outer\"\nlength = \"1 mm\"\nwidth = \"3 mm\"\ndepth = \"0.1 mm\"\n",
     };
