@@ -84,7 +84,7 @@ pub struct Spectrum {
     pub marked: [Named; 4],
 }
 
-/// [Hz] turns of a race about its own axis.
+/// \[Hz] turns of a race about its own axis.
 fn turns(race: &RaceOutput) -> f64 {
     (race.pose.orientation.inverse() * race.twist.angular_velocity).x / std::f64::consts::TAU
 }
