@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{UnitQuaternion, Vector3};
 use roulement::contact::many::ContactGroup;
+use roulement::contact::pair::PairForces;
 use roulement::contact::{BallMotion, BallRaceContact, RaceMotion};
 use roulement::model::bodies::Race;
 use roulement::model::state::{BallState, State};
@@ -201,6 +202,11 @@ impl Places {
     }
 }
 
+/// \[J] elastic energy of a contact.
+fn energy_of(contact: &BallRaceContact<f64>) -> f64 {
+    PairForces::from(contact).elastic_energy()
+}
+
 /// Turns of the ball at which the spall stands before, over and behind the contact.
 fn turns() -> impl Iterator<Item = f64> {
     (-20..=20).map(|i| 0.01 * f64::from(i))
@@ -221,7 +227,7 @@ fn invariant_forces_and_moments_over_a_spall_are_the_slopes_of_the_energy() {
                 for k in 0..3 {
                     let energy = |offset, small: Vector3<f64>| {
                         let turned = (UnitQuaternion::new(small) * UnitQuaternion::new(turned)).scaled_axis();
-                        places.at(rolled, aside + offset, turned).elastic_energy()
+                        energy_of(&places.at(rolled, aside + offset, turned))
                     };
                     let by_place = [-1e-9, 1e-9].map(|h| energy(Vector3::ith(k, h), Vector3::zeros()));
                     let by_turn = [-1e-6, 1e-6].map(|h| energy(Vector3::zeros(), Vector3::ith(k, h)));
@@ -268,7 +274,7 @@ fn invariant_power_of_forces_and_moments_is_what_energy_and_damping_take() {
             let energy = |h: f64| {
                 let there = BallMotion { position: ball.position + ball.velocity * h, ..ball };
                 let race = RaceMotion { position: moved.position + moved.velocity * h, ..moved };
-                places.moving(rolled, ball.angular_velocity * h, &there, &race).elastic_energy()
+                energy_of(&places.moving(rolled, ball.angular_velocity * h, &there, &race))
             };
             let h = 1e-9;
             let stored = (energy(h) - energy(-h)) / (2.0 * h);

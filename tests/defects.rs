@@ -5,13 +5,18 @@ use std::f64::consts::TAU;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use roulement::contact::many::ContactGroup;
+use roulement::contact::pair::PairForces;
 use roulement::contact::{BallMotion, RaceMotion};
 use roulement::effects::defects::Frequencies;
 use roulement::model::bodies::Race;
 use roulement::model::{Conditions, Model};
-use roulement::numerics::scalar::{Dual, constant_vector};
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
+
+#[path = "common/kernel.rs"]
+mod kernel;
+
+use kernel::assert_derivatives_are_differences;
 
 /// A 6206 as the data have it, its inner race held or loaded along y.
 const BEARING: &str = "[bearing]\nballs = 9\nball_diameter = 9.525e-3\npitch_diameter = 46e-3\ninner_conformity = 0.52\n\
@@ -198,16 +203,6 @@ fn invariant_energy_of_balls_that_drop_into_spalls_is_that_of_the_work_in_the_li
     assert!(fine.abs() < 1e-4 && coarse.abs() > 4.0 * fine.abs(), "{coarse:e} {fine:e}");
 }
 
-/// A motion with one of its nine numbers changed.
-fn moved(ball: &BallMotion<f64>, k: usize, by: f64) -> BallMotion<f64> {
-    let change = |at: usize| if k / 3 == at { Vector3::ith(k % 3, by) } else { Vector3::zeros() };
-    BallMotion {
-        position: ball.position + change(0),
-        velocity: ball.velocity + change(1),
-        angular_velocity: ball.angular_velocity + change(2),
-    }
-}
-
 #[test]
 fn invariant_lanes_are_single_balls_to_the_bit_and_derivatives_are_differences() {
     for on in ["outer", "inner"] {
@@ -238,36 +233,7 @@ fn invariant_lanes_are_single_balls_to_the_bit_and_derivatives_are_differences()
             }
         }
         for ball in &motions {
-            for k in 0..9 {
-                let step = if k < 3 { 1e-10 } else { 1e-6 };
-                let [before, after] = [-step, step].map(|by| contact.evaluate(&moved(ball, k, by), &seen));
-                let seed = |at: usize, v: &Vector3<f64>| {
-                    Vector3::from_fn(|i, _| {
-                        Dual::<1>::variable(v[i], 0, if 3 * at + i == k { 1.0 } else { 0.0 })
-                    })
-                };
-                let exact = contact.evaluate(
-                    &BallMotion {
-                        position: seed(0, &ball.position),
-                        velocity: seed(1, &ball.velocity),
-                        angular_velocity: seed(2, &ball.angular_velocity),
-                    },
-                    &RaceMotion {
-                        position: constant_vector(&seen.position),
-                        axis: constant_vector(&seen.axis),
-                        across: seen.across,
-                        velocity: constant_vector(&seen.velocity),
-                        angular_velocity: constant_vector(&seen.angular_velocity),
-                    },
-                );
-                for i in 0..3 {
-                    let difference = (after.force[i] - before.force[i]) / (2.0 * step);
-                    let ours = exact.force[i].derivatives[0];
-                    let size = if k < 3 { 1e8 } else { 1e3 };
-                    let error = (ours - difference).abs();
-                    assert!(error < 1e-4 * size + 1e-3 * ours.abs(), "{on} {k} {i}: {ours} {difference}");
-                }
-            }
+            assert_derivatives_are_differences(&contact, ball, &seen, 1e-10, [1e-4, 1e-3]);
         }
     }
 }
@@ -327,7 +293,8 @@ fn invariant_forces_over_a_spall_are_the_slopes_of_the_energy() {
                 let here = at(Vector3::zeros());
                 for k in 0..3 {
                     let h = 1e-9;
-                    let [before, after] = [-h, h].map(|by| at(Vector3::ith(k, by)).elastic_energy());
+                    let [before, after] =
+                        [-h, h].map(|by| PairForces::from(&at(Vector3::ith(k, by))).elastic_energy());
                     let slope = (after - before) / (2.0 * h);
                     // What the stiffness changes with the contact angle is left out of the force, here as everywhere.
                     worst = worst.max((here.force[k] + slope).abs() / 300.0);

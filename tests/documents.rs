@@ -44,12 +44,18 @@ fn row(words: impl Into<String>, numbers: Vec<(String, Noise)>, unit: &'static s
 
 impl Row {
     fn text(&self) -> String {
+        if self.numbers.is_empty() {
+            return format!("| {} |", self.words);
+        }
         let numbers: Vec<&str> = self.numbers.iter().map(|(number, _)| number.as_str()).collect();
         format!("| {} | {}{} |", self.words, numbers.join(" / "), self.unit)
     }
 
     /// Does a line of the document say the same?
     fn agrees(&self, line: &str) -> bool {
+        if self.numbers.is_empty() {
+            return line == self.text();
+        }
         let Some(written) = line
             .strip_prefix(&format!("| {} | ", self.words))
             .and_then(|rest| rest.strip_suffix(&format!("{} |", self.unit)))
@@ -262,4 +268,27 @@ fn regression_solutions_of_the_polynomials_in_a_run() {
     };
     let header = "M | solutions over those of one in every step";
     compare("docs/rolling-contact.md", "solutions", header, &["3", "5"].map(solutions));
+}
+
+#[test]
+fn regression_effects_and_what_is_told_of_them() {
+    let scene = scene(THRUST, &[]);
+    let effects = scene.effects.each();
+    let row_of = |effect: &&dyn roulement::effects::AnyEffect| {
+        let info = effect.info();
+        let example: Vec<String> = info.example.trim().lines().map(|line| format!("`{line}`")).collect();
+        let words = [
+            &format!("`{}`", info.key),
+            info.adds,
+            info.states,
+            info.source,
+            info.price,
+            &example.join("<br>"),
+        ];
+        let estimate = if effect.estimate().is_empty() { "none" } else { effect.estimate() };
+        row(format!("{} | {estimate}", words.join(" | ")), vec![], "")
+    };
+    let rows: Vec<Row> = effects.iter().map(row_of).collect();
+    let header = "key | adds | states | source | price when on | example | estimate";
+    compare("docs/effects.md", "effects", header, &rows);
 }

@@ -248,3 +248,37 @@ fn invariant_a_percent_sign_stays_one() {
     // Two hashes are one in a message.
     assert_eq!(count(messages, Status::Error, "\"http://a/100%d##1\" is not a file: URI"), 1);
 }
+
+#[test]
+fn a_package_says_which_effects_are_on_and_which_would_matter() {
+    let (package, messages) = package("effects", &scene_text("wrench"));
+    let c = start(&package, 0.0, None);
+    assert_eq!(count(messages, Status::Ok, "effects on: creep"), 1);
+    assert_eq!(count(messages, Status::Ok, "off, would matter: growth by temperature: 10 K"), 1);
+    assert_eq!(count(messages, Status::Ok, "not simulated, would matter: rolling resistance"), 1);
+    unsafe { fmi2FreeInstance(c) };
+    // Without logging nothing is estimated and nothing told.
+    messages.lock().unwrap().clear();
+    let c = package.instantiate();
+    unsafe {
+        assert_eq!(fmi2SetDebugLogging(c, 0, 0, ptr::null()), Status::Ok);
+        assert_eq!(fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0), Status::Ok);
+        assert_eq!(fmi2EnterInitializationMode(c), Status::Ok);
+        assert_eq!(fmi2ExitInitializationMode(c), Status::Ok);
+        fmi2FreeInstance(c);
+    }
+    assert_eq!(count(messages, Status::Ok, "effects on"), 0);
+}
+
+#[test]
+fn a_package_runs_with_the_effects_that_were_found_out() {
+    let asked =
+        scripted("wrench", &[("effects", "{ auto = true, auto_threshold = 1e-6, creep = \"saturated\" }")]);
+    let (scene, notes) = roulement::analysis::auto::resolve(Scene::parse(&asked).unwrap()).unwrap();
+    assert!(notes[0].starts_with("auto: effects.heathcote_slip = true"), "{notes:?}");
+    let (package, messages) = package("auto", &scene.source);
+    let c = start(&package, 0.0, None);
+    assert_eq!(count(messages, Status::Ok, "heathcote_slip (on)"), 1);
+    assert!(get(c, &package, "power.groove") > 0.0);
+    unsafe { fmi2FreeInstance(c) };
+}

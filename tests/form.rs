@@ -5,14 +5,17 @@ use std::f64::consts::TAU;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use roulement::contact::many::ContactGroup;
-use roulement::contact::{BallMotion, RaceMotion};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use roulement::model::bodies::Race;
 use roulement::model::state::BallState;
 use roulement::model::{Conditions, Model};
-use roulement::numerics::scalar::{Dual, constant_vector};
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
+
+#[path = "common/kernel.rs"]
+mod kernel;
+
+use kernel::assert_derivatives_are_differences;
 
 const CASES: &str = include_str!("data/effects/waviness.json");
 
@@ -224,16 +227,6 @@ fn invariant_a_run_starts_in_balance_on_wavy_races_under_balls_of_all_sizes() {
     assert!(loads().fold(0.0, f64::max) > 1.05 * loads().fold(f64::INFINITY, f64::min));
 }
 
-/// A motion with one of its nine numbers changed.
-fn moved(ball: &BallMotion<f64>, k: usize, by: f64) -> BallMotion<f64> {
-    let change = |at: usize| if k / 3 == at { Vector3::ith(k % 3, by) } else { Vector3::zeros() };
-    BallMotion {
-        position: ball.position + change(0),
-        velocity: ball.velocity + change(1),
-        angular_velocity: ball.angular_velocity + change(2),
-    }
-}
-
 #[test]
 fn invariant_lanes_are_single_balls_to_the_bit_and_derivatives_are_differences() {
     let scene = thrust(&format!("{SIZES}\n{WAVES}\n{}", WAVES.replace("outer", "inner")), &[]);
@@ -254,35 +247,7 @@ fn invariant_lanes_are_single_balls_to_the_bit_and_derivatives_are_differences()
                 assert_eq!(together.contact(lane), *alone);
             }
         }
-        let (contact, ball) = (contact.of_ball(7, None), motions[7]);
-        for k in 0..9 {
-            let step = if k < 3 { 1e-9 } else { 1e-6 };
-            let [before, after] = [-step, step].map(|by| contact.evaluate(&moved(&ball, k, by), &seen));
-            let seed = |at: usize, v: &Vector3<f64>| {
-                Vector3::from_fn(|i, _| Dual::<1>::variable(v[i], 0, if 3 * at + i == k { 1.0 } else { 0.0 }))
-            };
-            let exact = contact.evaluate(
-                &BallMotion {
-                    position: seed(0, &ball.position),
-                    velocity: seed(1, &ball.velocity),
-                    angular_velocity: seed(2, &ball.angular_velocity),
-                },
-                &RaceMotion {
-                    position: constant_vector(&seen.position),
-                    axis: constant_vector(&seen.axis),
-                    across: seen.across,
-                    velocity: constant_vector(&seen.velocity),
-                    angular_velocity: constant_vector(&seen.angular_velocity),
-                },
-            );
-            for i in 0..3 {
-                let difference = (after.force[i] - before.force[i]) / (2.0 * step);
-                let ours = exact.force[i].derivatives[0];
-                let size = if k < 3 { 1e8 } else { 1e3 };
-                let error = (ours - difference).abs();
-                assert!(error < 1e-5 * size + 1e-4 * ours.abs(), "{race:?} {k} {i}: {ours} {difference}");
-            }
-        }
+        assert_derivatives_are_differences(&contact.of_ball(7, None), &motions[7], &seen, 1e-9, [1e-5, 1e-4]);
     }
 }
 

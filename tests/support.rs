@@ -11,9 +11,12 @@ use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 use serde_json::Value;
 
+#[path = "common/energy.rs"]
+mod energy;
 #[path = "common/scenes.rs"]
 mod scenes;
 
+use energy::open_share;
 use scenes::scene;
 
 type V = Vector3<f64>;
@@ -357,16 +360,8 @@ fn invariant_a_run_starts_in_balance_and_its_energy_closes() {
         }
         simulation.advance(3e-3).unwrap();
         let after = simulation.outputs();
-        let stored = after.stored_energy - before.stored_energy;
-        let open = after.work - after.dissipated - stored;
-        let size = after.work.abs().max(after.dissipated);
-        println!(
-            "{name}: work {} lost {} stored {stored} open {:e}",
-            after.work,
-            after.dissipated,
-            open / size
-        );
-        assert!(open.abs() < 1e-4 * size, "{name}: {:e}", open / size);
+        let open = open_share(&before, after);
+        assert!(open.abs() < 1e-4, "{name}: {open:e}");
         for race in Race::BOTH {
             if let (Some(then), Some(now)) = (&before.supports[race as usize], &after.supports[race as usize])
             {

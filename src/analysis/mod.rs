@@ -1,6 +1,8 @@
 //! Analyses of a model or a state without running it: stiffness and damping, natural frequency, single rolling contacts.
 
+pub mod auto;
 pub mod condensed;
+pub mod estimate;
 pub mod natural_frequency;
 pub mod single_contact;
 pub mod stick_slip;

@@ -167,13 +167,6 @@ impl<S: Single> BallRaceContact<S> {
     }
 }
 
-impl BallRaceContact<f64> {
-    /// \[J] elastic energy.
-    pub fn elastic_energy(&self) -> f64 {
-        0.4 * self.stiffness * self.geometry.approach.max(0.0).powf(2.5)
-    }
-}
-
 impl ContactModel<'_> {
     /// Evaluates the contact of a ball with the race: the whole chain from motion to forces, written once for values
     /// and for exact derivatives. Without friction only what forces need is computed; [`Self::completed`] adds the rest.

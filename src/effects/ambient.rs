@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 
 use super::effect::{Effect, Getter, Info, Row};
+use super::estimate::{Estimate, Verdict, digits, percent};
 use super::frame::MovingFrame;
 use super::keys::keys;
 use crate::contact::BallMotion;
@@ -30,6 +31,9 @@ keys! {
     /// The medium around the balls; there with the effect only.
     "ambient" => section: Option<AmbientSection> = None,
 }
+
+/// A mist of oil, which the estimate is for where the scene gives no medium: its viscosity is that of the air.
+const MIST: Medium = Medium { density: 50.0, viscosity: 18e-6 };
 
 /// [-] drag coefficient of a sphere at large Reynolds numbers (Newton's range).
 const NEWTON_RANGE: f64 = 0.44;
@@ -175,6 +179,7 @@ impl Effect for Settings {
         source: "Schiller and Naumann 1935; Kirchhoff 1876; Dennis, Singh and Ingham 1980",
         example: "[effects]\nambient = { density = 1.2, viscosity = 18e-6 }\n",
     };
+    const ESTIMATE: &'static str = "drag on a ball over its friction limit at the least loaded ball; a mist of oil of 50 kg/m3 where it is off";
 
     const NUMBERS: &'static [Number<Self>] = &[
         Number::fixed(
@@ -195,6 +200,27 @@ impl Effect for Settings {
         self.section.map(|AmbientSection { density, viscosity }| {
             format!("{:?} kg/m3, {:?} Pa s", density.0, viscosity.0)
         })
+    }
+
+    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
+        let medium = self.section.as_ref().map_or(MIST, AmbientSection::medium);
+        let velocity = Vector3::new(estimate.orbital_velocity, 0.0, 0.0);
+        let drag = medium.drag(estimate.ball_radius, &velocity).norm();
+        let [_, least] = estimate.loads;
+        let share = drag / (estimate.friction * least);
+        let sentence = format!(
+            "drag of {} kg/m3 on a ball is {} N: {} of what friction can take at the least loaded ball",
+            digits(medium.density),
+            digits(drag),
+            percent(share)
+        );
+        let value = (share, estimate.threshold);
+        let verdict = Verdict::share("effects.ambient", "drag", self.section.is_some(), value, sentence);
+        vec![
+            verdict.written(
+                "[effects] ambient = { density = ..., viscosity = ... }; the medium is not known here",
+            ),
+        ]
     }
 
     fn rows(&self) -> Vec<Row> {

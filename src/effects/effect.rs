@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::estimate::{Estimate, Verdict};
 use super::frame::FrameInputs;
 use super::reports::Reports;
 use crate::schema::numbers::{Number, Parameter};
@@ -122,6 +123,8 @@ pub trait Effect: Clone + 'static {
     const INFO: &'static Info;
     /// Numbers among its keys.
     const NUMBERS: &'static [Number<Self>] = &[];
+    /// What is estimated to tell whether it matters; empty where nothing is.
+    const ESTIMATE: &'static str = "";
 
     /// How it is set, such as "0.02 s/m"; none if it is off.
     fn setting(&self) -> Option<String>;
@@ -139,6 +142,14 @@ pub trait Effect: Clone + 'static {
         vec![]
     }
 
+    /// Does it matter, as it is set or if it were on? Nothing where there is no estimate.
+    fn matters(&self, _estimate: &Estimate) -> Vec<Verdict> {
+        vec![]
+    }
+
+    /// Switches it on or off by a key that one of its verdicts names ([`Verdict::auto`]).
+    fn switch(&mut self, _key: &str, _on: bool) {}
+
     /// Outputs of the bearing as a whole.
     fn rows(&self) -> Vec<Row> {
         vec![]
@@ -154,6 +165,8 @@ pub trait Effect: Clone + 'static {
 pub trait AnyEffect {
     /// See [`Effect::INFO`].
     fn info(&self) -> &'static Info;
+    /// See [`Effect::ESTIMATE`].
+    fn estimate(&self) -> &'static str;
     /// See [`Effect::setting`].
     fn setting(&self) -> Option<String>;
     /// Checks its numbers against their ranges.
@@ -172,6 +185,10 @@ pub trait AnyEffect {
     fn number(&mut self, key: &str) -> Option<&mut f64>;
     /// See [`Effect::inputs`].
     fn inputs(&self) -> Vec<InputRow>;
+    /// See [`Effect::matters`].
+    fn matters(&self, estimate: &Estimate) -> Vec<Verdict>;
+    /// See [`Effect::switch`].
+    fn switch(&mut self, key: &str, on: bool);
     /// See [`Effect::rows`].
     fn rows(&self) -> Vec<Row>;
     /// See [`Effect::ball_rows`].
@@ -181,6 +198,10 @@ pub trait AnyEffect {
 impl<T: Effect> AnyEffect for T {
     fn info(&self) -> &'static Info {
         T::INFO
+    }
+
+    fn estimate(&self) -> &'static str {
+        T::ESTIMATE
     }
 
     fn setting(&self) -> Option<String> {
@@ -207,6 +228,14 @@ impl<T: Effect> AnyEffect for T {
 
     fn inputs(&self) -> Vec<InputRow> {
         Effect::inputs(self)
+    }
+
+    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
+        Effect::matters(self, estimate)
+    }
+
+    fn switch(&mut self, key: &str, on: bool) {
+        Effect::switch(self, key, on);
     }
 
     fn rows(&self) -> Vec<Row> {

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 
 use super::effect::{Effect, Info, Setup};
+use super::estimate::{Estimate, Verdict, digits, percent};
 use super::keys::Keys;
 use crate::contact::form::{Form, Wave};
 use crate::schema::SceneError;
@@ -246,6 +247,28 @@ impl Settings {
     }
 }
 
+/// \[m] height that the estimate is for, where the scene gives none.
+const TYPICAL_HEIGHT: f64 = 1e-6;
+
+impl Shape {
+    /// \[m] largest height of it above or below the torus.
+    fn height(&self) -> f64 {
+        match self {
+            Self::Waves(waves) => waves.iter().map(|wave| wave.amplitude.abs()).sum(),
+            Self::Points(points) => points.iter().flatten().fold(0.0, |most, height| height.abs().max(most)),
+            Self::File(_) => 0.0,
+        }
+    }
+}
+
+impl FormSection {
+    /// \[m] largest height of races, or deviation of a ball's diameter.
+    fn height(&self) -> f64 {
+        let shapes = [&self.inner, &self.outer].into_iter().flatten().map(Shape::height);
+        shapes.chain(self.balls.iter().map(|deviation| deviation.0.abs())).fold(0.0, f64::max)
+    }
+}
+
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
         key: "form",
@@ -255,6 +278,7 @@ impl Effect for Settings {
         price: "not measured; steps that see every wave",
         example: "[form]\nouter = [{ order = 9, amplitude = \"0.3 um\" }]\n",
     };
+    const ESTIMATE: &'static str = "change of load by its largest height, 1 um where it is off: 1.5 times the height over the deepest approach";
 
     fn setting(&self) -> Option<String> {
         let FormSection { inner, outer, balls } = &self.section;
@@ -265,6 +289,24 @@ impl Effect for Settings {
         let parts: Vec<String> =
             of("inner", inner).into_iter().chain(of("outer", outer)).chain(sizes).collect();
         (!parts.is_empty()).then(|| parts.join("; "))
+    }
+
+    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
+        let on = self.setting().is_some();
+        let height = if on { self.section.height() } else { TYPICAL_HEIGHT };
+        let [share, closed] = estimate.reloads(height);
+        let sentence = format!(
+            "{} um of waviness {} loads by {} at held races",
+            digits(height * 1e6),
+            if on { "change" } else { "would change" },
+            percent(share)
+        );
+        let verdict = Verdict::share("form", "waviness", on, (share, estimate.threshold), sentence);
+        vec![
+            verdict
+                .closer_than(closed)
+                .written("[form] with waves or profiles; amplitudes are not known here"),
+        ]
     }
 
     fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {

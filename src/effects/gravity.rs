@@ -3,12 +3,18 @@
 use nalgebra::Vector3;
 
 use super::effect::{Effect, Info};
+use super::estimate::{Estimate, Verdict, digits, percent};
 use super::keys::keys;
 use crate::schema::Components;
 use crate::schema::numbers::{Number, Place, Range};
 use crate::schema::units::Acceleration;
 
 const GRAVITY: Range = Range::closed(-1e6, 1e6, "m/s2");
+
+/// [m/s2] standard gravity.
+const STANDARD: f64 = 9.80665;
+/// [-] threshold of other effects over its own: a weight is known exactly, and acts at all times.
+const FINENESS: f64 = 5.0;
 
 keys! {
     /// [m/s2] acceleration of gravity, components along x, y, z, each constant or a table; 0 is off.
@@ -38,6 +44,7 @@ impl Effect for Settings {
         price: "0.3 % of a step (thrust case)",
         example: "[effects]\ngravity = [0, -9.81, 0]\n",
     };
+    const ESTIMATE: &'static str = "weight of balls, cage and races under a wrench over the load";
 
     const NUMBERS: &'static [Number<Self>] = &[
         Number::tunable_if(
@@ -62,6 +69,22 @@ impl Effect for Settings {
             |s| Place::Schedule(&mut s.acceleration.0[2]),
         ),
     ];
+
+    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
+        let largest = self.acceleration.largest();
+        let on = largest != 0.0;
+        let weight = estimate.mass * if on { largest } else { STANDARD };
+        let share = weight / estimate.load;
+        let sentence = format!(
+            "balls, cage and races under a wrench weigh {} N: {} of the load of {} N",
+            digits(weight),
+            percent(share),
+            digits(estimate.load)
+        );
+        let value = (share, estimate.threshold / FINENESS);
+        let verdict = Verdict::share("effects.gravity", "gravity", on, value, sentence);
+        vec![verdict.written("[effects] gravity = [0, -9.81, 0]; its direction is not known here")]
+    }
 
     fn setting(&self) -> Option<String> {
         let acceleration = &self.acceleration;

@@ -1,8 +1,10 @@
 //! Slip of grooves that bend across rolling ([`crate::contact::heathcote`]), with the laws that saturate.
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
+use super::estimate::{Estimate, Verdict, digits, percent};
 use super::keys::keys;
 use super::reports::BallOutput;
+use super::sliding::{powers_alone, powers_together};
 use crate::schema::SceneError;
 use crate::schema::variable_units::WATT;
 
@@ -18,15 +20,19 @@ impl Settings {
     }
 }
 
+const KEY: &str = "effects.heathcote_slip";
+
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
-        key: "effects.heathcote_slip",
+        key: KEY,
         adds: "slip across contacts that are bent with the groove, and its friction",
         states: "none",
         source: "Heathcote 1921; Johnson 1985, section 8.5",
         price: "63 % of a step (thrust case)",
         example: "[effects]\nheathcote_slip = true\n",
     };
+    const ESTIMATE: &'static str =
+        "part of the power of complete sliding that it adds, spin and groove slip acting together";
 
     fn setting(&self) -> Option<String> {
         self.on.then(|| "on".into())
@@ -50,10 +56,37 @@ impl Effect for Settings {
         }]
     }
 
+    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
+        let [without, with] = powers_together(estimate);
+        let share = if with > 0.0 { ((with - without) / with).max(0.0) } else { 0.0 };
+        let [spin, groove] = powers_alone(estimate);
+        let sentence = format!(
+            "slip of bent grooves makes {}{} of the friction power; alone it would take {} W, and spin {} W",
+            // Balls that friction does not hold turn, and lose power by that which is no part of the estimate.
+            if estimate.gyroscopic() > 1.0 { "up to " } else { "" },
+            percent(share),
+            digits(groove),
+            digits(spin)
+        );
+        let write = if estimate.saturates {
+            "[effects] heathcote_slip = true"
+        } else {
+            "[effects] heathcote_slip = true, with a creep law that saturates"
+        };
+        let verdict = Verdict::share(KEY, "groove slip", self.on, (share, estimate.threshold), sentence);
+        vec![verdict.written(write).automatic(estimate.saturates.then_some(KEY))]
+    }
+
+    fn switch(&mut self, key: &str, on: bool) {
+        if key == KEY {
+            self.on = on;
+        }
+    }
+
     fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {
         if self.on && !setup.saturates {
             let why = "needs a creep law that saturates: regularised, saturated, kalker_table or kalker";
-            return Err(SceneError::conflict("effects.heathcote_slip", why));
+            return Err(SceneError::conflict(KEY, why));
         }
         Ok(())
     }

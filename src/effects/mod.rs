@@ -17,14 +17,18 @@
 //! 6. Add `pub mod NAME;` and the word `NAME` to the list below. Validation, variables, parameters and the page of a
 //!    package come from that list. Value references follow its order: add at the end.
 //! 7. The physics hangs on at most one hook: `Model` takes from `scene.effects.NAME` what a step reads, as an `Option`.
-//! 8. Everything that moves the balls must be in the equilibrium too, or a run starts with a bounce.
+//! 8. `matters` says from an [`Estimate`] how much it would change, or changes, with `ESTIMATE` in words; `tests/estimates.rs` compares
+//!    that with what switching it on does. `switch` is for effects that `effects.auto` can switch on.
+//! 9. Everything that moves the balls must be in the equilibrium too, or a run starts with a bounce.
 
 pub mod ambient;
+pub mod auto;
 pub mod cage;
 pub mod creep;
 pub mod damping;
 pub mod defects;
 mod effect;
+pub mod estimate;
 pub mod form;
 pub mod frame;
 pub mod full_complement;
@@ -32,11 +36,14 @@ pub mod gravity;
 pub mod groove_slip;
 pub mod growth;
 pub mod heat;
+pub mod inherent;
 pub mod keys;
+pub mod oil;
 pub mod per_ball;
 pub mod rating;
 pub mod reports;
 pub mod shoulder;
+mod sliding;
 pub mod stiffness;
 pub mod support;
 
@@ -48,6 +55,7 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use crate::schema::SceneError;
 use crate::schema::numbers::Parameter;
 pub use effect::{AnyEffect, Effect, EffectInputs, Getter, Info, InputRow, Row, Setup};
+use estimate::{Estimate, Verdict};
 use keys::Keys;
 pub use reports::Reports;
 
@@ -70,7 +78,8 @@ macro_rules! effects {
                 vec![$(&self.$effect),*]
             }
 
-            fn each_mut(&mut self) -> Vec<&mut dyn AnyEffect> {
+            /// The same, to be changed.
+            pub(crate) fn each_mut(&mut self) -> Vec<&mut dyn AnyEffect> {
                 vec![$(&mut self.$effect),*]
             }
 
@@ -86,7 +95,7 @@ macro_rules! effects {
 
 effects! {
     creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form, growth, rating, heat, defects,
-    frame, ambient, support,
+    frame, ambient, support, auto,
 }
 
 impl Effects {
@@ -114,6 +123,29 @@ impl Effects {
     /// Place of the number of a key, if it is one of an effect.
     pub fn number(&mut self, key: &str) -> Option<&mut f64> {
         self.each_mut().into_iter().find_map(|effect| effect.number(key))
+    }
+
+    /// Which effects are simulated and how they are set, in one line.
+    pub fn simulated(&self) -> String {
+        let of = |effect: &dyn AnyEffect| {
+            let key = effect.info().key;
+            effect
+                .setting()
+                .map(|setting| format!("{} ({setting})", key.strip_prefix("effects.").unwrap_or(key)))
+        };
+        let on: Vec<String> = self.each().into_iter().filter_map(of).collect();
+        format!("effects on: {}", if on.is_empty() { "none".into() } else { on.join(", ") })
+    }
+
+    /// What estimates say of all effects, in their order, then of what no scene switches.
+    pub fn verdicts(&self, estimate: &Estimate) -> Vec<Verdict> {
+        let mut verdicts: Vec<Verdict> =
+            self.each().into_iter().flat_map(|effect| effect.matters(estimate)).collect();
+        let given = self.rating.section.as_ref().and_then(|section| section.viscosity);
+        let oil = given.map_or(oil::USUAL, |viscosity| oil::Oil::of_kinematic(viscosity.0));
+        verdicts.extend(oil.verdicts(estimate));
+        verdicts.extend(inherent::verdicts(estimate));
+        verdicts
     }
 
     /// Inputs of a package.
@@ -151,7 +183,16 @@ impl<'de> Deserialize<'de> for Effects {
             type Value = Effects;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a table of effects")
+                f.write_str("a table of effects or \"auto\"")
+            }
+
+            fn visit_str<E: Error>(self, written: &str) -> Result<Effects, E> {
+                if written != "auto" {
+                    return Err(E::unknown_variant(written, &["auto"]));
+                }
+                let mut effects = Effects::default();
+                effects.auto.on = true;
+                Ok(effects)
             }
 
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Effects, A::Error> {
@@ -161,6 +202,7 @@ impl<'de> Deserialize<'de> for Effects {
                     effects.read(key, &mut map)?;
                     given.push(key);
                 }
+                effects.auto.given.clone_from(&given);
                 // A scene that names its creep law names all that it adds.
                 if given.contains(&"creep") && !given.contains(&"heathcote_slip") {
                     effects.groove_slip.on = false;
@@ -168,6 +210,6 @@ impl<'de> Deserialize<'de> for Effects {
                 Ok(effects)
             }
         }
-        deserializer.deserialize_map(Table)
+        deserializer.deserialize_any(Table)
     }
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::effect::{Effect, Getter, Info, Row};
+use super::estimate::{Estimate, Standing, Verdict, digits, percent};
 use super::keys::keys;
 use super::per_ball::ball_row;
 use super::reports::{BallOutput, ContactOutput};
@@ -33,6 +34,10 @@ keys! {
     "shoulder_outputs" => on: bool = false,
 }
 
+const KEY: &str = "effects.shoulder_outputs";
+/// What its estimate is of.
+pub const SUBJECT: &str = "shoulders";
+
 type Contact = fn(&BallOutput) -> &ContactOutput;
 
 /// The contact of a ball with each race.
@@ -40,16 +45,47 @@ const RACES: [(&str, Contact); 2] = [("inner", |ball| &ball.inner), ("outer", |b
 
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
-        key: "effects.shoulder_outputs",
+        key: KEY,
         adds: "report of the share of load that contact ellipses have beyond the shoulders of the races",
         states: "none",
         source: "Hertz's pressure, integrated beyond the edge of the groove",
         price: "none in a step",
         example: "[effects]\nshoulder_outputs = true\n",
     };
+    const ESTIMATE: &'static str = "least distance of a contact ellipse from a shoulder";
 
     fn setting(&self) -> Option<String> {
         self.on.then(|| "on".into())
+    }
+
+    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
+        let margin = estimate.shoulder_margin;
+        let angle = digits(margin.abs().to_degrees());
+        let sentence = if margin < 0.0 {
+            let share = percent(estimate.shoulder_share);
+            format!("a contact ellipse reaches {angle} deg over a shoulder, with up to {share} of its load")
+        } else {
+            format!("contact ellipses end {angle} deg before the nearest shoulder")
+        };
+        vec![Verdict {
+            key: Some(KEY),
+            subject: SUBJECT,
+            standing: if self.on { Standing::On } else { Standing::Off },
+            value: margin,
+            closed_form: None,
+            unit: "rad",
+            threshold: 0.0,
+            matters: margin < 0.0,
+            sentence,
+            write: "[effects] shoulder_outputs = true reports it; loads stay those of whole ellipses",
+            auto: Some(KEY),
+        }]
+    }
+
+    fn switch(&mut self, key: &str, on: bool) {
+        if key == KEY {
+            self.on = on;
+        }
     }
 
     fn rows(&self) -> Vec<Row> {

@@ -9,6 +9,7 @@ use nalgebra::{Matrix6, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
+use super::estimate::{Estimate, Verdict, digits, percent};
 use super::keys::Keys;
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::rotation::{from_quaternion, tangent_inverse_transposed, turn};
@@ -188,6 +189,9 @@ fn diagonal(settings: &Settings, race: usize, of: fn(&SupportSection) -> Vec<f64
 
 const RACES: [&str; 2] = ["inner", "outer"];
 
+/// [N/m] support that the estimate is for, where the scene gives none: a stiff one.
+const TYPICAL_STIFFNESS: f64 = 1e9;
+
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
         key: "support",
@@ -199,6 +203,8 @@ impl Effect for Settings {
         example: "[effects]\ncreep = \"saturated\"\n[outer.support]\nstiffness = [5e7, 1e8, 1e8, 5e4, 5e4, 5e4]\nmass = 0.12\n\
                   inertia = [5e-5, 3e-5, 3e-5]\n",
     };
+    const ESTIMATE: &'static str =
+        "stiffness of the bearing over that of the support; 1000 N/um where it is off";
 
     const NUMBERS: &'static [Number<Self>] = &[
         Number::checked("inner.support.stiffness", STIFFNESS, |s| diagonal(s, 0, |x| x.stiffness.diagonal())),
@@ -268,6 +274,29 @@ impl Effect for Settings {
             }
         }
         Ok(())
+    }
+
+    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
+        // Supports of both races yield one after the other.
+        let translations = |section: &SupportSection| {
+            (0..3).map(|i| section.stiffness.0[(i, i)]).fold(f64::INFINITY, f64::min)
+        };
+        let sections: Vec<&SupportSection> = self.sections.iter().flatten().collect();
+        let yielding: f64 = sections.iter().map(|section| 1.0 / translations(section)).sum();
+        let on = !sections.is_empty();
+        let stiffness = if on { 1.0 / yielding } else { TYPICAL_STIFFNESS };
+        let share = estimate.stiffness / stiffness;
+        let sentence = format!(
+            "a support of {} N/um {} by {} of what the bearing of {} N/um does",
+            digits(stiffness * 1e-6),
+            if on { "yields" } else { "would yield" },
+            percent(share),
+            digits(estimate.stiffness * 1e-6)
+        );
+        let verdict = Verdict::share("support", "support", on, (share, estimate.threshold), sentence);
+        vec![verdict.written(
+            "[inner.support] or [outer.support]; the stiffness around the bearing is not known here",
+        )]
     }
 
     fn rows(&self) -> Vec<Row> {

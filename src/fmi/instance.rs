@@ -6,6 +6,8 @@ use super::log::Log;
 use super::outcome::{Outcome, Status, error};
 use super::resources;
 use super::state::{Phase, State};
+use crate::analysis::{auto, estimate};
+use crate::effects;
 use crate::interface::contradiction::Contradiction;
 use crate::interface::model_description;
 use crate::interface::variables::{Causality, Kind, Source, Variables};
@@ -59,6 +61,8 @@ impl Instance {
         let path = resources::path(location)?.join(resources::SCENE_FILE);
         let failed = |why: String| (Status::Error, why);
         let scene = Scene::load(&path).map_err(|why| failed(why.to_string()))?;
+        let (scene, found_out) = auto::resolve(scene).map_err(|why| failed(why.to_string()))?;
+        found_out.iter().for_each(|note| log.write(Status::Ok, note));
         let variables = Variables::new(&scene);
         let own = model_description::guid(&scene, &variables);
         if guid != own {
@@ -184,7 +188,22 @@ impl Instance {
         self.announce_scripts();
         self.announce_goal();
         self.announce_level();
+        self.announce_effects();
         Ok(())
+    }
+
+    /// Tells which effects are on, and which that are off would matter.
+    fn announce_effects(&self) {
+        // Estimates ask for an equilibrium, which nobody waits for who does not read them.
+        if !self.log.tells(Status::Ok) {
+            return;
+        }
+        let scene = self.simulation.scene();
+        let lines = match estimate::verdicts(scene, self.simulation.model()) {
+            Ok(verdicts) => effects::estimate::missed(&verdicts),
+            Err(why) => vec![why.to_string()],
+        };
+        [scene.effects.simulated()].iter().chain(&lines).for_each(|line| self.log.write(Status::Ok, line));
     }
 
     /// Tells that no motion is simulated, where that is so.

@@ -52,12 +52,17 @@ impl Log {
 
     /// Writes a message. What went wrong is always told; events only with logging on.
     pub fn write(&self, status: Status, message: &str) {
+        if self.tells(status) {
+            (self.sink)(status, category(status), &format_of(message));
+        }
+    }
+
+    /// Are messages of a status wanted?
+    pub fn tells(&self, status: Status) -> bool {
         let category = category(status);
         let wanted = self.categories.is_empty()
             || self.categories.iter().any(|name| name.as_bytes() == category.to_bytes());
-        if wanted && (status != Status::Ok || self.on) {
-            (self.sink)(status, category, &format_of(message));
-        }
+        wanted && (status != Status::Ok || self.on)
     }
 }
 

@@ -44,6 +44,29 @@ impl Scene {
         // Lines of the changed text are not those that the reader of a message has.
         Self::read(&table.to_string(), std::path::Path::new("")).map_err(|(error, _)| error)
     }
+
+    /// Switches effects by their keys, here and in the text, which then asks for nothing to be found out any more.
+    pub(crate) fn settle_effects(&mut self, switches: &[(&'static str, bool)]) {
+        for (key, on) in switches {
+            for effect in self.effects.each_mut() {
+                effect.switch(key, *on);
+            }
+        }
+        self.effects.auto.on = false;
+        let Ok(mut table) = toml::from_str::<Table>(&self.source) else { return };
+        let effects = table.entry("effects").or_insert_with(|| Value::Table(Table::new()));
+        if !effects.is_table() {
+            *effects = Value::Table(Table::new());
+        }
+        if let Some(section) = effects.as_table_mut() {
+            section.remove("auto");
+        }
+        for (key, on) in switches {
+            // Every key has its section in the scene, or that of effects.
+            let _ = change(&mut table, key, if *on { "true" } else { "false" });
+        }
+        self.source = table.to_string();
+    }
 }
 
 /// Sets a key, or takes it out where the value is empty; why that cannot be done.

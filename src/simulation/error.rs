@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::analysis::estimate::EstimateError;
 use crate::dynamics::FailureSite;
 use crate::equilibrium::{EquilibriumError, MAX_APPROACH};
 use crate::kalker::nonlinear::KalkerError;
@@ -13,6 +14,9 @@ pub enum SimulationError {
     /// No creep coefficients for the bearing's contacts.
     #[error("the creep law has no coefficients for this bearing: {0}")]
     Creep(#[from] KalkerError),
+    /// `effects.auto` has nothing to estimate from.
+    #[error("effects.auto: {0}")]
+    Auto(#[from] EstimateError),
     /// No quasi-static equilibrium to start from.
     #[error("no equilibrium to start from: {0}")]
     Start(#[from] EquilibriumError),

@@ -7,7 +7,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::input_paths::{Anchor, InputPaths};
 use super::inputs::{Inputs, RaceInput};
-use super::start::tilt_of;
+use super::orientation::tilt_of;
 use crate::dynamics::Boundary;
 use crate::effects::frame::FrameSection;
 use crate::model::bodies::{PerRace, Race};

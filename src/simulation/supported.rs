@@ -5,7 +5,8 @@ use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::SimulationError;
 use super::inputs::Inputs;
-use super::start::{base_inputs, own_spin, place_fixed, pose_of, spin_free, state, turn_of};
+use super::orientation::{own_spin, pose_of, spin_free, turn_of};
+use super::start_state::{apply, base_inputs, place_fixed, state};
 use crate::equilibrium::{self, Equilibrium, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::forces::{Contacts, Totals};
 use crate::model::bodies::{PerRace, Race};
@@ -148,14 +149,7 @@ fn solve(
             ..scripted.clone()
         };
         if under_wrench(race) {
-            let (force, moment) = (inputs[race].applied.force, inputs[race].applied.moment);
-            let loads = [force.x, force.y, force.z, moment.y, moment.z];
-            for (direction, (condition, load)) in problem.conditions.iter_mut().zip(loads).enumerate() {
-                match condition {
-                    Prescribed::Load(value) => *value = load,
-                    Prescribed::Motion(value) => *value -= origin.get(direction).unwrap_or(&0.0),
-                }
-            }
+            apply(&mut problem, &inputs[race].applied);
         } else {
             problem.conditions = [Prescribed::Load(0.0); 5];
             let flange = inputs[race].pose;

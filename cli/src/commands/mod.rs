@@ -2,6 +2,7 @@
 
 mod contact;
 mod cost;
+mod effects;
 mod field;
 mod identify;
 mod player;
@@ -14,10 +15,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand, ValueEnum};
+use roulement::analysis::auto;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::interface::model_description::render;
 use roulement::model::Model;
-use roulement::scene::{Scene, SceneError};
+use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 use roulement_cli::package::{library_beside_executable, name_of, write_fmu};
 
@@ -44,6 +46,8 @@ enum Command {
         #[arg(long, value_enum, default_value = "outer-race-control")]
         gyroscopic: GyroscopicChoice,
     },
+    /// List the effects of a scene: which are on, which that are off would matter and by how much.
+    Effects(effects::Options),
     /// Pack a scene as an FMI 2.0 co-simulation FMU.
     Fmu {
         /// Scene file.
@@ -93,10 +97,12 @@ impl From<GyroscopicChoice> for Gyroscopic {
     }
 }
 
-/// Reads a scene; what its reader should know goes to standard error.
-fn load(path: &Path) -> Result<Scene, SceneError> {
+/// Reads a scene and finds out its effects where it asks for that; what its reader should know goes to standard error.
+fn load(path: &Path) -> Result<Scene, Box<dyn Error>> {
     let scene = Scene::load(path)?;
     tell(scene.notes());
+    let (scene, found_out) = auto::resolve(scene)?;
+    tell(found_out);
     Ok(scene)
 }
 
@@ -141,6 +147,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
             write_fmu(&load(&scene)?, &name, &libraries, &output)?;
             say(&format!("{}\n", output.display()))?;
         }
+        Command::Effects(options) => effects::run(&options)?,
         Command::Field(options) => field::run(&options)?,
         Command::Contact(options) => contact::run(&options)?,
         Command::Identify(options) => identify::run(&options)?,

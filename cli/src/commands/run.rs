@@ -19,6 +19,7 @@ use roulement_cli::report::spectrum;
 use signal_hook::consts::SIGINT;
 use signal_hook::flag;
 
+use super::effects::announce;
 use super::player::{End, Played, Player, put};
 use super::summary::summary;
 use super::{load, say, tell};
@@ -72,6 +73,7 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     let player = Player { interrupted: Arc::clone(&interrupted) };
     let choice = Choice { columns, window: window.unwrap_or_default() };
     let simulation = Simulation::new(&scene)?;
+    announce(simulation.scene(), simulation.model());
     fs::create_dir_all(&directory).map_err(|why| format!("cannot make {}: {why}", directory.display()))?;
     let place = Place { directory, choice };
     let table = ResultsWriter::create(&place.results(), &scene, &place.choice)?;

@@ -9,6 +9,7 @@ use roulement_cli::report::limits::Limits;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
 use roulement_cli::report::spectrum::is_wanted;
 
+use super::effects::idle_in;
 use super::player::Played;
 
 /// Summary of a run, with error bars where figures have them.
@@ -172,6 +173,9 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Res
              promise: --error measures it{}",
             if run.estimate.has_blows() { BLOWS } else { "" }
         )?;
+    }
+    for line in idle_in(simulation.scene(), simulation.model(), limits.over_shoulders != [0.0; 2]) {
+        writeln!(out, "did not matter   {line}")?;
     }
     let s = &now.statistics;
     let steps = s.steps.max(1) as f64;

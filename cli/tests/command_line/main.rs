@@ -5,6 +5,7 @@
 mod common;
 mod contacts;
 mod cost;
+mod effects;
 mod refusals;
 mod runs;
 mod spectrum;

@@ -13,6 +13,7 @@ mod stiffening;
 use serde::{Deserialize, Serialize};
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
+use super::estimate::{Estimate, Verdict, digits, percent};
 use super::keys::Keys;
 use crate::contact::raceway::Raceway;
 use crate::schema::numbers::Number;
@@ -299,6 +300,64 @@ pub struct GrowthOutput {
 
 type FromGrowth = fn(&GrowthOutput) -> f64;
 
+/// Key of growth by rotation.
+const ROTATION: &str = "growth.rotation";
+/// \[K] difference of temperature that its estimate is for, where the scene gives none.
+const TYPICAL_RISE: f64 = 10.0;
+
+impl Settings {
+    /// What temperatures and fits do to the approach of balls and races that are held where they are.
+    fn by_temperature(&self, estimate: &Estimate) -> Verdict {
+        let on = self.section.is_some();
+        let ring = &estimate.rings[0];
+        let change =
+            if on { 0.5 * estimate.clearance_change } else { TYPICAL_RISE * ring.expansion * ring.bottom };
+        let [share, closed] = estimate.deepens([change, 0.0]);
+        let sentence = if on {
+            format!(
+                "temperatures and fits change the clearance by up to {} um: at held races the deepest approach by {}",
+                digits(2e6 * change),
+                percent(share)
+            )
+        } else {
+            format!(
+                "10 K between the inner ring and the rest change the deepest approach at held races by {}; friction alone warms \
+                 the bearing by about {} K",
+                percent(share),
+                digits(estimate.heating())
+            )
+        };
+        Verdict::share("growth", "growth by temperature", on, (share, estimate.threshold), sentence)
+            .closer_than(closed)
+            .written("[growth] with inner, outer, balls: rises of temperature in K, not known here")
+    }
+
+    /// What rotation does to it.
+    fn by_rotation(&self, estimate: &Estimate) -> Verdict {
+        let on = self.section.as_ref().is_some_and(|section| section.rotation);
+        let [inner, outer] = estimate.rings.each_ref().map(|ring| ring.spun * ring.speed * ring.speed);
+        let [share, closed] = estimate.deepens([inner, outer]);
+        let sentence = format!(
+            "rotation widens the inner raceway by {} um and the outer one by {} um in radius: at held races the deepest approach \
+             changes by {}",
+            digits(inner * 1e6),
+            digits(outer * 1e6),
+            percent(share)
+        );
+        let seats = |section: &Section| {
+            let turns = |index: usize| estimate.rings[index].speed != 0.0;
+            (section.shaft.is_some() || !turns(0)) && (section.housing.is_some() || !turns(1))
+        };
+        let known = self.section.as_ref().is_some_and(seats);
+        Verdict::share(ROTATION, "growth by rotation", on, (share, estimate.threshold), sentence)
+            .closer_than(closed)
+            .written(
+                "[growth] rotation = true, with the diameter of the turning ring's seat in [growth.shaft] or [growth.housing]",
+            )
+            .automatic(known.then_some(ROTATION))
+    }
+}
+
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
         key: "growth",
@@ -308,6 +367,7 @@ impl Effect for Settings {
         price: "4 % of a step (thrust case warming up), beside what warm contacts ask of the solver",
         example: "[growth]\ninner = \"50 K\"\nouter = \"30 K\"\nballs = \"40 K\"\n",
     };
+    const ESTIMATE: &'static str = "change of the deepest approach while races are held: by 10 K between the inner ring and the rest where it is off; by rotation";
 
     const NUMBERS: &'static [Number<Self>] = section::NUMBERS;
 
@@ -328,6 +388,16 @@ impl Effect for Settings {
 
     fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {
         self.section.as_ref().map_or(Ok(()), |section| section.agree(setup))
+    }
+
+    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
+        vec![self.by_temperature(estimate), self.by_rotation(estimate)]
+    }
+
+    fn switch(&mut self, key: &str, on: bool) {
+        if let (ROTATION, Some(section)) = (key, &mut self.section) {
+            section.rotation = on;
+        }
     }
 
     fn rows(&self) -> Vec<Row> {

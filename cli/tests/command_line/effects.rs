@@ -1,0 +1,108 @@
+//! `roulement effects`, and what runs and packages say of effects.
+
+use super::*;
+
+fn said(output: &std::process::Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+#[test]
+fn effects_are_listed_as_a_table_and_as_json() {
+    let text = said(&roulement(&["effects", &scene("thrust")]));
+    for part in [
+        "effects on: creep (saturated), damping (0.02 s/m)",
+        "off, and would matter\n",
+        "growth by temperature",
+        "10 K between the inner ring and the rest",
+        "write [growth]",
+        "off, and would not matter\n",
+        "groove slip",
+        "simulated in every scene\n",
+        "centrifugal force",
+        "not simulated by any effect yet\n",
+        "rolling resistance",
+        "ISO VG 68 at 40 degC",
+    ] {
+        assert!(text.contains(part), "{text}\nshould have {part}");
+    }
+    let json: Value =
+        serde_json::from_str(&said(&roulement(&["effects", "--json", &scene("thrust")]))).unwrap();
+    assert_eq!(json["settings"]["effects.creep"], "saturated");
+    assert_eq!(json["settings"]["growth"], Value::Null);
+    let estimates = json["estimates"].as_array().unwrap();
+    let of = |subject: &str| estimates.iter().find(|estimate| estimate["subject"] == subject).unwrap();
+    let growth = of("growth by temperature");
+    assert_eq!((&growth["standing"], &growth["matters"]), (&Value::from("off"), &Value::from(true)));
+    // 0.1927 by the closed form of the reference data.
+    assert!((growth["closed_form"].as_f64().unwrap() / 0.19273 - 1.0).abs() < 1e-3, "{growth}");
+    assert_eq!(growth["threshold"], 0.05);
+    assert_eq!(of("gravity")["threshold"], 0.01);
+}
+
+#[test]
+fn a_run_says_what_is_on_what_would_matter_and_what_did_not() {
+    let scratch = Scratch::new("effects-run");
+    let light = edited(
+        "radial",
+        &[
+            ("load.duration", "\"0.2 ms\""),
+            ("effects.gravity", "[0, -9.81, 0]"),
+            ("load.output_interval", "\"20 us\""),
+        ],
+    );
+    let output = scratch.run(&light, "run", &[]);
+    let summary = said(&output);
+    let notes = String::from_utf8(output.stderr).unwrap();
+    let lines = |start: &str| notes.lines().filter(|line| line.starts_with(start)).count();
+    assert_eq!(lines("effects on: creep (saturated), damping (0.02 s/m), gravity"), 1, "{notes}");
+    for subject in ["groove slip", "waviness", "growth by temperature", "support"] {
+        assert_eq!(lines(&format!("off, would matter: {subject}: ")), 1, "{notes}");
+    }
+    assert_eq!(lines("not simulated, would matter: rolling resistance: "), 1, "{notes}");
+    // Silent about what is off and does not matter.
+    assert!(!notes.contains("drag") && !notes.contains("rotation"), "{notes}");
+    assert!(summary.contains("did not matter   gravity: "), "{summary}");
+    assert!(scratch.read("run/summary.txt").contains("did not matter   gravity: "));
+}
+
+#[test]
+fn auto_says_what_it_switches_and_packages_have_it_switched() {
+    let scratch = Scratch::new("effects-auto");
+    let text = edited(
+        "radial",
+        &[("effects", "{ auto = true, creep = \"saturated\" }"), ("load.duration", "\"0.1 ms\"")],
+    );
+    assert!(text.effects.auto.on);
+    std::fs::write(scratch.path("auto.toml"), &text.source).unwrap();
+    let output = roulement(&["describe", &scratch.path("auto.toml")]);
+    assert!(said(&output).contains("\"power.groove\""));
+    let notes = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        notes.contains("auto: effects.heathcote_slip = true: slip of bent grooves makes 100 %"),
+        "{notes}"
+    );
+    // The same description as of the scene with the effect written out.
+    let written = edited(
+        "radial",
+        &[("effects", "{ heathcote_slip = true, creep = \"saturated\" }"), ("load.duration", "\"0.1 ms\"")],
+    );
+    std::fs::write(scratch.path("written.toml"), &written.source).unwrap();
+    let rows = |xml: &str| {
+        xml.lines().filter(|line| line.contains("<ScalarVariable")).map(str::to_string).collect::<Vec<_>>()
+    };
+    let plain = said(&roulement(&["describe", &scratch.path("written.toml")]));
+    assert_eq!(rows(&plain), rows(&String::from_utf8(output.stdout).unwrap()));
+
+    std::fs::write(scratch.path("word.toml"), text.source.replace("auto = true", "auto = 1")).unwrap();
+    let refused = roulement(&["effects", &scratch.path("word.toml")]);
+    assert!(!refused.status.success());
+    let thrust = std::fs::read_to_string(scene("thrust")).unwrap();
+    let from = thrust.find("[effects]").unwrap();
+    let to = thrust.find("[inner]").unwrap();
+    let word = format!("effects = \"all\"\n{}{}", &thrust[..from], &thrust[to..]);
+    std::fs::write(scratch.path("word.toml"), word).unwrap();
+    let refused = roulement(&["effects", &scratch.path("word.toml")]);
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert!(message.contains("effects = \"all\" is not known") && message.contains("auto"), "{message}");
+}

@@ -1,0 +1,233 @@
+//! What estimates of effects look at, of a scene: its equilibrium at time 0, with every race at the largest speed of its script.
+
+use crate::contact::shoulder::{largest_share, least_margin};
+use crate::effects::estimate::{BallEstimate, ContactEstimate, Estimate, Outline, RingEstimate, Verdict};
+use crate::effects::growth::Warmth;
+use crate::effects::growth::rings::Cylinder;
+use crate::equilibrium::{
+    self, BallEquilibrium, Equilibrium, EquilibriumError, EquilibriumInput, Gyroscopic,
+};
+use crate::kalker::nonlinear::KalkerError;
+use crate::model::Model;
+use crate::model::bodies::Race;
+use crate::scene::{Drive, Scene, Schedule};
+
+/// Why nothing is estimated.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum EstimateError {
+    /// No creep coefficients for the bearing's contacts.
+    #[error("no estimates of effects: {0}")]
+    Creep(#[from] KalkerError),
+    /// There is no equilibrium to look at.
+    #[error("no estimates of effects: {0}")]
+    Equilibrium(#[from] EquilibriumError),
+    /// No ball carries load between the races.
+    #[error("no estimates of effects: no ball is loaded at time 0")]
+    Unloaded,
+}
+
+/// What estimates say of all effects in a scene.
+///
+/// # Errors
+/// See [`EstimateError`].
+pub fn verdicts(scene: &Scene, model: &Model) -> Result<Vec<Verdict>, EstimateError> {
+    Ok(scene.effects.verdicts(&of(scene, model)?))
+}
+
+/// What they look at.
+///
+/// # Errors
+/// See [`EstimateError`].
+pub fn of(scene: &Scene, model: &Model) -> Result<Estimate, EstimateError> {
+    let speeds = [&scene.load.inner_speed, &scene.load.outer_speed].map(fastest);
+    let at = |gyroscopic| {
+        let [inner_speed, outer_speed] = speeds;
+        EquilibriumInput { inner_speed, outer_speed, ..EquilibriumInput::from_scene(scene, gyroscopic) }
+    };
+    // Where friction at the outer race cannot hold the balls, that at both does what it can.
+    let input = at(Gyroscopic::OuterRaceControl);
+    let solution = equilibrium::solve(model, &input)
+        .or_else(|_| equilibrium::solve(model, &at(Gyroscopic::Friction)))?;
+    let loads = || solution.balls.iter().map(|ball| ball.report.inner_load).filter(|load| *load > 0.0);
+    let most = solution.balls.iter().max_by(|a, b| a.report.inner_load.total_cmp(&b.report.inner_load));
+    let most = most.filter(|ball| ball.report.inner_load > 0.0).ok_or(EstimateError::Unloaded)?;
+    let approaches = |ball: &BallEquilibrium| {
+        [ball.report.inner_approach, ball.report.outer_approach].map(|approach| approach.max(0.0))
+    };
+    let depth = |ball: &BallEquilibrium| approaches(ball).into_iter().sum::<f64>();
+    let deepest = solution.balls.iter().max_by(|a, b| depth(a).total_cmp(&depth(b))).unwrap_or(most);
+    let contacts = model.contacts(&input.surroundings());
+    let distance = |race: Race| {
+        let surface = &contacts[race].surface;
+        surface.raceway.groove_radius - surface.ball_radius + approaches(deepest)[race as usize]
+    };
+    let bearing = &model.bearing;
+    let places = ellipses(model, &input, &solution);
+    let shoulders = |race: Race| {
+        let of_race = places.iter().filter(move |place| place.race == race as usize);
+        of_race.map(move |place| {
+            let (share, margin) = bearing.shoulder(race, place.towards_x, place.estimate.semi_axes[1]);
+            (place.estimate.load, share, margin)
+        })
+    };
+    let margin = |race| least_margin(shoulders(race).map(|(load, _, margin)| (load, margin)));
+    let share = |race| largest_share(shoulders(race).map(|(load, share, _)| (load, share)));
+    let forces = solution.load[..3].iter().map(|force| force * force).sum::<f64>().sqrt();
+    let largest = most.report.inner_load;
+    let outline = outline(scene);
+    Ok(Estimate {
+        threshold: scene.effects.auto.threshold(),
+        deepest: depth(deepest),
+        deepest_ball: BallEstimate {
+            loads: [deepest.report.inner_load, deepest.report.outer_load],
+            approaches: approaches(deepest),
+            angles: [deepest.report.inner_contact_angle, deepest.report.outer_contact_angle],
+            distances: Race::BOTH.map(distance),
+        },
+        loads: [largest, loads().fold(largest, f64::min)],
+        contact_angle: most.report.inner_contact_angle,
+        centrifugal_force: most.report.centrifugal_force,
+        gyroscopic_moment: most.report.gyroscopic_moment,
+        ball_radius: bearing.ball.radius,
+        orbital_velocity: 0.5 * bearing.pitch_diameter * solution.cage_speed.abs(),
+        friction: scene.friction.ball_race.at(0.0),
+        saturates: scene.effects.creep.law.saturates(),
+        // Moments load balls, too.
+        load: forces.max(largest),
+        mass: mass(scene, model),
+        stiffness: (0..3).map(|i| solution.stiffness[(i, i)]).fold(0.0, f64::max),
+        shoulder_margin: margin(Race::Inner).min(margin(Race::Outer)),
+        shoulder_share: share(Race::Inner).max(share(Race::Outer)),
+        modulus: 2.0 / bearing.materials.compliance,
+        youngs_modulus: scene.race.youngs_modulus.0,
+        rings: rings(scene, &outline, speeds),
+        outline,
+        clearance_change: clearance_change(scene, model, speeds),
+        contacts: places.into_iter().map(|place| place.estimate).collect(),
+    })
+}
+
+/// [rad/s] speed of the largest size in a script.
+fn fastest(schedule: &Schedule) -> f64 {
+    schedule
+        .values()
+        .into_iter()
+        .fold(0.0, |most: f64, speed| if speed.abs() > most.abs() { speed } else { most })
+}
+
+/// A contact and where it is.
+struct Place {
+    race: usize,
+    /// \[rad] contact angle towards the race's +x side.
+    towards_x: f64,
+    estimate: ContactEstimate,
+}
+
+/// All contacts that carry load.
+fn ellipses(model: &Model, input: &EquilibriumInput, solution: &Equilibrium) -> Vec<Place> {
+    let contacts = model.contacts(&input.surroundings());
+    let (radius, pitch) = (model.bearing.ball.radius, model.bearing.pitch_diameter);
+    let place = |(ball, of): (usize, &BallEquilibrium), race: Race| {
+        let report = &of.report;
+        let inner = race == Race::Inner;
+        let (load, approach, angle, speed) = if inner {
+            (report.inner_load, report.inner_approach, report.inner_contact_angle, input.inner_speed)
+        } else {
+            (report.outer_load, report.outer_approach, report.outer_contact_angle, input.outer_speed)
+        };
+        let orbit = of.position.yz().norm();
+        // The contact lies inside or outside of the ball's orbit.
+        let side = if inner { -1.0 } else { 1.0 };
+        let along = -side * angle.cos() / (orbit + side * radius * angle.cos());
+        let hertz = contacts[race].shape.hertz(along);
+        let groove = contacts[race].surface.raceway.groove_radius;
+        let root = approach.max(0.0).sqrt();
+        // Angular velocity of the ball against the race, along the axis and radially, then about the normal and across it.
+        let (sin, cos) = of.azimuth.sin_cos();
+        let turn = [of.angular_velocity.x - speed, of.angular_velocity.y * cos + of.angular_velocity.z * sin];
+        let (sine, cosine) = angle.sin_cos();
+        (load > 0.0).then(|| Place {
+            race: race as usize,
+            towards_x: side * angle,
+            estimate: ContactEstimate {
+                ball,
+                race: race as usize,
+                load,
+                semi_axes: [hertz.semi_axis_rolling * root, hertz.semi_axis_transverse * root],
+                curvatures: [1.0 / radius + along, 1.0 / radius - 1.0 / groove],
+                bend: 0.25 * (1.0 / radius + 1.0 / groove),
+                rolling: turn[0] * cosine - turn[1] * sine,
+                spin: turn[0] * sine + turn[1] * cosine,
+                rolling_speed: (speed - solution.cage_speed).abs() * (0.5 * pitch + side * radius),
+            },
+        })
+    };
+    let balls = || solution.balls.iter().enumerate();
+    Race::BOTH
+        .into_iter()
+        .flat_map(|race| balls().filter_map(move |ball| place(ball, race)).collect::<Vec<_>>())
+        .collect()
+}
+
+/// \[kg] what weighs on the bearing by itself.
+fn mass(scene: &Scene, model: &Model) -> f64 {
+    let bodies = [&scene.inner, &scene.outer].into_iter().filter(|race| race.drive == Drive::Wrench);
+    let bodies: f64 = bodies.filter_map(|race| race.mass.as_ref()).map(|mass| mass.0).sum();
+    let cage = scene.effects.cage.section.as_ref().map_or(0.0, |section| section.mass.0);
+    model.bearing.n_balls as f64 * model.bearing.ball.mass + bodies + cage
+}
+
+/// Outer dimensions: seats where they are given, usual ones elsewhere.
+fn outline(scene: &Scene) -> Outline {
+    let bearing = &scene.bearing;
+    let usual = Outline::usual(bearing.pitch_diameter.0, bearing.ball_diameter.0);
+    let seat = |partner: fn(&crate::effects::growth::Section) -> Option<f64>, usual: f64| {
+        scene.effects.growth.section.as_ref().and_then(partner).unwrap_or(usual)
+    };
+    Outline {
+        bore: seat(|section| section.shaft.as_ref().map(|shaft| shaft.diameter.0), usual.bore),
+        outside: seat(|section| section.housing.as_ref().map(|housing| housing.diameter.0), usual.outside),
+        ..usual
+    }
+}
+
+fn rings(scene: &Scene, outline: &Outline, speeds: [f64; 2]) -> [RingEstimate; 2] {
+    let [inner, outer] = scene.bearing.raceways();
+    let bottoms =
+        [inner.groove_circle_radius - inner.groove_radius, outer.groove_circle_radius + outer.groove_radius];
+    let seats = [0.5 * outline.bore, 0.5 * outline.outside];
+    [0, 1].map(|index| {
+        let (bottom, seat) = (bottoms[index], seats[index]);
+        let cylinder = Cylinder {
+            inside: seat.min(bottom),
+            outside: seat.max(bottom),
+            youngs_modulus: scene.race.youngs_modulus.0,
+            poisson_ratio: scene.race.poisson_ratio,
+            density: scene.race.density.0,
+        };
+        RingEstimate {
+            spun: cylinder.spun(bottom),
+            bottom,
+            expansion: scene.race.thermal_expansion.0,
+            speed: speeds[index],
+        }
+    })
+}
+
+/// \[m] largest change of the clearance by temperatures and fits, at any time of the script; 0 where nothing grows.
+fn clearance_change(scene: &Scene, model: &Model, spins: [f64; 2]) -> f64 {
+    let (Some(growth), Some(schedules)) = (&model.growth, scene.effects.growth.schedules()) else {
+        return 0.0;
+    };
+    let [inner, outer] = scene.bearing.raceways();
+    let cold = 2.0
+        * (outer.groove_circle_radius + outer.groove_radius - inner.groove_circle_radius
+            + inner.groove_radius
+            - scene.bearing.ball_diameter.0);
+    let knots = schedules.into_iter().flat_map(|schedule| schedule.knots(f64::NEG_INFINITY, f64::INFINITY));
+    let change = |time: f64| {
+        let rises = scene.effects.growth.rises(time).unwrap_or_default();
+        (growth.output(&Warmth { rises, spins }).clearance - cold).abs()
+    };
+    knots.chain([0.0]).map(change).fold(0.0, f64::max)
+}

@@ -1,0 +1,204 @@
+//! From one communication point to the next, in steps that end at the knots of the script.
+
+use std::cmp::Ordering;
+
+use super::error::SimulationError;
+use super::input_paths::InputPaths;
+use super::inputs::Inputs;
+use super::outputs::Outputs;
+use super::script::{Script, script_motion};
+use super::{Simulation, conditions, step_limits};
+use crate::dynamics::{StepFailure, Workspace, advance_perturbed, failure_site, try_step};
+use crate::forces::Contacts;
+use crate::model::bodies::Race;
+use crate::model::state::State;
+use crate::scene::{Drive, Groups, Level};
+
+/// A simulation beside the running one, under slightly different inputs.
+struct Perturbed {
+    state: State,
+    paths: InputPaths,
+    inputs: Inputs,
+}
+
+impl Simulation {
+    /// Runs its own steps to exactly `end` \[s]. The inputs are taken as valid now, at the start.
+    ///
+    /// # Errors
+    /// See [`SimulationError`]; the state is then that of the last converged step, at [`Simulation::time`]. Depth and place of
+    /// contacts are looked at where the step ends.
+    pub fn advance(&mut self, end: f64) -> Result<(), SimulationError> {
+        self.advance_perturbed(end, &[], Groups::default()).map(drop)
+    }
+
+    /// Like [`Simulation::advance`], with some groups of inputs given by the scene's script where it has one. The inputs of
+    /// these are then those of the time reached.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn advance_with(&mut self, end: f64, scripted: Groups) -> Result<(), SimulationError> {
+        self.advance_perturbed(end, &[], scripted).map(drop)
+    }
+
+    /// Like [`Simulation::advance`], with some groups of inputs given by the scene's script where it has one; also gives the outputs that slightly different inputs would have led to, in the same
+    /// steps. They are exact to first order: take differences between perturbations of opposite sign.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`], and if the Newton matrix of a step is singular.
+    pub fn advance_perturbed(
+        &mut self,
+        end: f64,
+        inputs: &[Inputs],
+        scripted: Groups,
+    ) -> Result<Vec<Outputs>, SimulationError> {
+        let begin = self.state.time;
+        if !(end > begin && end.is_finite()) {
+            return Err(SimulationError::Backwards { from: begin, to: end });
+        }
+        if self.model.solver.level == Level::Equilibrium {
+            return self.advance_by_equilibria(end, inputs, scripted);
+        }
+        if let Some(heat) = &mut self.state.heat {
+            heat.mark(begin);
+        }
+        let script = Script::new(&self.scene, scripted);
+        let mut given = self.inputs;
+        self.script_fixed_races(begin, &mut given);
+        self.inputs = given;
+        script.begin(&mut self.paths, begin);
+        let mut perturbed: Vec<Perturbed> = inputs
+            .iter()
+            .map(|inputs| {
+                let mut inputs = *inputs;
+                self.script_fixed_races(begin, &mut inputs);
+                let paths = self.paths.towards(&inputs, begin, end - begin);
+                Perturbed { state: self.state.clone(), paths, inputs }
+            })
+            .collect();
+        self.paths = self.paths.towards(&self.inputs, begin, end - begin);
+        let result = self.follow(&script, end, &mut perturbed);
+        script.set_inputs(&self.scene, &self.paths, self.state.time, &mut self.inputs);
+        // The last step's own evaluation, where it was accepted.
+        let contacts = match &result {
+            Ok(()) => self.workspace.contacts(&self.model),
+            Err(_) => Contacts::new(&self.model, &self.state, &self.conditions()),
+        };
+        self.outputs = Outputs::of(&self.model, &self.state, &contacts, &self.conditions());
+        if script.gives_inputs() {
+            self.paths = self.paths.after_script(&self.inputs, &self.state);
+        }
+        result.and_then(|()| self.check_contacts(&contacts))?;
+        let outputs = |p: &Perturbed| {
+            let mut inputs = p.inputs;
+            script.set_inputs(&self.scene, &p.paths, p.state.time, &mut inputs);
+            Outputs::new(&self.model, &p.state, &conditions(&inputs, &p.state))
+        };
+        Ok(perturbed.iter().map(outputs).collect())
+    }
+
+    /// The scene's script says how a race moves that is fixed in its frame or hinged to it, but for a speed that is the same
+    /// at all times: that is an input.
+    pub(super) fn script_fixed_races(&self, time: f64, inputs: &mut Inputs) {
+        let load = &self.scene.load;
+        for (race, section, speed) in [
+            (Race::Inner, &self.scene.inner, &load.inner_speed),
+            (Race::Outer, &self.scene.outer, &load.outer_speed),
+        ] {
+            if matches!(section.drive, Drive::Fixed | Drive::Hinge) {
+                let now = self.paths.races[race].at(time).0;
+                let input = &mut inputs[race];
+                if speed.is_table() {
+                    input.speed = speed.at(time);
+                }
+                script_motion(&self.scene, race, time, &now, input);
+            }
+        }
+    }
+
+    /// Steps to `end` \[s] and to the knots of the script on the way.
+    fn follow(
+        &mut self,
+        script: &Script,
+        end: f64,
+        perturbed: &mut [Perturbed],
+    ) -> Result<(), SimulationError> {
+        let least = self.model.solver.min_step.0;
+        let knots = script.knots(&self.scene, self.state.time, end, least);
+        knots.into_iter().chain([end]).try_for_each(|stop| self.step_to(script, stop, perturbed))
+    }
+
+    fn step_to(
+        &mut self,
+        script: &Script,
+        end: f64,
+        perturbed: &mut [Perturbed],
+    ) -> Result<(), SimulationError> {
+        // The perturbed steps leave the running simulation as it is.
+        let mut aside = Workspace::default();
+        while self.state.time < end {
+            let remaining = end - self.state.time;
+            if let Some(limit) = step_limits::largest_step(&self.model, &self.state) {
+                self.state.control.cap(limit);
+            }
+            let h = self.state.control.step_within(remaining);
+            // The last step ends at the communication point to the bit.
+            let last = h >= remaining * (1.0 - 1e-9);
+            let next = if last { end } else { self.state.time + h };
+            if next.partial_cmp(&self.state.time) != Some(Ordering::Greater) {
+                return Err(SimulationError::LostInRounding { time: self.state.time, step: h });
+            }
+            let mut boundary = self.boundary(next);
+            script.impose(&self.scene, &self.paths, &mut boundary);
+            boundary.see_spins(&self.model);
+            boundary.turn_balls(&self.model, &self.state);
+            let start = (!perturbed.is_empty()).then(|| self.state.clone());
+            let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
+            let (cause, worst) = match tried {
+                Ok(()) => {
+                    self.check_creep(&boundary)?;
+                    if let Some(mut start) = start {
+                        // Renewed by the step itself.
+                        start.differences.clone_from(&self.state.differences);
+                        let (scene, model) = (&self.scene, &self.model);
+                        let perturbed = perturbed.iter_mut().map(|p| {
+                            let mut boundary = p.paths.boundary(boundary.time, p.inputs.friction);
+                            script.impose(scene, &p.paths, &mut boundary);
+                            boundary.see_spins(model);
+                            boundary.turn_balls(model, &p.state);
+                            (&mut p.state, boundary)
+                        });
+                        let accepted = &self.workspace;
+                        if !advance_perturbed(
+                            &self.model,
+                            &start,
+                            &boundary,
+                            h,
+                            perturbed,
+                            accepted,
+                            &mut aside,
+                        ) {
+                            return Err(SimulationError::Singular(start.time));
+                        }
+                    }
+                    continue;
+                }
+                Err(StepFailure::Newton(_, worst)) => ("Newton's method does not converge", worst),
+                Err(StepFailure::Error(worst)) => ("the local error stays above solver.tolerance", worst),
+            };
+            if !self.state.control.above_minimum() {
+                let outputs = Outputs::new(&self.model, &self.state, &self.conditions());
+                let site = failure_site(&self.model, &self.state, &boundary, worst, &self.workspace);
+                let ball = &outputs.balls[site.ball - 1];
+                return Err(SimulationError::StepTooSmall {
+                    time: self.state.time,
+                    min_step: self.model.solver.min_step.0,
+                    cause,
+                    site,
+                    inner_load: ball.inner.load,
+                    outer_load: ball.outer.load,
+                });
+            }
+        }
+        Ok(())
+    }
+}
