@@ -108,7 +108,8 @@ fn force_assembly(bencher: Bencher) {
     });
     let conditions = Conditions::of_friction(0.08);
     let frame = roulement::effects::frame::FrameMotion::default();
-    let boundary = Boundary { time: 0.0, motion, loads: Default::default(), conditions, frame };
+    let boundary =
+        Boundary { time: 0.0, motion, loads: Default::default(), conditions, frame, orientations: None };
     bencher.with_inputs(|| simulation.state().clone()).bench_local_values(|mut state| {
         make_consistent(simulation.model(), &mut state, &boundary);
         state

@@ -72,6 +72,7 @@ fn boundary(state: &State, frame: FrameMotion, friction: f64) -> Boundary {
         loads: PerRace::new(|_| BodyLoad::default()),
         conditions: roulement::model::Conditions::of_friction(friction),
         frame,
+        orientations: None,
     }
 }
 

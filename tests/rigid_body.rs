@@ -61,6 +61,7 @@ impl Flight {
             grown: None,
             rating: None,
             heat: None,
+            orientations: None,
         };
         let speed = state.race(Race::Inner).rate.x;
         let load = BodyLoad { speed, ..BodyLoad::default() };
@@ -72,6 +73,7 @@ impl Flight {
             loads: PerRace::new(|_| load),
             conditions,
             frame: scene.frame_at(0.0),
+            orientations: None,
         };
         make_consistent(&model, &mut state, &boundary);
         Self { model, state, boundary, workspace: Workspace::default(), h }

@@ -260,6 +260,7 @@ fn independent_data_eigenfrequencies_of_a_kicked_race() {
                     loads: PerRace::new(|_| BodyLoad::default()),
                     conditions: simulation.conditions(),
                     frame: Default::default(),
+                    orientations: None,
                 };
                 make_consistent(&model, &mut state, &boundary);
                 let mut workspace = Workspace::default();

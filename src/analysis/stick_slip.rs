@@ -54,7 +54,7 @@ pub fn field(
     n: usize,
 ) -> Result<Option<Field>, HalfSpaceError> {
     let (motion, race_motion) = (state.balls[ball].motion(), state.race(race).motion());
-    let contacts = model.contact(race, conditions);
+    let contacts = model.contact(race, conditions).facing(state.orientations.as_ref());
     let contacts = contacts.of_ball(ball, state.difference(ball, race));
     let contact = contacts.completed(&contacts.evaluate(&motion, &race_motion), &motion, &race_motion);
     let rolling = conditions.friction > 0.0 && contact.load > 0.0;

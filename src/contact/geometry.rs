@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 
 use super::RaceMotion;
+use super::ball_spall::Damage;
 use super::shift::{Shift, azimuth};
-use super::spall::Spalls;
 use super::surface::Surface;
 use crate::numerics::scalar::{Scalar, cross, dot};
 
@@ -30,21 +30,64 @@ pub struct GrooveContact<S: Scalar> {
     pub circumferential_curvature: S,
 }
 
-impl<S: Scalar> GrooveContact<S> {
-    /// Contact of a ball whose centre is at `offset` \[m] from the centre of a race; and [-] the change of its approach by a move along
-    /// the normal, which is 1 but for spalls.
+/// How the approach of a ball changes as it moves, where a race or a ball has spalls.
+#[derive(Clone, Copy, Debug)]
+pub struct Lean<S: Scalar> {
+    /// [-] by a move along the normal; 1 but for spalls.
+    pub gain: S,
+    /// \[m] by a rotation of the ball, where balls have spalls.
+    pub turning: Option<Vector3<S>>,
+}
+
+impl<S: Scalar> Lean<S> {
+    /// That of a whole ball on a whole race.
     #[inline(always)]
-    pub fn new(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> (Self, S) {
+    pub(super) fn none() -> Self {
+        Self { gain: S::one(), turning: None }
+    }
+
+    /// [m/s] rate of the approach, by that of the bodies along the normal, and the angular velocity [rad/s] of the ball less that of the
+    /// race.
+    #[inline(always)]
+    pub(super) fn rate(&self, along: S, angular_velocity: impl FnOnce() -> Vector3<S>) -> S {
+        let moved = self.gain * along;
+        match &self.turning {
+            None => moved,
+            Some(turning) => moved + dot(turning, &angular_velocity()),
+        }
+    }
+
+    /// [N m] moment of the edges of spalls on the ball, and the opposite on the race, for a load \[N] along the normal.
+    #[inline(always)]
+    pub fn moment(&self, load: S) -> Option<Vector3<S>> {
+        let own = load / self.gain;
+        self.turning.map(|turning| turning.map(|component| -(component * own)))
+    }
+
+    /// Adds this moment to those on ball and race.
+    #[inline(always)]
+    pub(super) fn turn(&self, load: S, [ball, race]: &mut [Vector3<S>; 2]) {
+        if let Some(moment) = self.moment(load) {
+            *ball += moment;
+            *race -= moment;
+        }
+    }
+}
+
+impl<S: Scalar> GrooveContact<S> {
+    /// Contact of a ball whose centre is at `offset` \[m] from the centre of a race; and how its approach changes there.
+    #[inline(always)]
+    pub fn new(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> (Self, Lean<S>) {
         let shift = surface.form.map_or_else(Shift::none, |form| form.under(offset, race));
         let mut contact = Self::on(surface, offset, race, Some(&shift));
-        let mut gain = S::one();
+        let mut lean = Lean::none();
         if let Some(larger) = surface.of_balls(|size| size.larger) {
             contact.approach += larger;
         }
-        if let Some(spalls) = surface.spalls {
-            gain = contact.drop_into(spalls, offset, race, &shift);
+        if surface.has_spalls() {
+            lean = contact.drop_into(surface, offset, race, &shift);
         }
-        (contact, gain)
+        (contact, lean)
     }
 
     /// The same with a torus under balls that are alike, for less.
@@ -53,32 +96,64 @@ impl<S: Scalar> GrooveContact<S> {
         Self::on(surface, offset, race, None)
     }
 
-    /// Drops the ball into the spalls of the race; returns the change of the approach by a move along the normal.
+    /// Drops the ball into the spalls of the race, and into its own.
     #[inline(always)]
     fn drop_into(
         &mut self,
-        spalls: &Spalls,
+        surface: &Surface<'_>,
         offset: &Vector3<S>,
         race: &RaceMotion<S>,
         shift: &Shift<S>,
-    ) -> S {
+    ) -> Lean<S> {
         let around = cross(&race.axis, &self.radial);
         let (cos, sin) = (dot(&self.normal, &self.radial), dot(&self.normal, &race.axis));
-        let drop = spalls.under(azimuth(offset, race), sin, cos, self.approach);
-        self.approach -= drop.depth;
-        // The gradient of what is left of the approach.
         let up = race.axis * cos - self.radial * sin;
-        let along = drop.by_azimuth / self.radius
-            + drop.by_angle * shift.turn(cos, sin) / (self.distance * self.radius);
-        let gradient = self.normal * S::one_minus(drop.by_approach)
-            - around * along
-            - up * (drop.by_angle / self.distance);
+        // The gradient of what is left of the approach.
+        let mut gradient = self.normal;
+        if let Some(spalls) = surface.spalls {
+            let drop = spalls.under(azimuth(offset, race), sin, cos, self.approach);
+            self.approach -= drop.depth;
+            let along = drop.by_azimuth / self.radius
+                + drop.by_angle * shift.turn(cos, sin) / (self.distance * self.radius);
+            gradient = gradient * S::one_minus(drop.by_approach)
+                - around * along
+                - up * (drop.by_angle / self.distance);
+        }
+        // Whole balls beside a damaged one have to be the same bits as alone: theirs stays what it was.
+        let mut changed = if surface.spalls.is_some() { S::one() } else { S::zero() };
+        let mut turning = None;
+        for (spall, orientation) in surface.damage.iter().flat_map(Damage::each) {
+            let owner = spall.owner::<S>(surface.ball);
+            if !owner.any_beyond(0.5, S::one()) {
+                continue;
+            }
+            let normal = self.radial * cos + race.axis * sin;
+            let drop = spall.under(owner, orientation, &normal, self.approach);
+            self.approach -= drop.depth;
+            // The normal turns with the azimuth of the ball, and with its place in the groove.
+            let rest = S::one_minus(drop.by_approach);
+            let by_angle = dot(&drop.by_normal, &up) / self.distance;
+            let by_azimuth = dot(&drop.by_normal, &around) * cos;
+            let along = (by_azimuth + by_angle * shift.turn(cos, sin)) / self.radius;
+            gradient = gradient * rest - around * along - up * by_angle;
+            let turned = cross(&normal, &drop.by_normal);
+            turning = Some(turning.map_or(turned, |before: Vector3<S>| before * rest + turned));
+            changed = S::one().where_positive(owner, changed);
+        }
+        if !changed.any_beyond(0.5, S::one()) {
+            return Lean::none();
+        }
         let gain = dot(&gradient, &gradient).sqrt();
-        self.normal = gradient.map(|component| component / gain);
-        let across = self.circumferential - self.normal * dot(&self.circumferential, &self.normal);
+        let normal = gradient.map(|component| component / gain);
+        let across = self.circumferential - normal * dot(&self.circumferential, &normal);
         let length = dot(&across, &across).sqrt();
-        self.circumferential = across.map(|component| component / length);
-        gain
+        let across = across.map(|component| component / length);
+        let select = |new: &Vector3<S>, old: &Vector3<S>| {
+            new.zip_map(old, |new, old| new.where_positive(changed, old))
+        };
+        self.normal = select(&normal, &self.normal);
+        self.circumferential = select(&across, &self.circumferential);
+        Lean { gain: gain.where_positive(changed, S::one()), turning }
     }
 
     /// Contact with a race whose groove circle is shifted where the ball is.

@@ -1,6 +1,7 @@
 //! Contact between a ball and a raceway: geometry, Hertz, creepage, creep laws.
 
 pub mod ball_ball;
+pub mod ball_spall;
 pub mod body;
 pub mod creep;
 pub mod form;
@@ -25,14 +26,14 @@ pub mod shoulder;
 pub mod spall;
 pub mod surface;
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::contact::surface::Surface;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::{Difference, ScaledKalker};
 use crate::numerics::scalar::{Scalar, Single, cross, dot};
 use creep::{CreepForces, Creepage, Law, LinearTheory};
-use geometry::GrooveContact;
+use geometry::{GrooveContact, Lean};
 use kinematics::Surfaces;
 use normal::{Damping, NormalLoad};
 use oblique::{Across, is_oblique};
@@ -212,33 +213,34 @@ impl ContactModel<'_> {
         }
     }
 
-    /// Where the ball touches, and the gain of [`GrooveContact::new`].
+    /// Where the ball touches, and how its approach changes there ([`GrooveContact::new`]).
     #[inline(always)]
     fn touch<S: Scalar, const SHAPED: bool>(
         &self,
         offset: &Vector3<S>,
         race: &RaceMotion<S>,
-    ) -> (GrooveContact<S>, S) {
+    ) -> (GrooveContact<S>, Lean<S>) {
         match SHAPED {
             true => GrooveContact::new(&self.surface, offset, race),
-            false => (GrooveContact::plain(&self.surface, offset, race), S::one()),
+            false => (GrooveContact::plain(&self.surface, offset, race), Lean::none()),
         }
     }
 
-    /// Hertz stiffness and normal load by the stiffness of the shape, the depth and its root, the approach rate along the normal
-    /// and the gain of [`GrooveContact::new`]: the load does the work along the normal of one that goes with the approach.
+    /// Hertz stiffness and normal load by the stiffness of the shape, the depth and its root, the approach rate along the normal,
+    /// and how the approach changes: the load does the work along the normal of one that goes with the approach.
     #[inline(always)]
     fn normal_load<S: Scalar, const SHAPED: bool>(
         &self,
         of_shape: S,
         [depth, root]: [S; 2],
         rate: S,
-        gain: S,
+        (lean, turning): (&Lean<S>, impl FnOnce() -> Vector3<S>),
     ) -> (S, NormalLoad<S>) {
         if SHAPED {
             let stiffness = self.stiffness_of(of_shape);
-            let load = NormalLoad::hertz(stiffness, depth, root, gain * rate, self.damping);
-            (stiffness, NormalLoad { total: load.total * gain, ..load })
+            let rate = lean.rate(rate, turning);
+            let load = NormalLoad::hertz(stiffness, depth, root, rate, self.damping);
+            (stiffness, NormalLoad { total: load.total * lean.gain, ..load })
         } else {
             let stiffness = of_shape.scale(self.stiffening);
             let (Damping::HuntCrossley(factor) | Damping::Viscoelastic(factor)) = self.damping;
@@ -270,7 +272,7 @@ impl ContactModel<'_> {
         race: &RaceMotion<S>,
     ) -> BallRaceContact<S> {
         let offset = ball.position - race.position;
-        let (geometry, gain) = self.touch::<S, SHAPED>(&offset, race);
+        let (geometry, lean) = self.touch::<S, SHAPED>(&offset, race);
         let depth = geometry.approach.positive_part();
         let of_shape = self.shape.stiffness(geometry.circumferential_curvature);
         let (arm, race_arm) = kinematics::arms(geometry.normal, self.surface.ball_radius, &offset);
@@ -281,9 +283,16 @@ impl ContactModel<'_> {
                 dot(&geometry.normal, &kinematics::slip(ball, bodies, [&arm, &race_arm]))
             }
         };
-        let (stiffness, load) = self.normal_load::<S, SHAPED>(of_shape, [depth, depth.sqrt()], rate, gain);
+        let turning = || ball.angular_velocity - race.angular_velocity;
+        let (stiffness, load) =
+            self.normal_load::<S, SHAPED>(of_shape, [depth, depth.sqrt()], rate, (&lean, turning));
         let (zero, none) = (S::zero(), Vector3::from_element(S::zero()));
         let force = -geometry.normal.map(|component| component * load.total);
+        let mut moments = [none, -cross(&race_arm, &force)];
+        if SHAPED {
+            lean.turn(load.total, &mut moments);
+        }
+        let [ball_moment, race_moment] = moments;
         BallRaceContact {
             load: load.total,
             stiffness,
@@ -298,8 +307,8 @@ impl ContactModel<'_> {
             creep: CreepForces { longitudinal: zero, lateral: zero, spin_moment: zero, second_moment: zero },
             rolling_cosine: zero,
             force,
-            ball_moment: none,
-            race_moment: -cross(&race_arm, &force),
+            ball_moment,
+            race_moment,
             friction_power: zero,
             damping_power: load.damping_power,
             geometry,
@@ -340,7 +349,7 @@ impl ContactModel<'_> {
         race: &RaceMotion<S>,
     ) -> (BallRaceContact<S>, bool) {
         let offset = ball.position - race.position;
-        let (geometry, gain) = self.touch::<S, SHAPED>(&offset, race);
+        let (geometry, lean) = self.touch::<S, SHAPED>(&offset, race);
         let surfaces = Surfaces::new(
             ball,
             self.surface.ball_radius,
@@ -355,7 +364,9 @@ impl ContactModel<'_> {
         let root = depth.sqrt();
         let shape = self.shape.at(geometry.circumferential_curvature);
         let rate = surfaces.approach_rate;
-        let (stiffness, load) = self.normal_load::<S, SHAPED>(shape.stiffness, [depth, root], rate, gain);
+        let turning = || ball.angular_velocity - race.angular_velocity;
+        let (stiffness, load) =
+            self.normal_load::<S, SHAPED>(shape.stiffness, [depth, root], rate, (&lean, turning));
 
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
@@ -369,6 +380,11 @@ impl ContactModel<'_> {
         }
 
         let wrench = surfaces.wrench(&rolling, load.total, &creep);
+        let mut moments = [wrench.ball_moment, wrench.other_moment];
+        if SHAPED {
+            lean.turn(load.total, &mut moments);
+        }
+        let [ball_moment, race_moment] = moments;
         let contact = BallRaceContact {
             geometry,
             load: load.total,
@@ -379,8 +395,8 @@ impl ContactModel<'_> {
             creep,
             rolling_cosine: rolling.cosine,
             force: wrench.force,
-            ball_moment: wrench.ball_moment,
-            race_moment: wrench.other_moment,
+            ball_moment,
+            race_moment,
             friction_power: wrench.friction_power,
             damping_power: load.damping_power,
         };
@@ -435,6 +451,16 @@ impl ContactModel<'_> {
             kalker.renew(difference, q, results)?;
         }
         Ok(old)
+    }
+}
+
+impl<'a> ContactModel<'a> {
+    /// The contact of damaged balls of these orientations, where there are such.
+    pub fn facing(mut self, orientations: Option<&'a Vec<UnitQuaternion<f64>>>) -> Self {
+        if let (Some(damage), Some(orientations)) = (&mut self.surface.damage, orientations) {
+            damage.orientations = orientations;
+        }
+        self
     }
 }
 

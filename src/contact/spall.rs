@@ -103,6 +103,11 @@ impl Spalls {
         self.half_width(self.whole.typical_approach)
     }
 
+    /// \[m] half axis across rolling of a contact under a typical load.
+    pub fn typical_half_axis(&self) -> f64 {
+        self.whole.semi_axes[1] * self.whole.typical_approach.sqrt()
+    }
+
     /// \[m] half width along rolling of a contact at an approach \[m].
     fn half_width(&self, approach: f64) -> f64 {
         self.whole.semi_axes[0] * approach.max(0.0).sqrt()
@@ -177,8 +182,7 @@ impl Spalls {
 
     /// Drop into one spall at arcs along and across \[m] and an approach \[m], and its derivatives by these.
     fn drop_into<T: Single>(&self, spall: &Spall, arc: T, across: T, approach: T) -> [T; 4] {
-        let Whole { curvatures: [rolling, transverse], semi_axes: [along_root, across_root], .. } =
-            self.whole;
+        let Whole { curvatures: [rolling, transverse], semi_axes: [along_root, _], .. } = self.whole;
         let touching = T::one().where_positive(approach, T::zero());
         let size = approach.positive_part() + T::constant(TOUCH);
         let square_slope = along_root * along_root;
@@ -199,7 +203,7 @@ impl Spalls {
         let ends_by_arc = (inside * inside_by_x * x_by_arc).scale(rolling);
         let ends_by_approach = (inside * inside_by_approach).scale(rolling);
         // sides
-        let limit = 0.5 * spall.width + across_root * self.whole.typical_approach.sqrt();
+        let limit = 0.5 * spall.width + self.typical_half_axis();
         let off = across.scale(1.0 / limit);
         let cover = T::one_minus(off.square()).positive_part();
         let rigid = 0.125 * SIDES * transverse * spall.width * spall.width;

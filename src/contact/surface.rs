@@ -1,5 +1,6 @@
 //! What a ball rolls on: the raceway as it is at the moment, its form, and the balls that it fits.
 
+use super::ball_spall::Damage;
 use super::form::Form;
 use super::raceway::Raceway;
 use super::spall::Spalls;
@@ -25,6 +26,8 @@ pub struct Surface<'a> {
     pub form: Option<&'a Form>,
     /// Its spalls, where it has some.
     pub spalls: Option<&'a Spalls>,
+    /// Spalls of balls, where some have them.
+    pub damage: Option<Damage<'a>>,
     /// Sizes of the balls, where they differ.
     pub sizes: Option<&'a [BallSize]>,
     /// The ball that is looked at (0 is the first), or the first of several; needed where balls differ.
@@ -34,12 +37,18 @@ pub struct Surface<'a> {
 impl Surface<'_> {
     /// A race without form under balls that are alike.
     pub fn plain(raceway: Raceway, ball_radius: f64) -> Self {
-        Self { raceway, ball_radius, form: None, spalls: None, sizes: None, ball: 0 }
+        Self { raceway, ball_radius, form: None, spalls: None, damage: None, sizes: None, ball: 0 }
     }
 
     /// Does it matter which ball is looked at?
     pub fn tells_balls(&self) -> bool {
-        self.sizes.is_some()
+        self.sizes.is_some() || self.damage.is_some()
+    }
+
+    /// Has the race or a ball spalls?
+    #[inline(always)]
+    pub(super) fn has_spalls(&self) -> bool {
+        self.spalls.is_some() || self.damage.is_some()
     }
 
     /// The surface under a ball.
@@ -51,7 +60,7 @@ impl Surface<'_> {
     /// Is the race a torus, and are the balls alike?
     #[inline(always)]
     pub(super) fn is_plain(&self) -> bool {
-        self.form.is_none() && self.sizes.is_none() && self.spalls.is_none()
+        self.form.is_none() && self.sizes.is_none() && !self.has_spalls()
     }
 
     /// A number of the size of the ball in each lane, where balls differ.

@@ -171,6 +171,7 @@ pub fn accept(
         }
         state.count_turn(turned, 0.5 * step.h * (spin + state.rate.x));
     }
+    state.orientations.clone_from(&boundary.orientations);
     state.supports = end.supports;
     state.energies = end.energies;
     state.powers = end.powers;
@@ -253,12 +254,12 @@ impl BallTrial {
 
 /// Solves Kalker's polynomials anew where the creepages of a contact have moved.
 pub fn renew_polynomials(model: &Model, state: &mut State, boundary: &Boundary) {
-    let State { balls, bodies, differences, statistics, .. } = state;
+    let State { balls, bodies, differences, statistics, orientations, .. } = state;
     for race in Race::BOTH {
         let Some(kalker) = model.polynomials(race) else {
             continue;
         };
-        let model_of_race = model.contact(race, &boundary.conditions);
+        let model_of_race = model.contact(race, &boundary.conditions).facing(orientations.as_ref());
         for (index, (ball, differences)) in balls.iter().zip(&mut *differences).enumerate() {
             let contact = model_of_race.of_ball(index, None).evaluate(&ball.motion(), &bodies[race].motion());
             match model_of_race.renew(kalker, &contact, model.epsilon_switch, &mut differences[race]) {

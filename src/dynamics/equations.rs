@@ -62,7 +62,7 @@ impl<'a> BearingStep<'a> {
             workspace.groups.clear();
         }
         workspace.prepare_bodies(model, start);
-        let contacts = model.contacts(&boundary.conditions);
+        let contacts = model.contacts_facing(&boundary.conditions, boundary.orientations.as_ref());
         let races = PerRace::new(|race| race_motion(&boundary.motion[race].0, &boundary.motion[race].1));
         if let (true, Some(ball)) = (workspace.groups.is_empty(), start.balls.first()) {
             let group = PerRace::new(|race| {
@@ -99,14 +99,17 @@ impl<'a> BearingStep<'a> {
         let Some((contacts, residual)) = first else {
             return false;
         };
-        self.contacts = contacts;
+        let orientations = self.boundary.orientations.as_ref();
+        let PerRace { inner, outer } = contacts;
+        self.contacts = PerRace { inner: inner.facing(orientations), outer: outer.facing(orientations) };
         self.force_tolerance = residual.max(self.start.force_tolerance);
         true
     }
 
     /// Goes on from there with the model's own law and tolerance, and with a matrix of its own.
     pub fn go_on_with_own_law(&mut self) {
-        self.contacts = self.model.contacts(&self.boundary.conditions);
+        let Boundary { conditions, orientations, .. } = self.boundary;
+        self.contacts = self.model.contacts_facing(conditions, orientations.as_ref());
         self.force_tolerance = self.start.force_tolerance;
         self.workspace.kept = KeptMatrix::default();
     }
@@ -388,6 +391,14 @@ impl Workspace {
 }
 
 impl Boundary {
+    /// Turns damaged balls from where they are in a state to the end of the step.
+    pub fn turn_balls(&mut self, model: &Model, state: &State) {
+        if let (Some(damaged), Some(orientations)) = (&model.damaged, &state.orientations) {
+            let turned = damaged.turned(orientations, &state.balls, self.time - state.time);
+            self.orientations = Some(turned);
+        }
+    }
+
     /// Takes the spins of the races, which rings grow by, from their motions and prescribed speeds.
     pub fn see_spins(&mut self, model: &Model) {
         if model.growth.is_some() {

@@ -19,7 +19,7 @@ mod sensitivity;
 mod step_turn;
 mod support;
 
-use nalgebra::{DVector, Vector6};
+use nalgebra::{DVector, UnitQuaternion, Vector6};
 
 use crate::contact::many::ContactGroup;
 use crate::effects::frame::FrameMotion;
@@ -57,6 +57,8 @@ pub struct Boundary {
     pub conditions: Conditions,
     /// Motion of the bearing's frame, and gravity in it.
     pub frame: FrameMotion,
+    /// Orientations of damaged balls ([`Boundary::turn_balls`]); none where all balls are whole.
+    pub orientations: Option<Vec<UnitQuaternion<f64>>>,
 }
 
 /// Buffers of a step, kept between steps.

@@ -116,8 +116,8 @@ pub fn balance(
     ];
     let offset = position - shared.position;
     let here = PerRace::new(|race| contacts[race].of_ball(index, None));
-    let (inner, inner_gain) = GrooveContact::new(&here.inner.surface, &offset, &inner_race);
-    let (outer, outer_gain) = GrooveContact::new(&here.outer.surface, &position, &outer_race);
+    let (inner, inner_lean) = GrooveContact::new(&here.inner.surface, &offset, &inner_race);
+    let (outer, outer_lean) = GrooveContact::new(&here.outer.surface, &position, &outer_race);
     let stiffness_of = |model: &ContactModel<'_>, contact: &GrooveContact<D>| {
         model.stiffness_of(model.shape.stiffness(contact.circumferential_curvature))
     };
@@ -127,8 +127,8 @@ pub fn balance(
         let depth = contact.approach.positive_part();
         stiffness * depth * depth.sqrt() * gain
     };
-    let inner_load = load(&inner, inner_gain, stiffness.inner);
-    let outer_load = load(&outer, outer_gain, stiffness.outer);
+    let inner_load = load(&inner, inner_lean.gain, stiffness.inner);
+    let outer_load = load(&outer, outer_lean.gain, stiffness.outer);
 
     // rolling without slip at both contacts and without spin at the outer one (Jones's outer race control)
     let (inner_cos, inner_sin) = (-inner.normal.dot(&inner.radial), -inner.normal.dot(&shared.axis));
@@ -178,15 +178,16 @@ pub fn balance(
         residual[0] -= (angle.scale(arc_radius(&contacts.outer)) - D::constant(middle.x)).scale(IDLE_HOLD);
         residual[1] -= (distance - D::constant(middle.y)).scale(IDLE_HOLD);
     }
-    let (force, from, contact) = match input.race {
-        Race::Inner => (inner_force, offset, &inner),
-        Race::Outer => (outer_force, position, &outer),
+    let (force, from, contact, edge) = match input.race {
+        Race::Inner => (inner_force, offset, &inner, inner_lean.moment(inner_load)),
+        Race::Outer => (outer_force, position, &outer, outer_lean.moment(outer_load)),
     };
     let arm = from + contact.normal.map(|c| c.scale(ball_radius));
+    let moment = arm.cross(&force);
     BallBalance {
         residual,
         force,
-        moment: arm.cross(&force),
+        moment: edge.map_or(moment, |edge| moment + edge),
         inner_load,
         outer_load,
         own_orbital_speed,

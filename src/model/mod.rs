@@ -3,15 +3,17 @@
 pub mod bearing;
 pub mod bodies;
 pub mod cage;
+pub mod damage;
 pub mod energies;
 pub mod raceways;
 pub mod state;
 pub mod switch;
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::contact::ContactModel;
 use crate::contact::ball_ball::BallBallModel;
+use crate::contact::ball_spall::Damage;
 use crate::contact::creep::Law;
 use crate::contact::form::Form;
 use crate::contact::normal::Damping;
@@ -31,6 +33,7 @@ use crate::scene::{Level, Scene, Solver};
 use bearing::{Ball, Bearing};
 use bodies::{Bodies, PerRace, Race, RigidBody};
 use cage::CageModel;
+use damage::DamagedBalls;
 use raceways::RacewayContacts;
 use switch::Switch;
 
@@ -79,6 +82,8 @@ pub struct Model {
     pub form: PerRace<Option<Form>>,
     /// Spalls of the races, where they have some.
     pub spalls: PerRace<Option<Spalls>>,
+    /// Balls with spalls, where there are some.
+    pub damaged: Option<DamagedBalls>,
     /// Sizes of the balls on each race, where they are not alike.
     sizes: Option<PerRace<Vec<BallSize>>>,
     /// \[m] arm of the bearing's frame, where that may move.
@@ -121,13 +126,15 @@ impl Model {
         };
         let sizes = |race: Race| larger.iter().map(|larger| size(race, *larger)).collect();
         let sizes = (!larger.is_empty()).then(|| PerRace::new(sizes));
+        let whole = PerRace::new(|race| bearing.whole_contact(race, &raceways[race].shape));
         let spalls = PerRace::new(|race| {
             let on = match race {
                 Race::Inner => scene.effects.defects.on(On::Inner, bearing.free_contact_angle),
                 Race::Outer => scene.effects.defects.on(On::Outer, bearing.free_contact_angle),
             };
-            Spalls::new(on, bearing.whole_contact(race, &raceways[race].shape))
+            Spalls::new(on, whole[race])
         });
+        let damaged = DamagedBalls::new(&scene.effects.defects.on_balls(), &bearing, &whole);
         Ok(Self {
             bodies: Bodies::new(races, section.map(|section| Some(RigidBody::cage(section)))),
             raceways,
@@ -146,6 +153,7 @@ impl Model {
             damping: contact_damping(scene),
             form: PerRace::new(|race| scene.effects.form.of(race == Race::Inner).and_then(Shape::form)),
             spalls,
+            damaged,
             sizes,
             frame_arm: scene.effects.frame.section.as_ref().map(FrameSection::arm),
             supports: PerRace {
@@ -165,9 +173,9 @@ impl Model {
     }
 
     /// Contact model of the balls with a race; Kalker's polynomials give its table, to which each ball's difference is
-    /// added ([`ContactModel::of_ball`]).
+    /// added ([`ContactModel::of_ball`]). Damaged balls face as at the start ([`ContactModel::facing`]).
     pub fn contact(&self, race: Race, conditions: &Conditions) -> ContactModel<'_> {
-        self.contact_of(&self.raceways[race], race, conditions)
+        self.contact_of(&self.raceways[race], race, conditions, None)
     }
 
     fn contact_of<'a>(
@@ -175,6 +183,7 @@ impl Model {
         raceway: &'a RacewayContacts,
         race: Race,
         conditions: &Conditions,
+        orientations: Option<&'a Vec<UnitQuaternion<f64>>>,
     ) -> ContactModel<'a> {
         let (raceway_now, ball_radius, stiffening) = match &self.growth {
             None => (*self.bearing.raceway(race), self.bearing.ball.radius, 1.0),
@@ -189,6 +198,10 @@ impl Model {
                 ball_radius,
                 form: self.form[race].as_ref(),
                 spalls: self.spalls[race].as_ref(),
+                damage: self.damaged.as_ref().map(|damaged| Damage {
+                    spalls: &damaged.spalls[race],
+                    orientations: orientations.unwrap_or(&damaged.at_start),
+                }),
                 sizes: self.sizes.as_ref().map(|sizes| &*sizes[race]),
                 ball: 0,
             },
@@ -205,6 +218,15 @@ impl Model {
     /// Contact models of both races.
     pub fn contacts(&self, conditions: &Conditions) -> PerRace<ContactModel<'_>> {
         PerRace::new(|race| self.contact(race, conditions))
+    }
+
+    /// The same for damaged balls of these orientations.
+    pub fn contacts_facing<'a>(
+        &'a self,
+        conditions: &Conditions,
+        orientations: Option<&'a Vec<UnitQuaternion<f64>>>,
+    ) -> PerRace<ContactModel<'a>> {
+        PerRace::new(|race| self.contact_of(&self.raceways[race], race, conditions, orientations))
     }
 
     /// What acts on balls and bodies from outside, in a frame of this motion.

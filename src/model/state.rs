@@ -16,7 +16,7 @@ use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::newton::NewtonWork;
 use crate::numerics::step_control::StepControl;
 
-/// One ball. It is isotropic, so it has no orientation.
+/// One ball. It is isotropic, so it has no orientation; those of damaged balls are in [`State::orientations`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BallState {
     /// \[m] centre.
@@ -235,6 +235,8 @@ pub struct State {
     pub rating: Option<rating::Sums>,
     /// Heat since the start by contact; none where it is not reported.
     pub heat: Option<heat::Sums>,
+    /// Orientation of each damaged ball, in world axes; none where all balls are whole.
+    pub orientations: Option<Vec<UnitQuaternion<f64>>>,
 }
 
 impl State {

@@ -43,7 +43,7 @@ impl Model {
     /// What an iteration begins with, and down to which residual \[N]; none but in the experiment.
     pub(crate) fn first_law(&self, conditions: &Conditions) -> Option<(PerRace<ContactModel<'_>>, f64)> {
         let switch = self.switch.as_ref()?;
-        let contact = |race: Race| self.contact_of(&switch.raceways[race], race, conditions);
+        let contact = |race: Race| self.contact_of(&switch.raceways[race], race, conditions, None);
         Some((PerRace::new(contact), switch.residual))
     }
 }

@@ -150,6 +150,7 @@ impl Simulation {
             let mut boundary = self.boundary(next);
             script.impose(&self.scene, &self.paths, &mut boundary);
             boundary.see_spins(&self.model);
+            boundary.turn_balls(&self.model, &self.state);
             let start = (!perturbed.is_empty()).then(|| self.state.clone());
             let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
             let (cause, worst) = match tried {
@@ -163,6 +164,7 @@ impl Simulation {
                             let mut boundary = p.paths.boundary(boundary.time, p.inputs.friction);
                             script.impose(scene, &p.paths, &mut boundary);
                             boundary.see_spins(model);
+                            boundary.turn_balls(model, &p.state);
                             (&mut p.state, boundary)
                         });
                         let accepted = &self.workspace;

@@ -41,7 +41,7 @@ pub struct InputPaths {
 
 impl InputPaths {
     /// Boundary conditions at a time \[s], with a friction coefficient. Spins of races are left to
-    /// [`Boundary::see_spins`].
+    /// [`Boundary::see_spins`], damaged balls to [`Boundary::turn_balls`].
     pub fn boundary(&self, time: f64, friction: f64) -> Boundary {
         let rises = self.rises.map_or([0.0; 5], |rises| rises.at(time).into());
         let conditions = Conditions { friction, warmth: Warmth { rises, ..Warmth::default() } };
@@ -53,10 +53,11 @@ impl InputPaths {
                 let applied = Wrench { force: Vector3::new(fx, fy, fz), moment: Vector3::new(mx, my, mz) };
                 let [x, y, z, rx, ry, rz] = self.frames[race].smooth_at(time).into();
                 let frame = FrameInput { position: Vector3::new(x, y, z), tilt: Vector3::new(rx, ry, rz) };
-                BodyLoad { frame, applied, speed, ..BodyLoad::default() }
+                BodyLoad { frame, applied, speed }
             }),
             conditions,
             frame: self.frame.at(time),
+            orientations: None,
         }
     }
 

@@ -78,7 +78,8 @@ impl Simulation {
         if !matches!(self.model.law(Race::Inner), Law::Linear) {
             return Ok(());
         }
-        let contacts = self.model.contacts(&boundary.conditions);
+        let orientations = self.state.orientations.as_ref();
+        let contacts = self.model.contacts_facing(&boundary.conditions, orientations);
         for (index, ball) in self.state.balls.iter().enumerate() {
             for race in Race::BOTH {
                 let contact = contacts[race]

@@ -202,6 +202,7 @@ impl Simulation {
         let constraints = |state: &State| -> Vec<usize> {
             state.bodies.iter().map(|(_, body)| body.multipliers.len()).collect()
         };
+        let damaged = |state: &State| state.orientations.as_ref().map(Vec::len);
         let same = snapshot.state.balls.len() == self.state.balls.len()
             && constraints(&snapshot.state) == constraints(&self.state)
             && snapshot.state.control.fits(&self.state.control)
@@ -215,6 +216,7 @@ impl Simulation {
             && snapshot.state.grown.is_some() == self.state.grown.is_some()
             && snapshot.state.rating.is_some() == self.state.rating.is_some()
             && snapshot.state.heat.is_some() == self.state.heat.is_some()
+            && damaged(&snapshot.state) == damaged(&self.state)
             && snapshot.inputs.rises.is_some() == self.inputs.rises.is_some();
         if same {
             self.inputs = snapshot.inputs;

@@ -151,10 +151,15 @@ pub fn state(
             }
         })
         .collect();
+    let orientations = model
+        .damaged
+        .as_ref()
+        .map(|damaged| damaged.at_start.iter().map(|orientation| frame * orientation).collect::<Vec<_>>());
     if scene.start.balances_spin() {
+        let conditions = Conditions { friction: inputs.friction, ..problem.surroundings() };
         let around = Surroundings {
             model,
-            contacts: model.contacts(&Conditions { friction: inputs.friction, ..problem.surroundings() }),
+            contacts: model.contacts_facing(&conditions, orientations.as_ref()),
             ambient: model.ambient(&inputs.effects.frame.motion),
             races: PerRace::new(|race| races[race].motion()),
         };
@@ -192,6 +197,7 @@ pub fn state(
         grown: model.growth.map(|_| Grown { warmth: problem.surroundings().warmth, ..Grown::default() }),
         rating: model.rating.map(|_| Default::default()),
         heat: model.heat_outputs.then(Default::default),
+        orientations,
     })
 }
 

@@ -18,6 +18,7 @@ use roulement_cli::report::limits::Limits;
 use roulement_cli::report::means::{Blocks, Means};
 use roulement_cli::report::quantities::Parts;
 use roulement_cli::report::results::{ResultsError, ResultsWriter};
+use roulement_cli::report::spectrum::{Recorder, Spectrum};
 use roulement_cli::report::thinned::Thinned;
 
 /// A run that has ended.
@@ -28,6 +29,8 @@ pub struct Played {
     pub plotted: Vec<Outputs>,
     /// Means over the second half.
     pub means: Option<Means>,
+    /// Spectrum of its second half, where the scene asks for one.
+    pub spectrum: Option<Spectrum>,
     /// Its energy.
     pub energy: EnergyWatch,
     /// Limits of the bearing that it met.
@@ -109,6 +112,7 @@ impl Player {
         let mut limits = Limits::default();
         let mut estimate = Estimate::default();
         let mut blocks = Blocks::new(Parts::of(&simulation), 0.5 * simulation.model().bearing.pitch_diameter);
+        let mut spectrum = Recorder::of(&simulation);
         let played = play(&mut simulation, rows, |simulation| {
             let outputs = simulation.outputs();
             if let Some(Err(why)) = table.as_mut().map(|table| table.write(simulation.inputs(), outputs)) {
@@ -117,6 +121,9 @@ impl Player {
             progress.set_message(format!("{:.3} of {:.3} ms", outputs.time * 1e3, rows.duration * 1e3));
             progress.set_position(plotted.seen());
             blocks.push(outputs);
+            if let Some(spectrum) = &mut spectrum {
+                spectrum.push(outputs);
+            }
             energy.push(outputs);
             limits.push(outputs);
             estimate.push(simulation);
@@ -141,7 +148,8 @@ impl Player {
             table.finish()?;
         }
         let (plotted, samples, means) = (plotted.finish(), samples.finish(), blocks.means());
-        Ok(Played { simulation, plotted, means, energy, limits, estimate, wall, cpu, samples, end })
+        let spectrum = spectrum.and_then(Recorder::finish);
+        Ok(Played { simulation, plotted, means, spectrum, energy, limits, estimate, wall, cpu, samples, end })
     }
 }
 

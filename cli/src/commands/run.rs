@@ -13,8 +13,9 @@ use roulement::scene::{ErrorGoal, ErrorOf, Solver};
 use roulement::simulation::Simulation;
 use roulement_cli::error::{Judgement, Rounds, TWIN};
 use roulement_cli::report::figures::{Figures, Shown};
-use roulement_cli::report::plots::write_plots;
+use roulement_cli::report::plots::{title, write_plots};
 use roulement_cli::report::results::{Choice, ResultsWriter, Window};
+use roulement_cli::report::spectrum;
 use signal_hook::consts::SIGINT;
 use signal_hook::flag;
 
@@ -198,9 +199,15 @@ impl Place {
     /// were compared.
     fn leave(&self, played: &Played, bars: Option<Figures>, errors: &str) -> Result<(), Box<dyn Error>> {
         let scene = played.simulation.scene();
-        let plots = write_plots(scene, played.simulation.model(), &played.plotted, &self.directory)?;
+        let mut plots = write_plots(scene, played.simulation.model(), &played.plotted, &self.directory)?;
         if let Some(means) = &played.means {
             write(&self.directory.join("means.csv"), |path| means.write(path))?;
+        }
+        if let Some(spectrum) = &played.spectrum {
+            write(&self.directory.join("spectrum.csv"), |path| spectrum.write(path))?;
+            let picture = self.directory.join("spectrum.svg");
+            spectrum::picture::write(spectrum, title(scene), &picture)?;
+            plots.push(picture);
         }
         let text = summary(played, &Shown { figures: played.figures(), bars }) + errors;
         write(&self.directory.join("summary.txt"), |path| fs::write(path, &text))?;

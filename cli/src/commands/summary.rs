@@ -7,6 +7,7 @@ use roulement::scene::Scene;
 use roulement_cli::report::figures::Shown;
 use roulement_cli::report::limits::Limits;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
+use roulement_cli::report::spectrum::is_wanted;
 
 use super::effects::idle_in;
 use super::player::Played;
@@ -105,7 +106,7 @@ fn write_limits(out: &mut String, limits: &Limits, shown: &Shown) -> std::fmt::R
 }
 
 fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Result {
-    let Played { simulation, means, energy, limits, wall, .. } = run;
+    let Played { simulation, means, spectrum, energy, limits, wall, .. } = run;
     let now = simulation.outputs();
     let text = |name: &str, factor, digits| shown.text(name, factor, digits);
     let range = |[least, most]: [&str; 2]| format!("{} to {}", text(least, 1.0, 3), text(most, 1.0, 3));
@@ -146,6 +147,13 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Res
         write_means(out, means, shown, now.cage.is_some())?;
         write_law(out, simulation.scene())?;
         write_settled(out, means)?;
+    }
+    match spectrum {
+        Some(spectrum) => write!(out, "{spectrum}")?,
+        None if is_wanted(simulation.scene()) => {
+            writeln!(out, "spectrum         none: fewer than 16 rows in the second half")?;
+        }
+        None => {}
     }
     writeln!(
         out,

@@ -9,5 +9,6 @@ mod number;
 pub mod plots;
 pub mod quantities;
 pub mod results;
+pub mod spectrum;
 pub mod style;
 pub mod thinned;

@@ -29,6 +29,11 @@ struct Panel {
     scattered: bool,
 }
 
+/// Title of the plots of a scene.
+pub fn title(scene: &Scene) -> &str {
+    if scene.title.is_empty() { "ball bearing" } else { &scene.title }
+}
+
 /// Draws the plots of a run into a directory and returns their paths.
 ///
 /// # Errors
@@ -39,7 +44,7 @@ pub fn write_plots(
     history: &[Outputs],
     directory: &Path,
 ) -> Result<Vec<PathBuf>, PlotError> {
-    let title = if scene.title.is_empty() { "ball bearing" } else { &scene.title };
+    let title = title(scene);
     let figures = [
         ("contacts.svg", format!("{title}: contacts of ball 1"), contact_panels(history)),
         ("bearing.svg", title.to_string(), bearing_panels(model, Race::loaded(scene), history)),

@@ -8,6 +8,7 @@ mod cost;
 mod effects;
 mod refusals;
 mod runs;
+mod spectrum;
 
 use std::path::Path;
 use std::process::Command;

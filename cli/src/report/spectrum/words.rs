@@ -1,0 +1,171 @@
+//! What a summary says of a spectrum.
+
+use std::fmt::{self, Display, Formatter};
+
+use super::lines::{MULTIPLES, Peak, largest, nearest};
+use super::welch::MOST;
+use super::{SIGNALS, Spectrum};
+
+/// [-] peaks of forces and of moments that are named, and share of the largest below which none is.
+const FORCES: usize = 5;
+const MOMENTS: usize = 2;
+const SHARE: f64 = 0.1;
+/// [-] turns of the cage that a window should have: lines of cage and races then stand apart.
+const CAGE_TURNS: f64 = 4.0;
+/// [-] lines in the last tenth over the largest: what goes on beyond them folds back as large.
+const FOLDING: f64 = 0.1;
+/// [-] rows in a period of the fastest line that is looked for.
+const ROWS_PER_PERIOD: f64 = 2.5;
+
+impl Display for Spectrum {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let [begin, end] = self.window.map(|time| time * 1e3);
+        let spacing = self.spacing();
+        let of = match self.amplitudes.segments {
+            1 => String::new(),
+            count => {
+                format!(", mean of {count} segments of {} rows that overlap by half", self.amplitudes.rows)
+            }
+        };
+        writeln!(
+            f,
+            "spectrum         wrench on the {} race, {begin:.3} to {end:.3} ms{of}; Hann's window, {spacing:.3} Hz a line, up to \
+             {:.0} Hz",
+            self.race.name(),
+            0.5 / self.interval
+        )?;
+        write!(f, "                 mean")?;
+        for (name, frequency) in self.marked {
+            write!(f, " {name} {frequency:.2},")?;
+        }
+        writeln!(f, " shaft {:.2} Hz", self.shaft)?;
+        self.warn(f)?;
+        for (signals, most) in [(0..3, FORCES), (3..6, MOMENTS)] {
+            for peak in largest(&self.amplitudes, signals, spacing, most, SHARE) {
+                self.name(f, &peak)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Spectrum {
+    /// What the lines cannot tell.
+    fn warn(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let says = "                 ";
+        let fastest = self.marked.iter().map(|line| line.1).fold(0.0, f64::max);
+        let length = self.amplitudes.rows as f64 * self.interval;
+        let [(_, cage), ..] = self.marked;
+        if fastest > 0.5 / self.interval {
+            let wanted = 1e6 / (ROWS_PER_PERIOD * f64::from(MULTIPLES) * fastest);
+            writeln!(
+                f,
+                "{says}TOO COARSE: marked lines are above {:.1} Hz, half the frequency of the rows, and fold back; \
+                 load.output_interval = \"{wanted:.0} us\" shows them",
+                0.5 / self.interval
+            )?;
+        }
+        if length * cage < CAGE_TURNS {
+            let more = if self.amplitudes.rows < MOST {
+                let wanted = 2e3 * CAGE_TURNS / cage;
+                if wanted.is_finite() {
+                    format!("load.duration = \"{wanted:.0} ms\" has {CAGE_TURNS}")
+                } else {
+                    "the cage stands".into()
+                }
+            } else {
+                "a longer load.output_interval has more".into()
+            };
+            writeln!(
+                f,
+                "{says}SHORT: {:.2} turns of the cage; lines closer than {:.1} Hz run together; {more}",
+                length * cage,
+                2.0 * self.spacing()
+            )?;
+        }
+        let largest = |from: usize| self.amplitudes.at[from..].iter().flatten().copied().fold(0.0, f64::max);
+        if largest(self.amplitudes.at.len() * 9 / 10) > FOLDING * largest(1) {
+            writeln!(
+                f,
+                "{says}FOLDED: lines go on to half the frequency of the rows, and what is faster folds back among them; a shorter \
+                 load.output_interval shows which are real"
+            )?;
+        }
+        if self.shaft_change * fastest > 2.0 * self.spacing() * self.shaft {
+            writeln!(
+                f,
+                "{says}SMEARED: the shaft's speed changes by {:.2} Hz over the window, and lines with it",
+                self.shaft_change
+            )?;
+        }
+        Ok(())
+    }
+
+    /// A peak and the line next to it.
+    fn name(&self, f: &mut Formatter<'_>, peak: &Peak) -> fmt::Result {
+        let (signal, unit) = SIGNALS[peak.signal];
+        write!(f, "peak             {signal} {:.4} {unit} at {:.2} Hz", peak.amplitude, peak.frequency)?;
+        if let Some(order) = self.order(peak.frequency) {
+            write!(f, ", order {order:.3}")?;
+        }
+        let shaft = ("shaft", self.shaft);
+        let [cage, outer, inner, ball] = self.marked;
+        match nearest(&[cage, outer, inner, ball, shaft], peak.frequency, self.spacing()) {
+            Some((name, line)) => writeln!(f, "; {name} {:+.2} Hz", peak.frequency - line),
+            None => writeln!(f),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use roulement::model::bodies::Race;
+
+    use super::*;
+    use crate::report::spectrum::welch::Amplitudes;
+
+    fn spectrum(rows: usize, interval: f64, cage: f64) -> Spectrum {
+        let mut at = vec![[0.0; 6]; rows / 2 + 1];
+        at[100] = [3.0, 0.0, 0.0, 0.0, 0.25, 0.0];
+        Spectrum {
+            race: Race::Inner,
+            window: [0.5, 1.0],
+            interval,
+            amplitudes: Amplitudes { at, rows, segments: 1 },
+            shaft: 50.0,
+            shaft_change: 0.0,
+            marked: [("FTF", cage), ("BPFO", 9.0 * cage), ("BPFI", 14.0 * cage), ("BSF", 6.0 * cage)],
+        }
+    }
+
+    #[test]
+    fn words_name_peaks_and_what_the_lines_cannot_tell() {
+        let fine = spectrum(5000, 1e-4, 22.0).to_string();
+        for part in [
+            "2.000 Hz a line, up to 5000 Hz",
+            "FTF 22.00",
+            "peak             force.x 3.0000 N at 200.00 Hz, order 4.000; BPFO +2.00 Hz",
+            "moment.y 0.2500 N.m",
+        ] {
+            assert!(fine.contains(part), "{fine}\nshould have {part}");
+        }
+        let warns = |text: &str| ["TOO COARSE", "SHORT", "SMEARED", "FOLDED"].map(|word| text.contains(word));
+        assert_eq!(warns(&fine), [false; 4], "{fine}");
+        let coarse = spectrum(5000, 1e-4, 400.0).to_string();
+        assert!(coarse.contains("output_interval = \"24 us\""), "{coarse}");
+        assert_eq!(warns(&coarse), [true, false, false, false]);
+        let short = spectrum(5000, 1e-4, 4.0).to_string();
+        assert!(short.contains("2.00 turns") && short.contains("load.duration = \"2000 ms\""), "{short}");
+        assert_eq!(warns(&short), [false, true, false, false]);
+        let faster = Spectrum { shaft_change: 3.0, ..spectrum(5000, 1e-4, 22.0) }.to_string();
+        assert_eq!(warns(&faster), [false, false, true, false], "{faster}");
+        let mut blows = spectrum(5000, 1e-4, 22.0);
+        blows.amplitudes.at[2400][1] = 0.4;
+        assert_eq!(warns(&blows.to_string()), [false, false, false, true]);
+        let still = Spectrum { shaft: 0.0, ..spectrum(5000, 1e-4, 0.0) }.to_string();
+        assert!(
+            still.contains("the cage stands") && !still.contains("order") && !still.contains("NaN"),
+            "{still}"
+        );
+    }
+}
