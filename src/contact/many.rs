@@ -64,10 +64,13 @@ impl ContactGroup {
             velocity: Lanes::vector(|lane| ball(lane).velocity),
             angular_velocity: Lanes::vector(|lane| ball(lane).angular_velocity),
         };
-        match contact.law {
-            Law::Frictionless => press_lanes(contact, race, &motion, &mut self.0),
-            _ => roll_lanes(contact, race, &motion, &mut self.0),
-        }
+        let evaluate = match (contact.law, contact.is_usual()) {
+            (Law::Frictionless, true) => press_lanes,
+            (Law::Frictionless, false) => press_shaped_lanes,
+            (_, true) => roll_lanes,
+            (_, false) => roll_shaped_lanes,
+        };
+        evaluate(contact, race, &motion, &mut self.0);
     }
 
     /// Puts a contact into its lane; that of the first lane goes into all.
@@ -115,6 +118,28 @@ fn press_lanes(
     contacts: &mut BallRaceContact<Lanes>,
 ) {
     *contacts = contact.pressed(balls, &in_lanes(race));
+}
+
+/// Contacts with friction on any surface with any damping, alike.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn roll_shaped_lanes(
+    contact: &ContactModel<'_>,
+    race: &RaceMotion<f64>,
+    balls: &BallMotion<Lanes>,
+    contacts: &mut BallRaceContact<Lanes>,
+) {
+    *contacts = contact.rolling_along::<_, false, true>(balls, &in_lanes(race)).0;
+}
+
+/// Contacts without friction there, alike.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn press_shaped_lanes(
+    contact: &ContactModel<'_>,
+    race: &RaceMotion<f64>,
+    balls: &BallMotion<Lanes>,
+    contacts: &mut BallRaceContact<Lanes>,
+) {
+    *contacts = contact.pressed_on::<_, true>(balls, &in_lanes(race));
 }
 
 /// One race, the same in all lanes.

@@ -175,7 +175,7 @@ impl Effect for Settings {
         key: "effects.ambient",
         adds: "drag and churning moment of the medium around the balls, which rests in the bearing's frame",
         states: "none",
-        price: "not measured",
+        price: "8 % of a step (thrust case)",
         source: "Schiller and Naumann 1935; Kirchhoff 1876; Dennis, Singh and Ingham 1980",
         example: "[effects]\nambient = { density = 1.2, viscosity = 18e-6 }\n",
     };

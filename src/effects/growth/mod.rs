@@ -364,7 +364,7 @@ impl Effect for Settings {
         adds: "growth of rings and balls by temperature, by fits on shaft and in housing, and by rotation",
         states: "what parts have grown by, and what contacts set against it (for the energy balance)",
         source: "Harris and Kotzalas 2006, ch. 3; Lame 1852; Timoshenko and Goodier, art. 32",
-        price: "4 % of a step (thrust case warming up), beside what warm contacts ask of the solver",
+        price: "8 % of a step (thrust case), beside what warm contacts ask of the solver",
         example: "[growth]\ninner = \"50 K\"\nouter = \"30 K\"\nballs = \"40 K\"\n",
     };
     const ESTIMATE: &'static str = "change of the deepest approach while races are held: by 10 K between the inner ring and the rest where it is off; by rotation";
