@@ -107,7 +107,7 @@ fn force_assembly(bencher: Bencher) {
         (race.pose, race.twist())
     });
     let conditions = Conditions::of_friction(0.08);
-    let frame = roulement::effects::frame::FrameMotion::default();
+    let frame = roulement::effects::moving_frame::FrameMotion::default();
     let boundary =
         Boundary { time: 0.0, motion, loads: Default::default(), conditions, frame, orientations: None };
     bencher.with_inputs(|| simulation.state().clone()).bench_local_values(|mut state| {

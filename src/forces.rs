@@ -2,7 +2,7 @@
 
 use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, BallRaceContact};
-use crate::effects::support::SupportState;
+use crate::effects::reports::SupportState;
 use crate::model::bearing::{Ball, neighbours};
 use crate::model::bodies::{Body, PerRace, Race, RigidBody};
 use crate::model::state::{BallState, BodyState, State};

@@ -4,7 +4,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use roulement::contact::BallMotion;
 use roulement::dynamics::{BodyLoad, Boundary, Workspace, make_consistent, try_step};
-use roulement::effects::frame::FrameMotion;
+use roulement::effects::moving_frame::FrameMotion;
 use roulement::model::Model;
 use roulement::model::bodies::{Bodies, Body, PerRace, Race, RigidBody};
 use roulement::model::state::State;

@@ -7,7 +7,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use roulement::contact::many::ContactGroup;
 use roulement::contact::pair::PairForces;
 use roulement::contact::{BallMotion, RaceMotion};
-use roulement::effects::defects::Frequencies;
+use roulement::effects::reports::Frequencies;
 use roulement::model::bodies::Race;
 use roulement::model::{Conditions, Model};
 use roulement::scene::Scene;

@@ -3,7 +3,8 @@
 
 use roulement::Model;
 use roulement::effects::rating::standard::{self, Geometry};
-use roulement::effects::rating::{LONGEST, LifeOutput, SAFEST};
+use roulement::effects::rating::{LONGEST, SAFEST};
+use roulement::effects::reports::LifeOutput;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::interface::variables::Variables;
 use roulement::scene::Scene;

@@ -9,7 +9,7 @@ use crate::contact::BallMotion;
 use crate::contact::pair::PairForces;
 use crate::effects::ambient::Ambient;
 use crate::effects::growth::Grown;
-use crate::effects::support::SupportState;
+use crate::effects::reports::SupportState;
 use crate::forces::{
     BallPair, Contacts, Pairs, Totals, between_cage_and_lands, elastic_energy, kinetic_energy,
     kinetic_energy_of, stored_energy, supports_energy,

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::step_turn::StepTurn;
 use super::support::Flange;
-use crate::effects::frame::MovingFrame;
+use crate::effects::moving_frame::MovingFrame;
 use crate::model::bodies::{Constraint, RigidBody, tilt_component, tilt_direction};
 use crate::model::state::BodyState;
 use crate::numerics::hht::HhtStep;

@@ -22,7 +22,7 @@ mod support;
 use nalgebra::{DVector, UnitQuaternion, Vector6};
 
 use crate::contact::many::ContactGroup;
-use crate::effects::frame::FrameMotion;
+use crate::effects::moving_frame::FrameMotion;
 use crate::forces::{BallContacts, Contacts};
 use crate::model::bodies::{Bodies, PerRace};
 use crate::model::state::{KeptMatrix, State};

@@ -4,7 +4,8 @@ use nalgebra::Vector3;
 
 use super::Boundary;
 use super::step_turn::StepTurn;
-use crate::effects::support::{Held, Relative, Support, SupportState};
+use crate::effects::reports::SupportState;
+use crate::effects::support::{Held, Relative, Support};
 use crate::model::Model;
 use crate::model::bodies::{Body, PerRace, Race};
 use crate::model::energies::Powers;

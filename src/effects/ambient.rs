@@ -8,8 +8,8 @@ use serde::Deserialize;
 
 use super::effect::{Effect, Getter, Info, Row};
 use super::estimate::{Estimate, Verdict, digits, percent};
-use super::frame::MovingFrame;
 use super::keys::keys;
+use super::moving_frame::MovingFrame;
 use crate::contact::BallMotion;
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::{Scalar, constant_vector, cross};

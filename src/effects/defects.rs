@@ -1,5 +1,6 @@
 //! Spalls of races ([`crate::contact::spall`]) and balls ([`crate::contact::ball_spall`]), and the frequencies of a damaged bearing.
 
+use super::reports::Frequencies;
 use std::f64::consts::TAU;
 
 use serde::Deserialize;
@@ -102,20 +103,6 @@ impl Settings {
         let of = |section: &DefectSection| Some((section.ball?.checked_sub(1)? as usize, section.spall(0.0)));
         self.sections.iter().filter(|section| section.on == On::Ball).filter_map(of).collect()
     }
-}
-
-/// Frequencies \[Hz] of cage and damage by the speeds of cage and races as they are; of a bearing whose balls roll without slip
-/// they are those of its geometry.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frequencies {
-    /// Turns of the cage (FTF).
-    pub cage: f64,
-    /// Balls over a place of the outer race (BPFO).
-    pub outer: f64,
-    /// Balls over a place of the inner race (BPFI).
-    pub inner: f64,
-    /// Turns of a ball about its own axis, seen from the cage (BSF): a place of it meets a race twice in each.
-    pub ball: f64,
 }
 
 impl Frequencies {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::estimate::{Estimate, Verdict};
-use super::frame::FrameInputs;
+use super::moving_frame::FrameInputs;
 use super::reports::Reports;
 use crate::schema::numbers::{Number, Parameter};
 use crate::schema::variable_units::Unit;

@@ -2,6 +2,7 @@
 //!
 //! Half of what a contact loses goes into each of both surfaces: they are of like materials, and pass through the contact alike.
 
+use super::reports::HeatOutput;
 use serde::{Deserialize, Serialize};
 
 use super::effect::{Effect, Getter, Info, Row};
@@ -88,19 +89,6 @@ impl Sums {
             cage: 0.5 * (mean.pockets + mean.lands),
         }
     }
-}
-
-/// \[W] heat of friction by part.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct HeatOutput {
-    /// Inner race.
-    pub inner: f64,
-    /// Outer race.
-    pub outer: f64,
-    /// Balls.
-    pub balls: f64,
-    /// Cage.
-    pub cage: f64,
 }
 
 type FromHeat = fn(&HeatOutput) -> f64;

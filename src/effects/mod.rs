@@ -38,6 +38,7 @@ pub mod growth;
 pub mod heat;
 pub mod inherent;
 pub mod keys;
+pub mod moving_frame;
 pub mod oil;
 pub mod per_ball;
 pub mod rating;

@@ -1,13 +1,9 @@
 //! What effects report of a state, beside the races and the totals of every bearing.
 
 use nalgebra::{Matrix6, Vector3};
+use serde::{Deserialize, Serialize};
 
-use super::defects::Frequencies;
-use super::growth::GrowthOutput;
-use super::heat::HeatOutput;
-use super::rating::LifeOutput;
-use super::support::SupportState;
-use crate::numerics::motion::{Pose, Twist};
+use crate::numerics::motion::{Pose, Twist, Wrench};
 
 /// All of it, as the outputs of a state have it; an effect that is off reports nothing.
 #[derive(Clone, Copy, Debug)]
@@ -157,4 +153,76 @@ pub struct Condensed {
     pub stiffness: Matrix6<f64>,
     /// [N s/m, N s/rad; N m s/m, N m s/rad] load by velocity.
     pub damping: Matrix6<f64>,
+}
+
+/// Frequencies \[Hz] of cage and damage by the speeds of cage and races as they are; of a bearing whose balls roll without slip
+/// they are those of its geometry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frequencies {
+    /// Turns of the cage (FTF).
+    pub cage: f64,
+    /// Balls over a place of the outer race (BPFO).
+    pub outer: f64,
+    /// Balls over a place of the inner race (BPFI).
+    pub inner: f64,
+    /// Turns of a ball about its own axis, seen from the cage (BSF): a place of it meets a race twice in each.
+    pub ball: f64,
+}
+
+/// The bearing as it has grown, without load.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GrowthOutput {
+    /// \[m] diametral clearance; negative is interference of balls and raceways.
+    pub clearance: f64,
+    /// \[rad] free contact angle; 0 without clearance.
+    pub contact_angle: f64,
+    /// \[m] diametral interference of the inner ring on its shaft and of the outer ring in its housing; negative is a gap.
+    pub interference: [f64; 2],
+    /// \[Pa] pressure on these seats.
+    pub seat_pressure: [f64; 2],
+}
+
+/// \[W] heat of friction by part.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HeatOutput {
+    /// Inner race.
+    pub inner: f64,
+    /// Outer race.
+    pub outer: f64,
+    /// Balls.
+    pub balls: f64,
+    /// Cage.
+    pub cage: f64,
+}
+
+/// Life and safety of a bearing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LifeOutput {
+    /// [million revolutions] reference rating life L_10r; at most [`super::rating::LONGEST`].
+    pub reference: f64,
+    /// [million revolutions] modified reference rating life L_nmr; none without viscosity and contamination.
+    pub modified: Option<f64>,
+    /// \[N] dynamic equivalent reference load P_ref.
+    pub equivalent_load: f64,
+    /// [-] static safety: load of a ball that would leave a mark over the largest load on the inner race; at most [`super::rating::SAFEST`].
+    pub static_safety: f64,
+}
+
+/// A support at one instant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SupportState {
+    /// Pose of the flange.
+    pub flange: Pose,
+    /// Its twist.
+    pub flange_twist: Twist,
+    /// Force and moment of the support on the flange, about its origin, world axes.
+    pub wrench: Wrench,
+    /// \[m] displacement of the race from the flange, in the flange's axes.
+    pub displacement: Vector3<f64>,
+    /// \[rad] rotation vector of the race relative to the flange, in the flange's axes.
+    pub rotation: Vector3<f64>,
+    /// \[J] energy stored.
+    pub energy: f64,
+    /// \[W] power lost in the dampers.
+    pub lost: f64,
 }

@@ -5,8 +5,8 @@
 //! derivatives of that, so that no energy is made at any angle. Beside them act `-C` times the relative velocity and angular
 //! velocity in the flange's axes. A flange that spins takes the axes of K and C with it.
 
+use super::reports::SupportState;
 use nalgebra::{Matrix6, Vector3};
-use serde::{Deserialize, Serialize};
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::estimate::{Estimate, Verdict, digits, percent};
@@ -85,25 +85,6 @@ pub struct Held<S: Scalar> {
     pub elastic_moment: Vector3<S>,
     /// [N m] moment of the dampers, world axes.
     pub damping_moment: Vector3<S>,
-}
-
-/// A support at one instant.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SupportState {
-    /// Pose of the flange.
-    pub flange: Pose,
-    /// Its twist.
-    pub flange_twist: Twist,
-    /// Force and moment of the support on the flange, about its origin, world axes.
-    pub wrench: Wrench,
-    /// \[m] displacement of the race from the flange, in the flange's axes.
-    pub displacement: Vector3<f64>,
-    /// \[rad] rotation vector of the race relative to the flange, in the flange's axes.
-    pub rotation: Vector3<f64>,
-    /// \[J] energy stored.
-    pub energy: f64,
-    /// \[W] power lost in the dampers.
-    pub lost: f64,
 }
 
 impl SupportState {

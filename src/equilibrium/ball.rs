@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 use super::{EquilibriumInput, Gyroscopic};
 use crate::contact::geometry::GrooveContact;
 use crate::contact::{ContactModel, RaceMotion};
-use crate::effects::frame::MovingFrame;
+use crate::effects::moving_frame::MovingFrame;
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{PerRace, Race};

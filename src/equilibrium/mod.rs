@@ -13,9 +13,10 @@ mod trial;
 use nalgebra::{SMatrix, UnitQuaternion, Vector3};
 use thiserror::Error;
 
-use crate::effects::frame::FrameMotion;
-use crate::effects::growth::{GrowthOutput, Rises, Warmth};
-use crate::effects::rating::LifeOutput;
+use crate::effects::growth::{Rises, Warmth};
+use crate::effects::moving_frame::FrameMotion;
+use crate::effects::reports::GrowthOutput;
+use crate::effects::reports::LifeOutput;
 use crate::model::bearing::BeyondShoulder;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::{Conditions, Model};

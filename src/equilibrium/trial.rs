@@ -6,7 +6,7 @@ use super::ball::{
     BallBalance, DIRECTIONS, N_SHARED, Place, SHARED, Shared, bottom_of_outer_groove, middle_of_gap, settle,
 };
 use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
-use crate::effects::frame::MovingFrame;
+use crate::effects::moving_frame::MovingFrame;
 use crate::effects::support::{Relative, Support};
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;

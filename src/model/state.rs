@@ -8,7 +8,7 @@ use super::energies::{Energies, Powers, Pressed};
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::effects::growth::Grown;
-use crate::effects::support::SupportState;
+use crate::effects::reports::SupportState;
 use crate::effects::{heat, rating};
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::arrowhead::Eliminated;

@@ -19,7 +19,7 @@ pub use crate::effects::cage::{CageSection, Guidance};
 pub use crate::effects::creep::{CreepLaw, Regularised};
 use crate::effects::defects::DefectSection;
 use crate::effects::form::FormSection;
-pub use crate::effects::frame::FrameMotion;
+pub use crate::effects::moving_frame::FrameMotion;
 use crate::effects::{growth, rating};
 pub use crate::schema::{
     Accuracy, BearingSection, Components, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver,

@@ -8,15 +8,15 @@ use super::slip::{RollingOrbit, orbital_speed};
 use crate::contact::{BallRaceContact, RaceMotion};
 use crate::dynamics::power_lost_around;
 use crate::effects::Reports;
-use crate::effects::defects::Frequencies;
-use crate::effects::frame::FrameMotion;
-use crate::effects::growth::GrowthOutput;
-use crate::effects::heat::HeatOutput;
-use crate::effects::rating::LifeOutput;
+use crate::effects::moving_frame::FrameMotion;
+use crate::effects::reports::Frequencies;
+use crate::effects::reports::GrowthOutput;
+use crate::effects::reports::HeatOutput;
+use crate::effects::reports::LifeOutput;
+use crate::effects::reports::SupportState;
 pub use crate::effects::reports::{
     BallOutput, CageOutput, Condensed, ContactOutput, NeighboursOutput, PocketOutput,
 };
-use crate::effects::support::SupportState;
 use crate::forces::{BallContacts, Contacts, Totals, stored_energy};
 use crate::model::bearing;
 use crate::model::bodies::{Constraint, PerRace, Race, RigidBody, tilt_direction};

@@ -10,6 +10,7 @@ pub mod rings;
 mod section;
 mod stiffening;
 
+use crate::effects::reports::GrowthOutput;
 use serde::{Deserialize, Serialize};
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
@@ -283,19 +284,6 @@ impl Growth {
             seat_pressure: [inner.pressure, outer.pressure],
         }
     }
-}
-
-/// The bearing as it has grown, without load.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct GrowthOutput {
-    /// \[m] diametral clearance; negative is interference of balls and raceways.
-    pub clearance: f64,
-    /// \[rad] free contact angle; 0 without clearance.
-    pub contact_angle: f64,
-    /// \[m] diametral interference of the inner ring on its shaft and of the outer ring in its housing; negative is a gap.
-    pub interference: [f64; 2],
-    /// \[Pa] pressure on these seats.
-    pub seat_pressure: [f64; 2],
 }
 
 type FromGrowth = fn(&GrowthOutput) -> f64;

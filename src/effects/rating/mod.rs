@@ -5,6 +5,7 @@
 
 pub mod standard;
 
+use crate::effects::reports::LifeOutput;
 use serde::{Deserialize, Serialize};
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
@@ -140,19 +141,6 @@ impl Sums {
             Rates { largest: self.largest, ..self.now }
         }
     }
-}
-
-/// Life and safety of a bearing.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LifeOutput {
-    /// [million revolutions] reference rating life L_10r; at most [`LONGEST`].
-    pub reference: f64,
-    /// [million revolutions] modified reference rating life L_nmr; none without viscosity and contamination.
-    pub modified: Option<f64>,
-    /// \[N] dynamic equivalent reference load P_ref.
-    pub equivalent_load: f64,
-    /// [-] static safety: load of a ball that would leave a mark over the largest load on the inner race; at most [`SAFEST`].
-    pub static_safety: f64,
 }
 
 /// Ratings of a bearing and its lubrication.

@@ -1,0 +1,340 @@
+//! The contact of a ball with a race: the chain from motion to forces.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::creep::{CreepForces, Creepage, Law, LinearTheory};
+use super::geometry::{GrooveContact, Lean};
+use super::kinematics::{self, Surfaces};
+use super::normal::{Damping, NormalLoad};
+use super::oblique::is_oblique;
+use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
+use crate::kalker::nonlinear::KalkerError;
+use crate::kalker::scaled_law::{Difference, ScaledKalker};
+use crate::numerics::scalar::{Scalar, cross, dot};
+
+impl ContactModel<'_> {
+    /// Evaluates the contact of a ball with the race: the whole chain from motion to forces, written once for values
+    /// and for exact derivatives. Without friction only what forces need is computed; [`Self::completed`] adds the rest.
+    #[inline(always)]
+    pub fn evaluate<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        match self.law {
+            Law::Frictionless => self.pressed_apart(ball, race),
+            _ => self.rolling(ball, race),
+        }
+    }
+
+    /// [`Self::pressed`] as a function of its own: inlined beside the contact with friction it is more than the compiler takes.
+    #[inline(never)]
+    fn pressed_apart<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        self.pressed(ball, race)
+    }
+
+    /// A contact without friction with the ellipse, the creepages and the direction of rolling that no force depends on.
+    pub fn completed(
+        &self,
+        contact: &BallRaceContact<f64>,
+        ball: &BallMotion<f64>,
+        race: &RaceMotion<f64>,
+    ) -> BallRaceContact<f64> {
+        match self.law {
+            Law::Frictionless => ContactModel { across: None, ..*self }.rolling(ball, race),
+            _ => *contact,
+        }
+    }
+
+    /// Is the race a torus under balls that are alike, with the usual damping?
+    #[inline(always)]
+    pub(super) fn is_usual(&self) -> bool {
+        self.surface.is_plain() && matches!(self.damping, Damping::HuntCrossley(_))
+    }
+
+    /// [N/m^1.5] Hertz stiffness of these balls, of that of the shape where the contact is.
+    #[inline(always)]
+    pub fn stiffness_of<S: Scalar>(&self, of_shape: S) -> S {
+        let stiffness = of_shape.scale(self.stiffening);
+        match self.surface.of_balls::<S>(|size| size.stiffness) {
+            None => stiffness,
+            Some(factor) => stiffness * factor,
+        }
+    }
+
+    /// Where the ball touches, and how its approach changes there ([`GrooveContact::new`]).
+    #[inline(always)]
+    fn touch<S: Scalar, const SHAPED: bool>(
+        &self,
+        offset: &Vector3<S>,
+        race: &RaceMotion<S>,
+    ) -> (GrooveContact<S>, Lean<S>) {
+        match SHAPED {
+            true => GrooveContact::new(&self.surface, offset, race),
+            false => (GrooveContact::plain(&self.surface, offset, race), Lean::none()),
+        }
+    }
+
+    /// Hertz stiffness and normal load by the stiffness of the shape, the depth and its root, the approach rate along the normal,
+    /// and how the approach changes: the load does the work along the normal of one that goes with the approach.
+    #[inline(always)]
+    fn normal_load<S: Scalar, const SHAPED: bool>(
+        &self,
+        of_shape: S,
+        [depth, root]: [S; 2],
+        rate: S,
+        (lean, turning): (&Lean<S>, impl FnOnce() -> Vector3<S>),
+    ) -> (S, NormalLoad<S>) {
+        if SHAPED {
+            let stiffness = self.stiffness_of(of_shape);
+            let rate = lean.rate(rate, turning);
+            let load = NormalLoad::hertz(stiffness, depth, root, rate, self.damping);
+            (stiffness, NormalLoad { total: load.total * lean.gain, ..load })
+        } else {
+            let stiffness = of_shape.scale(self.stiffening);
+            let (Damping::HuntCrossley(factor) | Damping::Viscoelastic(factor)) = self.damping;
+            (stiffness, NormalLoad::damped(stiffness * depth * root, rate, factor))
+        }
+    }
+
+    /// A contact that carries its normal load alone.
+    #[inline(always)]
+    pub(super) fn pressed<S: Scalar>(
+        &self,
+        ball: &BallMotion<S>,
+        race: &RaceMotion<S>,
+    ) -> BallRaceContact<S> {
+        if self.is_usual() {
+            self.pressed_on::<S, false>(ball, race)
+        } else {
+            self.pressed_shaped(ball, race)
+        }
+    }
+
+    /// The same on any surface with any damping, apart, so that the usual contact does not pay for it.
+    #[cold]
+    #[inline(never)]
+    fn pressed_shaped<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        self.pressed_on::<S, true>(ball, race)
+    }
+
+    #[inline(always)]
+    pub(super) fn pressed_on<S: Scalar, const SHAPED: bool>(
+        &self,
+        ball: &BallMotion<S>,
+        race: &RaceMotion<S>,
+    ) -> BallRaceContact<S> {
+        let offset = ball.position - race.position;
+        let (geometry, lean) = self.touch::<S, SHAPED>(&offset, race);
+        let depth = geometry.approach.positive_part();
+        let of_shape = self.shape.stiffness(geometry.circumferential_curvature);
+        let (arm, race_arm) = kinematics::arms(geometry.normal, self.surface.ball_radius, &offset);
+        let rate = match self.damping.is_none() {
+            true => S::zero(),
+            false => {
+                let bodies = [&race.velocity, &race.angular_velocity];
+                dot(&geometry.normal, &kinematics::slip(ball, bodies, [&arm, &race_arm]))
+            }
+        };
+        let turning = || ball.angular_velocity - race.angular_velocity;
+        let (stiffness, load) =
+            self.normal_load::<S, SHAPED>(of_shape, [depth, depth.sqrt()], rate, (&lean, turning));
+        let (zero, none) = (S::zero(), Vector3::from_element(S::zero()));
+        let force = -geometry.normal.map(|component| component * load.total);
+        let mut moments = [none, -cross(&race_arm, &force)];
+        if SHAPED {
+            lean.turn(load.total, &mut moments);
+        }
+        let [ball_moment, race_moment] = moments;
+        BallRaceContact {
+            load: load.total,
+            stiffness,
+            semi_axes: [zero; 2],
+            rolling_speed: zero,
+            creepage: Creepage {
+                longitudinal: zero,
+                lateral: zero,
+                spin: zero,
+                curvature: self.groove_bend.map(|_| zero),
+            },
+            creep: CreepForces { longitudinal: zero, lateral: zero, spin_moment: zero, second_moment: zero },
+            rolling_cosine: zero,
+            force,
+            ball_moment,
+            race_moment,
+            friction_power: zero,
+            damping_power: load.damping_power,
+            geometry,
+        }
+    }
+
+    /// A contact with its creep forces.
+    #[inline(always)]
+    pub(super) fn rolling<S: Scalar>(
+        &self,
+        ball: &BallMotion<S>,
+        race: &RaceMotion<S>,
+    ) -> BallRaceContact<S> {
+        if !self.is_usual() {
+            return self.rolling_shaped(ball, race);
+        }
+        let (contact, oblique) = self.rolling_along::<S, false, false>(ball, race);
+        if oblique { self.rolling_obliquely(ball, race) } else { contact }
+    }
+
+    /// The same on any surface with any damping, apart, so that the usual contact does not pay for it.
+    #[cold]
+    #[inline(never)]
+    fn rolling_shaped<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        self.rolling_along::<S, false, true>(ball, race).0
+    }
+
+    /// [`Self::rolling`] where rolling across the circumference has a share. Seldom: it computes everything once more, because what
+    /// the usual contact would hand over to it would have to be in memory.
+    #[cold]
+    #[inline(never)]
+    fn rolling_obliquely<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        self.rolling_along::<S, true, false>(ball, race).0
+    }
+
+    /// A contact with its creep forces along the circumference, or with those across mixed in; and whether those have a share. On any
+    /// surface they are mixed in where they have.
+    #[inline(always)]
+    pub(super) fn rolling_along<S: Scalar, const MIXED: bool, const SHAPED: bool>(
+        &self,
+        ball: &BallMotion<S>,
+        race: &RaceMotion<S>,
+    ) -> (BallRaceContact<S>, bool) {
+        let offset = ball.position - race.position;
+        let (geometry, lean) = self.touch::<S, SHAPED>(&offset, race);
+        let surfaces = Surfaces::new(
+            ball,
+            self.surface.ball_radius,
+            [&race.velocity, &race.angular_velocity],
+            &offset,
+            geometry.normal,
+            &normal_rate(&geometry, &offset, ball, race),
+        );
+
+        // normal load
+        let depth = geometry.approach.positive_part();
+        let root = depth.sqrt();
+        let shape = self.shape.at(geometry.circumferential_curvature);
+        let rate = surfaces.approach_rate;
+        let turning = || ball.angular_velocity - race.angular_velocity;
+        let (stiffness, load) =
+            self.normal_load::<S, SHAPED>(shape.stiffness, [depth, root], rate, (&lean, turning));
+
+        // creep forces of the ball on the race, in the contact frame: x along the circumference
+        let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
+        let theory = LinearTheory::new(&shape, depth, root, load.total, self.friction, rolling.cosine);
+        let oblique = self.across.is_some() && is_oblique(rolling.speed, rolling.speed_across);
+        let mut creep = theory.forces(self.law, &rolling.creepage);
+        if (MIXED || SHAPED && oblique)
+            && let Some(across) = &self.across
+        {
+            creep = across.mixed(&creep, &theory, rolling.speed_across / rolling.speed, &rolling.creepage);
+        }
+
+        let wrench = surfaces.wrench(&rolling, load.total, &creep);
+        let mut moments = [wrench.ball_moment, wrench.other_moment];
+        if SHAPED {
+            lean.turn(load.total, &mut moments);
+        }
+        let [ball_moment, race_moment] = moments;
+        let contact = BallRaceContact {
+            geometry,
+            load: load.total,
+            stiffness,
+            semi_axes: [shape.semi_axis_rolling, shape.semi_axis_transverse],
+            rolling_speed: rolling.speed,
+            creepage: rolling.creepage,
+            creep,
+            rolling_cosine: rolling.cosine,
+            force: wrench.force,
+            ball_moment,
+            race_moment,
+            friction_power: wrench.friction_power,
+            damping_power: load.damping_power,
+        };
+        (contact, oblique)
+    }
+
+    /// The contact of a ball (0 is the first), with its difference of Kalker's polynomials from the table, where they are
+    /// simulated.
+    pub fn of_ball<'b>(&self, ball: usize, difference: Option<&'b Difference>) -> ContactModel<'b>
+    where
+        Self: 'b,
+    {
+        ContactModel {
+            surface: self.surface.under(ball),
+            law: match (self.law, difference) {
+                (Law::Table(table), Some(difference)) => Law::Frozen(table, &difference.value),
+                (Law::Kalker(kalker), Some(last)) => Law::Continued(kalker, &last.coefficients),
+                (law, _) => law,
+            },
+            ..*self
+        }
+    }
+
+    /// Renews the difference of Kalker's polynomials from the table at an evaluated contact if its scaled creepages q have
+    /// moved by more than a fraction of `1 + |q|` since the last time. Returns whether they had.
+    ///
+    /// # Errors
+    /// If the nonlinear problem does not converge; the difference then stays what it was.
+    pub fn renew(
+        &self,
+        kalker: &ScaledKalker,
+        contact: &BallRaceContact<f64>,
+        fraction: f64,
+        difference: &mut Difference,
+    ) -> Result<bool, KalkerError> {
+        let (table, fraction) = match self.law {
+            Law::Table(table) => (Some(table), fraction),
+            // Nothing is frozen: the last solution is where the next one begins.
+            Law::Kalker(_) => (None, 0.0),
+            _ => return Ok(false),
+        };
+        if contact.load <= 0.0 {
+            return Ok(false);
+        }
+        let shape = self.shape.at(contact.geometry.circumferential_curvature);
+        let depth = contact.geometry.approach;
+        let (root, cosine) = (depth.sqrt(), contact.rolling_cosine);
+        let theory = LinearTheory::new(&shape, depth, root, contact.load, self.friction, cosine);
+        let (q, results) = theory.polynomial_scale(table, &contact.creepage);
+        let old = difference.age(&q) > fraction;
+        if old {
+            kalker.renew(difference, q, results)?;
+        }
+        Ok(old)
+    }
+}
+
+impl<'a> ContactModel<'a> {
+    /// The contact of damaged balls of these orientations, where there are such.
+    pub fn facing(mut self, orientations: Option<&'a Vec<UnitQuaternion<f64>>>) -> Self {
+        if let (Some(damage), Some(orientations)) = (&mut self.surface.damage, orientations) {
+            damage.orientations = orientations;
+        }
+        self
+    }
+}
+
+/// [1/s] rate of change of the contact normal.
+#[inline(always)]
+fn normal_rate<S: Scalar>(
+    geometry: &GrooveContact<S>,
+    offset: &Vector3<S>,
+    ball: &BallMotion<S>,
+    race: &RaceMotion<S>,
+) -> Vector3<S> {
+    // Seen from the race, whose axis is at rest, the ball centre moves with this velocity.
+    let relative = ball.velocity - race.velocity - cross(&race.angular_velocity, offset);
+    let radial_rate = dot(&relative, &geometry.radial);
+    let around = dot(&relative, &geometry.circumferential) / geometry.radius;
+    let axial_rate = dot(&relative, &race.axis);
+    // The groove centre of the ball's azimuth turns with it; what remains turns the normal about the groove centre.
+    let out = dot(&geometry.normal, &geometry.radial);
+    let in_plane = geometry.radial * radial_rate + race.axis * axial_rate;
+    let across = in_plane - geometry.normal * dot(&geometry.normal, &in_plane);
+    across.map(|c| c / geometry.distance)
+        + geometry.circumferential * (around * out)
+        + cross(&race.angular_velocity, &geometry.normal)
+}
