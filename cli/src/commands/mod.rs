@@ -97,6 +97,10 @@ impl From<GyroscopicChoice> for Gyroscopic {
     }
 }
 
+/// What an equilibrium says of races on supports.
+const SUPPORTS_LEFT_OUT: &str = "note: displacements are those of one race against the other; flexible supports give way beside them, \
+                                 as a run shows from its start";
+
 /// Reads a scene and finds out its effects where it asks for that; what its reader should know goes to standard error.
 fn load(path: &Path) -> Result<Scene, Box<dyn Error>> {
     let scene = Scene::load(path)?;
@@ -140,6 +144,9 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
                 say(&solution.to_string())?;
             }
             tell(scene.pressure_note(solution.peak_pressure(&model)));
+            if model.supports.iter().any(Option::is_some) {
+                tell([SUPPORTS_LEFT_OUT.to_string()]);
+            }
         }
         Command::Fmu { scene, output, library, name } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };

@@ -6,6 +6,7 @@ mod common;
 mod contacts;
 mod cost;
 mod effects;
+mod field;
 mod refusals;
 mod runs;
 mod spectrum;

@@ -1,0 +1,65 @@
+//! `roulement field`: where contacts of a run stick and slip.
+
+use super::*;
+
+/// Numbers of a table by column.
+fn column(text: &str, name: &str) -> Vec<f64> {
+    let mut lines = text.lines();
+    let at =
+        lines.next().unwrap().split(',').position(|other| other == name).unwrap_or_else(|| panic!("{name}"));
+    lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()
+}
+
+#[test]
+fn invariant_a_field_carries_the_load_of_its_contact_within_the_friction_limit() {
+    let scratch = Scratch::new("field");
+    let scene = edited("thrust", &[("load.duration", "\"0.3 ms\""), ("effects.per_ball_outputs", "true")]);
+    let run = scratch.run(&scene, "run", &["--columns", "ball*.load"]);
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let loads = column(&scratch.read("run/results.csv"), "ball[2].outer.load [N]");
+
+    let output = roulement(&[
+        "field",
+        &scratch.path("scene.toml"),
+        "--contacts",
+        "2.outer",
+        "--cells",
+        "24",
+        "-o",
+        &scratch.path("field.csv"),
+    ]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("0.300000 ms, ball 2 on the outer race: ") && said.contains(" % sticks"), "{said}");
+
+    let text = scratch.read("field.csv");
+    let of = |name: &str| column(&text, name);
+    let (area, pressure) = (of("area [m2]"), of("pressure [Pa]"));
+    let carried: f64 = area.iter().zip(&pressure).map(|(area, pressure)| area * pressure).sum();
+    let load = loads.last().unwrap();
+    assert!((carried / load - 1.0).abs() < 0.01, "{carried} of {load} N");
+    let (sticks, along, across) = (of("sticks [1]"), of("traction.x [Pa]"), of("traction.y [Pa]"));
+    let slip: Vec<f64> = of("slip.x [m/s]").iter().zip(of("slip.y [m/s]")).map(|(x, y)| x.hypot(y)).collect();
+    for i in 0..area.len() {
+        let (traction, limit) = (along[i].hypot(across[i]), 0.08 * pressure[i]);
+        // Cells that slip are at the limit, the others within it.
+        assert!(traction <= limit * (1.0 + 1e-6), "{traction} {limit}");
+        assert!(sticks[i] == 1.0 || traction > limit * (1.0 - 1e-6), "{traction} {limit}");
+    }
+    let mean = |wanted: f64| {
+        let of = || (0..area.len()).filter(|&i| sticks[i] == wanted);
+        of().map(|i| slip[i]).sum::<f64>() / of().count().max(1) as f64
+    };
+    assert!(mean(0.0) > 0.0 && mean(1.0) < 1e-3 * mean(0.0), "{} {}", mean(0.0), mean(1.0));
+}
+
+#[test]
+fn what_is_no_contact_of_the_bearing_is_refused() {
+    for (contact, part) in
+        [("11.inner", "ball 11 is not there: allowed is [1, 10]"), ("3.middle", "3.middle is no contact")]
+    {
+        let output = roulement(&["field", &scene("thrust"), "--contacts", contact]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && said.contains(part), "{said}");
+    }
+}
