@@ -42,9 +42,9 @@ fn invariant_a_field_carries_the_load_of_its_contact_within_the_friction_limit()
     let slip: Vec<f64> = of("slip.x [m/s]").iter().zip(of("slip.y [m/s]")).map(|(x, y)| x.hypot(y)).collect();
     for i in 0..area.len() {
         let (traction, limit) = (along[i].hypot(across[i]), 0.08 * pressure[i]);
-        // Cells that slip are at the limit, the others within it.
-        assert!(traction <= limit * (1.0 + 1e-6), "{traction} {limit}");
-        assert!(sticks[i] == 1.0 || traction > limit * (1.0 - 1e-6), "{traction} {limit}");
+        // Cells that slip are at the limit, to the solver's tolerance, the others within it.
+        assert!(traction <= limit * (1.0 + 1e-5), "{traction} {limit}");
+        assert!(sticks[i] == 1.0 || traction > limit * (1.0 - 1e-5), "{traction} {limit}");
     }
     let mean = |wanted: f64| {
         let of = || (0..area.len()).filter(|&i| sticks[i] == wanted);
