@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use roulement::effects::Effects;
 use roulement::interface::variables::Variables;
 use roulement::scene::{Level, Scene};
 use roulement::simulation::Simulation;
@@ -56,5 +57,17 @@ fn every_scene_says_its_purpose_and_runs_with_finite_numbers_and_its_energy_in_b
             imbalance / size
         );
         assert!(imbalance < 1e-3 * size, "{name}: {imbalance:e} of {size:e} J");
+    }
+}
+
+#[test]
+fn every_effect_is_on_in_one_of_these_scenes() {
+    let scenes: Vec<Scene> = scenes().iter().map(|path| Scene::load(path).unwrap()).collect();
+    for effect in Effects::default().each() {
+        let key = effect.info().key;
+        let is_on = |scene: &Scene| {
+            scene.effects.each().iter().any(|other| other.info().key == key && other.setting().is_some())
+        };
+        assert!(scenes.iter().any(is_on), "no scene of scenes/effects has {key}");
     }
 }
