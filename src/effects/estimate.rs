@@ -223,17 +223,29 @@ impl Verdict {
         (value, threshold): (f64, f64),
         sentence: String,
     ) -> Self {
+        let standing = if on { Standing::On } else { Standing::Off };
+        Self { key: Some(key), ..Self::new(subject, standing, (value, threshold), sentence, "") }
+    }
+
+    /// A share of no effect's own, which matters above a threshold, and what to write about it.
+    pub fn new(
+        subject: &'static str,
+        standing: Standing,
+        (value, threshold): (f64, f64),
+        sentence: String,
+        write: &'static str,
+    ) -> Self {
         Self {
-            key: Some(key),
+            key: None,
             subject,
-            standing: if on { Standing::On } else { Standing::Off },
+            standing,
             value,
             closed_form: None,
             unit: "",
             threshold,
             matters: value > threshold,
             sentence,
-            write: "",
+            write,
             auto: None,
         }
     }

@@ -21,21 +21,14 @@ pub fn ring_bending(estimate: &Estimate) -> f64 {
 
 /// What it says.
 pub fn verdicts(estimate: &Estimate) -> Vec<Verdict> {
-    let verdict = |subject, standing, (value, threshold): (f64, f64), sentence, write| Verdict {
-        key: None,
-        subject,
-        standing,
-        value,
-        closed_form: None,
-        unit: "",
-        threshold,
-        matters: value > threshold,
-        sentence,
-        write,
-        auto: None,
-    };
     let always = |subject, value: f64, sentence| {
-        verdict(subject, Standing::Always, (value, estimate.threshold), sentence, "simulated in every scene")
+        Verdict::new(
+            subject,
+            Standing::Always,
+            (value, estimate.threshold),
+            sentence,
+            "simulated in every scene",
+        )
     };
     let [largest, _] = estimate.loads;
     let centrifugal = estimate.centrifugal_force / largest;
@@ -60,7 +53,7 @@ pub fn verdicts(estimate: &Estimate) -> Vec<Verdict> {
         verdicts.push(always("gyroscopic moment", gyroscopic, sentence));
     }
     if bending.is_finite() {
-        verdicts.push(verdict(
+        verdicts.push(Verdict::new(
             "bending of the outer ring",
             Standing::Missing,
             (bending, f64::INFINITY),

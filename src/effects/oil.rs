@@ -80,18 +80,9 @@ impl Oil {
     /// What the oil would do.
     pub fn verdicts(&self, estimate: &Estimate) -> Vec<Verdict> {
         let Self { name, roughness, .. } = self;
-        let verdict = |subject, (value, threshold): (f64, f64), sentence| Verdict {
-            key: None,
-            subject,
-            standing: Standing::Missing,
-            value,
-            closed_form: None,
-            unit: "",
-            threshold,
-            matters: value > threshold,
-            sentence,
-            write: "not simulated: friction is dry; friction.ball_race stands for all of it",
-            auto: None,
+        let verdict = |subject, share, sentence| {
+            let write = "not simulated: friction is dry; friction.ball_race stands for all of it";
+            Verdict::new(subject, Standing::Missing, share, sentence, write)
         };
         let ratio = self.film_ratio(estimate);
         let regime = match ratio {
