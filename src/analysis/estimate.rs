@@ -3,6 +3,7 @@
 
 use crate::contact::shoulder::{largest_share, least_margin};
 use crate::effects::estimate::{BallEstimate, ContactEstimate, Estimate, Outline, RingEstimate, Verdict};
+use crate::effects::film::USUAL_DENSITY;
 use crate::effects::growth::Warmth;
 use crate::effects::growth::rings::Cylinder;
 use crate::equilibrium::{
@@ -117,6 +118,13 @@ fn at(scene: &Scene, model: &Model, time: f64) -> Result<Estimate, EstimateError
         shoulder_margin: margin(Race::Inner).min(margin(Race::Outer)),
         shoulder_share: share(Race::Inner).max(share(Race::Outer)),
         modulus: 2.0 / bearing.materials.compliance,
+        viscosity: scene
+            .effects
+            .rating
+            .section
+            .as_ref()
+            .and_then(|section| section.viscosity)
+            .map(|viscosity| viscosity.0 * USUAL_DENSITY),
         youngs_modulus: scene.race.youngs_modulus.0,
         rings: rings(scene, &outline, speeds),
         outline,

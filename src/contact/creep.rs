@@ -55,11 +55,10 @@ pub fn saturation<S: Scalar>(q: S) -> S {
 }
 
 impl<S: Scalar> LinearTheory<S> {
-    /// Linear theory of a contact: its shape, its depth \[m] and the root of it, load \[N], friction coefficient, and the
+    /// Linear theory of a contact: its shape, its depth \[m] and the root of it, the most that friction can carry \[N], and the
     /// cosine of the rolling direction against the x axis.
     #[inline(always)]
-    pub(super) fn new(shape: &ShapeAt<S>, depth: S, root: S, load: S, friction: f64, cosine: S) -> Self {
-        let friction_limit = load.scale(friction);
+    pub(super) fn new(shape: &ShapeAt<S>, [depth, root]: [S; 2], friction_limit: S, cosine: S) -> Self {
         Self {
             longitudinal: shape.longitudinal * depth,
             lateral: shape.lateral * depth,
@@ -69,6 +68,37 @@ impl<S: Scalar> LinearTheory<S> {
             moment_limit: friction_limit * shape.spin_arm * root,
             mean_semi_axis: shape.mean_semi_axis * root,
             half_width: shape.semi_axis_transverse * root,
+        }
+    }
+
+    /// The same with a film between the bodies that shears in series with them; the viscous share is that of
+    /// [`FilmForces`](super::film::FilmForces).
+    ///
+    /// With the linear force of the bodies `r` times the limit, a viscous film and elastic bodies in series carry `r/(1 + r)` of it. The
+    /// cubic of [`saturation`] gives that at an argument of `3 (1 - (1 + r)^(-1/3))`: by that much the bodies seem more compliant. A
+    /// share of 0, as that of a dry contact or of one that slides in full, leaves them as they are.
+    #[inline(always)]
+    pub(super) fn in_series(self, creepage: &Creepage<S>, viscous_share: S) -> Self {
+        let linear = self.linear(creepage);
+        let (per_force, per_moment) = self.per_limits();
+        let (x, y) = (linear.longitudinal * per_force, linear.lateral * per_force);
+        let z = linear.spin_moment * per_moment;
+        let r = (x.square() + y.square() + z.square()).sqrt();
+        let softened = r.map_smooth(|r| {
+            if r < 1e-4 {
+                return (1.0 - 2.0 / 3.0 * r + 14.0 / 27.0 * r * r, -2.0 / 3.0 + 28.0 / 27.0 * r);
+            }
+            let power = -r.ln_1p() / 3.0;
+            let factor = -3.0 * power.exp_m1() / r;
+            (factor, (power.exp() / (1.0 + r) - factor) / r)
+        });
+        let factor = S::one() - viscous_share * (S::one() - softened);
+        Self {
+            longitudinal: self.longitudinal * factor,
+            lateral: self.lateral * factor,
+            coupling: self.coupling * factor,
+            spin: self.spin * factor,
+            ..self
         }
     }
 

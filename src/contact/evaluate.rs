@@ -1,12 +1,16 @@
 //! The contact of a ball with a race: the chain from motion to forces.
 
+use std::f64::consts::PI;
+
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::creep::{CreepForces, Creepage, Law, LinearTheory};
+use super::film::{FilmForces, Loading, slip_of};
 use super::geometry::{GrooveContact, Lean};
-use super::kinematics::{self, Surfaces};
+use super::kinematics::{self, RollingState, Surfaces};
 use super::normal::{Damping, NormalLoad};
 use super::oblique::is_oblique;
+use super::shape::ShapeAt;
 use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::{Difference, ScaledKalker};
@@ -42,10 +46,10 @@ impl ContactModel<'_> {
         }
     }
 
-    /// Is the race a torus under balls that are alike, with the usual damping?
+    /// Is the race a torus under balls that are alike, dry, with the usual damping?
     #[inline(always)]
     pub(super) fn is_usual(&self) -> bool {
-        self.surface.is_plain() && matches!(self.damping, Damping::HuntCrossley(_))
+        self.surface.is_plain() && self.film.is_none() && matches!(self.damping, Damping::HuntCrossley(_))
     }
 
     /// [N/m^1.5] Hertz stiffness of these balls, of that of the shape where the contact is.
@@ -91,6 +95,40 @@ impl ContactModel<'_> {
             let (Damping::HuntCrossley(factor) | Damping::Viscoelastic(factor)) = self.damping;
             (stiffness, NormalLoad::damped(stiffness * depth * root, rate, factor))
         }
+    }
+
+    /// [1/m] sum of the curvatures of ball and race along the circumference.
+    #[inline(always)]
+    fn curvature_along<S: Scalar>(&self, of_race: S) -> S {
+        of_race + S::constant(1.0 / self.surface.ball_radius)
+    }
+
+    /// Linear theory of a contact, and what a film does in it where there is one: its shape, the curvature of the race [1/m], depth
+    /// \[m] and its root, load \[N].
+    #[inline(always)]
+    fn theory<S: Scalar, const SHAPED: bool>(
+        &self,
+        shape: &ShapeAt<S>,
+        of_race: S,
+        [depth, root]: [S; 2],
+        load: S,
+        rolling: &RollingState<S>,
+    ) -> (LinearTheory<S>, Option<FilmForces<S>>) {
+        let dry = |friction_limit: S| LinearTheory::new(shape, [depth, root], friction_limit, rolling.cosine);
+        let film = if SHAPED { self.film.as_ref() } else { None };
+        let Some(film) = film else {
+            return (dry(load.scale(self.friction)), None);
+        };
+        let loading = loading(shape, self.curvature_along(of_race), depth, load, rolling);
+        let forces = film.forces(&loading);
+        (dry(load * forces.friction).in_series(&rolling.creepage, forces.viscous_share), Some(forces))
+    }
+
+    /// What the film of an evaluated contact depends on.
+    pub fn film_loading(&self, contact: &BallRaceContact<f64>) -> Loading<f64> {
+        let of_race = contact.geometry.circumferential_curvature;
+        let depth = contact.geometry.approach.max(0.0);
+        loading(&self.shape.at(of_race), self.curvature_along(of_race), depth, contact.load, &contact.rolling_state())
     }
 
     /// A contact that carries its normal load alone.
@@ -223,7 +261,8 @@ impl ContactModel<'_> {
 
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
-        let theory = LinearTheory::new(&shape, depth, root, load.total, self.friction, rolling.cosine);
+        let curvature = geometry.circumferential_curvature;
+        let (theory, film) = self.theory::<S, SHAPED>(&shape, curvature, [depth, root], load.total, &rolling.state());
         let oblique = self.across.is_some() && is_oblique(rolling.speed, rolling.speed_across);
         let mut creep = theory.forces(self.law, &rolling.creepage);
         if (MIXED || SHAPED && oblique)
@@ -232,7 +271,11 @@ impl ContactModel<'_> {
             creep = across.mixed(&creep, &theory, rolling.speed_across / rolling.speed, &rolling.creepage);
         }
 
-        let wrench = surfaces.wrench(&rolling, load.total, &creep);
+        let mut wrench = surfaces.wrench(&rolling, load.total, &creep);
+        if SHAPED && let Some(film) = &film {
+            let share = S::constant(1.0 / self.surface.ball_radius) / self.curvature_along(curvature);
+            surfaces.resist(&mut wrench, &rolling, film.rolling_force, share);
+        }
         let mut moments = [wrench.ball_moment, wrench.other_moment];
         if SHAPED {
             lean.turn(load.total, &mut moments);
@@ -296,8 +339,14 @@ impl ContactModel<'_> {
         }
         let shape = self.shape.at(contact.geometry.circumferential_curvature);
         let depth = contact.geometry.approach;
-        let (root, cosine) = (depth.sqrt(), contact.rolling_cosine);
-        let theory = LinearTheory::new(&shape, depth, root, contact.load, self.friction, cosine);
+        let of_race = contact.geometry.circumferential_curvature;
+        let (theory, _) = self.theory::<f64, true>(
+            &shape,
+            of_race,
+            [depth, depth.sqrt()],
+            contact.load,
+            &contact.rolling_state(),
+        );
         let (q, results) = theory.polynomial_scale(table, &contact.creepage);
         let old = difference.age(&q) > fraction;
         if old {
@@ -315,6 +364,28 @@ impl<'a> ContactModel<'a> {
         }
         self
     }
+}
+
+/// What the film of a contact depends on: its shape, the sum of the curvatures along rolling [1/m], depth \[m] and load \[N].
+#[inline(always)]
+fn loading<S: Scalar>(
+    shape: &ShapeAt<S>,
+    curvature: S,
+    depth: S,
+    load: S,
+    rolling: &RollingState<S>,
+) -> Loading<S> {
+    let RollingState { speed, creepage, .. } = rolling;
+    let area = (shape.semi_axis_rolling * shape.semi_axis_transverse * depth).scale(PI);
+    let bent = creepage.curvature.map_or(S::zero(), |curvature| {
+        curvature * shape.semi_axis_transverse.square() * depth * *speed
+    });
+    let slip = slip_of(
+        [creepage.longitudinal * *speed, creepage.lateral * *speed],
+        (creepage.spin * *speed, shape.mean_semi_axis * depth.sqrt()),
+        bent,
+    );
+    Loading { load, speed: *speed, slip, curvature, area }
 }
 
 /// [1/s] rate of change of the contact normal.

@@ -74,6 +74,25 @@ pub(super) struct Rolling<S: Scalar> {
     pub(super) creepage: Creepage<S>,
 }
 
+/// What a film depends on of how a contact rolls.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RollingState<S: Scalar> {
+    /// [m/s] rolling speed, regularised.
+    pub(super) speed: S,
+    /// [-] cosine of the rolling direction against the x axis.
+    pub(super) cosine: S,
+    /// Creepages.
+    pub(super) creepage: Creepage<S>,
+}
+
+impl<S: Scalar> Rolling<S> {
+    /// What a film depends on.
+    #[inline(always)]
+    pub(super) fn state(&self) -> RollingState<S> {
+        RollingState { speed: self.speed, cosine: self.cosine, creepage: self.creepage }
+    }
+}
+
 /// Forces and moments of a contact, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wrench<S: Scalar> {
@@ -162,5 +181,22 @@ impl<S: Scalar> Surfaces<S> {
                 + creep.spin_moment * rolling.spin
                 + rolling_moment * rolling.relative_rolling,
         }
+    }
+
+    /// Adds rolling resistance: a force \[N] on each surface against its motion, and the pressure of the inlet that holds both, whose
+    /// resultants go through the centres of curvature. `ball_share` is the ball's share of the curvatures along rolling.
+    #[inline(always)]
+    pub(super) fn resist(&self, wrench: &mut Wrench<S>, rolling: &Rolling<S>, force: S, ball_share: S) {
+        let ([x, y], [arm, other_arm]) = (rolling.axes, self.arms);
+        let per_speed = S::one() / rolling.speed;
+        // Surfaces move against the direction in which the contact rolls on.
+        let along = x * rolling.cosine + y * (rolling.speed_across * per_speed);
+        let tangential = along * (force * (S::one() - ball_share.scale(2.0)));
+        // The arm of the couple: the ball's radius times its share of the curvatures is the radius of both together.
+        let couple = cross(&arm, &along) * (force * ball_share.scale(2.0));
+        wrench.force += tangential;
+        wrench.ball_moment += couple + cross(&arm, &tangential);
+        wrench.other_moment -= couple + cross(&other_arm, &tangential);
+        wrench.friction_power += dot(&couple, &self.relative) - dot(&tangential, &self.slip);
     }
 }

@@ -5,6 +5,7 @@ pub mod ball_spall;
 pub mod body;
 pub mod creep;
 mod evaluate;
+pub mod film;
 pub mod form;
 pub mod geometry;
 pub mod heathcote;
@@ -32,7 +33,9 @@ use nalgebra::Vector3;
 use crate::contact::surface::Surface;
 use crate::numerics::scalar::{Scalar, Single};
 use creep::{CreepForces, Creepage, Law};
+use film::Film;
 use geometry::GrooveContact;
+use kinematics::RollingState;
 use normal::Damping;
 use oblique::Across;
 use shape::ContactShape;
@@ -92,8 +95,10 @@ pub struct ContactModel<'a> {
     pub law: Law<'a>,
     /// Rolling across it; none where there is no friction.
     pub across: Option<Across<'a>>,
-    /// [-] friction coefficient.
+    /// [-] friction coefficient of dry surfaces.
     pub friction: f64,
+    /// The film between ball and race; none where surfaces are dry.
+    pub film: Option<Film<'a>>,
     /// How energy is lost to the approach rate.
     pub damping: Damping,
     /// [1/m] mean transverse curvature `1/(2 R)` of ball and groove where its slip (Heathcote) is simulated.
@@ -129,6 +134,13 @@ pub struct BallRaceContact<S: Scalar> {
     pub friction_power: S,
     /// \[W] power lost to contact damping.
     pub damping_power: S,
+}
+
+impl BallRaceContact<f64> {
+    /// How it rolls.
+    fn rolling_state(&self) -> RollingState<f64> {
+        RollingState { speed: self.rolling_speed, cosine: self.rolling_cosine, creepage: self.creepage }
+    }
 }
 
 impl<S: Scalar> BallRaceContact<S> {

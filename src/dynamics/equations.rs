@@ -399,9 +399,9 @@ impl Boundary {
         }
     }
 
-    /// Takes the spins of the races, which rings grow by, from their motions and prescribed speeds.
+    /// Takes the spins of the races, which rings grow by and oil is thrown off by, from their motions and prescribed speeds.
     pub fn see_spins(&mut self, model: &Model) {
-        if model.growth.is_some() {
+        if model.growth.is_some() || model.films.is_some() {
             self.conditions.warmth.spins = Race::BOTH.map(|race| match &model.bodies[race] {
                 Some(_) => self.loads[race].speed,
                 None => {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::estimate::{Estimate, Verdict};
 use super::moving_frame::FrameInputs;
 use super::reports::Reports;
-use crate::schema::numbers::{Number, Parameter};
+use crate::schema::numbers::{Number, Parameter, Range};
 use crate::schema::variable_units::Unit;
 use crate::schema::{BearingSection, Drive, Friction, Group, SceneError};
 
@@ -38,6 +38,8 @@ pub struct Setup<'a> {
     pub friction: &'a Friction,
     /// Does the creep law of the ball-race contacts saturate?
     pub saturates: bool,
+    /// Is growth simulated?
+    pub grows: bool,
     /// Is there a cage?
     pub cage: bool,
     /// How both races get their motion, inner first.
@@ -90,6 +92,8 @@ pub struct Row {
 pub struct EffectInputs {
     /// Motion of the bearing's frame, and gravity.
     pub frame: FrameInputs,
+    /// [-] degree of lubrication.
+    pub lubrication: f64,
 }
 
 /// An input that an effect adds to the table of variables.
@@ -107,6 +111,8 @@ pub struct InputRow {
     pub description: String,
     /// What it is given together with.
     pub group: Group,
+    /// Allowed values, where not every number is.
+    pub range: Option<Range>,
     /// Which of the numbers that the functions below reach.
     pub place: usize,
     /// Value as set last.

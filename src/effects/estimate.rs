@@ -137,6 +137,8 @@ pub struct Estimate {
     pub shoulder_share: f64,
     /// \[Pa] reduced modulus E' of elastohydrodynamics, 2 over the compliance of both materials.
     pub modulus: f64,
+    /// [Pa s] viscosity of the oil that the rating is for, where that is given.
+    pub viscosity: Option<f64>,
     /// \[Pa] Young's modulus of the races.
     pub youngs_modulus: f64,
     /// Inner and outer ring.

@@ -178,6 +178,7 @@ impl Effect for Settings {
                 change,
                 description: format!("{what}, {axis} component along the frame's own axes"),
                 group: Group::Frame,
+                range: None,
                 place: index,
                 get: |inputs, index| inputs.frame.motion.vector(index / 3)[index % 3],
                 rate: |inputs, index| inputs.frame.rate.vector(index / 3)[index % 3],

@@ -29,6 +29,7 @@ pub mod damping;
 pub mod defects;
 mod effect;
 pub mod estimate;
+pub mod film;
 pub mod form;
 pub mod frame;
 pub mod full_complement;
@@ -39,7 +40,6 @@ pub mod heat;
 pub mod inherent;
 pub mod keys;
 pub mod moving_frame;
-pub mod oil;
 pub mod per_ball;
 pub mod rating;
 pub mod reports;
@@ -96,7 +96,7 @@ macro_rules! effects {
 
 effects! {
     creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form, growth, rating, heat, defects,
-    frame, ambient, support, auto,
+    frame, ambient, support, auto, film,
 }
 
 impl Effects {
@@ -142,9 +142,6 @@ impl Effects {
     pub fn verdicts(&self, estimate: &Estimate) -> Vec<Verdict> {
         let mut verdicts: Vec<Verdict> =
             self.each().into_iter().flat_map(|effect| effect.matters(estimate)).collect();
-        let given = self.rating.section.as_ref().and_then(|section| section.viscosity);
-        let oil = given.map_or(oil::USUAL, |viscosity| oil::Oil::of_kinematic(viscosity.0));
-        verdicts.extend(oil.verdicts(estimate));
         verdicts.extend(inherent::verdicts(estimate));
         verdicts
     }

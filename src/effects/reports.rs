@@ -26,6 +26,8 @@ pub struct Reports<'a> {
     pub frequencies: &'a Frequencies,
     /// \[W] power that the balls lose to the medium around them.
     pub drag_power: f64,
+    /// [Pa s] viscosity of the oil at the inner and at the outer race.
+    pub oil: Option<[f64; 2]>,
     /// Flexible supports of inner and outer race.
     pub supports: [Option<&'a SupportState>; 2],
 }
@@ -65,6 +67,21 @@ pub struct ContactOutput {
     pub peak_pressure: f64,
     /// \[rad] distance of the ellipse from the nearer end of the groove; negative where it is cut.
     pub shoulder_margin: f64,
+    /// Its film; all 0 where it is dry.
+    pub film: FilmOutput,
+}
+
+/// The film of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FilmOutput {
+    /// \[m] central film.
+    pub thickness: f64,
+    /// [-] least film over the roughness of both surfaces.
+    pub ratio: f64,
+    /// [-] friction coefficient of film and roughness together.
+    pub friction: f64,
+    /// \[W] power of rolling resistance, part of the friction power.
+    pub rolling_power: f64,
 }
 
 /// A ball's contact with its cage pocket.

@@ -67,6 +67,8 @@ pub struct EquilibriumInput {
     pub gyroscopic: Gyroscopic,
     /// [-] friction coefficient, for [`Gyroscopic::Friction`].
     pub friction: f64,
+    /// [-] degree of lubrication, for the same.
+    pub lubrication: f64,
     /// \[K] rises of temperature; not used where growth is not simulated.
     pub rises: Rises,
     /// Motion of the frame that all of this is seen from, and gravity in it.
@@ -82,7 +84,12 @@ impl EquilibriumInput {
     /// Conditions of every contact, without friction.
     pub fn surroundings(&self) -> Conditions {
         let warmth = Warmth { rises: self.rises, spins: [self.inner_speed, self.outer_speed] };
-        Conditions { friction: 0.0, warmth }
+        Conditions { friction: 0.0, warmth, lubrication: 0.0 }
+    }
+
+    /// The same with friction, dry or oiled.
+    pub fn with_friction(&self) -> Conditions {
+        Conditions { friction: self.friction, lubrication: self.lubrication, ..self.surroundings() }
     }
 
     /// The problem of a scene at time 0.
@@ -119,6 +126,7 @@ impl EquilibriumInput {
             turned: PerRace::default(),
             gyroscopic,
             friction: scene.friction.ball_race.at(time),
+            lubrication: scene.effects.film.lubrication(time),
             rises: scene.effects.growth.rises(time).unwrap_or_default(),
             frame: scene.frame_at(time),
             origin: Vector3::zeros(),

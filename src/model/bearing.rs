@@ -6,6 +6,8 @@ use nalgebra::Vector3;
 use thiserror::Error;
 
 use super::bodies::{PerRace, Race};
+use crate::contact::film::thickness::Ellipse;
+use crate::contact::film::{Lubricant, RacewayFilm};
 use crate::contact::materials::Pair;
 use crate::contact::raceway::Raceway;
 use crate::contact::shape::ContactShape;
@@ -167,6 +169,17 @@ impl Bearing {
             circle_radius: raceway.groove_circle_radius,
             side: if race == Race::Inner { -1.0 } else { 1.0 },
         }
+    }
+
+    /// Films on a race, of contacts of the shape that they have at the free contact angle.
+    pub fn raceway_film(&self, race: Race, shape: &ContactShape, lubricant: Lubricant) -> RacewayFilm {
+        let curvature = self.circumferential_curvature(race);
+        let at = shape.at(curvature);
+        let modulus = 2.0 / self.materials.compliance;
+        // Semi-axes and load of an approach of 1 m: their ratios are those of any.
+        let semi_axes = [at.semi_axis_rolling, at.semi_axis_transverse];
+        let ellipse = Ellipse::new(semi_axes, at.stiffness, modulus, 1.0 / self.ball.radius + curvature);
+        RacewayFilm { lubricant, modulus, ellipse }
     }
 
     /// \[rad] smallest and largest contact angle for which there is a groove: up to a right angle on either side; on the

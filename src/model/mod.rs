@@ -21,6 +21,7 @@ use crate::contact::spall::Spalls;
 use crate::contact::surface::{BallSize, Surface};
 use crate::effects::ambient::{Ambient, AmbientSection, Medium};
 use crate::effects::defects::On;
+use crate::effects::film::Films;
 use crate::effects::form::Shape;
 use crate::effects::frame::FrameSection;
 use crate::effects::growth::{Growth, Warmth};
@@ -45,10 +46,12 @@ pub struct Conditions {
     pub friction: f64,
     /// Temperatures and speeds that rings and balls have grown by; not used where growth is not simulated.
     pub warmth: Warmth,
+    /// [-] degree of lubrication: 0 dry.
+    pub lubrication: f64,
 }
 
 impl Conditions {
-    /// Those of a friction coefficient, where nothing has grown.
+    /// Those of a friction coefficient, dry, where nothing has grown.
     pub fn of_friction(friction: f64) -> Self {
         Self { friction, ..Self::default() }
     }
@@ -71,6 +74,8 @@ pub struct Model {
     pub ball_contact: Option<BallBallModel>,
     /// Growth of rings and balls, where it is simulated.
     pub growth: Option<Growth>,
+    /// Films between balls and races, where there is oil.
+    pub films: Option<Films>,
     /// Ratings of life, where it is asked for.
     pub rating: Option<Rating>,
     /// Is heat reported by part?
@@ -135,6 +140,11 @@ impl Model {
             };
             Spalls::new(on, whole[race])
         });
+        let films = scene.effects.film.section.as_ref().and_then(|section| {
+            let races = Race::BOTH.map(|race| bearing.raceway_film(race, &raceways[race].shape, section.lubricant()));
+            let sizes = [bearing.pitch_diameter, 2.0 * bearing.ball.radius];
+            scene.effects.film.films(races, sizes, scene.bearing.contact_angle.is_some())
+        });
         let damaged = DamagedBalls::new(&scene.effects.defects.on_balls(), &bearing, &whole);
         Ok(Self {
             bodies: Bodies::new(races, section.map(|section| Some(RigidBody::cage(section)))),
@@ -149,6 +159,7 @@ impl Model {
             rating: scene.effects.rating.rating(&scene.bearing, &bearing.materials),
             heat_outputs: scene.effects.heat.on,
             growth: scene.effects.growth.growth(&scene.bearing, &scene.ball, &scene.race),
+            films,
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,
             damping: contact_damping(scene),
@@ -212,6 +223,12 @@ impl Model {
             across: raceway.across(),
             groove_bend: raceway.groove_bend,
             friction: conditions.friction,
+            film: self
+                .films
+                .as_ref()
+                .and_then(|films| {
+                    films.film(race as usize, conditions.lubrication, &conditions.warmth, conditions.friction)
+                }),
             damping: self.damping,
         }
     }

@@ -20,7 +20,7 @@ pub use crate::effects::creep::{CreepLaw, Regularised};
 use crate::effects::defects::DefectSection;
 use crate::effects::form::FormSection;
 pub use crate::effects::moving_frame::FrameMotion;
-use crate::effects::{growth, rating};
+use crate::effects::{film, growth, rating};
 pub use crate::schema::{
     Accuracy, BearingSection, Components, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver,
     Group, Groups, InputGivers, Interface, Level, Load, Material, Misalignment, Orientation, RaceLoad,
@@ -62,6 +62,8 @@ pub struct Scene {
     growth: Option<growth::Section>,
     /// The section of the rating life, until it joins its effect.
     rating: Option<rating::Section>,
+    /// The section of the oil, until it joins its effect.
+    film: Option<film::Section>,
     /// Damage of races, until it joins its effect.
     #[serde(default)]
     defect: Vec<DefectSection>,
@@ -115,6 +117,7 @@ impl Scene {
         scene.read_files(folder).map_err(|why| (why, None))?;
         scene.effects.growth.section = scene.growth.take();
         scene.effects.rating.section = scene.rating.take();
+        scene.effects.film.section = scene.film.take();
         if scene.solver.follows != Follows::Nothing {
             let Scales { approach, frequency } = Scales::of(&scene);
             scene.solver.follow(frequency, approach);
@@ -167,6 +170,7 @@ impl Scene {
             bearing: &self.bearing,
             friction: &self.friction,
             saturates,
+            grows: self.effects.growth.section.is_some(),
             cage,
             drives: [self.inner.drive, self.outer.drive],
             turning: [turns(&self.inner, &self.load.inner_speed), turns(&self.outer, &self.load.outer_speed)],

@@ -30,6 +30,7 @@ fn inputs(scene: &Scene) -> Result<(), SceneError> {
         (Group::Tilts, pose, "a race with drive = \"pose\""),
         (Group::Temperatures, scene.effects.growth.section.is_some(), "a section [growth]"),
         (Group::Frame, frame, "effects.frame"),
+        (Group::Lubrication, scene.effects.film.section.is_some(), "a section [film]"),
     ] {
         if scene.interface.inputs.of(group) == Giver::Master && !has_input {
             let why = format!("\"master\" needs {needed}: the package has no such input otherwise");

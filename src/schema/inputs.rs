@@ -19,6 +19,8 @@ pub enum Group {
     Temperatures,
     /// Motion of the bearing's frame and gravity in it, as `frame.angular_velocity`.
     Frame,
+    /// `lubrication`.
+    Lubrication,
 }
 
 /// A set of groups.
@@ -69,6 +71,8 @@ pub struct InputGivers {
     pub temperatures: Giver,
     /// Motion of the frame.
     pub frame: Giver,
+    /// Degree of lubrication.
+    pub lubrication: Giver,
 }
 
 impl InputGivers {
@@ -81,6 +85,7 @@ impl InputGivers {
             Group::Friction => self.friction,
             Group::Temperatures => self.temperatures,
             Group::Frame => self.frame,
+            Group::Lubrication => self.lubrication,
         }
     }
 }

@@ -52,6 +52,13 @@ impl Dimension {
         if written.is_empty() {
             return refuse("the unit is missing (a bare number in SI is written without quotes)");
         }
+        if self.unit == Celsius::DIMENSION.unit {
+            return match written {
+                "degC" | "\u{b0}C" | "C" => Ok(number),
+                "K" => Ok(number - 273.15),
+                _ => refuse(&format!("{written} is no unit of it: write degC or K")),
+            };
+        }
         let unknown = format!("{written} is not known as a unit");
         let Some(mut unit) = spelling::plain(written) else {
             return refuse(&unknown);
@@ -186,8 +193,12 @@ quantities! {
     KinematicViscosity = "m^2/s", "a kinematic viscosity", ["68 mm^2/s", "6.8e-5 m^2/s"];
     /// [s/m]
     DissipationFactor = "s/m", "a dissipation factor", ["0.02 s/m", "20 s/km"];
-    /// \[K] difference of two temperatures; there are no temperatures as such, whose zero would depend on the unit.
+    /// \[K] difference of two temperatures.
     TemperatureRise = "K", "a difference of temperatures", ["40 K", "500 mK"];
+    /// \[degC] temperature, with a zero that depends on the unit: nothing but viscosities follows it.
+    Celsius = "degC", "a temperature", ["70 degC", "343.15 K"];
+    /// [1/Pa]
+    PressureViscosity = "1/Pa", "a growth of viscosity with pressure", ["22 1/GPa", "2.2e-8 1/Pa"];
     /// [1/K]
     ThermalExpansion = "1/K", "a coefficient of thermal expansion", ["12e-6 1/K", "0.012 1/kK"];
 }
@@ -204,6 +215,9 @@ mod tests {
     fn closed_form_conversions_are_exact() {
         assert_eq!(parse::<Length>("9.525 mm"), Ok(9.525e-3));
         assert_eq!(parse::<Length>("10 um"), Ok(1e-5));
+        assert_eq!([parse::<Celsius>("70 degC"), parse::<Celsius>("343.15 K")], [Ok(70.0), Ok(70.0)]);
+        assert!(parse::<Celsius>("70 F").unwrap_err().contains("write degC or K"));
+        assert_eq!(parse::<PressureViscosity>("22 1/GPa"), Ok(2.2e-8));
         assert_eq!(parse::<Pressure>("206 GPa"), Ok(206e9));
         assert_eq!(parse::<Force>("1.5 kN"), Ok(1500.0));
         assert_eq!(parse::<Moment>("2 N.m"), Ok(2.0));

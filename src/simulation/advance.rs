@@ -161,7 +161,7 @@ impl Simulation {
                         start.differences.clone_from(&self.state.differences);
                         let (scene, model) = (&self.scene, &self.model);
                         let perturbed = perturbed.iter_mut().map(|p| {
-                            let mut boundary = p.paths.boundary(boundary.time, p.inputs.friction);
+                            let mut boundary = p.paths.boundary(boundary.time, &p.inputs);
                             script.impose(scene, &p.paths, &mut boundary);
                             boundary.see_spins(model);
                             boundary.turn_balls(model, &p.state);

@@ -40,11 +40,15 @@ pub struct InputPaths {
 }
 
 impl InputPaths {
-    /// Boundary conditions at a time \[s], with a friction coefficient. Spins of races are left to
+    /// Boundary conditions at a time \[s], with friction and lubrication of the inputs. Spins of races are left to
     /// [`Boundary::see_spins`], damaged balls to [`Boundary::turn_balls`].
-    pub fn boundary(&self, time: f64, friction: f64) -> Boundary {
+    pub fn boundary(&self, time: f64, inputs: &Inputs) -> Boundary {
         let rises = self.rises.map_or([0.0; 5], |rises| rises.at(time).into());
-        let conditions = Conditions { friction, warmth: Warmth { rises, ..Warmth::default() } };
+        let conditions = Conditions {
+            friction: inputs.friction,
+            warmth: Warmth { rises, ..Warmth::default() },
+            lubrication: inputs.effects.lubrication,
+        };
         Boundary {
             time,
             motion: PerRace::new(|race| self.races[race].at(time)),

@@ -25,10 +25,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::auto;
 use crate::dynamics::{Boundary, Workspace, make_consistent};
+use crate::effects::growth::Warmth;
 use crate::model::bodies::Race;
 use crate::model::state::{KeptMatrix, State};
 use crate::model::{Conditions, Model};
-use crate::scene::{Groups, Scene};
+use crate::scene::{Groups, Scene, Schedule};
 pub use error::SimulationError;
 use input_paths::InputPaths;
 use inputs::Inputs;
@@ -244,6 +245,9 @@ impl Simulation {
         if scene.effects.frame.section.is_some() {
             inputs.effects.frame.motion = scene.frame_at(time);
         }
+        if scene.effects.film.schedule().is_some_and(Schedule::is_table) {
+            inputs.effects.lubrication = scene.effects.film.lubrication(time);
+        }
         if scene.effects.growth.follows_time() {
             inputs.rises = scene.effects.growth.rises(time);
         }
@@ -276,7 +280,7 @@ impl Simulation {
     }
 
     fn boundary(&self, time: f64) -> Boundary {
-        let mut boundary = self.paths.boundary(time, self.inputs.friction);
+        let mut boundary = self.paths.boundary(time, &self.inputs);
         boundary.see_spins(&self.model);
         boundary
     }
@@ -289,5 +293,7 @@ impl Simulation {
 
 /// Conditions of every contact of a state under these inputs.
 fn conditions(inputs: &Inputs, state: &State) -> Conditions {
-    Conditions { friction: inputs.friction, warmth: state.grown.unwrap_or_default().warmth }
+    let spins = Race::BOTH.map(|race| state.race(race).rate.x);
+    let warmth = state.grown.map_or(Warmth { spins, ..Warmth::default() }, |grown| grown.warmth);
+    Conditions { friction: inputs.friction, warmth, lubrication: inputs.effects.lubrication }
 }

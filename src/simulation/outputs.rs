@@ -9,6 +9,8 @@ use crate::contact::{BallRaceContact, RaceMotion};
 use crate::dynamics::power_lost_around;
 use crate::effects::Reports;
 use crate::effects::moving_frame::FrameMotion;
+use crate::effects::film;
+use crate::effects::reports::FilmOutput;
 use crate::effects::reports::Frequencies;
 use crate::effects::reports::GrowthOutput;
 use crate::effects::reports::HeatOutput;
@@ -83,6 +85,8 @@ pub struct Outputs {
     pub damping_power: f64,
     /// \[W] power that the balls lose to the medium around them.
     pub drag_power: f64,
+    /// [Pa s] viscosity of the oil at the inner and at the outer race, where there is oil.
+    pub oil: Option<[f64; 2]>,
     /// Flexible supports of inner and outer race, where they rest on some.
     pub supports: [Option<SupportState>; 2],
     /// [N m] friction torque of the bearing: against the inner race's rotation about its own axis.
@@ -131,7 +135,10 @@ impl Outputs {
                     &ball.motion(),
                     &races[race],
                 );
-                contact_output(model, race, &contact, &races[race].axis)
+                let film = models[race]
+                    .film
+                    .map_or(FilmOutput::default(), |of| film::output(&of, &models[race].film_loading(&contact)));
+                ContactOutput { film, ..contact_output(model, race, &contact, &races[race].axis) }
             };
             BallOutput {
                 azimuth: spin_free_azimuth(outer, &(ball.position - outer.pose.position)),
@@ -186,6 +193,9 @@ impl Outputs {
             stiffened: state.energies.stiffened,
             dissipated: state.energies.friction + state.energies.damping + state.energies.around,
             supports: [state.supports.inner, state.supports.outer],
+            oil: model.films.as_ref().map(|films| {
+                [0, 1].map(|race| films.supply(race, conditions.lubrication, &conditions.warmth).viscosity)
+            }),
             drag_power: power_lost_around(
                 &model.ambient(&FrameMotion::default()),
                 state.balls.iter().map(BallState::motion),
@@ -218,6 +228,7 @@ impl Outputs {
             heat: self.heat.as_ref(),
             frequencies: &self.frequencies,
             drag_power: self.drag_power,
+            oil: self.oil,
             supports: self.supports.each_ref().map(Option::as_ref),
         }
     }
@@ -404,6 +415,7 @@ fn contact_output(
         semi_axis_transverse: transverse,
         shoulder_share,
         shoulder_margin,
+        film: FilmOutput::default(),
         peak_pressure: if area > 0.0 { 1.5 * contact.load / area } else { 0.0 },
     }
 }

@@ -21,6 +21,7 @@ pub struct Script {
     /// Wrenches on races that forces move.
     loads: PerRace<bool>,
     friction: bool,
+    lubrication: bool,
     /// Temperatures of all parts, some of them by tables.
     temperatures: bool,
     /// Motion of the bearing's frame, and gravity.
@@ -94,6 +95,12 @@ pub fn follows_time(scene: &Scene) -> bool {
         .chain(misalignment.into_iter().flatten())
         .any(Schedule::is_table)
         || scene.effects.growth.follows_time()
+        || is_lubrication_scripted(scene)
+}
+
+/// Does a table give the degree of lubrication?
+fn is_lubrication_scripted(scene: &Scene) -> bool {
+    scene.effects.film.schedule().is_some_and(Schedule::is_table)
 }
 
 /// Groups of inputs for which a scene has a script; what has no input in a package, such as the speed of a race on a
@@ -112,6 +119,7 @@ pub fn scripted_groups(scene: &Scene) -> Groups {
         .with(Group::Speeds, inner.1 || outer.1)
         .with(Group::Tilts, inner.0 || outer.0)
         .with(Group::Friction, scene.friction.ball_race.is_table())
+        .with(Group::Lubrication, is_lubrication_scripted(scene))
         .with(Group::Temperatures, scene.effects.growth.follows_time())
         .with(Group::Frame, scene.effects.frame.section.is_some() && has_scripted_frame(scene))
 }
@@ -142,6 +150,7 @@ impl Script {
         Self {
             loads: PerRace::new(|race| groups.contains(Group::Loads) && has_scripted_load(scene, race)),
             friction: given(Group::Friction),
+            lubrication: given(Group::Lubrication),
             temperatures: given(Group::Temperatures),
             // Gravity over time is no input where the frame does not move.
             frame: match scene.effects.frame.section {
@@ -156,7 +165,7 @@ impl Script {
     /// Does it give anything that an importer could have given, or a motion of a race without a body?
     pub fn gives_inputs(&self) -> bool {
         let of_race = |race: Race| self.loads[race] || self.speeds[race] || self.motions[race];
-        self.friction || self.temperatures || self.frame || Race::BOTH.into_iter().any(of_race)
+        self.friction || self.lubrication || self.temperatures || self.frame || Race::BOTH.into_iter().any(of_race)
     }
 
     /// \[s] times within a step at which a table bends, growing, not closer to one another or to the ends than `least`.
@@ -164,6 +173,9 @@ impl Script {
         let mut playing: Vec<&Schedule> = vec![];
         if self.friction {
             playing.push(&scene.friction.ball_race);
+        }
+        if self.lubrication {
+            playing.extend(scene.effects.film.schedule());
         }
         if self.temperatures {
             playing.extend(scene.effects.growth.schedules().into_iter().flatten());
@@ -231,6 +243,9 @@ impl Script {
         if self.friction {
             boundary.conditions.friction = scene.friction.ball_race.at(time);
         }
+        if self.lubrication {
+            boundary.conditions.lubrication = scene.effects.film.lubrication(time);
+        }
         if let (true, Some(rises)) = (self.temperatures, scene.effects.growth.rises(time)) {
             boundary.conditions.warmth.rises = rises;
         }
@@ -257,6 +272,9 @@ impl Script {
         }
         if self.friction {
             inputs.friction = scene.friction.ball_race.at(time);
+        }
+        if self.lubrication {
+            inputs.effects.lubrication = scene.effects.film.lubrication(time);
         }
         if self.temperatures {
             inputs.rises = scene.effects.growth.rises(time);

@@ -54,6 +54,7 @@ pub fn from_inputs(
     // Places are taken from the race that rests, wherever that is.
     let origin = inputs[resting].pose.position;
     problem.friction = inputs.friction;
+    problem.lubrication = inputs.effects.lubrication;
     problem.frame = inputs.effects.frame.motion;
     problem.origin = origin;
     problem.rises = inputs.rises.unwrap_or_default();

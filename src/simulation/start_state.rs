@@ -17,7 +17,7 @@ use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{Bodies, PerRace, Race};
 use crate::model::energies::{Energies, Powers};
 use crate::model::state::{BallState, BodyState, KeptMatrix, State, Statistics};
-use crate::model::{Conditions, Model};
+use crate::model::Model;
 use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 use crate::numerics::step_control::StepControl;
 use crate::scene::{Drive, Scene};
@@ -56,6 +56,7 @@ pub fn base_inputs(
                     .as_ref()
                     .is_some_and(|section| section.angular_acceleration.is_some()),
             },
+            lubrication: problem.lubrication,
         },
     };
     if let Some(velocity) = scene.start.inner_velocity {
@@ -156,7 +157,7 @@ pub fn state(
         .as_ref()
         .map(|damaged| damaged.at_start.iter().map(|orientation| frame * orientation).collect::<Vec<_>>());
     if scene.start.balances_spin() {
-        let conditions = Conditions { friction: inputs.friction, ..problem.surroundings() };
+        let conditions = problem.with_friction();
         let around = Surroundings {
             model,
             contacts: model.contacts_facing(&conditions, orientations.as_ref()),

@@ -143,6 +143,7 @@ fn solve(
                 turn_of(if of == resting { &held.orientation } else { &inputs[of].pose.orientation })
             }),
             friction: inputs.friction,
+            lubrication: inputs.effects.lubrication,
             rises: inputs.rises.unwrap_or_default(),
             frame: inputs.effects.frame.motion,
             origin,
@@ -172,7 +173,7 @@ fn solve(
             inputs[race].twist = Twist { velocity: Vector3::zeros(), angular_velocity };
         }
         let mut start = State { time, ..state(scene, model, inputs, &problem, &solution, &poses)? };
-        let conditions = Conditions { friction: inputs.friction, ..problem.surroundings() };
+        let conditions = problem.with_friction();
         let change =
             deflect(model, (inputs, &conditions), resting, &mut start, &solution, under_wrench(race));
         let Some((pose, size)) = change else {

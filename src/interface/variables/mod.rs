@@ -12,7 +12,7 @@ use crate::effects::growth::RISE;
 use crate::effects::{Getter, InputRow};
 use crate::model::bodies::{PerRace, Race};
 use crate::scene::{Drive, Group, Scene};
-use crate::schema::numbers::{FRICTION, Parameter};
+use crate::schema::numbers::{FRICTION, Parameter, Range};
 use crate::schema::variable_units::Unit;
 use crate::simulation::inputs::Inputs;
 use crate::simulation::outputs::Outputs;
@@ -106,6 +106,16 @@ pub enum InputError {
     /// A negative friction coefficient, or one that no surface has.
     #[error("friction = {0} is out of range: allowed is {FRICTION}")]
     Friction(f64),
+    /// An input of an effect beyond what it allows.
+    #[error("{name} = {value} is out of range: allowed is {range}")]
+    Range {
+        /// Variable.
+        name: String,
+        /// Value.
+        value: f64,
+        /// What is allowed.
+        range: Range,
+    },
     /// A rise of temperature that no bearing stands.
     #[error("{name} = {value} K is out of range: allowed is {RISE}")]
     Rise {
@@ -242,6 +252,9 @@ impl Variables {
             match &row.source {
                 Source::Friction if FRICTION.contains(value) => inputs.friction = value,
                 Source::Friction => return Err(InputError::Friction(value)),
+                Source::Input(InputRow { range: Some(range), .. }) if !range.contains(value) => {
+                    return Err(InputError::Range { name: row.name.clone(), value, range: *range });
+                }
                 Source::Input(input) => (input.set)(&mut inputs.effects, input.place, value, rate),
                 Source::Rise(part) if RISE.contains(value) => {
                     if let Some(rises) = &mut inputs.rises {

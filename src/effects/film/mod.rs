@@ -1,0 +1,272 @@
+//! Oil between balls and races: films, their friction, and rolling resistance ([`crate::contact::film`]).
+//!
+//! Dry friction is what is left of it without oil: `lubrication` goes from 1, full films, to 0, exactly the dry bearing. Contacts of
+//! balls with a cage, of the cage with its guide and of balls with each other stay as they are.
+
+pub mod oil;
+mod section;
+mod verdicts;
+
+use super::effect::{Effect, Getter, Info, InputRow, Row, Setup};
+use super::estimate::{Estimate, Outline, Verdict};
+use super::growth::Warmth;
+use super::keys::Keys;
+use super::per_ball::ball_row;
+use super::reports::{BallOutput, ContactOutput, FilmOutput, Reports};
+use crate::contact::film::{Film, Loading, Lubricant, RacewayFilm, Supply};
+use crate::schema::numbers::Number;
+use crate::schema::schedule::Schedule;
+use crate::schema::variable_units::{METRE, ONE, PASCAL_SECOND, Unit, WATT};
+use crate::schema::{Group, SceneError};
+use oil::Oil;
+pub use section::{LUBRICATION, Section, Supplied, USUAL_DENSITY};
+
+/// Geometry constant K_z of SKF's starvation factor: deep groove and angular contact ball bearings.
+const GEOMETRY: [f64; 2] = [3.1, 4.4];
+
+/// The effect as a scene has it: there is a section, or there is none.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// The section `[film]`.
+    pub section: Option<Section>,
+}
+
+impl Keys for Settings {}
+
+/// Films of both races, and the oil they are of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Films {
+    oil: Oil,
+    /// \[degC] temperature of the oil where nothing has warmed.
+    temperature: f64,
+    /// Do rises of temperature come to it?
+    warms: bool,
+    /// [1/(mm2/s rpm)] starvation constant times lengths: by viscosity and speed the exponent of the replenishment.
+    starvation: f64,
+    /// [kg/m3] density.
+    density: f64,
+    races: [RacewayFilm; 2],
+}
+
+impl Films {
+    /// The film of the inner (0) or outer (1) race, over dry friction; none where surfaces are dry.
+    pub fn film(
+        &self,
+        race: usize,
+        lubrication: f64,
+        warmth: &Warmth,
+        dry_friction: f64,
+    ) -> Option<Film<'_>> {
+        (lubrication > 0.0).then(|| {
+            let supply = self.supply(race, lubrication, warmth);
+            Film { raceway: &self.races[race], supply, dry_friction }
+        })
+    }
+
+    /// The oil at the inner (0) or outer (1) race: at the mean temperature of ring and balls where it warms with them.
+    pub fn supply(&self, race: usize, lubrication: f64, warmth: &Warmth) -> Supply {
+        let Warmth { rises, spins: [inner, outer] } = warmth;
+        let rise = if self.warms { 0.5 * (rises[race] + rises[2]) } else { 0.0 };
+        let viscosity = self.oil.viscosity(self.temperature + rise);
+        // In mm2/s and rpm, as SKF's model has them.
+        let turns = (inner - outer).abs() * 30.0 / std::f64::consts::PI;
+        let kinematic = viscosity / self.density * 1e6;
+        let replenishment = (-self.starvation * kinematic * turns).exp();
+        Supply { viscosity, lubrication, replenishment }
+    }
+}
+
+impl Settings {
+    /// The degree of lubrication over time; none without a film.
+    pub fn schedule(&self) -> Option<&Schedule> {
+        self.section.as_ref().map(|section| &section.lubrication)
+    }
+
+    /// [-] degree of lubrication at a time \[s]; 0 without a film.
+    pub fn lubrication(&self, time: f64) -> f64 {
+        self.schedule().map_or(0.0, |schedule| schedule.at(time))
+    }
+
+    /// The films of contacts on both races, of a pitch and a ball diameter \[m], with or without a contact angle.
+    pub fn films(
+        &self,
+        races: [RacewayFilm; 2],
+        [pitch, ball]: [f64; 2],
+        angular: bool,
+    ) -> Option<Films> {
+        let section = self.section.as_ref()?;
+        let usual = Outline::usual(pitch, ball);
+        let bore = section.bore.map_or(usual.bore, |bore| bore.0) * 1e3;
+        let outside = section.outside.map_or(usual.outside, |outside| outside.0) * 1e3;
+        let geometry = GEOMETRY[usize::from(angular)];
+        let lengths = (bore + outside) * (geometry / (2.0 * (outside - bore))).sqrt();
+        Some(Films {
+            oil: Oil::of(section),
+            temperature: section.oil_temperature(),
+            warms: section.cold_temperature.is_some(),
+            starvation: section.supply.starvation() * lengths,
+            density: section.density.0,
+            races,
+        })
+    }
+}
+
+impl Section {
+    /// \[degC] temperature of the oil where nothing has warmed.
+    fn oil_temperature(&self) -> f64 {
+        self.temperature.or(self.cold_temperature).map_or(40.0, |temperature| temperature.0)
+    }
+
+    /// Oil and surfaces as films need them.
+    pub fn lubricant(&self) -> Lubricant {
+        let fall = Oil::of(self).falls(self.oil_temperature());
+        Lubricant {
+            pressure_viscosity: self.pressure_viscosity.0,
+            temperature_viscosity: self.temperature_viscosity.or(fall).unwrap_or(0.035),
+            conductivity: self.conductivity,
+            eyring_stress: self.eyring_stress.0,
+            limiting_shear: self.limiting_shear,
+            roughness: self.roughness.0,
+            inlet_heating: self.inlet_heating,
+            rolling_resistance: self.rolling_resistance,
+        }
+    }
+}
+
+/// What is reported of the film of a contact.
+pub fn output(film: &Film<'_>, loading: &Loading<f64>) -> FilmOutput {
+    if loading.load <= 0.0 {
+        return FilmOutput::default();
+    }
+    let [central, _] = film.films(loading);
+    let forces = film.forces(loading);
+    FilmOutput {
+        thickness: central,
+        ratio: film.ratio(loading),
+        friction: forces.friction,
+        rolling_power: 2.0 * forces.rolling_force * loading.speed,
+    }
+}
+
+type FromContact = fn(&FilmOutput) -> f64;
+
+/// Outputs of every contact.
+const CONTACT_ROWS: [(&str, Unit, f64, &str, FromContact); 4] = [
+    ("film_thickness", METRE, 1e-6, "central film", |film| film.thickness),
+    ("film_ratio", ONE, 1.0, "least film over the roughness of both surfaces", |film| film.ratio),
+    ("film_friction", ONE, 0.05, "friction coefficient of film and roughness together", |film| film.friction),
+    ("rolling_power", WATT, 1.0, "power of rolling resistance, part of the friction power", |film| {
+        film.rolling_power
+    }),
+];
+
+/// Films of all loaded contacts with a race.
+fn films<'a>(reports: &'a Reports<'_>, of: fn(&BallOutput) -> &ContactOutput) -> impl Iterator<Item = &'a FilmOutput> {
+    reports.balls.iter().map(of).filter(|contact| contact.load > 0.0).map(|contact| &contact.film)
+}
+
+/// [-] the least film ratio of all loaded contacts; 0 without any.
+fn least_ratio(reports: &Reports<'_>) -> f64 {
+    let both = films(reports, |ball| &ball.inner).chain(films(reports, |ball| &ball.outer));
+    let least = both.map(|film| film.ratio).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
+}
+
+impl Effect for Settings {
+    const INFO: &'static Info = &Info {
+        key: "film",
+        adds: "oil between balls and races: friction of films, mixed with that of roughness, and rolling resistance; an input \
+               `lubrication` from full films to none",
+        states: "none",
+        source: "Hamrock and Dowson 1977; Gupta and others 1992; Roelands 1966; Johnson and Tevaarwerk 1977; Biboulet and Houpert 2010",
+        price: "",
+        example: "[film]\niso_vg = 68\ntemperature = \"70 degC\"\n",
+    };
+    const ESTIMATE: &'static str = "least film over the roughness, and power of rolling resistance over that of dry friction; ISO VG 68 at 40 degC where it is off";
+
+    const NUMBERS: &'static [Number<Self>] = section::NUMBERS;
+
+    fn setting(&self) -> Option<String> {
+        let section = self.section.as_ref()?;
+        let (oil, temperature) = (Oil::of(section), section.oil_temperature());
+        let degree = match section.lubrication.at(0.0) {
+            degree if degree >= 1.0 => String::new(),
+            degree => format!(", lubrication {degree}"),
+        };
+        let resistance = if section.rolling_resistance { "" } else { ", without rolling resistance" };
+        Some(format!(
+            "{}, {:.3} mPa s, {}{degree}{resistance}",
+            oil.name(temperature),
+            1e3 * oil.viscosity(temperature),
+            section.supply.name()
+        ))
+    }
+
+    fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {
+        self.section.as_ref().map_or(Ok(()), |section| section.agree(setup))
+    }
+
+    fn inputs(&self) -> Vec<InputRow> {
+        let input = || InputRow {
+            name: "lubrication".into(),
+            unit: ONE,
+            nominal: 1.0,
+            change: 1e-3,
+            description: "degree of lubrication: 1 of full films, 0 of dry surfaces".into(),
+            group: Group::Lubrication,
+            place: 0,
+            range: Some(LUBRICATION),
+            get: |inputs, _| inputs.lubrication,
+            rate: |_, _| 0.0,
+            set: |inputs, _, value, _| inputs.lubrication = value,
+        };
+        self.section.iter().map(|_| input()).collect()
+    }
+
+    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
+        verdicts::of(self.section.as_ref(), estimate)
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        if self.section.is_none() {
+            return vec![];
+        }
+        let row = |name: &str, unit: Unit, nominal: f64, description: &str, get: Getter| Row {
+            name: name.into(),
+            unit,
+            nominal,
+            description: description.into(),
+            get,
+        };
+        let power = |of: fn(&BallOutput) -> &ContactOutput| {
+            Getter::new(move |reports| films(reports, of).map(|film| film.rolling_power).sum::<f64>() + 0.0)
+        };
+        vec![
+            row("film.ratio", ONE, 1.0, "least film over the roughness, of all loaded contacts", Getter::new(least_ratio)),
+            row("film.viscosity.inner", PASCAL_SECOND, 0.01, "viscosity of the oil at the inner race", Getter::new(|reports| {
+                reports.oil.map_or(0.0, |oil| oil[0])
+            })),
+            row("film.viscosity.outer", PASCAL_SECOND, 0.01, "viscosity of the oil at the outer race", Getter::new(|reports| {
+                reports.oil.map_or(0.0, |oil| oil[1])
+            })),
+            row("rolling_power.inner", WATT, 10.0, "power of rolling resistance on the inner race, part of the friction power", power(|ball| &ball.inner)),
+            row("rolling_power.outer", WATT, 10.0, "power of rolling resistance on the outer race, part of the friction power", power(|ball| &ball.outer)),
+        ]
+    }
+
+    fn ball_rows(&self, ball: usize) -> Vec<Row> {
+        if self.section.is_none() {
+            return vec![];
+        }
+        let races: [(&str, fn(&BallOutput) -> &ContactOutput); 2] =
+            [("inner", |ball| &ball.inner), ("outer", |ball| &ball.outer)];
+        let of_race = |(race, of): (&str, fn(&BallOutput) -> &ContactOutput)| {
+            CONTACT_ROWS.map(|(quantity, unit, nominal, what, get)| {
+                let description = format!("{what} of ball {} and the {race} race", ball + 1);
+                let name = format!("{race}.{quantity}");
+                ball_row(ball, &name, unit, nominal, description, move |ball| get(&of(ball).film))
+            })
+        };
+        races.into_iter().flat_map(of_race).collect()
+    }
+}
