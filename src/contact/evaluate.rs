@@ -11,7 +11,7 @@ use super::kinematics::{self, RollingState, Surfaces};
 use super::normal::{Damping, NormalLoad};
 use super::oblique::is_oblique;
 use super::shape::ShapeAt;
-use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
+use super::{BallMotion, BallRaceContact, ContactModel, HYSTERESIS, RaceMotion};
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::{Difference, ScaledKalker};
 use crate::numerics::scalar::{Scalar, cross, dot};
@@ -46,10 +46,16 @@ impl ContactModel<'_> {
         }
     }
 
-    /// Is the race a torus under balls that are alike, dry, with the usual damping?
+    /// Is the race a torus under balls that are alike, without anything against rolling, with the usual damping?
     #[inline(always)]
     pub(super) fn is_usual(&self) -> bool {
-        self.surface.is_plain() && self.film.is_none() && matches!(self.damping, Damping::HuntCrossley(_))
+        self.surface.is_plain() && !self.resists() && matches!(self.damping, Damping::HuntCrossley(_))
+    }
+
+    /// Is there anything against rolling?
+    #[inline(always)]
+    pub fn resists(&self) -> bool {
+        self.film.is_some() || self.hysteresis > 0.0
     }
 
     /// [N/m^1.5] Hertz stiffness of these balls, of that of the shape where the contact is.
@@ -122,6 +128,16 @@ impl ContactModel<'_> {
         let loading = loading(shape, self.curvature_along(of_race), depth, load, rolling);
         let forces = film.forces(&loading);
         (dry(load * forces.friction).in_series(&rolling.creepage, forces.viscous_share), Some(forces))
+    }
+
+    /// [N m] moment against rolling by hysteresis, at a load \[N].
+    #[inline(always)]
+    pub fn hysteresis_moment<S: Scalar>(&self, load: S) -> S {
+        load.map_smooth(|load| {
+            let slope = load.powf(HYSTERESIS - 1.0);
+            (slope * load, HYSTERESIS * slope)
+        })
+        .scale(self.hysteresis)
     }
 
     /// What the film of an evaluated contact depends on.
@@ -272,9 +288,10 @@ impl ContactModel<'_> {
         }
 
         let mut wrench = surfaces.wrench(&rolling, load.total, &creep);
-        if SHAPED && let Some(film) = &film {
+        if SHAPED && self.resists() {
             let share = S::constant(1.0 / self.surface.ball_radius) / self.curvature_along(curvature);
-            surfaces.resist(&mut wrench, &rolling, film.rolling_force, share);
+            let force = film.map_or(S::zero(), |film| film.rolling_force);
+            surfaces.resist(&mut wrench, &rolling, (force, share), self.hysteresis_moment(load.total));
         }
         let mut moments = [wrench.ball_moment, wrench.other_moment];
         if SHAPED {

@@ -184,16 +184,23 @@ impl<S: Scalar> Surfaces<S> {
     }
 
     /// Adds rolling resistance: a force \[N] on each surface against its motion, and the pressure of the inlet that holds both, whose
-    /// resultants go through the centres of curvature. `ball_share` is the ball's share of the curvatures along rolling.
+    /// resultants go through the centres of curvature; and a moment against rolling [N m]. `ball_share` is the ball's share of the
+    /// curvatures along rolling.
     #[inline(always)]
-    pub(super) fn resist(&self, wrench: &mut Wrench<S>, rolling: &Rolling<S>, force: S, ball_share: S) {
+    pub(super) fn resist(
+        &self,
+        wrench: &mut Wrench<S>,
+        rolling: &Rolling<S>,
+        (force, ball_share): (S, S),
+        moment: S,
+    ) {
         let ([x, y], [arm, other_arm]) = (rolling.axes, self.arms);
         let per_speed = S::one() / rolling.speed;
         // Surfaces move against the direction in which the contact rolls on.
         let along = x * rolling.cosine + y * (rolling.speed_across * per_speed);
         let tangential = along * (force * (S::one() - ball_share.scale(2.0)));
         // The arm of the couple: the ball's radius times its share of the curvatures is the radius of both together.
-        let couple = cross(&arm, &along) * (force * ball_share.scale(2.0));
+        let couple = cross(&arm, &along) * (force * ball_share.scale(2.0)) + cross(&self.normal, &along) * moment;
         wrench.force += tangential;
         wrench.ball_moment += couple + cross(&arm, &tangential);
         wrench.other_moment -= couple + cross(&other_arm, &tangential);

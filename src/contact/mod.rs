@@ -40,6 +40,9 @@ use normal::Damping;
 use oblique::Across;
 use shape::ContactShape;
 
+/// [-] exponent of the load in the moment of the hysteresis of rolling (Houpert 1999).
+pub const HYSTERESIS: f64 = 1.33;
+
 /// Motion of a ball, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub struct BallMotion<S: Scalar> {
@@ -99,6 +102,8 @@ pub struct ContactModel<'a> {
     pub friction: f64,
     /// The film between ball and race; none where surfaces are dry.
     pub film: Option<Film<'a>>,
+    /// [N m/N^1.33] moment of the hysteresis of rolling over the load to the power of [`HYSTERESIS`]; 0 without it.
+    pub hysteresis: f64,
     /// How energy is lost to the approach rate.
     pub damping: Damping,
     /// [1/m] mean transverse curvature `1/(2 R)` of ball and groove where its slip (Heathcote) is simulated.

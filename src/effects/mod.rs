@@ -37,6 +37,7 @@ pub mod gravity;
 pub mod groove_slip;
 pub mod growth;
 pub mod heat;
+pub mod hysteresis;
 pub mod inherent;
 pub mod keys;
 pub mod moving_frame;
@@ -96,7 +97,7 @@ macro_rules! effects {
 
 effects! {
     creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form, growth, rating, heat, defects,
-    frame, ambient, support, auto, film,
+    frame, ambient, support, auto, film, hysteresis,
 }
 
 impl Effects {

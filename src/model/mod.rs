@@ -82,6 +82,8 @@ pub struct Model {
     pub heat_outputs: bool,
     /// [-] change of creepages over sliding ones after which Kalker's polynomials are solved anew.
     pub epsilon_switch: f64,
+    /// [N m/N^1.33] coefficients of the hysteresis of rolling; 0 without it.
+    hysteresis: PerRace<f64>,
     /// How contacts of the balls with races and with each other lose energy.
     pub damping: Damping,
     /// Form of the races, where they depart from a torus.
@@ -140,6 +142,9 @@ impl Model {
             };
             Spalls::new(on, whole[race])
         });
+        let hysteresis = PerRace::new(|race| {
+            scene.effects.hysteresis.coefficient(bearing.ball.radius, whole[race].curvatures)
+        });
         let films = scene.effects.film.section.as_ref().and_then(|section| {
             let races = Race::BOTH.map(|race| bearing.raceway_film(race, &raceways[race].shape, section.lubricant()));
             let sizes = [bearing.pitch_diameter, 2.0 * bearing.ball.radius];
@@ -162,6 +167,7 @@ impl Model {
             films,
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,
+            hysteresis,
             damping: contact_damping(scene),
             form: PerRace::new(|race| scene.effects.form.of(race == Race::Inner).and_then(Shape::form)),
             spalls,
@@ -223,6 +229,7 @@ impl Model {
             across: raceway.across(),
             groove_bend: raceway.groove_bend,
             friction: conditions.friction,
+            hysteresis: self.hysteresis[race],
             film: self
                 .films
                 .as_ref()

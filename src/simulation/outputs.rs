@@ -5,7 +5,7 @@ use std::ops::Index;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::slip::{RollingOrbit, orbital_speed};
-use crate::contact::{BallRaceContact, RaceMotion};
+use crate::contact::{BallRaceContact, ContactModel, RaceMotion};
 use crate::dynamics::power_lost_around;
 use crate::effects::Reports;
 use crate::effects::moving_frame::FrameMotion;
@@ -135,10 +135,8 @@ impl Outputs {
                     &ball.motion(),
                     &races[race],
                 );
-                let film = models[race]
-                    .film
-                    .map_or(FilmOutput::default(), |of| film::output(&of, &models[race].film_loading(&contact)));
-                ContactOutput { film, ..contact_output(model, race, &contact, &races[race].axis) }
+                let output = contact_output(model, race, &contact, &races[race].axis);
+                if models[race].resists() { resisted(&models[race], &contact, output) } else { output }
             };
             BallOutput {
                 azimuth: spin_free_azimuth(outer, &(ball.position - outer.pose.position)),
@@ -373,6 +371,14 @@ pub(super) fn towards_x(contact: &BallRaceContact<f64>, axis: &Vector3<f64>) -> 
     normal.dot(axis).atan2(normal.dot(&contact.geometry.radial).abs())
 }
 
+/// The same with what acts against rolling.
+fn resisted(model: &ContactModel<'_>, contact: &BallRaceContact<f64>, output: ContactOutput) -> ContactOutput {
+    let loading = model.film_loading(contact);
+    let film = model.film.map_or(FilmOutput::default(), |of| film::output(&of, &loading));
+    let hysteresis_power = model.hysteresis_moment(contact.load) * loading.speed * loading.curvature;
+    ContactOutput { film, hysteresis_power, ..output }
+}
+
 /// A contact as it is reported; where grooves face along the axis, the side of the groove does not tell which race it is.
 fn contact_output(
     model: &Model,
@@ -415,6 +421,7 @@ fn contact_output(
         semi_axis_transverse: transverse,
         shoulder_share,
         shoulder_margin,
+        hysteresis_power: 0.0,
         film: FilmOutput::default(),
         peak_pressure: if area > 0.0 { 1.5 * contact.load / area } else { 0.0 },
     }

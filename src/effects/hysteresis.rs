@@ -1,0 +1,50 @@
+//! Elastic hysteresis of rolling: what the material of ball and race loses as it passes through the contact, dry or oiled.
+
+use super::effect::{Effect, Getter, Info, Row};
+use super::keys::keys;
+use super::reports::BallOutput;
+use crate::schema::variable_units::WATT;
+
+keys! {
+    /// Is it simulated?
+    "hysteresis" => on: bool = false,
+}
+
+impl Settings {
+    /// [N m/N^1.33] moment of a contact over its load to the power of [`HYSTERESIS`](crate::contact::HYSTERESIS): radius of a ball \[m], curvatures of ball and race
+    /// together, along and across rolling [1/m] (Houpert 1999, for bearing steel). 0 where it is not simulated.
+    pub fn coefficient(&self, radius: f64, [along, across]: [f64; 2]) -> f64 {
+        let slender = (along / across - 1.0).max(0.0);
+        match self.on {
+            true => 7.48e-7 * radius.powf(0.33) * (1.0 - 3.519e-3 * slender.powf(0.8063)),
+            false => 0.0,
+        }
+    }
+}
+
+impl Effect for Settings {
+    const INFO: &'static Info = &Info {
+        key: "effects.hysteresis",
+        adds: "elastic hysteresis of rolling: a moment against rolling in every contact of balls and races",
+        states: "none",
+        source: "Houpert 1999; for bearing steel",
+        price: "",
+        example: "[effects]\nhysteresis = true\n",
+    };
+
+    fn setting(&self) -> Option<String> {
+        self.on.then(|| "on".into())
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        let power = |ball: &BallOutput| ball.inner.hysteresis_power + ball.outer.hysteresis_power;
+        let row = || Row {
+            name: "power.hysteresis".into(),
+            unit: WATT,
+            nominal: 1.0,
+            description: "power lost to the hysteresis of rolling in all contacts with the races, part of the friction power".into(),
+            get: Getter::new(move |reports| reports.balls.iter().map(power).fold(0.0, |sum, power| sum + power)),
+        };
+        if self.on { vec![row()] } else { vec![] }
+    }
+}
