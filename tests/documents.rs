@@ -5,7 +5,6 @@
 #![allow(clippy::unwrap_used)]
 
 use std::ops::ControlFlow;
-use std::path::Path;
 
 use roulement::Simulation;
 use roulement::analysis::single_contact::{Law, RollingContact, ScaledContact};
@@ -14,87 +13,15 @@ use roulement::simulation::play::{Rows, play};
 
 #[path = "common/scenes.rs"]
 mod scenes;
+#[path = "common/tables.rs"]
+mod tables;
 
 use scenes::scene;
+use tables::{Noise, Row, compare, count, row};
 
 const THRUST: &str = include_str!("../scenes/thrust.toml");
 const RADIAL: &str = include_str!("../scenes/radial.toml");
 const CAGE: &str = include_str!("../scenes/cage.toml");
-
-/// Noise that a number of a table may have.
-#[derive(Clone, Copy)]
-enum Noise {
-    /// Within 2 %, and half a unit of what is written.
-    Count,
-    /// Within a factor of 3.
-    Size,
-}
-
-/// A row: words, and numbers as they are written with their noise.
-struct Row {
-    words: String,
-    numbers: Vec<(String, Noise)>,
-    /// Unit, or what the numbers are of.
-    unit: &'static str,
-}
-
-fn row(words: impl Into<String>, numbers: Vec<(String, Noise)>, unit: &'static str) -> Row {
-    Row { words: words.into(), numbers, unit }
-}
-
-impl Row {
-    fn text(&self) -> String {
-        if self.numbers.is_empty() {
-            return format!("| {} |", self.words);
-        }
-        let numbers: Vec<&str> = self.numbers.iter().map(|(number, _)| number.as_str()).collect();
-        format!("| {} | {}{} |", self.words, numbers.join(" / "), self.unit)
-    }
-
-    /// Does a line of the document say the same?
-    fn agrees(&self, line: &str) -> bool {
-        if self.numbers.is_empty() {
-            return line == self.text();
-        }
-        let Some(written) = line
-            .strip_prefix(&format!("| {} | ", self.words))
-            .and_then(|rest| rest.strip_suffix(&format!("{} |", self.unit)))
-        else {
-            return false;
-        };
-        let written: Vec<&str> = written.split(" / ").collect();
-        written.len() == self.numbers.len()
-            && written.iter().zip(&self.numbers).all(|(written, (ours, noise))| {
-                let digit = ours.split_once('.').map_or(1.0, |(_, digits)| 0.1f64.powi(digits.len() as i32));
-                let (Ok(written), ours) = (written.parse::<f64>(), ours.parse::<f64>().unwrap()) else {
-                    return false;
-                };
-                match noise {
-                    Noise::Count => (written - ours).abs() <= 0.02 * ours.abs() + 0.51 * digit,
-                    Noise::Size => (written / ours).ln().abs() <= 3.0f64.ln(),
-                }
-            })
-    }
-}
-
-/// Compares the section `<!-- begin NAME -->` of a document with a table, or writes it where that is asked for.
-fn compare(document: &str, name: &str, header: &str, rows: &[Row]) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(document);
-    let text = std::fs::read_to_string(&path).unwrap();
-    let begin = format!("<!-- begin {name} -->\n");
-    let (before, rest) = text.split_once(&begin).unwrap_or_else(|| panic!("{document} has no {begin}"));
-    let (inside, after) = rest.split_once("<!-- end -->").unwrap();
-    let ruler = header.split(" | ").map(|_| "---").collect::<Vec<_>>().join("|");
-    let lines: Vec<String> = rows.iter().map(Row::text).collect();
-    let table = format!("| {header} |\n|{ruler}|\n{}\n", lines.join("\n"));
-    if std::env::var_os("ROULEMENT_RENEW").is_some() {
-        std::fs::write(&path, format!("{before}{begin}{table}<!-- end -->{after}")).unwrap();
-        return;
-    }
-    let written: Vec<&str> = inside.lines().skip(2).collect();
-    let stale = rows.len() != written.len() || rows.iter().zip(&written).any(|(row, line)| !row.agrees(line));
-    assert!(!stale, "{document} is stale (scripts/tables renews it):\n{inside}\nshould be\n{table}");
-}
 
 /// A run by the scene's script.
 fn run(text: &str, changes: &[(&str, &str)], duration: f64) -> Simulation {
@@ -102,10 +29,6 @@ fn run(text: &str, changes: &[(&str, &str)], duration: f64) -> Simulation {
     let rows = Rows { interval: 1e-3, duration };
     let _: ControlFlow<()> = play(&mut simulation, rows, |_| ControlFlow::Continue(())).unwrap();
     simulation
-}
-
-fn count(value: f64, digits: usize) -> (String, Noise) {
-    (format!("{value:.digits$}"), Noise::Count)
 }
 
 fn corrections(simulation: &Simulation) -> f64 {
