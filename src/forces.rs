@@ -70,6 +70,7 @@ impl Contacts {
         let contacts = model.contacts_facing(conditions, state.orientations.as_ref());
         let races = PerRace::new(|race| state.race(race).motion());
         let cage = model.cage.as_ref().zip(state.cage().map(BodyState::body_motion));
+        let oil = model.oil_around_cage(conditions);
         let of_ball = |(index, ball): (usize, &BallState)| {
             let motion = ball.motion();
             BallContacts {
@@ -78,11 +79,11 @@ impl Contacts {
                         .of_ball(index, state.difference(index, race))
                         .evaluate(&motion, &races[race])
                 }),
-                pocket: cage.as_ref().and_then(|(cage, seen)| cage.pocket_contact(index, &motion, seen)),
+                pocket: cage.as_ref().and_then(|(cage, seen)| cage.pocket_contact(index, &motion, seen, oil)),
             }
         };
         let lands =
-            cage.as_ref().map_or([None; 2], |(cage, seen)| cage.land_contacts(seen, |race| races[race]));
+            cage.as_ref().map_or([None; 2], |(cage, seen)| cage.land_contacts(seen, |race| races[race], oil));
         let balls = state.balls.iter().enumerate().map(of_ball).collect();
         Self::from_parts(model, balls, touching_balls(model, state), lands)
     }

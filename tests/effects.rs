@@ -77,6 +77,10 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
         ("effects.frame", 9, &["frame."]),
         ("effects.ambient", 1, &["ambient."]),
         ("support", 6, &["outer.support."]),
+        ("film", 6, &["lubrication", "film.", "rolling_power."]),
+        ("effects.hysteresis", 1, &["power.hysteresis"]),
+        // With growth, whose temperatures are its outputs then.
+        ("effects.heat_balance", 12, &["clearance", "contact_angle.", "interference.", "seat_pressure.", "temperature_rise.", "heat."]),
     ];
     for effect in parse(OFF).effects.each() {
         let info = effect.info();
@@ -99,6 +103,8 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
             "effects.frame.",
             "effects.ambient.",
             "outer.support.",
+            "film.",
+            "effects.heat_balance.",
         ];
         let is_own = |name: &&String| own.iter().any(|start| name.starts_with(start)) && !base.contains(name);
         let others: Vec<_> = rest.filter(|name| !is_own(name)).collect();

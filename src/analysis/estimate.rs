@@ -240,11 +240,15 @@ fn rings(scene: &Scene, outline: &Outline, speeds: [f64; 2]) -> [RingEstimate; 2
     })
 }
 
-/// \[m] largest change of the clearance by temperatures and fits, at any time of the script; 0 where nothing grows.
-fn clearance_change(scene: &Scene, model: &Model, spins: [f64; 2]) -> f64 {
+/// \[m] largest change of the clearance by temperatures and fits, at any time of the script; 0 where nothing grows, none where friction
+/// warms it.
+fn clearance_change(scene: &Scene, model: &Model, spins: [f64; 2]) -> Option<f64> {
     let (Some(growth), Some(schedules)) = (&model.growth, scene.effects.growth.schedules()) else {
-        return 0.0;
+        return Some(0.0);
     };
+    if model.heat_balance.is_some() {
+        return None;
+    }
     let [inner, outer] = scene.bearing.raceways();
     let cold = 2.0
         * (outer.groove_circle_radius + outer.groove_radius - inner.groove_circle_radius
@@ -255,5 +259,5 @@ fn clearance_change(scene: &Scene, model: &Model, spins: [f64; 2]) -> f64 {
         let rises = scene.effects.growth.rises(time).unwrap_or_default();
         (growth.output(&Warmth { rises, spins }).clearance - cold).abs()
     };
-    knots.chain([0.0]).map(change).fold(0.0, f64::max)
+    Some(knots.chain([0.0]).map(change).fold(0.0, f64::max))
 }

@@ -5,6 +5,7 @@
 //! forces there are of.
 
 use crate::contact::BallRaceContact;
+use crate::contact::film::Film;
 use crate::kalker::half_space::{CellState, HalfSpace, HalfSpaceError, cells};
 use crate::kalker::{Patch, ScaledCreepage, ScaledForces};
 use crate::model::bodies::Race;
@@ -57,8 +58,11 @@ pub fn field(
     let contacts = model.contact(race, conditions).facing(state.orientations.as_ref());
     let contacts = contacts.of_ball(ball, state.difference(ball, race));
     let contact = contacts.completed(&contacts.evaluate(&motion, &race_motion), &motion, &race_motion);
-    let rolling = conditions.friction > 0.0 && contact.load > 0.0;
-    if rolling { of_contact(model, conditions.friction, &contact, n).map(Some) } else { Ok(None) }
+    // Of a film its friction coefficient; that it yields before it slides is no part of the half-space.
+    let in_oil = |film: &Film<'_>| film.forces(&contacts.film_loading(&contact)).friction;
+    let friction = contacts.film.as_ref().map_or(conditions.friction, in_oil);
+    let rolling = friction > 0.0 && contact.load > 0.0;
+    if rolling { of_contact(model, friction, &contact, n).map(Some) } else { Ok(None) }
 }
 
 fn of_contact(

@@ -6,6 +6,7 @@
 use nalgebra::Vector3;
 
 use super::body::BodyMotion;
+use super::cage_film::{self, Gap};
 use super::normal::NormalLoad;
 use super::pair::PairForces;
 use crate::contact::RaceMotion;
@@ -25,6 +26,8 @@ pub struct LandModel {
     /// \[m] radius of the race's land; negative on an inner race, which is touched on the side that the cage moved away
     /// from.
     radius: f64,
+    /// \[m] width of one land.
+    width: f64,
     /// \[m] axial positions of the lands' middles in the cage.
     pub positions: [f64; 2],
     /// [N/m^(10/9)] `Q = stiffness delta^(10/9)` of one land.
@@ -57,6 +60,7 @@ impl LandModel {
         Self {
             half_clearance: 0.5 * lands.clearance,
             radius: if lands.inside { -0.5 } else { 0.5 } * lands.diameter,
+            width: lands.width,
             positions: [-middle, middle],
             stiffness: lundberg_stiffness(lands.width),
             friction,
@@ -74,10 +78,56 @@ impl LandModel {
         eccentricity(cage, race, position).1.norm() - self.half_clearance
     }
 
-    /// Forces between cage (first) and race (second) on the land at an axial position \[m] of the cage; `None` where
-    /// they do not touch.
+    /// Forces between cage (first) and race (second) on the land at an axial position \[m] of the cage, in oil of a viscosity [Pa s]
+    /// or dry; `None` where they do not touch and nothing is between them.
     #[inline(always)]
     pub fn evaluate<S: Single>(
+        &self,
+        cage: &BodyMotion<S>,
+        race: &RaceMotion<S>,
+        position: f64,
+        oil: f64,
+    ) -> Option<PairForces<S>> {
+        let touching = self.touching(cage, race, position);
+        if oil <= 0.0 {
+            return touching;
+        }
+        Some(self.in_oil(cage, race, position, oil, touching.unwrap_or_else(PairForces::none)))
+    }
+
+    /// Forces of surfaces that touch, with those of the film between them.
+    #[cold]
+    #[inline(never)]
+    fn in_oil<S: Single>(
+        &self,
+        cage: &BodyMotion<S>,
+        race: &RaceMotion<S>,
+        position: f64,
+        oil: f64,
+        mut forces: PairForces<S>,
+    ) -> PairForces<S> {
+        let (axial, eccentric) = eccentricity(cage, race, position);
+        // Half way between both centres.
+        let race_arm = race.axis * axial + eccentric.map(|component| component.scale(0.5));
+        let cage_arm = race_arm + race.position - cage.position;
+        let velocity = cage.velocity + cross(&cage.angular_velocity, &cage_arm)
+            - race.velocity
+            - cross(&race.angular_velocity, &race_arm);
+        let velocity = velocity - race.axis * dot(&race.axis, &velocity);
+        let spin = dot(&(cage.angular_velocity - race.angular_velocity), &race.axis);
+        let gap = Gap { axis: race.axis, eccentricity: eccentric, velocity, clearance: self.half_clearance };
+        let (force, friction) = cage_film::land(&gap, oil, [self.width, self.radius.abs()], spin);
+        let moment = race.axis * friction;
+        forces.force += force;
+        forces.moment += cross(&cage_arm, &force) + moment;
+        forces.other_moment -= cross(&race_arm, &force) + moment;
+        forces.friction_power -= dot(&force, &velocity) + friction * spin;
+        forces
+    }
+
+    /// Forces of surfaces that touch; `None` where they do not.
+    #[inline(always)]
+    fn touching<S: Single>(
         &self,
         cage: &BodyMotion<S>,
         race: &RaceMotion<S>,

@@ -10,6 +10,7 @@
 use nalgebra::Vector3;
 
 use super::body::BodyMotion;
+use super::cage_film::{self, Gap};
 use super::creep::{Law, LinearTheory};
 use super::hertz::HertzContact;
 use super::kinematics::Surfaces;
@@ -88,9 +89,57 @@ impl PocketModel {
         offset - axis * along
     }
 
-    /// Forces between ball (first) and cage (second); `None` where they do not touch.
+    /// Forces between ball (first) and cage (second), in oil of a viscosity [Pa s] or dry; `None` where they do not touch and nothing
+    /// is between them. Spheres about a ball stay dry.
     #[inline(always)]
     pub fn evaluate<S: Single>(
+        &self,
+        ball: &BallMotion<S>,
+        cage: &BodyMotion<S>,
+        direction: [f64; 2],
+        oil: f64,
+    ) -> Option<PairForces<S>> {
+        let touching = self.touching(ball, cage, direction);
+        if oil <= 0.0 || self.sphere_circle.is_some() {
+            return touching;
+        }
+        Some(self.in_oil(ball, cage, direction, oil, touching.unwrap_or_else(PairForces::none)))
+    }
+
+    /// Forces of surfaces that touch, with those of the film between them.
+    #[cold]
+    #[inline(never)]
+    fn in_oil<S: Single>(
+        &self,
+        ball: &BallMotion<S>,
+        cage: &BodyMotion<S>,
+        direction: [f64; 2],
+        oil: f64,
+        mut forces: PairForces<S>,
+    ) -> PairForces<S> {
+        let axis = pocket_axis(cage, direction);
+        let offset = ball.position - cage.position;
+        let eccentricity = self.off_centre(&offset, &axis);
+        // Half way between both centres.
+        let ball_arm = eccentricity.map(|component| component.scale(-0.5));
+        let cage_arm = offset + ball_arm;
+        let velocity = ball.velocity + cross(&ball.angular_velocity, &ball_arm)
+            - cage.velocity
+            - cross(&cage.angular_velocity, &cage_arm);
+        let velocity = velocity - axis * dot(&axis, &velocity);
+        let relative = ball.angular_velocity - cage.angular_velocity;
+        let gap = Gap { axis, eccentricity, velocity, clearance: self.half_clearance };
+        let (force, moment) = cage_film::pocket(&gap, oil, self.ball_radius, &relative);
+        forces.force += force;
+        forces.moment += cross(&ball_arm, &force) + moment;
+        forces.other_moment -= cross(&cage_arm, &force) + moment;
+        forces.friction_power -= dot(&force, &velocity) + dot(&moment, &relative);
+        forces
+    }
+
+    /// Forces of surfaces that touch; `None` where they do not.
+    #[inline(always)]
+    fn touching<S: Single>(
         &self,
         ball: &BallMotion<S>,
         cage: &BodyMotion<S>,

@@ -183,7 +183,7 @@ pub fn accept(
         state.energies.unaccounted += work;
         state.grown = Some(grown);
     }
-    record(model, state, &solved, Some(step.h));
+    record(model, state, &solved, &boundary.conditions, Some(step.h));
     let raceways = workspace.balls.iter().flat_map(|ball| ball.raceways.iter().copied());
     let pairs = raceways.chain(solved.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
@@ -307,7 +307,7 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     state.powers = powers;
     state.energies.stored = stored_energy(model, state, &contacts);
     state.grown = model.growth.as_ref().map(|_| grown(&contacts, state, boundary));
-    record(model, state, &contacts, None);
+    record(model, state, &contacts, &boundary.conditions, None);
     let pairs = contacts.raceway_pairs().chain(contacts.between_balls().map(|pair| pair.forces));
     state.force_tolerance = force_tolerance(pairs, reach(model, state));
 }

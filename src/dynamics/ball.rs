@@ -222,9 +222,9 @@ impl BallTrial {
         self.contacts = Some(values);
         self.reactions = [None; SLOTS];
         if let Some((cage, trial)) = cage {
-            self.pocket = cage.pocket_contact(index, &self.motion, &trial.value);
+            self.pocket = cage.pocket_contact(index, &self.motion, &trial.value, trial.oil);
             if self.pocket.is_some()
-                && let Some(forces) = cage.pocket_contact(index, &seeded, &trial.value.constant())
+                && let Some(forces) = cage.pocket_contact(index, &seeded, &trial.value.constant(), trial.oil)
             {
                 tangent += by_first(&forces.force, &forces.moment);
             }
@@ -286,7 +286,7 @@ impl BallTrial {
         let Some((cage, trial)) = around.cage else {
             return;
         };
-        self.pocket = cage.pocket_contact(index, &self.motion, &trial.value);
+        self.pocket = cage.pocket_contact(index, &self.motion, &trial.value, trial.oil);
         let Some(tangent) = tangent else {
             return;
         };
@@ -297,7 +297,7 @@ impl BallTrial {
         if self.pocket.is_some() {
             let radius = around.model.bearing.ball.radius;
             let seeded = seed::<DIRECTIONS>(&self.motion, step, radius);
-            if let Some(forces) = cage.pocket_contact(index, &seeded, &trial.motion) {
+            if let Some(forces) = cage.pocket_contact(index, &seeded, &trial.motion, trial.oil) {
                 *tangent += self.couple(Body::Cage, &forces, step, radius);
             }
         }

@@ -19,6 +19,8 @@ pub struct CageTrial {
     pub motion: BodyMotion<D>,
     /// Motion without derivatives.
     pub value: BodyMotion<f64>,
+    /// [Pa s] viscosity of the oil around it; 0 where it is dry.
+    pub oil: f64,
     /// Contacts with the lands at the end of the step, where they touch.
     pub lands: [Option<PairForces>; 2],
     /// Derivatives of the guiding race's residual by the cage's unknowns.
@@ -37,12 +39,13 @@ pub struct LandReactions {
 }
 
 impl CageTrial {
-    /// A cage at the start of a step.
+    /// A dry cage at the start of a step.
     pub fn new(body: &BodyTrial) -> Self {
         let value = body.body_motion_value();
         Self {
             motion: value.constant(),
             value,
+            oil: 0.0,
             lands: [None; 2],
             race_by_cage: Matrix6::zeros(),
             cage_by_race: Matrix6::zeros(),
@@ -63,7 +66,7 @@ impl CageTrial {
 
     /// Evaluates the contacts with the lands.
     pub fn touch_lands(&mut self, model: &CageModel, race: &RaceMotion<f64>) {
-        self.lands = model.land_contacts(&self.value, |_| *race);
+        self.lands = model.land_contacts(&self.value, |_| *race, self.oil);
     }
 
     /// Reactions of the lands that it touches, with their derivatives.
@@ -98,7 +101,7 @@ impl CageTrial {
             velocity: translation(&self.value.velocity, step.velocity_gain()),
             angular_velocity: self.motion.angular_velocity.map(exchange_bodies),
         };
-        let pair = land.evaluate(&cage, &race.with_derivatives(), position)?;
+        let pair = land.evaluate(&cage, &race.with_derivatives(), position, self.oil)?;
         let on_cage = Reaction::on_first(&pair);
         Some(LandReactions {
             on_cage: Reaction {

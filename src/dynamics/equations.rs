@@ -62,6 +62,9 @@ impl<'a> BearingStep<'a> {
             workspace.groups.clear();
         }
         workspace.prepare_bodies(model, start);
+        if let Some(cage) = &mut workspace.cage {
+            cage.oil = model.oil_around_cage(&boundary.conditions);
+        }
         let contacts = model.contacts_facing(&boundary.conditions, boundary.orientations.as_ref());
         let races = PerRace::new(|race| race_motion(&boundary.motion[race].0, &boundary.motion[race].1));
         if let (true, Some(ball)) = (workspace.groups.is_empty(), start.balls.first()) {
@@ -396,6 +399,13 @@ impl Boundary {
         if let (Some(damaged), Some(orientations)) = (&model.damaged, &state.orientations) {
             let turned = damaged.turned(orientations, &state.balls, self.time - state.time);
             self.orientations = Some(turned);
+        }
+    }
+
+    /// Takes the temperatures that a state has come to by the heat of friction.
+    pub fn see_temperatures(&mut self, state: &State) {
+        if let Some(warm) = &state.warm {
+            self.conditions.warmth.rises = warm.rises;
         }
     }
 

@@ -1,14 +1,21 @@
-//! What a run keeps of its steps for reports: heat by contact, powers of loads. Nothing of it acts back on the motion.
+//! What a run keeps of its steps: heat by contact and powers of loads, for reports, and temperatures, which later steps follow.
 
 use crate::contact::pair::PairForces;
 use crate::effects::heat::ByContact;
+use crate::effects::heat_balance::Heating;
 use crate::forces::{BallPair, Pairs};
-use crate::model::Model;
+use crate::model::{Conditions, Model};
 use crate::model::bodies::{Body, Race};
 use crate::model::state::State;
 
 /// Takes over the pairs at the end of a step of `h` \[s], or of a state that no step has led to.
-pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, h: Option<f64>) {
+pub fn record(
+    model: &Model,
+    state: &mut State,
+    pairs: &impl Pairs,
+    conditions: &Conditions,
+    h: Option<f64>,
+) {
     let (balls, spins) = (state.balls.len(), Race::BOTH.map(|race| state.race(race).rate.x));
     if let (Some(rating), Some(sums)) = (&model.rating, &mut state.rating) {
         let loads = (0..balls).map(|ball| loads_of(pairs.of_ball(ball)));
@@ -17,6 +24,22 @@ pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, h: Option<f6
             Some(h) => sums.add(rates, h),
             None => sums.begin(rates),
         }
+    }
+    if let (Some(balance), Some(warm), Some(h)) = (&model.heat_balance, &mut state.warm, h) {
+        let mut roots = [0.0; 2];
+        for loads in (0..balls).map(|ball| loads_of(pairs.of_ball(ball))) {
+            for (sum, load) in roots.iter_mut().zip(loads) {
+                *sum += load.sqrt();
+            }
+        }
+        let heating = Heating {
+            powers: &powers(pairs, balls),
+            guide: model.cage_guide().map(|race| race as usize),
+            loads: roots,
+            speed: spins[0] - spins[1],
+            lubrication: if model.films.is_some() { conditions.lubrication } else { 1.0 },
+        };
+        balance.advance(warm, &heating, h);
     }
     if let Some(heat) = &mut state.heat {
         let powers = powers(pairs, balls);

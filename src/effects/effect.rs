@@ -40,6 +40,8 @@ pub struct Setup<'a> {
     pub saturates: bool,
     /// Is growth simulated?
     pub grows: bool,
+    /// Does a table give one of its temperatures?
+    pub rises_follow_time: bool,
     /// Is there a cage?
     pub cage: bool,
     /// How both races get their motion, inner first.

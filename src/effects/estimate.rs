@@ -145,8 +145,8 @@ pub struct Estimate {
     pub rings: [RingEstimate; 2],
     /// Outer dimensions; usual ones where the scene has none.
     pub outline: Outline,
-    /// \[m] largest change of the diametral clearance by growth as the scene has it.
-    pub clearance_change: f64,
+    /// \[m] largest change of the diametral clearance by growth as the scene has it; none where that is not known beforehand.
+    pub clearance_change: Option<f64>,
 }
 
 impl Estimate {

@@ -37,6 +37,7 @@ pub mod gravity;
 pub mod groove_slip;
 pub mod growth;
 pub mod heat;
+pub mod heat_balance;
 pub mod hysteresis;
 pub mod inherent;
 pub mod keys;
@@ -97,7 +98,7 @@ macro_rules! effects {
 
 effects! {
     creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form, growth, rating, heat, defects,
-    frame, ambient, support, auto, film, hysteresis,
+    frame, ambient, support, auto, film, hysteresis, heat_balance,
 }
 
 impl Effects {

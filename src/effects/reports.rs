@@ -3,6 +3,7 @@
 use nalgebra::{Matrix6, Vector3};
 use serde::{Deserialize, Serialize};
 
+use super::heat_balance::Warm;
 use crate::numerics::motion::{Pose, Twist, Wrench};
 
 /// All of it, as the outputs of a state have it; an effect that is off reports nothing.
@@ -28,6 +29,8 @@ pub struct Reports<'a> {
     pub drag_power: f64,
     /// [Pa s] viscosity of the oil at the inner and at the outer race.
     pub oil: Option<[f64; 2]>,
+    /// Temperatures, where the heat of friction gives them.
+    pub warm: Option<&'a Warm>,
     /// Flexible supports of inner and outer race.
     pub supports: [Option<&'a SupportState>; 2],
 }

@@ -131,11 +131,15 @@ impl Instance {
             .filter(|&i| rows[i].causality == Causality::Input && rows[i].kind == Kind::Real)
             .collect();
 
-        // Two perturbations per input, of opposite sign.
+        // Two perturbations per input, of opposite sign; at the end of what is allowed there is one.
         let values = self.variables.values(base, self.simulation.outputs());
+        let moved = |index: usize, sign: f64| {
+            let value = values[index] + sign * changes.of(&rows[index]);
+            rows[index].allowed().map_or(value, |range| value.clamp(range.low, range.high))
+        };
         let perturbed = |index: usize, sign: f64| -> Outcome<Inputs> {
             let mut values = values.clone();
-            values[index] += sign * changes.of(&rows[index]);
+            values[index] = moved(index, sign);
             self.variables
                 .inputs(&values, &self.variables.rates(base), base)
                 .or_else(|why| error(why.to_string()))
@@ -169,8 +173,8 @@ impl Instance {
         let mut columns = vec![vec![]; rows.len()];
         for (&index, pair) in inputs.iter().zip(outputs.chunks_exact(2)) {
             let [plus, minus] = [0, 1].map(|side: usize| self.variables.values(base, &pair[side]));
-            let twice = 2.0 * changes.of(&rows[index]);
-            columns[index] = plus.iter().zip(&minus).map(|(plus, minus)| (plus - minus) / twice).collect();
+            let apart = moved(index, 1.0) - moved(index, -1.0);
+            columns[index] = plus.iter().zip(&minus).map(|(plus, minus)| (plus - minus) / apart).collect();
         }
         Ok(columns)
     }

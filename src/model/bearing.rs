@@ -13,6 +13,7 @@ use crate::contact::raceway::Raceway;
 use crate::contact::shape::ContactShape;
 use crate::contact::shoulder::{Beyond, SMALL_LOAD, Shoulders};
 use crate::contact::spall::Whole;
+use crate::effects::heat_balance::Passing;
 use crate::effects::shoulder::{DEFAULT_HEIGHT, default_ends};
 use crate::scene::Scene;
 
@@ -180,6 +181,14 @@ impl Bearing {
         let semi_axes = [at.semi_axis_rolling, at.semi_axis_transverse];
         let ellipse = Ellipse::new(semi_axes, at.stiffness, modulus, 1.0 / self.ball.radius + curvature);
         RacewayFilm { lubricant, modulus, ellipse }
+    }
+
+    /// What heat passes through on a race, of contacts of the shape that they have at the free contact angle.
+    pub fn passing(&self, race: Race, shape: &ContactShape) -> Passing {
+        let at = shape.at(self.circumferential_curvature(race));
+        // Of a load of 1 N.
+        let root = at.stiffness.powf(-1.0 / 3.0);
+        Passing { semi_axes: [at.semi_axis_rolling * root, at.semi_axis_transverse * root] }
     }
 
     /// \[rad] smallest and largest contact angle for which there is a groove: up to a right angle on either side; on the

@@ -77,15 +77,17 @@ impl CageModel {
         self.land.as_ref().map(|(race, _)| *race)
     }
 
-    /// Forces between a ball (first, 0 is the first) and the cage; `None` where they do not touch.
+    /// Forces between a ball (first, 0 is the first) and the cage, in oil of a viscosity [Pa s] or dry; `None` where they neither
+    /// touch nor have oil between them.
     #[inline(always)]
     pub fn pocket_contact<S: Single>(
         &self,
         index: usize,
         ball: &BallMotion<S>,
         cage: &BodyMotion<S>,
+        oil: f64,
     ) -> Option<PairForces<S>> {
-        self.pocket.evaluate(ball, cage, self.directions[index])
+        self.pocket.evaluate(ball, cage, self.directions[index], oil)
     }
 
     /// \[m] approach of a ball and its pocket; negative is a gap.
@@ -93,17 +95,18 @@ impl CageModel {
         self.pocket.approach(ball, cage, self.directions[index])
     }
 
-    /// Forces between cage (first) and the race that guides it on the lands at the cage's -x and +x side; `None` where
-    /// they do not touch.
+    /// Forces between cage (first) and the race that guides it on the lands at the cage's -x and +x side, in the same oil;
+    /// `None` where they neither touch nor have oil between them.
     pub fn land_contacts(
         &self,
         cage: &BodyMotion<f64>,
         race: impl FnOnce(Race) -> RaceMotion<f64>,
+        oil: f64,
     ) -> [Option<PairForces>; 2] {
         match &self.land {
             Some((guide, land)) => {
                 let race = race(*guide);
-                land.positions.map(|position| land.evaluate(cage, &race, position))
+                land.positions.map(|position| land.evaluate(cage, &race, position, oil))
             }
             None => [None; 2],
         }

@@ -25,6 +25,7 @@ use crate::effects::film::Films;
 use crate::effects::form::Shape;
 use crate::effects::frame::FrameSection;
 use crate::effects::growth::{Growth, Warmth};
+use crate::effects::heat_balance::HeatBalance;
 use crate::effects::moving_frame::{FrameMotion, MovingFrame};
 use crate::effects::rating::Rating;
 use crate::effects::support::Support;
@@ -74,6 +75,8 @@ pub struct Model {
     pub ball_contact: Option<BallBallModel>,
     /// Growth of rings and balls, where it is simulated.
     pub growth: Option<Growth>,
+    /// Temperatures from the heat of friction, where they are simulated.
+    pub heat_balance: Option<HeatBalance>,
     /// Films between balls and races, where there is oil.
     pub films: Option<Films>,
     /// Ratings of life, where it is asked for.
@@ -145,6 +148,9 @@ impl Model {
         let hysteresis = PerRace::new(|race| {
             scene.effects.hysteresis.coefficient(bearing.ball.radius, whole[race].curvatures)
         });
+        let passing = Race::BOTH.map(|race| bearing.passing(race, &raceways[race].shape));
+        let heat_balance =
+            scene.effects.heat_balance.balance(&scene.bearing, &scene.ball, &scene.race, passing);
         let films = scene.effects.film.section.as_ref().and_then(|section| {
             let races = Race::BOTH.map(|race| bearing.raceway_film(race, &raceways[race].shape, section.lubricant()));
             let sizes = [bearing.pitch_diameter, 2.0 * bearing.ball.radius];
@@ -165,6 +171,7 @@ impl Model {
             heat_outputs: scene.effects.heat.on,
             growth: scene.effects.growth.growth(&scene.bearing, &scene.ball, &scene.race),
             films,
+            heat_balance,
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,
             hysteresis,
@@ -238,6 +245,13 @@ impl Model {
                 }),
             damping: self.damping,
         }
+    }
+
+    /// [Pa s] viscosity of the oil around the cage; 0 where it is dry.
+    pub fn oil_around_cage(&self, conditions: &Conditions) -> f64 {
+        let guide = self.cage_guide().unwrap_or(Race::Outer) as usize;
+        let Conditions { lubrication, warmth, .. } = conditions;
+        self.films.as_ref().map_or(0.0, |films| films.around_cage(guide, *lubrication, warmth))
     }
 
     /// Contact models of both races.

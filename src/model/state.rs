@@ -8,6 +8,7 @@ use super::energies::{Energies, Powers, Pressed};
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::effects::growth::Grown;
+use crate::effects::heat_balance::Warm;
 use crate::effects::reports::SupportState;
 use crate::effects::{heat, rating};
 use crate::kalker::scaled_law::Difference;
@@ -233,6 +234,8 @@ pub struct State {
     pub grown: Option<Grown>,
     /// Loads since the start as life counts them; none where it is not asked for.
     pub rating: Option<rating::Sums>,
+    /// Temperatures from the heat of friction; none where that is not simulated.
+    pub warm: Option<Warm>,
     /// Heat since the start by contact; none where it is not reported.
     pub heat: Option<heat::Sums>,
     /// Orientation of each damaged ball, in world axes; none where all balls are whole.

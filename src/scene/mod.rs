@@ -171,6 +171,7 @@ impl Scene {
             friction: &self.friction,
             saturates,
             grows: self.effects.growth.section.is_some(),
+            rises_follow_time: self.effects.growth.follows_time(),
             cage,
             drives: [self.inner.drive, self.outer.drive],
             turning: [turns(&self.inner, &self.load.inner_speed), turns(&self.outer, &self.load.outer_speed)],

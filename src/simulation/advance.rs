@@ -165,6 +165,7 @@ impl Simulation {
                             script.impose(scene, &p.paths, &mut boundary);
                             boundary.see_spins(model);
                             boundary.turn_balls(model, &p.state);
+                            boundary.see_temperatures(&p.state);
                             (&mut p.state, boundary)
                         });
                         let accepted = &self.workspace;

@@ -217,6 +217,7 @@ impl Simulation {
             && snapshot.state.grown.is_some() == self.state.grown.is_some()
             && snapshot.state.rating.is_some() == self.state.rating.is_some()
             && snapshot.state.heat.is_some() == self.state.heat.is_some()
+            && snapshot.state.warm.is_some() == self.state.warm.is_some()
             && damaged(&snapshot.state) == damaged(&self.state)
             && snapshot.inputs.rises.is_some() == self.inputs.rises.is_some();
         if same {
@@ -282,6 +283,7 @@ impl Simulation {
     fn boundary(&self, time: f64) -> Boundary {
         let mut boundary = self.paths.boundary(time, &self.inputs);
         boundary.see_spins(&self.model);
+        boundary.see_temperatures(&self.state);
         boundary
     }
 

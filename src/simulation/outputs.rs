@@ -10,6 +10,7 @@ use crate::dynamics::power_lost_around;
 use crate::effects::Reports;
 use crate::effects::moving_frame::FrameMotion;
 use crate::effects::film;
+use crate::effects::heat_balance::Warm;
 use crate::effects::reports::FilmOutput;
 use crate::effects::reports::Frequencies;
 use crate::effects::reports::GrowthOutput;
@@ -87,6 +88,8 @@ pub struct Outputs {
     pub drag_power: f64,
     /// [Pa s] viscosity of the oil at the inner and at the outer race, where there is oil.
     pub oil: Option<[f64; 2]>,
+    /// Temperatures, where the heat of friction gives them.
+    pub warm: Option<Warm>,
     /// Flexible supports of inner and outer race, where they rest on some.
     pub supports: [Option<SupportState>; 2],
     /// [N m] friction torque of the bearing: against the inner race's rotation about its own axis.
@@ -191,6 +194,7 @@ impl Outputs {
             stiffened: state.energies.stiffened,
             dissipated: state.energies.friction + state.energies.damping + state.energies.around,
             supports: [state.supports.inner, state.supports.outer],
+            warm: state.warm,
             oil: model.films.as_ref().map(|films| {
                 [0, 1].map(|race| films.supply(race, conditions.lubrication, &conditions.warmth).viscosity)
             }),
@@ -227,6 +231,7 @@ impl Outputs {
             frequencies: &self.frequencies,
             drag_power: self.drag_power,
             oil: self.oil,
+            warm: self.warm.as_ref(),
             supports: self.supports.each_ref().map(Option::as_ref),
         }
     }

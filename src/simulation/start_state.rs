@@ -9,6 +9,7 @@ use super::orientation::{own_spin, pose_of, spin_free};
 use super::script::hinge;
 use super::spin_balance::{Surroundings, balance};
 use crate::effects::EffectInputs;
+use crate::effects::heat_balance::Warm;
 use crate::effects::growth::Grown;
 use crate::effects::moving_frame::{FrameInputs, FrameMotion};
 use crate::effects::support::Support;
@@ -197,6 +198,7 @@ pub fn state(
         statistics: Statistics::default(),
         grown: model.growth.map(|_| Grown { warmth: problem.surroundings().warmth, ..Grown::default() }),
         rating: model.rating.map(|_| Default::default()),
+        warm: model.heat_balance.map(|_| Warm { rises: problem.rises, out: 0.0 }),
         heat: model.heat_outputs.then(Default::default),
         orientations,
     })

@@ -8,6 +8,11 @@ fn pocket_models() -> [PocketModel; 2] {
     [None, Some(23e-3)].map(|sphere| PocketModel::new(4.7625e-3, 0.2e-3, sphere, &pair, 0.05, 0.5).unwrap())
 }
 
+/// Both pockets, dry and in oil [Pa s].
+fn each_in_oil(k: usize) -> impl Iterator<Item = (usize, PocketModel, f64)> {
+    [0.0, 0.03].into_iter().flat_map(move |oil| pocket_models().map(|model| (k, model, oil)))
+}
+
 fn lands(inside: bool) -> LandModel {
     let lands = Lands { inside, clearance: 0.2e-3, diameter: 52e-3, width: 2e-3, edge: 4.9e-3 };
     LandModel::new(&lands, 0.05, 0.5)
@@ -63,9 +68,9 @@ fn invariant_forces_take_the_power_that_is_lost_or_stored() {
         assert!(contact.load > 0.0 && contact.friction_power > 0.0);
         assert!((power + lost + growth).abs() < 1e-5 * (power.abs() + lost.abs()), "{power} {lost} {growth}");
     };
-    for (k, model) in (0..8).flat_map(|k| pocket_models().map(|model| (k, model))) {
+    for (k, model, oil) in (0..8).flat_map(each_in_oil) {
         let (cage, ball) = (body(k), pressed_ball(k));
-        let contact = model.evaluate(&ball, &cage, DIRECTION).unwrap();
+        let contact = model.evaluate(&ball, &cage, DIRECTION, oil).unwrap();
         let power = contact.force.dot(&(ball.velocity - cage.velocity))
             + contact.moment.dot(&ball.angular_velocity)
             + contact.other_moment.dot(&cage.angular_velocity);
@@ -83,7 +88,7 @@ fn invariant_forces_take_the_power_that_is_lost_or_stored() {
 
         for inside in [true, false] {
             let (race, model) = (pressed_race(k), lands(inside));
-            let contact = model.evaluate(&cage, &race, model.positions[0]).unwrap();
+            let contact = model.evaluate(&cage, &race, model.positions[0], oil).unwrap();
             let power = contact.force.dot(&(cage.velocity - race.velocity))
                 + contact.moment.dot(&cage.angular_velocity)
                 + contact.other_moment.dot(&race.angular_velocity);
@@ -130,7 +135,7 @@ fn identity_derivatives_of_both_contacts_agree_with_differences() {
         }
     };
     let h = 1e-7;
-    for (k, pocket) in (0..8).flat_map(|k| pocket_models().map(|model| (k, model))) {
+    for (k, pocket, oil) in (0..8).flat_map(each_in_oil) {
         let (cage, ball) = (body(k), pressed_ball(k));
         let still = [Vector3::zeros(); 3];
         let as_body = BodyMotion {
@@ -148,11 +153,11 @@ fn identity_derivatives_of_both_contacts_agree_with_differences() {
         }
         let at = |t: f64| {
             let ball = ball_of(&lift(&as_body, t, change(k + 10)));
-            pocket.evaluate(&ball, &lift(&cage, t, change(k + 20)), DIRECTION).unwrap()
+            pocket.evaluate(&ball, &lift(&cage, t, change(k + 20)), DIRECTION, oil).unwrap()
         };
         let t = Dual::<1>::variable(0.0, 0, 1.0);
         let seeded = ball_of(&lift(&as_body, t, change(k + 10)));
-        let exact = pocket.evaluate(&seeded, &lift(&cage, t, change(k + 20)), DIRECTION).unwrap();
+        let exact = pocket.evaluate(&seeded, &lift(&cage, t, change(k + 20)), DIRECTION, oil).unwrap();
         compare(exact, [at(h), at(-h)], h);
 
         let (land, race) = (lands(false), pressed_race(k));
@@ -163,10 +168,10 @@ fn identity_derivatives_of_both_contacts_agree_with_differences() {
             velocity: constant_vector(&race.velocity),
             angular_velocity: constant_vector(&race.angular_velocity),
         };
-        let at = |t: f64| land.evaluate(&lift(&cage, t, change(k + 20)), &race, land.positions[1]).unwrap();
-        let exact = land.evaluate(&lift(&cage, t, change(k + 20)), &fixed(&race), land.positions[1]).unwrap();
+        let at = |t: f64| land.evaluate(&lift(&cage, t, change(k + 20)), &race, land.positions[1], oil).unwrap();
+        let exact = land.evaluate(&lift(&cage, t, change(k + 20)), &fixed(&race), land.positions[1], oil).unwrap();
         compare(exact, [at(h), at(-h)], h);
-        assert!(pocket.evaluate(&ball, &lift(&cage, 0.0, still), DIRECTION).is_some());
+        assert!(pocket.evaluate(&ball, &lift(&cage, 0.0, still), DIRECTION, 0.0).is_some());
     }
 }
 
@@ -214,7 +219,7 @@ fn closed_form_pocket_forces_from_rolling_to_sliding() {
             pose(cage.position, orientation, cage.velocity, cage.angular_velocity),
         ];
         let expected = dimensions.pocket(DIRECTION[1].atan2(DIRECTION[0]), &bodies[0], &bodies[1]).unwrap();
-        let contact = model.evaluate(&ball, &cage, DIRECTION).unwrap();
+        let contact = model.evaluate(&ball, &cage, DIRECTION, 0.0).unwrap();
         let limit = friction * expected.load;
         assert!((contact.load / expected.load - 1.0).abs() < 1e-6, "{} {}", contact.load, expected.load);
         assert!((contact.force - expected.force).norm() < 5e-3 * limit, "{contact:?} {expected:?}");
@@ -235,15 +240,85 @@ fn closed_form_pocket_forces_from_rolling_to_sliding() {
 fn closed_form_friction_is_bounded_and_nothing_acts_across_a_gap() {
     for (k, pocket) in (0..8).flat_map(|k| pocket_models().map(|model| (k, model))) {
         let (cage, ball) = (body(k), pressed_ball(k));
-        let contact = pocket.evaluate(&ball, &cage, DIRECTION).unwrap();
+        let contact = pocket.evaluate(&ball, &cage, DIRECTION, 0.0).unwrap();
         let tangential = (contact.force.norm_squared() - contact.load.powi(2)).sqrt();
         assert!(tangential <= 0.05 * contact.load * (1.0 + 1e-9), "{tangential} {}", contact.load);
         // A ball that spins at 1200 rad/s in its pocket slides: nearly all of mu Q acts.
         assert!(tangential > 0.9 * 0.05 * contact.load);
         let axis = cage.axes[1] * DIRECTION[0] + cage.axes[2] * DIRECTION[1];
         let centred = BallMotion { position: cage.position + axis * 23e-3, ..ball };
-        assert!(pocket.evaluate(&centred, &cage, DIRECTION).is_none());
+        assert!(pocket.evaluate(&centred, &cage, DIRECTION, 0.0).is_none());
         let race = RaceMotion { position: cage.position, ..pressed_race(k) };
-        assert!(lands(false).evaluate(&cage, &race, 0.0).is_none());
+        assert!(lands(false).evaluate(&cage, &race, 0.0, 0.0).is_none());
     }
+}
+
+#[test]
+fn closed_form_short_journal_bearing() {
+    // Ocvirk (1952): a journal that turns in a bearing at rest, its centre at rest.
+    let (viscosity, width, radius, clearance, speed) = (0.02, 2e-3, 26e-3, 1e-4, 300.0);
+    let axis = Vector3::x();
+    for ratio in [0.1, 0.4, 0.7, 0.85] {
+        let eccentricity = Vector3::y() * (ratio * clearance);
+        // Half way between both centres.
+        let velocity = axis.cross(&(-0.5 * eccentricity)) * speed;
+        let gap = Gap { axis, eccentricity, velocity, clearance };
+        let (force, friction) = cage_film::land(&gap, viscosity, [width, radius], speed);
+        let size = viscosity * speed * radius * width.powi(3) / (clearance * clearance);
+        let room: f64 = 1.0 - ratio * ratio;
+        let inwards = size * ratio * ratio / room.powi(2);
+        let across = size * 0.25 * PI * ratio / room.powf(1.5);
+        // A hundredth of the clearance is added to gaps as if at a right angle.
+        let (tolerance, total) = (if ratio > 0.8 { 0.02 } else { 5e-3 }, inwards.hypot(across));
+        assert!((force.y + inwards).abs() < tolerance * total, "{ratio}: {force} {inwards} {across}");
+        assert!((force.z.abs() - across).abs() < tolerance * total, "{ratio}: {force} {inwards} {across}");
+        // The film takes its journal along against the direction of rotation of the load line.
+        assert!(force.z * velocity.z < 0.0);
+        let petroff = 2.0 * PI * viscosity * width * radius.powi(3) * speed / (clearance * room.sqrt());
+        assert!((friction / petroff + 1.0).abs() < 5e-3, "{friction} {petroff}");
+    }
+    // A film that only closes presses against it, and nothing presses where nothing closes.
+    let still = Gap { axis, eccentricity: Vector3::zeros(), velocity: Vector3::zeros(), clearance };
+    assert_eq!(cage_film::land(&still, viscosity, [width, radius], 0.0), (Vector3::zeros(), 0.0));
+    let closing = Gap { velocity: Vector3::z() * 0.01, ..still };
+    let (force, _) = cage_film::land(&closing, viscosity, [width, radius], 0.0);
+    let squeeze = 0.5 * PI * viscosity * width.powi(3) * radius * 0.01 / clearance.powi(3);
+    assert!((force.z / squeeze + 1.0).abs() < 1e-3 && force.y.abs() < 1e-9 * squeeze, "{force} {squeeze}");
+}
+
+#[test]
+fn closed_form_film_of_a_pocket() {
+    // Against Reynolds' equation along the pocket at each direction, integrated by a fine sum.
+    let (viscosity, radius, clearance): (f64, f64, f64) = (0.03, 4.7625e-3, 1e-4);
+    let axis = Vector3::x();
+    let velocity = Vector3::new(0.0, 0.05, -0.02);
+    let eccentricity = Vector3::new(0.0, 4e-5, 2e-5);
+    let gap = Gap { axis, eccentricity, velocity, clearance };
+    let spin = Vector3::new(40.0, -300.0, 200.0);
+    let (force, moment) = cage_film::pocket(&gap, viscosity, radius, &spin);
+    let (mut expected, turns, places) = (Vector3::zeros(), 720, 4000);
+    for turn in 0..turns {
+        let (sine, cosine) = (std::f64::consts::TAU * (f64::from(turn) + 0.5) / f64::from(turns)).sin_cos();
+        let direction = Vector3::new(0.0, cosine, sine);
+        let closing = direction.dot(&velocity);
+        if closing <= 0.0 {
+            continue;
+        }
+        let least = clearance - eccentricity.dot(&direction);
+        // p(z) = 6 eta r V/h^2 with h = least + z^2/2r, summed far beyond where it has fallen.
+        let reach = 60.0 * (2.0 * radius * least).sqrt();
+        let step = 2.0 * reach / f64::from(places);
+        let pressure: f64 = (0..places)
+            .map(|place| {
+                let z = -reach + (f64::from(place) + 0.5) * step;
+                6.0 * viscosity * radius * closing / (least + z * z / (2.0 * radius)).powi(2) * step
+            })
+            .sum();
+        expected -= direction * (pressure * radius * std::f64::consts::TAU / f64::from(turns));
+    }
+    assert!((force - expected).norm() < 5e-3 * expected.norm(), "{force} {expected}");
+    // Shear of the ball in the middle: a band of pi root(2 r/c), all of it about the axis, half across.
+    let size = viscosity * PI * radius.powi(3) * (2.0 * radius / clearance).sqrt();
+    let petroff = Vector3::new(2.0 * PI * spin.x, PI * spin.y, PI * spin.z) * -size;
+    assert!((moment - petroff).norm() < 1e-12 * petroff.norm(), "{moment} {petroff}");
 }

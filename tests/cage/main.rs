@@ -1,8 +1,11 @@
 //! The cage: contacts of pockets and lands, motion, energy, cost, and scenes that are refused.
 #![allow(clippy::unwrap_used)]
 
+use std::f64::consts::PI;
+
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use roulement::contact::body::BodyMotion;
+use roulement::contact::cage_film::{self, Gap};
 use roulement::contact::land::{LandModel, Lands};
 use roulement::contact::materials::Pair;
 use roulement::contact::pair::PairForces;

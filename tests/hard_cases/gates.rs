@@ -335,9 +335,11 @@ pub fn possible(name: &str, simulation: &Simulation, variables: &Variables) {
         assert!(holds(&ball.inner) && holds(&ball.outer), "{name}: {ball:?} at {} s", outputs.time);
     }
     let friction = &simulation.scene().friction;
+    let oiled = simulation.model().oil_around_cage(&simulation.conditions()) > 0.0;
     let pushes = |force: &Vector3<f64>, load: f64, friction: Option<f64>| {
         let limit = load * friction.unwrap_or(inputs.friction).hypot(1.0);
-        load >= 0.0 && force.norm() <= limit * (1.0 + 1e-12)
+        // Films press and drag where nothing touches.
+        load >= 0.0 && (oiled || force.norm() <= limit * (1.0 + 1e-12))
     };
     for pocket in outputs.balls.iter().filter_map(|ball| ball.pocket) {
         let pushes = pushes(&pocket.force, pocket.load, friction.ball_cage);
@@ -385,6 +387,7 @@ fn residual(end: &Simulation, before: &State) -> f64 {
     let cage = model.cage.as_ref().zip(state.cage());
     let cage_motion = state.cage().map(BodyState::body_motion);
     let mut on_cage = Wrench::default();
+    let oil = model.oil_around_cage(&conditions);
     let neighbours = Contacts::new(model, state, &end.conditions());
     for (index, (now, old)) in state.balls.iter().zip(&before.balls).enumerate() {
         // Polynomials are those that the step was solved with.
@@ -397,7 +400,7 @@ fn residual(end: &Simulation, before: &State) -> f64 {
         let mut moment = outside.moment + inner.ball_moment + outer.ball_moment;
         let touching = cage
             .zip(cage_motion.as_ref())
-            .and_then(|((cage, _), motion)| cage.pocket_contact(index, &now.motion(), motion));
+            .and_then(|((cage, _), motion)| cage.pocket_contact(index, &now.motion(), motion, oil));
         if let Some(pocket) = touching {
             force += pocket.force;
             moment += pocket.moment;
@@ -429,7 +432,7 @@ fn residual(end: &Simulation, before: &State) -> f64 {
         }
     }
     if let (Some((cage, now)), Some(motion), Some(old)) = (cage, &cage_motion, before.cage()) {
-        for land in cage.land_contacts(motion, |race| races[race as usize]).iter().flatten() {
+        for land in cage.land_contacts(motion, |race| races[race as usize], oil).iter().flatten() {
             on_cage.force += land.force;
             on_cage.moment += land.moment;
         }

@@ -19,6 +19,7 @@ mod growth;
 #[path = "../common/laws.rs"]
 mod laws;
 mod loads;
+mod oil;
 mod outside;
 #[path = "../common/random.rs"]
 mod random;

@@ -1,7 +1,7 @@
 //! Oil between balls and races: films, their friction, and rolling resistance ([`crate::contact::film`]).
 //!
-//! Dry friction is what is left of it without oil: `lubrication` goes from 1, full films, to 0, exactly the dry bearing. Contacts of
-//! balls with a cage, of the cage with its guide and of balls with each other stay as they are.
+//! Dry friction is what is left of it without oil: `lubrication` goes from 1, full films, to 0, exactly the dry bearing. Films
+//! around a cage ([`crate::contact::cage_film`]) are simulated where they are asked for (`cage`); balls touch each other dry.
 
 pub mod oil;
 mod section;
@@ -46,9 +46,17 @@ pub struct Films {
     /// [kg/m3] density.
     density: f64,
     races: [RacewayFilm; 2],
+    /// Is there oil around a cage?
+    cage: bool,
 }
 
 impl Films {
+    /// [Pa s] viscosity of the oil around a cage at the inner (0) or outer (1) race that guides it, times the degree of lubrication;
+    /// 0 where it is dry.
+    pub fn around_cage(&self, guide: usize, lubrication: f64, warmth: &Warmth) -> f64 {
+        if self.cage { lubrication * self.supply(guide, lubrication, warmth).viscosity } else { 0.0 }
+    }
+
     /// The film of the inner (0) or outer (1) race, over dry friction; none where surfaces are dry.
     pub fn film(
         &self,
@@ -107,6 +115,7 @@ impl Settings {
             starvation: section.supply.starvation() * lengths,
             density: section.density.0,
             races,
+            cage: section.cage,
         })
     }
 }

@@ -42,6 +42,8 @@ pub struct Section {
     pub rolling_resistance: bool,
     /// Does the shear of the inlet heat the oil?
     pub inlet_heating: bool,
+    /// Is there oil between a cage and the lands that guide it, and between balls and cylindrical pockets?
+    pub cage: bool,
     /// How oil comes back to where balls have pushed it away.
     pub supply: Supplied,
     /// \[m] bore of the inner ring and outside diameter of the outer one, for starvation; usual ones if not given.
@@ -67,6 +69,7 @@ impl Default for Section {
             roughness: Length(0.1e-6),
             rolling_resistance: true,
             inlet_heating: true,
+            cage: false,
             supply: Supplied::Bath,
             bore: None,
             outside: None,
@@ -216,6 +219,9 @@ impl Section {
             && bore >= outside
         {
             return conflict("film.bore", "it must be smaller than film.outside");
+        }
+        if self.cage && !setup.cage {
+            return conflict("film.cage", "it needs a cage: effects.cage = true with a section [cage]");
         }
         if !setup.saturates {
             return conflict("film", "a film limits friction: effects.creep must be a law that has a limit, such as \"kalker_table\"");

@@ -12,7 +12,7 @@ const MIXED: [f64; 2] = [1.0, 3.0];
 /// The oil that the estimate is for where the scene has none: a film is thick where it is cold.
 const USUAL: (f64, f64) = (68.0, 40.0);
 
-/// An oil at its contacts, isothermal and flooded.
+/// An oil at its contacts, flooded; isothermal where it is not the scene's own.
 struct Candidate {
     name: String,
     section: Section,
@@ -22,10 +22,11 @@ struct Candidate {
 impl Candidate {
     /// That of a section; the usual one, or one of a dynamic viscosity [Pa s] that is known, without it.
     fn new(section: Option<&Section>, known: Option<f64>) -> Self {
-        let section = section.cloned().unwrap_or_else(|| match known {
-            Some(viscosity) => Section { viscosity: Some(Viscosity(viscosity)), ..Section::default() },
-            None => {
-                Section { iso_vg: Some(USUAL.0), temperature: Some(Celsius(USUAL.1)), ..Section::default() }
+        let section = section.cloned().unwrap_or_else(|| {
+            let cool = Section { inlet_heating: false, ..Section::default() };
+            match known {
+                Some(viscosity) => Section { viscosity: Some(Viscosity(viscosity)), ..cool },
+                None => Section { iso_vg: Some(USUAL.0), temperature: Some(Celsius(USUAL.1)), ..cool },
             }
         });
         let (oil, temperature) = (Oil::of(&section), section.oil_temperature());

@@ -298,10 +298,10 @@ impl Settings {
     fn by_temperature(&self, estimate: &Estimate) -> Verdict {
         let on = self.section.is_some();
         let ring = &estimate.rings[0];
-        let change =
-            if on { 0.5 * estimate.clearance_change } else { TYPICAL_RISE * ring.expansion * ring.bottom };
+        let known = estimate.clearance_change.filter(|_| on);
+        let change = known.map_or(TYPICAL_RISE * ring.expansion * ring.bottom, |change| 0.5 * change);
         let [share, closed] = estimate.deepens([change, 0.0]);
-        let sentence = if on {
+        let sentence = if known.is_some() {
             format!(
                 "temperatures and fits change the clearance by up to {} um: at held races the deepest approach by {}",
                 digits(2e6 * change),

@@ -294,6 +294,15 @@ impl Variable {
         }
     }
 
+    /// Allowed values of an input; none where every number is allowed, and for other variables.
+    pub fn allowed(&self) -> Option<Range> {
+        match &self.source {
+            Source::Friction => Some(FRICTION),
+            Source::Input(input) => input.range,
+            _ => None,
+        }
+    }
+
     /// What an input is given together with in a scene; none for other variables.
     pub fn group(&self, scene: &Scene) -> Option<Group> {
         match &self.source {

@@ -155,7 +155,8 @@ impl Variables {
 
     /// Adds the temperatures that rings and balls grow by, where they do.
     pub(super) fn add_temperatures(&mut self, scene: &Scene) {
-        if scene.effects.growth.section.is_none() {
+        // Where the heat of friction gives them they are no inputs.
+        if scene.effects.growth.section.is_none() || scene.effects.heat_balance.section.is_some() {
             return;
         }
         let names = ["the inner ring", "the outer ring", "the balls", "the shaft", "the housing"];
