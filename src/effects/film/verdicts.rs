@@ -5,7 +5,7 @@ use super::section::Section;
 use crate::contact::film::thickness::Ellipse;
 use crate::contact::film::{Film, Loading, RacewayFilm, Supply};
 use crate::effects::estimate::{ContactEstimate, Estimate, Standing, Verdict, digits};
-use crate::schema::units::{Celsius, Viscosity};
+use crate::schema::units::{Celsius, Density, Viscosity};
 
 /// [-] film over roughness below which contacts are dry but for their boundary layers, and above which a film carries them.
 const MIXED: [f64; 2] = [1.0, 3.0];
@@ -26,7 +26,13 @@ impl Candidate {
             let cool = Section { inlet_heating: false, ..Section::default() };
             match known {
                 Some(viscosity) => Section { viscosity: Some(Viscosity(viscosity)), ..cool },
-                None => Section { iso_vg: Some(USUAL.0), temperature: Some(Celsius(USUAL.1)), ..cool },
+                None => Section {
+                    iso_vg: Some(USUAL.0),
+                    temperature: Some(Celsius(USUAL.1)),
+                    // 58.5 mPa s, as the reference data have it.
+                    density: Density(860.0),
+                    ..cool
+                },
             }
         });
         let (oil, temperature) = (Oil::of(&section), section.oil_temperature());
