@@ -184,7 +184,7 @@ impl Outputs {
             stored_energy: stored_energy(model, state, contacts),
             work: state.energies.input,
             stiffened: state.energies.stiffened,
-            dissipated: state.energies.friction + state.energies.damping + state.energies.around,
+            dissipated: state.energies.lost(),
             supports: [state.supports.inner, state.supports.outer],
             drag_power: power_lost_around(
                 &model.ambient(&FrameMotion::default()),
