@@ -89,13 +89,19 @@ fn invariant_kept_matrices_change_costs_and_not_results() {
 
 #[test]
 fn regression_balls_at_the_edge_of_the_load_zone_cost_few_corrections() {
-    let fast = [("solver.accuracy", "\"fast\""), ("solver.tolerance", ""), ("solver.max_step", "")];
+    // Whether the energy of a step is within its budget may hang on the last digits, in which the two runs below differ.
+    let fast = [
+        ("solver.accuracy", "\"fast\""),
+        ("solver.energy_error", "0"),
+        ("solver.tolerance", ""),
+        ("solver.max_step", ""),
+    ];
     let (repaired, history) = run(&scene(RADIAL, &fast), 100);
     // 4.5 corrections a step; 7.2 where thrown balls were not brought back alone first.
     let statistics = repaired.state().statistics;
     assert!((statistics.newton.iterations as f64) < 5.0 * statistics.steps as f64, "{statistics:?}");
     assert_eq!(statistics.rejected_newton, 0);
-    let nothing_kept = [fast[0], fast[1], fast[2], ("solver.matrix_reuse", "0.0")];
+    let nothing_kept = [&fast[..], &[("solver.matrix_reuse", "0.0")]].concat();
     let (all, reference) = run(&scene(RADIAL, &nothing_kept), 100);
     assert_eq!(all.state().statistics.steps, statistics.steps);
     let (last, expected) = (&history[100], &reference[100]);
@@ -357,7 +363,7 @@ fn invariant_energy_closes_where_steps_look_at_it() {
         let balance = last.work + last.stiffened - last.dissipated - stored;
         (balance.abs() / last.work.abs().max(last.dissipated), last.statistics.steps)
     };
-    let ((blind, steps), (looking, more)) = (open(&[]), open(&[("solver.energy_error", "5e-3")]));
+    let ((blind, steps), (looking, more)) = (open(&[("solver.energy_error", "0")]), open(&[]));
     assert!(blind > 0.02, "{blind} in {steps} steps");
-    assert!(looking < 0.01 && more < 20 * steps, "{looking} in {more} steps, {blind} in {steps}");
+    assert!(looking < 0.01 && more < 2 * steps, "{looking} in {more} steps, {blind} in {steps}");
 }

@@ -106,7 +106,7 @@ impl StepEnd {
         Self { totals, powers, energies, supports }
     }
 
-    /// [-] energy that the step leaves unaccounted for, over what is allowed; 0 where nothing is asked for.
+    /// [-] error of the step by the energy that it leaves unaccounted for; 0 where nothing is asked for.
     pub fn energy_error(
         &self,
         model: &Model,
@@ -127,8 +127,8 @@ impl StepEnd {
         let of_ball = |(state, trial): (&BallState, &BallTrial)| {
             (kinetic_energy_of(ball, &trial.motion) - kinetic_energy_of(ball, &state.motion())).abs()
         };
-        let exchanged = state.balls.iter().zip(&workspace.balls).map(of_ball);
-        let exchanged = exchanged.fold(0.0, |sum, energy| sum + energy);
+        let exchanged =
+            || state.balls.iter().zip(&workspace.balls).map(of_ball).fold(0.0, |sum, energy| sum + energy);
         self.energies.error_since(&state.energies, exchanged, solver.energy_error)
     }
 }
@@ -179,7 +179,7 @@ pub fn accept(
     if let Some(growth) = &model.growth {
         let grown = grown(&workspace.contacts(model), state, boundary);
         let work = state.grown.map_or(0.0, |before| growth.work(&before, &grown));
-        state.energies.input += work;
+        state.energies.put_in(work);
         state.energies.unaccounted += work;
         state.grown = Some(grown);
     }

@@ -29,8 +29,9 @@ pub struct Solver {
     /// [-] a Newton correction that leaves more than this fraction of the residual asks for a new matrix: 0 computes a
     /// matrix for every correction, 1 keeps one until it no longer lowers the residual.
     pub matrix_reuse: f64,
-    /// [-] part of the energy that a run puts in or loses which it may leave unaccounted for: steps are held down to keep it;
-    /// 0, the default, does not look at energy.
+    /// [-] part of the energy that a run puts in, takes out or loses which it may leave unaccounted for: steps that would leave more are
+    /// taken again, shorter; 0 does not look at energy. As a default [`USUAL_ENERGY_ERROR`], and 0 where the largest step, the
+    /// tolerance or an error goal is given.
     pub energy_error: f64,
     /// \[s] steps up to this are not shortened for that.
     pub energy_step: Time,
@@ -105,6 +106,8 @@ impl ErrorGoal {
         Solver {
             max_step: Time(balanced.max_step.0 * steps),
             tolerance: balanced.tolerance * steps.powi(3),
+            // Errors are measured by comparing runs with steps of one ratio.
+            energy_error: 0.0,
             goal: Some(self),
             follows: Follows::Steps,
             ..balanced
@@ -121,7 +124,7 @@ impl Default for Solver {
             max_step: Time(1e-5),
             min_step: Time(0.0),
             matrix_reuse: REFACTOR_CONTRACTION,
-            energy_error: 0.0,
+            energy_error: USUAL_ENERGY_ERROR,
             energy_step: Time(0.0),
             goal: None,
             follows: Follows::All { initial_step: true },
@@ -130,8 +133,11 @@ impl Default for Solver {
     }
 }
 
+/// [-] part of the energy put in, taken out or lost that a run may leave unaccounted for where nothing is said: below the 1 % of which it
+/// is told.
+pub const USUAL_ENERGY_ERROR: f64 = 8e-3;
 /// [-] smallest step that energy asks for, in periods of a ball between its races: an impact takes half a period.
-const ENERGY_PERIODS: f64 = 0.003;
+const ENERGY_PERIODS: f64 = 0.005;
 
 /// [-] tolerance where nothing is said: the cheapest that kept means within 1 % and histories within 2 % in the scenes of
 /// scenes/error and scenes/cost, but for chaotic ones (`docs/accuracy-cost.md`).
@@ -190,6 +196,9 @@ impl Solver {
             initial_step: Time(self.initial_step.0 * part),
             max_step,
             min_step: Time(self.min_step.0.min(self.initial_step.0 * part)),
+            // Numerical losses fall with the cube of the step, too.
+            energy_error: self.energy_error * part.powi(3),
+            energy_step: Time(self.energy_step.0 * part),
             ..*self
         }
     }
@@ -217,7 +226,7 @@ impl Accuracy {
         let steps = |max_step, tolerance| Solver {
             max_step: Time(max_step),
             tolerance,
-            follows: Follows::Nothing,
+            follows: Follows::Energy,
             ..Solver::default()
         };
         match self {
@@ -315,16 +324,13 @@ impl TryFrom<SolverKeys> for Solver {
         };
         let max_step = keys.max_step.unwrap_or(goal.max_step);
         let limited = keys.max_step.is_some() || keys.tolerance.is_some();
+        let usual_energy_error = if limited { 0.0 } else { goal.energy_error };
+        let energy_error = keys.energy_error.unwrap_or(usual_energy_error);
         let follows = match goal.follows {
-            Follows::Nothing if keys.energy_error.is_some() => Follows::Energy,
-            _ if limited && keys.energy_error.is_some() => Follows::Energy,
-            _ if limited => Follows::Nothing,
-            Follows::All { .. } => Follows::All { initial_step: keys.initial_step.is_none() },
-            Follows::Steps if keys.initial_step.is_some() => match keys.energy_error {
-                Some(_) => Follows::Energy,
-                None => Follows::Nothing,
-            },
-            follows => follows,
+            Follows::All { .. } if !limited => Follows::All { initial_step: keys.initial_step.is_none() },
+            Follows::Steps if !limited && keys.initial_step.is_none() => Follows::Steps,
+            _ if energy_error > 0.0 => Follows::Energy,
+            _ => Follows::Nothing,
         };
         Ok(Self {
             alpha_f: keys.alpha_f.unwrap_or(goal.alpha_f),
@@ -334,7 +340,7 @@ impl TryFrom<SolverKeys> for Solver {
             max_step,
             min_step: keys.min_step.unwrap_or(Time(goal.min_step.si().min(max_step.si()))),
             matrix_reuse: keys.matrix_reuse.unwrap_or(goal.matrix_reuse),
-            energy_error: keys.energy_error.unwrap_or(goal.energy_error),
+            energy_error,
             energy_step: goal.energy_step,
             goal: goal.goal,
             follows,
@@ -375,6 +381,8 @@ mod tests {
                 max_step: Time(3e-6),
                 alpha_f: 0.2,
                 initial_step: Time(goal.solver().initial_step.0.min(3e-6)),
+                energy_error: 0.0,
+                follows: Follows::Nothing,
                 ..goal.solver()
             };
             assert_eq!(mixed, expected);
@@ -407,18 +415,27 @@ mod tests {
     }
 
     #[test]
-    fn energy_is_looked_at_where_the_scene_asks_for_it() {
+    fn energy_is_looked_at_unless_the_scene_sets_its_steps() {
         let looks = |text: &str| {
             let mut solver = parse(text).unwrap();
             if solver.follows != Follows::Nothing {
-                solver.follow(30e3, 1e-3);
+                solver.follow(50e3, 1e-3);
             }
             (solver.energy_error, solver.energy_step.0)
         };
-        for text in ["", "accuracy = \"fast\"", "accuracy = { error = 1e-3 }", "max_step = 1e-7"] {
+        for text in
+            ["", "accuracy = \"fast\"", "initial_step = 1e-7", "accuracy = \"balanced\"\nalpha_f = 0.1"]
+        {
+            assert_eq!(looks(text), (USUAL_ENERGY_ERROR, 1e-7), "{text}");
+            assert_eq!(looks(&format!("{text}\nenergy_error = 0")).0, 0.0, "{text}");
+        }
+        for text in ["accuracy = { error = 1e-3 }", "max_step = 1e-7", "tolerance = 1e-6"] {
             assert_eq!(looks(text).0, 0.0, "{text}");
             assert_eq!(looks(&format!("{text}\nenergy_error = 0.01")), (0.01, 1e-7), "{text}");
         }
+        // Half the steps leave an eighth of the energy.
+        let usual = parse("").unwrap();
+        assert_eq!(usual.refined(1).energy_error, usual.energy_error / 8.0);
     }
 
     #[test]
@@ -455,7 +472,8 @@ mod tests {
         let usual = parse("accuracy = { error = 1e-3 }").unwrap();
         let goal = ErrorGoal { error: 1e-3, of: ErrorOf::All };
         let follows = Follows::Steps;
-        assert_eq!(usual, Solver { goal: Some(goal), follows, ..Accuracy::Balanced.solver() });
+        let energy_error = 0.0;
+        assert_eq!(usual, Solver { goal: Some(goal), follows, energy_error, ..Accuracy::Balanced.solver() });
         let finer = parse("accuracy = { error = 2.5e-4, of = \"means\" }\nalpha_f = 0.1").unwrap();
         assert_eq!(finer.goal, Some(ErrorGoal { error: 2.5e-4, of: ErrorOf::Means }));
         assert_eq!((finer.max_step.0, finer.alpha_f), (25e-6, 0.1));

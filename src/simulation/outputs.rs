@@ -192,7 +192,7 @@ impl Outputs {
             stored_energy: stored_energy(model, state, contacts),
             work: state.energies.input,
             stiffened: state.energies.stiffened,
-            dissipated: state.energies.friction + state.energies.damping + state.energies.around,
+            dissipated: state.energies.lost(),
             supports: [state.supports.inner, state.supports.outer],
             warm: state.warm,
             oil: model.films.as_ref().map(|films| {

@@ -228,9 +228,13 @@ pub fn numerical_settings(scene: &Scene) -> Vec<Setting> {
         change(&mut scene);
         Setting::plain(lever, label, scene)
     };
-    let goals = Accuracy::VARIANTS
-        .iter()
-        .map(|&goal| changed(Lever::Goal, <&str>::from(goal).to_string(), &|s| s.solver = goal.solver()));
+    let goals = Accuracy::VARIANTS.iter().map(|&goal| {
+        changed(Lever::Goal, <&str>::from(goal).to_string(), &|s| {
+            let Scales { approach, frequency } = Scales::of(s);
+            s.solver = goal.solver();
+            s.solver.follow(frequency, approach);
+        })
+    });
     let fixed = (0..=reference_halvings(scene) - ABOVE_REFERENCE)
         .map(|k| Setting::fixed_step(scene, interval * f64::from(-k).exp2()));
     let tolerances = TOLERANCES.iter().map(|&tolerance| {

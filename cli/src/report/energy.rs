@@ -5,7 +5,8 @@ use roulement::scene::Level;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::Outputs;
 
-/// [-] what may be unaccounted for, over the work or the losses.
+/// [-] what may be unaccounted for, over what was put in and taken out, or the losses
+/// ([`Energies::turned_over`](roulement::model::energies::Energies::turned_over)).
 pub const TOLERANCE: f64 = 1e-2;
 /// [-] of the stored energy: less is rounding, where nearly nothing is put in or lost.
 const ROUNDING: f64 = 1e-6;
@@ -61,7 +62,7 @@ impl EnergyWatch {
             return None;
         }
         let now = simulation.outputs();
-        let (balance, turned_over) = (self.balance(now), now.work.abs().max(now.dissipated.abs()));
+        let (balance, turned_over) = (self.balance(now), simulation.state().energies.turned_over());
         if balance.abs() <= (TOLERANCE * turned_over).max(ROUNDING * now.stored_energy.abs()) {
             return None;
         }
@@ -94,7 +95,7 @@ impl EnergyWatch {
             "no".into()
         };
         Some(format!(
-            "energy does not close to 1 %: {balance:.3e} J, {share} what was put in or lost; likely {cause}"
+            "energy does not close to 1 %: {balance:.3e} J, {share} what was put in, taken out or lost; likely {cause}"
         ))
     }
 }
