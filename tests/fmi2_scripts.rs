@@ -255,7 +255,7 @@ fn a_package_says_which_effects_are_on_and_which_would_matter() {
     let c = start(&package, 0.0, None);
     assert_eq!(count(messages, Status::Ok, "effects on: creep"), 1);
     assert_eq!(count(messages, Status::Ok, "off, would matter: growth by temperature: 10 K"), 1);
-    assert_eq!(count(messages, Status::Ok, "not simulated, would matter: rolling resistance"), 1);
+    assert_eq!(count(messages, Status::Ok, "off, would matter: rolling resistance"), 1);
     unsafe { fmi2FreeInstance(c) };
     // Without logging nothing is estimated and nothing told.
     messages.lock().unwrap().clear();

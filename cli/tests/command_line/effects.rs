@@ -59,7 +59,7 @@ fn a_run_says_what_is_on_what_would_matter_and_what_did_not() {
     for subject in ["groove slip", "waviness", "growth by temperature", "support"] {
         assert_eq!(lines(&format!("off, would matter: {subject}: ")), 1, "{notes}");
     }
-    assert_eq!(lines("not simulated, would matter: rolling resistance: "), 1, "{notes}");
+    assert_eq!(lines("off, would matter: rolling resistance: "), 1, "{notes}");
     // Silent about what is off and does not matter.
     assert!(!notes.contains("drag") && !notes.contains("rotation"), "{notes}");
     assert!(summary.contains("did not matter   gravity: "), "{summary}");
