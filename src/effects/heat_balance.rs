@@ -257,7 +257,7 @@ impl Effect for Settings {
         adds: "temperatures of rings, balls, shaft and housing from the heat of friction, which [growth] and the oil of [film] follow",
         states: "rises of temperature of five parts",
         source: "lumped heat balance; contacts after Carslaw and Jaeger 1959, seats after ISO 15312",
-        price: "",
+        price: "PRICE",
         example: "[effects.heat_balance]\n[growth]\n",
     };
 

@@ -28,7 +28,7 @@ impl Effect for Settings {
         adds: "elastic hysteresis of rolling: a moment against rolling in every contact of balls and races",
         states: "none",
         source: "Houpert 1999; for bearing steel",
-        price: "",
+        price: "PRICE",
         example: "[effects]\nhysteresis = true\n",
     };
 

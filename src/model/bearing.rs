@@ -180,7 +180,7 @@ impl Bearing {
         // Semi-axes and load of an approach of 1 m: their ratios are those of any.
         let semi_axes = [at.semi_axis_rolling, at.semi_axis_transverse];
         let ellipse = Ellipse::new(semi_axes, at.stiffness, modulus, 1.0 / self.ball.radius + curvature);
-        RacewayFilm { lubricant, modulus, ellipse }
+        RacewayFilm::new(lubricant, modulus, ellipse)
     }
 
     /// What heat passes through on a race, of contacts of the shape that they have at the free contact angle.

@@ -50,8 +50,26 @@ pub struct RacewayFilm {
     pub lubricant: Lubricant,
     /// \[Pa] E' of ball and race: twice the modulus of Hertz's contact of both.
     pub modulus: f64,
+    /// [-] logarithm of the pressure viscosity times E'.
+    stiffening: f64,
     /// Shape of the contact ellipse.
     pub ellipse: Ellipse,
+}
+
+impl RacewayFilm {
+    /// Films of an oil in contacts of a modulus E' \[Pa] and a shape.
+    pub fn new(lubricant: Lubricant, modulus: f64, ellipse: Ellipse) -> Self {
+        Self { lubricant, modulus, stiffening: (lubricant.pressure_viscosity * modulus).ln(), ellipse }
+    }
+}
+
+/// Logarithms that several powers are computed from.
+#[derive(Clone, Copy, Debug)]
+struct Logarithms<S> {
+    /// Of `eta0 u/(E' Rx)`.
+    speed: S,
+    /// Of the thermal loading of the inlet, `eta0 beta u^2/k`.
+    heat: S,
 }
 
 /// The oil at one moment.
@@ -74,6 +92,8 @@ pub struct Film<'a> {
     pub supply: Supply,
     /// [-] friction coefficient of dry surfaces.
     pub dry_friction: f64,
+    /// [-] logarithms of `eta0/E'` and of `eta0 beta/k`.
+    logarithms: [f64; 2],
 }
 
 /// What a film depends on.
@@ -112,6 +132,17 @@ pub fn slip_of<S: Scalar>([along, across]: [S; 2], (spin, mean_semi_axis): (S, S
     (square + S::constant(LEAST_SLIP * LEAST_SLIP)).sqrt()
 }
 
+impl<'a> Film<'a> {
+    /// The film of an oil, over dry friction.
+    pub fn new(raceway: &'a RacewayFilm, supply: Supply, dry_friction: f64) -> Self {
+        let Lubricant { temperature_viscosity, conductivity, .. } = raceway.lubricant;
+        let viscosity = supply.viscosity;
+        let logarithms =
+            [viscosity / raceway.modulus, viscosity * temperature_viscosity / conductivity].map(f64::ln);
+        Self { raceway, supply, dry_friction, logarithms }
+    }
+}
+
 impl Film<'_> {
     /// What the film does.
     #[inline(always)]
@@ -123,20 +154,28 @@ impl Film<'_> {
 
     /// \[m] central and minimum film, with inlet heating where that is simulated.
     pub fn films<S: Scalar>(&self, loading: &Loading<S>) -> [S; 2] {
-        let RacewayFilm { lubricant, modulus, ellipse, .. } = self.raceway;
-        let films = ellipse.films(lubricant.pressure_viscosity, *modulus, self.supply.viscosity, loading);
+        self.films_at(loading, &self.logarithms(loading))
+    }
+
+    #[inline(always)]
+    fn films_at<S: Scalar>(&self, loading: &Loading<S>, logarithms: &Logarithms<S>) -> [S; 2] {
+        let RacewayFilm { lubricant, modulus, stiffening, ellipse } = self.raceway;
+        let load = (loading.load * loading.curvature.square()).scale(1.0 / modulus);
+        let films = ellipse.films(load, logarithms.speed, loading.curvature, *stiffening);
         if !lubricant.inlet_heating {
             return films;
         }
         let pressure = (loading.load / loading.area).scale(1.5 / modulus);
-        let factor = thickness::inlet_factor(pressure, self.thermal_loading(loading.speed));
+        let factor = thickness::inlet_factor(pressure, logarithms.heat);
         films.map(|film| film * factor)
     }
 
-    /// [-] loading of the inlet by the heat of its shear.
-    fn thermal_loading<S: Scalar>(&self, speed: S) -> S {
-        let Lubricant { temperature_viscosity, conductivity, .. } = self.raceway.lubricant;
-        speed.square().scale(self.supply.viscosity * temperature_viscosity / conductivity)
+    /// What powers of the speed are computed from.
+    #[inline(always)]
+    fn logarithms<S: Scalar>(&self, loading: &Loading<S>) -> Logarithms<S> {
+        let [of_speed, of_heat] = self.logarithms.map(S::constant);
+        let speed = ln(loading.speed);
+        Logarithms { speed: speed + ln(loading.curvature) + of_speed, heat: speed.scale(2.0) + of_heat }
     }
 
     /// [-] film ratio: minimum film over roughness.
@@ -151,7 +190,8 @@ impl Film<'_> {
         // Neither a load nor an area of 0 is divided by: 1e-20 m2 are an ellipse of a tenth of a nanometre.
         let area = area + S::constant(1e-20);
         let loading = Loading { load, speed, slip, curvature, area };
-        let [central, minimum] = self.films(&loading);
+        let logarithms = self.logarithms(&loading);
+        let [central, minimum] = self.films_at(&loading, &logarithms);
         let shear = lubricant.shear(self.supply.viscosity, load / area, slip / central);
         let ratio = minimum.scale(self.supply.lubrication / lubricant.roughness);
         let touching = S::one() / (S::one() + ratio).square();
@@ -160,11 +200,11 @@ impl Film<'_> {
         let rolling = if lubricant.rolling_resistance {
             let inlet = Inlet {
                 load: (load * curvature.square()).scale(1.0 / modulus),
-                speed: (speed * curvature).scale(2.0 * self.supply.viscosity / modulus),
+                speed: logarithms.speed + S::constant(std::f64::consts::LN_2),
                 half_width: area.sqrt() * curvature,
             };
             let heated = if lubricant.inlet_heating {
-                rolling::inlet_factor(self.thermal_loading(speed))
+                rolling::inlet_factor(logarithms.heat)
             } else {
                 S::one()
             };
@@ -180,10 +220,17 @@ impl Film<'_> {
 impl SmoothMap<5, 3> for Film<'_> {
     #[inline(always)]
     fn values<V: Values>(&self, x: [V; 5]) -> [V; 3] {
+        // Of no load friction and resistance are none, whatever the film is.
+        if x[0].all(|load| load <= 0.0) {
+            return [V::constant(self.dry_friction), V::zero(), V::zero()];
+        }
         self.evaluate(x)
     }
 
     fn with_gradient(&self, x: [f64; 5]) -> ([f64; 3], [[f64; 5]; 3]) {
+        if x[0] <= 0.0 {
+            return (self.values(x), [[0.0; 5]; 3]);
+        }
         let y = self.evaluate(std::array::from_fn(|i| Dual::<5>::variable(x[i], i, 1.0)));
         (y.map(|y| y.value), y.map(|y| y.derivatives))
     }

@@ -67,7 +67,7 @@ impl Films {
     ) -> Option<Film<'_>> {
         (lubrication > 0.0).then(|| {
             let supply = self.supply(race, lubrication, warmth);
-            Film { raceway: &self.races[race], supply, dry_friction }
+            Film::new(&self.races[race], supply, dry_friction)
         })
     }
 
@@ -188,7 +188,7 @@ impl Effect for Settings {
                `lubrication` from full films to none",
         states: "none",
         source: "Hamrock and Dowson 1977; Gupta and others 1992; Roelands 1966; Johnson and Tevaarwerk 1977; Biboulet and Houpert 2010",
-        price: "",
+        price: "PRICE",
         example: "[film]\niso_vg = 68\ntemperature = \"70 degC\"\n",
     };
     const ESTIMATE: &'static str = "least film over the roughness, and power of rolling resistance over that of dry friction; ISO VG 68 at 40 degC where it is off";

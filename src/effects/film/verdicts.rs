@@ -47,11 +47,8 @@ impl Candidate {
         get: impl FnOnce(&Film<'_>, &Loading<f64>) -> T,
     ) -> T {
         let curvature = contact.curvatures[0];
-        let raceway = RacewayFilm {
-            lubricant: self.section.lubricant(),
-            modulus,
-            ellipse: Ellipse::new(contact.semi_axes, contact.load, modulus, curvature),
-        };
+        let ellipse = Ellipse::new(contact.semi_axes, contact.load, modulus, curvature);
+        let raceway = RacewayFilm::new(self.section.lubricant(), modulus, ellipse);
         let supply = Supply { viscosity: self.viscosity, lubrication: 1.0, replenishment: 1.0 };
         let loading = Loading {
             load: contact.load,
@@ -60,7 +57,7 @@ impl Candidate {
             curvature,
             area: std::f64::consts::PI * contact.semi_axes[0] * contact.semi_axes[1],
         };
-        get(&Film { raceway: &raceway, supply, dry_friction: 0.0 }, &loading)
+        get(&Film::new(&raceway, supply, 0.0), &loading)
     }
 }
 
