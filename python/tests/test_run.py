@@ -65,24 +65,42 @@ def test_consistency_an_error_goal_is_measured_as_by_the_command_line(thrust, tm
     assert summary["error_bars"] == printed["error_bars"] and summary["error_bars"]["friction torque"] > 0
 
 
-def test_frames_of_other_packages(thrust, tmp_path):
-    results = roulement.run(thrust)
-    pandas = pytest.importorskip("pandas")
-    frame = results.to_pandas()
-    assert np.array_equal(frame["friction_power"].to_numpy(), results["friction_power"]) and frame.attrs["units"]["friction_power"] == "W"
-    xarray = pytest.importorskip("xarray")
-    data = results.to_xarray()
-    assert data["ball.inner.load"].dims == ("time", "ball") and data["ball.inner.load"].attrs["units"] == "N"
-    assert np.array_equal(data["ball.inner.load"].sel(ball=3), results["ball[3].inner.load"])
-    polars = pytest.importorskip("polars")
-    assert np.array_equal(results.to_polars()["friction_power"].to_numpy(), results["friction_power"])
+def test_consistency_parquet_is_the_file_of_the_command_line(thrust, tmp_path):
+    results = roulement.run(thrust, columns="inner.*")
+    results.to_parquet(tmp_path / "python.parquet")
+    (tmp_path / "scene.toml").write_text(thrust.source)
+    program("run", tmp_path / "scene.toml", "-o", tmp_path / "program.parquet", "--columns", "inner.*")
+    assert (tmp_path / "python.parquet").read_bytes() == (tmp_path / "program.parquet").read_bytes()
+    # Read by others, where they are installed.
     parquet = pytest.importorskip("pyarrow.parquet")
-    results.to_parquet(tmp_path / "table.parquet")
-    read = parquet.read_table(tmp_path / "table.parquet")
+    read = parquet.read_table(tmp_path / "python.parquet")
     assert read.column_names == results.names
     assert all(np.array_equal(bits(read[name].to_numpy()), bits(results[name])) for name in results.names)
     assert json.loads(read.schema.metadata[b"units"]) == results.units
-    assert isinstance(frame, pandas.DataFrame) and isinstance(data, xarray.Dataset) and polars
+
+
+def test_frames_of_pandas(thrust):
+    pytest.importorskip("pandas")
+    results = roulement.run(thrust)
+    frame = results.to_pandas()
+    assert np.array_equal(frame["friction_power"].to_numpy(), results["friction_power"])
+    assert np.array_equal(frame.index.to_numpy(), results.time) and frame.attrs["units"]["friction_power"] == "W"
+
+
+def test_frames_of_polars(thrust):
+    pytest.importorskip("polars")
+    results = roulement.run(thrust)
+    frame = results.to_polars()
+    assert frame.columns == results.names and np.array_equal(frame["friction_power"].to_numpy(), results["friction_power"])
+
+
+def test_data_sets_of_xarray(thrust):
+    pytest.importorskip("xarray")
+    results = roulement.run(thrust)
+    data = results.to_xarray()
+    assert data["ball.inner.load"].dims == ("time", "ball") and data["ball.inner.load"].attrs["units"] == "N"
+    assert np.array_equal(data["ball.inner.load"].sel(ball=3), results["ball[3].inner.load"])
+    assert np.array_equal(data["inner.force.x"], results["inner.force.x"])
 
 
 def test_other_threads_go_on_during_a_run(thrust):

@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// A column.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Column {
     /// Name.
     pub name: String,

@@ -1,7 +1,6 @@
 //! The summary of a sweep: a row for every case in the order of the cases, whatever finished first.
 
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::fs;
 use std::path::Path;
 
@@ -73,54 +72,82 @@ impl Sweep {
     pub fn write_summary(&self, directory: &Path) -> Result<Counts, SweepError> {
         let cases = self.names.len();
         // Cases of other settings have other columns: all that there are, each behind those that it was first seen behind.
-        let mut columns: Vec<Column> = vec![];
-        let mut places: HashMap<String, usize> = HashMap::new();
+        let mut table = Columns::default();
         let mut counts = Counts::default();
         for case in 0..cases {
-            for (column, cell) in self.row(case)? {
-                if column.name == "status" {
-                    match cell.to_text().as_str() {
-                        "done" => counts.done += 1,
-                        "failed" => counts.failed += 1,
-                        _ => counts.not_run += 1,
-                    }
-                }
-                if let Entry::Vacant(place) = places.entry(column.to_string()) {
-                    place.insert(columns.len());
-                    columns.push(column);
-                }
+            let row = self.row(case)?;
+            match row
+                .iter()
+                .find(|(column, _)| column.name == "status")
+                .map(|(_, cell)| cell.to_text())
+                .as_deref()
+            {
+                Some("done") => counts.done += 1,
+                Some("failed") => counts.failed += 1,
+                _ => counts.not_run += 1,
             }
+            table.see(&row);
         }
-        let filled = |case: usize| -> Result<Vec<Cell>, SweepError> {
-            let mut cells = vec![Cell::Empty; columns.len()];
-            for (column, cell) in self.row(case)? {
-                if let Some(place) = places.get(&column.to_string()) {
-                    cells[*place] = cell;
-                }
-            }
-            Ok(cells)
-        };
-        let path = directory.join("summary.csv");
-        let failed = |why: std::io::Error| SweepError::file("write", &path, &why);
-        let part = aside(&path);
-        let mut table = csv::Writer::from_path(&part).map_err(|why| failed(why.into()))?;
-        table.write_record(columns.iter().map(Column::to_string)).map_err(|why| failed(why.into()))?;
-        for case in 0..cases {
-            let cells = filled(case)?;
-            table.write_record(cells.iter().map(Cell::to_text)).map_err(|why| failed(why.into()))?;
-        }
-        table.flush().and_then(|()| fs::rename(&part, &path)).map_err(failed)?;
+        let csv_path = directory.join("summary.csv");
+        let csv_part = aside(&csv_path);
+        let failed = |why: std::io::Error| SweepError::file("write", &csv_path, &why);
+        let mut csv = csv::Writer::from_path(&csv_part).map_err(|why| failed(why.into()))?;
+        csv.write_record(table.columns.iter().map(Column::to_string)).map_err(|why| failed(why.into()))?;
         #[cfg(feature = "parquet")]
-        {
+        let (path, part) = {
             let path = directory.join("summary.parquet");
-            let failed = |why: std::io::Error| SweepError::file("write", &path, &why);
             let part = aside(&path);
-            let mut table = ParquetWriter::create(&part, columns.clone()).map_err(failed)?;
-            for case in 0..cases {
-                table.push(filled(case)?.into_iter()).map_err(failed)?;
-            }
-            table.finish().and_then(|()| fs::rename(&part, &path)).map_err(failed)?;
+            (path, part)
+        };
+        #[cfg(feature = "parquet")]
+        let not_written = |why: std::io::Error| SweepError::file("write", &path, &why);
+        #[cfg(feature = "parquet")]
+        let mut parquet = ParquetWriter::create(&part, table.columns.clone()).map_err(not_written)?;
+        for case in 0..cases {
+            let cells = table.fill(self.row(case)?);
+            csv.write_record(cells.iter().map(Cell::to_text)).map_err(|why| failed(why.into()))?;
+            #[cfg(feature = "parquet")]
+            parquet.push(cells.into_iter()).map_err(not_written)?;
         }
+        csv.flush().and_then(|()| fs::rename(&csv_part, &csv_path)).map_err(failed)?;
+        #[cfg(feature = "parquet")]
+        parquet.finish().and_then(|()| fs::rename(&part, &path)).map_err(not_written)?;
         Ok(counts)
+    }
+}
+
+/// The columns of a summary.
+#[derive(Default)]
+struct Columns {
+    columns: Vec<Column>,
+    places: HashMap<Column, usize>,
+    /// Columns of the row that was seen last, and their places: those of most rows.
+    last: (Vec<Column>, Vec<usize>),
+}
+
+impl Columns {
+    /// Takes in the columns of a row.
+    fn see(&mut self, row: &Row) {
+        if self.last.0.iter().eq(row.iter().map(|(column, _)| column)) {
+            return;
+        }
+        for (column, _) in row {
+            let next = self.columns.len();
+            if *self.places.entry(column.clone()).or_insert(next) == next {
+                self.columns.push(column.clone());
+            }
+        }
+        self.last.0 = row.iter().map(|(column, _)| column.clone()).collect();
+        self.last.1 = self.last.0.iter().map(|column| self.places[column]).collect();
+    }
+
+    /// A row with a cell for every column.
+    fn fill(&mut self, row: Row) -> Vec<Cell> {
+        self.see(&row);
+        let mut cells = vec![Cell::Empty; self.columns.len()];
+        for ((_, cell), place) in row.into_iter().zip(&self.last.1) {
+            cells[*place] = cell;
+        }
+        cells
     }
 }
