@@ -69,7 +69,7 @@ impl Sweep {
     /// Text of the scene of a case.
     fn scene_text(&self, case: usize) -> PyResult<String> {
         self.check(case)?;
-        self.sweep.cases.scene_of(&self.sweep.base, case).map(|scene| scene.source).map_err(refused)
+        self.sweep.cases.text_of(&self.sweep.base, case).map_err(refused)
     }
 
     /// Runs cases on threads of this machine.
@@ -148,9 +148,8 @@ impl Sweep {
 #[pyfunction]
 pub fn case_row(py: Python<'_>, scene: &str, columns: Vec<String>) -> PyResult<String> {
     py.detach(|| {
-        let scene = roulement::Scene::parse(scene).map_err(refused)?;
         let wanted = Wanted { columns, tables: None };
-        let row = case::run(&scene, &wanted, None, &AtomicBool::new(false)).map_err(failed)?;
+        let row = case::run_text(scene, &wanted, None, &AtomicBool::new(false)).map_err(failed)?;
         to_text(&row.unwrap_or_default()).map_err(value)
     })
 }

@@ -5,9 +5,11 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use roulement::{Scene, SceneError};
+
 use super::SweepError;
 use super::case::{self, Wanted};
-use super::cases::{Cases, Setting};
+use super::cases::{Cases, Setting, scene_of};
 use super::store::{Store, aside};
 use crate::report::results::{Choice, Columns};
 
@@ -28,31 +30,23 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Reads the scenes of all cases.
+    /// Names all cases. Their scenes are read when they are run, but for as many as show that every key is one.
     ///
     /// # Errors
-    /// If none can be run, or the directory cannot be made.
+    /// If there is a key that no case can be read with, or a column that is not there, or the directory cannot be made.
     pub fn new(cases: Cases, base: String, wanted: Wanted, directory: &Path) -> Result<Self, SweepError> {
-        let name = |case| {
-            let scene = cases.scene_of(&base, case).map_err(|why| why.to_string())?;
-            Ok(Store::name(&scene, &wanted))
-        };
+        let text = |case| cases.text_of(&base, case);
+        let name = |case| Ok(Store::name(&text(case).map_err(|why| why.to_string())?, &wanted));
         let names: Vec<Result<String, String>> = on_threads(cases.rows.len(), threads(), name);
+        let read = |case: usize| scene_of(&text(case)?);
+        // A misspelt key is no matter of single cases.
         for (place, key) in cases.keys.iter().enumerate() {
-            // A misspelt key is no matter of single cases.
             let sets = |case: &usize| cases.rows[*case].get(place).is_some_and(Option::is_some);
-            let mut of_key = (0..names.len()).filter(sets).map(|case| &names[case]).peekable();
-            if let Some(Err(why)) = of_key.peek().copied().filter(|_| of_key.all(Result::is_err)) {
-                let what = format!("no case that sets {}", key.name);
-                return Err(SweepError::NoneRuns { what, why: why.clone() });
-            }
+            first_read((0..names.len()).filter(sets), read, &format!("no case that sets {}", key.name))?;
         }
-        if let Some(Err(why)) = names.first().filter(|_| names.iter().all(Result::is_err)) {
-            return Err(SweepError::NoneRuns { what: "no case".to_string(), why: why.clone() });
-        }
-        if let Some(case) = names.iter().position(Result::is_ok) {
+        if let Some(scene) = first_read(0..names.len(), read, "no case")? {
             let choice = Choice { columns: wanted.columns.clone(), ..Choice::default() };
-            Columns::new(&cases.scene_of(&base, case)?, &choice)?;
+            Columns::new(&scene, &choice)?;
         }
         let store = Store::new(directory)?;
         let is_number = |setting: &Setting| setting.shown.parse::<f64>().is_ok();
@@ -76,10 +70,10 @@ impl Sweep {
         if self.store.has(name) {
             return Ok(true);
         }
-        let scene = self.cases.scene_of(&self.base, case)?;
+        let text = self.cases.text_of(&self.base, case)?;
         let table = self.wanted.tables.as_ref().map(|ending| self.store.table(name, ending)).transpose()?;
         let part = table.as_deref().map(aside);
-        let row = case::run(&scene, &self.wanted, part.as_deref(), interrupted);
+        let row = case::run_text(&text, &self.wanted, part.as_deref(), interrupted);
         let is_whole = matches!(&row, Ok(Some(row)) if row.len() > 2);
         if let (Some(table), Some(part)) = (&table, &part) {
             if is_whole {
@@ -124,6 +118,25 @@ impl Sweep {
         });
         failed.into_inner().ok().flatten().map_or(Ok(()), Err)
     }
+}
+
+/// The first of some cases whose scene can be read; none if there is no case.
+fn first_read(
+    cases: impl Iterator<Item = usize>,
+    read: impl Fn(usize) -> Result<Scene, SceneError>,
+    what: &str,
+) -> Result<Option<Scene>, SweepError> {
+    let mut first = None;
+    for case in cases {
+        match read(case) {
+            Ok(scene) => return Ok(Some(scene)),
+            Err(why) => {
+                first.get_or_insert(why);
+            }
+        }
+    }
+    let none = |why: SceneError| SweepError::NoneRuns { what: what.to_string(), why: why.to_string() };
+    first.map_or(Ok(None), |why| Err(none(why)))
 }
 
 /// [-] as many threads as there are cores.

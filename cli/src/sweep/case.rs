@@ -10,6 +10,7 @@ use roulement::simulation::Simulation;
 use roulement::simulation::play::{Rows, play};
 
 use super::SweepError;
+use super::cases::scene_of;
 use super::extremes::{Gathered, OF_BALLS};
 use crate::error::{Compared, Refined, Run, refine};
 use crate::report::cells::{Cell, Column};
@@ -67,6 +68,22 @@ pub fn run(
         Err(Ended::Failed(why)) => Ok(Some(ended("failed", &why))),
         Err(Ended::Interrupted) => Ok(None),
         Err(Ended::Files(why)) => Err(why),
+    }
+}
+
+/// The same from the text of a scene; one that is refused is a case that fails.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_text(
+    text: &str,
+    wanted: &Wanted,
+    table: Option<&Path>,
+    interrupted: &AtomicBool,
+) -> Result<Option<Row>, SweepError> {
+    match scene_of(text) {
+        Ok(scene) => run(&scene, wanted, table, interrupted),
+        Err(why) => Ok(Some(failed(&why.to_string()))),
     }
 }
 

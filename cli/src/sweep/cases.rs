@@ -215,16 +215,24 @@ impl Cases {
         Ok(())
     }
 
-    /// The scene of a case, from the text of the base scene.
+    /// The text of the scene of a case, from that of the base scene. A scene of that text may still be refused.
     ///
     /// # Errors
-    /// If there is no such scene; names the key.
-    pub fn scene_of(&self, base: &str, case: usize) -> Result<Scene, SceneError> {
+    /// If a key cannot be changed so; names it.
+    pub fn text_of(&self, base: &str, case: usize) -> Result<String, SceneError> {
         let own = self.keys.iter().zip(&self.rows[case]);
         let own = own.filter_map(|(key, setting)| Some((key.name.as_str(), setting.as_ref()?.toml.as_str())));
         let common = self.common.iter().map(|(key, value)| (key.as_str(), value.as_str()));
-        Scene::edited(base, common.chain(own))
+        Scene::edited_text(base, common.chain(own))
     }
+}
+
+/// The scene of such a text; a message does not name its lines, which nobody has written.
+///
+/// # Errors
+/// If the scene is refused; names the key.
+pub fn scene_of(text: &str) -> Result<Scene, SceneError> {
+    Scene::edited(text, [("", ""); 0])
 }
 
 /// All keys of a section with their own sections, down to values.

@@ -5,7 +5,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use roulement::Scene;
 use sha2::{Digest, Sha256};
 
 use super::SweepError;
@@ -34,12 +33,12 @@ impl Store {
         Ok(Self { directory: directory.to_path_buf() })
     }
 
-    /// Name of a case: a hash of its scene, of the program and of what is wanted.
-    pub fn name(scene: &Scene, wanted: &Wanted) -> String {
+    /// Name of a case: a hash of its scene's text, of the program and of what is wanted.
+    pub fn name(scene: &str, wanted: &Wanted) -> String {
         let program = env!("ROULEMENT_VERSION");
         let tables = wanted.tables.as_deref().unwrap_or_default();
         let wanted = format!("{}\0{tables}", wanted.columns.join(","));
-        let hash = Sha256::digest(format!("{SCHEMA}\0{program}\0{wanted}\0{}", scene.source));
+        let hash = Sha256::digest(format!("{SCHEMA}\0{program}\0{wanted}\0{scene}"));
         hash[..BYTES].iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
