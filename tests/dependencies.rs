@@ -4,8 +4,8 @@
 use std::process::Command;
 
 /// Crates that the command line needs and a package does not.
-const OF_THE_COMMAND_LINE: [&str; 8] =
-    ["clap", "plotters", "zip", "csv", "indicatif", "perf-event", "cpu-time", "rustfft"];
+const OF_THE_COMMAND_LINE: [&str; 9] =
+    ["clap", "plotters", "zip", "csv", "indicatif", "perf-event", "cpu-time", "rustfft", "parquet"];
 
 /// Crates that a package of the workspace is linked from on this platform.
 fn linked(package: &str) -> Vec<String> {

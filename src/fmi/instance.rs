@@ -61,20 +61,31 @@ impl Instance {
         let path = resources::path(location)?.join(resources::SCENE_FILE);
         let failed = |why: String| (Status::Error, why);
         let scene = Scene::load(&path).map_err(|why| failed(why.to_string()))?;
-        let (scene, found_out) = auto::resolve(scene).map_err(|why| failed(why.to_string()))?;
-        found_out.iter().for_each(|note| log.write(Status::Ok, note));
-        let variables = Variables::new(&scene);
-        let own = model_description::guid(&scene, &variables);
+        let instance = Self::of_scene(scene, log)?;
+        let own = &instance.guid;
         if guid != own {
             return error(format!(
                 "the guid {guid} is not that of this package, {own}: model description and library do not belong together"
             ));
         }
+        Ok(instance)
+    }
+
+    /// A slave of a scene without a package.
+    ///
+    /// # Errors
+    /// If the scene cannot be started.
+    pub fn of_scene(scene: Scene, log: Log) -> Outcome<Self> {
+        let failed = |why: String| (Status::Error, why);
+        let (scene, found_out) = auto::resolve(scene).map_err(|why| failed(why.to_string()))?;
+        found_out.iter().for_each(|note| log.write(Status::Ok, note));
+        let variables = Variables::new(&scene);
+        let guid = model_description::guid(&scene, &variables);
         let simulation = Simulation::new(&scene).map_err(|why| failed(why.to_string()))?;
         let values = variables.values(simulation.inputs(), simulation.outputs());
         Ok(Self {
             log,
-            guid: own,
+            guid,
             variables,
             fresh: Box::new(simulation.clone()),
             simulation,
@@ -84,6 +95,22 @@ impl Instance {
             columns: None,
             warned: Warned::default(),
         })
+    }
+
+    /// The same slave once more, at the same point; its messages go elsewhere.
+    pub fn copy(&self, log: Log) -> Self {
+        Self {
+            log,
+            guid: self.guid.clone(),
+            variables: self.variables.clone(),
+            fresh: self.fresh.clone(),
+            simulation: self.simulation.clone(),
+            state: self.state.clone(),
+            stop: self.stop,
+            present: self.present.clone(),
+            columns: self.columns.clone(),
+            warned: self.warned,
+        }
     }
 
     /// Sets the start time, before the start.

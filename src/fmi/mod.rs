@@ -26,4 +26,8 @@ mod step;
 #[allow(non_snake_case)]
 pub mod v2;
 
+pub use instance::Instance;
+pub use log::{Log, Sink};
+pub use outcome::{Outcome, Status};
 pub use resources::SCENE_FILE;
+pub use saved_state::FmuState;

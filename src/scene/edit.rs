@@ -33,6 +33,20 @@ impl Scene {
         text: &str,
         changes: impl IntoIterator<Item = (K, V)>,
     ) -> Result<Self, SceneError> {
+        let text = Self::edited_text(text, changes)?;
+        // Lines of the changed text are not those that the reader of a message has.
+        Self::read(&text, std::path::Path::new("")).map_err(|(error, _)| error)
+    }
+
+    /// The text of a scene after some of its keys have been changed, as [`Scene::edited`] reads it then: a scene of that
+    /// text may still be refused.
+    ///
+    /// # Errors
+    /// If a key cannot be changed.
+    pub fn edited_text<K: AsRef<str>, V: AsRef<str>>(
+        text: &str,
+        changes: impl IntoIterator<Item = (K, V)>,
+    ) -> Result<String, SceneError> {
         let mut table: Table = toml::from_str(text).map_err(|why| {
             let spot = why.span().map(|span| span.start);
             explain::with_place(explain::format_error(text, &why), text, spot, None)
@@ -41,8 +55,7 @@ impl Scene {
             let (key, value) = (key.as_ref(), value.as_ref());
             change(&mut table, key, value).map_err(|why| SceneError::Change { key: key.to_string(), why })?;
         }
-        // Lines of the changed text are not those that the reader of a message has.
-        Self::read(&table.to_string(), std::path::Path::new("")).map_err(|(error, _)| error)
+        Ok(table.to_string())
     }
 
     /// Switches effects by their keys, here and in the text, which then asks for nothing to be found out any more.

@@ -10,7 +10,7 @@ use roulement::effects::estimate::{Standing, Verdict, digits, missed};
 use roulement::effects::shoulder::SUBJECT as SHOULDERS;
 use roulement::model::Model;
 use roulement::scene::Scene;
-use serde_json::{Map, Value, json};
+use roulement_cli::report::json;
 
 use super::{load, say, tell};
 
@@ -32,7 +32,7 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let scene = load(&options.scene)?;
     let verdicts = estimate::verdicts(&scene, &Model::new(&scene)?)?;
     let text = if options.json {
-        format!("{:#}\n", to_json(&scene, &verdicts)?)
+        format!("{:#}\n", json::effects(&scene, &verdicts)?)
     } else {
         to_text(&scene, &verdicts)
     };
@@ -53,18 +53,6 @@ pub fn idle_in(scene: &Scene, model: &Model, cut: bool) -> Vec<String> {
     let Ok(verdicts) = estimate::verdicts(scene, model) else { return vec![] };
     let idle = verdicts.iter().filter(|verdict| verdict.is_idle() && !(cut && verdict.subject == SHOULDERS));
     idle.map(|verdict| format!("{}: {}", verdict.subject, verdict.sentence)).collect()
-}
-
-fn to_json(scene: &Scene, verdicts: &[Verdict]) -> Result<Value, serde_json::Error> {
-    let settings = scene.effects.each().into_iter().map(|effect| {
-        let setting = effect.setting().map_or(Value::Null, Value::from);
-        (effect.info().key.to_string(), setting)
-    });
-    Ok(json!({
-        "units": "shares unless unit says more; rad",
-        "settings": settings.collect::<Map<_, _>>(),
-        "estimates": serde_json::to_value(verdicts)?,
-    }))
 }
 
 /// Groups of the table: heading, and what is in it.

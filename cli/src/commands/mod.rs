@@ -8,6 +8,7 @@ mod identify;
 mod player;
 mod run;
 mod summary;
+mod sweep;
 
 use std::error::Error;
 use std::io::{self, Write};
@@ -46,6 +47,8 @@ enum Command {
         #[arg(long, value_enum, default_value = "outer-race-control")]
         gyroscopic: GyroscopicChoice,
     },
+    /// Simulate many cases of a scene on all cores: a table of keys and values, or ranges; resumable.
+    Sweep(sweep::Options),
     /// List the effects of a scene: which are on, which that are off would matter and by how much.
     Effects(effects::Options),
     /// Pack a scene as an FMI 2.0 co-simulation FMU.
@@ -133,6 +136,7 @@ fn say(text: &str) -> io::Result<()> {
 pub fn run() -> Result<ExitCode, Box<dyn Error>> {
     match Arguments::parse().command {
         Command::Run(options) => return run::run(options),
+        Command::Sweep(options) => return sweep::run(options),
         Command::Equilibrium { scene, json, gyroscopic } => {
             let scene = load(&scene)?;
             let input = EquilibriumInput::from_scene(&scene, gyroscopic.into());

@@ -11,15 +11,11 @@ use indicatif::{ProgressBar, ProgressStyle};
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::{Rows, play};
 use roulement::simulation::{Simulation, SimulationError};
-use roulement_cli::error::{Estimate, Lengths, Run, Sample};
-use roulement_cli::report::energy::EnergyWatch;
+use roulement_cli::error::Run;
 use roulement_cli::report::figures::Figures;
-use roulement_cli::report::limits::Limits;
-use roulement_cli::report::means::{Blocks, Means};
-use roulement_cli::report::quantities::Parts;
 use roulement_cli::report::results::{ResultsError, ResultsWriter};
-use roulement_cli::report::spectrum::{Recorder, Spectrum};
 use roulement_cli::report::thinned::Thinned;
+use roulement_cli::watch::{Seen, Watch};
 
 /// A run that has ended.
 pub struct Played {
@@ -27,22 +23,12 @@ pub struct Played {
     pub simulation: Simulation,
     /// Rows for the plots.
     pub plotted: Vec<Outputs>,
-    /// Means over the second half.
-    pub means: Option<Means>,
-    /// Spectrum of its second half, where the scene asks for one.
-    pub spectrum: Option<Spectrum>,
-    /// Its energy.
-    pub energy: EnergyWatch,
-    /// Limits of the bearing that it met.
-    pub limits: Limits,
-    /// Its error, as far as its local errors tell.
-    pub estimate: Estimate,
+    /// What was gathered of its rows.
+    pub seen: Seen,
     /// Time that it took.
     pub wall: Duration,
     /// \[s] CPU time that it took.
     pub cpu: f64,
-    /// Rows for comparison with other runs.
-    samples: Vec<Sample>,
     /// Did it come to its time?
     pub end: End,
 }
@@ -60,22 +46,12 @@ pub enum End {
 impl Played {
     /// Figures of its summary.
     pub fn figures(&self) -> Figures {
-        Figures::of(&self.simulation, self.means.as_ref(), &self.limits, &self.energy)
+        self.seen.figures(&self.simulation)
     }
 
     /// What is kept for comparison with other runs; its rows move there.
     pub fn take_comparable(&mut self) -> Run {
-        let bearing = &self.simulation.model().bearing;
-        let lengths =
-            Lengths { pitch_radius: 0.5 * bearing.pitch_diameter, ball_diameter: 2.0 * bearing.ball.radius };
-        Run {
-            solver: self.simulation.scene().solver,
-            cpu: self.cpu,
-            samples: std::mem::take(&mut self.samples),
-            means: self.means.clone(),
-            figures: self.figures(),
-            lengths,
-        }
+        self.seen.take_comparable(&self.simulation, self.cpu)
     }
 }
 
@@ -107,12 +83,7 @@ impl Player {
         let begin = Instant::now();
         let cpu = ThreadTime::now();
         let mut plotted = Thinned::default();
-        let mut samples = Thinned::default();
-        let mut energy = EnergyWatch::default();
-        let mut limits = Limits::default();
-        let mut estimate = Estimate::default();
-        let mut blocks = Blocks::new(Parts::of(&simulation), 0.5 * simulation.model().bearing.pitch_diameter);
-        let mut spectrum = Recorder::of(&simulation);
+        let mut watch = Watch::of(&simulation);
         let played = play(&mut simulation, rows, |simulation| {
             let outputs = simulation.outputs();
             if let Some(Err(why)) = table.as_mut().map(|table| table.write(simulation.inputs(), outputs)) {
@@ -120,14 +91,7 @@ impl Player {
             }
             progress.set_message(format!("{:.3} of {:.3} ms", outputs.time * 1e3, rows.duration * 1e3));
             progress.set_position(plotted.seen());
-            blocks.push(outputs);
-            if let Some(spectrum) = &mut spectrum {
-                spectrum.push(outputs);
-            }
-            energy.push(outputs);
-            limits.push(outputs);
-            estimate.push(simulation);
-            samples.push(Sample::new(outputs));
+            watch.push(simulation);
             plotted.push(outputs.clone());
             if self.interrupted.load(Ordering::Relaxed) {
                 ControlFlow::Break(Stop::Interrupted)
@@ -147,9 +111,7 @@ impl Player {
         if let Some(table) = table {
             table.finish()?;
         }
-        let (plotted, samples, means) = (plotted.finish(), samples.finish(), blocks.means());
-        let spectrum = spectrum.and_then(Recorder::finish);
-        Ok(Played { simulation, plotted, means, spectrum, energy, limits, estimate, wall, cpu, samples, end })
+        Ok(Played { simulation, plotted: plotted.finish(), seen: watch.finish(), wall, cpu, end })
     }
 }
 

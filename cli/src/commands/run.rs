@@ -13,8 +13,9 @@ use roulement::scene::{ErrorGoal, ErrorOf, Solver};
 use roulement::simulation::Simulation;
 use roulement_cli::error::{Judgement, Rounds, TWIN};
 use roulement_cli::report::figures::{Figures, Shown};
+use roulement_cli::report::json;
 use roulement_cli::report::plots::{title, write_plots};
-use roulement_cli::report::results::{Choice, ResultsWriter, Window};
+use roulement_cli::report::results::{Choice, ResultsWriter, Window, is_parquet};
 use roulement_cli::report::spectrum;
 use signal_hook::consts::SIGINT;
 use signal_hook::flag;
@@ -25,7 +26,7 @@ use super::summary::summary;
 use super::{load, say, tell};
 
 /// Exit code of a program that Ctrl-C ended: 128 and the number of the signal.
-const INTERRUPTED: u8 = 130;
+pub const INTERRUPTED: u8 = 130;
 /// Exit code of a run whose results are there and whose error goal is not met.
 const GOAL_NOT_MET: u8 = 3;
 
@@ -34,9 +35,12 @@ const GOAL_NOT_MET: u8 = 3;
 pub struct Options {
     /// Scene file.
     scene: PathBuf,
-    /// Directory for the results; made if missing.
+    /// Directory for the results, made if missing; or a file that ends in .parquet, for the table alone.
     #[arg(short, long, default_value = "results")]
     output: PathBuf,
+    /// Print the summary as JSON.
+    #[arg(long)]
+    json: bool,
     /// Columns of results.csv: names with `*` for any characters, such as `inner.force.*,ball[1].*`; all if not given.
     #[arg(long, value_delimiter = ',')]
     columns: Vec<String>,
@@ -60,7 +64,7 @@ pub struct Options {
 /// # Errors
 /// If the simulation cannot start or go on, or files cannot be written.
 pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
-    let Options { scene, output: directory, columns, window, error, means_only, rounds } = options;
+    let Options { scene, output, json, columns, window, error, means_only, rounds } = options;
     let mut scene = load(&scene)?;
     if let Some(Some(error)) = error {
         scene.solver.goal = Some(ErrorGoal { error, of: ErrorOf::All });
@@ -74,8 +78,11 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     let choice = Choice { columns, window: window.unwrap_or_default() };
     let simulation = Simulation::new(&scene)?;
     announce(simulation.scene(), simulation.model());
-    fs::create_dir_all(&directory).map_err(|why| format!("cannot make {}: {why}", directory.display()))?;
-    let place = Place { directory, choice };
+    let place = Place { files: !is_parquet(&output), output, choice, json };
+    if place.files {
+        fs::create_dir_all(&place.output)
+            .map_err(|why| format!("cannot make {}: {why}", place.output.display()))?;
+    }
     let table = ResultsWriter::create(&place.results(), &scene, &place.choice)?;
     // A second Ctrl-C does not wait for the row.
     flag::register_conditional_shutdown(SIGINT, INTERRUPTED.into(), Arc::clone(&interrupted))?;
@@ -156,7 +163,7 @@ fn measured(
         };
         break (judgement, next.end);
     };
-    played.means = rounds.means();
+    played.seen.means = rounds.means();
     place.leave(&played, rounds.bars(), &rounds.report())?;
     let round = rounds.count() + 1;
     match (end, judgement) {
@@ -179,49 +186,74 @@ fn changed(solver: Solver) -> Solver {
     Solver { max_step, initial_step, ..solver }
 }
 
-/// Where the files of a run go.
+/// Where the results of a run go.
 struct Place {
-    directory: PathBuf,
+    /// Directory, or the file of the table.
+    output: PathBuf,
+    /// Is it a directory, and has all files?
+    files: bool,
     choice: Choice,
+    /// Is the summary printed as JSON?
+    json: bool,
 }
 
 impl Place {
     fn results(&self) -> PathBuf {
-        self.directory.join("results.csv")
+        if self.files { self.output.join("results.csv") } else { self.output.clone() }
     }
 
     /// The table of a round until it is whole.
     fn results_of_round(&self) -> PathBuf {
-        self.directory.join("results.csv.round")
+        if self.files {
+            self.output.join("results.csv.round")
+        } else {
+            self.output.with_extension("round.parquet")
+        }
     }
 
     /// Leaves plots, means and summary of a run, and says the summary. Error bars and a report of errors are those of runs that
     /// were compared.
     fn leave(&self, played: &Played, bars: Option<Figures>, errors: &str) -> Result<(), Box<dyn Error>> {
         let scene = played.simulation.scene();
-        let mut plots = write_plots(scene, played.simulation.model(), &played.plotted, &self.directory)?;
-        if let Some(means) = &played.means {
-            write(&self.directory.join("means.csv"), |path| means.write(path))?;
+        let shown = Shown { figures: played.figures(), bars };
+        let text = summary(played, &shown) + errors;
+        let mut plots = vec![];
+        if self.files {
+            plots = self.write_files(played, &text)?;
         }
-        if let Some(spectrum) = &played.spectrum {
-            write(&self.directory.join("spectrum.csv"), |path| spectrum.write(path))?;
-            let picture = self.directory.join("spectrum.svg");
-            spectrum::picture::write(spectrum, title(scene), &picture)?;
-            plots.push(picture);
-        }
-        let text = summary(played, &Shown { figures: played.figures(), bars }) + errors;
-        write(&self.directory.join("summary.txt"), |path| fs::write(path, &text))?;
-        let mut listed = format!("{text}\nresults          {}\n", self.results().display());
-        for plot in plots {
-            listed += &format!("plot             {}\n", plot.display());
-        }
-        tell(scene.pressure_note(played.limits.peak_pressure));
+        tell(scene.pressure_note(played.seen.limits.peak_pressure));
+        let listed = if self.json {
+            format!("{:#}\n", json::summary(&played.simulation, &played.seen, &shown))
+        } else {
+            let mut listed = format!("{text}\nresults          {}\n", self.results().display());
+            for plot in plots {
+                listed += &format!("plot             {}\n", plot.display());
+            }
+            listed
+        };
         let said = say(&listed);
         // Why a run has ended early is said even where nobody reads the summary.
         if matches!(played.end, End::Reached) {
             said?;
         }
         Ok(())
+    }
+
+    /// Writes all files beside the table; gives those of the plots.
+    fn write_files(&self, played: &Played, text: &str) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+        let (scene, directory) = (played.simulation.scene(), &self.output);
+        let mut plots = write_plots(scene, played.simulation.model(), &played.plotted, directory)?;
+        if let Some(means) = &played.seen.means {
+            write(&directory.join("means.csv"), |path| means.write(path))?;
+        }
+        if let Some(spectrum) = &played.seen.spectrum {
+            write(&directory.join("spectrum.csv"), |path| spectrum.write(path))?;
+            let picture = directory.join("spectrum.svg");
+            spectrum::picture::write(spectrum, title(scene), &picture)?;
+            plots.push(picture);
+        }
+        write(&directory.join("summary.txt"), |path| fs::write(path, text))?;
+        Ok(plots)
     }
 }
 

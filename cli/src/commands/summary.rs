@@ -8,6 +8,7 @@ use roulement_cli::report::figures::Shown;
 use roulement_cli::report::limits::Limits;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
 use roulement_cli::report::spectrum::is_wanted;
+use roulement_cli::watch::Seen;
 
 use super::effects::idle_in;
 use super::player::Played;
@@ -106,7 +107,8 @@ fn write_limits(out: &mut String, limits: &Limits, shown: &Shown) -> std::fmt::R
 }
 
 fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Result {
-    let Played { simulation, means, spectrum, energy, limits, wall, .. } = run;
+    let Played { simulation, seen, wall, .. } = run;
+    let Seen { means, spectrum, energy, limits, estimate, .. } = seen;
     let now = simulation.outputs();
     let text = |name: &str, factor, digits| shown.text(name, factor, digits);
     let range = |[least, most]: [&str; 2]| format!("{} to {}", text(least, 1.0, 3), text(most, 1.0, 3));
@@ -166,12 +168,12 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Res
     if let Some(warning) = energy.warning(simulation) {
         writeln!(out, "WARNING          {warning}")?;
     }
-    if let (None, Some([histories, means])) = (&shown.bars, run.estimate.errors(simulation)) {
+    if let (None, Some([histories, means])) = (&shown.bars, estimate.errors(simulation)) {
         writeln!(
             out,
             "error, estimate  histories {histories:.0e}, means {means:.0e} of their size, within a factor of ten or so, and no \
              promise: --error measures it{}",
-            if run.estimate.has_blows() { BLOWS } else { "" }
+            if estimate.has_blows() { BLOWS } else { "" }
         )?;
     }
     for line in idle_in(simulation.scene(), simulation.model(), limits.over_shoulders != [0.0; 2]) {

@@ -7,10 +7,12 @@
 
 mod difference;
 mod estimate;
+mod refine;
 mod rounds;
 mod sample;
 
 pub use difference::Difference;
 pub use estimate::Estimate;
+pub use refine::{Compared, Refined, refine};
 pub use rounds::{Judgement, Rounds, TWIN};
 pub use sample::{Lengths, Run, Sample, sizes};

@@ -67,6 +67,11 @@ impl Figures {
         self.0.get(name).copied().unwrap_or(f64::NAN)
     }
 
+    /// All of them with their names.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        self.0.iter().map(|(name, value)| (*name, *value))
+    }
+
     /// Gives a figure another value.
     pub fn set(&mut self, name: &'static str, value: f64) {
         self.0.insert(name, value);

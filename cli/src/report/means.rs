@@ -154,6 +154,16 @@ impl Blocks {
         }
     }
 
+    /// The first row, from 0, of the window of a run of so many rows.
+    pub fn window_begins(rows: u64) -> u64 {
+        let mut each = 1;
+        while rows.div_ceil(each) > MOST_BLOCKS as u64 {
+            each *= 2;
+        }
+        let last = rows.div_ceil(each).saturating_sub(1);
+        ((rows as f64 * HALF) as u64).div_ceil(each).min(last) * each
+    }
+
     /// Means over the second half of what there is; none without a row.
     pub fn means(&self) -> Option<Means> {
         self.means_from(HALF)

@@ -1,11 +1,15 @@
 //! Results of a run: its table, its means, its energy and its plots; and the style of all plots.
 
+pub mod cells;
 pub mod energy;
 pub mod figures;
 pub mod interval;
+pub mod json;
 pub mod limits;
 pub mod means;
-mod number;
+pub mod number;
+#[cfg(feature = "parquet")]
+pub mod parquet;
 pub mod plots;
 pub mod quantities;
 pub mod results;

@@ -1,5 +1,5 @@
-//! Result table of a run: CSV with units in the header, columns from the variable table. Every row is in the file when the
-//! next one is computed.
+//! Result table of a run: CSV with units in the header, columns from the variable table, where every row is in the file when the
+//! next one is computed; or Parquet.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -14,6 +14,11 @@ use roulement::simulation::inputs::Inputs;
 use roulement::simulation::outputs::Outputs;
 
 use super::number;
+#[cfg(feature = "parquet")]
+use super::{
+    cells::{Cell, Column},
+    parquet::ParquetWriter,
+};
 
 /// Why results could not be written.
 #[derive(Debug, Error)]
@@ -84,7 +89,7 @@ impl std::str::FromStr for Window {
 }
 
 /// Does a name fit a pattern in which `*` stands for any characters?
-fn fits(name: &str, pattern: &str) -> bool {
+pub fn fits(name: &str, pattern: &str) -> bool {
     match pattern.split_once('*') {
         None => name == pattern,
         Some((head, rest)) => name.strip_prefix(head).is_some_and(|tail| {
@@ -94,25 +99,20 @@ fn fits(name: &str, pattern: &str) -> bool {
     }
 }
 
-/// A result table being written.
-pub struct ResultsWriter {
+/// The columns of a result table: those variables of a scene that are chosen, and the time before them.
+pub struct Columns {
     variables: Variables,
     /// Rows of the variable table that are written.
     chosen: Vec<usize>,
     window: Window,
-    /// Text of a row.
-    line: Vec<u8>,
-    file: File,
-    path: String,
 }
 
-impl ResultsWriter {
-    /// Begins a table with a column for the time and one for every chosen variable, those of each ball included.
+impl Columns {
+    /// A column for the time and one for every chosen variable, those of each ball included.
     ///
     /// # Errors
-    /// If the file cannot be written, or a chosen column is not there.
-    pub fn create(path: &Path, scene: &Scene, choice: &Choice) -> Result<Self, ResultsError> {
-        let name = path.display().to_string();
+    /// If a chosen column is not there.
+    pub fn new(scene: &Scene, choice: &Choice) -> Result<Self, ResultsError> {
         let variables = Variables::moving(scene, true);
         let names = || variables.rows().iter().map(|row| row.name.as_str());
         if let Some(pattern) = choice.columns.iter().find(|pattern| !names().any(|name| fits(name, pattern)))
@@ -124,15 +124,68 @@ impl ResultsWriter {
         };
         let chosen: Vec<usize> =
             names().enumerate().filter(|(_, name)| wanted(name)).map(|(i, _)| i).collect();
-        let header = chosen.iter().map(|&i| {
-            let row = &variables.rows()[i];
-            format!("{} [{}]", row.name, row.unit.name)
-        });
-        let header: Vec<String> = std::iter::once("time [s]".to_string()).chain(header).collect();
-        let file = File::create(path).map_err(|source| ResultsError::Write { path: name.clone(), source })?;
-        let mut table = Self { variables, chosen, window: choice.window, line: vec![], file, path: name };
-        table.write_header(&header)?;
-        Ok(table)
+        Ok(Self { variables, chosen, window: choice.window })
+    }
+
+    /// Names and units, the time first.
+    pub fn names(&self) -> impl Iterator<Item = (&str, &str)> {
+        let of = |i: &usize| (self.variables.rows()[*i].name.as_str(), self.variables.rows()[*i].unit.name);
+        std::iter::once(("time", "s")).chain(self.chosen.iter().map(of))
+    }
+
+    /// Values of a row, if its time is in the window.
+    pub fn row(&self, inputs: &Inputs, outputs: &Outputs) -> Option<impl Iterator<Item = f64>> {
+        let value = |i: &usize| self.variables.value(&self.variables.rows()[*i], inputs, outputs);
+        let values = std::iter::once(outputs.time).chain(self.chosen.iter().map(value));
+        self.window.contains(outputs.time).then_some(values)
+    }
+}
+
+/// Where the rows of a table go.
+enum Sink {
+    /// Text, a line at once: a program that is killed leaves whole lines.
+    Csv { file: File, line: Vec<u8> },
+    /// Columns.
+    #[cfg(feature = "parquet")]
+    Parquet(Box<ParquetWriter>),
+}
+
+/// A result table being written.
+pub struct ResultsWriter {
+    columns: Columns,
+    sink: Sink,
+    path: String,
+}
+
+impl ResultsWriter {
+    /// Begins a table: Parquet where the path ends so, else CSV.
+    ///
+    /// # Errors
+    /// If the file cannot be written, or a chosen column is not there.
+    pub fn create(path: &Path, scene: &Scene, choice: &Choice) -> Result<Self, ResultsError> {
+        let columns = Columns::new(scene, choice)?;
+        let name = path.display().to_string();
+        let sink = Self::begin(path, &columns)
+            .map_err(|source| ResultsError::Write { path: name.clone(), source })?;
+        Ok(Self { columns, sink, path: name })
+    }
+
+    fn begin(path: &Path, columns: &Columns) -> io::Result<Sink> {
+        if is_parquet(path) {
+            #[cfg(feature = "parquet")]
+            {
+                let columns = columns.names().map(|(name, unit)| Column::number(name, unit));
+                return Ok(Sink::Parquet(Box::new(ParquetWriter::create(path, columns.collect())?)));
+            }
+            #[cfg(not(feature = "parquet"))]
+            return Err(io::Error::other("this program was built without Parquet"));
+        }
+        let mut writer = csv::Writer::from_writer(vec![]);
+        writer.write_record(columns.names().map(|(name, unit)| format!("{name} [{unit}]")))?;
+        let line = writer.into_inner().map_err(|why| io::Error::other(why.to_string()))?;
+        let mut file = File::create(path)?;
+        file.write_all(&line)?;
+        Ok(Sink::Csv { file, line })
     }
 
     /// Adds a row, if its time is in the window.
@@ -140,32 +193,23 @@ impl ResultsWriter {
     /// # Errors
     /// If the file cannot be written.
     pub fn write(&mut self, inputs: &Inputs, outputs: &Outputs) -> Result<(), ResultsError> {
-        if !self.window.contains(outputs.time) {
-            return Ok(());
-        }
-        let rows = self.variables.rows();
-        self.line.clear();
-        number::append(&mut self.line, outputs.time);
-        for &i in &self.chosen {
-            self.line.push(b',');
-            number::append(&mut self.line, self.variables.value(&rows[i], inputs, outputs));
-        }
-        self.line.push(b'\n');
-        // At once: a program that is killed leaves whole lines.
-        self.file.write_all(&self.line).map_err(|source| self.failed(source))
-    }
-
-    fn write_header(&mut self, names: &[String]) -> Result<(), ResultsError> {
-        let mut writer = csv::Writer::from_writer(vec![]);
-        let line = writer
-            .write_record(names)
-            .map_err(io::Error::from)
-            .and_then(|()| writer.into_inner().map_err(|why| io::Error::other(why.to_string())));
-        line.and_then(|line| self.file.write_all(&line)).map_err(|source| self.failed(source))
-    }
-
-    fn failed(&self, source: io::Error) -> ResultsError {
-        ResultsError::Write { path: self.path.clone(), source }
+        let Some(values) = self.columns.row(inputs, outputs) else { return Ok(()) };
+        let written = match &mut self.sink {
+            Sink::Csv { file, line } => {
+                line.clear();
+                for value in values {
+                    number::append(line, value);
+                    line.push(b',');
+                }
+                if let Some(end) = line.last_mut() {
+                    *end = b'\n';
+                }
+                file.write_all(line)
+            }
+            #[cfg(feature = "parquet")]
+            Sink::Parquet(table) => table.push(values.map(Cell::Number)),
+        };
+        written.map_err(|source| ResultsError::Write { path: self.path.clone(), source })
     }
 
     /// Makes sure that every row is on the disk.
@@ -173,7 +217,12 @@ impl ResultsWriter {
     /// # Errors
     /// If the file cannot be written.
     pub fn finish(self) -> Result<(), ResultsError> {
-        match self.file.sync_data() {
+        let finished = match self.sink {
+            Sink::Csv { file, .. } => file.sync_data(),
+            #[cfg(feature = "parquet")]
+            Sink::Parquet(table) => table.finish(),
+        };
+        match finished {
             // Devices and pipes have nothing to sync.
             Err(why) if ![io::ErrorKind::InvalidInput, io::ErrorKind::Unsupported].contains(&why.kind()) => {
                 Err(ResultsError::Write { path: self.path, source: why })
@@ -181,6 +230,11 @@ impl ResultsWriter {
             _ => Ok(()),
         }
     }
+}
+
+/// Does a file's name ask for Parquet?
+pub fn is_parquet(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"))
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ mod field;
 mod refusals;
 mod runs;
 mod spectrum;
+mod sweep;
 
 use std::path::Path;
 use std::process::Command;

@@ -1,0 +1,108 @@
+//! `roulement sweep`: many cases of a scene on all cores, with progress, and a summary of them all.
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use roulement::Scene;
+use roulement_cli::sweep::all::{Sweep, threads as cores};
+use roulement_cli::sweep::case::Wanted;
+use roulement_cli::sweep::cases::Cases;
+use signal_hook::consts::SIGINT;
+use signal_hook::flag;
+
+use super::run::INTERRUPTED;
+use super::{say, tell};
+
+/// Options of `roulement sweep`.
+#[derive(Args)]
+pub struct Options {
+    /// Table of cases, CSV or TOML: columns are keys of the scene.
+    cases: PathBuf,
+    /// Base scene that the cases change; that of the table if not given.
+    #[arg(long)]
+    scene: Option<PathBuf>,
+    /// Directory for the results; made if missing. Cases that are done there already are not run again.
+    #[arg(short, long, default_value = "sweep")]
+    output: PathBuf,
+    /// Variables whose mean, least, largest and last value the summary has, too: names with `*` for any characters, such as
+    /// `ball[*].inner.load`. Whole tables have these alone.
+    #[arg(long, value_delimiter = ',')]
+    columns: Vec<String>,
+    /// Keep the whole table of every case, too.
+    #[arg(long, value_enum)]
+    tables: Option<Format>,
+    /// Cases at a time; as many as there are cores if not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    /// Text with units in the header.
+    Csv,
+    /// Columns, deflated.
+    #[cfg(feature = "parquet")]
+    Parquet,
+}
+
+impl Format {
+    fn ending(self) -> String {
+        match self {
+            Self::Csv => "csv".to_string(),
+            #[cfg(feature = "parquet")]
+            Self::Parquet => "parquet".to_string(),
+        }
+    }
+}
+
+/// Runs all cases that are not done yet into a directory. What is done is kept if it is interrupted.
+///
+/// # Errors
+/// If the cases or the scene cannot be read, no case can be run, or files cannot be written.
+pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
+    let Options { cases: table, scene, output, columns, tables, threads } = options;
+    let cases = Cases::load(&table)?;
+    let Some(scene) = scene.or_else(|| cases.scene.clone()) else {
+        return Err(format!("{}: name the base scene by --scene", table.display()).into());
+    };
+    let base = Scene::load(&scene)?;
+    tell(base.notes());
+    let wanted = Wanted { columns, tables: tables.map(Format::ending) };
+    let sweep = Sweep::new(cases, base.source, wanted, &output)?;
+    let missing = sweep.missing();
+    let interrupted = Arc::new(AtomicBool::new(false));
+    // A second Ctrl-C does not wait for the rows.
+    flag::register_conditional_shutdown(SIGINT, INTERRUPTED.into(), Arc::clone(&interrupted))?;
+    flag::register(SIGINT, Arc::clone(&interrupted))?;
+    let bar = ProgressBar::new(missing.len() as u64);
+    if let Ok(style) = ProgressStyle::with_template(
+        "{pos} of {len} cases [{bar:40}] {percent} %, {elapsed} elapsed, {eta} left",
+    ) {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let ran = sweep.run(&missing, threads.map_or_else(cores, usize::from), &interrupted, || bar.inc(1));
+    bar.finish_and_clear();
+    // Also of a sweep that could not go on.
+    let counts = sweep.write_summary(&output)?;
+    ran?;
+    let kept = sweep.names.iter().filter(|name| name.is_ok()).count() - missing.len();
+    say(&format!(
+        "{} done, {} failed, {} not run; {kept} of them were there already\nsummary          {}\n",
+        counts.done,
+        counts.failed,
+        counts.not_run,
+        output.join("summary.csv").display()
+    ))?;
+    if interrupted.load(Ordering::Relaxed) {
+        tell(["interrupted; the same command goes on".to_string()]);
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,171 @@
+//! All cases of a sweep on some threads. What a case gives does not depend on the others.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use roulement::{Scene, SceneError};
+
+use super::SweepError;
+use super::case::{self, Wanted};
+use super::cases::{Cases, Setting, scene_of};
+use super::store::{Store, aside};
+use crate::report::results::{Choice, Columns};
+
+/// A sweep: cases of a scene, what is wanted of them, and where their rows are kept.
+pub struct Sweep {
+    /// Cases.
+    pub cases: Cases,
+    /// Text of the base scene.
+    pub base: String,
+    /// What is wanted of every case.
+    pub wanted: Wanted,
+    /// Rows that are there.
+    pub store: Store,
+    /// Names of the cases in the store, or why a case has no scene.
+    pub names: Vec<Result<String, String>>,
+    /// Which columns of the cases have plain numbers alone.
+    pub(super) numeric: Vec<bool>,
+}
+
+impl Sweep {
+    /// Names all cases. Their scenes are read when they are run, but for as many as show that every key is one.
+    ///
+    /// # Errors
+    /// If there is a key that no case can be read with, or a column that is not there, or the directory cannot be made.
+    pub fn new(cases: Cases, base: String, wanted: Wanted, directory: &Path) -> Result<Self, SweepError> {
+        let text = |case| cases.text_of(&base, case);
+        let name = |case| Ok(Store::name(&text(case).map_err(|why| why.to_string())?, &wanted));
+        let names: Vec<Result<String, String>> = on_threads(cases.rows.len(), threads(), name);
+        let read = |case: usize| scene_of(&text(case)?);
+        // A misspelt key is no matter of single cases.
+        for (place, key) in cases.keys.iter().enumerate() {
+            let sets = |case: &usize| cases.rows[*case].get(place).is_some_and(Option::is_some);
+            first_read((0..names.len()).filter(sets), read, &format!("no case that sets {}", key.name))?;
+        }
+        if let Some(scene) = first_read(0..names.len(), read, "no case")? {
+            let choice = Choice { columns: wanted.columns.clone(), ..Choice::default() };
+            Columns::new(&scene, &choice)?;
+        }
+        let store = Store::new(directory)?;
+        let is_number = |setting: &Setting| setting.shown.parse::<f64>().is_ok();
+        let of = |place: usize| cases.rows.iter().filter_map(move |row| row.get(place)?.as_ref());
+        let numeric = (0..cases.keys.len()).map(|place| of(place).all(is_number)).collect();
+        Ok(Self { cases, base, wanted, store, names, numeric })
+    }
+
+    /// Cases that are not done yet, in their order.
+    pub fn missing(&self) -> Vec<usize> {
+        let is_missing = |case: &usize| self.names[*case].as_ref().is_ok_and(|name| !self.store.has(name));
+        (0..self.names.len()).filter(is_missing).collect()
+    }
+
+    /// Runs a case, if it is not done yet, and keeps its row; false if it was interrupted.
+    ///
+    /// # Errors
+    /// If files cannot be written.
+    pub fn run_case(&self, case: usize, interrupted: &AtomicBool) -> Result<bool, SweepError> {
+        let Ok(name) = &self.names[case] else { return Ok(true) };
+        if self.store.has(name) {
+            return Ok(true);
+        }
+        let text = self.cases.text_of(&self.base, case)?;
+        let table = self.wanted.tables.as_ref().map(|ending| self.store.table(name, ending)).transpose()?;
+        let part = table.as_deref().map(aside);
+        let row = case::run_text(&text, &self.wanted, part.as_deref(), interrupted);
+        let is_whole = matches!(&row, Ok(Some(row)) if row.len() > 2);
+        if let (Some(table), Some(part)) = (&table, &part) {
+            if is_whole {
+                fs::rename(part, table).map_err(|why| SweepError::file("write", table, &why))?;
+            } else {
+                // It may not have been begun.
+                let _ = fs::remove_file(part);
+            }
+        }
+        match row? {
+            Some(row) => self.store.put(name, &row).map(|()| true),
+            None => Ok(false),
+        }
+    }
+
+    /// Runs some cases; `done` is told of each. Ends early when it is interrupted or a file cannot be written.
+    ///
+    /// # Errors
+    /// If files cannot be written.
+    pub fn run(
+        &self,
+        cases: &[usize],
+        threads: usize,
+        interrupted: &AtomicBool,
+        done: impl Fn() + Sync,
+    ) -> Result<(), SweepError> {
+        let failed = Mutex::new(None);
+        on_threads(cases.len(), threads, |index| {
+            if interrupted.load(Ordering::Relaxed) {
+                return;
+            }
+            match self.run_case(cases[index], interrupted) {
+                Ok(true) => done(),
+                Ok(false) => {}
+                Err(why) => {
+                    interrupted.store(true, Ordering::Relaxed);
+                    if let Ok(mut failed) = failed.lock() {
+                        failed.get_or_insert(why);
+                    }
+                }
+            }
+        });
+        failed.into_inner().ok().flatten().map_or(Ok(()), Err)
+    }
+}
+
+/// The first of some cases whose scene can be read; none if there is no case.
+fn first_read(
+    cases: impl Iterator<Item = usize>,
+    read: impl Fn(usize) -> Result<Scene, SceneError>,
+    what: &str,
+) -> Result<Option<Scene>, SweepError> {
+    let mut first = None;
+    for case in cases {
+        match read(case) {
+            Ok(scene) => return Ok(Some(scene)),
+            Err(why) => {
+                first.get_or_insert(why);
+            }
+        }
+    }
+    let none = |why: SceneError| SweepError::NoneRuns { what: what.to_string(), why: why.to_string() };
+    first.map_or(Ok(None), |why| Err(none(why)))
+}
+
+/// [-] as many threads as there are cores.
+pub fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Does work for 0 .. count on some threads and gives the results in this order.
+fn on_threads<T: Send>(count: usize, threads: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let next = AtomicUsize::new(0);
+    let of_thread = || {
+        let mut results = vec![];
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= count {
+                return results;
+            }
+            results.push((index, work(index)));
+        }
+    };
+    let mut all: Vec<(usize, T)> = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..threads.clamp(1, count.max(1))).map(|_| scope.spawn(of_thread)).collect();
+        let mut all = of_thread();
+        for other in others {
+            // A panic there is one here.
+            all.extend(other.join().unwrap_or_else(|why| std::panic::resume_unwind(why)));
+        }
+        all
+    });
+    all.sort_unstable_by_key(|(index, _)| *index);
+    all.into_iter().map(|(_, result)| result).collect()
+}

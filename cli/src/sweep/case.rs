@@ -1,0 +1,264 @@
+//! One case: from its scene to its row of the summary.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use roulement::Scene;
+use roulement::interface::variables::{Source, Variables};
+use roulement::simulation::Simulation;
+use roulement::simulation::play::{Rows, play};
+
+use super::SweepError;
+use super::cases::scene_of;
+use super::extremes::{Gathered, OF_BALLS};
+use crate::error::{Compared, Refined, Run, refine};
+use crate::report::cells::{Cell, Column};
+use crate::report::means::Means;
+use crate::report::quantities::QUANTITIES;
+use crate::report::results::{Choice, ResultsError, ResultsWriter};
+use crate::watch::{Seen, Watch};
+
+/// What is wanted of every case.
+#[derive(Clone, Debug, Default)]
+pub struct Wanted {
+    /// Variables whose mean, least, largest and last value the summary has, and whole tables have: names with `*` for any
+    /// characters.
+    pub columns: Vec<String>,
+    /// Ending of the files of whole tables, `csv` or `parquet`; none where they are not wanted.
+    pub tables: Option<String>,
+}
+
+/// A row of the summary.
+pub type Row = Vec<(Column, Cell)>;
+
+/// Why a run has no result.
+enum Ended {
+    /// It was interrupted.
+    Interrupted,
+    /// It failed, or what is wanted of it is not there.
+    Failed(String),
+    /// Files cannot be written.
+    Files(SweepError),
+}
+
+/// A run that came to its end.
+struct Done {
+    simulation: Simulation,
+    seen: Seen,
+    gathered: Gathered,
+}
+
+/// Runs a case and gives its row, which begins with how it ended; none if it was interrupted. A whole table goes to a file.
+///
+/// # Errors
+/// If the file of the table cannot be written. A case that fails is no error.
+pub fn run(
+    scene: &Scene,
+    wanted: &Wanted,
+    table: Option<&Path>,
+    interrupted: &AtomicBool,
+) -> Result<Option<Row>, SweepError> {
+    match measured(scene, wanted, table, interrupted) {
+        Ok((done, goal)) => {
+            let mut row = ended("done", "");
+            row.extend(summary(&done, goal));
+            Ok(Some(row))
+        }
+        Err(Ended::Failed(why)) => Ok(Some(ended("failed", &why))),
+        Err(Ended::Interrupted) => Ok(None),
+        Err(Ended::Files(why)) => Err(why),
+    }
+}
+
+/// The same from the text of a scene; one that is refused is a case that fails.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_text(
+    text: &str,
+    wanted: &Wanted,
+    table: Option<&Path>,
+    interrupted: &AtomicBool,
+) -> Result<Option<Row>, SweepError> {
+    match scene_of(text) {
+        Ok(scene) => run(&scene, wanted, table, interrupted),
+        Err(why) => Ok(Some(failed(&why.to_string()))),
+    }
+}
+
+/// The row of a case that has no result.
+pub fn failed(why: &str) -> Row {
+    ended("failed", why)
+}
+
+fn ended(status: &str, reason: &str) -> Row {
+    let text = |name: &str, text: &str| (Column::text(name), Cell::Text(text.to_string()));
+    vec![text("status", status), text("reason", reason)]
+}
+
+/// Runs a scene, again and again with smaller steps where it has an error goal, and says how that ended.
+fn measured(
+    scene: &Scene,
+    wanted: &Wanted,
+    table: Option<&Path>,
+    interrupted: &AtomicBool,
+) -> Result<(Done, Option<&'static str>), Ended> {
+    let nothing = Wanted::default();
+    let Refined { run: mut done, rounds } = refine(scene, |scene, keep| {
+        let (wanted, table) = if keep { (wanted, table) } else { (&nothing, None) };
+        played(scene, wanted, table, interrupted)
+    })?;
+    let Some((rounds, said)) = rounds else { return Ok((done, None)) };
+    done.seen.means = rounds.means();
+    Ok((done, Some(said)))
+}
+
+impl Compared for Done {
+    fn comparable(&mut self) -> Run {
+        // What it costs is no result.
+        self.seen.take_comparable(&self.simulation, 0.0)
+    }
+}
+
+/// Plays a scene to its end.
+fn played(
+    scene: &Scene,
+    wanted: &Wanted,
+    table: Option<&Path>,
+    interrupted: &AtomicBool,
+) -> Result<Done, Ended> {
+    let failed = |why: &dyn std::fmt::Display| Ended::Failed(why.to_string());
+    let written = |why: ResultsError| match why {
+        ResultsError::Column(_) => Ended::Failed(why.to_string()),
+        ResultsError::Write { .. } => Ended::Files(SweepError::Files(why.to_string())),
+    };
+    let mut simulation = Simulation::new(scene).map_err(|why| failed(&why))?;
+    let rows = Rows::of(&simulation);
+    let mut watch = Watch::of(&simulation);
+    let mut gathered = Gathered::new(&simulation, rows.count() + 1, &wanted.columns).map_err(written)?;
+    let choice = Choice { columns: wanted.columns.clone(), ..Choice::default() };
+    let mut table = table
+        .map(|path| ResultsWriter::create(path, simulation.scene(), &choice))
+        .transpose()
+        .map_err(written)?;
+    let flow = play(&mut simulation, rows, |simulation| {
+        if interrupted.load(Ordering::Relaxed) {
+            return ControlFlow::Break(Ended::Interrupted);
+        }
+        if let Some(Err(why)) =
+            table.as_mut().map(|table| table.write(simulation.inputs(), simulation.outputs()))
+        {
+            return ControlFlow::Break(written(why));
+        }
+        watch.push(simulation);
+        gathered.push(simulation);
+        ControlFlow::Continue(())
+    });
+    match flow {
+        Err(why) => return Err(Ended::Failed(format!("at {:e} s: {why}", simulation.time()))),
+        Ok(ControlFlow::Break(why)) => return Err(why),
+        Ok(ControlFlow::Continue(())) => {}
+    }
+    table.map(ResultsWriter::finish).transpose().map_err(written)?;
+    Ok(Done { simulation, seen: watch.finish(), gathered })
+}
+
+/// The key of a quantity, as the variables of packages are named: `inner.force.x` for "force.x on the inner race".
+pub fn key_of(quantity: &str) -> String {
+    let of_race = |race: &str| {
+        let end = format!(" {race} race");
+        let what = quantity.strip_suffix(&end)?.strip_suffix(" the")?;
+        Some(format!("{race}.{}", what.strip_suffix(" on").or(what.strip_suffix(" of"))?))
+    };
+    of_race("inner").or_else(|| of_race("outer")).unwrap_or_else(|| quantity.replace(' ', "_"))
+}
+
+fn number(name: &str, unit: &str, value: f64) -> (Column, Cell) {
+    (Column::number(name, unit), if value.is_nan() { Cell::Empty } else { Cell::Number(value) })
+}
+
+fn optional(name: &str, unit: &str, value: Option<f64>) -> (Column, Cell) {
+    number(name, unit, value.unwrap_or(f64::NAN))
+}
+
+fn settled(means: &Means) -> &'static str {
+    match (means.can_tell(), means.unsettled().next()) {
+        (false, _) => "too few rows to tell",
+        (true, None) => "yes",
+        (true, Some(_)) => "no",
+    }
+}
+
+/// What came of a case.
+fn summary(done: &Done, goal: Option<&'static str>) -> Row {
+    let Done { simulation, seen, gathered } = done;
+    let mut row = vec![number("time", "s", simulation.time())];
+    if let Some(means) = &seen.means {
+        row.push((Column::text("settled"), Cell::Text(settled(means).to_string())));
+        let needed = means.needed().filter(|_| means.unsettled().next().is_some());
+        row.push(optional("needed_duration", "s", needed));
+        if let Some(goal) = goal {
+            row.push((Column::text("error_goal"), Cell::Text(goal.to_string())));
+        }
+        for mean in &means.means {
+            let key = key_of(mean.name);
+            let of = |what: &str| format!("{key}.{what}");
+            row.push(number(&of("mean"), mean.unit, mean.mean));
+            if let Some(place) = QUANTITIES.iter().position(|quantity| quantity.name == mean.name) {
+                let extremes = gathered.quantities[place];
+                row.push(number(&of("least"), mean.unit, extremes.least));
+                row.push(number(&of("largest"), mean.unit, extremes.largest));
+            }
+            row.push(optional(&of("interval_95"), mean.unit, mean.interval));
+            if let Some(error) = mean.error {
+                row.push(number(&of("error"), mean.unit, error.mean));
+            }
+        }
+    }
+    for ((name, unit, _), extremes) in OF_BALLS.iter().zip(&gathered.balls) {
+        row.push(number(&format!("{name}.least"), unit, extremes.least));
+        row.push(number(&format!("{name}.largest"), unit, extremes.largest));
+    }
+    row.push(number("peak_pressure.largest", "Pa", seen.limits.peak_pressure));
+    row.push(number("over_inner_shoulders.largest", "1", seen.limits.over_shoulders[0]));
+    row.push(number("over_outer_shoulders.largest", "1", seen.limits.over_shoulders[1]));
+    row.push(number("between_balls.largest", "N", seen.limits.between_balls));
+    row.push(number("energy_balance", "J", seen.energy.balance(simulation.outputs())));
+    let [histories, means] = seen.estimate.errors(simulation).map_or([f64::NAN; 2], |errors| errors);
+    row.push(number("error_estimate.histories", "1", histories));
+    row.push(number("error_estimate.means", "1", means));
+    // What effects report at the end: life, heat, growth.
+    let variables = Variables::moving(simulation.scene(), false);
+    for report in variables.rows().iter().filter(|row| matches!(row.source, Source::Effect(_))) {
+        let value = variables.value(report, simulation.inputs(), simulation.outputs());
+        row.push(number(&format!("{}.end", report.name), report.unit.name, value));
+    }
+    for of in &gathered.chosen {
+        let mut push = |what: &str, value| {
+            let (column, cell) = number(&format!("{}.{what}", of.name), &of.unit, value);
+            // Some are reported of every case.
+            if !row.iter().any(|(there, _)| there.name == column.name) {
+                row.push((column, cell));
+            }
+        };
+        push("mean", gathered.mean(of));
+        push("least", of.extremes.least);
+        push("largest", of.extremes.largest);
+        push("end", of.end);
+    }
+    row
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_of_quantities_are_named_as_variables_are() {
+        assert_eq!(key_of("force.x on the inner race"), "inner.force.x");
+        assert_eq!(key_of("position.y of the outer race"), "outer.position.y");
+        assert_eq!(key_of("inner race speed"), "inner_race_speed");
+        assert_eq!(key_of("friction power"), "friction_power");
+    }
+}

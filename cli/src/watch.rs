@@ -1,0 +1,99 @@
+//! What is gathered of a run row by row, whoever plays it: means, spectrum, energy, limits, and what its error is told from.
+
+use roulement::simulation::Simulation;
+
+use crate::error::{Estimate, Lengths, Run, Sample};
+use crate::report::energy::EnergyWatch;
+use crate::report::figures::Figures;
+use crate::report::limits::Limits;
+use crate::report::means::{Blocks, Means};
+use crate::report::quantities::Parts;
+use crate::report::spectrum::{Recorder, Spectrum};
+use crate::report::thinned::Thinned;
+
+/// Gathers while a run is played.
+pub struct Watch {
+    blocks: Blocks,
+    spectrum: Option<Recorder>,
+    energy: EnergyWatch,
+    limits: Limits,
+    estimate: Estimate,
+    samples: Thinned<Sample>,
+}
+
+/// What was gathered of a run.
+pub struct Seen {
+    /// Means over the second half.
+    pub means: Option<Means>,
+    /// Spectrum of its second half, where the scene asks for one.
+    pub spectrum: Option<Spectrum>,
+    /// Its energy.
+    pub energy: EnergyWatch,
+    /// Limits of the bearing that it met.
+    pub limits: Limits,
+    /// Its error, as far as its local errors tell.
+    pub estimate: Estimate,
+    /// Rows for comparison with other runs.
+    samples: Vec<Sample>,
+}
+
+impl Watch {
+    /// Of a simulation that has not been played yet.
+    pub fn of(simulation: &Simulation) -> Self {
+        Self {
+            blocks: Blocks::new(Parts::of(simulation), 0.5 * simulation.model().bearing.pitch_diameter),
+            spectrum: Recorder::of(simulation),
+            energy: EnergyWatch::default(),
+            limits: Limits::default(),
+            estimate: Estimate::default(),
+            samples: Thinned::default(),
+        }
+    }
+
+    /// Takes a row.
+    pub fn push(&mut self, simulation: &Simulation) {
+        let outputs = simulation.outputs();
+        self.blocks.push(outputs);
+        if let Some(spectrum) = &mut self.spectrum {
+            spectrum.push(outputs);
+        }
+        self.energy.push(outputs);
+        self.limits.push(outputs);
+        self.estimate.push(simulation);
+        self.samples.push(Sample::new(outputs));
+    }
+
+    /// All of it, at the end.
+    pub fn finish(self) -> Seen {
+        Seen {
+            means: self.blocks.means(),
+            spectrum: self.spectrum.and_then(Recorder::finish),
+            energy: self.energy,
+            limits: self.limits,
+            estimate: self.estimate,
+            samples: self.samples.finish(),
+        }
+    }
+}
+
+impl Seen {
+    /// Figures of the summary of a run that ended so.
+    pub fn figures(&self, simulation: &Simulation) -> Figures {
+        Figures::of(simulation, self.means.as_ref(), &self.limits, &self.energy)
+    }
+
+    /// What is kept for comparison with other runs, with the CPU time \[s] of this one; its rows move there.
+    pub fn take_comparable(&mut self, simulation: &Simulation, cpu: f64) -> Run {
+        let bearing = &simulation.model().bearing;
+        let lengths =
+            Lengths { pitch_radius: 0.5 * bearing.pitch_diameter, ball_diameter: 2.0 * bearing.ball.radius };
+        Run {
+            solver: simulation.scene().solver,
+            cpu,
+            samples: std::mem::take(&mut self.samples),
+            means: self.means.clone(),
+            figures: self.figures(simulation),
+            lengths,
+        }
+    }
+}

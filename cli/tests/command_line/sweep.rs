@@ -1,0 +1,381 @@
+//! `roulement sweep`: its numbers, order, failures and interruptions; `run` as JSON and Parquet.
+
+use std::collections::HashMap;
+use std::process::{Child, Output};
+use std::time::{Duration, Instant};
+
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+
+use super::*;
+
+/// A table by its columns.
+fn columns(text: &str) -> HashMap<String, Vec<String>> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let column = |i: usize| rows.iter().map(|row| row[i].to_string()).collect();
+    header.iter().enumerate().map(|(i, name)| (name.to_string(), column(i))).collect()
+}
+
+fn sweep(scratch: &Scratch, cases: &str, to: &str, options: &[&str]) -> Output {
+    let (base, cases, to) = (scene("thrust"), scratch.path(cases), scratch.path(to));
+    roulement(&[&["sweep", &cases, "--scene", &base, "-o", &to], options].concat())
+}
+
+fn good(output: &Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn numbers(texts: &[String]) -> Vec<f64> {
+    texts.iter().map(|text| text.parse().unwrap()).collect()
+}
+
+#[test]
+fn consistency_numbers_of_a_case_are_those_of_a_run() {
+    let scratch = Scratch::new("sweep-run");
+    let text = "load.x.force,friction.ball_race,rating,load.duration\n0.8 kN,0.05,{ },4 ms\n1500,,,3 ms\n";
+    std::fs::write(
+        scratch.path("cases.csv"),
+        text.replace("{ }", "\"{ contamination = 0.5, viscosity = 1e-5 }\""),
+    )
+    .unwrap();
+    let chosen = "inner.force.x,ball[*].outer.load";
+    good(&sweep(&scratch, "cases.csv", "out", &["--columns", chosen, "--tables", "csv"]));
+    let summary = columns(&scratch.read("out/summary.csv"));
+    let first: &[(&str, &str)] = &[
+        ("load.x.force", "\"0.8 kN\""),
+        ("friction.ball_race", "0.05"),
+        ("rating", "{ contamination = 0.5, viscosity = 1e-5 }"),
+        ("load.duration", "\"4 ms\""),
+    ];
+    let second: &[(&str, &str)] = &[("load.x.force", "1500"), ("load.duration", "\"3 ms\"")];
+    for (case, changes) in [first, second].into_iter().enumerate() {
+        good(&scratch.run(&edited("thrust", changes), "run", &[]));
+        let (means, table) =
+            (columns(&scratch.read("run/means.csv")), columns(&scratch.read("run/results.csv")));
+        let mut compared = 0;
+        for (place, name) in means["quantity"].iter().enumerate() {
+            let key = match name.as_str() {
+                "force.x on the inner race" => "inner.force.x",
+                "friction power" => "friction_power",
+                "cage speed" => "cage_speed",
+                _ => continue,
+            };
+            let unit = &means["unit"][place];
+            for (of, in_run) in [("mean", "mean"), ("interval_95", "interval_95")] {
+                let value: f64 = summary[&format!("{key}.{of} [{unit}]")][case].parse().unwrap();
+                assert_eq!(
+                    value.to_bits(),
+                    means[in_run][place].parse::<f64>().unwrap().to_bits(),
+                    "{name} {of}"
+                );
+                compared += 1;
+            }
+        }
+        assert_eq!(compared, 6);
+        let of = |name: &str| numbers(&table[name]);
+        let extreme = |name: &str| -> f64 { summary[name][case].parse().unwrap() };
+        let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
+        let largest = |values: Vec<f64>| values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        assert_eq!(extreme("friction_power.largest [W]"), largest(of("friction_power [W]")));
+        assert_eq!(extreme("inner.force.x.least [N]"), least(of("inner.force.x [N]")));
+        let loads: Vec<f64> = (1..=10).flat_map(|ball| of(&format!("ball[{ball}].inner.load [N]"))).collect();
+        assert_eq!(extreme("ball.inner.load.largest [N]"), largest(loads.clone()));
+        assert_eq!(extreme("ball.inner.load.least [N]"), least(loads));
+        // A chosen column: its mean over the window of the means.
+        let one = of("ball[3].outer.load [N]");
+        assert_eq!(extreme("ball[3].outer.load.end [N]"), *one.last().unwrap());
+        assert_eq!(extreme("ball[3].outer.load.least [N]"), least(one.clone()));
+        let begin: f64 = means["window_begin [s]"][0].parse().unwrap();
+        let window: Vec<f64> = of("time [s]")
+            .into_iter()
+            .zip(one)
+            .filter(|(time, _)| *time >= begin)
+            .map(|(_, load)| load)
+            .collect();
+        let mean = window.iter().sum::<f64>() / window.len() as f64;
+        assert!((extreme("ball[3].outer.load.mean [N]") / mean - 1.0).abs() < 1e-14);
+        // What an effect reports is there where it is on.
+        let life = &summary["life.L10r.end [1]"];
+        assert_eq!(life[case].is_empty(), case == 1);
+        // The whole table has the chosen columns of the run's.
+        let file = &summary["file"][case];
+        let whole = columns(&scratch.read(&format!("out/tables/{file}.csv")));
+        assert_eq!(whole.len(), 12);
+        assert!(whole.iter().all(|(name, values)| *values == table[name]));
+    }
+}
+
+#[test]
+fn invariant_order_and_bits_whatever_finishes_first() {
+    let scratch = Scratch::new("sweep-order");
+    let durations = ["8 ms", "0.2 ms", "4 ms", "0.3 ms", "0.1 ms", "2 ms"];
+    let text = "load.duration\n".to_string() + &durations.join("\n");
+    std::fs::write(scratch.path("cases.csv"), text).unwrap();
+    good(&sweep(&scratch, "cases.csv", "one", &["--threads", "1"]));
+    good(&sweep(&scratch, "cases.csv", "two", &["--threads", "2"]));
+    let summary = scratch.read("one/summary.csv");
+    assert_eq!(summary, scratch.read("two/summary.csv"));
+    let summary = columns(&summary);
+    assert_eq!(numbers(&summary["time [s]"]), [8e-3, 2e-4, 4e-3, 3e-4, 1e-4, 2e-3]);
+    assert_eq!(summary["case"], ["1", "2", "3", "4", "5", "6"]);
+    // The same in Parquet, to the last bit.
+    let file = std::fs::File::open(scratch.path("two/summary.parquet")).unwrap();
+    let reader = SerializedFileReader::new(file).unwrap();
+    let mut compared = 0;
+    for (case, row) in reader.get_row_iter(None).unwrap().enumerate() {
+        for (name, field) in row.unwrap().get_column_iter() {
+            if let Field::Double(value) = field {
+                let names = summary.iter().filter(|(header, _)| header.split(" [").next() == Some(name));
+                for (_, texts) in names {
+                    assert_eq!(texts[case].parse::<f64>().unwrap().to_bits(), value.to_bits(), "{name}");
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared > 6 * 60, "{compared}");
+}
+
+#[test]
+fn a_failed_case_is_a_row_with_its_reason() {
+    let scratch = Scratch::new("sweep-failed");
+    // A value out of range, a step that cannot be finished, and a good case.
+    let text = "friction.ball_race,solver.min_step,solver.initial_step,solver.tolerance,load.duration\n\
+                -1,,,,1 ms\n,9 us,10 us,1e-12,1 ms\n0.05,,,,1 ms\n";
+    std::fs::write(scratch.path("cases.csv"), text).unwrap();
+    let said = good(&sweep(&scratch, "cases.csv", "out", &[]));
+    assert!(said.contains("1 done, 2 failed, 0 not run"), "{said}");
+    let summary = columns(&scratch.read("out/summary.csv"));
+    assert_eq!(summary["status"], ["failed", "failed", "done"]);
+    assert!(summary["reason"][0].contains("friction.ball_race = -1"), "{:?}", summary["reason"]);
+    assert!(
+        summary["reason"][1].contains("at ") && summary["reason"][1].contains("step"),
+        "{:?}",
+        summary["reason"]
+    );
+    assert!(summary["reason"][2].is_empty() && summary["time [s]"][0].is_empty());
+    // It is not tried again.
+    let said = good(&sweep(&scratch, "cases.csv", "out", &[]));
+    assert!(said.contains("3 of them were there already"), "{said}");
+}
+
+/// A sweep of many cases that has finished some of them.
+fn begun(scratch: &Scratch, to: &str) -> Child {
+    let rows: String = (0..24).map(|i| format!("{}\n", 0.05 + 0.001 * f64::from(i))).collect();
+    let text = "friction.ball_race\n".to_string() + &rows;
+    std::fs::write(scratch.path("cases.csv"), text).unwrap();
+    let child = Command::new(env!("CARGO_BIN_EXE_roulement"))
+        .args(["sweep", &scratch.path("cases.csv"), "--scene", &scene("thrust"), "--threads", "2"])
+        .args(["-o", &scratch.path(to)])
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let begin = Instant::now();
+    while finished(scratch, to).len() < 3 {
+        assert!(begin.elapsed() < Duration::from_secs(120));
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child
+}
+
+/// Files of cases with the times they were written at.
+fn finished(scratch: &Scratch, to: &str) -> HashMap<String, std::time::SystemTime> {
+    let Ok(files) = std::fs::read_dir(scratch.path(&format!("{to}/cases"))) else { return HashMap::new() };
+    let files =
+        files.map(|file| file.unwrap()).filter(|file| !file.file_name().to_string_lossy().starts_with('.'));
+    files
+        .filter_map(|file| {
+            let written = file.metadata().ok()?.modified().ok()?;
+            Some((file.file_name().to_string_lossy().into_owned(), written))
+        })
+        .collect()
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_sweep_goes_on_where_it_was() {
+    let scratch = Scratch::new("sweep-interrupted");
+    for (signal, to) in [("-INT", "interrupted"), ("-KILL", "killed")] {
+        let mut child = begun(&scratch, to);
+        Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        let code = child.wait().unwrap().code();
+        let kept = finished(&scratch, to);
+        assert!((3..24).contains(&kept.len()), "{}", kept.len());
+        if signal == "-INT" {
+            assert_eq!(code, Some(130));
+            let summary = columns(&scratch.read(&format!("{to}/summary.csv")));
+            let count = |status: &str| summary["status"].iter().filter(|s| *s == status).count();
+            assert_eq!((count("done"), count("not run")), (kept.len(), 24 - kept.len()));
+        }
+        let said = good(&sweep(&scratch, "cases.csv", to, &[]));
+        assert!(said.contains(&format!("24 done, 0 failed, 0 not run; {} of them", kept.len())), "{said}");
+        // What was there was not written again.
+        let all = finished(&scratch, to);
+        assert_eq!(all.len(), 24);
+        assert!(kept.iter().all(|(name, written)| all[name] == *written));
+    }
+    assert_eq!(scratch.read("interrupted/summary.csv"), scratch.read("killed/summary.csv"));
+}
+
+#[test]
+fn keys_have_the_units_of_scene_files() {
+    let scratch = Scratch::new("sweep-units");
+    let table = "load.x.force [kN],load.inner_speed [min^-1],load.duration\n0.8,3000,1 ms\n";
+    let cells = "load.x.force,load.inner_speed,load.duration\n800 N,50 Hz,0.001\n";
+    let toml = "[[case]]\nload.x.force = 800\nload.inner_speed = \"3000 rpm\"\nload.duration = \"1000 us\"\n";
+    let mut numbers = vec![];
+    for (name, text) in [("a.csv", table), ("b.csv", &cells.replace("50 Hz", "3000 rpm")), ("c.toml", toml)] {
+        std::fs::write(scratch.path(name), text).unwrap();
+        good(&sweep(&scratch, name, "out", &[]));
+        let summary = columns(&scratch.read("out/summary.csv"));
+        assert_eq!(summary["status"], ["done"]);
+        numbers.push(summary["friction_power.mean [W]"].clone());
+    }
+    assert!(numbers.iter().all(|power| *power == numbers[0]), "{numbers:?}");
+    let base = columns(&{
+        std::fs::write(scratch.path("d.csv"), "load.duration\n1 ms\n").unwrap();
+        good(&sweep(&scratch, "d.csv", "out", &[]));
+        scratch.read("out/summary.csv")
+    });
+    assert_ne!(numbers[0], base["friction_power.mean [W]"]);
+}
+
+#[test]
+fn refusals_name_what_is_wrong() {
+    let scratch = Scratch::new("sweep-refused");
+    for (name, text, parts) in [
+        (
+            "a.csv",
+            "friction.bal_race\n0.05\n0.1\n",
+            &["no case that sets friction.bal_race", "did you mean ball_race?"][..],
+        ),
+        ("b.csv", "load.x.force [kg]\n1\n", &["load.x.force", "kg measures something else"]),
+        (
+            "c.csv",
+            "friction.ball_race,friction.ball_race\n1,2\n",
+            &["c.csv", "friction.ball_race stands there twice"],
+        ),
+        ("d.csv", "friction.ball_race\n", &["d.csv", "no case"]),
+        ("e.csv", "friction.ball_race\n1,2\n", &["e.csv", "field"]),
+        ("f.toml", "[gird]\n", &["f.toml", "gird", "grid"]),
+        (
+            "g.toml",
+            "[grid]\nload.x.force = { from = 1, to = \"2 N\", steps = 3 }\n",
+            &["grid.load.x.force", "same unit"],
+        ),
+        ("h.toml", "[grid]\nload.x.force = { from = 1, to = 2 }\n", &["grid.load.x.force", "steps"]),
+        (
+            "i.toml",
+            "[grid]\nload.x.force = { from = 1, to = 2, step = 3 }\n",
+            &["grid.load.x.force", "step", "steps"],
+        ),
+        ("j.toml", "[latin_hypercube]\ncases = 0\n", &["latin_hypercube.cases"]),
+        (
+            "k.toml",
+            "[grid]\nload.x.force = { from = -1, to = 2, steps = 3, scale = \"log\" }\n",
+            &["positive"],
+        ),
+        ("l.csv", "load.x.force\n1\n", &["such column", "inner.forc"]),
+    ] {
+        std::fs::write(scratch.path(name), text).unwrap();
+        let options: &[&str] = if name == "l.csv" { &["--columns", "inner.forc"] } else { &[] };
+        let output = sweep(&scratch, name, "out", options);
+        assert!(!output.status.success(), "{name}");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        for part in parts {
+            assert!(message.contains(part), "{name}: {message}\nshould say {part}");
+        }
+    }
+    let output = roulement(&["sweep", &scratch.path("a.csv"), "-o", &scratch.path("out")]);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--scene"));
+}
+
+#[test]
+fn closed_form_grids_and_latin_hypercubes() {
+    let scratch = Scratch::new("sweep-ranges");
+    let text = format!(
+        "scene = {:?}\nremove = [\"effects.damping\"]\n[set]\nload.duration = \"0.1 ms\"\n\
+         [grid]\nbearing.balls = [8, 9]\nload.x.force = {{ from = \"0.5 kN\", to = \"2 kN\", steps = 3, scale = \"log\" }}\n\
+         [latin_hypercube]\ncases = 8\nseed = 3\nfriction.ball_race = {{ from = 0.04, to = 0.12 }}\n\
+         load.inner_speed = {{ from = \"1000 rpm\", to = \"9000 rpm\" }}\n",
+        scene("thrust")
+    );
+    std::fs::write(scratch.path("cases.toml"), text).unwrap();
+    good(&roulement(&["sweep", &scratch.path("cases.toml"), "-o", &scratch.path("out")]));
+    let summary = columns(&scratch.read("out/summary.csv"));
+    assert_eq!(summary["status"].iter().filter(|status| *status == "done").count(), 14);
+    assert_eq!(summary["bearing.balls"][..6], ["8", "8", "8", "9", "9", "9"]);
+    let forces = numbers(&summary["load.x.force [kN]"][..6]);
+    for (force, expected) in forces.into_iter().zip([0.5, 1.0, 2.0, 0.5, 1.0, 2.0]) {
+        assert!((force - expected).abs() < 1e-12);
+    }
+    for (name, from, to) in [("friction.ball_race", 0.04, 0.12), ("load.inner_speed [rpm]", 1e3, 9e3)] {
+        // One in each eighth, and not in the order of the eighths.
+        let values = numbers(&summary[name][6..]);
+        let part = |value: &f64| ((value - from) / (to - from) * 8.0) as usize;
+        let parts: Vec<usize> = values.iter().map(part).collect();
+        let mut sorted = parts.clone();
+        sorted.sort_unstable();
+        assert_eq!(sorted, [0, 1, 2, 3, 4, 5, 6, 7]);
+        assert_ne!(parts, sorted);
+    }
+}
+
+#[test]
+fn consistency_a_case_with_an_error_goal_has_the_error_bars_of_the_run() {
+    let scratch = Scratch::new("sweep-error");
+    let changes = [("solver.accuracy", "{ error = 1e-2 }"), ("load.duration", "\"2 ms\"")];
+    good(&scratch.run(&edited("thrust", &changes), "run", &[]));
+    std::fs::write(scratch.path("cases.csv"), "solver.accuracy,load.duration\n{ error = 1e-2 },2 ms\n")
+        .unwrap();
+    good(&sweep(&scratch, "cases.csv", "out", &[]));
+    let (means, summary) =
+        (columns(&scratch.read("run/means.csv")), columns(&scratch.read("out/summary.csv")));
+    let place = means["quantity"].iter().position(|name| name == "friction torque").unwrap();
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    assert_eq!(number(&summary["friction_torque.error [N.m]"][0]), number(&means["error"][place]));
+    assert_eq!(number(&summary["friction_torque.mean [N.m]"][0]), number(&means["mean"][place]));
+    assert!(number(&means["error"][place]) > 0.0 && summary["error_goal"] == ["met"]);
+}
+
+#[test]
+fn a_run_is_written_as_parquet_and_json_with_the_same_bits() {
+    let scratch = Scratch::new("run-parquet");
+    let short = edited("thrust", &[("load.duration", "\"1 ms\"")]);
+    let printed = good(&scratch.run(&short, "out", &["--json"]));
+    good(&scratch.run(&short, "table.parquet", &["--columns", "inner.*,ball[2].*"]));
+    let table = columns(&scratch.read("out/results.csv"));
+    let reader =
+        SerializedFileReader::new(std::fs::File::open(scratch.path("table.parquet")).unwrap()).unwrap();
+    let metadata = reader.metadata().file_metadata().key_value_metadata().unwrap().clone();
+    let units = metadata.iter().find(|entry| entry.key == "units").unwrap().value.clone().unwrap();
+    let units: Value = serde_json::from_str(&units).unwrap();
+    let mut rows = 0;
+    for (index, row) in reader.get_row_iter(None).unwrap().enumerate() {
+        let row = row.unwrap();
+        assert!(row.len() > 20 && row.len() < 80);
+        for (name, field) in row.get_column_iter() {
+            let Field::Double(value) = field else { panic!("{name}: {field}") };
+            let header = format!("{name} [{}]", units[name].as_str().unwrap());
+            assert_eq!(table[&header][index].parse::<f64>().unwrap().to_bits(), value.to_bits(), "{header}");
+        }
+        rows += 1;
+    }
+    assert_eq!(rows, 11);
+    let json: Value = serde_json::from_str(&printed).unwrap();
+    let means = columns(&scratch.read("out/means.csv"));
+    let listed = json["means"]["quantities"].as_array().unwrap();
+    assert_eq!(listed.len(), means["mean"].len());
+    for (of, text) in listed.iter().zip(&means["mean"]) {
+        assert!(
+            (of["mean"].as_f64().unwrap() - text.parse::<f64>().unwrap()).abs()
+                <= 1e-15 * of["mean"].as_f64().unwrap().abs()
+        );
+    }
+    assert_eq!(json["time"], 1e-3);
+    assert!(json["figures"]["largest inner load"].as_f64().unwrap() > 100.0);
+}

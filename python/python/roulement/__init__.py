@@ -1,0 +1,45 @@
+"""A ball bearing in three dimensions: equilibria, dynamic runs, sweeps and FMI packages.
+
+>>> import roulement
+>>> scene = roulement.Scene.load("scenes/thrust.toml").with_({"load.x.force": "2 kN", "load.duration": "2 ms"})
+>>> results = roulement.run(scene)
+>>> results["inner.force"].shape       # rows, components x y z [N]
+(21, 3)
+
+All numbers are SI, angles in radians. Results have the same bits as those of the command line.
+"""
+
+import importlib
+
+from . import coupling, load_cases
+from .contacts import LAWS, contact
+from .cost import cost
+from .equilibrium import Equilibrium, equilibrium
+from .results import Results, run
+from .scene import Scene, effects, package
+from .simulation import Simulation
+
+__all__ = [
+    "LAWS",
+    "Equilibrium",
+    "Results",
+    "Scene",
+    "Simulation",
+    "contact",
+    "cost",
+    "coupling",
+    "design",
+    "effects",
+    "equilibrium",
+    "load_cases",
+    "package",
+    "run",
+    "sweep",
+]
+
+
+def __getattr__(name):
+    # Not before they are used: `python -m roulement.sweep` runs one of them itself.
+    if name in ("design", "sweep"):
+        return importlib.import_module(f".{name}", __name__)
+    raise AttributeError(f"module {__name__} has no attribute {name}")

@@ -1,0 +1,174 @@
+"""Coupling of a bearing in pose drive to a rigid shaft: the recipes of docs/coupling.md, in pure Python.
+
+Places, velocities and wrenches have the five components x, y, z, about y, about z. A bearing is anything that has
+`wrench()`, `place()` and `step(step, place, velocity)`: `Bearing` is one on a `Simulation`, `FmuBearing` on a package in FMPy.
+
+>>> scene = roulement.Scene.load("scenes/thrust.toml").with_({"inner.drive": "pose"})
+>>> bearing = Bearing(roulement.Simulation(scene))
+>>> shaft = Leapfrog(bearing, rigid(mass=1.0, transverse=1e-3), lambda time: [1500.0, 30.0, 0.0, 0.0, 0.0])
+>>> shaft.step(2e-5)
+
+`Leapfrog` is right for steps up to 80 us for a shaft of 1 kg, `Implicit` for longer ones.
+"""
+
+import numpy as np
+
+PLACE = [f"inner.position.{axis}" for axis in "xyz"] + [f"inner.rotation.{axis}" for axis in "yz"]
+VELOCITY = [f"inner.velocity.{axis}" for axis in "xyz"] + [f"inner.rotation_rate.{axis}" for axis in "yz"]
+WRENCH = ["inner.force.x", "inner.force.y", "inner.force.z", "inner.moment.y", "inner.moment.z"]
+
+
+def rigid(mass, transverse):
+    """Inertia (5 x 5) of a rigid shaft: its mass [kg] and moment of inertia about the transverse axes [kg m2]."""
+    return np.diag([mass] * 3 + [transverse] * 2)
+
+
+def gyroscopic(polar, speed):
+    """Gyroscopic matrix (5 x 5) of a shaft with a polar moment of inertia [kg m2] that turns at a speed [rad/s]."""
+    matrix = np.zeros((5, 5))
+    matrix[3, 4], matrix[4, 3] = -polar * speed, polar * speed
+    return matrix
+
+
+class Bearing:
+    """The inner race of a `Simulation` in pose drive, with `interface.orientation = "shaft"` (the default)."""
+
+    def __init__(self, simulation):
+        self.simulation = simulation
+        self._inputs = [simulation.signal(name) for name in PLACE + VELOCITY]
+        self._outputs = [simulation.signal(name) for name in WRENCH]
+
+    def place(self):
+        """Place of the race [m, rad]."""
+        return np.array([signal.value for signal in self._inputs[:5]])
+
+    def wrench(self):
+        """What the bearing exerts on the shaft [N, N m]."""
+        return np.array([signal.value for signal in self._outputs])
+
+    def step(self, step, place, velocity):
+        """Wrench after a step [s] that ends in a place and velocity."""
+        # Inputs are those at the start: they lead to the end where this velocity comes from.
+        for signal, value in zip(self._inputs, [*(place - velocity * step), *velocity]):
+            signal.value = value
+        self.simulation.step(step)
+        return self.wrench()
+
+    def save(self):
+        """This point, for `restore`."""
+        return self.simulation.snapshot()
+
+    def restore(self, point):
+        """Goes back to a point."""
+        self.simulation.restore(point)
+
+    def derivative(self, step, place_gain, velocity_gain):
+        """Derivative (5 x 5) of the wrench at the end of the last step by what changes place and velocity there with these
+        gains."""
+        by = self.simulation.derivatives(WRENCH, PLACE + VELOCITY)
+        return by[:, :5] * (place_gain - velocity_gain * step) + by[:, 5:] * velocity_gain
+
+
+class FmuBearing:
+    """The same on an instance of a package in FMPy (`fmpy.fmi2.FMU2Slave`) after its initialization; `references` are value
+    references by name. Needs FMPy."""
+
+    def __init__(self, fmu, references, time=0.0):
+        self.fmu, self.time = fmu, time
+        self._inputs = [references[name] for name in PLACE + VELOCITY]
+        self._outputs = [references[name] for name in WRENCH]
+
+    def place(self):
+        """Place of the race [m, rad]."""
+        return np.array(self.fmu.getReal(self._inputs[:5]))
+
+    def wrench(self):
+        """What the bearing exerts on the shaft [N, N m]."""
+        return np.array(self.fmu.getReal(self._outputs))
+
+    def step(self, step, place, velocity):
+        """Wrench after a step [s] that ends in a place and velocity."""
+        self.fmu.setReal(self._inputs, [*(place - velocity * step), *velocity])
+        self.fmu.doStep(self.time, step)
+        self.time += step
+        return self.wrench()
+
+    def save(self):
+        """This point, for `restore`."""
+        return self.fmu.getFMUState(), self.time
+
+    def restore(self, point):
+        """Goes back to a point, which is then forgotten."""
+        state, self.time = point
+        self.fmu.setFMUState(state)
+        self.fmu.freeFMUState(state)
+
+    def derivative(self, step, place_gain, velocity_gain):
+        """As of `Bearing`."""
+        columns = []
+        for direction in np.eye(5):
+            change = [*(direction * (place_gain - velocity_gain * step)), *(direction * velocity_gain)]
+            columns.append(self.fmu.getDirectionalDerivative(self._outputs, self._inputs, change))
+        return np.array(columns).T
+
+
+class _Shaft:
+    """A rigid shaft on a bearing: `inertia` (5 x 5), `force(time)` the external wrench on it, `gyroscopic` (5 x 5, with the sign
+    of `gyroscopic()`), and a `velocity` at the start."""
+
+    def __init__(self, bearing, inertia, force, gyroscopic=None, velocity=None, time=0.0):
+        self.bearing, self.inertia, self.external = bearing, np.asarray(inertia, float), force
+        self.gyroscopic = np.zeros((5, 5)) if gyroscopic is None else np.asarray(gyroscopic, float)
+        self.place, self.wrench, self.time = bearing.place(), bearing.wrench(), time
+        self.velocity = np.zeros(5) if velocity is None else np.asarray(velocity, float)
+
+    def _force(self, wrench, velocity, time):
+        return wrench + np.asarray(self.external(time), float) + self.gyroscopic @ velocity
+
+
+class Leapfrog(_Shaft):
+    """Half a kick by the wrench at the start, drift, half a kick by the wrench at the end (velocity Verlet): one step of the
+    bearing per communication step."""
+
+    def step(self, step):
+        """Takes shaft and bearing a step [s] on."""
+        half, end = 0.5 * step, self.time + step
+        acceleration = np.linalg.solve(self.inertia, self._force(self.wrench, self.velocity, self.time))
+        kicked = self.velocity + half * acceleration
+        place = self.place + step * kicked
+        wrench = self.bearing.step(step, place, self.velocity + step * acceleration)
+        # The gyroscopic moment of the velocity at the end is known with it.
+        momentum = self.inertia @ kicked + half * self._force(wrench, np.zeros(5), end)
+        self.velocity = np.linalg.solve(self.inertia - half * self.gyroscopic, momentum)
+        self.place, self.wrench, self.time = place, wrench, end
+
+
+class Implicit(_Shaft):
+    """Linearly implicit (HHT): the step is done twice, the derivatives of the first time give the matrix of the second. `alpha` in
+    [0, 1/3] damps what the step cannot resolve."""
+
+    def __init__(self, *arguments, alpha=0.3, **options):
+        super().__init__(*arguments, **options)
+        self.alpha = alpha
+        self._acceleration = np.linalg.solve(self.inertia, self._force(self.wrench, self.velocity, self.time))
+
+    def step(self, step):
+        """Takes shaft and bearing a step [s] on."""
+        alpha, before, finish = self.alpha, self._acceleration, self.time + step
+        beta, gamma = 0.25 * (1 + alpha) ** 2 * step**2, (0.5 + alpha) * step
+
+        def end(after):
+            place = self.place + self.velocity * step + before * (0.5 * step**2 - beta) + after * beta
+            return place, self.velocity + before * (step - gamma) + after * gamma
+
+        point = self.bearing.save()
+        guessed = before * (1 - step / gamma)
+        guess = end(guessed)
+        force = self._force(self.bearing.step(step, *guess), guess[1], finish)
+        derivative = self.bearing.derivative(step, beta, gamma) + self.gyroscopic * gamma
+        self.bearing.restore(point)
+        start = self._force(self.wrench, self.velocity, self.time)
+        right = (1 - alpha) * (force - derivative @ guessed) + alpha * start
+        self._acceleration = np.linalg.solve(self.inertia - (1 - alpha) * derivative, right)
+        self.place, self.velocity = end(self._acceleration)
+        self.wrench, self.time = self.bearing.step(step, self.place, self.velocity), finish

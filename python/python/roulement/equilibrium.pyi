@@ -1,0 +1,25 @@
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .scene import Scene
+
+@dataclass(frozen=True)
+class Equilibrium:
+    displacement: NDArray[np.float64]
+    load: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    race: str
+    cage_speed: float
+    residual: float
+    peak_pressure: float
+    balls: SimpleNamespace
+    life: SimpleNamespace | None
+    report: dict[str, Any]
+
+def equilibrium(
+    scene: Scene, gyroscopic: Literal["outer-race-control", "none", "friction"] = "outer-race-control"
+) -> Equilibrium: ...

@@ -1,0 +1,134 @@
+"""Runs and their results."""
+
+import json
+import math
+import re
+import sys
+
+import numpy as np
+
+from . import _native
+
+_BALL = re.compile(r"ball\[(\d+)\]\.(.*)")
+
+
+class Results:
+    """Histories of a run: arrays by name, with their units.
+
+    `results["friction_power"]` is a history; `results["inner.force"]` has its components x, y, z as columns, and
+    `results["ball.inner.load"]` one for each ball. `results.time` [s] are the times of all rows, `results.summary` is what
+    `roulement run --json` prints.
+    """
+
+    def __init__(self, names, table, summary):
+        self._places = {name: place for place, (name, _) in enumerate(names)}
+        self._table = table
+        self.units = dict(names)
+        """Unit of every column."""
+        self.summary = summary
+        """Figures, means with their intervals and whether they have settled, steps: a dictionary."""
+
+    @property
+    def names(self):
+        """Names of all columns, the time first."""
+        return list(self._places)
+
+    @property
+    def time(self):
+        """[s]"""
+        return self._table[:, 0]
+
+    def parts(self, name):
+        """Names of the columns of a quantity: itself, its components, or those of all balls."""
+        if name in self._places:
+            return [name]
+        if name.startswith("ball."):
+            of_balls = [f"ball[{ball}].{name[5:]}" for ball in range(1, 1 + self.balls)]
+            found = [of for of in of_balls if of in self._places]
+        else:
+            found = [of for of in (f"{name}.{axis}" for axis in "wxyz") if of in self._places]
+        if not found:
+            raise KeyError(f"{name} is no column; names are in `names`")
+        return found
+
+    @property
+    def balls(self):
+        """Number of balls that have columns."""
+        return max((int(found[1]) for found in map(_BALL.match, self._places) if found), default=0)
+
+    def __getitem__(self, name):
+        places = [self._places[of] for of in self.parts(name)]
+        return self._table[:, places[0]] if name in self._places else self._table[:, places]
+
+    def mean(self, quantity):
+        """Mean of a quantity over the second half of the run with its interval at 95 %, drift and whether it has settled, as a
+        dictionary. Names are those of means.csv, such as `friction power`."""
+        for mean in self.summary["means"]["quantities"]:
+            if mean["quantity"] == quantity:
+                return mean
+        raise KeyError(f"{quantity} has no mean; those there are: {[m['quantity'] for m in self.summary['means']['quantities']]}")
+
+    def __repr__(self):
+        rows, columns = self._table.shape
+        return f"Results({rows} rows, {columns} columns)"
+
+    def to_pandas(self):
+        """A pandas DataFrame over the time; units in `attrs["units"]`. Needs pandas."""
+        import pandas
+
+        frame = pandas.DataFrame(self._table[:, 1:], columns=self.names[1:], index=pandas.Index(self.time, name="time"))
+        frame.attrs["units"] = self.units
+        return frame
+
+    def to_polars(self):
+        """A polars DataFrame; units are in `units`. Needs polars."""
+        import polars
+
+        return polars.DataFrame({name: self._table[:, place] for name, place in self._places.items()})
+
+    def to_xarray(self):
+        """An xarray Dataset over `time`, with the dimension `ball` for quantities of balls; units in `attrs["units"]`. Needs
+        xarray."""
+        import xarray
+
+        of_balls, variables = {}, {}
+        for name in self.names[1:]:
+            found = _BALL.match(name)
+            if found:
+                of_balls.setdefault(f"ball.{found[2]}", name)
+            else:
+                variables[name] = (["time"], self[name], {"units": self.units[name]})
+        for name, column in of_balls.items():
+            values = self[name]
+            if values.shape[1] == self.balls:
+                variables[name] = (["time", "ball"], values, {"units": self.units[column]})
+        return xarray.Dataset(variables, {"time": ("time", self.time, {"units": "s"}), "ball": np.arange(1, 1 + self.balls)})
+
+    def to_parquet(self, path):
+        """Writes what `roulement run -o x.parquet` writes, units in the file's metadata."""
+        _native.write_parquet(str(path), list(self.units.items()), np.ascontiguousarray(self._table))
+
+
+def _bar(time, duration):
+    """One line of progress."""
+    done = time / duration
+    print(f"\rsimulated {time * 1e3:.3f} of {duration * 1e3:.3f} ms, {done:.0%}", end="", file=sys.stderr, flush=True)
+    if time >= duration:
+        print(file=sys.stderr)
+
+
+def run(scene, columns=(), window=(None, None), progress=None):
+    """Simulates a scene and returns its `Results`, with the same bits as `roulement run`.
+
+    `columns` are names with `*` for any characters, all if none is given; `window` the times [s] between which rows are kept.
+    `progress` is True for a line on standard error, or a function of time reached and duration [s]. With
+    `solver.accuracy = { error = ... }` in the scene it is run until its error is that small. Ctrl-C ends it.
+
+    Raises ValueError if a column is not there, RuntimeError if the bearing cannot be simulated.
+    """
+    begin, end = window
+    limits = (-math.inf if begin is None else float(begin), math.inf if end is None else float(end))
+    columns = [columns] if isinstance(columns, str) else list(columns)
+    names, table, summary = _native.run(scene._native, columns, limits, _bar if progress is True else progress or None)
+    array = np.frombuffer(table, dtype=float).reshape(-1, len(names))
+    return Results(names, array, json.loads(summary))

@@ -1,0 +1,99 @@
+"""Scenes: a bearing, its load and what is simulated."""
+
+import json
+import os
+import shutil
+import sys
+from pathlib import Path
+
+from . import _native
+from ._toml import flat, to_toml
+
+
+class Scene:
+    """A scene: a bearing, its load and what is simulated, as a scene file describes them. It does not change; `with_` gives
+    another one.
+
+    Raises ValueError where a key or value is wrong, with the key, the value and the allowed range.
+    """
+
+    def __init__(self, native):
+        self._native = native
+
+    @classmethod
+    def load(cls, path):
+        """Reads a scene file. Raises OSError if it cannot be read."""
+        return cls(_native.Scene.load(path))
+
+    @classmethod
+    def parse(cls, text):
+        """Reads a scene from its text in TOML."""
+        return cls(_native.Scene.parse(text))
+
+    def with_(self, settings=None, **sections):
+        """The scene with some keys changed, one after another.
+
+        Keys are those of the scene file, `{"load.x.force": "2 kN"}`, or sections, `load={"x": {"force": 2000.0}}`. Values are numbers
+        in SI, texts with a unit, lists for tables over time. None takes a key or a section out.
+        """
+        changes = [*flat(settings or {}), *flat(sections)]
+        texts = [(key, "" if value is None else to_toml(value)) for key, value in changes]
+        return Scene(self._native.edited(texts))
+
+    @property
+    def source(self):
+        """Its text in TOML."""
+        return self._native.source
+
+    @property
+    def title(self):
+        """Its title."""
+        return self._native.title
+
+    def notes(self):
+        """What its reader should know: defaults that were taken, values beyond any bearing."""
+        return self._native.notes()
+
+    def describe(self, name="bearing"):
+        """The model description of its package, XML."""
+        return self._native.describe(name)
+
+    def __repr__(self):
+        return f"Scene({self.title!r})"
+
+    def __reduce__(self):
+        return Scene.parse, (self.source,)
+
+
+def effects(scene):
+    """Which effects of a scene are on, and which that are off would matter: a dictionary with `settings` by effect and
+    `estimates`, a list with `subject`, `standing`, `matters`, `value`, `threshold`, `unit`, `sentence` and what to `write`."""
+    return json.loads(scene._native.effects())
+
+
+def find_library():
+    """The shared library of packages: that of the environment variable ROULEMENT_LIBRARY, or beside the program `roulement`."""
+    name = {"win32": "roulement.dll", "darwin": "libroulement.dylib"}.get(sys.platform, "libroulement.so")
+    program = os.environ.get("ROULEMENT_BIN") or shutil.which("roulement")
+    places = [os.environ.get("ROULEMENT_LIBRARY"), program and Path(program).with_name(name)]
+    for place in filter(None, places):
+        if Path(place).is_file():
+            return Path(place)
+    raise FileNotFoundError(
+        f"{name} is needed for packages and is not there: build it by `cargo build --release`, then name it by `library=` or by the "
+        "environment variable ROULEMENT_LIBRARY"
+    )
+
+
+def package(scene, path, library=None, name=None):
+    """Writes the FMI 2.0 package of a scene; returns its path.
+
+    `library` is the shared library, or a list with one for each platform; `name` that of the model, of the file if not given.
+    Raises OSError if a library is missing or of another platform.
+    """
+    if library is None:
+        library = [find_library()]
+    elif isinstance(library, (str, os.PathLike)):
+        library = [library]
+    _native.package(scene._native, Path(path), [Path(of) for of in library], name or Path(path).stem)
+    return Path(path)

@@ -1,0 +1,29 @@
+//! What the Python package `roulement` calls in Rust. Its users see the Python files beside it, which give arrays and names.
+
+#![allow(missing_docs)]
+// Arguments of Python come by value.
+#![allow(clippy::needless_pass_by_value)]
+
+mod arrays;
+mod contacts;
+mod failures;
+mod runs;
+mod scenes;
+mod simulations;
+mod sweeps;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::contacts::contact;
+    #[pymodule_export]
+    use crate::runs::{run, write_parquet};
+    #[pymodule_export]
+    use crate::scenes::{Scene, cost, package};
+    #[pymodule_export]
+    use crate::simulations::{Simulation, State};
+    #[pymodule_export]
+    use crate::sweeps::{Sweep, case_row};
+}

@@ -1,0 +1,42 @@
+"""The installed package beside the command line."""
+
+import csv
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+import roulement
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = Path(os.environ.get("ROULEMENT_BIN", ROOT / "target" / "release" / "roulement"))
+
+
+def program(*arguments, check=True):
+    """Runs the command line."""
+    return subprocess.run([PROGRAM, *map(str, arguments)], check=check, capture_output=True, text=True)
+
+
+def table_of(path):
+    """A CSV table as an array for each column, by name without unit."""
+    with open(path, newline="") as file:
+        header, *rows = csv.reader(file)
+    return {name.split(" [")[0]: column for name, column in zip(header, zip(*rows))}
+
+
+def bits(array):
+    """Numbers as integers: equal bits alone are equal."""
+    return np.ascontiguousarray(array, dtype=float).view(np.int64)
+
+
+@pytest.fixture
+def thrust():
+    """The thrust case, 2 ms of it."""
+    return roulement.Scene.load(ROOT / "scenes" / "thrust.toml").with_({"load.duration": "2 ms"})
+
+
+@pytest.fixture
+def posed(thrust):
+    """The same with the inner race in pose drive."""
+    return thrust.with_({"inner.drive": "pose"})

@@ -1,0 +1,73 @@
+"""Every example runs and says what it found; every block of the documents runs; stubs name what there is."""
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import PROGRAM, ROOT
+
+EXAMPLES = {
+    "first_run": ["axial stiffness", "friction power", "settled"],
+    "misalignment_map": ["rating life L10", "friction power"],
+    "two_bearing_shaft": ["tilt"],
+    "friction_map": ["kalker_table"],
+    "surrogate": ["largest error"],
+}
+ENVIRONMENT = {**os.environ, "ROULEMENT_BIN": str(PROGRAM)}
+
+
+def python(*arguments):
+    """Runs Python in the project's folder."""
+    ended = subprocess.run([sys.executable, *map(str, arguments)], cwd=ROOT, capture_output=True, text=True, env=ENVIRONMENT)
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout
+
+
+def test_all_examples_are_here_and_short():
+    files = list((ROOT / "examples" / "python").glob("*.py"))
+    assert {file.stem for file in files} == set(EXAMPLES)
+    assert all(len(file.read_text().splitlines()) < 40 for file in files)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_an_example_runs(name, tmp_path):
+    said = python(ROOT / "examples" / "python" / f"{name}.py", tmp_path)
+    assert all(part in said for part in EXAMPLES[name]), said
+    if name == "surrogate":
+        # Between 256 equilibria a smooth function of three displacements is known well.
+        assert float(re.search(r"error (\S+) of", said)[1]) < 0.02
+    if name == "misalignment_map":
+        # Misalignment and thrust take life by more than an order of magnitude.
+        low, high = map(float, re.search(r"revolutions\]: (\S+) to (\S+)", said).groups())
+        assert high > 10 * low > 0
+
+
+def test_blocks_of_the_document_run(tmp_path):
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "python.md").read_text(), re.DOTALL)
+    assert len(blocks) >= 5
+    script = tmp_path / "blocks.py"
+    script.write_text("\n".join(blocks).replace('"results/', f'"{tmp_path}/'))
+    python(script)
+
+
+def test_stubs_name_what_there_is():
+    import roulement
+
+    folder = Path(roulement.__file__).parent
+    assert (folder / "py.typed").exists()
+    for stub in folder.glob("*.pyi"):
+        module = stub.with_suffix(".py")
+        if not module.exists():
+            continue
+        names = lambda path: {
+            (node.name, of.name if of is not node else "")
+            for node in ast.parse(path.read_text()).body
+            if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and not node.name.startswith("_")
+            for of in ([node] if isinstance(node, ast.FunctionDef) else [node, *node.body])
+            if of is node or isinstance(of, ast.FunctionDef) and not of.name.startswith("_")
+        }
+        assert names(stub) == names(module), stub.name
