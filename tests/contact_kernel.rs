@@ -160,7 +160,9 @@ fn oiled() -> Model {
 fn in_oil(mut check: impl FnMut(&str, &ContactModel<'_>, &[f64; 18])) {
     let model = oiled();
     let laws = Laws::new();
-    for (name, law, bend) in laws.bounded().into_iter().flat_map(|(name, law)| [(name, law, None), (name, law, Some(100.0))]) {
+    for (name, law, bend) in
+        laws.bounded().into_iter().flat_map(|(name, law)| [(name, law, None), (name, law, Some(100.0))])
+    {
         for (race, lubrication) in [(Race::Inner, 1.0), (Race::Outer, 0.1), (Race::Inner, 1e-6)] {
             let conditions = Conditions { lubrication, ..Conditions::of_friction(0.08) };
             let mut contact = model.contact(race, &conditions);
@@ -197,10 +199,13 @@ fn invariant_films_have_exact_tangents() {
                 rows(&evaluate_contact(contact, &moved))
             };
             let (p1, m1, p2, m2) = (at(1.0), at(-1.0), at(2.0), at(-2.0));
-            let (relative, rounding) = if name.starts_with("kalker ") { (1e-4, 1e-11) } else { (1e-6, f64::EPSILON) };
+            let (relative, rounding) =
+                if name.starts_with("kalker ") { (1e-4, 1e-11) } else { (1e-6, f64::EPSILON) };
             for (k, row) in exact.iter().enumerate() {
                 let difference = (8.0 * (p1[k] - m1[k]) - (p2[k] - m2[k])) / (12.0 * step);
-                let largest = [0, 3, 6].map(|first| (first..first + 3).map(|k| row.derivatives[k].abs()).fold(0.0, f64::max))[(i / 3).min(2)];
+                let largest = [0, 3, 6]
+                    .map(|first| (first..first + 3).map(|k| row.derivatives[k].abs()).fold(0.0, f64::max))
+                    [(i / 3).min(2)];
                 let floor = 30.0 * rounding * row.value.abs().max(exact[0].value * 1e-3) / step;
                 let error = (difference - row.derivatives[i]).abs();
                 assert!(
@@ -237,7 +242,8 @@ fn invariant_films_act_and_react_and_lose_power() {
         };
         let lost = -done - elastic;
         assert!(
-            (lost - forces.friction_power).abs() < 1e-9 * (forces.friction_power + elastic.abs() + pressed.abs() + 1e-3),
+            (lost - forces.friction_power).abs()
+                < 1e-9 * (forces.friction_power + elastic.abs() + pressed.abs() + 1e-3),
             "{name}: {lost} {}",
             forces.friction_power
         );

@@ -80,7 +80,11 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
         ("film", 6, &["lubrication", "film.", "rolling_power."]),
         ("effects.hysteresis", 1, &["power.hysteresis"]),
         // With growth, whose temperatures are its outputs then.
-        ("effects.heat_balance", 12, &["clearance", "contact_angle.", "interference.", "seat_pressure.", "temperature_rise.", "heat."]),
+        (
+            "effects.heat_balance",
+            12,
+            &["clearance", "contact_angle.", "interference.", "seat_pressure.", "temperature_rise.", "heat."],
+        ),
     ];
     for effect in parse(OFF).effects.each() {
         let info = effect.info();
@@ -143,7 +147,15 @@ fn what_is_told_about_an_effect_is_complete_and_its_example_switches_it_on() {
         );
         // All others stay off, but for the creep law, which has a default.
         for (other, effect) in on.effects.each().iter().enumerate().skip(1) {
-            assert_eq!(effect.setting().is_some(), other == index, "{} by {}", effect.info().key, info.key);
+            // Growth follows the temperatures of the heat balance, which needs it.
+            let needed = (info.key, effect.info().key) == ("effects.heat_balance", "growth");
+            assert_eq!(
+                effect.setting().is_some(),
+                other == index || needed,
+                "{} by {}",
+                effect.info().key,
+                info.key
+            );
         }
         // The key is one of the scene file: no other would be read. A support is a section of a race.
         let (section, key, written) = match info.key.strip_prefix("effects.") {

@@ -49,7 +49,13 @@ fn curvatures(inner: bool) -> [f64; 2] {
 }
 
 /// A contact of the 6206 under a load [N], rolling [m/s], with what a test asks of its film at a slip [m/s].
-fn with_contact<T>(inner: bool, load: f64, speed: f64, slip: f64, of: impl FnOnce(&Film<'_>, &Loading<f64>) -> T) -> T {
+fn with_contact<T>(
+    inner: bool,
+    load: f64,
+    speed: f64,
+    slip: f64,
+    of: impl FnOnce(&Film<'_>, &Loading<f64>) -> T,
+) -> T {
     let [along, across] = curvatures(inner);
     let hertz = HertzContact::new(along, across, COMPLIANCE);
     let root = (load / hertz.stiffness).cbrt();
@@ -66,14 +72,24 @@ fn with_contact<T>(inner: bool, load: f64, speed: f64, slip: f64, of: impl FnOnc
 fn independent_data_films() {
     let mut seen = 0;
     for (inner, row) in rows(FILMS) {
-        let [along, across, load, speed, pressure, ellipticity, u, g, w, central, minimum, thermal, factor] = row[..] else {
+        let [along, across, load, speed, pressure, ellipticity, u, g, w, central, minimum, thermal, factor] =
+            row[..]
+        else {
             panic!("{row:?}")
         };
         assert_eq!(curvatures(inner), [along, across]);
         // Those of the bearing: balls of 9.525 mm in the bottom of grooves of 0.52 and 0.53 on 46 mm, with a clearance of 10 um.
-        let (ball, bottom) = (0.5 * 9.525e-3, if inner { 23e-3 - 2.5e-6 - 0.5 * 9.525e-3 } else { -(23e-3 + 2.5e-6 + 0.5 * 9.525e-3) });
+        let (ball, bottom) = (
+            0.5 * 9.525e-3,
+            if inner { 23e-3 - 2.5e-6 - 0.5 * 9.525e-3 } else { -(23e-3 + 2.5e-6 + 0.5 * 9.525e-3) },
+        );
         close(1.0 / ball + 1.0 / bottom, along, 1e-10, "curvature along");
-        close(1.0 / ball - 1.0 / (if inner { 0.52 } else { 0.53 } * 9.525e-3), across, 1e-10, "curvature across");
+        close(
+            1.0 / ball - 1.0 / (if inner { 0.52 } else { 0.53 } * 9.525e-3),
+            across,
+            1e-10,
+            "curvature across",
+        );
         close(VISCOSITY * speed * along / MODULUS, u, 1e-10, "U");
         close(OIL.pressure_viscosity * MODULUS, g, 1e-10, "G");
         close(load * along * along / MODULUS, w, 1e-10, "W");
@@ -194,11 +210,15 @@ fn published_viscosities_by_grade_and_temperature() {
         close(kinematic(grade, 40.0), grade, 1e-12, "at 40 degC");
     }
     // Viscosities at 100 degC of mineral oils with an index of 95 to 97, as data sheets have them, within 3 %.
-    for (grade, hot) in [(32.0, 5.4), (46.0, 6.8), (68.0, 8.7), (100.0, 11.1), (150.0, 14.7), (220.0, 19.0), (320.0, 24.1)] {
+    for (grade, hot) in
+        [(32.0, 5.4), (46.0, 6.8), (68.0, 8.7), (100.0, 11.1), (150.0, 14.7), (220.0, 19.0), (320.0, 24.1)]
+    {
         close(kinematic(grade, 100.0), hot, 0.03, "at 100 degC");
     }
     // Between grades as between their logarithms.
-    assert!(kinematic(57.0, 100.0) > kinematic(46.0, 100.0) && kinematic(57.0, 100.0) < kinematic(68.0, 100.0));
+    assert!(
+        kinematic(57.0, 100.0) > kinematic(46.0, 100.0) && kinematic(57.0, 100.0) < kinematic(68.0, 100.0)
+    );
     // The fall with temperature is the slope.
     let oil = Oil::Graded(68.0, 880.0);
     let slope = -(oil.viscosity(70.001).ln() - oil.viscosity(69.999).ln()) / 0.002;

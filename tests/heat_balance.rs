@@ -95,7 +95,8 @@ fn closed_form_conductance_of_passing_contacts() {
             let t = (f64::from(strip) + 0.5) / f64::from(strips) * 2.0 - 1.0;
             let time = 2.0 * a * (1.0 - t * t).sqrt() / surface;
             // Half of the difference at the surface: 2 k (1/2) root(time/(pi kappa)) J/(m2 K).
-            let through = conductivity * (time * density * heat / (conductivity * std::f64::consts::PI)).sqrt();
+            let through =
+                conductivity * (time * density * heat / (conductivity * std::f64::consts::PI)).sqrt();
             surface * through * 2.0 * b / f64::from(strips)
         })
         .sum();
@@ -104,12 +105,16 @@ fn closed_form_conductance_of_passing_contacts() {
 
 #[test]
 fn invariant_friction_is_what_parts_have_taken_up() {
-    let scene = scene(&[("growth.inner", "0.0"), ("effects.heat_balance", CLOSED), ("effects.damping", "0.0")]);
+    let scene =
+        scene(&[("growth.inner", "0.0"), ("effects.heat_balance", CLOSED), ("effects.damping", "0.0")]);
     let mut simulation = Simulation::new(&scene).unwrap();
     simulation.advance_scripted(0.02).unwrap();
     let outputs = simulation.outputs();
     let taken: f64 = outputs.warm.unwrap().rises.into_iter().zip(CAPACITIES).map(|(rise, c)| rise * c).sum();
-    assert!(outputs.dissipated > 0.1 && (taken / outputs.dissipated - 1.0).abs() < 1e-3, "{taken} {outputs:?}");
+    assert!(
+        outputs.dissipated > 0.1 && (taken / outputs.dissipated - 1.0).abs() < 1e-3,
+        "{taken} {outputs:?}"
+    );
     // Growth follows, and nothing is unaccounted for.
     let grown = simulation.state().grown.unwrap().warmth.rises;
     assert!(grown[0] > 0.1 && (grown[0] / outputs.warm.unwrap().rises[0] - 1.0).abs() < 1e-3, "{grown:?}");
@@ -137,7 +142,8 @@ fn temperatures_are_outputs_where_they_are_computed_and_oil_follows_them() {
 
 #[test]
 fn what_does_not_go_together_is_refused() {
-    let why = |changes: &[(&str, &str)]| Scene::edited(THRUST, changes.iter().copied()).unwrap_err().to_string();
+    let why =
+        |changes: &[(&str, &str)]| Scene::edited(THRUST, changes.iter().copied()).unwrap_err().to_string();
     assert!(why(&[("effects.heat_balance", "{}")]).contains("[growth]"));
     let table = [("growth.inner", "[[0, 0], [1, 20]]"), ("effects.heat_balance", "{}")];
     assert!(why(&table).contains("constants"));

@@ -36,7 +36,10 @@ fn identity_no_lubrication_is_the_dry_bearing_to_the_bit() {
         }
         let (dry, none) = (run(&scene(text, &[]), 5e-3), run(&scene(text, &oiled), 5e-3));
         let (dry, none) = (dry.state(), none.state());
-        assert_eq!((&dry.balls, &dry.energies, &dry.statistics), (&none.balls, &none.energies, &none.statistics));
+        assert_eq!(
+            (&dry.balls, &dry.energies, &dry.statistics),
+            (&none.balls, &none.energies, &none.statistics)
+        );
         assert_eq!(dry.bodies, none.bodies);
     }
 }
@@ -58,7 +61,12 @@ fn identity_an_importer_that_sets_lubrication_does_what_the_script_does() {
         set.advance(end).unwrap();
     }
     let (a, b) = (scripted.outputs(), set.outputs());
-    assert!((a.friction_power / b.friction_power - 1.0).abs() < 1e-3, "{} {}", a.friction_power, b.friction_power);
+    assert!(
+        (a.friction_power / b.friction_power - 1.0).abs() < 1e-3,
+        "{} {}",
+        a.friction_power,
+        b.friction_power
+    );
     // Out of range it is refused with its name.
     let variables = Variables::new(set.scene());
     let inputs = set.scripted_inputs(0.0);
@@ -103,7 +111,8 @@ fn loss_of_lubrication_takes_the_clearance() {
     };
     let [oiled, dry, end] = [0.004, 0.022, 0.05].map(&mut at);
     let clearance = |o: &Outputs| o.growth.unwrap().clearance;
-    let rolling = |o: &Outputs| o.contact_power(|ball| ball.inner.film.rolling_power + ball.outer.film.rolling_power);
+    let rolling =
+        |o: &Outputs| o.contact_power(|ball| ball.inner.film.rolling_power + ball.outer.film.rolling_power);
     assert!(clearance(&oiled) > 5e-6 && clearance(&end) < 0.0, "{} {}", clearance(&oiled), clearance(&end));
     assert!(rolling(&oiled) > 20.0 && rolling(&dry) == 0.0, "{}", rolling(&oiled));
     // Groove slip and spin take over what the oil carried.
@@ -115,7 +124,8 @@ fn loss_of_lubrication_takes_the_clearance() {
 
 #[test]
 fn what_does_not_go_together_is_refused() {
-    let why = |changes: &[(&str, &str)]| Scene::edited(THRUST, changes.iter().copied()).unwrap_err().to_string();
+    let why =
+        |changes: &[(&str, &str)]| Scene::edited(THRUST, changes.iter().copied()).unwrap_err().to_string();
     for (changes, part) in [
         (vec![("film", "{}")], "iso_vg"),
         (vec![("film.iso_vg", "68.0")], "temperature"),
@@ -159,7 +169,11 @@ fn regression_map_of_skidding() {
         .into_iter()
         .map(|thrust| {
             let slips = speeds.map(|speed| 100.0 * ball_slip(thrust, speed, true));
-            row(format!("{thrust}"), slips.map(|slip| count((10.0 * slip).round() / 10.0 + 0.0, 1)).into(), " %")
+            row(
+                format!("{thrust}"),
+                slips.map(|slip| count((10.0 * slip).round() / 10.0 + 0.0, 1)).into(),
+                " %",
+            )
         })
         .collect();
     compare("docs/oil.md", "skid", "thrust \\[N] | slip at 5000 / 10,000 / 15,000 / 20,000 rpm", &rows);

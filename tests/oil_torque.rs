@@ -149,7 +149,8 @@ fn ours(&(bearing, radial, axial, speed, viscosity): &Point) -> [f64; 2] {
         simulation.advance_scripted(duration * f64::from(point) / f64::from(points)).unwrap();
         if point > points {
             let outputs = simulation.outputs();
-            let of_balls: f64 = outputs.contact_power(|ball| ball.inner.film.rolling_power + ball.outer.film.rolling_power);
+            let of_balls: f64 =
+                outputs.contact_power(|ball| ball.inner.film.rolling_power + ball.outer.film.rolling_power);
             torque += outputs.friction_torque.abs();
             rolling += of_balls / scene.load.inner_speed.at(0.0);
         }

@@ -60,6 +60,7 @@ impl Flight {
             statistics: Statistics::default(),
             grown: None,
             rating: None,
+            warm: None,
             heat: None,
             orientations: None,
         };

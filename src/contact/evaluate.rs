@@ -144,7 +144,13 @@ impl ContactModel<'_> {
     pub fn film_loading(&self, contact: &BallRaceContact<f64>) -> Loading<f64> {
         let of_race = contact.geometry.circumferential_curvature;
         let depth = contact.geometry.approach.max(0.0);
-        loading(&self.shape.at(of_race), self.curvature_along(of_race), depth, contact.load, &contact.rolling_state())
+        loading(
+            &self.shape.at(of_race),
+            self.curvature_along(of_race),
+            depth,
+            contact.load,
+            &contact.rolling_state(),
+        )
     }
 
     /// A contact that carries its normal load alone.
@@ -278,7 +284,8 @@ impl ContactModel<'_> {
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
         let curvature = geometry.circumferential_curvature;
-        let (theory, film) = self.theory::<S, SHAPED>(&shape, curvature, [depth, root], load.total, &rolling.state());
+        let (theory, film) =
+            self.theory::<S, SHAPED>(&shape, curvature, [depth, root], load.total, &rolling.state());
         let oblique = self.across.is_some() && is_oblique(rolling.speed, rolling.speed_across);
         let mut creep = theory.forces(self.law, &rolling.creepage);
         if (MIXED || SHAPED && oblique)
@@ -394,9 +401,9 @@ fn loading<S: Scalar>(
 ) -> Loading<S> {
     let RollingState { speed, creepage, .. } = rolling;
     let area = (shape.semi_axis_rolling * shape.semi_axis_transverse * depth).scale(PI);
-    let bent = creepage.curvature.map_or(S::zero(), |curvature| {
-        curvature * shape.semi_axis_transverse.square() * depth * *speed
-    });
+    let bent = creepage
+        .curvature
+        .map_or(S::zero(), |curvature| curvature * shape.semi_axis_transverse.square() * depth * *speed);
     let slip = slip_of(
         [creepage.longitudinal * *speed, creepage.lateral * *speed],
         (creepage.spin * *speed, shape.mean_semi_axis * depth.sqrt()),

@@ -200,7 +200,8 @@ impl<S: Scalar> Surfaces<S> {
         let along = x * rolling.cosine + y * (rolling.speed_across * per_speed);
         let tangential = along * (force * (S::one() - ball_share.scale(2.0)));
         // The arm of the couple: the ball's radius times its share of the curvatures is the radius of both together.
-        let couple = cross(&arm, &along) * (force * ball_share.scale(2.0)) + cross(&self.normal, &along) * moment;
+        let couple =
+            cross(&arm, &along) * (force * ball_share.scale(2.0)) + cross(&self.normal, &along) * moment;
         wrench.force += tangential;
         wrench.ball_moment += couple + cross(&arm, &tangential);
         wrench.other_moment -= couple + cross(&other_arm, &tangential);

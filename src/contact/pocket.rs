@@ -174,7 +174,8 @@ impl PocketModel {
         // creep forces of the ball on the cage, in the contact frame: x along the pocket
         let x = if self.sphere_circle.is_some() { across(&normal, &axis, &cage.axes[0]) } else { axis };
         let rolling = surfaces.rolling(x, None);
-        let theory = LinearTheory::new(&shape, [approach, root], load.total.scale(self.friction), rolling.cosine);
+        let theory =
+            LinearTheory::new(&shape, [approach, root], load.total.scale(self.friction), rolling.cosine);
         let creep = theory.forces(Law::Saturated, &rolling.creepage);
 
         let wrench = surfaces.wrench(&rolling, load.total, &creep);

@@ -4,18 +4,12 @@ use crate::contact::pair::PairForces;
 use crate::effects::heat::ByContact;
 use crate::effects::heat_balance::Heating;
 use crate::forces::{BallPair, Pairs};
-use crate::model::{Conditions, Model};
 use crate::model::bodies::{Body, Race};
 use crate::model::state::State;
+use crate::model::{Conditions, Model};
 
 /// Takes over the pairs at the end of a step of `h` \[s], or of a state that no step has led to.
-pub fn record(
-    model: &Model,
-    state: &mut State,
-    pairs: &impl Pairs,
-    conditions: &Conditions,
-    h: Option<f64>,
-) {
+pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, conditions: &Conditions, h: Option<f64>) {
     let (balls, spins) = (state.balls.len(), Race::BOTH.map(|race| state.race(race).rate.x));
     if let (Some(rating), Some(sums)) = (&model.rating, &mut state.rating) {
         let loads = (0..balls).map(|ball| loads_of(pairs.of_ball(ball)));

@@ -257,26 +257,35 @@ impl Effect for Settings {
         adds: "temperatures of rings, balls, shaft and housing from the heat of friction, which [growth] and the oil of [film] follow",
         states: "rises of temperature of five parts",
         source: "lumped heat balance; contacts after Carslaw and Jaeger 1959, seats after ISO 15312",
-        price: "PRICE",
-        example: "[effects.heat_balance]\n[growth]\n",
+        price: "8 % of a step (thrust case), growth among them",
+        example: "[effects]\nheat_balance = {}\n[growth]\n",
     };
 
     const NUMBERS: &'static [Number<Self>] = &[
-        Number::fixed("effects.heat_balance.inner_capacity", CAPACITY, "heat capacity of the inner ring", |s| {
-            of(s, |section| section.inner_capacity.as_mut())
-        }),
-        Number::fixed("effects.heat_balance.outer_capacity", CAPACITY, "heat capacity of the outer ring", |s| {
-            of(s, |section| section.outer_capacity.as_mut())
-        }),
+        Number::fixed(
+            "effects.heat_balance.inner_capacity",
+            CAPACITY,
+            "heat capacity of the inner ring",
+            |s| of(s, |section| section.inner_capacity.as_mut()),
+        ),
+        Number::fixed(
+            "effects.heat_balance.outer_capacity",
+            CAPACITY,
+            "heat capacity of the outer ring",
+            |s| of(s, |section| section.outer_capacity.as_mut()),
+        ),
         Number::fixed("effects.heat_balance.balls_capacity", CAPACITY, "heat capacity of all balls", |s| {
             of(s, |section| section.balls_capacity.as_mut())
         }),
         Number::fixed("effects.heat_balance.shaft_capacity", CAPACITY, "heat capacity of the shaft", |s| {
             of(s, |section| section.shaft_capacity.as_mut())
         }),
-        Number::fixed("effects.heat_balance.housing_capacity", CAPACITY, "heat capacity of the housing", |s| {
-            of(s, |section| section.housing_capacity.as_mut())
-        }),
+        Number::fixed(
+            "effects.heat_balance.housing_capacity",
+            CAPACITY,
+            "heat capacity of the housing",
+            |s| of(s, |section| section.housing_capacity.as_mut()),
+        ),
         Number::fixed(
             "effects.heat_balance.specific_heat",
             Range::closed(10.0, 1e4, "J/(kg.K)"),
@@ -289,9 +298,12 @@ impl Effect for Settings {
             "thermal conductivity of rings and balls",
             |s| of(s, |section| Some(&mut section.conductivity)),
         ),
-        Number::fixed("effects.heat_balance.inner_shaft", CONDUCTANCE, "conductance between inner ring and shaft", |s| {
-            of(s, |section| section.inner_shaft.as_mut())
-        }),
+        Number::fixed(
+            "effects.heat_balance.inner_shaft",
+            CONDUCTANCE,
+            "conductance between inner ring and shaft",
+            |s| of(s, |section| section.inner_shaft.as_mut()),
+        ),
         Number::fixed(
             "effects.heat_balance.outer_housing",
             CONDUCTANCE,
@@ -310,9 +322,12 @@ impl Effect for Settings {
             "conductance between housing and surroundings",
             |s| of(s, |section| Some(&mut section.housing_surroundings)),
         ),
-        Number::fixed("effects.heat_balance.oil", CONDUCTANCE, "conductance between each part and the oil", |s| {
-            of(s, |section| Some(&mut section.oil))
-        }),
+        Number::fixed(
+            "effects.heat_balance.oil",
+            CONDUCTANCE,
+            "conductance between each part and the oil",
+            |s| of(s, |section| Some(&mut section.oil)),
+        ),
         Number::fixed(
             "effects.heat_balance.surroundings",
             RISE,
@@ -339,7 +354,8 @@ impl Effect for Settings {
         }
         let key = "effects.heat_balance";
         if !setup.grows {
-            let why = "it needs a section [growth], whose rises of temperature it computes from those given on";
+            let why =
+                "it needs a section [growth], whose rises of temperature it computes from those given on";
             return Err(SceneError::conflict(key, why));
         }
         if setup.rises_follow_time {
@@ -366,7 +382,8 @@ impl Effect for Settings {
             name: "heat.out".into(),
             unit: WATT,
             nominal: 10.0,
-            description: "heat that goes out to the surroundings, to the oil and to parts as warm as these".into(),
+            description: "heat that goes out to the surroundings, to the oil and to parts as warm as these"
+                .into(),
             get: Getter::new(|reports| reports.warm.map_or(0.0, |warm| warm.out)),
         });
         rows

@@ -28,7 +28,7 @@ impl Effect for Settings {
         adds: "elastic hysteresis of rolling: a moment against rolling in every contact of balls and races",
         states: "none",
         source: "Houpert 1999; for bearing steel",
-        price: "PRICE",
+        price: "24 % of a step (thrust case)",
         example: "[effects]\nhysteresis = true\n",
     };
 
@@ -38,12 +38,14 @@ impl Effect for Settings {
 
     fn rows(&self) -> Vec<Row> {
         let power = |ball: &BallOutput| ball.inner.hysteresis_power + ball.outer.hysteresis_power;
-        let row = || Row {
+        let row = || {
+            Row {
             name: "power.hysteresis".into(),
             unit: WATT,
             nominal: 1.0,
             description: "power lost to the hysteresis of rolling in all contacts with the races, part of the friction power".into(),
             get: Getter::new(move |reports| reports.balls.iter().map(power).fold(0.0, |sum, power| sum + power)),
+        }
         };
         if self.on { vec![row()] } else { vec![] }
     }

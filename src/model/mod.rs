@@ -152,7 +152,8 @@ impl Model {
         let heat_balance =
             scene.effects.heat_balance.balance(&scene.bearing, &scene.ball, &scene.race, passing);
         let films = scene.effects.film.section.as_ref().and_then(|section| {
-            let races = Race::BOTH.map(|race| bearing.raceway_film(race, &raceways[race].shape, section.lubricant()));
+            let races =
+                Race::BOTH.map(|race| bearing.raceway_film(race, &raceways[race].shape, section.lubricant()));
             let sizes = [bearing.pitch_diameter, 2.0 * bearing.ball.radius];
             scene.effects.film.films(races, sizes, scene.bearing.contact_angle.is_some())
         });
@@ -237,12 +238,9 @@ impl Model {
             groove_bend: raceway.groove_bend,
             friction: conditions.friction,
             hysteresis: self.hysteresis[race],
-            film: self
-                .films
-                .as_ref()
-                .and_then(|films| {
-                    films.film(race as usize, conditions.lubrication, &conditions.warmth, conditions.friction)
-                }),
+            film: self.films.as_ref().and_then(|films| {
+                films.film(race as usize, conditions.lubrication, &conditions.warmth, conditions.friction)
+            }),
             damping: self.damping,
         }
     }

@@ -8,9 +8,9 @@ use super::slip::{RollingOrbit, orbital_speed};
 use crate::contact::{BallRaceContact, ContactModel, RaceMotion};
 use crate::dynamics::power_lost_around;
 use crate::effects::Reports;
-use crate::effects::moving_frame::FrameMotion;
 use crate::effects::film;
 use crate::effects::heat_balance::Warm;
+use crate::effects::moving_frame::FrameMotion;
 use crate::effects::reports::FilmOutput;
 use crate::effects::reports::Frequencies;
 use crate::effects::reports::GrowthOutput;
@@ -377,7 +377,11 @@ pub(super) fn towards_x(contact: &BallRaceContact<f64>, axis: &Vector3<f64>) -> 
 }
 
 /// The same with what acts against rolling.
-fn resisted(model: &ContactModel<'_>, contact: &BallRaceContact<f64>, output: ContactOutput) -> ContactOutput {
+fn resisted(
+    model: &ContactModel<'_>,
+    contact: &BallRaceContact<f64>,
+    output: ContactOutput,
+) -> ContactOutput {
     let loading = model.film_loading(contact);
     let film = model.film.map_or(FilmOutput::default(), |of| film::output(&of, &loading));
     let hysteresis_power = model.hysteresis_moment(contact.load) * loading.speed * loading.curvature;

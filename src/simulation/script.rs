@@ -165,7 +165,11 @@ impl Script {
     /// Does it give anything that an importer could have given, or a motion of a race without a body?
     pub fn gives_inputs(&self) -> bool {
         let of_race = |race: Race| self.loads[race] || self.speeds[race] || self.motions[race];
-        self.friction || self.lubrication || self.temperatures || self.frame || Race::BOTH.into_iter().any(of_race)
+        self.friction
+            || self.lubrication
+            || self.temperatures
+            || self.frame
+            || Race::BOTH.into_iter().any(of_race)
     }
 
     /// \[s] times within a step at which a table bends, growing, not closer to one another or to the ends than `least`.

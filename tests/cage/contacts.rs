@@ -168,8 +168,10 @@ fn identity_derivatives_of_both_contacts_agree_with_differences() {
             velocity: constant_vector(&race.velocity),
             angular_velocity: constant_vector(&race.angular_velocity),
         };
-        let at = |t: f64| land.evaluate(&lift(&cage, t, change(k + 20)), &race, land.positions[1], oil).unwrap();
-        let exact = land.evaluate(&lift(&cage, t, change(k + 20)), &fixed(&race), land.positions[1], oil).unwrap();
+        let at =
+            |t: f64| land.evaluate(&lift(&cage, t, change(k + 20)), &race, land.positions[1], oil).unwrap();
+        let exact =
+            land.evaluate(&lift(&cage, t, change(k + 20)), &fixed(&race), land.positions[1], oil).unwrap();
         compare(exact, [at(h), at(-h)], h);
         assert!(pocket.evaluate(&ball, &lift(&cage, 0.0, still), DIRECTION, 0.0).is_some());
     }

@@ -42,9 +42,11 @@ fn unloaded_balls_in_oil() {
 #[test]
 fn cold_start() {
     let changes = ramp(30.0, "[[0.0, 0.0], [0.02, \"3000 rpm\"]]", THRUST) + COLD;
-    let run = Case::new("cold start in oil of 1 Pa s", scene(ANGULAR, &changes), limits(4000, 10, 10, 3.0)).pass();
+    let run =
+        Case::new("cold start in oil of 1 Pa s", scene(ANGULAR, &changes), limits(4000, 10, 10, 3.0)).pass();
     // Rolling resistance is most of the torque.
-    let rolling = run.last().contact_power(|ball| ball.inner.film.rolling_power + ball.outer.film.rolling_power);
+    let rolling =
+        run.last().contact_power(|ball| ball.inner.film.rolling_power + ball.outer.film.rolling_power);
     assert!(rolling > 0.4 * run.last().friction_power, "{rolling} {}", run.last().friction_power);
 }
 
@@ -69,7 +71,8 @@ fn skidding_and_recovery() {
 
 #[test]
 fn oil_lost_within_a_step() {
-    let lost = "[film]\niso_vg = 68\ntemperature = 70.0\nlubrication = [[0.0, 1.0], [0.01, 1.0], [0.010001, 0.0]]\n";
+    let lost =
+        "[film]\niso_vg = 68\ntemperature = 70.0\nlubrication = [[0.0, 1.0], [0.01, 1.0], [0.010001, 0.0]]\n";
     let scene = scene(ANGULAR, &(load(20.0, 6000.0, THRUST) + lost));
     let run = Case::new("oil lost within a microsecond", scene, limits(3000, 10, 10, 3.0)).pass();
     assert_eq!(run.last().balls[0].inner.film.ratio, 0.0);

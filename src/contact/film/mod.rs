@@ -203,11 +203,8 @@ impl Film<'_> {
                 speed: logarithms.speed + S::constant(std::f64::consts::LN_2),
                 half_width: area.sqrt() * curvature,
             };
-            let heated = if lubricant.inlet_heating {
-                rolling::inlet_factor(logarithms.heat)
-            } else {
-                S::one()
-            };
+            let heated =
+                if lubricant.inlet_heating { rolling::inlet_factor(logarithms.heat) } else { S::one() };
             let factor = self.supply.lubrication * self.supply.replenishment * modulus;
             (inlet.rolling_force(ellipse) * heated / curvature.square()).scale(factor)
         } else {

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::thickness::Ellipse;
 use super::exp;
+use super::thickness::Ellipse;
 use crate::numerics::scalar::Scalar;
 
 /// What follows from the shape of the ellipse alone.

@@ -96,12 +96,7 @@ impl Settings {
     }
 
     /// The films of contacts on both races, of a pitch and a ball diameter \[m], with or without a contact angle.
-    pub fn films(
-        &self,
-        races: [RacewayFilm; 2],
-        [pitch, ball]: [f64; 2],
-        angular: bool,
-    ) -> Option<Films> {
+    pub fn films(&self, races: [RacewayFilm; 2], [pitch, ball]: [f64; 2], angular: bool) -> Option<Films> {
         let section = self.section.as_ref()?;
         let usual = Outline::usual(pitch, ball);
         let bore = section.bore.map_or(usual.bore, |bore| bore.0) * 1e3;
@@ -158,6 +153,7 @@ pub fn output(film: &Film<'_>, loading: &Loading<f64>) -> FilmOutput {
 }
 
 type FromContact = fn(&FilmOutput) -> f64;
+type OfRace = fn(&BallOutput) -> &ContactOutput;
 
 /// Outputs of every contact.
 const CONTACT_ROWS: [(&str, Unit, f64, &str, FromContact); 4] = [
@@ -170,7 +166,7 @@ const CONTACT_ROWS: [(&str, Unit, f64, &str, FromContact); 4] = [
 ];
 
 /// Films of all loaded contacts with a race.
-fn films<'a>(reports: &'a Reports<'_>, of: fn(&BallOutput) -> &ContactOutput) -> impl Iterator<Item = &'a FilmOutput> {
+fn films<'a>(reports: &'a Reports<'_>, of: OfRace) -> impl Iterator<Item = &'a FilmOutput> {
     reports.balls.iter().map(of).filter(|contact| contact.load > 0.0).map(|contact| &contact.film)
 }
 
@@ -188,7 +184,7 @@ impl Effect for Settings {
                `lubrication` from full films to none",
         states: "none",
         source: "Hamrock and Dowson 1977; Gupta and others 1992; Roelands 1966; Johnson and Tevaarwerk 1977; Biboulet and Houpert 2010",
-        price: "PRICE",
+        price: "35 % of a step with the default law (thrust case; 49 % in scenes/radial.toml), 80 % with saturated",
         example: "[film]\niso_vg = 68\ntemperature = \"70 degC\"\n",
     };
     const ESTIMATE: &'static str = "least film over the roughness, and power of rolling resistance over that of dry friction; ISO VG 68 at 40 degC where it is off";
@@ -247,19 +243,45 @@ impl Effect for Settings {
             description: description.into(),
             get,
         };
-        let power = |of: fn(&BallOutput) -> &ContactOutput| {
+        let power = |of: OfRace| {
             Getter::new(move |reports| films(reports, of).map(|film| film.rolling_power).sum::<f64>() + 0.0)
         };
         vec![
-            row("film.ratio", ONE, 1.0, "least film over the roughness, of all loaded contacts", Getter::new(least_ratio)),
-            row("film.viscosity.inner", PASCAL_SECOND, 0.01, "viscosity of the oil at the inner race", Getter::new(|reports| {
-                reports.oil.map_or(0.0, |oil| oil[0])
-            })),
-            row("film.viscosity.outer", PASCAL_SECOND, 0.01, "viscosity of the oil at the outer race", Getter::new(|reports| {
-                reports.oil.map_or(0.0, |oil| oil[1])
-            })),
-            row("rolling_power.inner", WATT, 10.0, "power of rolling resistance on the inner race, part of the friction power", power(|ball| &ball.inner)),
-            row("rolling_power.outer", WATT, 10.0, "power of rolling resistance on the outer race, part of the friction power", power(|ball| &ball.outer)),
+            row(
+                "film.ratio",
+                ONE,
+                1.0,
+                "least film over the roughness, of all loaded contacts",
+                Getter::new(least_ratio),
+            ),
+            row(
+                "film.viscosity.inner",
+                PASCAL_SECOND,
+                0.01,
+                "viscosity of the oil at the inner race",
+                Getter::new(|reports| reports.oil.map_or(0.0, |oil| oil[0])),
+            ),
+            row(
+                "film.viscosity.outer",
+                PASCAL_SECOND,
+                0.01,
+                "viscosity of the oil at the outer race",
+                Getter::new(|reports| reports.oil.map_or(0.0, |oil| oil[1])),
+            ),
+            row(
+                "rolling_power.inner",
+                WATT,
+                10.0,
+                "power of rolling resistance on the inner race, part of the friction power",
+                power(|ball| &ball.inner),
+            ),
+            row(
+                "rolling_power.outer",
+                WATT,
+                10.0,
+                "power of rolling resistance on the outer race, part of the friction power",
+                power(|ball| &ball.outer),
+            ),
         ]
     }
 
@@ -267,9 +289,8 @@ impl Effect for Settings {
         if self.section.is_none() {
             return vec![];
         }
-        let races: [(&str, fn(&BallOutput) -> &ContactOutput); 2] =
-            [("inner", |ball| &ball.inner), ("outer", |ball| &ball.outer)];
-        let of_race = |(race, of): (&str, fn(&BallOutput) -> &ContactOutput)| {
+        let races: [(&str, OfRace); 2] = [("inner", |ball| &ball.inner), ("outer", |ball| &ball.outer)];
+        let of_race = |(race, of): (&str, OfRace)| {
             CONTACT_ROWS.map(|(quantity, unit, nominal, what, get)| {
                 let description = format!("{what} of ball {} and the {race} race", ball + 1);
                 let name = format!("{race}.{quantity}");

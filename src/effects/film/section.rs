@@ -4,14 +4,18 @@ use serde::Deserialize;
 
 use super::Settings;
 use crate::effects::effect::Setup;
+use crate::schema::SceneError;
 use crate::schema::numbers::{Number, Place, Range};
 use crate::schema::schedule::{self, Schedule};
-use crate::schema::SceneError;
 use crate::schema::units::{Celsius, Density, Length, Pressure, PressureViscosity, Ratio, Viscosity};
 
 /// Oil, surfaces, and what of them is simulated.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(default, deny_unknown_fields, expecting = "a table such as { iso_vg = 68, temperature = \"70 degC\" }")]
+#[serde(
+    default,
+    deny_unknown_fields,
+    expecting = "a table such as { iso_vg = 68, temperature = \"70 degC\" }"
+)]
 pub struct Section {
     /// [-] 1 where films are full, 0 where surfaces are dry; constant or a table over time, and an input of a package.
     #[serde(deserialize_with = "schedule::deserialize::<Ratio, _>")]
@@ -210,7 +214,10 @@ impl Section {
             _ => {}
         }
         if self.cold_temperature.is_some() && !setup.grows {
-            return conflict("film.cold_temperature", "it needs a section [growth], whose temperatures come to it");
+            return conflict(
+                "film.cold_temperature",
+                "it needs a section [growth], whose temperatures come to it",
+            );
         }
         if self.viscosity.is_some() && self.temperature.or(self.cold_temperature).is_some() {
             return conflict("film.viscosity", "a viscosity is given as it is: without a temperature");
@@ -224,7 +231,10 @@ impl Section {
             return conflict("film.cage", "it needs a cage: effects.cage = true with a section [cage]");
         }
         if !setup.saturates {
-            return conflict("film", "a film limits friction: effects.creep must be a law that has a limit, such as \"kalker_table\"");
+            return conflict(
+                "film",
+                "a film limits friction: effects.creep must be a law that has a limit, such as \"kalker_table\"",
+            );
         }
         Ok(())
     }

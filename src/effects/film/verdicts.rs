@@ -69,14 +69,15 @@ pub fn of(section: Option<&Section>, estimate: &Estimate) -> Vec<Verdict> {
     let power: f64 = rolls
         .clone()
         .map(|contact| {
-            oil.of(contact, estimate.modulus, |film, loading| 2.0 * film.forces(loading).rolling_force * loading.speed)
+            oil.of(contact, estimate.modulus, |film, loading| {
+                2.0 * film.forces(loading).rolling_force * loading.speed
+            })
         })
         .sum();
     let inner = rolls.filter(|contact| contact.race == 0);
     let most = inner.max_by(|a, b| a.load.total_cmp(&b.load));
-    let ratio = most.map_or(0.0, |contact| {
-        oil.of(contact, estimate.modulus, |film, loading| film.ratio(loading))
-    });
+    let share = |film: &Film<'_>, loading: &Loading<f64>| film.ratio(loading);
+    let ratio = most.map_or(0.0, |contact| oil.of(contact, estimate.modulus, share));
     let name = &oil.name;
     let write = "[film] with iso_vg and temperature of the oil";
     let verdict = |subject, share, sentence| Verdict {
@@ -95,8 +96,12 @@ pub fn of(section: Option<&Section>, estimate: &Estimate) -> Vec<Verdict> {
     );
     let dry = estimate.friction_power();
     let share = power / dry.max(f64::MIN_POSITIVE);
-    let resistance =
-        format!("{} W ({name}), {} times the dry friction power of {} W", digits(power), digits(share), digits(dry));
+    let resistance = format!(
+        "{} W ({name}), {} times the dry friction power of {} W",
+        digits(power),
+        digits(share),
+        digits(dry)
+    );
     let mut verdicts = vec![verdict("film", (ratio, MIXED[0]), film)];
     if dry > 0.0 {
         verdicts.push(verdict("rolling resistance", (share, estimate.threshold), resistance));
