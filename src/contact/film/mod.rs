@@ -206,7 +206,9 @@ impl Film<'_> {
             let heated =
                 if lubricant.inlet_heating { rolling::inlet_factor(logarithms.heat) } else { S::one() };
             let factor = self.supply.lubrication * self.supply.replenishment * modulus;
-            (inlet.rolling_force(ellipse) * heated / curvature.square()).scale(factor)
+            let force = (inlet.rolling_force(ellipse) * heated / curvature.square()).scale(factor);
+            // Not even that of the area above.
+            force.where_positive(load, S::zero())
         } else {
             S::zero()
         };
