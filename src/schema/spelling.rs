@@ -107,7 +107,13 @@ pub(super) fn calculable(plain: &str) -> String {
         word.clear();
         text.push(sign);
     }
-    if text.trim_start().starts_with('/') { format!("1 {text}") } else { text }.trim().to_string()
+    let text = text.trim();
+    match text {
+        _ if text.starts_with('/') => format!("(1 {text})"),
+        // "1 1/K" would be a mixed number.
+        _ if text.starts_with("1/") => format!("({text})"),
+        _ => text.to_string(),
+    }
 }
 
 /// A plain unit as one of angular velocity: revolutions per minute in all spellings, and angles over time. None for what

@@ -198,7 +198,7 @@ quantities! {
     /// \[degC] temperature, with a zero that depends on the unit: nothing but viscosities follows it.
     Celsius = "degC", "a temperature", ["70 degC", "343.15 K"];
     /// [1/Pa]
-    PressureViscosity = "1/Pa", "a growth of viscosity with pressure", ["2.2e-8 1/Pa", "2.2e-8 Pa^-1"];
+    PressureViscosity = "1/Pa", "a growth of viscosity with pressure", ["22 1/GPa", "2.2e-8 1/Pa"];
     /// [1/K]
     ThermalExpansion = "1/K", "a coefficient of thermal expansion", ["12e-6 1/K", "0.012 1/kK"];
 }
@@ -217,7 +217,12 @@ mod tests {
         assert_eq!(parse::<Length>("10 um"), Ok(1e-5));
         assert_eq!([parse::<Celsius>("70 degC"), parse::<Celsius>("343.15 K")], [Ok(70.0), Ok(70.0)]);
         assert!(parse::<Celsius>("70 F").unwrap_err().contains("write degC or K"));
-        assert_eq!(["2.2e-8 1/Pa", "2.2e-8 Pa^-1"].map(parse::<PressureViscosity>), [Ok(2.2e-8), Ok(2.2e-8)]);
+        for text in ["22 1/GPa", "2.2e-8 1/Pa", "2.2e-8 Pa^-1", "2.2e-8 / Pa"] {
+            assert!((parse::<PressureViscosity>(text).unwrap() / 2.2e-8 - 1.0).abs() < 1e-15, "{text}");
+        }
+        for text in ["12e-6 1/K", "0.012 1/kK"] {
+            assert!((parse::<ThermalExpansion>(text).unwrap() / 12e-6 - 1.0).abs() < 1e-15, "{text}");
+        }
         assert_eq!(parse::<Pressure>("206 GPa"), Ok(206e9));
         assert_eq!(parse::<Force>("1.5 kN"), Ok(1500.0));
         assert_eq!(parse::<Moment>("2 N.m"), Ok(2.0));
