@@ -78,7 +78,7 @@ impl<S: Scalar> LinearTheory<S> {
     /// cubic of [`saturation`] gives that at an argument of `3 (1 - (1 + r)^(-1/3))`: by that much the bodies seem more compliant. A
     /// share of 0, as that of a dry contact or of one that slides in full, leaves them as they are.
     #[inline(always)]
-    pub(super) fn in_series(self, creepage: &Creepage<S>, viscous_share: S) -> Self {
+    pub fn in_series(self, creepage: &Creepage<S>, viscous_share: S) -> Self {
         let linear = self.linear(creepage);
         let (per_force, per_moment) = self.per_limits();
         let (x, y) = (linear.longitudinal * per_force, linear.lateral * per_force);

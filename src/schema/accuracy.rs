@@ -30,7 +30,7 @@ pub struct Solver {
     /// matrix for every correction, 1 keeps one until it no longer lowers the residual.
     pub matrix_reuse: f64,
     /// [-] part of the energy that a run puts in, takes out or loses which it may leave unaccounted for: steps that would leave more are
-    /// taken again, shorter; 0 does not look at energy. As a default [`USUAL_ENERGY_ERROR`], and 0 where the largest step, the
+    /// taken again, shorter; 0 does not look at energy. As a default 0.008, and 0 where the largest step, the
     /// tolerance or an error goal is given.
     pub energy_error: f64,
     /// \[s] steps up to this are not shortened for that.
