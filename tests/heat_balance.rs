@@ -59,13 +59,38 @@ fn closed_form_heat_goes_half_to_each_surface() {
     // Everything warms faster by the factor, and oil takes heat as far as there is some.
     let fast = balance_of_faster();
     let mut quicker = Warm::default();
-    fast.advance(&mut quicker, &Heating { guide: Some(1), ..quiet(&powers, 0.0, 600.0) }, 1e-3);
+    let without_oil = Heating { guide: Some(1), lubrication: 0.0, ..quiet(&powers, 0.0, 600.0) };
+    fast.advance(&mut quicker, &without_oil, 1e-3);
     assert!((quicker.rises[0] / warm.rises[0] - 50.0).abs() < 1e-12);
     let mut cooled = Warm { rises: [10.0; 5], out: 0.0 };
     let none = ByContact::default();
     let heating = Heating { lubrication: 0.25, ..quiet(&none, 0.0, 600.0) };
-    fast.advance(&mut cooled, &heating, 1e-6);
-    assert!((cooled.out - 3.0 * 4.0 * 0.25 * 10.0).abs() < 1e-9, "{cooled:?}");
+    fast.advance(&mut cooled, &heating, 1e-3);
+    // An implicit step of each part: as warm as at its end.
+    let ends = [0.2, 0.3, 0.1].map(|capacity: f64| 10.0 / (1.0 + 1e-3 * 1.0 * 50.0 / capacity));
+    for (ours, end) in cooled.rises.into_iter().zip(ends) {
+        assert!((ours - end).abs() < 1e-12, "{cooled:?} {ends:?}");
+    }
+    assert!((cooled.out - ends.into_iter().sum::<f64>()).abs() < 1e-9, "{cooled:?}");
+}
+
+#[test]
+fn invariant_small_heat_capacities_do_not_swing() {
+    // Balls that take their whole heat up in nanoseconds, with oil and contacts that carry it on.
+    let balance = balance(
+        &CLOSED.replace("balls_capacity = 0.1", "balls_capacity = 1e-9").replace('}', ", oil = 4.0 }"),
+    );
+    let powers = ByContact { pockets: 8.0, ..ByContact::default() };
+    let mut warm = Warm::default();
+    let mut before = 0.0;
+    for _ in 0..200_000 {
+        balance.advance(&mut warm, &quiet(&powers, 100.0, 600.0), 1e-4);
+        assert!(warm.rises[2] >= before - 1e-12, "{warm:?}");
+        before = warm.rises[2];
+    }
+    // What goes in goes out, to oil alone.
+    assert!((warm.out - 8.0).abs() < 1e-6, "{warm:?}");
+    assert!((warm.rises.iter().take(3).sum::<f64>() * 4.0 - 8.0).abs() < 1e-6, "{warm:?}");
 }
 
 fn balance_of_faster() -> HeatBalance {

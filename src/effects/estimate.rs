@@ -53,7 +53,15 @@ pub struct Outline {
     pub width: f64,
 }
 
+/// [W/(m2 K)] of the seats of rings: 0.016 W/mm2 at 50 K (ISO 15312).
+const SEAT: f64 = 0.016e6 / 50.0;
+
 impl Outline {
+    /// [W/K] of the seats of the inner ring on its shaft and of the outer ring in its housing (ISO 15312).
+    pub fn seats(&self) -> [f64; 2] {
+        [self.bore, self.outside].map(|diameter| SEAT * std::f64::consts::PI * diameter * self.width)
+    }
+
     /// Those of catalogues for a pitch and a ball diameter \[m]: bores and outside diameters of 6206, 209, 218 are 1.56 to 1.68 ball
     /// diameters from the pitch diameter, widths 1.35 to 1.68 of them.
     pub fn usual(pitch: f64, ball: f64) -> Self {

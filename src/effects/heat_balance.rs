@@ -1,13 +1,14 @@
 //! Temperatures of rings, balls, shaft and housing from the heat of friction: one temperature each, conductances between them.
 //!
-//! Rises are states, which `[growth]` and oils with a cold temperature follow. They change by a Euler step after each step of the
-//! motion, which is ten thousand times shorter than what warms in milliseconds takes.
+//! Rises are states, which `[growth]` and oils with a cold temperature follow. They change by an implicit Euler step after each step
+//! of the motion, with the heat of that step: however small the heat capacities, they go to where heat balances and not beyond.
 //!
 //! Half of what a contact loses goes into each of its two surfaces; what balls lose in their pockets goes into the balls, and what a
 //! cage loses on its lands into the ring: a cage has no temperature of its own. What the medium around the balls takes stays in it.
 
 use std::f64::consts::PI;
 
+use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
@@ -20,8 +21,6 @@ use crate::schema::units::TemperatureRise;
 use crate::schema::variable_units::{KELVIN, WATT};
 use crate::schema::{BearingSection, Material, SceneError};
 
-/// [W/(m2 K)] of the seats of rings: 0.016 W/mm2 at 50 K (ISO 15312).
-const SEAT: f64 = 0.016e6 / 50.0;
 /// [-] integral of `(1 - t^2)^(1/4)` over an ellipse's half: B(1/2, 5/4).
 const PASSING: f64 = 1.748_038;
 /// Places in [`Rises`]; rings are 0 and 1.
@@ -154,7 +153,8 @@ impl Settings {
     ) -> Option<HeatBalance> {
         let section = self.section.as_ref()?;
         let (pitch, diameter) = (bearing.pitch_diameter.0, bearing.ball_diameter.0);
-        let Outline { bore, outside, width } = Outline::usual(pitch, diameter);
+        let outline = Outline::usual(pitch, diameter);
+        let (Outline { bore, outside, width }, [inner_seat, outer_seat]) = (outline, outline.seats());
         let heat = section.specific_heat;
         // Rings up to the bottoms of their grooves.
         let ring = |inside: f64, outside: f64| {
@@ -171,10 +171,7 @@ impl Settings {
                 finite(section.shaft_capacity, f64::INFINITY),
                 finite(section.housing_capacity, f64::INFINITY),
             ],
-            seats: [
-                section.inner_shaft.unwrap_or(SEAT * PI * bore * width),
-                section.outer_housing.unwrap_or(SEAT * PI * outside * width),
-            ],
+            seats: [section.inner_shaft.unwrap_or(inner_seat), section.outer_housing.unwrap_or(outer_seat)],
             outside: [section.shaft_surroundings, section.housing_surroundings],
             oil: section.oil,
             surroundings: section.surroundings.0,
@@ -202,45 +199,54 @@ impl HeatBalance {
     /// Adds a step of `h` \[s].
     pub fn advance(&self, warm: &mut Warm, heating: &Heating<'_>, h: f64) {
         let Heating { powers, guide, loads, speed, lubrication } = *heating;
-        let rises = warm.rises;
-        let mut gains = [0.0; 5];
         let contacts = self.through_contacts(loads, speed);
+        let mut heat = SVector::<f64, 5>::zeros();
         for race in 0..2 {
             let lands = if guide == Some(race) { powers.lands } else { 0.0 };
-            gains[race] += 0.5 * powers.races[race] + lands;
-            gains[BALLS] += 0.5 * powers.races[race];
+            heat[race] += 0.5 * powers.races[race] + lands;
+            heat[BALLS] += 0.5 * powers.races[race];
         }
-        gains[BALLS] += powers.pockets + powers.balls;
-        let mut flow = |from: usize, to: usize, conductance: f64| {
-            let heat = conductance * (rises[from] - rises[to]);
-            gains[from] -= heat;
-            gains[to] += heat;
-        };
-        flow(BALLS, 0, contacts[0]);
-        flow(BALLS, 1, contacts[1]);
-        flow(0, SHAFT, self.seats[0]);
-        flow(1, HOUSING, self.seats[1]);
-        let mut out = 0.0;
-        for (part, conductance) in [
-            (0, self.oil * lubrication),
-            (1, self.oil * lubrication),
-            (BALLS, self.oil * lubrication),
-            (SHAFT, self.outside[0]),
-            (HOUSING, self.outside[1]),
+        heat[BALLS] += powers.pockets + powers.balls;
+        let friction = heat.sum();
+
+        let mut conductances = SMatrix::<f64, 5, 5>::zeros();
+        for (a, b, conductance) in [
+            (BALLS, 0, contacts[0]),
+            (BALLS, 1, contacts[1]),
+            (0, SHAFT, self.seats[0]),
+            (1, HOUSING, self.seats[1]),
         ] {
-            let heat = conductance * (rises[part] - self.surroundings);
-            gains[part] -= heat;
-            out += heat;
+            conductances[(a, a)] += conductance;
+            conductances[(b, b)] += conductance;
+            conductances[(a, b)] -= conductance;
+            conductances[(b, a)] -= conductance;
         }
+        let oil = self.oil * lubrication;
+        let outside = SVector::from([oil, oil, oil, self.outside[0], self.outside[1]]);
+        conductances += SMatrix::from_diagonal(&outside);
+        heat += outside * self.surroundings - conductances * SVector::from(warm.rises);
+
+        let mut matrix = conductances * h;
         for part in 0..5 {
             if self.capacities[part].is_finite() {
-                warm.rises[part] += h * gains[part] / self.capacities[part];
+                matrix[(part, part)] += self.capacities[part];
             } else {
-                // What goes into a part that stays as warm as it is is out.
-                out += gains[part];
+                matrix.row_mut(part).fill(0.0);
+                matrix[(part, part)] = 1.0;
+                heat[part] = 0.0;
             }
         }
-        warm.out = out;
+        // Capacities above 0 on the diagonal of a matrix whose rows dominate: never singular.
+        let Some(changes) = matrix.lu().solve(&(heat * h)) else { return };
+        let mut stored = 0.0;
+        for part in 0..5 {
+            if self.capacities[part].is_finite() {
+                warm.rises[part] += changes[part];
+                stored += self.capacities[part] * changes[part];
+            }
+        }
+        // What goes into a part that stays as warm as it is is out, too.
+        warm.out = friction - stored / h;
     }
 }
 

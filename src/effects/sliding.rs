@@ -5,12 +5,10 @@
 
 use std::f64::consts::PI;
 
-use super::estimate::{ContactEstimate, Estimate, Outline};
+use super::estimate::{ContactEstimate, Estimate};
+use crate::contact::film::FREE_ROLLING;
 use crate::numerics::elliptic::complete_elliptic_integrals;
 
-/// [-] mean of |t^2 - t0^2| over a Hertzian load along the long axis, at the t0 at which half of it slips forwards: 2 sin 10 degrees.
-/// The force along rolling is zero there (Heathcote 1921; Johnson 1985, section 8.5).
-const FREE_ROLLING: f64 = 0.161_142;
 /// Rings and rays of the quadrature over a half of the ellipse.
 const RINGS: usize = 8;
 const RAYS: usize = 8;
@@ -31,12 +29,9 @@ impl Estimate {
         if groove > 0.0 { groove / (spin + groove) } else { 0.0 }
     }
 
-    /// \[K] warming of the bearing by this friction power: the surface of the housing's seat and the shaft's conducts 0.016 W/mm2 at
-    /// 50 K (ISO 15312).
+    /// \[K] warming of the bearing by this friction power, which goes out through the seats of both rings.
     pub fn heating(&self) -> f64 {
-        let Outline { bore, outside, width } = self.outline;
-        let conductance = 0.016e6 / 50.0 * std::f64::consts::PI * width * (bore + outside);
-        self.friction_power() / conductance
+        self.friction_power() / self.outline.seats().iter().sum::<f64>()
     }
 }
 
