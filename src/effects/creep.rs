@@ -71,7 +71,7 @@ pub struct Regularised {
 }
 
 keys! {
-    /// The law.
+    /// Creep law: friction of a rolling contact by its slip.
     "creep" => law: CreepLaw = CreepLaw::default(),
     /// [-] degree of the traction polynomials of the law `kalker`.
     "kalker_degree" => kalker_degree: usize = 3,

@@ -102,9 +102,11 @@ pub struct RestitutionSection {
     pub law: RestitutionLaw,
 }
 
+/// Viscoelastic bodies.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RetardationSection {
+    /// \[s] retardation time: a contact has the elastic load that its approach would have after that time.
     retardation_time: Time,
 }
 

@@ -8,7 +8,7 @@ use crate::schema::SceneError;
 use crate::schema::variable_units::{METRE, NEWTON, ONE, Unit, WATT};
 
 keys! {
-    /// Are they reported (`neighbours.*`)? Balls without a cage touch all the same.
+    /// Are contacts of neighbouring balls reported (`neighbours.*`)? Balls without a cage touch all the same.
     "full_complement" => on: bool = false,
 }
 

@@ -9,7 +9,7 @@ use crate::schema::SceneError;
 use crate::schema::variable_units::WATT;
 
 keys! {
-    /// Is it simulated? With the default creep law by default; a scene that names its law has it where it says so.
+    /// Is the slip of contacts that are bent with the groove simulated? With the default creep law by default; a scene that names its law has it where it says so.
     "heathcote_slip" => on: bool = true,
 }
 

@@ -10,7 +10,7 @@ use super::keys::keys;
 use crate::schema::variable_units::WATT;
 
 keys! {
-    /// Is it reported (`heat.*`)?
+    /// Is the heat of friction reported by part (`heat.*`)?
     "heat_outputs" => on: bool = false,
 }
 

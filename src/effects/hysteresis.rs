@@ -6,7 +6,7 @@ use super::reports::BallOutput;
 use crate::schema::variable_units::WATT;
 
 keys! {
-    /// Is it simulated?
+    /// Is elastic hysteresis of rolling simulated?
     "hysteresis" => on: bool = false,
 }
 

@@ -30,7 +30,7 @@ pub fn default_ends(free: f64, high: f64) -> [f64; 2] {
 }
 
 keys! {
-    /// Are they reported (`shoulder.*`)? Contacts that lie beyond a shoulder are refused all the same.
+    /// Are shares of load beyond shoulders, and margins to them, reported (`shoulder.*`)? Contacts that lie beyond a shoulder are refused all the same.
     "shoulder_outputs" => on: bool = false,
 }
 

@@ -8,7 +8,7 @@ use super::reports::Condensed;
 use crate::schema::variable_units::{self as units, Unit};
 
 keys! {
-    /// Are they reported (`stiffness.*`, `damping.*`)?
+    /// Are stiffness and damping of the running bearing reported (`stiffness.*`, `damping.*`)?
     "stiffness_outputs" => on: bool = false,
 }
 

@@ -293,8 +293,11 @@ fn some_goal<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Goal>,
 #[derive(Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct SolverKeys {
+    /// `"fast"`, `"balanced"`, `"reference"`, or `{ error = 1e-3, of = "all" }`: an error that `roulement run` measures and reaches; `of = "means"` is
+    /// about means alone.
     #[serde(deserialize_with = "some_goal")]
     accuracy: Option<Goal>,
+    /// [-] error of the wrench that a goal by name has to keep: the cheapest one is taken; not with `accuracy`.
     wrench_error: Option<f64>,
     alpha_f: Option<f64>,
     tolerance: Option<f64>,

@@ -7,6 +7,7 @@ mod field;
 mod identify;
 mod player;
 mod run;
+mod scene;
 mod summary;
 mod sweep;
 
@@ -49,6 +50,8 @@ enum Command {
     },
     /// Simulate many cases of a scene on all cores: a table of keys and values, or ranges; resumable.
     Sweep(sweep::Options),
+    /// Print what may stand in a scene file: every key, or a JSON schema for editors.
+    Scene(scene::Options),
     /// List the effects of a scene: which are on, which that are off would matter and by how much.
     Effects(effects::Options),
     /// Pack a scene as an FMI 2.0 co-simulation FMU.
@@ -158,6 +161,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
             write_fmu(&load(&scene)?, &name, &libraries, &output)?;
             say(&format!("{}\n", output.display()))?;
         }
+        Command::Scene(options) => scene::run(&options)?,
         Command::Effects(options) => effects::run(&options)?,
         Command::Field(options) => field::run(&options)?,
         Command::Contact(options) => contact::run(&options)?,

@@ -1,0 +1,62 @@
+//! `roulement scene`: what may stand in a scene file.
+
+use std::error::Error;
+
+use clap::Args;
+
+use super::say;
+
+/// The reference of scenes, written from the structs that read them.
+const REFERENCE: &str = include_str!("../../../docs/scene.md");
+/// The same for editors.
+const SCHEMA: &str = include_str!("../../../docs/scene.schema.json");
+
+/// Options of `roulement scene`.
+#[derive(Args)]
+#[group(required = true, multiple = false)]
+pub struct Options {
+    /// Print every key with its meaning, unit, values and default; of a word, those sections and keys that have it in their name.
+    #[arg(long, num_args = 0..=1, default_missing_value = "", value_name = "WORD")]
+    keys: Option<String>,
+    /// Print a JSON schema: editors complete and check scenes by it.
+    #[arg(long)]
+    schema: bool,
+}
+
+/// Prints.
+///
+/// # Errors
+/// If no key has the word in its name, or nothing can be printed.
+pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    match &options.keys {
+        None => Ok(say(SCHEMA)?),
+        Some(word) if word.is_empty() => Ok(say(REFERENCE)?),
+        Some(word) => match about(&word.to_lowercase()) {
+            text if text.is_empty() => {
+                Err(format!("no section and no key has {word:?} in its name: `roulement scene --keys` prints all").into())
+            }
+            text => Ok(say(&text)?),
+        },
+    }
+}
+
+/// Sections with a word in their names, and keys with it in others.
+fn about(word: &str) -> String {
+    let mut found = String::new();
+    for section in REFERENCE.split("\n## ").skip(1) {
+        let (title, _) = section.split_once('\n').unwrap_or((section, ""));
+        if title.contains(word) {
+            found += &format!("## {}\n\n", section.trim_end());
+            continue;
+        }
+        let has_it = |line: &&str| {
+            line.strip_prefix("| `").and_then(|rest| rest.split_once('`')).is_some_and(|(key, _)| key.contains(word))
+        };
+        let keys: Vec<&str> = section.lines().filter(has_it).collect();
+        if !keys.is_empty() {
+            let head = "| key | meaning | values | default |\n|---|---|---|---|";
+            found += &format!("## {title}\n\n{head}\n{}\n\n", keys.join("\n"));
+        }
+    }
+    found
+}
