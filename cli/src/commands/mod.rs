@@ -1,5 +1,6 @@
 //! Commands and their options.
 
+mod bearing;
 mod contact;
 mod cost;
 mod effects;
@@ -49,6 +50,8 @@ enum Command {
     },
     /// Simulate many cases of a scene on all cores: a table of keys and values, or ranges; resumable.
     Sweep(sweep::Options),
+    /// Write a scene of a catalogue bearing, by name or by dimensions and load ratings, with estimated internal geometry.
+    Bearing(bearing::Options),
     /// List the effects of a scene: which are on, which that are off would matter and by how much.
     Effects(effects::Options),
     /// Pack a scene as an FMI 2.0 co-simulation FMU.
@@ -158,6 +161,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
             write_fmu(&load(&scene)?, &name, &libraries, &output)?;
             say(&format!("{}\n", output.display()))?;
         }
+        Command::Bearing(options) => bearing::run(&options)?,
         Command::Effects(options) => effects::run(&options)?,
         Command::Field(options) => field::run(&options)?,
         Command::Contact(options) => contact::run(&options)?,
