@@ -14,7 +14,7 @@ const fn row(
     Entry { designation, bore, outside, width, dynamic, static_, contact_angle }
 }
 
-/// Bore, outside diameter and width [mm], C and C0 \[kN], contact angle \[deg] (0: deep groove).
+/// Bore, outside diameter and width \[mm], C and C0 \[kN], contact angle \[deg] (0: deep groove).
 #[rustfmt::skip]
 pub const TABLE: [Entry; 126] = [
     row("61800", [10.0, 19.0, 5.0], [1.72, 0.84], 0.0),
