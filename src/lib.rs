@@ -86,6 +86,7 @@
 //! | [`equilibrium`] | quasi-static solution, where every simulation starts |
 //! | [`dynamics`] | one implicit step of all bodies: residual, Newton matrix, local error |
 //! | [`analysis`] | stiffness and damping of a running bearing; single rolling contacts |
+//! | [`catalogue`] | catalogue bearings, by name or by their numbers, as texts of scenes |
 //! | [`simulation`] | the running bearing: inputs, start, steps between communication points, outputs |
 //! | [`interface`] | the table of variables, and the model description and documentation made from it |
 //! | [`fmi`] | the C functions of FMI 2.0 |
@@ -135,6 +136,7 @@
 //! | K, C | `stiffness`, `damping` of [`analysis::condensed`] | derivatives of the load on the inner race by its displacement and velocity | N/m and so on | W |
 
 pub mod analysis;
+pub mod catalogue;
 pub mod contact;
 pub mod dynamics;
 pub mod effects;

@@ -12,202 +12,106 @@ the bearing along a smooth path to the same. The schemes differ in the wrench th
 (f) implicit       start and end weighted as in the bearing's own time integration (HHT), by one step of Newton's method:
                    the step is done twice, and the directional derivatives of the first time give its matrix
 
+(a), (b) and (f) are those of the Python package (`roulement.coupling`); the others are here, to compare with.
+
 Usage: coupling.py PACKAGE.fmu DOCUMENT.md     measures stability, accuracy and cost, and writes the tables into the document
 """
 
 import math
-import shutil
 import sys
-import tempfile
 import time as clock
 from pathlib import Path
 
 import numpy as np
-from fmpy import extract, read_model_description
-from fmpy.fmi2 import FMU2Slave
+from roulement.coupling import Euler, FmuBearing, Implicit, Leapfrog, Shaft, gyroscopic, rigid
 
 THRUST, RADIAL = 1500.0, 30.0  # external force on the shaft along x, and along y from time 0 on [N]
 SPEED = 200 * math.pi  # 6000 rpm [rad/s]
 DENSITY = 7800.0  # of the shaft, a cylinder three diameters long [kg/m3]
-ALPHA = 0.3  # numerical damping of scheme (f), 0 to 1/3
 
 MASSES = [1.0, 5.0, 20.0]  # [kg]
 STEPS = [5e-7, 1e-6, 2e-6, 5e-6, *(1e-5 * 2**k for k in range(9))]  # communication steps tried [s]
 DURATION, FEWEST = 0.04, 60  # of a run that tells whether a scheme is stable [s], and its fewest steps
 ERROR_DURATION = 0.00512  # of a run whose error is measured [s]
 
-PLACE = [f"inner.position.{axis}" for axis in "xyz"] + [f"inner.rotation.{axis}" for axis in "yz"]
-VELOCITY = [f"inner.velocity.{axis}" for axis in "xyz"] + [f"inner.rotation_rate.{axis}" for axis in "yz"]
-WRENCH = ["inner.force.x", "inner.force.y", "inner.force.z", "inner.moment.y", "inner.moment.z"]
+
+def cylinder(mass):
+    """Inertia and gyroscopic matrix of the shaft."""
+    radius = (mass / (6 * math.pi * DENSITY)) ** (1 / 3)
+    tilting = mass * (3 * radius**2 + (6 * radius) ** 2) / 12
+    return rigid(mass, tilting), gyroscopic(0.5 * mass * radius**2, SPEED)
 
 
-class Bearing:
-    """A pose-driven package. Places, velocities and wrenches have the five components x, y, z, about y, about z."""
+class Constant(Shaft):
+    """Schemes that move the shaft by a force that is constant over the step."""
 
-    def __init__(self, package):
-        description = read_model_description(package)
-        references = {v.name: v.valueReference for v in description.modelVariables}
-        self.package, self.directory = package, tempfile.mkdtemp()
-        extract(package, unzipdir=self.directory)
-        self.fmu = FMU2Slave(
-            guid=description.guid,
-            unzipDirectory=self.directory,
-            modelIdentifier=description.coSimulation.modelIdentifier,
-            instanceName="bearing",
-        )
-        self.fmu.instantiate()
-        self.outputs = [references[name] for name in WRENCH]
-        self.inputs = [references[name] for name in PLACE + VELOCITY]
-        self.restart()
-
-    def restart(self):
-        """To time 0, where the bearing carries the scene's thrust; returns the place of its inner race."""
-        self.fmu.reset()
-        self.fmu.setupExperiment(startTime=0.0)
-        self.fmu.enterInitializationMode()
-        self.fmu.exitInitializationMode()
-        return np.array(self.fmu.getReal(self.inputs[:5]))
-
-    def wrench(self):
-        """What the bearing exerts on the shaft."""
-        return np.array(self.fmu.getReal(self.outputs))
-
-    def step(self, time, step, place, velocity):
-        """Wrench after a step that ends in the given place and velocity: they lead there from where this velocity comes."""
-        self.fmu.setReal(self.inputs, [*(place - velocity * step), *velocity])
-        self.fmu.doStep(time, step)
-        return self.wrench()
-
-    def derivative(self, step, place_gain, velocity_gain):
-        """Derivative (5 by 5) of the wrench at the end of the last step by something that changes place and velocity
-        there with the given gains."""
-        columns = []
-        for direction in np.eye(5):
-            change = [*(direction * (place_gain - velocity_gain * step)), *(direction * velocity_gain)]
-            columns.append(self.fmu.getDirectionalDerivative(self.outputs, self.inputs, change))
-        return np.array(columns).T
-
-    def close(self):
-        """Frees the package."""
-        self.fmu.freeInstance()
-        shutil.rmtree(self.directory)
-
-
-class Shaft:
-    """A rigid cylinder."""
-
-    def __init__(self, mass, place, wrench):
-        radius = (mass / (6 * math.pi * DENSITY)) ** (1 / 3)
-        tilting = mass * (3 * radius**2 + (6 * radius) ** 2) / 12
-        self.inertia = np.diag([mass] * 3 + [tilting] * 2)
-        self.gyroscopic = np.zeros((5, 5))
-        self.gyroscopic[3, 4] = -0.5 * mass * radius**2 * SPEED
-        self.gyroscopic[4, 3] = -self.gyroscopic[3, 4]
-        self.place, self.velocity, self.wrench = place, np.zeros(5), wrench
-        # what schemes remember of the step before
-        self.wrench_before = wrench
-        self.acceleration = np.linalg.solve(self.inertia, self.force(wrench, self.velocity))
-
-    def force(self, wrench, velocity):
-        """All forces and moments on the shaft."""
-        return wrench + [THRUST, RADIAL, 0, 0, 0] + self.gyroscopic @ velocity
-
-    def constant(self, force, step):
-        """Place and velocity after a step under a constant force."""
+    def end(self, force, step):
+        """Place and velocity after a step."""
         acceleration = np.linalg.solve(self.inertia, force)
         place = self.place + self.velocity * step + acceleration * (0.5 * step**2)
         return place, self.velocity + acceleration * step
 
-    def end(self, place, velocity, wrench):
+    def take(self, step, end, wrench):
         """Takes over the end of a step."""
-        self.wrench_before = self.wrench
-        self.place, self.velocity, self.wrench = place, velocity, wrench
+        (self.place, self.velocity), self.wrench, self.time = end, wrench, self.time + step
 
 
-def leapfrog(bearing, shaft, time, step):
-    half = 0.5 * step
-    force = shaft.force(shaft.wrench, shaft.velocity)
-    kicked = shaft.velocity + half * np.linalg.solve(shaft.inertia, force)
-    place, foreseen = shaft.constant(force, step)
-    wrench = bearing.step(time, step, place, foreseen)
-    # The gyroscopic moment of the velocity at the end is known with it.
-    momentum = shaft.inertia @ kicked + half * shaft.force(wrench, np.zeros(5))
-    shaft.end(place, np.linalg.solve(shaft.inertia - half * shaft.gyroscopic, momentum), wrench)
+class Held(Constant):
+    def step(self, step):
+        end = self.end(self.total(self.wrench, self.velocity, self.time), step)
+        self.take(step, end, self.bearing.step(step, *end))
 
 
-def euler(bearing, shaft, time, step):
-    velocity = shaft.velocity + step * np.linalg.solve(shaft.inertia, shaft.force(shaft.wrench, shaft.velocity))
-    place = shaft.place + step * velocity
-    shaft.end(place, velocity, bearing.step(time, step, place, velocity))
+class Extrapolated(Constant):
+    before = None
+
+    def step(self, step):
+        before, self.before = self.wrench if self.before is None else self.before, self.wrench
+        end = self.end(self.total(1.5 * self.wrench - 0.5 * before, self.velocity, self.time), step)
+        self.take(step, end, self.bearing.step(step, *end))
 
 
-def held(bearing, shaft, time, step):
-    end = shaft.constant(shaft.force(shaft.wrench, shaft.velocity), step)
-    shaft.end(*end, bearing.step(time, step, *end))
-
-
-def extrapolated(bearing, shaft, time, step):
-    middle = 1.5 * shaft.wrench - 0.5 * shaft.wrench_before
-    end = shaft.constant(shaft.force(middle, shaft.velocity), step)
-    shaft.end(*end, bearing.step(time, step, *end))
-
-
-def rollback(bearing, shaft, time, step):
-    start = force = shaft.force(shaft.wrench, shaft.velocity)
-    state = bearing.fmu.getFMUState()
-    for sweep in range(3):
-        if sweep > 0:
-            bearing.fmu.setFMUState(state)
-        end = shaft.constant(0.5 * (start + force), step)
-        wrench = bearing.step(time, step, *end)
-        force = shaft.force(wrench, end[1])
-    bearing.fmu.freeFMUState(state)
-    shaft.end(*end, wrench)
-
-
-def implicit(bearing, shaft, time, step):
-    beta, gamma = 0.25 * (1 + ALPHA) ** 2 * step**2, (0.5 + ALPHA) * step
-    before = shaft.acceleration
-
-    def end(after):
-        """Place and velocity for an acceleration at the end (Newmark)."""
-        place = shaft.place + shaft.velocity * step + before * (0.5 * step**2 - beta) + after * beta
-        return place, shaft.velocity + before * (step - gamma) + after * gamma
-
-    # a first guess, which leaves the velocity as it is, and how the force at the end answers to the acceleration there
-    state = bearing.fmu.getFMUState()
-    guessed = before * (1 - step / gamma)
-    guess = end(guessed)
-    force = shaft.force(bearing.step(time, step, *guess), guess[1])
-    derivative = bearing.derivative(step, beta, gamma) + shaft.gyroscopic * gamma
-    bearing.fmu.setFMUState(state)
-    bearing.fmu.freeFMUState(state)
-    # inertia after = (1 - alpha) (force + derivative (after - guessed)) + alpha start
-    start = shaft.force(shaft.wrench, shaft.velocity)
-    right = (1 - ALPHA) * (force - derivative @ guessed) + ALPHA * start
-    shaft.acceleration = np.linalg.solve(shaft.inertia - (1 - ALPHA) * derivative, right)
-    solved = end(shaft.acceleration)
-    shaft.end(*solved, bearing.step(time, step, *solved))
+class Rollback(Constant):
+    def step(self, step):
+        start = force = self.total(self.wrench, self.velocity, self.time)
+        fmu = self.bearing.fmu
+        state, time = fmu.getFMUState(), self.bearing.time
+        for sweep in range(3):
+            if sweep > 0:
+                fmu.setFMUState(state)
+                self.bearing.time = time
+            end = self.end(0.5 * (start + force), step)
+            wrench = self.bearing.step(step, *end)
+            force = self.total(wrench, end[1], self.time + step)
+        fmu.freeFMUState(state)
+        self.take(step, end, wrench)
 
 
 SCHEMES = {
-    "(a) leapfrog": leapfrog,
-    "(b) Euler": euler,
-    "(c) held": held,
-    "(d) extrapolated": extrapolated,
-    "(e) rollback": rollback,
-    "(f) implicit": implicit,
+    "(a) leapfrog": Leapfrog,
+    "(b) Euler": Euler,
+    "(c) held": Held,
+    "(d) extrapolated": Extrapolated,
+    "(e) rollback": Rollback,
+    "(f) implicit": Implicit,
 }
+
+
+def start(bearing, scheme, mass):
+    """The shaft at time 0."""
+    bearing.restart()
+    inertia, turning = cylinder(mass)
+    return scheme(bearing, inertia, lambda time: [THRUST, RADIAL, 0, 0, 0], turning)
 
 
 def simulate(bearing, scheme, mass, step, duration):
     """Places of the shaft, one row per communication point; ends early when the shaft leaves the bearing or the bearing
     refuses a step."""
-    shaft = Shaft(mass, bearing.restart(), bearing.wrench())
+    shaft = start(bearing, scheme, mass)
     path = [shaft.place]
-    for k in range(round(duration / step)):
+    for _ in range(round(duration / step)):
         try:
-            scheme(bearing, shaft, k * step, step)
+            shaft.step(step)
         except Exception as refused:  # FMPy has no narrower one
             print(f"  {scheme.__name__}, {mass:g} kg, {step * 1e6:g} us: {refused}", file=sys.stderr)
             break
@@ -232,7 +136,7 @@ def largest_stable_step(bearing, scheme, mass):
     """The last of the steps tried, from small to large, before the first that is unstable; 0 if the first is."""
     largest = 0.0
     # Schemes that are known to stand 10 us need not be tried below.
-    for step in STEPS if scheme is held else STEPS[4:]:
+    for step in STEPS if scheme is Held else STEPS[4:]:
         if not stable(bearing, scheme, mass, step):
             break
         largest = step
@@ -258,7 +162,7 @@ def cost(bearing, scheme, step=1e-5, steps=512):
         least = min(least, clock.process_time() - begin)
     # The start is not part of it.
     begin = clock.process_time()
-    Shaft(MASSES[0], bearing.restart(), bearing.wrench())
+    start(bearing, scheme, MASSES[0])
     return (least - (clock.process_time() - begin)) / steps * 1e6
 
 
@@ -269,7 +173,7 @@ def table(head, rows):
 
 
 def main():
-    bearing = Bearing(sys.argv[1])
+    bearing = FmuBearing.load(sys.argv[1])
     document = Path(sys.argv[2])
     micro = lambda step: f"{step * 1e6:g}"
     rows = []
@@ -277,21 +181,21 @@ def main():
         largest = {name: largest_stable_step(bearing, scheme, mass) for name, scheme in SCHEMES.items()}
         rows.append([f"{mass:g} kg"])
         for name, step in largest.items():
-            tried = STEPS if SCHEMES[name] is held else STEPS[4:]
+            tried = STEPS if SCHEMES[name] is Held else STEPS[4:]
             mark = "below " + micro(tried[0]) if step == 0 else micro(step)
             rows[-1].append(mark + (" and more" if step == STEPS[-1] else ""))
         print(rows[-1], flush=True)
     stability = table(["shaft", *(f"{name} [us]" for name in SCHEMES)], rows)
 
     reference_step = 1e-6
-    reference = simulate(bearing, rollback, MASSES[0], reference_step, ERROR_DURATION)
+    reference = simulate(bearing, Rollback, MASSES[0], reference_step, ERROR_DURATION)
     rows = []
     for step in [1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 4e-5, 8e-5, 1.6e-4, 3.2e-4, 6.4e-4]:
         errors = [error(bearing, scheme, MASSES[0], step, reference, reference_step) for scheme in SCHEMES.values()]
         rows.append([f"{micro(step)} us", *(f"{100 * e:.2g} %" if e < 1 else "lost" for e in errors)])
         print(rows[-1], flush=True)
     accuracy = table(["step", *SCHEMES], rows)
-    costs = [f"{cost(bearing, scheme):.0f}" for scheme in (leapfrog, euler, extrapolated, rollback, implicit)]
+    costs = [f"{cost(bearing, scheme):.0f}" for scheme in SCHEMES.values() if scheme is not Held]
     costs = table([name for name in SCHEMES if "held" not in name], [costs])
     print(costs, flush=True)
     bearing.close()

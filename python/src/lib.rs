@@ -5,6 +5,7 @@
 #![allow(clippy::needless_pass_by_value)]
 
 mod arrays;
+mod catalogues;
 mod contacts;
 mod failures;
 mod runs;
@@ -16,6 +17,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::catalogues::{catalogue_candidates, catalogue_names, catalogue_scene};
     #[pymodule_export]
     use crate::contacts::contact;
     #[pymodule_export]

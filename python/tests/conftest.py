@@ -30,6 +30,21 @@ def bits(array):
     return np.ascontiguousarray(array, dtype=float).view(np.int64)
 
 
+def instance_of(package):
+    """An instance of a package in FMPy, after its start, and its references by name."""
+    from fmpy import extract, read_model_description
+    from fmpy.fmi2 import FMU2Slave
+
+    description = read_model_description(str(package))
+    folder = extract(str(package), unzipdir=str(package.with_suffix("")))
+    slave = FMU2Slave(guid=description.guid, unzipDirectory=folder, modelIdentifier=description.coSimulation.modelIdentifier, instanceName="b")
+    slave.instantiate()
+    slave.setupExperiment(startTime=0.0)
+    slave.enterInitializationMode()
+    slave.exitInitializationMode()
+    return slave, {v.name: v.valueReference for v in description.modelVariables}
+
+
 @pytest.fixture
 def thrust():
     """The thrust case, 2 ms of it."""

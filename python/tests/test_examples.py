@@ -1,6 +1,7 @@
 """Every example runs and says what it found; every block of the documents runs; stubs name what there is."""
 
 import ast
+import importlib.util
 import os
 import re
 import subprocess
@@ -16,6 +17,7 @@ EXAMPLES = {
     "two_bearing_shaft": ["tilt"],
     "friction_map": ["kalker_table"],
     "surrogate": ["largest error"],
+    "ross_rotor": ["radial stiffness", "18000 rpm"],
 }
 ENVIRONMENT = {**os.environ, "ROULEMENT_BIN": str(PROGRAM)}
 
@@ -35,11 +37,19 @@ def test_all_examples_are_here_and_short():
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_an_example_runs(name, tmp_path):
+    if name == "ross_rotor" and importlib.util.find_spec("ross") is None:
+        pytest.skip("ROSS is not installed (examples/python/ross-requirements.txt)")
     said = python(ROOT / "examples" / "python" / f"{name}.py", tmp_path)
     assert all(part in said for part in EXAMPLES[name]), said
     if name == "surrogate":
         # Between 256 equilibria a smooth function of three displacements is known well.
         assert float(re.search(r"error (\S+) of", said)[1]) < 0.02
+    if name == "ross_rotor":
+        # Centrifugal force of the balls takes stiffness, and the rotor's modes with it.
+        at_rest, fast = map(float, re.search(r"stiffness (\S+) N/um at rest, (\S+) at", said).groups())
+        assert at_rest > 2 * fast > 0
+        both = [[float(part.split()[0]) for part in line.split("[")[1:]] for line in said.splitlines() if "bending" in line]
+        assert both[0][0] == both[0][1] and both[2][0] < 0.9 * both[2][1], both
     if name == "misalignment_map":
         # Misalignment and thrust take life by more than an order of magnitude.
         low, high = map(float, re.search(r"revolutions\]: (\S+) to (\S+)", said).groups())

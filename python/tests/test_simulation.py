@@ -1,34 +1,25 @@
 """Simulations step by step: bits of the package in FMPy, snapshots, derivatives, price; coupling to a shaft."""
 
 import copy
+import subprocess
+import sys
 import time
 import zipfile
 
 import numpy as np
 import pytest
 import roulement
-from conftest import PROGRAM, ROOT, bits, program
+from conftest import PROGRAM, ROOT, bits, instance_of, program
 from roulement import coupling
 
 STEP = 2e-5
 
 
 def fmu_of(scene, directory, name):
-    """An instance of the package of a scene in FMPy, after its start, and its references by name."""
-    from fmpy import extract, read_model_description
-    from fmpy.fmi2 import FMU2Slave
-
+    """An instance of the package of a scene, made by the command line, and its references by name."""
     (directory / f"{name}.toml").write_text(scene.source)
-    path = directory / f"{name}.fmu"
-    program("fmu", directory / f"{name}.toml", "-o", path)
-    description = read_model_description(path)
-    folder = extract(str(path), unzipdir=str(directory / name))
-    slave = FMU2Slave(guid=description.guid, unzipDirectory=folder, modelIdentifier=description.coSimulation.modelIdentifier, instanceName="b")
-    slave.instantiate()
-    slave.setupExperiment(startTime=0.0)
-    slave.enterInitializationMode()
-    slave.exitInitializationMode()
-    return slave, {v.name: v.valueReference for v in description.modelVariables}
+    program("fmu", directory / f"{name}.toml", "-o", directory / f"{name}.fmu")
+    return instance_of(directory / f"{name}.fmu")
 
 
 def moved(simulation, k):
@@ -150,7 +141,7 @@ def path(scheme, bearing, step, steps, **options):
 def test_recipes_agree_with_small_steps_and_with_the_package(shaft_scene, tmp_path):
     fine = path(coupling.Leapfrog, coupling.Bearing(roulement.Simulation(shaft_scene)), 2e-6, 640)[::10]
     size = np.abs(fine[:, :3] - fine[0, :3]).max()
-    for scheme, bound in [(coupling.Leapfrog, 0.02), (coupling.Implicit, 0.05)]:
+    for scheme, bound in [(coupling.Leapfrog, 0.02), (coupling.Euler, 0.05), (coupling.Implicit, 0.05)]:
         coarse = path(scheme, coupling.Bearing(roulement.Simulation(shaft_scene)), 2e-5, 64)
         assert np.abs(coarse - fine)[:, :3].max() < bound * size, (scheme, np.abs(coarse - fine)[:, :3].max() / size)
         fmu, references = fmu_of(shaft_scene, tmp_path, scheme.__name__)
@@ -158,6 +149,22 @@ def test_recipes_agree_with_small_steps_and_with_the_package(shaft_scene, tmp_pa
         # Times add up in another order: steps of another last bit.
         assert np.abs(packed - coarse)[:, :3].max() < 1e-6 * size
         fmu.freeInstance()
+
+
+def test_packages_are_made_with_nothing_but_the_installed_package(thrust, tmp_path):
+    """No program, no environment, no folder of the project: as on a machine where only the wheel was installed."""
+    (tmp_path / "scene.toml").write_text(thrust.source)
+    code = "import roulement, sys; roulement.package(roulement.Scene.load(sys.argv[1]), sys.argv[2])"
+    command = [sys.executable, "-c", code, tmp_path / "scene.toml", tmp_path / "own.fmu"]
+    ended = subprocess.run(list(map(str, command)), cwd=tmp_path, env={}, capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr
+    fmu, references = instance_of(tmp_path / "own.fmu")
+    fmu.doStep(0.0, STEP)
+    simulation = roulement.Simulation(thrust)
+    simulation.step(STEP)
+    names = [f"inner.force.{axis}" for axis in "xyz"]
+    assert np.array_equal(bits(fmu.getReal([references[name] for name in names])), bits(simulation["inner.force"]))
+    fmu.freeInstance()
 
 
 def test_packages_are_those_of_the_command_line(thrust, tmp_path):

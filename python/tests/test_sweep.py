@@ -14,7 +14,7 @@ os.environ.setdefault("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "3s")
 import numpy as np
 import pytest
 import roulement
-from conftest import ROOT, program
+from conftest import ROOT, instance_of, program
 from roulement import sweep
 
 FRICTION = [0.05, 0.08, 0.11]
@@ -49,6 +49,31 @@ def test_lists_and_dictionaries_are_cases(tmp_path, thrust):
     assert np.array_equal(one["friction_power.mean"], other["friction_power.mean"])
     with pytest.raises(ValueError, match="friction.bal_race"):
         sweep.run([{"friction.bal_race": 0.1}], short, tmp_path / "wrong")
+
+
+def test_consistency_the_same_cases_in_fmpy_have_the_same_numbers(tmp_path, thrust):
+    # Times of rows are sums of binary fractions: steps of both end at the same last bit.
+    interval, rows = 2.0**-13, 16
+    base = thrust.with_({"load.output_interval": interval, "load.duration": interval * rows, "effects.per_ball_outputs": True})
+    cases = [{"friction.ball_race": mu, "load.x.force": force} for mu in (0.05, 0.1) for force in ("1 kN", "2 kN")]
+    cases += [{"outer.misalignment.rz": "1 mrad", "bearing.inner_conformity": 0.53}]
+    columns = ["inner.force.x", "ball[1].inner.load", "ball[10].outer.contact_angle"]
+    table = sweep.run(cases, base, tmp_path / "sweep", columns=columns)
+    assert set(table["status"]) == {"done"}
+    for k, case in enumerate(cases):
+        fmu, references = instance_of(roulement.package(base.with_(case), tmp_path / f"case_{k}.fmu"))
+        wanted = [references[name] for name in columns]
+        values = [fmu.getReal(wanted)]
+        for row in range(rows):
+            fmu.doStep(row * interval, interval)
+            values.append(fmu.getReal(wanted))
+        for name, column in zip(columns, np.array(values).T):
+            # Means are sums in the order of rows, over the second half.
+            second = column[len(column) // 2 :]
+            theirs = {"mean": sum(second.tolist()) / len(second), "least": column.min(), "largest": column.max(), "end": column[-1]}
+            for kind, value in theirs.items():
+                assert table[f"{name}.{kind}"][k] == value, (case, name, kind)
+        fmu.freeInstance()
 
 
 # --- Dask, in processes of its own -------------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@ use std::path::Path;
 #[derive(Clone, Copy)]
 pub enum Noise {
     /// Within 2 %, and half a unit of what is written.
+    #[allow(dead_code)]
     Count,
     /// Within a factor of 3.
     #[allow(dead_code)]
@@ -81,6 +82,7 @@ pub fn compare(document: &str, name: &str, header: &str, rows: &[Row]) {
 }
 
 /// A number with so many digits, which may differ by a count's noise.
+#[allow(dead_code)]
 pub fn count(value: f64, digits: usize) -> (String, Noise) {
     (format!("{value:.digits$}"), Noise::Count)
 }

@@ -1,5 +1,6 @@
 //! Commands and their options.
 
+mod bearing;
 mod contact;
 mod cost;
 mod effects;
@@ -52,6 +53,8 @@ enum Command {
     Sweep(sweep::Options),
     /// Print what may stand in a scene file: every key, or a JSON schema for editors.
     Scene(scene::Options),
+    /// Write a scene of a catalogue bearing, by name or by dimensions and load ratings, with estimated internal geometry.
+    Bearing(bearing::Options),
     /// List the effects of a scene: which are on, which that are off would matter and by how much.
     Effects(effects::Options),
     /// Pack a scene as an FMI 2.0 co-simulation FMU.
@@ -162,6 +165,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
             say(&format!("{}\n", output.display()))?;
         }
         Command::Scene(options) => scene::run(&options)?,
+        Command::Bearing(options) => bearing::run(&options)?,
         Command::Effects(options) => effects::run(&options)?,
         Command::Field(options) => field::run(&options)?,
         Command::Contact(options) => contact::run(&options)?,

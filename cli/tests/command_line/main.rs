@@ -1,6 +1,7 @@
 //! The command line as a user meets it.
 #![allow(clippy::unwrap_used)]
 
+mod bearing;
 #[path = "../common/mod.rs"]
 mod common;
 mod contacts;

@@ -11,7 +11,7 @@ All numbers are SI, angles in radians. Results have the same bits as those of th
 
 import importlib
 
-from . import coupling, load_cases
+from . import catalogue, coupling, load_cases
 from .contacts import LAWS, contact
 from .cost import cost
 from .equilibrium import Equilibrium, equilibrium
@@ -25,6 +25,7 @@ __all__ = [
     "Results",
     "Scene",
     "Simulation",
+    "catalogue",
     "contact",
     "cost",
     "coupling",

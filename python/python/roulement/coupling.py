@@ -1,4 +1,4 @@
-"""Coupling of a bearing in pose drive to a rigid shaft: the recipes of docs/coupling.md, in pure Python.
+"""Coupling of a bearing in pose drive to a rigid shaft: the recipes of docs/coupling.md, in Python alone.
 
 Places, velocities and wrenches have the five components x, y, z, about y, about z. A bearing is anything that has
 `wrench()`, `place()` and `step(step, place, velocity)`: `Bearing` is one on a `Simulation`, `FmuBearing` on a package in FMPy.
@@ -8,8 +8,11 @@ Places, velocities and wrenches have the five components x, y, z, about y, about
 >>> shaft = Leapfrog(bearing, rigid(mass=1.0, transverse=1e-3), lambda time: [1500.0, 30.0, 0.0, 0.0, 0.0])
 >>> shaft.step(2e-5)
 
-`Leapfrog` is right for steps up to 80 us for a shaft of 1 kg, `Implicit` for longer ones.
+`Leapfrog` is right for steps up to 80 us for a shaft of 1 kg, `Implicit` for longer ones; `Euler` is what simple masters do. How they
+compare, with each other and with schemes not to be used, is measured by `examples/coupling/coupling.py`.
 """
+
+import shutil
 
 import numpy as np
 
@@ -77,6 +80,36 @@ class FmuBearing:
         self.fmu, self.time = fmu, time
         self._inputs = [references[name] for name in PLACE + VELOCITY]
         self._outputs = [references[name] for name in WRENCH]
+        self._folder = None
+
+    @classmethod
+    def load(cls, package):
+        """Opens a package by its path, and starts it at time 0. `close` frees it."""
+        from fmpy import extract, read_model_description
+        from fmpy.fmi2 import FMU2Slave
+
+        description, folder = read_model_description(str(package)), extract(str(package))
+        identifier = description.coSimulation.modelIdentifier
+        fmu = FMU2Slave(guid=description.guid, unzipDirectory=folder, modelIdentifier=identifier, instanceName="bearing")
+        fmu.instantiate()
+        bearing = cls(fmu, {variable.name: variable.valueReference for variable in description.modelVariables})
+        bearing._folder = folder
+        bearing.restart()
+        return bearing
+
+    def restart(self):
+        """Back to time 0, where the bearing carries what its scene loads it with."""
+        self.fmu.reset()
+        self.fmu.setupExperiment(startTime=0.0)
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+        self.time = 0.0
+
+    def close(self):
+        """Frees the instance, and what `load` unpacked."""
+        self.fmu.freeInstance()
+        if self._folder:
+            shutil.rmtree(self._folder)
 
     def place(self):
         """Place of the race [m, rad]."""
@@ -112,8 +145,8 @@ class FmuBearing:
         return np.array(columns).T
 
 
-class _Shaft:
-    """A rigid shaft on a bearing: `inertia` (5 x 5), `force(time)` the external wrench on it, `gyroscopic` (5 x 5, with the sign
+class Shaft:
+    """A rigid shaft on a bearing, without a scheme (`step`) yet: `inertia` (5 x 5), `force(time)` the external wrench on it, `gyroscopic` (5 x 5, with the sign
     of `gyroscopic()`), and a `velocity` at the start."""
 
     def __init__(self, bearing, inertia, force, gyroscopic=None, velocity=None, time=0.0):
@@ -122,35 +155,48 @@ class _Shaft:
         self.place, self.wrench, self.time = bearing.place(), bearing.wrench(), time
         self.velocity = np.zeros(5) if velocity is None else np.asarray(velocity, float)
 
-    def _force(self, wrench, velocity, time):
+    def total(self, wrench, velocity, time):
+        """All forces and moments on it under a wrench of the bearing, at a velocity and a time [s]."""
         return wrench + np.asarray(self.external(time), float) + self.gyroscopic @ velocity
 
 
-class Leapfrog(_Shaft):
+class Leapfrog(Shaft):
     """Half a kick by the wrench at the start, drift, half a kick by the wrench at the end (velocity Verlet): one step of the
     bearing per communication step."""
 
     def step(self, step):
         """Takes shaft and bearing a step [s] on."""
         half, end = 0.5 * step, self.time + step
-        acceleration = np.linalg.solve(self.inertia, self._force(self.wrench, self.velocity, self.time))
+        acceleration = np.linalg.solve(self.inertia, self.total(self.wrench, self.velocity, self.time))
         kicked = self.velocity + half * acceleration
         place = self.place + step * kicked
         wrench = self.bearing.step(step, place, self.velocity + step * acceleration)
         # The gyroscopic moment of the velocity at the end is known with it.
-        momentum = self.inertia @ kicked + half * self._force(wrench, np.zeros(5), end)
+        momentum = self.inertia @ kicked + half * self.total(wrench, np.zeros(5), end)
         self.velocity = np.linalg.solve(self.inertia - half * self.gyroscopic, momentum)
         self.place, self.wrench, self.time = place, wrench, end
 
 
-class Implicit(_Shaft):
+class Euler(Shaft):
+    """Velocity by the wrench at the start, then place by that velocity (semi-implicit Euler): one step of the bearing per communication
+    step. What a master does that gives the shaft its velocity first."""
+
+    def step(self, step):
+        """Takes shaft and bearing a step [s] on."""
+        acceleration = np.linalg.solve(self.inertia, self.total(self.wrench, self.velocity, self.time))
+        self.velocity = self.velocity + step * acceleration
+        self.place, self.time = self.place + step * self.velocity, self.time + step
+        self.wrench = self.bearing.step(step, self.place, self.velocity)
+
+
+class Implicit(Shaft):
     """Linearly implicit (HHT): the step is done twice, the derivatives of the first time give the matrix of the second. `alpha` in
     [0, 1/3] damps what the step cannot resolve."""
 
     def __init__(self, *arguments, alpha=0.3, **options):
         super().__init__(*arguments, **options)
         self.alpha = alpha
-        self._acceleration = np.linalg.solve(self.inertia, self._force(self.wrench, self.velocity, self.time))
+        self._acceleration = np.linalg.solve(self.inertia, self.total(self.wrench, self.velocity, self.time))
 
     def step(self, step):
         """Takes shaft and bearing a step [s] on."""
@@ -164,10 +210,10 @@ class Implicit(_Shaft):
         point = self.bearing.save()
         guessed = before * (1 - step / gamma)
         guess = end(guessed)
-        force = self._force(self.bearing.step(step, *guess), guess[1], finish)
+        force = self.total(self.bearing.step(step, *guess), guess[1], finish)
         derivative = self.bearing.derivative(step, beta, gamma) + self.gyroscopic * gamma
         self.bearing.restore(point)
-        start = self._force(self.wrench, self.velocity, self.time)
+        start = self.total(self.wrench, self.velocity, self.time)
         right = (1 - alpha) * (force - derivative @ guessed) + alpha * start
         self._acceleration = np.linalg.solve(self.inertia - (1 - alpha) * derivative, right)
         self.place, self.velocity = end(self._acceleration)

@@ -71,28 +71,35 @@ def effects(scene):
     return json.loads(scene._native.effects())
 
 
-def find_library():
-    """The shared library of packages: that of the environment variable ROULEMENT_LIBRARY, or beside the program `roulement`."""
-    name = {"win32": "roulement.dll", "darwin": "libroulement.dylib"}.get(sys.platform, "libroulement.so")
+def find_libraries():
+    """The shared libraries of packages: those of the environment variable ROULEMENT_LIBRARY (separated as in PATH), those of this package,
+    or that beside the program `roulement`."""
+    named = os.environ.get("ROULEMENT_LIBRARY")
+    if named:
+        return [Path(library) for library in named.split(os.pathsep)]
+    names = {"linux": "libroulement.so", "win32": "roulement.dll", "darwin": "libroulement.dylib"}
+    own = [Path(__file__).parent / "library" / name for name in names.values()]
     program = os.environ.get("ROULEMENT_BIN") or shutil.which("roulement")
-    places = [os.environ.get("ROULEMENT_LIBRARY"), program and Path(program).with_name(name)]
-    for place in filter(None, places):
-        if Path(place).is_file():
-            return Path(place)
+    beside = [Path(program).with_name(names[sys.platform])] if program and sys.platform in names else []
+    for places in (own, beside):
+        found = [library for library in places if library.is_file()]
+        if found:
+            return found
     raise FileNotFoundError(
-        f"{name} is needed for packages and is not there: build it by `cargo build --release`, then name it by `library=` or by the "
-        "environment variable ROULEMENT_LIBRARY"
+        "the shared library of packages is not there, as this package was built without it: build it by `cargo build --release`, then name "
+        "it by `library=` or by the environment variable ROULEMENT_LIBRARY"
     )
 
 
 def package(scene, path, library=None, name=None):
     """Writes the FMI 2.0 package of a scene; returns its path.
 
-    `library` is the shared library, or a list with one for each platform; `name` that of the model, of the file if not given.
+    `library` is the shared library, or a list with one for each platform, that of this package if not given (`find_libraries`); `name`
+    that of the model, of the file if not given.
     Raises OSError if a library is missing or of another platform.
     """
     if library is None:
-        library = [find_library()]
+        library = find_libraries()
     elif isinstance(library, (str, os.PathLike)):
         library = [library]
     _native.package(scene._native, Path(path), [Path(of) for of in library], name or Path(path).stem)

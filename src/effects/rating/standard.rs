@@ -88,15 +88,25 @@ impl Geometry {
 
     /// \[N] load of a ball on the inner race that presses with [`STATIC_PRESSURE`]; elastic compliance of both [1/Pa].
     pub fn static_ball_load(&self, compliance: f64) -> f64 {
+        self.static_ball_loads(compliance)[0]
+    }
+
+    /// \[N] the same on the inner and on the outer race.
+    pub fn static_ball_loads(&self, compliance: f64) -> [f64; 2] {
         let cosine = self.contact_angle.cos();
         let curvature = 2.0 / self.ball_diameter;
-        let along = 2.0 * cosine / (self.pitch_diameter - self.ball_diameter * cosine);
-        let across = curvature - 1.0 / (self.conformities[0] * self.ball_diameter);
-        let contact = HertzContact::new(curvature + along, across, compliance);
-        // Pressure is proportional to the root of the approach.
-        let area = std::f64::consts::PI * contact.semi_axis_rolling * contact.semi_axis_transverse;
-        let root = STATIC_PRESSURE * area / (1.5 * contact.stiffness);
-        contact.stiffness * root.powi(3)
+        let along = [
+            2.0 * cosine / (self.pitch_diameter - self.ball_diameter * cosine),
+            -2.0 * cosine / (self.pitch_diameter + self.ball_diameter * cosine),
+        ];
+        [0, 1].map(|race: usize| {
+            let across = curvature - 1.0 / (self.conformities[race] * self.ball_diameter);
+            let contact = HertzContact::new(curvature + along[race], across, compliance);
+            // Pressure is proportional to the root of the approach.
+            let area = std::f64::consts::PI * contact.semi_axis_rolling * contact.semi_axis_transverse;
+            let root = STATIC_PRESSURE * area / (1.5 * contact.stiffness);
+            contact.stiffness * root.powi(3)
+        })
     }
 
     /// \[N] basic static load rating C_0 (ISO 76: the most loaded ball carries five times the mean) of the largest load of a ball

@@ -1,0 +1,146 @@
+//! `roulement bearing`: catalogue bearings as scenes.
+
+use std::error::Error;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use roulement::catalogue::{Bearing, Request, SOURCE, TABLE};
+
+use super::say;
+
+/// Options of `roulement bearing`.
+#[derive(Args)]
+pub struct Options {
+    /// Name, such as 6205, "6305 C3" or "7206 B"; or give the numbers below, which stand in place of those of the table.
+    designation: Vec<String>,
+    /// Bore, such as "25 mm".
+    #[arg(long)]
+    bore: Option<String>,
+    /// Outside diameter.
+    #[arg(long)]
+    outside: Option<String>,
+    /// Width.
+    #[arg(long)]
+    width: Option<String>,
+    /// Basic dynamic load rating C, such as "14 kN".
+    #[arg(long, alias = "c", value_name = "C")]
+    dynamic_load_rating: Option<String>,
+    /// Basic static load rating C0.
+    #[arg(long, alias = "c0", value_name = "C0")]
+    static_load_rating: Option<String>,
+    /// Contact angle of an angular-contact bearing, such as "40 deg".
+    #[arg(long)]
+    contact_angle: Option<String>,
+    /// Class of the radial clearance of a deep-groove bearing: C2, CN, C3, C4, C5.
+    #[arg(long)]
+    clearance: Option<String>,
+    /// List the balls that come near both load ratings, with their errors, and write no scene.
+    #[arg(long)]
+    candidates: bool,
+    /// Which of these candidates the scene has.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    candidate: usize,
+    /// List the table of common sizes.
+    #[arg(long)]
+    list: bool,
+    /// Scene file to write; standard output if not given.
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+}
+
+impl Options {
+    fn request(&self) -> Result<Request, Box<dyn Error>> {
+        let mut text = toml::Table::new();
+        let name = (!self.designation.is_empty()).then(|| self.designation.join(" "));
+        for (key, value) in [
+            ("designation", &name),
+            ("bore", &self.bore),
+            ("outside", &self.outside),
+            ("width", &self.width),
+            ("dynamic_load_rating", &self.dynamic_load_rating),
+            ("static_load_rating", &self.static_load_rating),
+            ("contact_angle", &self.contact_angle),
+            ("clearance", &self.clearance),
+        ] {
+            let Some(value) = value else { continue };
+            // A bare number is one in SI; names are texts.
+            let number = value.parse().ok().filter(|_| !matches!(key, "designation" | "clearance"));
+            text.insert(key.into(), number.map_or_else(|| value.clone().into(), toml::Value::Float));
+        }
+        Ok(Request::parse(&text.to_string())?)
+    }
+}
+
+/// Writes the scene, or lists what is asked for.
+///
+/// # Errors
+/// If there is no such bearing, or the file cannot be written.
+pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    if options.list {
+        return Ok(say(&list())?);
+    }
+    let bearing = options.request()?.bearing()?;
+    if options.candidates {
+        return Ok(say(&candidates(&bearing)?)?);
+    }
+    let scene = bearing.scene(options.candidate)?;
+    match &options.output {
+        Some(path) => {
+            std::fs::write(path, scene).map_err(|why| format!("cannot write {}: {why}", path.display()))?;
+            say(&format!("{}\n", path.display()))?;
+        }
+        None => say(&scene)?,
+    }
+    Ok(())
+}
+
+/// The table of common sizes.
+fn list() -> String {
+    let mut text = format!(
+        "load ratings: {SOURCE}\n\n{:<12} {:>4} {:>7} {:>5} {:>9} {:>9}\n",
+        "name", "bore", "outside", "width", "C [kN]", "C0 [kN]"
+    );
+    for row in &TABLE {
+        let (name, bore, outside, width) = (row.designation, row.bore, row.outside, row.width);
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{name:<12} {bore:>4} {outside:>7} {width:>5} {:>9} {:>9}",
+            row.dynamic, row.static_
+        );
+    }
+    text
+}
+
+/// Balls that come near both ratings.
+fn candidates(bearing: &Bearing) -> Result<String, Box<dyn Error>> {
+    let (dynamic, static_) = (1e-3 * bearing.dynamic_load_rating, 1e-3 * bearing.static_load_rating);
+    let mut text = format!(
+        "{}\nC {dynamic:.2} kN, C0 {static_:.2} kN ({})\n\n{:>2} {:>5} {:>10} {:>9} {:>8} {:>9} {:>8} {:>17}\n",
+        bearing.title(),
+        bearing.source,
+        "",
+        "balls",
+        "ball [mm]",
+        "C [kN]",
+        "error",
+        "C0 [kN]",
+        "error",
+        "conformities"
+    );
+    for (at, of) in bearing.candidates()?.iter().enumerate() {
+        let [dynamic, static_] = of.errors.map(|error| 100.0 * error);
+        let [inner, outer] = of.geometry.conformities;
+        writeln!(
+            text,
+            "{:>2} {:>5} {:>10.4} {:>9.2} {dynamic:>+6.1} % {:>9.2} {static_:>+6.1} % {inner:>8} / {outer}",
+            at + 1,
+            of.geometry.balls,
+            1e3 * of.geometry.ball_diameter,
+            1e-3 * of.dynamic_load_rating,
+            1e-3 * of.static_load_rating,
+        )?;
+    }
+    Ok(text)
+}

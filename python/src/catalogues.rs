@@ -1,0 +1,50 @@
+//! Catalogue bearings as texts of scenes.
+
+use pyo3::prelude::*;
+use roulement::catalogue::{Bearing, Request, TABLE};
+use serde_json::json;
+
+use crate::failures::value;
+
+fn bearing(request: &str) -> PyResult<Bearing> {
+    Request::parse(request).and_then(|request| request.bearing()).map_err(value)
+}
+
+/// The scene of a bearing, as text; the request is TOML.
+#[pyfunction]
+pub fn catalogue_scene(request: &str, candidate: usize) -> PyResult<String> {
+    bearing(request)?.scene(candidate).map_err(value)
+}
+
+/// Balls that come near its ratings, as JSON.
+#[pyfunction]
+pub fn catalogue_candidates(request: &str) -> PyResult<String> {
+    let bearing = bearing(request)?;
+    let candidates = bearing.candidates().map_err(value)?;
+    let rows: Vec<_> = candidates
+        .iter()
+        .map(|of| {
+            let [inner, outer] = bearing.rings(of);
+            json!({
+                "balls": of.geometry.balls,
+                "ball_diameter": of.geometry.ball_diameter,
+                "pitch_diameter": of.geometry.pitch_diameter,
+                "inner_conformity": of.geometry.conformities[0],
+                "outer_conformity": of.geometry.conformities[1],
+                "dynamic_load_rating": of.dynamic_load_rating,
+                "static_load_rating": of.static_load_rating,
+                "dynamic_error": of.errors[0],
+                "static_error": of.errors[1],
+                "inner_mass": inner.mass,
+                "outer_mass": outer.mass,
+            })
+        })
+        .collect();
+    Ok(json!(rows).to_string())
+}
+
+/// Names of the table of common sizes.
+#[pyfunction]
+pub fn catalogue_names() -> Vec<&'static str> {
+    TABLE.iter().map(|row| row.designation).collect()
+}

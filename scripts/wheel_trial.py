@@ -1,0 +1,35 @@
+"""What a wheel has to do where nothing but it is installed: run by scripts/wheels, beside thrust.toml."""
+
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import roulement
+
+scene = roulement.Scene.load("thrust.toml").with_({"load.duration": "2 ms"})
+power = roulement.run(scene).mean("friction power")["mean"]
+stiffness = roulement.equilibrium(roulement.catalogue.bearing("7206 B")).stiffness[0, 0]
+print(f"friction power {power:.2f} W, axial stiffness of a 7206 B {stiffness * 1e-6:.0f} N/um")
+
+package = roulement.package(scene, "trial.fmu")
+print("package for", *sorted({Path(name).parts[1] for name in zipfile.ZipFile(package).namelist() if name.startswith("binaries/")}))
+from roulement.coupling import WRENCH  # noqa: E402
+
+from fmpy import simulate_fmu  # noqa: E402
+
+result = simulate_fmu(str(package), stop_time=2**-10, output_interval=2**-13, output=WRENCH[:3])
+simulation = roulement.Simulation(scene)
+for _ in range(8):
+    simulation.step(2**-13)
+assert list(result[-1])[1:] == list(simulation["inner.force"]), (result[-1], simulation["inner.force"])
+print("the package in FMPy has the bits of the simulation")
+
+Path("cases.csv").write_text("friction.ball_race\n0.05\n0.1\n")
+table = roulement.sweep.run("cases.csv", scene, "sweep")
+assert set(table["status"]) == {"done"} and table["friction_power.mean"][0] < table["friction_power.mean"][1]
+assert subprocess.run([sys.executable, "-m", "roulement.sweep", "--help"], capture_output=True).returncode == 0
+guid = re.search('guid="([^"]*)"', roulement.Scene.load("thrust.toml").describe("thrust"))[1]
+Path("found.txt").write_text(f"guid {guid}\n")
+print("sweep done")

@@ -1,0 +1,143 @@
+//! Catalogue bearings: from what a catalogue says (boundary dimensions, load ratings, contact angle) to a scene with estimated
+//! internal geometry.
+//!
+//! Number and diameter of the balls are those that give both load ratings by ISO 281 and ISO 76; the rest is estimated from the
+//! dimensions. Every estimate of a scene is marked in its comments, with its source and spread; docs/catalogue.md compares them with
+//! what the maker says.
+//!
+//! ```
+//! use roulement::Scene;
+//! use roulement::catalogue::Request;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let request = Request { designation: Some("6205 C3".into()), ..Request::default() };
+//! let bearing = request.bearing()?;
+//! let candidates = bearing.candidates()?;
+//! assert_eq!((candidates[0].geometry.balls, candidates[0].geometry.ball_diameter), (9, 7.9375e-3));
+//! let scene = Scene::parse(&bearing.scene(1)?)?;
+//! assert_eq!(scene.bearing.balls, 9);
+//! # Ok(())
+//! # }
+//! ```
+
+mod clearance;
+mod estimate;
+mod request;
+mod rings;
+mod table;
+mod text;
+
+use thiserror::Error;
+
+pub use clearance::Clearance;
+pub use estimate::{Candidate, STEEL_OF_ISO_76};
+pub use request::Request;
+pub use rings::Ring;
+pub use table::{SOURCE, TABLE};
+
+/// A row of the table of common sizes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry {
+    /// Its name in ISO's series: 61805 is also written 6805.
+    pub designation: &'static str,
+    /// \[mm] bore.
+    pub bore: f64,
+    /// \[mm] outside diameter.
+    pub outside: f64,
+    /// \[mm] width.
+    pub width: f64,
+    /// \[kN] basic dynamic load rating C.
+    pub dynamic: f64,
+    /// \[kN] basic static load rating C0.
+    pub static_: f64,
+    /// \[deg] contact angle; 0 of deep-groove bearings.
+    pub contact_angle: f64,
+}
+
+/// What a catalogue says of a bearing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bearing {
+    /// Its name; empty where only numbers are given.
+    pub designation: String,
+    /// Where its load ratings are from.
+    pub source: String,
+    /// \[m] bore.
+    pub bore: f64,
+    /// \[m] outside diameter.
+    pub outside: f64,
+    /// \[m] width.
+    pub width: f64,
+    /// \[N] basic dynamic load rating C.
+    pub dynamic_load_rating: f64,
+    /// \[N] basic static load rating C0.
+    pub static_load_rating: f64,
+    /// \[rad] nominal contact angle; 0 is a deep-groove bearing, whose contact angle is that of its clearance.
+    pub contact_angle: f64,
+    /// Class of the radial clearance of a deep-groove bearing.
+    pub clearance: Clearance,
+}
+
+impl Bearing {
+    /// Is it a deep-groove bearing?
+    pub fn is_deep_groove(&self) -> bool {
+        self.contact_angle == 0.0
+    }
+
+    /// \[m] pitch diameter: midway between bore and outside diameter.
+    pub fn pitch_diameter(&self) -> f64 {
+        0.5 * (self.bore + self.outside)
+    }
+
+    /// \[m] height of its section.
+    pub fn section_height(&self) -> f64 {
+        0.5 * (self.outside - self.bore)
+    }
+}
+
+/// Why there is no catalogue bearing.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum CatalogueError {
+    /// Not TOML, an unknown key, or a value of the wrong kind or dimension.
+    #[error("{0}")]
+    Format(String),
+    /// A name that the table lacks.
+    #[error(
+        "{0} is not in the table, which has 60, 62, 63, 618 and 619 deep groove and 72 B, 73 B angular contact with bores of 10 to \
+         85 mm (`roulement bearing --list`); give bore, outside, width, dynamic_load_rating and static_load_rating instead"
+    )]
+    Unknown(String),
+    /// Something that is needed is not given.
+    #[error(
+        "{0} is missing: give a name of the table, such as 6205, or bore, outside, width, dynamic_load_rating and static_load_rating"
+    )]
+    Missing(&'static str),
+    /// A value outside its range.
+    #[error("{key} = {value} is out of range: allowed is {range}")]
+    Range {
+        /// What was given.
+        key: &'static str,
+        /// Its value, with its unit.
+        value: String,
+        /// What is allowed.
+        range: String,
+    },
+    /// Things that do not go together.
+    #[error("{0}")]
+    Conflict(String),
+    /// No balls come near both load ratings.
+    #[error(
+        "no balls that fit into {dimensions} give C = {dynamic} N and C0 = {static_} N within {percent} %: the nearest are {nearest}"
+    )]
+    NoBalls {
+        /// Boundary dimensions in words.
+        dimensions: String,
+        /// \[N] C as given.
+        dynamic: f64,
+        /// \[N] C0 as given.
+        static_: f64,
+        /// \[%] largest error that is taken.
+        percent: f64,
+        /// The best there are, in words.
+        nearest: String,
+    },
+}

@@ -1,0 +1,148 @@
+//! Which bearing is asked for: by a name of the table, by numbers, or by a name with some numbers of another maker.
+
+use serde::Deserialize;
+
+use super::text::short;
+use super::{Bearing, CatalogueError, Clearance, Entry, SOURCE, TABLE};
+use crate::schema::units::{Angle, Force, Length};
+
+/// A bearing by name, by numbers, or both: numbers that are given stand in place of those of the table.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Request {
+    /// Name such as "6205", "7206 B", "6305 C3", "6805" (which is 61805), "6205-2RS".
+    pub designation: Option<String>,
+    /// \[m] bore.
+    pub bore: Option<Length>,
+    /// \[m] outside diameter.
+    pub outside: Option<Length>,
+    /// \[m] width.
+    pub width: Option<Length>,
+    /// \[N] basic dynamic load rating C.
+    pub dynamic_load_rating: Option<Force>,
+    /// \[N] basic static load rating C0.
+    pub static_load_rating: Option<Force>,
+    /// \[rad] contact angle; 0 is a deep-groove bearing.
+    pub contact_angle: Option<Angle>,
+    /// Class of the radial clearance of a deep-groove bearing: C2, CN, C3, C4, C5.
+    pub clearance: Option<String>,
+}
+
+/// Seals and shields, which change nothing inside; longer ones first.
+const SEALS: [&str; 11] = ["2RSH", "2RSL", "2RSR", "2RS1", "2RS", "DDU", "ZZ", "VV", "DD", "2Z", "RS"];
+
+/// Row of the table by a name, and the clearance class that the name has.
+fn find(name: &str) -> Result<(&'static Entry, Option<Clearance>), CatalogueError> {
+    let letters: String = name
+        .chars()
+        .filter(|sign| !matches!(sign, ' ' | '-' | '/' | '_'))
+        .collect::<String>()
+        .to_ascii_uppercase();
+    let (plain, class) = Clearance::split(&letters);
+    let plain = SEALS.iter().find_map(|seal| plain.strip_suffix(seal)).unwrap_or(plain);
+    // Makers leave the 1 out: 6805 is 61805.
+    let long = match plain.strip_prefix('6') {
+        Some(rest) if rest.len() == 3 && (rest.starts_with('8') || rest.starts_with('9')) => {
+            format!("61{rest}")
+        }
+        _ => plain.to_string(),
+    };
+    let row = TABLE.iter().find(|row| row.designation.replace(' ', "") == long);
+    row.map(|row| (row, class)).ok_or_else(|| CatalogueError::Unknown(name.to_string()))
+}
+
+impl Request {
+    /// Reads a request from TOML: `designation = "6205"`, `bore = "25 mm"` and so on.
+    ///
+    /// # Errors
+    /// Names the key.
+    pub fn parse(text: &str) -> Result<Self, CatalogueError> {
+        toml::from_str(text).map_err(|why: toml::de::Error| {
+            let line = why.span().and_then(|span| text.get(..span.start)?.lines().last().map(str::to_string));
+            let key =
+                line.filter(|line| !line.is_empty()).map_or(String::new(), |line| format!("{line} ..: "));
+            CatalogueError::Format(format!("{key}{}", why.message()))
+        })
+    }
+
+    /// The bearing that is asked for.
+    ///
+    /// # Errors
+    /// If its name is not in the table, something is missing, or out of range.
+    pub fn bearing(&self) -> Result<Bearing, CatalogueError> {
+        let (row, named) = match &self.designation {
+            Some(name) => find(name).map(|(row, class)| (Some(row), class))?,
+            None => (None, None),
+        };
+        let given = |value: Option<f64>, of: fn(&Entry) -> f64, key: &'static str| {
+            value.or(row.map(of)).ok_or(CatalogueError::Missing(key))
+        };
+        let contact_angle =
+            self.contact_angle.map_or(row.map_or(0.0, |row| row.contact_angle.to_radians()), |angle| angle.0);
+        let class = match (&self.clearance, named) {
+            (Some(name), _) => Some(Clearance::parse(name)?),
+            (None, named) => named,
+        };
+        if contact_angle != 0.0 && class.is_some() {
+            return Err(CatalogueError::Conflict(
+                "clearance: classes are of deep-groove bearings; an angular-contact bearing has its contact angle instead".into(),
+            ));
+        }
+        let whole = row.is_some() && self.dynamic_load_rating.is_none() && self.static_load_rating.is_none();
+        let bearing = Bearing {
+            designation: row.map_or(String::new(), |row| row.designation.into()),
+            source: if whole { SOURCE.into() } else { "as given".into() },
+            bore: given(self.bore.map(|of| of.0), |row| row.bore / 1e3, "bore")?,
+            outside: given(self.outside.map(|of| of.0), |row| row.outside / 1e3, "outside")?,
+            width: given(self.width.map(|of| of.0), |row| row.width / 1e3, "width")?,
+            dynamic_load_rating: given(
+                self.dynamic_load_rating.map(|of| of.0),
+                |row| row.dynamic * 1e3,
+                "dynamic_load_rating",
+            )?,
+            static_load_rating: given(
+                self.static_load_rating.map(|of| of.0),
+                |row| row.static_ * 1e3,
+                "static_load_rating",
+            )?,
+            contact_angle,
+            clearance: class.unwrap_or_default(),
+        };
+        bearing.check()?;
+        Ok(bearing)
+    }
+}
+
+impl Bearing {
+    fn check(&self) -> Result<(), CatalogueError> {
+        let within = |key, value: f64, low: f64, high: f64, scale: f64, unit: &str| {
+            if value >= low * (1.0 - 1e-12) && value <= high * (1.0 + 1e-12) {
+                return Ok(());
+            }
+            let [value, low, high] = [value, low, high].map(|of| short(of * scale, 9));
+            Err(CatalogueError::Range {
+                key,
+                value: format!("{value} {unit}"),
+                range: format!("[{low}, {high}] {unit}"),
+            })
+        };
+        within("bore", self.bore, 1e-3, 1.0, 1e3, "mm")?;
+        within("outside", self.outside, 1.15 * self.bore, 5.0 * self.bore, 1e3, "mm")?;
+        // Wider sections than high ones are of several rows.
+        within("width", self.width, 0.4 * self.section_height(), 2.5 * self.section_height(), 1e3, "mm")?;
+        within("dynamic_load_rating", self.dynamic_load_rating, 1.0, 1e8, 1e-3, "kN")?;
+        within("static_load_rating", self.static_load_rating, 1.0, 1e8, 1e-3, "kN")?;
+        within(
+            "contact_angle",
+            self.contact_angle,
+            0.0,
+            45f64.to_radians(),
+            180.0 / std::f64::consts::PI,
+            "deg",
+        )?;
+        if self.is_deep_groove() {
+            self.clearance.limits(self.bore)?;
+        }
+        Ok(())
+    }
+}

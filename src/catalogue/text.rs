@@ -1,0 +1,160 @@
+//! The scene of a catalogue bearing, as text with comments: every estimate with its source and spread.
+
+use std::fmt::{self, Display, Formatter};
+
+use super::{Bearing, Candidate, CatalogueError, rings};
+
+/// [mm/min] speed of a scene times its pitch diameter: half of what grease-lubricated ball bearings are usually allowed.
+const SPEED: f64 = 250_000.0;
+/// [-] load of a scene over C.
+const LOAD: f64 = 0.1;
+
+impl Display for Candidate {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let [dynamic, static_] = self.errors.map(|error| 100.0 * error);
+        let (balls, ball) = (self.geometry.balls, short(1e3 * self.geometry.ball_diameter, 5));
+        write!(f, "{balls} x {ball} mm ({dynamic:+.1} % in C, {static_:+.1} % in C0)")
+    }
+}
+
+/// A number with so many digits at most, without zeros at its end.
+pub(super) fn short(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let behind = (digits as i32 - 1 - value.abs().log10().floor() as i32).max(0) as usize;
+    let text = format!("{value:.behind$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+}
+
+/// A number with two digits.
+fn two_digits(value: f64) -> f64 {
+    let unit = 10f64.powf(value.log10().floor() - 1.0);
+    (value / unit).round() * unit
+}
+
+impl Bearing {
+    /// Bore, outside diameter and width in words.
+    pub fn dimensions(&self) -> String {
+        let [bore, outside, width] = [self.bore, self.outside, self.width].map(|of| short(1e3 * of, 6));
+        format!("{bore} x {outside} x {width} mm")
+    }
+
+    /// What it is, in a line.
+    pub fn title(&self) -> String {
+        let name = if self.designation.is_empty() { "Bearing" } else { &self.designation };
+        if self.is_deep_groove() {
+            let class = self.clearance.name();
+            format!("{name} {class}, deep groove, {}, internal geometry estimated", self.dimensions())
+        } else {
+            let angle = short(self.contact_angle.to_degrees(), 4);
+            format!("{name}, angular contact {angle} deg, {}, internal geometry estimated", self.dimensions())
+        }
+    }
+
+    /// The scene with one of its candidates, counted from 1, as the text of a file.
+    ///
+    /// # Errors
+    /// If no balls come near its ratings, or there is no such candidate.
+    pub fn scene(&self, candidate: usize) -> Result<String, CatalogueError> {
+        let candidates = self.candidates()?;
+        let Some(chosen) = candidate.checked_sub(1).and_then(|index| candidates.get(index)) else {
+            return Err(CatalogueError::Range {
+                key: "candidate",
+                value: candidate.to_string(),
+                range: format!("[1, {}]", candidates.len()),
+            });
+        };
+        Ok(self.text(&candidates, chosen))
+    }
+
+    fn text(&self, candidates: &[Candidate], chosen: &Candidate) -> String {
+        let geometry = &chosen.geometry;
+        let [dynamic, static_] =
+            [self.dynamic_load_rating, self.static_load_rating].map(|of| short(1e-3 * of, 5));
+        let others: Vec<String> =
+            candidates.iter().filter(|other| *other != chosen).take(2).map(ToString::to_string).collect();
+        let [inner, outer] = self.rings(chosen);
+        let mut lines = vec![
+            format!("# Given: boundary dimensions of ISO 15 and load ratings ({}).", self.source),
+            "# What is estimated is not the maker's: measure it, or ask for it, where results depend on it."
+                .into(),
+            format!("title = {:?}", self.title()),
+            String::new(),
+            "[bearing]".into(),
+            format!("# Balls: estimated from C by ISO 281 and C0 by ISO 76 (4200 MPa): {chosen}."),
+            format!("# Spread, the next in this order: {}.", others.join("; ")),
+            format!("balls = {}", geometry.balls),
+            format!("ball_diameter = \"{} mm\"", short(1e3 * geometry.ball_diameter, 8)),
+            "# Pitch diameter: estimated as midway between bore and outside diameter; spread 2 %.".into(),
+            format!("pitch_diameter = \"{} mm\"", short(1e3 * geometry.pitch_diameter, 8)),
+        ];
+        if self.is_deep_groove() {
+            // Bearings are checked for their bore.
+            let [least, largest] = self.clearance.limits(self.bore).unwrap_or_default().map(|of| 1e6 * of);
+            lines.extend([
+                format!(
+                    "# Radial clearance: the middle of class {} of ISO 5753-1, spread {least:.0} to {largest:.0} um; fits and heat take from \
+                     it.",
+                    self.clearance.name()
+                ),
+                format!("diametral_clearance = \"{} um\"", short(0.5 * (least + largest), 4)),
+            ]);
+        } else {
+            lines.extend([
+                "# Contact angle: nominal; spread about 3 deg.".into(),
+                format!("contact_angle = \"{} deg\"", short(self.contact_angle.to_degrees(), 6)),
+            ]);
+        }
+        let [inner_conformity, outer_conformity] = geometry.conformities;
+        let close = if outer_conformity < 0.53 {
+            "; the outer groove is close, as C0 is above that of 0.53"
+        } else {
+            ""
+        };
+        lines.extend([
+            format!("# Conformities: estimated as those that ISO 281 and ISO 76 are of{close}; spread 0.505 to 0.54."),
+            format!("inner_conformity = {inner_conformity}"),
+            format!("outer_conformity = {outer_conformity}"),
+            String::new(),
+            "# Load ratings of the catalogue.".into(),
+            "[rating]".into(),
+            format!("dynamic_load_rating = \"{dynamic} kN\""),
+            format!("static_load_rating = \"{static_} kN\""),
+            String::new(),
+            "[effects]".into(),
+            "damping = \"0.02 s/m\"           # estimated: bouncing of balls ends within about 1 ms; spread a factor of 3".into(),
+            String::new(),
+            "[inner]".into(),
+            "drive = \"wrench\"".into(),
+            format!(
+                "# The ring alone, without a shaft: estimated from its section with shoulders of {} D, spread 10 % (outer ring: {} kg).",
+                rings::SHOULDER,
+                short(outer.mass, 3)
+            ),
+            format!("mass = \"{} kg\"", short(inner.mass, 3)),
+            {
+                let [polar, transverse] = inner.inertia.map(|of| format!("\"{of:.2e} kg m^2\""));
+                format!("inertia = [{polar}, {transverse}, {transverse}]")
+            },
+            String::new(),
+            format!(
+                "# An example, to be changed: {LOAD} C, and the speed at which it times the pitch diameter is {SPEED} mm/min."
+            ),
+            "[load]".into(),
+            "duration = \"20 ms\"".into(),
+            "output_interval = \"100 us\"".into(),
+            format!("inner_speed = \"{} rpm\"", two_digits(SPEED / (1e3 * geometry.pitch_diameter))),
+        ]);
+        let force = two_digits(LOAD * self.dynamic_load_rating);
+        if self.is_deep_groove() {
+            lines.push(format!("y = {{ force = \"{force} N\" }}"));
+            lines.push("x = { displacement = 0.0 }".into());
+            lines.extend(["ry", "rz"].map(|tilt| format!("{tilt} = {{ rotation = 0.0 }}")));
+        } else {
+            lines.push(format!("x = {{ force = \"{force} N\" }}"));
+        }
+        lines.push(String::new());
+        lines.join("\n")
+    }
+}

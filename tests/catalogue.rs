@@ -1,0 +1,272 @@
+//! Catalogue bearings: formulas against the tables of the standards and the factors of a maker, geometry against bearings that are
+//! known, scenes of the whole table.
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::TAU;
+
+use roulement::catalogue::{Bearing, CatalogueError, Clearance, Request, STEEL_OF_ISO_76, TABLE};
+use roulement::effects::rating::standard::Geometry;
+use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
+use roulement::simulation::Simulation;
+use roulement::{Model, Scene};
+
+#[path = "common/tables.rs"]
+mod tables;
+
+const MAKER: &str = include_str!("data/catalogue/maker.csv");
+
+/// Factors f_c of ISO 281:2007, table 2, and f_0 of ISO 76:2006, table 1, of deep-groove and angular-contact bearings over
+/// `D cos(alpha)/D_pw` (as recalled).
+const PUBLISHED: [(f64, f64, f64); 17] = [
+    (0.01, 29.1, 14.9),
+    (0.02, 35.8, 15.1),
+    (0.04, 43.8, 15.5),
+    (0.06, 49.1, 15.9),
+    (0.08, 52.8, 16.3),
+    (0.09, 54.3, 16.5),
+    (0.10, 55.5, 16.4),
+    (0.12, 57.5, 15.9),
+    (0.14, 58.8, 15.4),
+    (0.16, 59.6, 14.9),
+    (0.18, 59.9, 14.4),
+    (0.20, 59.9, 14.0),
+    (0.22, 59.6, 13.5),
+    (0.25, 58.6, 12.8),
+    (0.30, 56.0, 11.6),
+    (0.35, 52.4, 10.5),
+    (0.40, 48.4, 9.4),
+];
+
+fn bearing(name: &str) -> Bearing {
+    Request { designation: Some(name.into()), ..Request::default() }.bearing().unwrap()
+}
+
+fn all() -> impl Iterator<Item = Bearing> {
+    TABLE.iter().map(|row| bearing(row.designation))
+}
+
+/// [-] factor f_0 of ISO 76, N and mm.
+fn static_factor(geometry: &Geometry) -> f64 {
+    let [inner, outer] = geometry.static_ball_loads(STEEL_OF_ISO_76);
+    0.2e-6 * inner.min(outer) / geometry.ball_diameter.powi(2)
+}
+
+/// f_0, where there is one, and mass \[kg] of the maker.
+fn maker(name: &str) -> (Option<f64>, f64) {
+    let line = MAKER.lines().find(|line| line.split(',').next() == Some(name)).unwrap();
+    let cells: Vec<&str> = line.split(',').collect();
+    (cells[1].parse().ok(), cells[2].parse().unwrap())
+}
+
+#[test]
+fn published_number_factors_of_iso_281_and_iso_76() {
+    for (gamma, dynamic, static_) in PUBLISHED {
+        let geometry = Geometry {
+            balls: 10,
+            ball_diameter: 10e-3,
+            pitch_diameter: 10e-3 / gamma,
+            contact_angle: 0.0,
+            conformities: [0.52, 0.53],
+        };
+        // Both are printed with three digits.
+        assert!((geometry.factor() - dynamic).abs() <= 0.051, "{gamma}: f_c {} {dynamic}", geometry.factor());
+        assert!(
+            (static_factor(&geometry) - static_).abs() <= 0.051,
+            "{gamma}: f_0 {} {static_}",
+            static_factor(&geometry)
+        );
+    }
+}
+
+#[test]
+fn published_number_bearings_that_are_known_are_the_first_candidates() {
+    for (name, balls, ball) in [("6205", 9, 7.9375e-3), ("6206", 9, 9.525e-3), ("7206 B", 13, 9.525e-3)] {
+        let first = bearing(name).candidates().unwrap()[0].geometry;
+        assert_eq!((first.balls, first.ball_diameter), (balls, ball), "{name}");
+    }
+}
+
+#[test]
+fn published_number_ratings_factors_and_masses_of_the_whole_table() {
+    let (mut ratings, mut factors, mut masses) = (0.0f64, 0.0f64, [f64::INFINITY, 0.0f64]);
+    let (mut sizes, mut fills, mut angular) = ([1.0f64, 0.0f64], [360.0f64, 0.0f64], 0.0f64);
+    for of in all() {
+        let best = of.candidates().unwrap()[0];
+        let geometry = &best.geometry;
+        ratings = ratings.max(best.error());
+        let (factor, mass) = maker(&of.designation);
+        if let Some(factor) = factor {
+            factors = factors.max((static_factor(geometry) / factor - 1.0).abs());
+        }
+        let mass = of.mass(&best) / mass;
+        masses = [masses[0].min(mass), masses[1].max(mass)];
+        let size = geometry.ball_diameter / of.section_height();
+        sizes = [sizes[0].min(size), sizes[1].max(size)];
+        let step = 2.0 * (geometry.ball_diameter / geometry.pitch_diameter).asin();
+        if of.is_deep_groove() {
+            let fill = ((geometry.balls - 1) as f64 * step).to_degrees();
+            fills = [fills[0].min(fill), fills[1].max(fill)];
+        } else {
+            angular = angular.max(geometry.balls as f64 * step / TAU);
+        }
+    }
+    println!("{ratings} {factors} {masses:?} {sizes:?} {fills:?} {angular}");
+    // Ratings are printed with three digits, which are rounded by up to 0.5 %.
+    assert!(ratings < 0.02, "{ratings}");
+    // The maker's factor depends on its true pitch diameter.
+    assert!(factors < 0.02, "{factors}");
+    // Masses of small bearings are printed with one digit, and cages are in them.
+    assert!(masses[0] > 0.93 && masses[1] < 1.12, "{masses:?}");
+    // What the limits of the search say.
+    assert!(sizes[0] > 0.45 && sizes[1] < 0.70, "{sizes:?}");
+    assert!(fills[0] > 165.0 && fills[1] < 204.0, "{fills:?}");
+    assert!(angular < 0.94, "{angular}");
+}
+
+#[test]
+fn every_bearing_of_the_table_is_a_scene_with_an_equilibrium() {
+    for of in all() {
+        let scene =
+            Scene::parse(&of.scene(1).unwrap()).unwrap_or_else(|why| panic!("{}: {why}", of.designation));
+        assert!(scene.title.starts_with(&of.designation), "{}", scene.title);
+        let model = Model::new(&scene).unwrap();
+        let input = EquilibriumInput::from_scene(&scene, Gyroscopic::OuterRaceControl);
+        let solution =
+            equilibrium::solve(&model, &input).unwrap_or_else(|why| panic!("{}: {why}", of.designation));
+        // A tenth of C, to two digits, is what the balls carry.
+        let direction = if of.is_deep_groove() { 1 } else { 0 };
+        let share = solution.load[direction] / of.dynamic_load_rating;
+        assert!((0.095..0.105).contains(&share), "{}: {share}", of.designation);
+    }
+}
+
+#[test]
+fn scenes_of_both_kinds_run() {
+    for name in ["61805", "6205 C4", "6310 C2", "7206 B", "7317 B"] {
+        let text = bearing(name).scene(1).unwrap();
+        let mut simulation = Simulation::new(&Scene::parse(&text).unwrap()).unwrap();
+        simulation.advance_scripted(1e-3).unwrap();
+        let force = simulation.outputs().inner.wrench.force;
+        assert!(force.norm().is_finite() && force.norm() > 0.0, "{name}: {force}");
+    }
+}
+
+#[test]
+fn closed_form_ring_between_cylinders() {
+    // Mass of a groove by Pappus: the ring and its groove make up the rectangle of revolution.
+    let of = bearing("6206");
+    let best = of.candidates().unwrap()[0];
+    let [inner, outer] = of.rings(&best);
+    let (ball, pitch) = (best.geometry.ball_diameter, best.geometry.pitch_diameter);
+    let slices = 200_000;
+    for (race, ring) in [inner, outer].into_iter().enumerate() {
+        let radius = best.geometry.conformities[race] * ball;
+        let (mut mass, mut polar, mut transverse) = (0.0, 0.0, 0.0);
+        for slice in 0..slices {
+            // Slices across the axis: between bore and groove or shoulder.
+            let x = of.width * ((f64::from(slice) + 0.5) / f64::from(slices) - 0.5);
+            let below = (radius * radius - x * x).max(0.0).sqrt();
+            let depth = (below - (radius - 0.2 * ball)).max(0.0);
+            let (low, high) = if race == 0 {
+                (0.5 * of.bore, 0.5 * pitch - 0.3 * ball - depth)
+            } else {
+                (0.5 * pitch + 0.3 * ball + depth, 0.5 * of.outside)
+            };
+            let slab = 7800.0 * 0.5 * TAU * (high * high - low * low) * of.width / f64::from(slices);
+            let about = 0.5 * slab * (high * high + low * low);
+            mass += slab;
+            polar += about;
+            transverse += 0.5 * about + slab * x * x;
+        }
+        assert!((ring.mass / mass - 1.0).abs() < 1e-6, "{race}: {} {mass}", ring.mass);
+        // The groove's own moments about its centroid are left out.
+        assert!((ring.inertia[0] / polar - 1.0).abs() < 3e-3, "{race}: {:?} {polar}", ring.inertia);
+        assert!((ring.inertia[1] / transverse - 1.0).abs() < 6e-3, "{race}: {:?} {transverse}", ring.inertia);
+    }
+}
+
+#[test]
+fn names_are_read_as_catalogues_write_them() {
+    for (name, designation, class) in [
+        ("6205", "6205", Clearance::CN),
+        ("6205 C3", "6205", Clearance::C3),
+        ("6205-2RS1/C4", "6205", Clearance::C4),
+        ("6205ZZ", "6205", Clearance::CN),
+        ("6805", "61805", Clearance::CN),
+        ("61905 c2", "61905", Clearance::C2),
+        ("7206b", "7206 B", Clearance::CN),
+    ] {
+        let found = bearing(name);
+        assert_eq!((found.designation.as_str(), found.clearance), (designation, class), "{name}");
+    }
+    // Numbers stand in place of those of the table; ratings of another maker.
+    let text = "designation = \"6205\"\ndynamic_load_rating = \"14.1 kN\"\nstatic_load_rating = 7800.0";
+    let other = Request::parse(text).unwrap().bearing().unwrap();
+    assert_eq!((other.bore, other.dynamic_load_rating, other.source.as_str()), (25e-3, 14100.0, "as given"));
+    assert_eq!(other.candidates().unwrap()[0].geometry.balls, 9);
+    let text = "bore = \"30 mm\"\noutside = \"62 mm\"\nwidth = \"16 mm\"\ndynamic_load_rating = \"20.5 kN\"\nstatic_load_rating = \"13.5 kN\"\ncontact_angle = \"40 deg\"";
+    let numbers = Request::parse(text).unwrap().bearing().unwrap();
+    assert_eq!(numbers.candidates().unwrap(), bearing("7206 B").candidates().unwrap());
+}
+
+#[test]
+fn errors_name_what_was_given_and_what_is_allowed() {
+    let six = "designation = \"6205\"\n";
+    for (text, parts) in [
+        ("designation = \"6299\"".into(), vec!["6299 is not in the table", "--list"]),
+        ("designation = \"7205 C\"".into(), vec!["7205 C is not in the table"]),
+        ("bore = 0.025".into(), vec!["outside is missing"]),
+        (format!("{six}clearance = \"C9\""), vec!["clearance = \"C9\"", "C2, CN, C3, C4, C5"]),
+        ("designation = \"7206 B\"\nclearance = \"C3\"".into(), vec!["clearance", "contact angle instead"]),
+        (format!("{six}outside = \"20 mm\""), vec!["outside = 20 mm", "[28.75, 125] mm"]),
+        (format!("{six}bore = \"25 kg\""), vec!["bore", "25 kg", "kg measures something else"]),
+        (format!("{six}boer = 1"), vec!["boer"]),
+        (format!("{six}contact_angle = \"60 deg\""), vec!["contact_angle = 60", "[0, 45] deg"]),
+    ] {
+        let why: CatalogueError = match Request::parse(&text).and_then(|request| request.bearing()) {
+            Err(why) => why,
+            Ok(bearing) => panic!("{text}: {bearing:?}"),
+        };
+        for part in parts {
+            assert!(why.to_string().contains(part), "{why}\nshould have {part}");
+        }
+    }
+    let of = bearing("6205");
+    let why = of.scene(0).unwrap_err().to_string();
+    assert!(why.contains("candidate = 0") && why.contains("[1, 12]"), "{why}");
+    let far = Bearing { dynamic_load_rating: 140e3, ..of };
+    let why = far.scene(1).unwrap_err().to_string();
+    assert!(
+        why.contains("25 x 52 x 15 mm") && why.contains("140000 N") && why.contains("the nearest are"),
+        "{why}"
+    );
+}
+
+#[test]
+fn regression_table_of_the_document() {
+    let rows: Vec<tables::Row> = all()
+        .zip(&TABLE)
+        .map(|(of, row)| {
+            let candidates = of.candidates().unwrap();
+            let [first, second] = [0, 1].map(|index: usize| candidates[index].to_string());
+            let (factor, mass) = maker(&of.designation);
+            let factor = factor.map_or("-".into(), |factor| {
+                format!("{:.1} / {factor:.1}", static_factor(&candidates[0].geometry))
+            });
+            let mass = format!("{:.3} / {mass}", of.mass(&candidates[0]));
+            let ratings = format!("{} / {}", row.dynamic, row.static_);
+            let dimensions = of.dimensions().replace(" mm", "");
+            tables::row(
+                format!(
+                    "{} | {dimensions} | {ratings} | {first} | {second} | {factor} | {mass}",
+                    row.designation
+                ),
+                vec![],
+                "",
+            )
+        })
+        .collect();
+    let header = "bearing | d x D x B [mm] | C / C0 [kN] | first candidate | second candidate | f_0, of it / maker's | mass, of it / \
+                  maker's [kg]";
+    tables::compare("docs/catalogue.md", "catalogue", header, &rows);
+}
