@@ -6,6 +6,7 @@ mod effects;
 mod field;
 mod identify;
 mod player;
+mod report;
 mod run;
 mod summary;
 mod sweep;
@@ -51,6 +52,8 @@ enum Command {
     Sweep(sweep::Options),
     /// List the effects of a scene: which are on, which that are off would matter and by how much.
     Effects(effects::Options),
+    /// Make one page of results: drawing, plots, spectra, playback; of a run, of several, or of a sweep.
+    Report(report::Options),
     /// Pack a scene as an FMI 2.0 co-simulation FMU.
     Fmu {
         /// Scene file.
@@ -159,6 +162,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
             say(&format!("{}\n", output.display()))?;
         }
         Command::Effects(options) => effects::run(&options)?,
+        Command::Report(options) => report::run(&options)?,
         Command::Field(options) => field::run(&options)?,
         Command::Contact(options) => contact::run(&options)?,
         Command::Identify(options) => identify::run(&options)?,

@@ -8,6 +8,7 @@ mod cost;
 mod effects;
 mod field;
 mod refusals;
+mod report;
 mod runs;
 mod spectrum;
 mod sweep;
