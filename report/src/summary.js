@@ -5,7 +5,7 @@ import { digits, shown } from './units.js';
 
 /** Units of the figures by their names. */
 function unitOf(name) {
-  if (/force|load/.test(name) && !/over/.test(name)) return 'N';
+  if (/force|load|between balls/.test(name)) return 'N';
   if (/moment|torque/.test(name)) return 'N.m';
   if (/position|eccentricity/.test(name)) return 'm';
   if (/angle/.test(name)) return 'deg';

@@ -54,7 +54,7 @@ export function sweepSection(sweep, index) {
   const options = numeric.map(name => [name, label(sweep, name)]);
   const picker = (text, field) => select(text, options, state[field], name => { state[field] = name; drawMap(); });
   onTheme(drawMap);
-  return section(id, `Sweep ${sweep.name ?? ''}`,
+  return section(id, sweep.name && sweep.name !== 'sweep' ? `Sweep: ${sweep.name}` : 'Sweep',
     h('div', { class: 'row' }, picker('Across', 'x'), picker('Up', 'y'), picker('Colour', 'c')), map, detail,
     h('div', { class: 'row' }, h('label', { class: 'field' }, h('span', {}, 'Find in the table'), h('input', { type: 'search', oninput: event => { state.filter = event.target.value; drawTable(); } })),
       select('Add a column', [['', '\u2026'], ...figures.map(name => [name, label(sweep, name)])], '', name => { if (name && !state.columns.includes(name)) { state.columns.push(name); drawTable(); } })), list);
@@ -67,7 +67,7 @@ function label(sweep, name) {
 
 /** A map: a point for each case, coloured by a figure. */
 function scatter(sweep, state, choose) {
-  const [W, H, L, B, T, Rr] = [880, 430, 84, 56, 16, 120];
+  const [W, H, L, B, T, Rr] = [880, 440, 84, 56, 34, 120];
   const column = name => sweep.numbers.get(name)?.values ?? new Float64Array(sweep.count).fill(NaN);
   const [xs, ys, cs] = [column(state.x), column(state.y), column(state.c)];
   const ok = i => Number.isFinite(xs[i]) && Number.isFinite(ys[i]);
@@ -92,7 +92,7 @@ function scatter(sweep, state, choose) {
     s('title', {}, `case ${cell(sweep, 'case', i)}: ${sweep.keys.map(key => `${key} = ${cell(sweep, key, i)}`).join(', ')}; ${state.c} = ${cell(sweep, state.c, i)}`)));
   }
   for (let k = 0; k < 100; k++) svg.append(s('rect', { x: W - Rr + 30, y: H - B - ((k + 1) * (H - B - T - 30)) / 100, width: 16, height: (H - B - T - 30) / 100 + 0.6, fill: viridisCss(k / 99) }));
-  svg.append(s('text', { class: 'tick', x: W - Rr + 52, y: H - B }, digits(c0, 3)), s('text', { class: 'tick', x: W - Rr + 52, y: T + 40 }, digits(c1, 3)), s('text', { class: 'tick strong', x: W - 4, y: T + 14, 'text-anchor': 'end' }, label(sweep, state.c)));
+  svg.append(s('text', { class: 'tick', x: W - Rr + 52, y: H - B }, digits(c0, 3)), s('text', { class: 'tick', x: W - Rr + 52, y: T + 40 }, digits(c1, 3)), s('text', { class: 'tick strong', x: W - 4, y: 20, 'text-anchor': 'end' }, label(sweep, state.c)));
   const left = sweep.count - rows.length;
   return h('div', { class: 'scroll' }, svg, left > 0 ? h('p', { class: 'note' }, `${left} of ${sweep.count} cases have no number there: they failed, or leave the key as it is in the scene.`) : null);
 }
