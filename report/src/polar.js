@@ -82,9 +82,9 @@ function picture(run, quantity) {
     return { race, line, dots };
   });
   const caption = h('figcaption', {});
-  let stopped = false;
+  let stopped = false, inSight = true;
   const draw = () => {
-    if (stopped) return;
+    if (stopped || !inSight) return;
     const words = [];
     for (const { race, line, dots } of shapes) {
       const places = [];
@@ -105,5 +105,6 @@ function picture(run, quantity) {
     caption.textContent = words.join(' \u00b7 ');
   };
   clock.follow(draw);
+  new IntersectionObserver(([change]) => { inSight = change.isIntersecting; draw(); }, { rootMargin: '100px' }).observe(svg);
   return { svg, caption, stop() { stopped = true; } };
 }
