@@ -8,13 +8,19 @@ use plotters::prelude::*;
 use roulement::analysis::single_contact::{Law, RollingContact, RollingForces, ScaledContact};
 use roulement::contact::identification::{Identification, identify_by_table};
 use roulement::kalker::Patch;
+use roulement::kalker::half_space::{HalfSpace, cells};
 use roulement::kalker::linear::Scales;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::scene::CreepLaw;
-use roulement_cli::report::style::{Area, CAPTION, COLOURS, Drawn, LABEL, LINE, MARGIN, axes, legend};
+use roulement_cli::report::fine::{FINE, Key, LABEL, LINE, MARGIN, axes, headed, picture};
+use roulement_cli::report::style::{Area, COLOURS, Drawn};
 use serde::Deserialize;
 
-const PANEL: (u32, u32) = (560, 360);
+const PANEL: (u32, u32) = (620, 380);
+/// [-] forces beyond this are not drawn: linear theory has no limit.
+const HIGHEST: f64 = 1.6;
+/// [-] strips of half a contact for strip theory.
+const STRIPS: u32 = 200;
 /// [m] radius of the paper's ball on a plane.
 const BALL_RADIUS: f64 = 6.35e-3;
 
@@ -70,30 +76,53 @@ fn chart(panel: &Panel, area: &Area<'_>) -> Drawn {
     let extent = |get: fn(&(f64, f64)) -> f64| {
         points().map(get).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
     };
+    let area = &named(panel, area)?;
     let ((x0, x1), (y0, y1)) = (extent(|p| p.0), extent(|p| p.1));
     let air = 0.06 * (y1 - y0);
     let mut chart = ChartBuilder::on(area)
         .margin(MARGIN)
-        .caption(&panel.title, CAPTION)
-        .x_label_area_size(36)
-        .y_label_area_size(56)
+        .x_label_area_size(36 * FINE)
+        .y_label_area_size(60 * FINE)
         .build_cartesian_2d(x0..x1, y0 - air..y1 + air)?;
     axes(&mut chart.configure_mesh(), panel.x, panel.y).draw()?;
     for curve in &panel.curves {
         let colour = curve.colour;
         if curve.data {
-            chart
-                .draw_series(curve.points.iter().map(|&point| Circle::new(point, 3, colour.stroke_width(1))))?
-                .label(&curve.name)
-                .legend(move |(x, y)| Circle::new((x + 9, y), 3, colour.stroke_width(1)));
+            let ring = colour.stroke_width(FINE);
+            chart.draw_series(curve.points.iter().map(|&point| Circle::new(point, 3 * FINE, ring)))?;
         } else {
-            chart
-                .draw_series(LineSeries::new(curve.points.iter().copied(), colour.stroke_width(LINE)))?
-                .label(&curve.name)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(LINE)));
+            chart.draw_series(LineSeries::new(curve.points.iter().copied(), colour.stroke_width(LINE)))?;
         }
     }
-    legend(&mut chart, SeriesLabelPosition::MiddleRight)
+    Ok(())
+}
+
+/// Heading of a panel, and below it the names of its curves, outside the data; gives the rest of the panel.
+fn named<'a>(panel: &Panel, area: &Area<'a>) -> Result<Area<'a>, Box<dyn Error>> {
+    let mut area = headed(area, &panel.title, &[])?;
+    let keys: Vec<_> = panel
+        .curves
+        .iter()
+        .map(|curve| (curve.name.as_str(), if curve.data { Key::Dot } else { Key::Line }, curve.colour))
+        .collect();
+    // As many in a row as there is room for.
+    for row in keys.chunks(3) {
+        area = headed(&area, "", row)?;
+    }
+    Ok(area)
+}
+
+/// [-] F_x over mu F_n by strip theory (Haines and Ollerton 1963: each strip along rolling is a line contact after Carter, and strips
+/// do not know of each other), of the creepage over 2 mu p_0 (1 - nu) / G.
+fn strip_theory(creepage: f64) -> f64 {
+    let strip = |k: u32| {
+        // Length of a strip over that of the middle one; its pressure is to the middle one's as its length is.
+        let y = (f64::from(k) + 0.5) / f64::from(STRIPS);
+        let length = (1.0 - y * y).sqrt();
+        let adhesion = (1.0 - creepage / length).max(0.0);
+        length * length * (1.0 - adhesion * adhesion)
+    };
+    1.5 * (0..STRIPS).map(strip).sum::<f64>() / f64::from(STRIPS)
 }
 
 /// Light where nothing is used of the friction limit, dark where all is.
@@ -111,27 +140,43 @@ fn adhesion_map(case: &Case, area: &Area<'_>) -> Drawn {
     let ScaledContact { patch, creepage } = pure.scaled()?;
     let kalker = Kalker::new(patch, 7)?;
     let solution = kalker.solve(&creepage, None)?;
+    let grid = HalfSpace::with_cells(&patch, cells(&patch, 48))?;
+    let exact = grid.solve(&creepage, None)?;
     let title = format!(
-        "1b  |f|/(mu p) at c_x R/(mu a) = 0.8, degree 7; adhesion on {:.0} % of the ellipse",
+        "1b  |f|/(mu p_z) at c_x R/(mu a) = 0.8, polynomials of degree 7: {:.0} % stick",
         100.0 * solution.stick
     );
-    let mut chart = ChartBuilder::on(area)
+    let area = headed(area, &title, &[])?;
+    let edge = format!("edge of adhesion by the half-space: {:.0} % stick", 100.0 * exact.stick);
+    let area = headed(&area, "", &[(&edge, Key::Line, COLOURS[1])])?;
+    let mut chart = ChartBuilder::on(&area)
         .margin(MARGIN)
-        .caption(title, CAPTION)
-        .x_label_area_size(36)
-        .y_label_area_size(56)
-        .build_cartesian_2d(-1.6f64..1.6, -1.05f64..1.05)?;
+        .x_label_area_size(36 * FINE)
+        .y_label_area_size(60 * FINE)
+        .build_cartesian_2d(-1.75f64..1.75, -1.05f64..1.05)?;
     axes(&mut chart.configure_mesh(), "x/a (rolling to the right)", "y/b").disable_mesh().draw()?;
     chart.draw_series(kalker.local_states(&solution, &creepage).iter().map(|state| {
         let fraction = state.traction[0].hypot(state.traction[1]) / state.bound;
         let colour = shade(fraction);
-        Circle::new((state.place[0], state.place[1]), 7, colour.filled())
+        Circle::new((state.place[0], state.place[1]), 12 * FINE, colour.filled())
     }))?;
+    // In every row of cells the last one that sticks, seen from the leading edge; cells count from the middle in equal distances.
+    let states = grid.states(&creepage, &exact);
+    let mut rows: Vec<(f64, f64)> = vec![];
+    for cell in states.iter().filter(|cell| cell.sticks) {
+        let [x, y] = cell.place;
+        match rows.iter_mut().find(|row| (row.1 - y).abs() < 1e-6) {
+            Some(row) => row.0 = row.0.min(x),
+            None => rows.push((x, y)),
+        }
+    }
+    rows.sort_by(|one, other| one.1.total_cmp(&other.1));
+    chart.draw_series(LineSeries::new(rows, COLOURS[1].stroke_width(2 * LINE)))?;
     for (k, fraction) in [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().enumerate() {
         let y = -0.6 + 0.3 * k as f64;
         let colour = shade(fraction);
-        chart.draw_series([Rectangle::new([(1.2, y - 0.1), (1.3, y + 0.1)], colour.filled())])?;
-        chart.draw_series([Text::new(format!("{fraction}"), (1.35, y + 0.04), LABEL)])?;
+        chart.draw_series([Rectangle::new([(1.35, y - 0.1), (1.45, y + 0.1)], colour.filled())])?;
+        chart.draw_series([Text::new(format!("{fraction}"), (1.5, y + 0.04), LABEL)])?;
     }
     Ok(())
 }
@@ -154,7 +199,10 @@ fn compare(
                 let at = last * f64::from(step) / 60.0;
                 let mut contact = cases[0].contact.clone();
                 set(&mut contact, at);
-                points.push((at, of_law(&contact.evaluate(*law)?)));
+                let force = of_law(&contact.evaluate(*law)?);
+                if force.abs() <= HIGHEST {
+                    points.push((at, force));
+                }
             }
             let colour = COLOURS[(number * laws.len() + k) % COLOURS.len()];
             curves.push(Curve { name: format!("{name} {law_name}"), points, data: false, colour });
@@ -198,6 +246,26 @@ fn fitted(
     Panel { title: title.into(), x, y: "[-]", curves }
 }
 
+/// Strip theory over the creepages of a ball on a plane.
+fn strips(cases: &[Case]) -> Curve {
+    let place =
+        |case: &Case| case.contact.creep_x * BALL_RADIUS / (case.contact.friction * case.contact.semi_axis_x);
+    let last = cases.iter().map(place).fold(0.0, f64::max);
+    let contact = &cases[0].contact;
+    let scale = contact.semi_axis_x * contact.shear_modulus
+        / (2.0 * contact.peak_pressure * (1.0 - contact.poisson_ratio) * BALL_RADIUS);
+    let point = |step: u32| {
+        let at = last * f64::from(step) / 60.0;
+        (at, strip_theory(at * scale))
+    };
+    Curve {
+        name: "F_x strip theory".into(),
+        points: (0..=60).map(point).collect(),
+        data: false,
+        colour: COLOURS[4],
+    }
+}
+
 fn main() -> Drawn {
     let directory = std::env::args().nth(1).unwrap_or_else(|| "docs/figures".into());
     let cases = read_cases("tests/data/contact/curves.csv")?;
@@ -216,8 +284,13 @@ fn main() -> Drawn {
     let fx: Quantity = ("F_x", |f| f.fx, |case| case.result.fx);
     let fy: Quantity = ("F_y", |f| f.fy, |case| case.result.fy);
     let mz: Quantity = ("M_z/c", |f| f.mz, |case| case.result.mz);
-    let by_x: Axis =
-        ("longitudinal creepage c_x", |case| case.contact.creep_x, |contact, x| contact.creep_x = x);
+    let linear = ("linear", Law::Simulated(CreepLaw::Linear));
+    // As the paper's: 1a and 2 over c_x R / (mu a).
+    let by_x: Axis = (
+        "c_x R / (mu a)",
+        |case| case.contact.creep_x * BALL_RADIUS / (case.contact.friction * case.contact.semi_axis_x),
+        |contact, x| contact.creep_x = x * contact.friction * contact.semi_axis_x / BALL_RADIUS,
+    );
     let by_y: Axis = (
         "lateral creepage c_y, with c_x = 5e-4",
         |case| case.contact.creep_y,
@@ -241,16 +314,19 @@ fn main() -> Drawn {
         chosen.map(|row| get(row.3, row.5, row.6)).collect()
     };
     let Scales { c23, c33, moment, .. } = scales;
+    let mut first =
+        compare("1a  net traction, longitudinal creepage", &fig1, by_x, &[fx], &[kalker3, kalker5, linear])?;
+    first.curves.push(strips(&fig1));
     let panels = [
+        first,
         compare(
-            "1a  net traction, longitudinal creepage",
+            "2  the same: laws of simulations",
             &fig1,
             by_x,
             &[fx],
-            &[kalker3, kalker5, saturated],
+            &[table_law, regularised, saturated],
         )?,
-        compare("2  the same: laws of simulations", &fig1, by_x, &[fx], &[table_law, regularised])?,
-        compare("3  growing lateral creepage", &fig3, by_y, &[fx, fy], &[kalker5, regularised])?,
+        compare("3  growing lateral creepage", &fig3, by_y, &[fx, fy], &[kalker5, regularised, linear])?,
         compare("4  growing spin", &fig4, by_spin, &[fx, fy], &[kalker5, regularised])?,
         compare("4  growing spin: moment", &fig4, by_spin, &[mz], &[kalker5, regularised, table_law])?,
         fitted(
@@ -277,16 +353,15 @@ fn main() -> Drawn {
     ];
     let path = Path::new(&directory).join("rolling-contact.svg");
     let (columns, rows) = (3, 3);
-    let root = SVGBackend::new(&path, (columns * PANEL.0, rows * PANEL.1)).into_drawing_area();
-    root.fill(&WHITE)?;
-    let areas = root.split_evenly((rows as usize, columns as usize));
-    let order = [0, 2, 3, 4, 5, 6, 7, 8];
-    for (panel, place) in panels.iter().zip(order) {
-        chart(panel, &areas[place])?;
-    }
-    adhesion_map(&fig1[0], &areas[1])?;
-    root.present()?;
-    drop(areas);
+    let title = "Rolling contact: figures 1 to 4 and 8 to 10 of the paper";
+    picture(&path, (columns * PANEL.0, rows * PANEL.1), title, |body| {
+        let areas = body.split_evenly((rows as usize, columns as usize));
+        let order = [0, 2, 3, 4, 5, 6, 7, 8];
+        for (panel, place) in panels.iter().zip(order) {
+            chart(panel, &areas[place])?;
+        }
+        adhesion_map(&fig1[0], &areas[1])
+    })?;
     println!("{}", path.display());
     Ok(())
 }

@@ -1,10 +1,11 @@
-//! Parts of the command line: packages, results of runs, their numerical errors, sweeps of many cases, and the study of accuracy
-//! against CPU time.
+//! Parts of the command line: packages, results of runs, their numerical errors, pages that show them, sweeps of many cases, and the
+//! study of accuracy against CPU time.
 
 pub mod cost;
 pub mod error;
 pub mod exact;
 pub mod package;
+pub mod page;
 pub mod report;
 pub mod sweep;
 pub mod watch;

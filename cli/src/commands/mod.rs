@@ -7,6 +7,7 @@ mod effects;
 mod field;
 mod identify;
 mod player;
+mod report;
 mod run;
 mod scene;
 mod summary;
@@ -57,6 +58,8 @@ enum Command {
     Bearing(bearing::Options),
     /// List the effects of a scene: which are on, which that are off would matter and by how much.
     Effects(effects::Options),
+    /// Make one page of results: drawing, plots, spectra, playback; of a run, of several, or of a sweep.
+    Report(report::Options),
     /// Pack a scene as an FMI 2.0 co-simulation FMU.
     Fmu {
         /// Scene file.
@@ -167,6 +170,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Scene(options) => scene::run(&options)?,
         Command::Bearing(options) => bearing::run(&options)?,
         Command::Effects(options) => effects::run(&options)?,
+        Command::Report(options) => report::run(&options)?,
         Command::Field(options) => field::run(&options)?,
         Command::Contact(options) => contact::run(&options)?,
         Command::Identify(options) => identify::run(&options)?,

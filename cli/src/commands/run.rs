@@ -12,6 +12,7 @@ use roulement::scene::units::Time;
 use roulement::scene::{ErrorGoal, ErrorOf, Solver};
 use roulement::simulation::Simulation;
 use roulement_cli::error::{Judgement, Rounds, TWIN};
+use roulement_cli::page::record;
 use roulement_cli::report::figures::{Figures, Shown};
 use roulement_cli::report::json;
 use roulement_cli::report::plots::{title, write_plots};
@@ -219,7 +220,7 @@ impl Place {
         let text = summary(played, &shown) + errors;
         let mut plots = vec![];
         if self.files {
-            plots = self.write_files(played, &text)?;
+            plots = self.write_files(played, &shown, &text)?;
         }
         tell(scene.pressure_note(played.seen.limits.peak_pressure));
         let listed = if self.json {
@@ -240,7 +241,12 @@ impl Place {
     }
 
     /// Writes all files beside the table; gives those of the plots.
-    fn write_files(&self, played: &Played, text: &str) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+    fn write_files(
+        &self,
+        played: &Played,
+        shown: &Shown,
+        text: &str,
+    ) -> Result<Vec<PathBuf>, Box<dyn Error>> {
         let (scene, directory) = (played.simulation.scene(), &self.output);
         let mut plots = write_plots(scene, played.simulation.model(), &played.plotted, directory)?;
         if let Some(means) = &played.seen.means {
@@ -253,6 +259,20 @@ impl Place {
             plots.push(picture);
         }
         write(&directory.join("summary.txt"), |path| fs::write(path, text))?;
+        let record = record::Run {
+            simulation: &played.simulation,
+            rows: &played.plotted,
+            seen: &played.seen,
+            shown,
+            summary: text,
+            took: [played.wall.as_secs_f64(), played.cpu],
+            ended_early: match &played.end {
+                End::Reached => None,
+                End::Interrupted => Some("interrupted".to_string()),
+                End::Failed(why) => Some(why.to_string()),
+            },
+        };
+        write(&directory.join(record::FILE), |path| record.write(path))?;
         Ok(plots)
     }
 }

@@ -3,6 +3,7 @@
 pub mod cells;
 pub mod energy;
 pub mod figures;
+pub mod fine;
 pub mod interval;
 pub mod json;
 pub mod limits;
@@ -11,6 +12,7 @@ pub mod number;
 #[cfg(feature = "parquet")]
 pub mod parquet;
 pub mod plots;
+pub mod polar;
 pub mod quantities;
 pub mod results;
 pub mod spectrum;

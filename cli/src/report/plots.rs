@@ -8,14 +8,21 @@ use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement::simulation::outputs::{BallOutput, ContactOutput, Outputs};
 
-use super::style::{Area, COLOURS, Drawn, LINE, MARGIN, PlotError, axes, legend, picture};
+use super::fine::{BAND, FINE, Key, LINE, MARGIN, axes, headed, picture};
+use super::polar;
+use super::style::{Area, COLOURS, Drawn, PlotError};
 
-const PANEL: (u32, u32) = (520, 270);
+const PANEL: (u32, u32) = (560, 250);
+/// [-] part of a run at its start that does not set the scale of a panel alone.
+const START: f64 = 0.02;
+/// [-] by how much the start has to be larger than all that follows before it is left out of the scale.
+const JUMP: f64 = 5.0;
 
-/// A curve: its name and points.
+/// A curve: its name, points, and where it is one of several balls the least and largest values of all of them.
 struct Curve {
     name: &'static str,
     points: Vec<(f64, f64)>,
+    band: Vec<(f64, f64)>,
 }
 
 /// One panel of a figure.
@@ -25,8 +32,18 @@ struct Panel {
     curves: Vec<Curve>,
     /// \[y] smallest range worth magnifying: less is rounding.
     least: f64,
-    /// Points instead of lines.
-    scattered: bool,
+}
+
+impl Panel {
+    /// Is it 0 throughout, as far as can be seen?
+    fn is_nothing(&self) -> bool {
+        let values = || {
+            self.curves.iter().flat_map(|curve| {
+                curve.points.iter().map(|point| point.1).chain(curve.band.iter().flat_map(|b| [b.0, b.1]))
+            })
+        };
+        values().all(|value| value.abs() < 0.01 * self.least)
+    }
 }
 
 /// Title of the plots of a scene.
@@ -46,29 +63,33 @@ pub fn write_plots(
 ) -> Result<Vec<PathBuf>, PlotError> {
     let title = title(scene);
     let figures = [
-        ("contacts.svg", format!("{title}: contacts of ball 1"), contact_panels(history)),
+        ("contacts.svg", format!("{title}: contacts of ball 1, and of all balls"), contact_panels(history)),
         ("bearing.svg", title.to_string(), bearing_panels(model, Race::loaded(scene), history)),
-        ("balls.svg", format!("{title}: all balls at the end"), ball_panels(history)),
     ];
-    figures
-        .into_iter()
-        .map(|(name, title, panels)| {
-            let path = directory.join(name);
-            figure(&path, &title, &panels)?;
-            Ok(path)
-        })
-        .collect()
+    let mut paths = vec![];
+    for (name, title, panels) in figures {
+        let path = directory.join(name);
+        figure(&path, &title, panels)?;
+        paths.push(path);
+    }
+    if let Some(last) = history.last() {
+        let path = directory.join("balls.svg");
+        polar::write(&path, &format!("{title}: all balls at {:.3} ms", last.time * 1e3), last)?;
+        paths.push(path);
+    }
+    Ok(paths)
 }
 
-/// A quantity of both contacts of ball 1 over time: what figure 7 of the paper shows.
+/// A quantity of both contacts of ball 1 over time, within the range of all balls: what figure 7 of the paper shows.
 fn contact_panels(history: &[Outputs]) -> Vec<Panel> {
     let panel = |y_label, least, get: fn(&ContactOutput) -> f64| {
         let curve = |name, side: fn(&BallOutput) -> &ContactOutput| Curve {
             name,
             points: history.iter().map(|o| (o.time * 1e3, get(side(&o.balls[0])))).collect(),
+            band: history.iter().map(|o| extremes(o.balls.iter().map(|ball| get(side(ball))))).collect(),
         };
         let curves = vec![curve("inner race", |b| &b.inner), curve("outer race", |b| &b.outer)];
-        Panel { x_label: "time [ms]", y_label, curves, least, scattered: false }
+        Panel { x_label: "time [ms]", y_label, curves, least }
     };
     vec![
         panel("load [N]", 0.1, |c| c.load),
@@ -77,7 +98,9 @@ fn contact_panels(history: &[Outputs]) -> Vec<Panel> {
         panel("lateral creepage [1e-3]", 0.001, |c| c.creepage_lateral * 1e3),
         panel("spin creepage [1/m]", 0.01, |c| c.creepage_spin),
         panel("spin moment [N mm]", 0.001, |c| c.spin_moment * 1e3),
+        panel("longitudinal creep force [N]", 0.01, |c| c.force_longitudinal),
         panel("lateral creep force [N]", 0.01, |c| c.force_lateral),
+        panel("peak pressure [MPa]", 1.0, |c| c.peak_pressure * 1e-6),
         panel("friction power [W]", 0.0001, |c| c.power),
     ]
 }
@@ -86,9 +109,9 @@ fn bearing_panels(model: &Model, race: Race, history: &[Outputs]) -> Vec<Panel> 
     let curve = |name, get: &dyn Fn(&Outputs) -> f64| Curve {
         name,
         points: history.iter().map(|o| (o.time * 1e3, get(o))).collect(),
+        band: vec![],
     };
-    let panel =
-        |y_label, least, curves| Panel { x_label: "time [ms]", y_label, curves, least, scattered: false };
+    let panel = |y_label, least, curves| Panel { x_label: "time [ms]", y_label, curves, least };
     let epicyclic = |o: &Outputs| {
         if o.cage_slip == 1.0 {
             model.bearing.epicyclic_speed(0.0, 0.0, 0.0)
@@ -142,29 +165,17 @@ fn bearing_panels(model: &Model, race: Race, history: &[Outputs]) -> Vec<Panel> 
     ]
 }
 
-fn ball_panels(history: &[Outputs]) -> Vec<Panel> {
-    let Some(last) = history.last() else {
-        return vec![];
-    };
-    let panel = |y_label, least, get: fn(&ContactOutput) -> f64| {
-        let curve = |name, side: fn(&BallOutput) -> &ContactOutput| Curve {
-            name,
-            points: last.balls.iter().map(|b| (b.azimuth.to_degrees(), get(side(b)))).collect(),
-        };
-        let curves = vec![curve("inner race", |b| &b.inner), curve("outer race", |b| &b.outer)];
-        Panel { x_label: "azimuth [deg]", y_label, curves, least, scattered: true }
-    };
-    vec![
-        panel("load [N]", 0.1, |c| c.load),
-        panel("contact angle [deg]", 0.01, |c| c.contact_angle.to_degrees()),
-        panel("peak pressure [MPa]", 1.0, |c| c.peak_pressure * 1e-6),
-        panel("friction power [W]", 0.0001, |c| c.power),
-    ]
+/// Least and largest of some values.
+fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-fn figure(path: &Path, title: &str, panels: &[Panel]) -> Result<(), PlotError> {
+fn figure(path: &Path, title: &str, mut panels: Vec<Panel>) -> Result<(), PlotError> {
+    panels.retain(|panel| !panel.is_nothing());
     let columns = 2;
-    let rows = panels.len().div_ceil(columns);
+    let rows = panels.len().div_ceil(columns).max(1);
     let size = (PANEL.0 * columns as u32, PANEL.1 * rows as u32);
     picture(path, size, title, |body| {
         let areas = body.split_evenly((rows, columns));
@@ -173,10 +184,7 @@ fn figure(path: &Path, title: &str, panels: &[Panel]) -> Result<(), PlotError> {
 }
 
 /// Range of values with some air; a constant gets a range that shows it as constant.
-fn range(values: impl Iterator<Item = f64>, least: f64) -> std::ops::Range<f64> {
-    let (low, high) = values
-        .filter(|value| value.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+fn range((low, high): (f64, f64), least: f64) -> std::ops::Range<f64> {
     if low > high {
         return 0.0..1.0;
     }
@@ -184,39 +192,67 @@ fn range(values: impl Iterator<Item = f64>, least: f64) -> std::ops::Range<f64> 
     low - air..high + air
 }
 
+/// Range of a panel's values. A jump at the start that is much larger than all that follows is cut off, so that this can be seen.
+fn heights(panel: &Panel) -> std::ops::Range<f64> {
+    let from = panel.curves.first().and_then(|curve| Some((curve.points.first()?.0, curve.points.last()?.0)));
+    let from = from.map_or(f64::NEG_INFINITY, |(first, last)| first + START * (last - first));
+    let values = |later: bool| {
+        extremes(panel.curves.iter().flat_map(move |curve| {
+            let bands = curve.band.iter().copied().chain(std::iter::repeat((f64::NAN, f64::NAN)));
+            let rows = curve.points.iter().zip(bands).filter(move |(point, _)| !later || point.0 >= from);
+            rows.flat_map(|(point, band)| [point.1, band.0, band.1])
+        }))
+    };
+    let (all, after) = (values(false), values(true));
+    let (whole, rest) = (range(all, panel.least), range(after, panel.least));
+    if after.1 > after.0 && whole.end - whole.start > JUMP * (rest.end - rest.start) { rest } else { whole }
+}
+
 fn draw(panel: &Panel, area: &Area<'_>) -> Drawn {
-    let points = || panel.curves.iter().flat_map(|curve| curve.points.iter());
-    let x = if panel.scattered { -185.0..185.0 } else { range(points().map(|p| p.0), 1e-6) };
-    // Air above the curves for the legend.
-    let mut y = range(points().map(|p| p.1), panel.least);
-    y.end += 0.25 * (y.end - y.start);
+    let mut keys = vec![];
+    for (curve, colour) in panel.curves.iter().zip(COLOURS) {
+        keys.push((curve.name, Key::Line, colour));
+    }
+    // Where balls do not differ there is no band to be seen.
+    let has_band = |curve: &Curve| curve.band.iter().any(|(low, high)| high - low > 0.01 * panel.least);
+    if panel.curves.iter().any(has_band) {
+        keys.push(("all balls", Key::Band, COLOURS[6]));
+    }
+    let area = headed(area, panel.y_label, &keys)?;
+    let x =
+        range(extremes(panel.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0))), 1e-6);
+    let y = heights(panel);
     let digits = digits(y.end - y.start);
-    let mut chart = ChartBuilder::on(area)
+    let (low, high) = (y.start, y.end);
+    let mut chart = ChartBuilder::on(&area)
         .margin(MARGIN)
-        .x_label_area_size(38)
-        .y_label_area_size(72)
+        .x_label_area_size(34 * FINE)
+        .y_label_area_size(64 * FINE)
         .build_cartesian_2d(x, y)?;
-    axes(&mut chart.configure_mesh(), panel.x_label, panel.y_label)
+    axes(&mut chart.configure_mesh(), panel.x_label, "")
         .y_labels(6)
         .x_labels(8)
         .y_label_formatter(&move |value| format!("{value:.digits$}"))
         .draw()?;
     for (curve, colour) in panel.curves.iter().zip(COLOURS) {
-        if panel.scattered {
-            let dots = curve.points.iter().map(|&point| Circle::new(point, 4, colour.filled()));
-            chart
-                .draw_series(dots)?
-                .label(curve.name)
-                .legend(move |(x, y)| Circle::new((x + 9, y), 4, colour.filled()));
-        } else {
-            let line = LineSeries::new(curve.points.iter().copied(), colour.stroke_width(LINE));
-            chart
-                .draw_series(line)?
-                .label(curve.name)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(LINE)));
+        if has_band(curve) {
+            let edge = |of: fn(&(f64, f64)) -> f64| {
+                curve
+                    .points
+                    .iter()
+                    .zip(&curve.band)
+                    .map(move |(point, band)| (point.0, of(band).clamp(low, high)))
+            };
+            let mut outline: Vec<_> = edge(|band| band.0).collect();
+            outline.extend(edge(|band| band.1).collect::<Vec<_>>().into_iter().rev());
+            chart.draw_series([Polygon::new(outline, colour.mix(BAND).filled())])?;
         }
+        // What is cut off is left out, not drawn along the frame.
+        let inside = |point: &&(f64, f64)| point.1 >= low && point.1 <= high;
+        let points = curve.points.iter().filter(inside).copied();
+        chart.draw_series(LineSeries::new(points, colour.stroke_width(LINE)))?;
     }
-    legend(&mut chart, SeriesLabelPosition::UpperRight)
+    Ok(())
 }
 
 /// Decimals that tell adjacent tick labels of a range apart.

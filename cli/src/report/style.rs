@@ -1,4 +1,4 @@
-//! Style of all plots: fonts, colours, grid, legend; and writing them as files.
+//! Style of all plots: fonts, colours, grid; and writing them as files.
 
 use std::error::Error;
 use std::path::Path;
@@ -15,6 +15,13 @@ use thiserror::Error;
 pub struct PlotError {
     path: String,
     why: String,
+}
+
+impl PlotError {
+    /// Of a file.
+    pub fn new(path: &Path, why: &dyn Error) -> Self {
+        Self { path: path.display().to_string(), why: why.to_string() }
+    }
 }
 
 /// A part of a picture.
@@ -36,8 +43,6 @@ pub const LABEL: Font = (FAMILY, 12);
 const TITLE_HEIGHT: u32 = 40;
 /// \[pixel] around a panel.
 pub const MARGIN: u32 = 10;
-/// \[pixel] width of a curve.
-pub const LINE: u32 = 2;
 
 /// Colour-blind safe colours (Okabe and Ito).
 pub const COLOURS: [RGBColor; 7] = [
@@ -67,7 +72,7 @@ pub fn picture(
         draw(&root.titled(title, TITLE)?)?;
         Ok(root.present()?)
     };
-    draw_all().map_err(|why| PlotError { path: path.display().to_string(), why: why.to_string() })
+    draw_all().map_err(|why| PlotError::new(path, why.as_ref()))
 }
 
 /// Gives a chart its axes and grid; the caller draws it.
@@ -83,21 +88,4 @@ pub fn axes<'m, 'a, 'b, 'c, X: Ranged, Y: Ranged>(
         .y_desc(y)
         .axis_desc_style(DESCRIPTION)
         .label_style(LABEL)
-}
-
-/// Draws the names of a chart's curves into it.
-///
-/// # Errors
-/// If the file cannot be written.
-pub fn legend<'a, 'c: 'a, X: Ranged, Y: Ranged>(
-    chart: &mut ChartContext<'a, SVGBackend<'c>, Cartesian2d<X, Y>>,
-    position: SeriesLabelPosition,
-) -> Drawn {
-    chart
-        .configure_series_labels()
-        .background_style(WHITE.mix(0.8))
-        .label_font(LABEL)
-        .position(position)
-        .draw()?;
-    Ok(())
 }

@@ -9,6 +9,7 @@ mod cost;
 mod effects;
 mod field;
 mod refusals;
+mod report;
 mod runs;
 mod spectrum;
 mod sweep;

@@ -6,17 +6,18 @@ use plotters::prelude::*;
 
 use super::lines::MULTIPLES;
 use super::{SIGNALS, Spectrum};
-use crate::report::style::{Area, COLOURS, Drawn, LABEL, LINE, MARGIN, PlotError, axes, legend, picture};
+use crate::report::fine::{FINE, Key, LABEL, LINE, MARGIN, axes, headed, picture};
+use crate::report::style::{Area, COLOURS, Drawn, PlotError};
 
 const SIZE: (u32, u32) = (1040, 640);
 /// [-] places across a panel at most; each shows the largest amplitude of the frequencies under it.
 const PLACES: usize = 1040;
 /// [-] room to the right of the last marked line.
 const AIR: f64 = 1.1;
-/// [-] part of a panel above the largest amplitude, for the names of the lines and the legend.
-const HEAD: f64 = 0.35;
-/// \[pixel] dash and gap of multiples.
-const DASH: (i32, i32) = (4, 4);
+/// [-] part of a panel above the largest amplitude, for the names of the lines.
+const HEAD: f64 = 0.3;
+/// \[unit] dash and gap of multiples.
+const DASH: (i32, i32) = (4 * FINE as i32, 4 * FINE as i32);
 /// The colour of a marked line is after those of the signals.
 const FIRST_COLOUR: usize = 3;
 
@@ -57,12 +58,18 @@ fn panel(spectrum: &Spectrum, first: usize, label: &str, area: &Area<'_>) -> Dra
     let curves: Vec<_> = (first..first + 3).map(|signal| curve(spectrum, signal, end, scale)).collect();
     let largest = curves.iter().flatten().map(|point| point.1).fold(0.0, f64::max);
     let top = if largest > 0.0 { largest * (1.0 + HEAD) } else { 1.0 };
-    let mut chart = ChartBuilder::on(area)
+    let keys: Vec<_> = SIGNALS[first..first + 3]
+        .iter()
+        .zip(COLOURS)
+        .map(|((name, _), colour)| (&name[name.len() - 1..], Key::Line, colour))
+        .collect();
+    let area = headed(area, label, &keys)?;
+    let mut chart = ChartBuilder::on(&area)
         .margin(MARGIN)
-        .x_label_area_size(38)
-        .y_label_area_size(72)
+        .x_label_area_size(36 * FINE)
+        .y_label_area_size(72 * FINE)
         .build_cartesian_2d(0.0..end * scale, 0.0..top)?;
-    axes(&mut chart.configure_mesh(), x_label, label)
+    axes(&mut chart.configure_mesh(), x_label, "")
         .y_labels(6)
         .x_labels(12)
         .y_label_formatter(&|value| format!("{value:.3}"))
@@ -76,20 +83,17 @@ fn panel(spectrum: &Spectrum, first: usize, label: &str, area: &Area<'_>) -> Dra
             }
             let ends = [(x, 0.0), (x, top)];
             if multiple == 1 {
-                chart.draw_series(LineSeries::new(ends, colour.stroke_width(1)))?;
+                chart.draw_series(LineSeries::new(ends, colour.stroke_width(FINE)))?;
                 let height = top * (1.0 - 0.05 * (1 + i) as f64);
                 let style = LABEL.into_font().color(&colour);
                 chart.draw_series([Text::new(format!(" {name}"), (x, height), style)])?;
             } else {
-                chart.draw_series(DashedLineSeries::new(ends, DASH.0, DASH.1, colour.stroke_width(1)))?;
+                chart.draw_series(DashedLineSeries::new(ends, DASH.0, DASH.1, colour.stroke_width(FINE)))?;
             }
         }
     }
-    for ((points, (name, _)), colour) in curves.into_iter().zip(&SIGNALS[first..]).zip(COLOURS) {
-        chart
-            .draw_series(LineSeries::new(points, colour.stroke_width(LINE)))?
-            .label(&name[name.len() - 1..])
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(LINE)));
+    for (points, colour) in curves.into_iter().zip(COLOURS) {
+        chart.draw_series(LineSeries::new(points, colour.stroke_width(LINE)))?;
     }
-    legend(&mut chart, SeriesLabelPosition::UpperRight)
+    Ok(())
 }

@@ -1,0 +1,127 @@
+//! The record of a run, `run.json` beside its table: what the table does not say and a report needs.
+
+use std::io;
+use std::path::Path;
+
+use roulement::analysis::estimate;
+use roulement::scene::Scene;
+use roulement::simulation::Simulation;
+use roulement::simulation::outputs::Outputs;
+use serde_json::{Value, json};
+
+use super::{bearing, fields, history};
+use crate::report::figures::Shown;
+use crate::report::json;
+use crate::report::spectrum::Spectrum;
+use crate::watch::Seen;
+
+/// Name of its file.
+pub const FILE: &str = "run.json";
+/// Form of the record: another number where its parts mean something else.
+pub const FORM: u64 = 1;
+
+/// What a record is made of.
+pub struct Run<'a> {
+    /// The bearing at the end.
+    pub simulation: &'a Simulation,
+    /// Rows that pictures are drawn of.
+    pub rows: &'a [Outputs],
+    /// What was gathered of all rows.
+    pub seen: &'a Seen,
+    /// Figures and their error bars.
+    pub shown: &'a Shown,
+    /// The summary in words.
+    pub summary: &'a str,
+    /// \[s] wall and CPU time.
+    pub took: [f64; 2],
+    /// Why it ended before its time.
+    pub ended_early: Option<String>,
+}
+
+impl Run<'_> {
+    /// The record.
+    pub fn to_json(&self) -> Value {
+        let Self { simulation, rows, seen, shown, summary, took, ended_early } = self;
+        let (scene, model) = (simulation.scene(), simulation.model());
+        let statistics = &simulation.outputs().statistics;
+        json!({
+            "form": FORM,
+            "program": env!("ROULEMENT_VERSION"),
+            "title": scene.title,
+            "scene": scene.source,
+            "ended_early": ended_early,
+            "bearing": bearing::describe(scene, model),
+            "summary": json::summary(simulation, seen, shown),
+            "summary_text": summary,
+            "effects": effects(scene, simulation),
+            "cost": {
+                "wall": took[0],
+                "cpu": took[1],
+                "steps": statistics.steps,
+                "rejected_by_error": statistics.rejected_error,
+                "rejected_by_newton": statistics.rejected_newton,
+                "newton_iterations": statistics.newton.iterations,
+                "factorisations": statistics.newton.factorisations,
+                "contact_values": statistics.contact_values,
+                "contact_tangents": statistics.contact_tangents,
+                "polynomials": statistics.polynomials,
+                "polynomial_failures": statistics.polynomial_failures,
+            },
+            "spectrum": seen.spectrum.as_ref().map(spectrum),
+            "history": history::columns(rows).to_json(),
+            "fields": fields::at_end(simulation),
+        })
+    }
+
+    /// Writes it.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        std::fs::write(path, format!("{}\n", self.to_json()))
+    }
+}
+
+/// Which effects are on, and what all of them would matter; nothing where that cannot be estimated.
+fn effects(scene: &Scene, simulation: &Simulation) -> Value {
+    let verdicts = estimate::verdicts(scene, simulation.model());
+    let why = verdicts.as_ref().err().map(ToString::to_string);
+    let mut effects = json::effects(scene, verdicts.as_deref().unwrap_or_default()).unwrap_or(Value::Null);
+    effects["simulated"] = scene.effects.simulated().into();
+    effects["why_not"] = why.into();
+    effects
+}
+
+fn spectrum(spectrum: &Spectrum) -> Value {
+    json!({
+        "race": spectrum.race.name(),
+        "window": spectrum.window,
+        "shaft": spectrum.shaft,
+        "marked": spectrum.marked.map(|(name, frequency)| json!([name, frequency])),
+    })
+}
+
+/// Reads the record of a directory of results.
+///
+/// # Errors
+/// If there is none, or it is of another form.
+pub fn read(directory: &Path) -> Result<Value, String> {
+    let path = directory.join(FILE);
+    let text = std::fs::read_to_string(&path).map_err(|why| {
+        format!(
+            "cannot read {}: {why}; results of `roulement run SCENE -o {}` have it",
+            path.display(),
+            directory.display()
+        )
+    })?;
+    let record: Value = serde_json::from_str(&text)
+        .map_err(|why| format!("{} is no record of a run: {why}", path.display()))?;
+    match record["form"].as_u64() {
+        Some(FORM) => Ok(record),
+        Some(other) => Err(format!(
+            "{} has form {other}, this program reads {FORM}: run the scene again",
+            path.display()
+        )),
+        None => Err(format!("{} is no record of a run: it has no form", path.display())),
+    }
+}

@@ -1,0 +1,78 @@
+// The page: reads its data and puts its parts together.
+
+import { h, choice } from './dom.js';
+import { Run } from './data.js';
+import { clock } from './clock.js';
+import { startTheme, toggleTheme } from './theme.js';
+import { drawing } from './drawing.js';
+import { cards, summary } from './summary.js';
+import { polar } from './polar.js';
+import { plotsSection, startPlots, setZoom } from './plots.js';
+import { spectra } from './spectra.js';
+import { power } from './power.js';
+import { contacts } from './contact.js';
+import { effects } from './effects.js';
+import { cost, addSteps } from './cost.js';
+import { playback } from './playback.js';
+import { sweepSection, readSweep } from './sweep.js';
+import { transport } from './transport.js';
+import { digits, rpm, withUnit } from './units.js';
+
+async function start() {
+  startTheme();
+  const data = JSON.parse(document.getElementById('data').textContent);
+  const runs = [];
+  for (const record of data.runs) runs.push(await Run.of(record, runs.length));
+  runs.forEach(addSteps);
+  const sweeps = [];
+  for (const sweep of data.sweeps) sweeps.push(await readSweep(sweep));
+  const root = document.getElementById('report');
+  const body = h('main', { id: 'main' });
+  const contents = h('nav', { 'aria-label': 'Contents', class: 'contents' });
+  root.replaceChildren(h('a', { class: 'skip', href: '#main' }, 'To the results'), head(runs, sweeps, run => show(run)), contents, body);
+  const show = run => {
+    const parts = [];
+    sweeps.forEach((sweep, i) => parts.push(sweepSection(sweep, i)));
+    if (run) {
+      parts.push(h('div', { id: 'cards' }, cards(run)), drawing(run), playback(run), polar(run), summary(runs), plotsSection(runs, run), spectra(run), power(runs), contacts(run), effects(run), cost(runs), sceneText(run));
+    }
+    parts.push(licences());
+    body.replaceChildren(...parts.filter(Boolean));
+    contents.replaceChildren(...[...body.querySelectorAll('section')].map(part => h('a', { href: `#${part.id}` }, part.querySelector('h2').textContent)));
+  };
+  if (runs.length) {
+    clock.span(Math.min(...runs.map(run => run.begin)), Math.max(...runs.map(run => run.end)));
+    // Where all balls have found their way.
+    clock.seek(clock.begin + 0.5 * (clock.end - clock.begin));
+    root.append(transport());
+    startPlots();
+  }
+  show(runs[0]);
+  // For tests: what is there, and that it is.
+  window.roulement = { runs, sweeps, clock, setZoom, ready: true };
+}
+
+function head(runs, sweeps, show) {
+  const title = [...runs, ...sweeps].map(part => part.title || part.name || 'sweep').join(' \u00b7 ');
+  const run = runs[0];
+  const words = run ? [`${run.bearing.balls} balls of ${digits(run.bearing.ball_diameter * 1e3, 4)} mm on ${digits(run.bearing.pitch_diameter * 1e3, 4)} mm`, run.bearing.clearance === null ? `${digits((run.bearing.contact_angle * 180) / Math.PI, 4)}\u00b0` : `${digits(run.bearing.clearance * 1e6, 3)} \u00b5m clearance`,
+    `inner ${rpm(run.bearing.speeds.inner.most)}`, `${withUnit(run.end - run.begin, 'time', 's')} simulated`].join(' \u00b7 ') : `${sweeps.reduce((sum, sweep) => sum + sweep.count, 0)} cases`;
+  return h('header', {}, h('div', {}, h('h1', {}, title), h('p', {}, words)),
+    h('div', { class: 'row' }, runs.length > 1 ? choice('Run that is shown', runs.map((other, i) => [i, other.name || `run ${i + 1}`]), 0, i => show(runs[i])) : null,
+      h('button', { type: 'button', id: 'theme', onclick: toggleTheme, 'aria-label': 'Dark or light' }, '\u25d0')));
+}
+
+function sceneText(run) {
+  return h('section', { id: 'scene', 'aria-labelledby': 'scene-title' }, h('h2', { id: 'scene-title' }, 'Scene file'),
+    h('details', {}, h('summary', {}, 'The text that was simulated'), h('pre', { tabindex: 0 }, run.record.scene)));
+}
+
+/** Texts of what the page is made with (LICENCES is put in by the build). */
+function licences() {
+  return h('details', { class: 'licences' }, h('summary', {}, 'Made by roulement with three.js and uPlot; their licences'), h('pre', { tabindex: 0 }, LICENCES));
+}
+
+start().catch(why => {
+  document.getElementById('report').append(h('p', { class: 'warning' }, `The report cannot be shown: ${why.stack ?? why}`));
+  throw why;
+});

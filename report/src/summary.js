@@ -1,0 +1,87 @@
+// The summary: largest figures as cards, means with error bars and settled marks, of all runs side by side.
+
+import { h, section, table } from './dom.js';
+import { digits, shown } from './units.js';
+
+/** Units of the figures by their names. */
+function unitOf(name) {
+  if (/force|load|between balls/.test(name)) return 'N';
+  if (/moment|torque/.test(name)) return 'N.m';
+  if (/position|eccentricity/.test(name)) return 'm';
+  if (/angle/.test(name)) return 'deg';
+  if (/power/.test(name)) return 'W';
+  if (/slip|over /.test(name)) return 'share';
+  if (/speed/.test(name)) return 'rad/s';
+  return 'J';
+}
+
+function text(name, value, bar) {
+  if (value === undefined || value === null) return '\u2013';
+  const unit = unitOf(name);
+  const [factor, word] = unit === 'deg' ? [1, '\u00b0'] : unit === 'share' ? [100, '%'] : shown(name, unit, Math.abs(value));
+  const error = bar === undefined || bar === null ? '' : ` \u00b1 ${digits(bar * factor, 2)}`;
+  return `${digits(value * factor, 5)}${error} ${word}`.trim();
+}
+
+const HEADLINES = ['friction torque', 'friction power', 'largest inner load', 'largest outer load', 'cage speed', 'cage slip'];
+
+export function cards(run) {
+  const { figures, error_bars: bars, means, peak_pressure: pressure } = run.record.summary;
+  const settled = name => means?.quantities.find(mean => mean.quantity === name)?.settled;
+  const card = (name, value, note, good) => h('div', { class: 'card' }, h('div', { class: 'card-name' }, name), h('div', { class: 'card-value' }, value),
+    h('div', { class: `card-note ${good === false ? 'bad' : ''}` }, note));
+  const list = HEADLINES.filter(name => figures[name] !== undefined && figures[name] !== null).map(name => {
+    const state = settled(name);
+    const note = state === undefined ? 'at the end' : state === null ? 'mean; too few rows to tell' : state ? 'mean, settled' : 'mean, NOT settled';
+    return card(name, text(name, figures[name], bars?.[name]), note, state ?? undefined);
+  });
+  list.push(card('peak pressure', `${digits(pressure * 1e-6, 4)} MPa`, 'largest in the run'));
+  return h('div', { class: 'cards' }, list);
+}
+
+/** How well a mean is known. */
+function mark(mean) {
+  if (mean.settled === null || mean.settled === undefined) return h('span', { class: 'mark' }, 'unknown');
+  return mean.settled ? h('span', { class: 'mark good' }, '\u2713 settled') : h('span', { class: 'mark bad' }, '\u2717 drifts');
+}
+
+export function summary(runs) {
+  return section('summary', 'Summary', runs.length > 1 ? sideBySide(runs) : null, runs.map(of), estimateNote(runs));
+}
+
+function of(run) {
+  const { means, warning } = run.record.summary;
+  const parts = [];
+  if (run.record.ended_early) parts.push(h('p', { class: 'warning' }, `The run ended early: ${run.record.ended_early}`));
+  if (warning) parts.push(h('p', { class: 'warning' }, warning));
+  if (means) {
+    const rows = means.quantities.map(mean => {
+      const factorOf = mean.unit === '1' ? [100, '%'] : shown(mean.quantity, mean.unit, Math.abs(mean.mean));
+      const show = (value, count) => (value === null || value === undefined ? '\u2013' : digits(value * factorOf[0], count));
+      return [mean.quantity, show(mean.mean, 6), factorOf[1], show(mean.interval_95, 2), show(mean.error, 2), show(mean.drift, 2), mark(mean)];
+    });
+    const [begin, end] = means.window;
+    parts.push(table(['mean of', 'value', 'unit', '\u00b1 95 %', 'numerical error', 'drift', ''], rows,
+      { numbers: [1, 3, 4, 5], caption: `${run.title}: means over ${digits(begin * 1e3, 4)} to ${digits(end * 1e3, 4)} ms` }));
+    if (means.settled === false) {
+      parts.push(h('p', { class: 'warning' }, means.needed_duration ? `Not all means have settled: a duration of about ${digits(means.needed_duration * 1e3, 3)} ms would do.` : 'Not all means have settled, and no decay is to be seen.'));
+    }
+  }
+  parts.push(h('details', {}, h('summary', {}, 'The summary in words'), h('pre', { tabindex: 0 }, run.record.summary_text ?? '')));
+  return parts;
+}
+
+/** Figures of all runs. */
+function sideBySide(runs) {
+  const names = [...new Set(runs.flatMap(run => Object.keys(run.record.summary.figures)))];
+  const rows = names.map(name => [name, ...runs.map(run => text(name, run.record.summary.figures[name], run.record.summary.error_bars?.[name]))]);
+  return table(['figure', ...runs.map(run => run.name || run.title)], rows, { numbers: runs.map((_, i) => i + 1), caption: 'All runs side by side' });
+}
+
+function estimateNote(runs) {
+  const lines = runs.filter(run => run.record.summary.error_estimate && !run.record.summary.error_bars).map(run => {
+    const { histories, means } = run.record.summary.error_estimate;
+    return `${runs.length > 1 ? `${run.name}: ` : ''}numerical error estimated at ${digits(histories, 2)} of histories and ${digits(means, 2)} of means, within a factor of ten; \u201croulement run --error\u201d measures it.`;
+  });
+  return lines.map(line => h('p', { class: 'note' }, line));
+}
