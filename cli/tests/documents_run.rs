@@ -93,6 +93,15 @@ fn workplace(name: &str) -> Scratch {
     for name in ["CASES.csv", "tests/data/contact/random.csv"] {
         write(name, &(few.join("\n") + "\n"));
     }
+    // Results that a document begins with.
+    let short = common::edited("thrust", &[("load.duration", "\"1 ms\"")]);
+    for results in ["results", "other-results"] {
+        assert!(scratch.run(&short, results, &[]).status.success());
+    }
+    let cases = scratch.path("cases.csv");
+    let sweep = ["sweep", &cases, "--scene", &scratch.path("scene.toml"), "-o", &scratch.path("sweep")];
+    assert!(common::roulement(&sweep).status.success());
+    write("scene.toml", &fs::read_to_string(common::scene("thrust")).unwrap());
     scratch
 }
 
