@@ -87,6 +87,9 @@ fn workplace(name: &str) -> Scratch {
             write(copy, &text);
         }
     }
+    let coupled = fs::read_to_string(root().join("examples/coupling/bearing.toml")).unwrap();
+    write("examples/coupling/bearing.toml", &coupled);
+    fs::create_dir(scratch.path("build")).unwrap();
     write("cases.csv", "friction.ball_race,load.duration\n0.05,0.001\n0.1,0.001\n");
     let contacts = fs::read_to_string(root().join("tests/data/contact/random.csv")).unwrap();
     let few: Vec<&str> = contacts.lines().take(3).collect();
@@ -166,13 +169,14 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                     read += 1;
                     continue;
                 }
-                let mut scene: Table = thrust.parse().unwrap();
-                if table.contains_key("solver") {
-                    scene.remove("solver");
-                }
-                if table.contains_key("bearing") || matches!(table.get("effects"), Some(Value::String(_))) {
-                    // A scene of its own.
-                    scene.remove("effects");
+                // With a bearing it is a whole scene, without one it is added to another.
+                let whole = table.contains_key("bearing");
+                let mut scene: Table = if whole { Table::new() } else { thrust.parse().unwrap() };
+                for key in ["solver", "effects"] {
+                    // Words in place of a section, and settings that exclude each other.
+                    if table.contains_key(key) {
+                        scene.remove(key);
+                    }
                 }
                 merge(&mut scene, table);
                 if let Err(why) = Scene::parse(&scene.to_string()) {

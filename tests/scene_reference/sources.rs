@@ -147,9 +147,13 @@ fn keys(tokens: &str) -> Vec<Field> {
         })
     };
     // Keys end with a comma before the documentation of the next one.
-    own.trim_end_matches([',', ' ', ';']).split(" , # [doc").enumerate().filter_map(|(place, part)| {
-        parse(&if place == 0 { part.to_string() } else { format!("# [doc{part}") })
-    }).collect()
+    own.trim_end_matches([',', ' ', ';'])
+        .split(" , # [doc")
+        .enumerate()
+        .filter_map(|(place, part)| {
+            parse(&if place == 0 { part.to_string() } else { format!("# [doc{part}") })
+        })
+        .collect()
 }
 
 impl Source {
@@ -173,7 +177,8 @@ impl Source {
                 }
                 Item::Enum(item) => {
                     let mut variants: Vec<_> = item.variants.iter().collect();
-                    variants.sort_by_key(|variant| !variant.attrs.iter().any(|of| of.path().is_ident("default")));
+                    variants
+                        .sort_by_key(|variant| !variant.attrs.iter().any(|of| of.path().is_ident("default")));
                     let of = |variant: &&syn::Variant| {
                         (snake_case(&variant.ident.to_string()), doc(&variant.attrs))
                     };

@@ -32,9 +32,10 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         None => Ok(say(SCHEMA)?),
         Some(word) if word.is_empty() => Ok(say(REFERENCE)?),
         Some(word) => match about(&word.to_lowercase()) {
-            text if text.is_empty() => {
-                Err(format!("no section and no key has {word:?} in its name: `roulement scene --keys` prints all").into())
-            }
+            text if text.is_empty() => Err(format!(
+                "no section and no key has {word:?} in its name: `roulement scene --keys` prints all"
+            )
+            .into()),
             text => Ok(say(&text)?),
         },
     }
@@ -50,7 +51,9 @@ fn about(word: &str) -> String {
             continue;
         }
         let has_it = |line: &&str| {
-            line.strip_prefix("| `").and_then(|rest| rest.split_once('`')).is_some_and(|(key, _)| key.contains(word))
+            line.strip_prefix("| `")
+                .and_then(|rest| rest.split_once('`'))
+                .is_some_and(|(key, _)| key.contains(word))
         };
         let keys: Vec<&str> = section.lines().filter(has_it).collect();
         if !keys.is_empty() {
