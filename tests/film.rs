@@ -207,7 +207,8 @@ fn invariant_films_hardly_depend_on_the_contact_angle_that_their_ellipse_is_of()
         }
     }
     println!("rolling force, friction: {worst:?}");
-    assert!(worst[0] < 0.023 && worst[1] < 0.003, "{worst:?}");
+    // What docs/oil.md states, to its last digit.
+    assert!(worst[0] < 0.0225 && worst[1] < 0.003, "{worst:?}");
 }
 
 #[test]

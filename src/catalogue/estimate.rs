@@ -11,7 +11,7 @@ use crate::effects::rating::standard::Geometry;
 /// [1/Pa] elastic compliance of steel on steel that gives the factors f_0 of ISO 76's table: 207 GPa, 0.3.
 pub const STEEL_OF_ISO_76: f64 = 2.0 * (1.0 - 0.3 * 0.3) / 207e9;
 /// [-] conformities of inner and outer race that the standards' tables are of.
-const USUAL: [f64; 2] = [0.52, 0.53];
+pub(super) const USUAL: [f64; 2] = [0.52, 0.53];
 /// [-] outer conformity of makers whose C0 is that of the inner race alone. It matters where the ball is small against the pitch
 /// circle: there ISO 76 has the outer race with 0.53 as the weaker one.
 const CLOSE: f64 = 0.52;

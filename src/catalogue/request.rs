@@ -7,7 +7,7 @@ use super::{Bearing, CatalogueError, Clearance, Entry, SOURCE, TABLE};
 use crate::schema::units::{Angle, Force, Length};
 
 /// A bearing by name, by numbers, or both: numbers that are given stand in place of those of the table.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Request {
     /// Name such as "6205", "7206 B", "6305 C3", "6805" (which is 61805), "6205-2RS".
@@ -88,7 +88,13 @@ impl Request {
                 "clearance: classes are of deep-groove bearings; an angular-contact bearing has its contact angle instead".into(),
             ));
         }
-        let whole = row.is_some() && self.dynamic_load_rating.is_none() && self.static_load_rating.is_none();
+        let by_name = Self {
+            designation: self.designation.clone(),
+            clearance: self.clearance.clone(),
+            ..Self::default()
+        };
+        // Numbers beside a name are the user's own.
+        let whole = row.is_some() && *self == by_name;
         let bearing = Bearing {
             designation: row.map_or(String::new(), |row| row.designation.into()),
             source: if whole { SOURCE.into() } else { "as given".into() },

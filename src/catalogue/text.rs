@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
+use super::estimate::USUAL;
 use super::{Bearing, Candidate, CatalogueError, rings};
 
 /// [mm/min] speed of a scene times its pitch diameter: half of what grease-lubricated ball bearings are usually allowed.
@@ -13,7 +14,10 @@ impl Display for Candidate {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let [dynamic, static_] = self.errors.map(|error| 100.0 * error);
         let (balls, ball) = (self.geometry.balls, short(1e3 * self.geometry.ball_diameter, 5));
-        write!(f, "{balls} x {ball} mm ({dynamic:+.1} % in C, {static_:+.1} % in C0)")
+        let [_, outer] = self.geometry.conformities;
+        // Candidates may differ in it alone.
+        let close = if outer < USUAL[1] { format!(", outer groove {outer} D") } else { String::new() };
+        write!(f, "{balls} x {ball} mm{close} ({dynamic:+.1} % in C, {static_:+.1} % in C0)")
     }
 }
 
@@ -107,7 +111,7 @@ impl Bearing {
             ]);
         }
         let [inner_conformity, outer_conformity] = geometry.conformities;
-        let close = if outer_conformity < 0.53 {
+        let close = if outer_conformity < USUAL[1] {
             "; the outer groove is close, as C0 is above that of 0.53"
         } else {
             ""

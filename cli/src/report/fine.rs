@@ -6,7 +6,7 @@ use plotters::chart::MeshStyle;
 use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 
-use super::style::{self, Area, Drawn, Font, PlotError};
+use super::style::{self, Area, Drawn, Font, GRID, PlotError, TITLE_HEIGHT};
 
 /// [-] units in a pixel.
 pub const FINE: u32 = 10;
@@ -15,15 +15,11 @@ pub const CAPTION: Font = (style::CAPTION.0, style::CAPTION.1 * FINE);
 /// Numbers at the axes, names of curves.
 pub const LABEL: Font = (style::LABEL.0, style::LABEL.1 * FINE);
 const DESCRIPTION: Font = (style::DESCRIPTION.0, style::DESCRIPTION.1 * FINE);
-const TITLE: Font = (style::CAPTION.0, 20 * FINE);
-/// \[pixel] height of a picture's title.
-const TITLE_HEIGHT: u32 = 40;
+const TITLE: Font = (style::TITLE.0, style::TITLE.1 * FINE);
 /// \[unit] around a panel.
 pub const MARGIN: u32 = style::MARGIN * FINE;
 /// \[unit] width of a curve.
 pub const LINE: u32 = 15;
-/// Colour of grids.
-pub const GRID: RGBColor = RGBColor(215, 215, 215);
 /// \[unit] width of a letter of a curve's name, about.
 const LETTER: f64 = 0.56 * (style::LABEL.1 * FINE) as f64;
 /// \[unit] height of the strip above a panel that has its heading, and the names of its curves.

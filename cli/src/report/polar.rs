@@ -6,8 +6,8 @@ use std::path::Path;
 use plotters::prelude::*;
 use roulement::simulation::outputs::{BallOutput, ContactOutput, Outputs};
 
-use super::fine::{FINE, GRID, Key, LABEL, LINE, headed, picture};
-use super::style::{Area, COLOURS, Drawn, PlotError};
+use super::fine::{FINE, Key, LABEL, LINE, headed, picture};
+use super::style::{Area, COLOURS, Drawn, GRID, PlotError};
 
 const PANEL: (u32, u32) = (480, 440);
 /// [-] rings of the grid.

@@ -32,7 +32,8 @@ pub type Drawn = Result<(), Box<dyn Error>>;
 pub type Font = (&'static str, u32);
 
 const FAMILY: &str = "sans-serif";
-const TITLE: Font = (FAMILY, 20);
+/// Title of a picture.
+pub const TITLE: Font = (FAMILY, 20);
 /// Heading of a panel.
 pub const CAPTION: Font = (FAMILY, 15);
 /// Quantities of the axes, and words beside panels.
@@ -40,7 +41,7 @@ pub const DESCRIPTION: Font = (FAMILY, 13);
 /// Numbers at the axes, names of curves.
 pub const LABEL: Font = (FAMILY, 12);
 /// \[pixel] height of a picture's title.
-const TITLE_HEIGHT: u32 = 40;
+pub const TITLE_HEIGHT: u32 = 40;
 /// \[pixel] around a panel.
 pub const MARGIN: u32 = 10;
 
@@ -54,7 +55,8 @@ pub const COLOURS: [RGBColor; 7] = [
     RGBColor(86, 180, 233),
     RGBColor(120, 120, 120),
 ];
-const GRID: RGBColor = RGBColor(215, 215, 215);
+/// Colour of grids.
+pub const GRID: RGBColor = RGBColor(215, 215, 215);
 
 /// Draws a picture of `size` \[pixel] below its title.
 ///

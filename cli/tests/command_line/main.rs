@@ -11,6 +11,7 @@ mod field;
 mod refusals;
 mod report;
 mod runs;
+mod scene_keys;
 mod spectrum;
 mod sweep;
 
