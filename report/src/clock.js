@@ -14,8 +14,6 @@ export const clock = {
     this.begin = begin;
     this.end = end;
     this.time = begin;
-    // A run takes some ten seconds unless it is faster than that by itself.
-    this.speed = Math.min((end - begin) / 10, 1);
   },
 
   seek(time) {

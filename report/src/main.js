@@ -30,26 +30,38 @@ async function start() {
   const body = h('main', { id: 'main' });
   const contents = h('nav', { 'aria-label': 'Contents', class: 'contents' });
   root.replaceChildren(h('a', { class: 'skip', href: '#main' }, 'To the results'), head(runs, sweeps, run => show(run)), contents, body);
-  const show = run => {
-    const parts = [];
-    sweeps.forEach((sweep, i) => parts.push(sweepSection(sweep, i)));
+  // Each run's parts are made once: a part that stays keeps what was chosen in it.
+  const made = new Map();
+  const bottom = licences();
+  const show = (run, beside = runs) => {
     if (run) {
-      parts.push(h('div', { id: 'cards' }, cards(run)), drawing(run), playback(run), polar(run), summary(runs), plotsSection(runs, run), spectra(run), power(runs), contacts(run), effects(run), cost(runs), sceneText(run));
+      const [begin, end] = [Math.min(...beside.map(other => other.begin)), Math.max(...beside.map(other => other.end))];
+      if (!made.size || begin !== clock.begin || end !== clock.end) {
+        clock.span(begin, end);
+        // Where all balls have found their way.
+        clock.seek(begin + 0.5 * (end - begin));
+        setZoom(null);
+      }
+      if (!made.size) {
+        root.append(transport());
+        startPlots();
+      }
+      if (!made.has(run)) made.set(run, partsOf(run, beside));
     }
-    parts.push(licences());
-    body.replaceChildren(...parts.filter(Boolean));
+    body.replaceChildren(...sweepParts, ...(made.get(run) ?? []), bottom);
     contents.replaceChildren(...[...body.querySelectorAll('section')].map(part => h('a', { href: `#${part.id}` }, part.querySelector('h2').textContent)));
   };
-  if (runs.length) {
-    clock.span(Math.min(...runs.map(run => run.begin)), Math.max(...runs.map(run => run.end)));
-    // Where all balls have found their way.
-    clock.seek(clock.begin + 0.5 * (clock.end - clock.begin));
-    root.append(transport());
-    startPlots();
-  }
+  // A case whose whole run was kept is shown by itself.
+  const sweepParts = sweeps.map((sweep, i) => sweepSection(sweep, i, run => (run ? show(run, [run]) : show(runs[0]))));
   show(runs[0]);
   // For tests: what is there, and that it is.
   window.roulement = { runs, sweeps, clock, setZoom, ready: true };
+}
+
+/** All that is shown of a run; figures and curves stand beside those of others. */
+function partsOf(run, beside) {
+  const parts = [h('div', { id: 'cards' }, cards(run)), drawing(run), playback(run), polar(run), summary(beside), plotsSection(beside, run), spectra(run), power(beside), contacts(run), effects(run), cost(beside), sceneText(run)];
+  return parts.filter(Boolean);
 }
 
 function head(runs, sweeps, show) {

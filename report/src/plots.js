@@ -232,6 +232,17 @@ function show(entry) {
   });
 }
 
+function resize(entry) {
+  if (!entry.plot) return;
+  if (entry.body.isConnected) {
+    entry.plot.setSize({ width: Math.max(entry.body.clientWidth, 240), height: 210 });
+  } else {
+    // Of a run that is not shown: it is made again when it is.
+    entry.plot.destroy();
+    entry.plot = null;
+  }
+}
+
 export function startPlots() {
   clock.follow(() => { for (const entry of plots) if (entry.visible) show(entry); });
   const again = () => {
@@ -241,6 +252,6 @@ export function startPlots() {
   let waiting = 0;
   addEventListener('resize', () => {
     clearTimeout(waiting);
-    waiting = setTimeout(() => { for (const entry of plots) entry.plot?.setSize({ width: Math.max(entry.body.clientWidth, 240), height: 210 }); }, 100);
+    waiting = setTimeout(() => { for (const entry of plots) resize(entry); }, 100);
   });
 }

@@ -2,7 +2,8 @@
 
 import uPlot from 'uplot';
 import { h, s, section, select, table } from './dom.js';
-import { readGrid } from './data.js';
+import { Run, readGrid } from './data.js';
+import { addSteps } from './cost.js';
 import { css, colour, onTheme, viridisCss } from './theme.js';
 import { digits, shown } from './units.js';
 
@@ -11,7 +12,13 @@ export async function readSweep(json) {
   const texts = new Map(json.texts.map(text => [text.name, text.cells]));
   const tables = new Map();
   for (const [name, grids] of Object.entries(json.tables ?? {})) tables.set(name, await Promise.all(grids.map(readGrid)));
-  return { ...json, numbers, texts, tables, count: json.numbers.rows };
+  const runs = new Map();
+  for (const [name, record] of Object.entries(json.runs ?? {})) {
+    const run = await Run.of(record, 0);
+    addSteps(run);
+    runs.set(name, run);
+  }
+  return { ...json, numbers, texts, tables, runs, count: json.numbers.rows };
 }
 
 /** Cells as texts and as numbers. */
@@ -27,7 +34,8 @@ function cell(sweep, name, i, count = 5) {
   return sweep.texts.get(name)?.[i] ?? '';
 }
 
-export function sweepSection(sweep, index) {
+/** `open` is given the whole run of the case that is chosen, or nothing where the sweep has not kept it. */
+export function sweepSection(sweep, index, open) {
   const id = `sweep-${index}`;
   const isFigure = name => sweep.numbers.has(name) && name !== 'case' && !sweep.keys.includes(name) && !/\.settled$|\.interval$/.test(name);
   const figures = sweep.order.filter(isFigure);
@@ -37,7 +45,7 @@ export function sweepSection(sweep, index) {
   const detail = h('div', { class: 'case', tabindex: -1, 'aria-live': 'polite' });
   const list = h('div', {});
   const map = h('div', {});
-  const choose = i => { state.chosen = i; showCase(sweep, i, detail); drawMap(); drawTable(); detail.scrollIntoView({ behavior: 'smooth', block: 'nearest' }); };
+  const choose = i => { state.chosen = i; showCase(sweep, i, detail); open(runOf(sweep, i)); drawMap(); drawTable(); detail.scrollIntoView({ behavior: 'smooth', block: 'nearest' }); };
   const drawTable = () => {
     const names = ['case', ...sweep.keys, 'status', ...state.columns];
     const key = i => { const number = sweep.numbers.get(state.sort); return number ? number.values[i] : cell(sweep, state.sort, i); };
@@ -97,14 +105,22 @@ function scatter(sweep, state, choose) {
   return h('div', { class: 'scroll' }, svg, left > 0 ? h('p', { class: 'note' }, `${left} of ${sweep.count} cases have no number there: they failed, or leave the key as it is in the scene.`) : null);
 }
 
+/** Name of the files of a case. */
+const fileOf = (sweep, i) => sweep.texts.get('file')?.[i] ?? cell(sweep, 'file', i);
+
+const runOf = (sweep, i) => sweep.runs.get(fileOf(sweep, i));
+
 /** All that is known of a case. */
 function showCase(sweep, i, holder) {
   const settings = sweep.keys.map(key => [key, cell(sweep, key, i)]);
   const reason = sweep.texts.get('reason')?.[i];
   const others = sweep.order.filter(name => !sweep.keys.includes(name) && !['case', 'file', 'status', 'reason'].includes(name) && cell(sweep, name, i) !== '');
-  const parts = [h('h3', {}, `Case ${cell(sweep, 'case', i)}: ${cell(sweep, 'status', i)}`), h('dl', { class: 'facts' }, settings.flatMap(([key, value]) => [h('dt', {}, key), h('dd', {}, value || 'as in the scene')]))];
+  const parts = [h('h3', {}, `Case ${cell(sweep, 'case', i)}: ${cell(sweep, 'status', i)}`), h('dl', { class: 'facts' }, settings.flatMap(([key, value]) => [h('dt', {}, label(sweep, key)), h('dd', {}, value || 'as in the scene')]))];
   if (reason) parts.push(h('p', { class: 'warning' }, reason));
-  const tables = sweep.tables.get(sweep.texts.get('file')?.[i] ?? cell(sweep, 'file', i));
+  const tables = sweep.tables.get(fileOf(sweep, i));
+  const number = cell(sweep, 'case', i);
+  parts.push(runOf(sweep, i) ? h('p', {}, h('a', { href: '#drawing' }, `Drawing, playback and plots of case ${number}`), ' stand below.')
+    : h('p', { class: 'note' }, 'For its drawing, playback and plots, give the command of the sweep ', h('code', {}, `--runs ${number}`), ' once more, and make this page again.'));
   if (tables) parts.push(caseplots(tables));
   parts.push(h('details', { open: !tables }, h('summary', {}, `All ${others.length} figures`), table(['figure', 'value'], others.map(name => [label(sweep, name), cell(sweep, name, i, 6)]), { numbers: [1] })));
   holder.replaceChildren(...parts);

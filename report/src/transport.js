@@ -9,7 +9,9 @@ export function transport() {
   const slider = h('input', { type: 'range', id: 'scrub', min: 0, max: 10000, step: 1, 'aria-label': 'Time of the run', oninput: () => clock.seek(clock.begin + (clock.end - clock.begin) * slider.value / 10000) });
   const text = h('output', { id: 'time', for: 'scrub' });
   const speeds = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1];
-  const nearest = speeds.reduce((best, speed) => (Math.abs(Math.log(speed / clock.speed)) < Math.abs(Math.log(best / clock.speed)) ? speed : best));
+  // A run takes some ten seconds unless it is faster than that by itself.
+  const usual = Math.min((clock.end - clock.begin) / 10, 1);
+  const nearest = speeds.reduce((best, speed) => (Math.abs(Math.log(speed / usual)) < Math.abs(Math.log(best / usual)) ? speed : best));
   clock.speed = nearest;
   const speed = h('select', { id: 'speed', 'aria-label': 'Speed of the playback', onchange: () => { clock.speed = Number(speed.value); } },
     speeds.map(value => h('option', { value, selected: value === nearest }, value >= 1 ? 'as fast as the run' : `${digits(1 / value, 3)} times slower`)));

@@ -65,10 +65,18 @@ enum Stop {
 pub struct Player {
     /// Set by Ctrl-C.
     pub interrupted: Arc<AtomicBool>,
+    /// What progress begins with.
+    pub words: String,
 }
 
 impl Player {
-    /// Plays a simulation, with its rows into a table if there is one; progress begins with some words.
+    /// Whose progress is that of one run.
+    pub fn new(interrupted: Arc<AtomicBool>) -> Self {
+        Self { interrupted, words: String::new() }
+    }
+
+    /// Plays a simulation, with its rows into a table if there is one; `words` of this run follow those that progress
+    /// begins with.
     ///
     /// # Errors
     /// If the table cannot be written. A run that fails on its way is no error here.
@@ -79,7 +87,7 @@ impl Player {
         words: &str,
     ) -> Result<Played, ResultsError> {
         let rows = Rows::of(&simulation);
-        let progress = progress_bar(rows.count(), words);
+        let progress = progress_bar(rows.count(), &format!("{}{words}", self.words));
         let begin = Instant::now();
         let cpu = ThreadTime::now();
         let mut plotted = Thinned::default();

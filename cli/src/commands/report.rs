@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use roulement_cli::page::grid::{Grid, without};
 use roulement_cli::page::{fields, html, record, sweep, table};
+use roulement_cli::sweep::store::RUNS;
 use serde_json::{Value, json};
 
 use super::{say, tell};
@@ -43,9 +44,7 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut sweeps = vec![];
     for directory in &options.results {
         if is_sweep(directory) {
-            let mut sweep = sweep::read(directory)?;
-            sweep["name"] = name_of(directory).into();
-            sweeps.push(sweep);
+            sweeps.push(of_sweep(directory, options)?);
         } else {
             runs.push(of_run(directory, options)?);
         }
@@ -85,6 +84,23 @@ fn name_of(directory: &Path) -> String {
 fn title(part: &Value) -> &str {
     let of = |key: &str| part[key].as_str().filter(|text| !text.is_empty());
     of("title").or(of("name")).unwrap_or("ball bearing")
+}
+
+/// Summary of a sweep, its tables, and the whole runs that it has kept.
+fn of_sweep(directory: &Path, options: &Options) -> Result<Value, Box<dyn Error>> {
+    let mut sweep = sweep::read(directory)?;
+    sweep["name"] = name_of(directory).into();
+    let mut runs = serde_json::Map::new();
+    for (case, file) in sweep::files(&sweep) {
+        let kept = directory.join(RUNS).join(&file);
+        if kept.is_dir() {
+            let mut run = of_run(&kept, options)?;
+            run["name"] = format!("case {case}").into();
+            runs.insert(file, run);
+        }
+    }
+    sweep["runs"] = runs.into();
+    Ok(sweep)
 }
 
 /// Record and table of a run.

@@ -9,9 +9,9 @@ use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use roulement::scene::units::Time;
-use roulement::scene::{ErrorGoal, ErrorOf, Solver};
+use roulement::scene::{ErrorGoal, ErrorOf, Scene, Solver};
 use roulement::simulation::Simulation;
-use roulement_cli::error::{Judgement, Rounds, TWIN};
+use roulement_cli::error::{Judgement, MOST_ROUNDS, Rounds, TWIN};
 use roulement_cli::page::record;
 use roulement_cli::report::figures::{Figures, Shown};
 use roulement_cli::report::json;
@@ -56,7 +56,7 @@ pub struct Options {
     #[arg(long, requires = "error")]
     means_only: bool,
     /// Runs that `--error` may take, each with half the steps of the one before; a run that looks for chaos comes on top.
-    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(2..=16))]
+    #[arg(long, value_name = "N", default_value_t = MOST_ROUNDS, value_parser = clap::value_parser!(u32).range(2..=16))]
     rounds: u32,
 }
 
@@ -74,23 +74,49 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     if let (Some(goal), true) = (&mut scene.solver.goal, means_only) {
         goal.of = ErrorOf::Means;
     }
+    let output = Place {
+        files: !is_parquet(&output),
+        output,
+        choice: Choice { columns, window: window.unwrap_or_default() },
+        said: if json { Said::Json } else { Said::Text },
+    };
+    simulate(&Player::new(heeded_interrupt()?), &scene, &output, error.is_some(), rounds)
+}
+
+/// Set by Ctrl-C; a second one does not wait for the row.
+///
+/// # Errors
+/// If the system has no such signal.
+pub fn heeded_interrupt() -> std::io::Result<Arc<AtomicBool>> {
     let interrupted = Arc::new(AtomicBool::new(false));
-    let player = Player { interrupted: Arc::clone(&interrupted) };
-    let choice = Choice { columns, window: window.unwrap_or_default() };
-    let simulation = Simulation::new(&scene)?;
-    announce(simulation.scene(), simulation.model());
-    let place = Place { files: !is_parquet(&output), output, choice, json };
+    flag::register_conditional_shutdown(SIGINT, INTERRUPTED.into(), Arc::clone(&interrupted))?;
+    flag::register(SIGINT, Arc::clone(&interrupted))?;
+    Ok(interrupted)
+}
+
+/// Simulates a scene into its place: again with smaller steps, `rounds` times at most, where its error is wanted or it has a goal
+/// for it.
+///
+/// # Errors
+/// As [`run`].
+pub fn simulate(
+    player: &Player,
+    scene: &Scene,
+    place: &Place,
+    wants_error: bool,
+    rounds: u32,
+) -> Result<ExitCode, Box<dyn Error>> {
+    let simulation = Simulation::new(scene)?;
+    if place.said != Said::Nothing {
+        announce(simulation.scene(), simulation.model());
+    }
     if place.files {
         fs::create_dir_all(&place.output)
             .map_err(|why| format!("cannot make {}: {why}", place.output.display()))?;
     }
-    let table = ResultsWriter::create(&place.results(), &scene, &place.choice)?;
-    // A second Ctrl-C does not wait for the row.
-    flag::register_conditional_shutdown(SIGINT, INTERRUPTED.into(), Arc::clone(&interrupted))?;
-    flag::register(SIGINT, interrupted)?;
-
-    if error.is_some() || scene.solver.goal.is_some() {
-        return measured(&player, simulation, table, &place, rounds);
+    let table = ResultsWriter::create(&place.results(), scene, &place.choice)?;
+    if wants_error || scene.solver.goal.is_some() {
+        return measured(player, simulation, table, place, rounds);
     }
     let played = player.play(simulation, Some(table), "")?;
     place.leave(&played, None, "")?;
@@ -187,15 +213,27 @@ fn changed(solver: Solver) -> Solver {
     Solver { max_step, initial_step, ..solver }
 }
 
+/// How a run's summary is said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Said {
+    /// In words.
+    Text,
+    /// As JSON.
+    Json,
+    /// It stands in the files alone.
+    Nothing,
+}
+
 /// Where the results of a run go.
-struct Place {
+pub struct Place {
     /// Directory, or the file of the table.
-    output: PathBuf,
+    pub output: PathBuf,
     /// Is it a directory, and has all files?
-    files: bool,
-    choice: Choice,
-    /// Is the summary printed as JSON?
-    json: bool,
+    pub files: bool,
+    /// What the table has.
+    pub choice: Choice,
+    /// How the summary is said.
+    pub said: Said,
 }
 
 impl Place {
@@ -222,16 +260,18 @@ impl Place {
         if self.files {
             plots = self.write_files(played, &shown, &text)?;
         }
-        tell(scene.pressure_note(played.seen.limits.peak_pressure));
-        let listed = if self.json {
-            format!("{:#}\n", json::summary(&played.simulation, &played.seen, &shown))
-        } else {
-            let mut listed = format!("{text}\nresults          {}\n", self.results().display());
-            for plot in plots {
-                listed += &format!("plot             {}\n", plot.display());
+        let listed = match self.said {
+            Said::Nothing => return Ok(()),
+            Said::Json => format!("{:#}\n", json::summary(&played.simulation, &played.seen, &shown)),
+            Said::Text => {
+                let mut listed = format!("{text}\nresults          {}\n", self.results().display());
+                for plot in plots {
+                    listed += &format!("plot             {}\n", plot.display());
+                }
+                listed
             }
-            listed
         };
+        tell(scene.pressure_note(played.seen.limits.peak_pressure));
         let said = say(&listed);
         // Why a run has ended early is said even where nobody reads the summary.
         if matches!(played.end, End::Reached) {

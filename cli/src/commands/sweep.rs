@@ -1,6 +1,7 @@
 //! `roulement sweep`: many cases of a scene on all cores, with progress, and a summary of them all.
 
 use std::error::Error;
+use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -10,13 +11,16 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use roulement::Scene;
+use roulement_cli::error::MOST_ROUNDS;
+use roulement_cli::page::record;
+use roulement_cli::report::results::Choice;
 use roulement_cli::sweep::all::{Sweep, threads as cores};
 use roulement_cli::sweep::case::Wanted;
-use roulement_cli::sweep::cases::Cases;
-use signal_hook::consts::SIGINT;
-use signal_hook::flag;
+use roulement_cli::sweep::cases::{Cases, scene_of};
+use roulement_cli::sweep::store::aside;
 
-use super::run::INTERRUPTED;
+use super::player::Player;
+use super::run::{INTERRUPTED, Place, Said, heeded_interrupt, simulate};
 use super::{say, tell};
 
 /// Options of `roulement sweep`.
@@ -40,6 +44,10 @@ pub struct Options {
     /// Cases at a time; as many as there are cores if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Keep all that `roulement run` writes of these cases, too, such as `3,7`: `roulement report` shows their drawing, playback
+    /// and plots.
+    #[arg(long, value_name = "CASES", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..))]
+    runs: Vec<u32>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -66,20 +74,21 @@ impl Format {
 /// # Errors
 /// If the cases or the scene cannot be read, no case can be run, or files cannot be written.
 pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
-    let Options { cases: table, scene, output, columns, tables, threads } = options;
+    let Options { cases: table, scene, output, columns, tables, threads, runs } = options;
     let cases = Cases::load(&table)?;
     let Some(scene) = scene.or_else(|| cases.scene.clone()) else {
         return Err(format!("{}: name the base scene by --scene", table.display()).into());
     };
+    let runs: Vec<usize> = runs.into_iter().map(|case| case as usize).collect();
+    if let Some(case) = runs.iter().find(|case| **case > cases.rows.len()) {
+        return Err(format!("--runs {case}: {} has {} cases", table.display(), cases.rows.len()).into());
+    }
     let base = Scene::load(&scene)?;
     tell(base.notes());
     let wanted = Wanted { columns, tables: tables.map(Format::ending) };
     let sweep = Sweep::new(cases, base.source, wanted, &output)?;
     let missing = sweep.missing();
-    let interrupted = Arc::new(AtomicBool::new(false));
-    // A second Ctrl-C does not wait for the rows.
-    flag::register_conditional_shutdown(SIGINT, INTERRUPTED.into(), Arc::clone(&interrupted))?;
-    flag::register(SIGINT, Arc::clone(&interrupted))?;
+    let interrupted = heeded_interrupt()?;
     let bar = ProgressBar::new(missing.len() as u64);
     if let Ok(style) = ProgressStyle::with_template(
         "{pos} of {len} cases [{bar:40}] {percent} %, {elapsed} elapsed, {eta} left",
@@ -100,9 +109,43 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
         counts.not_run,
         output.join("summary.csv").display()
     ))?;
+    for case in runs {
+        keep_run(&sweep, case, &interrupted)?;
+    }
     if interrupted.load(Ordering::Relaxed) {
         tell(["interrupted; the same command goes on".to_string()]);
         return Ok(ExitCode::from(INTERRUPTED));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Keeps the whole run of a case, counted from 1, if it is not kept yet; that of a case that fails, too, as far as it came.
+fn keep_run(sweep: &Sweep, case: usize, interrupted: &Arc<AtomicBool>) -> Result<(), Box<dyn Error>> {
+    let name = match &sweep.names[case - 1] {
+        Ok(name) => name,
+        Err(why) => {
+            tell([format!("case {case} has no run: {why}")]);
+            return Ok(());
+        }
+    };
+    let kept = sweep.store.run(name)?;
+    if !kept.is_dir() {
+        let part = aside(&kept);
+        let scene = scene_of(&sweep.cases.text_of(&sweep.base, case - 1)?);
+        let place =
+            Place { output: part.clone(), files: true, choice: Choice::default(), said: Said::Nothing };
+        let player = Player { interrupted: Arc::clone(interrupted), words: format!("case {case}: ") };
+        let ended =
+            scene.map_err(Into::into).and_then(|scene| simulate(&player, &scene, &place, false, MOST_ROUNDS));
+        if let Err(why) = ended {
+            tell([format!("case {case}: {why}")]);
+        }
+        if interrupted.load(Ordering::Relaxed) || !part.join(record::FILE).is_file() {
+            // It may not have been begun.
+            let _ = fs::remove_dir_all(part);
+            return Ok(());
+        }
+        fs::rename(&part, &kept).map_err(|why| format!("cannot write {}: {why}", kept.display()))?;
+    }
+    Ok(say(&format!("{:<17}{}\n", format!("run {case}"), kept.display()))?)
 }

@@ -54,6 +54,17 @@ pub fn read(directory: &Path) -> Result<Value, String> {
     }))
 }
 
+/// Number and file of every case of a sweep that was read.
+pub fn files(sweep: &Value) -> Vec<(usize, String)> {
+    let texts = sweep["texts"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let column = texts.iter().find(|text| text["name"] == "file");
+    let cells = column.and_then(|column| column["cells"].as_array()).map(Vec::as_slice).unwrap_or_default();
+    let named = |(index, cell): (usize, &Value)| {
+        Some((index + 1, cell.as_str().filter(|file| !file.is_empty())?.to_string()))
+    };
+    cells.iter().enumerate().filter_map(named).collect()
+}
+
 /// Tables of cases, with as many rows each as there is room for; none where the sweep has not written them.
 fn tables(directory: &Path, names: &[String], records: &[csv::StringRecord]) -> Result<Value, String> {
     let Some(file) = names.iter().position(|name| name == "file") else { return Ok(json!({})) };

@@ -156,7 +156,7 @@ fn played(
         ControlFlow::Continue(())
     });
     match flow {
-        Err(why) => return Err(Ended::Failed(format!("at {:e} s: {why}", simulation.time()))),
+        Err(why) => return Err(failed(&why)),
         Ok(ControlFlow::Break(why)) => return Err(why),
         Ok(ControlFlow::Continue(())) => {}
     }

@@ -16,6 +16,9 @@ const SCHEMA: u32 = 1;
 /// [-] bytes of the hash in a name: two of 1e9 cases agree by chance with 1e-21.
 const BYTES: usize = 16;
 
+/// Directory of whole runs beside the summary.
+pub const RUNS: &str = "runs";
+
 /// A directory of rows.
 #[derive(Clone, Debug)]
 pub struct Store {
@@ -59,6 +62,16 @@ impl Store {
         let tables = self.directory.join("tables");
         fs::create_dir_all(&tables).map_err(|why| SweepError::file("make", &tables, &why))?;
         Ok(tables.join(format!("{name}.{ending}")))
+    }
+
+    /// Directory of the whole run of a case.
+    ///
+    /// # Errors
+    /// If that of all runs cannot be made.
+    pub fn run(&self, name: &str) -> Result<PathBuf, SweepError> {
+        let runs = self.directory.join(RUNS);
+        fs::create_dir_all(&runs).map_err(|why| SweepError::file("make", &runs, &why))?;
+        Ok(runs.join(name))
     }
 
     /// Keeps the row of a case.

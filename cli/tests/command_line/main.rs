@@ -12,6 +12,7 @@ mod refusals;
 mod report;
 mod runs;
 mod scene_keys;
+mod signs;
 mod spectrum;
 mod sweep;
 
@@ -20,3 +21,12 @@ use std::process::Command;
 
 use common::{Scratch, edited, roulement, scene};
 use serde_json::Value;
+
+/// Units of a picture in a pixel: more than one, so that curves have no stairs.
+fn units_in_a_pixel(picture: &str) -> f64 {
+    let size = |at: &str| -> f64 {
+        let rest = &picture[picture.find(at).unwrap() + at.len()..];
+        rest.split(['"', ' ']).next().unwrap().parse().unwrap()
+    };
+    size("viewBox=\"0 0 ") / size("<svg width=\"")
+}

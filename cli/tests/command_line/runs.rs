@@ -66,11 +66,7 @@ fn run_writes_table_plots_and_summary() {
         }
         assert!(!picture.contains("NaN"));
         // Ten units in a pixel: curves have no stairs.
-        let size = |at: &str| -> f64 {
-            let rest = &picture[picture.find(at).unwrap() + at.len()..];
-            rest.split(['"', ' ']).next().unwrap().parse().unwrap()
-        };
-        assert_eq!(size("viewBox=\"0 0 "), 10.0 * size("<svg width=\""));
+        assert_eq!(units_in_a_pixel(&picture), 10.0);
     }
 
     let summary = String::from_utf8(output.stdout).unwrap();

@@ -379,3 +379,52 @@ fn a_run_is_written_as_parquet_and_json_with_the_same_bits() {
     assert_eq!(json["time"], 1e-3);
     assert!(json["figures"]["largest inner load"].as_f64().unwrap() > 100.0);
 }
+
+#[test]
+fn consistency_a_kept_run_is_that_of_its_scene_and_stands_on_the_page() {
+    let scratch = Scratch::new("sweep-runs");
+    // The second case cannot finish a step; the third has no scene.
+    let text = "friction.ball_race,solver.min_step,solver.initial_step,solver.tolerance,load.duration\n\
+                0.05,,,,1 ms\n,9 us,10 us,1e-12,1 ms\n-1,,,,1 ms\n";
+    std::fs::write(scratch.path("cases.csv"), text).unwrap();
+    let output = sweep(&scratch, "cases.csv", "out", &["--runs", "1,2,3"]);
+    let said = good(&output);
+    let summary = columns(&scratch.read("out/summary.csv"));
+    let file = &summary["file"];
+    assert!(said.contains("run 1 ") && said.contains(&format!("runs/{}", file[0])), "{said}");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        told.contains("case 2: ") && told.contains("case 3: ") && told.contains("friction.ball_race = -1"),
+        "{told}"
+    );
+
+    let changes = [("friction.ball_race", "0.05"), ("load.duration", "\"1 ms\"")];
+    good(&scratch.run(&edited("thrust", &changes), "run", &[]));
+    for name in ["results.csv", "means.csv", "bearing.svg"] {
+        assert_eq!(
+            scratch.read(&format!("out/runs/{}/{name}", file[0])),
+            scratch.read(&format!("run/{name}"))
+        );
+    }
+    // What is kept is not run again, and nothing that is not whole stays.
+    let record = scratch.path(&format!("out/runs/{}/run.json", file[0]));
+    let written = || std::fs::metadata(&record).unwrap().modified().unwrap();
+    let before = written();
+    good(&sweep(&scratch, "cases.csv", "out", &["--runs", "1"]));
+    assert_eq!(written(), before);
+    let kept = std::fs::read_dir(scratch.path("out/runs")).unwrap();
+    let kept: Vec<String> = kept.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    assert!(kept.contains(&file[0]) && kept.iter().all(|name| file.contains(name)), "{kept:?}");
+
+    let page = scratch.path("sweep.html");
+    good(&roulement(&["report", &scratch.path("out"), "-o", &page]));
+    let page = std::fs::read_to_string(page).unwrap();
+    assert!(page.contains(&format!("\"{}\":{{", file[0])) && page.contains("\"name\":\"case 1\""));
+
+    let refused = sweep(&scratch, "cases.csv", "out", &["--runs", "4"]);
+    let told = String::from_utf8_lossy(&refused.stderr);
+    assert!(
+        !refused.status.success() && told.contains("--runs 4: ") && told.contains("has 3 cases"),
+        "{told}"
+    );
+}
