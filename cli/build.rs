@@ -1,5 +1,6 @@
 //! Records revision and platform for `roulement --version`.
 
+use std::path::Path;
 use std::process::Command;
 
 /// What git says, without the line's end; nothing if there is no git or no repository, as in a source archive.
@@ -11,9 +12,12 @@ fn git(arguments: &[&str]) -> Option<String> {
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    // Elsewhere than in .git for a second work tree; a file that is not there would mean a new build every time.
-    if let Some(head) = git(&["--git-path", "HEAD"]) {
-        println!("cargo::rerun-if-changed={head}");
+    // A commit changes the log, not the file HEAD. Elsewhere than in .git for a second work tree; a file that is not there would mean
+    // a new build every time.
+    for name in ["HEAD", "logs/HEAD"] {
+        if let Some(path) = git(&["--git-path", name]).filter(|path| Path::new(path).exists()) {
+            println!("cargo::rerun-if-changed={path}");
+        }
     }
     let revision = git(&["--short", "HEAD"]).unwrap_or_else(|| "unknown revision".to_string());
     let platform = std::env::var("TARGET").unwrap_or_default();

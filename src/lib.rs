@@ -12,7 +12,7 @@
 //! wanted.
 //!
 //! ```
-//! use roulement::{Scene, Simulation};
+//! use roulement::prelude::*;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let scene = Scene::parse(
@@ -50,13 +50,99 @@
 //! # }
 //! ```
 //!
+//! # Step by step
+//!
+//! A master that moves the race gives its pose and reads the wrench: [`Inputs`] are those at the start of a step. A [`snapshot`]
+//! brings a simulation back, to the same bits.
+//!
+//! [`snapshot`]: Simulation::snapshot
+//!
+//! ```
+//! use roulement::prelude::*;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let scene = Scene::load("scenes/misalignment.toml".as_ref())?;
+//! let mut simulation = Simulation::new(&scene)?;
+//! let before = simulation.snapshot();
+//!
+//! let mut inputs = *simulation.inputs();
+//! let speed = 6000.0 * std::f64::consts::PI / 30.0;
+//! inputs.inner.axis = Some(AxisInput {
+//!     rate: [speed, 0.0, 1.0].into(), // [rad/s] it spins, and its axis tilts about z
+//!     ..AxisInput::default()
+//! });
+//! simulation.set_inputs(inputs);
+//! simulation.advance(1e-4)?;
+//! let moment = simulation.outputs().inner.wrench.moment.z;
+//! assert!(moment < 0.0); // the bearing pushes back
+//!
+//! assert!(simulation.restore(&before));
+//! simulation.set_inputs(inputs);
+//! simulation.advance(1e-4)?;
+//! assert_eq!(simulation.outputs().inner.wrench.moment.z.to_bits(), moment.to_bits());
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # From a catalogue, and what matters
+//!
+//! [`catalogue`] estimates what is inside a bearing of a name. [`analysis::estimate`] says which effects would matter to it, and by how
+//! much.
+//!
+//! ```
+//! use roulement::analysis::estimate;
+//! use roulement::catalogue::Request;
+//! use roulement::prelude::*;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let request = Request { designation: Some("7206 B".to_string()), ..Request::default() };
+//! let scene = Scene::parse(&request.bearing()?.scene(1)?)?;
+//! let verdicts = estimate::verdicts(&scene, &Model::new(&scene)?)?;
+//! for verdict in verdicts.iter().filter(|verdict| verdict.matters) {
+//!     println!("{}: {}", verdict.subject, verdict.sentence);
+//! }
+//! assert!(verdicts.iter().any(|verdict| verdict.subject == "film" && verdict.matters));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # A single contact
+//!
+//! [`analysis::single_contact`] has every creep law on one rolling contact, the half-space reference among them.
+//!
+//! ```
+//! use roulement::analysis::single_contact::{Law, RollingContact};
+//! use roulement::prelude::*;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let contact = RollingContact {
+//!     id: "long ellipse, spin".to_string(),
+//!     poisson_ratio: 0.3,
+//!     shear_modulus: 80.8e9,
+//!     friction: 0.08,
+//!     peak_pressure: 1.5e9,
+//!     semi_axis_x: 0.1e-3,
+//!     semi_axis_y: 0.8e-3,
+//!     rolling_angle: 0.0,
+//!     creep_x: 0.5e-3,
+//!     creep_y: 0.0,
+//!     spin: 3.0,
+//!     curvature: 0.0,
+//! };
+//! let fast = contact.evaluate(Law::Simulated(CreepLaw::KalkerTable))?;
+//! let exact = contact.evaluate(Law::Reference(24))?;
+//! println!("{:.3} and {:.3} of mu N", fast.fx, exact.fx);
+//! assert!((fast.fx - exact.fx).abs() < 0.01);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # An equilibrium
 //!
 //! [`equilibrium::solve`] finds displacements, ball loads and stiffness without integration in time.
 //!
 //! ```
-//! use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
-//! use roulement::{Model, Scene};
+//! use roulement::prelude::*;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let scene = Scene::load("scenes/radial.toml".as_ref())?;
@@ -91,7 +177,7 @@
 //! | [`interface`] | the table of variables, and the model description and documentation made from it |
 //! | [`fmi`] | the C functions of FMI 2.0 |
 //!
-//! The command line is a crate of its own, in `cli/`.
+//! [`prelude`] names what most programs need. The command line is a crate of its own, in `cli/`.
 //!
 //! # Frames and symbols
 //!
@@ -147,6 +233,7 @@ pub mod interface;
 pub mod kalker;
 pub mod model;
 pub mod numerics;
+pub mod prelude;
 pub mod scene;
 pub mod schema;
 pub mod simulation;

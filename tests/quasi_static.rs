@@ -191,3 +191,14 @@ fn a_package_takes_the_frame_as_inputs() {
     assert!(!names.iter().any(|name| name.starts_with("effects.gravity")));
     unsafe { fmi2FreeInstance(c) };
 }
+
+#[test]
+fn a_row_without_an_equilibrium_says_when() {
+    // The load grows until the contacts are far beyond Hertz's theory.
+    let text = "[[0.0, 0.0], [1.0, 1e9]]";
+    let scene = Scene::edited(STATICS, [("load.y.force", text)]).unwrap();
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let why = simulation.advance_scripted(0.25).unwrap_err().to_string();
+    assert!(why.starts_with("at 0.25 s: ") && why.contains("equilibrium"), "{why}");
+    assert_eq!(why.matches("0.25").count(), 1, "{why}");
+}

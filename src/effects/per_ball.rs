@@ -8,7 +8,7 @@ use crate::schema::variable_units::{
 };
 
 keys! {
-    /// Does a package report every ball (`ball[j].*`)? Tables of results always do.
+    /// Does an FMU report every ball (`ball[j].*`)? Tables of results always do.
     "per_ball_outputs" => on: bool = false,
 }
 

@@ -55,7 +55,8 @@ pub enum Giver {
     Master,
 }
 
-/// Who gives each group of inputs of a package. `roulement run` plays all scripts.
+/// Who gives each group of inputs of an FMU: the scene's script, or the master, which is the program that runs the FMU.
+/// `roulement run` plays all scripts.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputGivers {

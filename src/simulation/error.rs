@@ -36,7 +36,7 @@ pub enum SimulationError {
     /// The step size fell below its minimum.
     #[error(
         "at {time} s the step fell below solver.min_step = {min_step} s: {cause}, worst at {site} \
-         (inner load {inner_load} N, outer load {outer_load} N)"
+         (inner load {inner_load:.4e} N, outer load {outer_load:.4e} N)"
     )]
     StepTooSmall {
         /// \[s] time reached.
@@ -135,6 +135,14 @@ pub enum SimulationError {
         force: f64,
         /// \[N] friction coefficient times load.
         limit: f64,
+    },
+    /// A row or communication point of quasi-static equilibria has none.
+    #[error("at {time} s: {why}")]
+    NoEquilibrium {
+        /// \[s] time.
+        time: f64,
+        /// Why not.
+        why: Box<SimulationError>,
     },
     /// The Newton matrix of a step whose sensitivities were asked for is singular.
     #[error("at {0} s the Newton matrix is singular")]

@@ -122,7 +122,10 @@ impl Outputs {
         let all = contacts;
         let contacts_of_neighbours =
             |ball: usize| all.ball_pairs.iter().filter(move |pair| [pair.first, pair.second].contains(&ball));
+        let to_outer = spin_free_frame(outer).inverse();
         let of_ball = |(index, (ball, contacts)): (usize, (&BallState, &BallContacts))| {
+            let offset = ball.position - outer.pose.position;
+            let seen = to_outer * offset;
             let pocket = cage.map(|(model, state)| {
                 let approach = model.pocket_approach(index, &ball.motion(), &state.body_motion());
                 PocketOutput {
@@ -142,15 +145,11 @@ impl Outputs {
                 if models[race].resists() { resisted(&models[race], &contact, output) } else { output }
             };
             BallOutput {
-                azimuth: spin_free_azimuth(outer, &(ball.position - outer.pose.position)),
+                azimuth: seen.z.atan2(seen.y),
                 orbital_speed: orbital_speed(ball, outer),
                 position: ball.position,
                 angular_velocity: ball.angular_velocity,
-                spin: along_orbit(
-                    &races.outer,
-                    &(ball.position - outer.pose.position),
-                    &ball.angular_velocity,
-                ),
+                spin: along_orbit(&races.outer, &offset, &ball.angular_velocity),
                 inner: output(Race::Inner),
                 outer: output(Race::Outer),
                 pocket,
@@ -330,12 +329,6 @@ fn spin_free_frame(race: &BodyState) -> UnitQuaternion<f64> {
     UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default()
 }
 
-/// Azimuth of an offset about the race axis, in the frame that tilts with the race but does not spin.
-fn spin_free_azimuth(race: &BodyState, offset: &Vector3<f64>) -> f64 {
-    let seen = spin_free_frame(race).inverse() * offset;
-    seen.z.atan2(seen.y)
-}
-
 fn race_output(state: &State, model: &Model, race: Race) -> RaceOutput {
     let support = state.supports[race].as_ref();
     let state = state.race(race);
@@ -399,18 +392,19 @@ fn contact_output(
     // The outer normal points outwards, the inner one inwards: the angle is that of the force on the ball for the
     // inner race, and of its opposite for the outer, so that both are positive under the same thrust.
     let (axial, radial) = (normal.dot(axis), normal.dot(&contact.geometry.radial));
+    let towards_x = towards_x(contact, axis);
     let contact_angle = match (model.bearing.is_thrust_bearing(), race) {
         (true, Race::Inner) => (-axial).atan2(-radial),
         (true, Race::Outer) => axial.atan2(radial),
-        (false, _) => (if radial < 0.0 { -axial } else { axial }).atan2(radial.abs()),
+        (false, _) if radial < 0.0 => -towards_x,
+        (false, _) => towards_x,
     };
     // Frame C has x along the rolling direction; the kernel's x is along the circumference.
     let along = if contact.rolling_cosine < 0.0 { -1.0 } else { 1.0 };
     let root = contact.geometry.approach.max(0.0).sqrt();
     let [rolling, transverse] = contact.semi_axes.map(|axis| axis * root);
     let area = std::f64::consts::PI * rolling * transverse;
-    let (shoulder_share, shoulder_margin) =
-        model.bearing.shoulder(race, towards_x(contact, axis), transverse);
+    let (shoulder_share, shoulder_margin) = model.bearing.shoulder(race, towards_x, transverse);
     ContactOutput {
         load: contact.load,
         contact_angle,

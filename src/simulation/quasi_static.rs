@@ -48,7 +48,8 @@ impl Simulation {
             }
         }
         let before = self.state.clone();
-        let state = start::from_inputs(&self.scene, &self.model, &mut inputs, end)?;
+        let state = start::from_inputs(&self.scene, &self.model, &mut inputs, end)
+            .map_err(|why| SimulationError::NoEquilibrium { time: end, why: Box::new(why) })?;
         self.state = State {
             control: before.control,
             statistics: before.statistics,

@@ -25,6 +25,10 @@ const TOLERANCE: f64 = 1e-12;
 /// [-] creepage beyond which a contact does not roll: friction too small for the gyroscopic moment has a balance, too, in which
 /// balls slide or turn some other way, and a bearing does not start there.
 const ROLLING: f64 = 0.02;
+/// [-] growth of the step in time from one iteration to the next: at least so that it comes from microseconds to seconds in some 30
+/// of them, at most so that two take it to where a step is Newton's.
+const LEAST_GROWTH: f64 = 1.5;
+const LARGEST_GROWTH: f64 = 100.0;
 /// Iterations; balls of the thrust case with a radial load take 20 to 60.
 const MAX_ITERATIONS: u32 = 3000;
 
@@ -56,37 +60,50 @@ pub fn balance(around: &Surroundings<'_>, balls: &mut [BallMotion<f64>]) {
         |motion: &BallMotion<f64>| motion.velocity.dot(&Orbit::new(motion, &around.races.outer).tangential);
     // Loads, and loads times own orbital speeds over those of rolling.
     let mut sums = [0.0; 2];
+    let mut found = Vec::with_capacity(held.len());
     for &index in &held {
         let ball = &balls[index];
-        let Some(own) = balanced(around, index, ball, true) else {
+        let Some(own) = balanced(around, index, ball, Orbital::Own) else {
             return;
         };
         let weight = load(index, ball, Race::Inner) * along(ball).abs();
         sums = [sums[0] + weight, sums[1] + weight * along(&own) / along(ball)];
+        found.push(own.angular_velocity);
     }
     // A bearing at rest has no speed to change.
     let faster = if sums[0] > 0.0 { sums[1] / sums[0] } else { 1.0 };
     if (faster - 1.0).abs() > ROLLING || faster.is_nan() {
         return;
     }
-    let at_common_speed = |&ball: &usize| {
+    let at_common_speed = |(&ball, known): (&usize, &Vector3<f64>)| {
         let common = BallMotion { velocity: balls[ball].velocity * faster, ..balls[ball] };
-        Some((ball, balanced(around, ball, &common, false)?))
+        Some((ball, balanced(around, ball, &common, Orbital::Given { known })?))
     };
-    if let Some(found) = held.iter().map(at_common_speed).collect::<Option<Vec<_>>>() {
+    if let Some(found) = held.iter().zip(&found).map(at_common_speed).collect::<Option<Vec<_>>>() {
         for (ball, motion) in found {
             balls[ball] = motion;
         }
     }
 }
 
-/// The motion of a ball (0 is the first) in balance, with an orbital speed of its own or that of the start; none where no balance is found.
+/// The orbital speed of a ball in balance.
+#[derive(Clone, Copy)]
+enum Orbital<'a> {
+    /// That at which friction along the orbit vanishes.
+    Own,
+    /// That of the start. An angular velocity \[rad/s] that is known from another search is taken where it is in balance. Nothing else
+    /// begins there: with little friction there is more than one balance, and the one that rolling leads to is wanted.
+    Given { known: &'a Vector3<f64> },
+}
+
+/// The motion of a ball (0 is the first) in balance, near one that rolls; none where no balance is found.
 fn balanced(
     around: &Surroundings<'_>,
     ball: usize,
     start: &BallMotion<f64>,
-    own_orbit: bool,
+    orbital: Orbital<'_>,
 ) -> Option<BallMotion<f64>> {
+    let own_orbit = matches!(orbital, Orbital::Own);
     let Surroundings { model, races, ambient, .. } = around;
     let contacts = &PerRace::new(|race| around.contacts[race].of_ball(ball, None));
     let (mass, radius) = (model.bearing.ball.mass, model.bearing.ball.radius);
@@ -112,14 +129,19 @@ fn balanced(
     let fastest = start.angular_velocity.norm();
     let is_near =
         |motion: &BallMotion<f64>| (motion.angular_velocity - start.angular_velocity).norm() <= fastest;
-    let mut motion = *start;
-    let (mut here, limit) = residual(&motion);
+    let in_balance = |(here, limit): &(Vector4<f64>, f64)| largest(here) <= TOLERANCE * limit;
+    let known = match orbital {
+        Orbital::Own => None,
+        Orbital::Given { known } => Some(BallMotion { angular_velocity: *known, ..*start }),
+    };
+    let known = known.map(|motion| (motion, residual(&motion))).filter(|(_, found)| in_balance(found));
+    let (mut motion, (mut here, limit)) = known.unwrap_or_else(|| (*start, residual(start)));
     if limit <= 0.0 {
         return None;
     }
     let mut step = FIRST_STEP;
     for _ in 0..MAX_ITERATIONS {
-        if largest(&here) <= TOLERANCE * limit {
+        if in_balance(&(here, limit)) {
             return rolls(contacts, races, &motion).then_some(motion);
         }
         let contact = |race: Race| ball_by_rate(&contacts[race], &motion, &races[race]);
@@ -155,8 +177,9 @@ fn balanced(
         };
         let (there, _) = residual(&trial);
         if is_near(&trial) && there.norm() < 1.2 * here.norm() {
+            // Steps grow as the residual falls: near the balance this is Newton's method.
+            step *= (here.norm() / there.norm()).clamp(LEAST_GROWTH, LARGEST_GROWTH);
             (motion, here) = (trial, there);
-            step *= 1.5;
         } else {
             step *= 0.3;
         }

@@ -31,7 +31,7 @@ fn section(pocket: f64, damping: f64, guide: &str) -> String {
     )
 }
 
-/// A hundredth of the default tolerance, for blows that all the rest follows from.
+/// A hundredth of the tolerance that other scenes with steps of their own have, for blows that all the rest follows from.
 const SHARP: &str = "[solver]\ninitial_step = \"1 us\"\nmax_step = \"10 us\"\ntolerance = 1e-8\n";
 
 const WEIGHTLESS: &str = "[effects]\ncreep = \"saturated\"\ndamping = \"0.02 s/m\"\ncage = true\n";

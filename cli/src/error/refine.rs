@@ -6,7 +6,7 @@ use roulement::scene::units::Time;
 use super::{Judgement, Rounds, Run, TWIN};
 
 /// [-] runs of a scene that has an error goal, at most; as of `roulement run`.
-const MOST_ROUNDS: u32 = 6;
+pub const MOST_ROUNDS: u32 = 6;
 
 /// A run that can be compared with others.
 pub trait Compared {

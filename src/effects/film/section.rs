@@ -17,7 +17,7 @@ use crate::schema::units::{Celsius, Density, Length, Pressure, PressureViscosity
     expecting = "a table such as { iso_vg = 68, temperature = \"70 degC\" }"
 )]
 pub struct Section {
-    /// [-] 1 where films are full, 0 where surfaces are dry; constant or a table over time, and an input of a package.
+    /// [-] 1 where films are full, 0 where surfaces are dry; constant or a table over time, and an input of an FMU.
     #[serde(deserialize_with = "schedule::deserialize::<Ratio, _>")]
     pub lubrication: Schedule,
     /// [mm2/s] ISO viscosity grade: kinematic viscosity at 40 degC of a mineral oil with a viscosity index of 95.
