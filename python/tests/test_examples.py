@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import PROGRAM, ROOT
 
@@ -56,12 +57,23 @@ def test_an_example_runs(name, tmp_path):
         assert high > 10 * low > 0
 
 
+def test_closed_form_the_gearbox_has_the_forces_of_statics(tmp_path):
+    said = python(ROOT / "examples" / "gearbox" / "gearbox.py", tmp_path, 30)
+    rows = [line.strip("|").split("|") for line in said.splitlines() if line.startswith("| aligned")]
+    assert [row[1].strip() for row in rows] == ["left", "right"], said
+    for row in rows:
+        radial, by_hand = map(float, row[2].split(","))
+        assert abs(radial / by_hand - 1) < 0.01, said
+    left, right = (float(row[3]) for row in rows)
+    # The mesh pushes with the torque over the pitch radius, times the tangent of the helix angle.
+    assert abs((left - right) / (30.0 / 0.0238 * np.tan(np.radians(15))) - 1) < 0.01, said
+    table = np.genfromtxt(tmp_path / "gearbox.csv", delimiter=",", names=True)
+    assert len(table) == 750 and np.isfinite(table["time_s"]).all()
+
+
 @pytest.mark.parametrize("document, least", [("docs/python.md", 5), ("README.md", 1)])
 def test_blocks_of_the_documents_run(tmp_path, document, least):
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / document).read_text(), re.DOTALL)
-    if document == "README.md":
-        # The other one is of FMPy, with names for what the reader has.
-        blocks = [block for block in blocks if "import roulement" in block]
     assert len(blocks) >= least
     script = tmp_path / "blocks.py"
     script.write_text("\n".join(blocks).replace('"results/', f'"{tmp_path}/'))

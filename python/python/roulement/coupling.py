@@ -49,6 +49,10 @@ class Bearing:
         """What the bearing exerts on the shaft [N, N m]."""
         return np.array([signal.value for signal in self._outputs])
 
+    def read(self, names):
+        """Values of any variables by their names."""
+        return np.array([self.simulation.signal(name).value for name in names])
+
     def step(self, step, place, velocity):
         """Wrench after a step [s] that ends in a place and velocity."""
         # Inputs are those at the start: they lead to the end where this velocity comes from.
@@ -77,7 +81,7 @@ class FmuBearing:
     references by name. Needs FMPy."""
 
     def __init__(self, fmu, references, time=0.0):
-        self.fmu, self.time = fmu, time
+        self.fmu, self.references, self.time = fmu, references, time
         self._inputs = [references[name] for name in PLACE + VELOCITY]
         self._outputs = [references[name] for name in WRENCH]
         self._folder = None
@@ -119,6 +123,10 @@ class FmuBearing:
         """What the bearing exerts on the shaft [N, N m]."""
         return np.array(self.fmu.getReal(self._outputs))
 
+    def read(self, names):
+        """As of `Bearing`."""
+        return np.array(self.fmu.getReal([self.references[name] for name in names]))
+
     def step(self, step, place, velocity):
         """Wrench after a step [s] that ends in a place and velocity."""
         self.fmu.setReal(self._inputs, [*(place - velocity * step), *velocity])
@@ -143,6 +151,46 @@ class FmuBearing:
             change = [*(direction * (place_gain - velocity_gain * step)), *(direction * velocity_gain)]
             columns.append(self.fmu.getDirectionalDerivative(self._outputs, self._inputs, change))
         return np.array(columns).T
+
+
+class Bearings:
+    """Several bearings on a rigid shaft, seen as one about the shaft's origin: pairs (or more) of `Bearing` or `FmuBearing`, position along the
+    shaft [m], and direction: 1 where the bearing's x axis is the shaft's, -1 where it points the other way (half a turn about z;
+    speeds of its scene then have the other sign). Places are those from the start, where each carries what its scene loads it with."""
+
+    def __init__(self, *mounted):
+        self.parts = []
+        for bearing, position, direction in mounted:
+            if direction not in (1, -1):
+                raise ValueError(f"direction = {direction}: has to be 1 or -1")
+            seen = np.diag([direction, direction, 1.0, direction, 1.0])
+            seen[1, 4], seen[2, 3] = direction * position, -position
+            self.parts.append((bearing, bearing.place(), seen))
+
+    def place(self):
+        """Place of the shaft from the start [m, rad]: at the start, which is when it is asked for, 0."""
+        return np.zeros(5)
+
+    def wrench(self):
+        """What all bearings exert on the shaft, about its origin [N, N m]."""
+        return sum(seen.T @ bearing.wrench() for bearing, _, seen in self.parts)
+
+    def step(self, step, place, velocity):
+        """Wrench after a step [s] that ends in a place and velocity of the shaft."""
+        return sum(seen.T @ bearing.step(step, start + seen @ place, seen @ velocity) for bearing, start, seen in self.parts)
+
+    def save(self):
+        """This point, for `restore`."""
+        return [bearing.save() for bearing, _, _ in self.parts]
+
+    def restore(self, point):
+        """Goes back to a point."""
+        for (bearing, _, _), one in zip(self.parts, point):
+            bearing.restore(one)
+
+    def derivative(self, step, place_gain, velocity_gain):
+        """As of `Bearing`."""
+        return sum(seen.T @ bearing.derivative(step, place_gain, velocity_gain) @ seen for bearing, _, seen in self.parts)
 
 
 class Shaft:
