@@ -1,4 +1,4 @@
-"""Runs a pose-driven bearing package in FMPy while the inner race is tilted, and plots what it answers.
+"""Runs a pose-driven bearing as an FMU in FMPy while the inner race is tilted, and plots what it answers.
 
 Usage: misalignment.py PACKAGE.fmu DIRECTORY
 """
@@ -91,7 +91,7 @@ def plot(result, directory):
         axis.set_xlabel("time [ms]")
     for axis in axes.flat:
         axis.grid(alpha=0.3)
-    figure.suptitle("Scripted misalignment of a ball bearing package, run in FMPy (1500 N, 6000 rpm)")
+    figure.suptitle("Scripted misalignment of a ball bearing: FMU run in FMPy (1500 N, 6000 rpm)")
     for ending in ("svg", "png"):
         figure.savefig(directory / f"misalignment.{ending}", dpi=110)
 

@@ -6,6 +6,8 @@
 mod keys;
 mod page;
 mod sources;
+#[path = "../common/whole.rs"]
+mod whole;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -15,20 +17,7 @@ use keys::{NEEDS, THRUST, UNION_KEYS, reference};
 use page::{page, schema};
 use roulement::scene::Scene;
 use serde_json::Value;
-
-/// Compares a file with what it should be, or writes it where that is asked for.
-fn compare(file: &str, text: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
-    if std::env::var("ROULEMENT_RENEW").is_ok() {
-        fs::write(path, text).unwrap();
-        return;
-    }
-    let written = fs::read_to_string(path).unwrap();
-    for (ours, theirs) in text.lines().zip(written.lines()) {
-        assert_eq!(ours, theirs, "{file} is stale: scripts/tables");
-    }
-    assert_eq!(text.lines().count(), written.lines().count(), "{file} is stale: scripts/tables");
-}
+use whole::compare;
 
 #[test]
 fn the_reference_of_scenes_is_that_of_the_sources() {

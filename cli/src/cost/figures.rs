@@ -8,20 +8,27 @@ use strum::VariantArray;
 use super::levers::{CreepModel, Level, Lever, ReferenceKind};
 use super::norms::{Errors, Norm};
 use super::{Point, SceneStudy};
-use crate::report::style::{Area, CAPTION, COLOURS, DESCRIPTION, Drawn, MARGIN, PlotError, axes, picture};
+use crate::report::fine::{CAPTION, DESCRIPTION, FINE, LINE, MARGIN, axes, picture};
+use crate::report::style::{Area, COLOURS, Drawn, PlotError};
 use roulement::scene::CreepLaw;
 
+/// \[pixel] size of a panel.
 const PANEL: (u32, u32) = (500, 460);
+/// \[pixel] width of the column with the meaning of the marks.
 const LEGEND_WIDTH: u32 = 245;
+/// \[unit] of a pixel, for places.
+const PIXEL: i32 = FINE as i32;
 /// [-] errors below this are rounding and drawn here.
 const LEAST_ERROR: f64 = 1e-12;
 /// [-] a quantity whose errors are all below this is given, not computed: the displacement of a driven race.
 const WORTH_SHOWING: f64 = 1e-6;
-const FRONT: ShapeStyle = ShapeStyle { color: RGBAColor(0, 0, 0, 1.0), filled: false, stroke_width: 2 };
-/// \[pixel] dash and gap.
-const FRONT_DASH: (i32, i32) = (6, 4);
-const BAR_DASH: (i32, i32) = (2, 3);
-const BAR: ShapeStyle = ShapeStyle { color: RGBAColor(90, 90, 90, 1.0), filled: false, stroke_width: 1 };
+const FRONT: ShapeStyle =
+    ShapeStyle { color: RGBAColor(0, 0, 0, 1.0), filled: false, stroke_width: 2 * FINE };
+/// \[unit] dash and gap.
+const FRONT_DASH: (i32, i32) = (6 * PIXEL, 4 * PIXEL);
+/// \[unit] dash and gap.
+const BAR_DASH: (i32, i32) = (2 * PIXEL, 3 * PIXEL);
+const BAR: ShapeStyle = ShapeStyle { color: RGBAColor(90, 90, 90, 1.0), filled: false, stroke_width: FINE };
 
 /// A panel: the errors of one norm, or the largest of all.
 struct Panel<'a> {
@@ -100,7 +107,7 @@ fn write(path: &Path, title: &str, panels: &[Panel<'_>], kinds: &[ReferenceKind]
     let rows = panels.len().div_ceil(columns).max(1);
     let width = PANEL.0 * columns as u32;
     picture(path, (width + LEGEND_WIDTH, PANEL.1 * rows as u32), title, |body| {
-        let (grid, key) = body.split_horizontally(width);
+        let (grid, key) = body.split_horizontally(width * FINE);
         for (panel, area) in panels.iter().zip(grid.split_evenly((rows, columns))) {
             draw(panel, &area)?;
         }
@@ -164,15 +171,16 @@ impl Look {
         }
     }
 
-    /// Draws a mark at a pixel of the area.
+    /// Draws a mark at a place \[unit] of the area.
     fn draw(self, area: &Area<'_>, (x, y): (i32, i32)) -> Drawn {
-        let style = if self.filled { self.colour.filled() } else { self.colour.stroke_width(2) };
+        let style = if self.filled { self.colour.filled() } else { self.colour.stroke_width(2 * FINE) };
         let corners: &[(i32, i32)] = match self.shape {
-            Shape::Circle => return Ok(area.draw(&Circle::new((x, y), 4, style))?),
+            Shape::Circle => return Ok(area.draw(&Circle::new((x, y), 4 * FINE, style))?),
             Shape::Square => &[(-4, -4), (4, -4), (4, 4), (-4, 4), (-4, -4)],
             Shape::Triangle => &[(-5, 4), (0, -5), (5, 4), (-5, 4)],
         };
-        let corners: Vec<_> = corners.iter().map(|(right, down)| (x + right, y + down)).collect();
+        let corners: Vec<_> =
+            corners.iter().map(|(right, down)| (x + right * PIXEL, y + down * PIXEL)).collect();
         if self.filled {
             area.draw(&Polygon::new(corners, style))?;
         } else {
@@ -211,29 +219,30 @@ fn levers_of(kind: ReferenceKind) -> impl Iterator<Item = Lever> {
 }
 
 fn legend(kinds: &[ReferenceKind], area: &Area<'_>) -> Drawn {
-    const LINE: i32 = 18;
+    const ROW: i32 = 18 * PIXEL;
     // Clear of the last label of the panel beside.
-    const LEFT: i32 = 16;
+    const LEFT: i32 = 16 * PIXEL;
+    const NAME: i32 = LEFT + 24 * PIXEL;
     let text = |words: &str, at| Text::new(words.to_string(), at, DESCRIPTION);
-    let mut y = 20;
+    let mut y = 20 * PIXEL;
     for &kind in kinds {
         for (words, look) in key(kind) {
             if let Some(look) = look {
-                look.draw(area, (LEFT + 10, y + 6))?;
+                look.draw(area, (LEFT + 10 * PIXEL, y + 6 * PIXEL))?;
             }
-            area.draw(&text(&words, (LEFT + if look.is_some() { 24 } else { 0 }, y)))?;
-            y += LINE;
+            area.draw(&text(&words, (if look.is_some() { NAME } else { LEFT }, y)))?;
+            y += ROW;
         }
-        y += LINE / 2;
+        y += ROW / 2;
     }
     for (words, style, (dash, gap)) in
         [("Pareto front", FRONT, FRONT_DASH), ("error bar of the reference", BAR, BAR_DASH)]
     {
-        for x in (LEFT..LEFT + 22 - dash).step_by((dash + gap) as usize) {
-            area.draw(&PathElement::new([(x, y + 6), (x + dash, y + 6)], style))?;
+        for x in (LEFT..LEFT + 22 * PIXEL - dash).step_by((dash + gap) as usize) {
+            area.draw(&PathElement::new([(x, y + 6 * PIXEL), (x + dash, y + 6 * PIXEL)], style))?;
         }
-        area.draw(&text(words, (LEFT + 24, y)))?;
-        y += LINE;
+        area.draw(&text(words, (NAME, y)))?;
+        y += ROW;
     }
     Ok(())
 }
@@ -256,8 +265,8 @@ fn draw(panel: &Panel<'_>, area: &Area<'_>) -> Drawn {
     let mut chart = ChartBuilder::on(area)
         .margin(MARGIN)
         .caption(&panel.caption, CAPTION)
-        .x_label_area_size(38)
-        .y_label_area_size(64)
+        .x_label_area_size(38 * FINE)
+        .y_label_area_size(64 * FINE)
         .build_cartesian_2d(x.clone().log_scale(), y.log_scale())?;
     axes(&mut chart.configure_mesh(), "CPU seconds per simulated second [s/s]", "relative error [-]")
         .x_label_formatter(&|value| format!("{}", (value * 1e6).round() / 1e6))
@@ -273,7 +282,7 @@ fn draw(panel: &Panel<'_>, area: &Area<'_>) -> Drawn {
         // Models are no scale: no line joins them.
         if let (ReferenceKind::Numerical, Some((look, _))) = (kind, places.first()) {
             let line = places.iter().map(|(_, place)| *place);
-            chart.draw_series(LineSeries::new(line, look.colour.stroke_width(1)))?;
+            chart.draw_series(LineSeries::new(line, look.colour.stroke_width(LINE)))?;
         }
         let (left, top) = area.get_base_pixel();
         for (look, place) in places {

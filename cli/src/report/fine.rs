@@ -14,7 +14,8 @@ pub const FINE: u32 = 10;
 pub const CAPTION: Font = (style::CAPTION.0, style::CAPTION.1 * FINE);
 /// Numbers at the axes, names of curves.
 pub const LABEL: Font = (style::LABEL.0, style::LABEL.1 * FINE);
-const DESCRIPTION: Font = (style::DESCRIPTION.0, style::DESCRIPTION.1 * FINE);
+/// Quantities of the axes, and words beside panels.
+pub const DESCRIPTION: Font = (style::DESCRIPTION.0, style::DESCRIPTION.1 * FINE);
 const TITLE: Font = (style::TITLE.0, style::TITLE.1 * FINE);
 /// \[unit] around a panel.
 pub const MARGIN: u32 = style::MARGIN * FINE;
@@ -61,7 +62,10 @@ pub fn axes<'m, 'a, 'b, 'c, X: Ranged, Y: Ranged>(
     x: &str,
     y: &str,
 ) -> &'m mut MeshStyle<'a, 'b, X, Y, SVGBackend<'c>> {
-    style::axes(mesh, x, y)
+    // Lines between those with a label would be most of the file.
+    mesh.max_light_lines(0)
+        .x_desc(x)
+        .y_desc(y)
         .bold_line_style(GRID.stroke_width(FINE))
         .axis_style(BLACK.stroke_width(FINE))
         .set_all_tick_mark_size(5 * FINE)

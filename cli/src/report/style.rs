@@ -1,11 +1,9 @@
-//! Style of all plots: fonts, colours, grid; and writing them as files.
+//! Style of all plots: fonts, colours, grid.
 
 use std::error::Error;
 use std::path::Path;
 
-use plotters::chart::MeshStyle;
 use plotters::coord::Shift;
-use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 use thiserror::Error;
 
@@ -57,37 +55,3 @@ pub const COLOURS: [RGBColor; 7] = [
 ];
 /// Colour of grids.
 pub const GRID: RGBColor = RGBColor(215, 215, 215);
-
-/// Draws a picture of `size` \[pixel] below its title.
-///
-/// # Errors
-/// If the file cannot be written.
-pub fn picture(
-    path: &Path,
-    size: (u32, u32),
-    title: &str,
-    draw: impl FnOnce(&Area<'_>) -> Drawn,
-) -> Result<(), PlotError> {
-    let draw_all = || -> Drawn {
-        let root = SVGBackend::new(path, (size.0, size.1 + TITLE_HEIGHT)).into_drawing_area();
-        root.fill(&WHITE)?;
-        draw(&root.titled(title, TITLE)?)?;
-        Ok(root.present()?)
-    };
-    draw_all().map_err(|why| PlotError::new(path, why.as_ref()))
-}
-
-/// Gives a chart its axes and grid; the caller draws it.
-pub fn axes<'m, 'a, 'b, 'c, X: Ranged, Y: Ranged>(
-    mesh: &'m mut MeshStyle<'a, 'b, X, Y, SVGBackend<'c>>,
-    x: &str,
-    y: &str,
-) -> &'m mut MeshStyle<'a, 'b, X, Y, SVGBackend<'c>> {
-    // Lines between those with a label would be most of the file.
-    mesh.max_light_lines(0)
-        .bold_line_style(GRID)
-        .x_desc(x)
-        .y_desc(y)
-        .axis_desc_style(DESCRIPTION)
-        .label_style(LABEL)
-}

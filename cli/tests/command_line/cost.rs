@@ -93,6 +93,7 @@ fn cost_writes_table_plots_and_report() {
     for name in ["overview", "numerical", "model"] {
         let picture = std::fs::read_to_string(scratch.path(&format!("out/short-{name}.svg"))).unwrap();
         assert!(picture.trim_end().ends_with("</svg>") && !picture.contains("NaN"));
+        assert_eq!(units_in_a_pixel(&picture), 10.0);
         assert!(picture.contains("CPU seconds per simulated second") && picture.contains("Pareto front"));
     }
     let report = std::fs::read_to_string(scratch.path("out/report.md")).unwrap();
