@@ -82,7 +82,7 @@ fn closed_form_accelerations_in_a_turning_frame_are_those_of_the_inertial_one() 
     let simulation = Simulation::new(&moving).unwrap();
     let free = |race: Race| {
         let moments = [[6e-5, 4e-5, 5e-5], [9e-5, 5e-5, 7e-5]][race as usize];
-        Some(RigidBody { mass: 0.2, inertia: V::from(moments), constraints: vec![] })
+        Some(RigidBody::new(0.2, V::from(moments), vec![]))
     };
     let model_of = |scene: &Scene| {
         let mut model = Model::new(scene).unwrap();

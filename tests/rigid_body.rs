@@ -83,7 +83,7 @@ impl Flight {
     /// A free body without any ball.
     fn free(inertia: Vector3<f64>, rate: Vector3<f64>, alpha_f: f64, h: f64) -> Self {
         let scene = scene(THRUST, &[("solver.alpha_f", &format!("{alpha_f:?}"))]);
-        let body = RigidBody { mass: 1.0, inertia, constraints: vec![] };
+        let body = RigidBody::new(1.0, inertia, vec![]);
         let twist = Twist { velocity: Vector3::zeros(), angular_velocity: rate };
         Self::new(&scene, body, Pose::default(), &twist, vec![], h)
     }
@@ -195,7 +195,7 @@ fn spun(revolutions: u32) -> [f64; 3] {
     let start = UnitQuaternion::new(Vector3::new(0.3, 0.5, -0.7));
     let (speed, h) = (1000.0, TAU / 1000.0 / 8.0);
     let inertia = Vector3::new(6e-5, 4e-5, 4e-5);
-    let body = RigidBody { mass: 0.2, inertia, constraints: vec![Constraint::Spin] };
+    let body = RigidBody::new(0.2, inertia, vec![Constraint::Spin]);
     let pose = Pose { position: Vector3::zeros(), orientation: start };
     let twist = Twist { velocity: Vector3::zeros(), angular_velocity: start * Vector3::x() * speed };
     let mut flight = Flight::new(&scene(THRUST, &[]), body, pose, &twist, vec![], h);
@@ -305,7 +305,7 @@ fn with_gap() -> Scene {
 
 #[test]
 fn invariant_a_ball_in_free_flight_keeps_its_momentum() {
-    let body = RigidBody { mass: 0.2, inertia: Vector3::new(6e-5, 4e-5, 4e-5), constraints: vec![] };
+    let body = RigidBody::new(0.2, Vector3::new(6e-5, 4e-5, 4e-5), vec![]);
     let (velocity, spin) = (Vector3::new(0.01, -0.05, 0.3), Vector3::new(300.0, -40.0, 5.0));
     let start = ball(Vector3::new(0.0, 23e-3, 0.0), velocity, spin);
     let twist = Twist { velocity: Vector3::zeros(), angular_velocity: Vector3::x() * 600.0 };
@@ -320,7 +320,7 @@ fn invariant_a_ball_in_free_flight_keeps_its_momentum() {
 
 #[test]
 fn invariant_a_ball_that_bounces_off_a_free_race_keeps_the_sum_of_momenta() {
-    let body = RigidBody { mass: 0.2, inertia: Vector3::new(6e-5, 4e-5, 4e-5), constraints: vec![] };
+    let body = RigidBody::new(0.2, Vector3::new(6e-5, 4e-5, 4e-5), vec![]);
     let start = ball(Vector3::new(0.0, 22.9e-3, 0.0), Vector3::new(0.0, -0.5, 0.1), Vector3::zeros());
     let twist = Twist { velocity: Vector3::zeros(), angular_velocity: Vector3::x() * 600.0 };
     let mut flight = Flight::new(&with_gap(), body, Pose::default(), &twist, vec![start], 1e-6);

@@ -1,8 +1,9 @@
 //! A body that forces move, in one trial step: motion from its unknown accelerations, residual, constraints.
 
-use nalgebra::{DMatrix, DVector, Matrix6, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, Vector3};
 
 use super::body_sums::{Along, BodyLoad, BodyStep, Held, Sums, in_moving_frame};
+use super::carried::SeatMotion;
 use super::directions::{D, by_first, by_second, by_second_unknown, constant_race};
 use super::reaction::Reaction;
 use super::step_turn::{OWN_ROTATION, Own, StepTurn, as_second};
@@ -45,6 +46,8 @@ pub struct BodyTrial {
     derived: Option<StepTurn<Own>>,
     /// Motion as the balls see it, with derivatives by the rotation, where those were asked for.
     motion: RaceMotion<D>,
+    /// Where it is carried, of a race that is part of a structure.
+    seat: Option<SeatMotion>,
 }
 
 impl BodyTrial {
@@ -63,7 +66,32 @@ impl BodyTrial {
             turn_vector: zero,
             derived: None,
             motion: constant_race(&start.motion()),
+            seat: body.carried.then(SeatMotion::default),
         }
+    }
+
+    /// Does a structure carry it?
+    pub fn is_carried(&self) -> bool {
+        self.seat.is_some()
+    }
+
+    /// Moves a carried race to where its seat is.
+    pub fn carry(&mut self, seat: &SeatMotion) {
+        let Pose { position, orientation } = seat.pose();
+        let twist = seat.twist();
+        let Self { end, turn, .. } = self;
+        end.pose = Pose { position, orientation };
+        end.velocity = twist.velocity;
+        end.rate = orientation.inverse() * twist.angular_velocity;
+        end.acceleration = seat.acceleration;
+        turn.axis = seat.columns().column(0).into_owned();
+        turn.angular_velocity = twist.angular_velocity;
+        self.seat = Some(*seat);
+    }
+
+    /// Where a carried race is.
+    pub fn seat(&self) -> Option<&SeatMotion> {
+        self.seat.as_ref()
     }
 
     /// Motion at the end of the step: `unknowns` are acceleration [m/s2], material angular acceleration times
@@ -91,6 +119,10 @@ impl BodyTrial {
 
     /// Adds derivatives to the motion, where they are not there yet.
     pub fn differentiate(&mut self, start: &BodyState, step: &HhtStep, length: f64) {
+        if let Some(seat) = &self.seat {
+            self.motion = seat.differentiated(step, length, self.motion_value().across);
+            return;
+        }
         if self.derived.is_some() {
             return;
         }
@@ -126,7 +158,10 @@ impl BodyTrial {
 
     /// The same with derivatives by the rotation, after [`BodyTrial::differentiate`].
     pub fn motion(&self) -> &RaceMotion<D> {
-        debug_assert!(self.derived.is_some(), "derivatives of this motion were not computed");
+        debug_assert!(
+            self.derived.is_some() || self.is_carried(),
+            "derivatives of this motion were not computed"
+        );
         &self.motion
     }
 
@@ -134,8 +169,16 @@ impl BodyTrial {
     pub fn assemble(&mut self, given: &BodyStep<'_>, pairs: &Wrench) {
         let BodyStep { body, start, load, flange, moving, step, scales } = given;
         let (fraction, length) = (1.0 - step.alpha_f, scales.length);
+        let carried = self.is_carried();
         let Self { end, turn, residual, violation, input_power, unknowns, .. } = self;
         *violation = 0.0;
+        if carried {
+            // Its structure has the equations; to the bearing its motion is prescribed.
+            residual.fill(0.0);
+            *input_power = -(pairs.force.dot(&end.velocity) + pairs.moment.dot(&turn.angular_velocity));
+            end.bearing_wrench = *pairs;
+            return;
+        }
         *input_power =
             load.applied.force.dot(&end.velocity) + load.applied.moment.dot(&turn.angular_velocity);
         let mut sums = Sums { force: pairs.force, moment: pairs.moment, drive: 0.0 };
@@ -195,6 +238,12 @@ impl BodyTrial {
     ) {
         let BodyStep { body, load, flange, moving, step, scales, .. } = given;
         let (fraction, length) = (1.0 - step.alpha_f, scales.length);
+        if self.is_carried() {
+            let of_pairs = |sum, reaction| sum + self.own_coupling(reaction, step, length);
+            let own: Matrix6<f64> = reactions.clone().fold(Matrix6::zeros(), of_pairs);
+            self.block.copy_from(&own);
+            return;
+        }
         let Self { end, derived, block, unknowns, .. } = self;
         let Some(turn) = derived else {
             debug_assert!(false, "derivatives of this motion were not computed");
@@ -283,12 +332,20 @@ impl BodyTrial {
         self.rows(&by_second(&reaction.force, &reaction.moment), step, length)
     }
 
+    /// Turns world axes into those that its moments and rotations have in the Newton matrix: its own, but the world's where it is
+    /// carried.
+    pub fn own_axes(&self) -> Matrix3<f64> {
+        match self.seat {
+            None => self.end.pose.orientation.inverse().to_rotation_matrix().into_inner(),
+            Some(_) => Matrix3::identity(),
+        }
+    }
+
     /// Rows of the residual from derivatives of force and moment.
     fn rows(&self, world: &Matrix6<f64>, step: &HhtStep, length: f64) -> Matrix6<f64> {
         let fraction = 1.0 - step.alpha_f;
-        let to_material = self.end.pose.orientation.inverse().to_rotation_matrix();
         let mut rows = world * -fraction;
-        let moments = to_material.matrix() * world.fixed_rows::<3>(3) * (-fraction / length);
+        let moments = self.own_axes() * world.fixed_rows::<3>(3) * (-fraction / length);
         rows.fixed_rows_mut::<3>(3).copy_from(&moments);
         rows
     }
@@ -332,6 +389,9 @@ pub fn make_consistent(
     load: &BodyLoad,
     (flange, moving): (Option<Flange<'_>>, Option<&MovingFrame>),
 ) -> f64 {
+    if body.carried {
+        return -state.twist().power(&state.bearing_wrench);
+    }
     let mut force = state.bearing_wrench.force + load.applied.force;
     let to_material = state.pose.orientation.inverse();
     let mut moment = to_material * (state.bearing_wrench.moment + load.applied.moment);

@@ -42,6 +42,8 @@ pub struct BearingStep<'a> {
     pub contact_tangents: u64,
     /// Corrections for which blocks of some balls were computed anew.
     pub renewals: u64,
+    /// How often the border was assembled.
+    pub(super) assembled: u64,
     /// Corrections so far.
     pub(super) corrections: u32,
     /// Was nothing evaluated yet?
@@ -86,6 +88,7 @@ impl<'a> BearingStep<'a> {
             contact_values: 0,
             contact_tangents: 0,
             renewals: 0,
+            assembled: 0,
             corrections: 0,
             fresh: true,
         }
@@ -134,6 +137,9 @@ impl<'a> BearingStep<'a> {
         let border = &unknowns[BLOCK * self.start.balls.len()..];
         for ((body, trial), (_, start)) in self.workspace.bodies.iter_mut().zip(self.start.bodies.iter()) {
             if let (Some(trial), Some(from)) = (trial, offsets[body.index()]) {
+                if trial.is_carried() {
+                    continue;
+                }
                 trial.move_to(&border[from..from + trial.unknowns.len()], start, &self.step, length);
                 match body {
                     Body::Race(race) => self.races[race] = trial.motion_value(),

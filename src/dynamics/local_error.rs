@@ -16,7 +16,9 @@ impl BearingStep<'_> {
     /// Bodies with unknowns: state at the start, and trial.
     fn moved(&self) -> impl Iterator<Item = (Body, &BodyState, &BodyTrial)> {
         let bodies = self.start.bodies.iter().zip(self.workspace.bodies.iter());
-        bodies.filter_map(|((body, start), (_, trial))| Some((body, start, trial.as_ref()?)))
+        let bodies = bodies.filter_map(|((body, start), (_, trial))| Some((body, start, trial.as_ref()?)));
+        // The error of a carried race is that of its structure.
+        bodies.filter(|(_, _, trial)| !trial.is_carried())
     }
 
     /// Where the residual is largest.

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, Vector3};
 use super::Workspace;
 use super::ball::BallTrial;
 use super::equations::BearingStep;
-use crate::model::bodies::Body;
+use crate::model::bodies::{Body, Race};
 use crate::model::state::{KeptBlock, Wear};
 use crate::numerics::arrowhead::{BLOCK, Block, Eliminated, Member, Offsets};
 use crate::numerics::orbit_turn::OrbitTurn;
@@ -30,8 +30,7 @@ impl Workspace {
         self.members.clear();
         for (body, trial) in self.bodies.iter() {
             if let (Some(from), Some(trial)) = (offsets[body.index()], trial) {
-                let axes = trial.end.pose.orientation.inverse().to_rotation_matrix().into_inner();
-                self.members.push(Member { slot: body.index(), from, axes });
+                self.members.push(Member { slot: body.index(), from, axes: trial.own_axes() });
             }
         }
     }
@@ -151,13 +150,26 @@ impl BearingStep<'_> {
 
     /// Factorises the rows of the bodies, with what the balls leave in them; the bodies have derivatives.
     pub(super) fn factorise(&mut self) {
+        self.assembled += 1;
         self.assemble_blocks();
         self.workspace.list_members(self.model.border_offsets());
         let origin = self.races_origin();
         let guide = self.model.cage_guide().map(Body::from);
         let (offsets, rows) = (self.model.border_offsets(), self.model.border_size());
-        let Workspace { balls, bodies, cage, kept, members, neighbours, arrowhead, ring, factorised, .. } =
-            &mut *self.workspace;
+        let carries = Race::BOTH.into_iter().any(|race| self.model.is_carried(race));
+        let Workspace {
+            balls,
+            bodies,
+            cage,
+            kept,
+            members,
+            neighbours,
+            arrowhead,
+            ring,
+            factorised,
+            reduced,
+            ..
+        } = &mut *self.workspace;
         *factorised = true;
         let mut border = DMatrix::zeros(rows, rows);
         for member in members.iter() {
@@ -179,11 +191,17 @@ impl BearingStep<'_> {
             };
             let blocks = balls.iter().zip(&kept.balls);
             let blocks = blocks.map(|(trial, kept)| (&kept.block, turned((trial, kept))));
-            arrowhead.factorise(blocks, members, border);
+            match carries {
+                true => *reduced = arrowhead.reduce(blocks, members, border),
+                false => arrowhead.factorise(blocks, members, border),
+            }
         } else {
             let blocks: Vec<&Block> = balls.iter().map(|trial| &trial.block).collect();
             let links: Vec<Link> = neighbours.iter().map(|pair| pair.link).collect();
-            ring.factorise(&blocks, &links, &border, offsets);
+            match carries {
+                true => *reduced = ring.reduce(&blocks, &links, &border, offsets),
+                false => ring.factorise(&blocks, &links, &border, offsets),
+            }
         }
     }
 
@@ -194,6 +212,16 @@ impl BearingStep<'_> {
 
     /// Writes the Newton correction of the present residual; false if the matrix is singular.
     pub(super) fn correct(&mut self, correction: &mut [f64]) -> bool {
+        self.prepare_correction();
+        if self.balls_are_independent() {
+            self.correct_balls(correction)
+        } else {
+            self.correct_all(correction)
+        }
+    }
+
+    /// Brings balls back that are far out of balance, and renews blocks that have worn, before a correction.
+    pub(super) fn prepare_correction(&mut self) {
         self.workspace.balls.iter_mut().for_each(|trial| trial.repaired = None);
         let mut renewed = false;
         if self.keeps_matrices() {
@@ -223,11 +251,6 @@ impl BearingStep<'_> {
         for trial in &mut self.workspace.balls {
             trial.before = largest(&trial.residual) / tolerance;
         }
-        if self.balls_are_independent() {
-            self.correct_balls(correction)
-        } else {
-            self.correct_all(correction)
-        }
     }
 
     /// Corrections of balls between races of prescribed motion. A ball that is solved already stays where it is.
@@ -250,12 +273,11 @@ impl BearingStep<'_> {
 
     /// Corrections of balls and bodies at once.
     fn correct_all(&mut self, correction: &mut [f64]) -> bool {
-        let (offsets, rows) = (self.model.border_offsets(), self.model.border_size());
+        self.take_right_sides();
+        let offsets = self.model.border_offsets();
         let Workspace {
             balls,
-            bodies,
             kept,
-            members,
             neighbours,
             arrowhead,
             ring,
@@ -263,6 +285,63 @@ impl BearingStep<'_> {
             border_correction: y,
             ..
         } = &mut *self.workspace;
+        let solved = if neighbours.is_empty() {
+            kept.balls.len() == balls.len()
+                && arrowhead.solve(kept.balls.iter().map(|kept| &kept.block), x, y)
+        } else {
+            ring.solve(x, y, offsets)
+        };
+        self.give(correction);
+        solved
+    }
+
+    /// Takes the right-hand sides of balls and bodies; of a bearing that is part of a system, with the balls taken out of those of the
+    /// bodies. False without a matrix.
+    pub(super) fn eliminate_balls(&mut self) -> bool {
+        self.take_right_sides();
+        let offsets = self.model.border_offsets();
+        let Workspace {
+            balls,
+            kept,
+            neighbours,
+            arrowhead,
+            ring,
+            ball_corrections: x,
+            border_correction: y,
+            ..
+        } = &mut *self.workspace;
+        if !neighbours.is_empty() {
+            ring.eliminate(x, y, offsets);
+            return true;
+        }
+        let there = kept.balls.len() == balls.len();
+        if there {
+            arrowhead.eliminate(kept.balls.iter().map(|kept| &kept.block), x, y);
+        }
+        there
+    }
+
+    /// Writes the correction of balls and bodies from that of the bodies, after [`BearingStep::eliminate_balls`]; false if it is not
+    /// finite.
+    pub(super) fn substitute_bodies(&mut self, correction: &mut [f64]) -> bool {
+        let offsets = self.model.border_offsets();
+        let Workspace {
+            kept, neighbours, arrowhead, ring, ball_corrections: x, border_correction: y, ..
+        } = &mut *self.workspace;
+        let solved = if neighbours.is_empty() {
+            arrowhead.substitute(kept.balls.iter().map(|kept| &kept.block), x, y)
+        } else {
+            ring.substitute(x, y, offsets)
+        };
+        self.give(correction);
+        solved
+    }
+
+    /// Takes the right-hand sides of balls and bodies.
+    fn take_right_sides(&mut self) {
+        let rows = self.model.border_size();
+        let Workspace { balls, bodies, members, ball_corrections: x, border_correction: y, .. } =
+            &mut *self.workspace;
         x.clear();
         x.extend(balls.iter().map(|trial| -trial.residual));
         y.resize_vertically_mut(rows, 0.0);
@@ -271,18 +350,16 @@ impl BearingStep<'_> {
                 y.rows_mut(member.from, trial.residual.len()).copy_from(&-&trial.residual);
             }
         }
-        let solved = if neighbours.is_empty() {
-            kept.balls.len() == balls.len()
-                && arrowhead.solve(kept.balls.iter().map(|kept| &kept.block), x, y)
-        } else {
-            ring.solve(x, y, offsets)
-        };
+    }
+
+    /// Writes the corrections of balls, with what they were moved alone, and of bodies.
+    fn give(&self, correction: &mut [f64]) {
+        let Workspace { balls, ball_corrections: x, border_correction: y, .. } = &*self.workspace;
         let (of_balls, border) = correction.split_at_mut(BLOCK * x.len());
         for ((chunk, x), trial) in of_balls.chunks_exact_mut(BLOCK).zip(x.iter()).zip(balls.iter()) {
             let x = trial.repaired.map_or(*x, |moved| moved + x);
             chunk.copy_from_slice(x.as_slice());
         }
         border.copy_from_slice(y.as_slice());
-        solved
     }
 }

@@ -5,6 +5,7 @@ mod ball;
 mod body;
 mod body_sums;
 mod cage;
+pub mod carried;
 mod directions;
 mod equations;
 mod failure;
@@ -18,8 +19,9 @@ mod repair;
 mod sensitivity;
 mod step_turn;
 mod support;
+pub mod system;
 
-use nalgebra::{DVector, UnitQuaternion, Vector6};
+use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector6};
 
 use crate::contact::many::ContactGroup;
 use crate::effects::moving_frame::FrameMotion;
@@ -75,6 +77,8 @@ pub struct Workspace {
     /// Neighbouring balls that may touch in the step.
     neighbours: Vec<NeighbourTrial>,
     arrowhead: Arrowhead,
+    /// What is left of the border of a bearing with a carried race: a part of a larger one.
+    reduced: DMatrix<f64>,
     /// Is the matrix that of this step's bodies and kept balls?
     factorised: bool,
     /// Bodies that forces move.

@@ -229,9 +229,21 @@ pub struct RigidBody {
     pub inertia: Vector3<f64>,
     /// Constraints, in the order of their multipliers.
     pub constraints: Vec<Constraint>,
+    /// Is it part of a structure that carries it, such as a shaft? It then has neither mass nor equations of its own.
+    pub carried: bool,
 }
 
 impl RigidBody {
+    /// A body that forces move, with a mass \[kg], moments of inertia about its own axes [kg m2], and constraints.
+    pub fn new(mass: f64, inertia: Vector3<f64>, constraints: Vec<Constraint>) -> Self {
+        Self { mass, inertia, constraints, carried: false }
+    }
+
+    /// A race that a structure carries.
+    pub fn carried() -> Self {
+        Self { carried: true, ..Self::new(0.0, Vector3::zeros(), vec![]) }
+    }
+
     /// [-] components along world z and y of the body's axis held at a time \[s], with the sign of their tilts about y and
     /// z: the axis of the rotation vector [0, ry, rz] of all scripted tilts and that of the frame \[rad].
     pub fn tilt_target(&self, axis: usize, time: f64, frame: &Vector3<f64>) -> f64 {
@@ -253,7 +265,7 @@ impl RigidBody {
     /// A cage; it has no constraints.
     pub(super) fn cage(section: &CageSection) -> Self {
         let inertia = Vector3::from(section.inertia.map(|moment| moment.0));
-        Self { mass: section.mass.0, inertia, constraints: vec![] }
+        Self::new(section.mass.0, inertia, vec![])
     }
 
     /// A race under a wrench, held where the scene's load gives motions.
@@ -278,7 +290,7 @@ impl RigidBody {
     /// A race on a flexible support.
     pub(super) fn on_support(section: &SupportSection) -> Self {
         let inertia = Vector3::from(section.inertia.map(|moment| moment.0));
-        Self { mass: section.mass.0, inertia, constraints: vec![] }
+        Self::new(section.mass.0, inertia, vec![])
     }
 
     /// A race that turns at a prescribed speed under these constraints, if that is how it is driven.
@@ -292,7 +304,7 @@ impl RigidBody {
             return None;
         };
         let inertia = Vector3::from(inertia.map(|moment| moment.0));
-        Some(Self { mass: mass.0, inertia, constraints: constraints.chain([Constraint::Spin]).collect() })
+        Some(Self::new(mass.0, inertia, constraints.chain([Constraint::Spin]).collect()))
     }
 }
 

@@ -7,6 +7,7 @@ pub mod damage;
 pub mod energies;
 pub mod raceways;
 pub mod state;
+pub mod structure;
 pub mod switch;
 
 use nalgebra::{UnitQuaternion, Vector3};
@@ -190,6 +191,16 @@ impl Model {
             stiffness_outputs: scene.effects.stiffness.on,
             solver: scene.solver,
         })
+    }
+
+    /// Leaves the motion of a race to a structure that carries it, such as a shaft.
+    pub fn carry(&mut self, race: Race) {
+        self.bodies[race] = Some(RigidBody::carried());
+    }
+
+    /// Is a race carried by a structure?
+    pub fn is_carried(&self, race: Race) -> bool {
+        self.bodies[race].as_ref().is_some_and(|body| body.carried)
     }
 
     /// Takes over the tunable numbers of a scene, those that each step reads.

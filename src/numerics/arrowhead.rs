@@ -143,8 +143,19 @@ impl Arrowhead {
         &mut self,
         blocks: impl Iterator<Item = (&'a Eliminated, OrbitTurn)>,
         members: &[Member],
-        mut border: DMatrix<f64>,
+        border: DMatrix<f64>,
     ) {
+        let border = self.reduce(blocks, members, border);
+        self.border = if border.is_empty() { None } else { Some(border.lu()) };
+    }
+
+    /// Adds what the blocks leave to the border's own matrix: what remains when they are eliminated.
+    pub fn reduce<'a>(
+        &mut self,
+        blocks: impl Iterator<Item = (&'a Eliminated, OrbitTurn)>,
+        members: &[Member],
+        mut border: DMatrix<f64>,
+    ) -> DMatrix<f64> {
         self.members.clear();
         self.members.extend(members);
         self.turns.clear();
@@ -167,7 +178,7 @@ impl Arrowhead {
                 view += rest;
             }
         }
-        self.border = if border.is_empty() { None } else { Some(border.lu()) };
+        border
     }
 
     /// Solves in place for the right-hand sides of these blocks and the border; false if the matrix is singular.
@@ -177,9 +188,25 @@ impl Arrowhead {
         x: &mut [Vector6<f64>],
         border: &mut DVector<f64>,
     ) -> bool {
+        self.eliminate(blocks.clone(), x, border);
+        if let Some(lu) = &self.border
+            && !lu.solve_mut(border)
+        {
+            return false;
+        }
+        self.substitute(blocks, x, border)
+    }
+
+    /// Takes the right-hand sides of the blocks out of that of the border.
+    pub fn eliminate<'a>(
+        &mut self,
+        blocks: impl Iterator<Item = &'a Eliminated>,
+        x: &mut [Vector6<f64>],
+        border: &mut DVector<f64>,
+    ) {
         self.worlds.clear();
         self.worlds.resize(self.members.len(), Vector6::zeros());
-        for ((block, turn), x) in blocks.clone().zip(&self.turns).zip(&mut *x) {
+        for ((block, turn), x) in blocks.zip(&self.turns).zip(&mut *x) {
             *x = block.inverse * turn.back().stacked(x);
             for (coupling, load) in block.couplings.iter().zip(&mut self.worlds) {
                 *load -= turn.stacked(&(coupling.left * *x));
@@ -189,11 +216,15 @@ impl Arrowhead {
             let mut rows = border.fixed_rows_mut::<BLOCK>(member.from);
             rows += member.own(load);
         }
-        if let Some(lu) = &self.border
-            && !lu.solve_mut(border)
-        {
-            return false;
-        }
+    }
+
+    /// The blocks' solution from that of the border, after [`Arrowhead::eliminate`]; false if one is not finite.
+    pub fn substitute<'a>(
+        &mut self,
+        blocks: impl Iterator<Item = &'a Eliminated>,
+        x: &mut [Vector6<f64>],
+        border: &DVector<f64>,
+    ) -> bool {
         for (member, world) in self.members.iter().zip(&mut self.worlds) {
             *world = member.world(&border.fixed_rows::<BLOCK>(member.from).into_owned());
         }

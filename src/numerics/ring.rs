@@ -49,6 +49,18 @@ pub struct Ring {
 impl Ring {
     /// Factorises blocks, links and border.
     pub fn factorise(&mut self, blocks: &[&Block], links: &[Link], border: &DMatrix<f64>, offsets: Offsets) {
+        let border = self.reduce(blocks, links, border, offsets);
+        self.border = if border.is_empty() { None } else { Some(border.lu()) };
+    }
+
+    /// Factorises blocks and links; gives what they leave of the border.
+    pub fn reduce(
+        &mut self,
+        blocks: &[&Block],
+        links: &[Link],
+        border: &DMatrix<f64>,
+        offsets: Offsets,
+    ) -> DMatrix<f64> {
         let mut schur = border.clone();
         let n = blocks.len();
         // `inverse` is the block itself until it is its turn.
@@ -73,13 +85,24 @@ impl Ring {
         }
         for k in 0..n {
             let (here, later) = self.blocks[k..].split_at_mut(1);
-            eliminate(&mut here[0], later, &mut schur, offsets);
+            eliminate_block(&mut here[0], later, &mut schur, offsets);
         }
-        self.border = if border.is_empty() { None } else { Some(schur.lu()) };
+        schur
     }
 
     /// Solves in place for the right-hand sides of blocks and border; false if the matrix is singular.
     pub fn solve(&self, blocks: &mut [Vector6<f64>], border: &mut DVector<f64>, offsets: Offsets) -> bool {
+        self.eliminate(blocks, border, offsets);
+        if let Some(lu) = &self.border
+            && !lu.solve_mut(border)
+        {
+            return false;
+        }
+        self.substitute(blocks, border, offsets)
+    }
+
+    /// Takes the right-hand sides of the blocks out of that of the border.
+    pub fn eliminate(&self, blocks: &mut [Vector6<f64>], border: &mut DVector<f64>, offsets: Offsets) {
         for (k, factor) in self.blocks.iter().enumerate() {
             let (here, later) = blocks[k..].split_at_mut(1);
             let x = &mut here[0];
@@ -95,11 +118,10 @@ impl Ring {
                 rows -= factor.left[slot] * *x;
             }
         }
-        if let Some(lu) = &self.border
-            && !lu.solve_mut(border)
-        {
-            return false;
-        }
+    }
+
+    /// The blocks' solution from that of the border, after [`Ring::eliminate`]; false if one is not finite.
+    pub fn substitute(&self, blocks: &mut [Vector6<f64>], border: &DVector<f64>, offsets: Offsets) -> bool {
         for (k, factor) in self.blocks.iter().enumerate().rev() {
             let (here, later) = blocks[k..].split_at_mut(1);
             let x = &mut here[0];
@@ -123,7 +145,7 @@ fn present(offsets: Offsets) -> impl Iterator<Item = (usize, usize)> {
 }
 
 /// Eliminates a block from the later ones and the border.
-fn eliminate(here: &mut Factor, later: &mut [Factor], schur: &mut DMatrix<f64>, offsets: Offsets) {
+fn eliminate_block(here: &mut Factor, later: &mut [Factor], schur: &mut DMatrix<f64>, offsets: Offsets) {
     // A singular block shows in the solution.
     here.inverse = here.inverse.lu().try_inverse().unwrap_or(Matrix6::repeat(f64::NAN));
     for [own_rows, _] in [&mut here.next, &mut here.last].into_iter().flatten() {

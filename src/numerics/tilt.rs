@@ -5,6 +5,8 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
+use super::scalar::{Scalar, cross};
+
 /// \[rad] turn, tilt about y and z of an orientation; the turn is in (-pi, pi].
 pub fn coordinates(orientation: &UnitQuaternion<f64>) -> Vector3<f64> {
     let axis = orientation * Vector3::x();
@@ -36,6 +38,27 @@ pub fn angular_velocity(coordinates: &Vector3<f64>, rates: &Vector3<f64>) -> Vec
 pub fn rates(coordinates: &Vector3<f64>, angular_velocity: &Vector3<f64>) -> Vector3<f64> {
     // Singular where the axis has turned around by half a turn.
     columns(coordinates).lu().solve(angular_velocity).unwrap_or_else(Vector3::zeros)
+}
+
+/// \[rad] largest tilt that [`columns_of_small`] is exact for.
+pub const SMALL: f64 = 0.1;
+
+/// Columns of the angular velocity by the rates of turn and tilt, as [`angular_velocity`] has them, with derivatives: the first is the
+/// axis. Of tilts up to [`SMALL`].
+pub fn columns_of_small<S: Scalar>(coordinates: &Vector3<S>) -> [Vector3<S>; 3] {
+    let r = Vector3::new(S::zero(), coordinates[1], coordinates[2]);
+    let square = r[1] * r[1] + r[2] * r[2];
+    // sin p/p, (1 - cos p)/p^2 and (p - sin p)/p^3: the next terms are below rounding.
+    let sine = square.polynomial(&[1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0]);
+    let first = square.polynomial(&[0.5, -1.0 / 24.0, 1.0 / 720.0, -1.0 / 40_320.0, 1.0 / 3_628_800.0]);
+    let second =
+        square.polynomial(&[1.0 / 6.0, -1.0 / 120.0, 1.0 / 5040.0, -1.0 / 362_880.0, 1.0 / 39_916_800.0]);
+    let unit = |axis: usize| Vector3::from_fn(|i, _| S::constant(if i == axis { 1.0 } else { 0.0 }));
+    let series = |v: Vector3<S>, once_by: S, twice_by: S| {
+        let once = cross(&r, &v);
+        v + once.map(|c| c * once_by) + cross(&r, &once).map(|c| c * twice_by)
+    };
+    [series(unit(0), sine, first), series(unit(1), first, second), series(unit(2), first, second)]
 }
 
 fn tilted(coordinates: &Vector3<f64>) -> UnitQuaternion<f64> {
@@ -91,6 +114,10 @@ mod tests {
             let exact = angular_velocity(&c, &change);
             assert!((difference - exact).norm() < 1e-8, "{c} {difference} {exact}");
             assert!((rates(&c, &exact) - change).norm() < 1e-13, "{c}");
+            if c.yz().norm() <= SMALL {
+                let small = Matrix3::from_columns(&columns_of_small(&c));
+                assert!((small - columns(&c)).norm() < 1e-15, "{c}");
+            }
         }
     }
 }

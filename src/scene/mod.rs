@@ -7,6 +7,7 @@ mod edit;
 mod notes;
 mod numbers;
 mod scales;
+pub mod system;
 mod validate;
 
 use std::path::Path;

@@ -175,6 +175,10 @@ quantities! {
     AngularVelocity = "rad/s", "an angular velocity", ["6000 rpm", "36000 deg/s"];
     /// [rad/s2]
     AngularAcceleration = "rad/s^2", "an angular acceleration", ["10 rad/s^2", "0.5 krad/s^2"];
+    /// \[Hz]
+    Frequency = "Hz", "a frequency", ["20 kHz", "500 Hz"];
+    /// [kg m]
+    Unbalance = "kg m", "an unbalance", ["10 g mm", "1e-5 kg m"];
     /// [Pa s]
     Viscosity = "Pa s", "a viscosity", ["18 uPa s", "20 mPa s"];
     /// [N/m]

@@ -8,7 +8,7 @@ use super::inputs::Inputs;
 use super::outputs::Outputs;
 use super::script::{Script, script_motion};
 use super::{Simulation, conditions, step_limits};
-use crate::dynamics::{StepFailure, Workspace, advance_perturbed, failure_site, try_step};
+use crate::dynamics::{Boundary, StepFailure, Workspace, advance_perturbed, failure_site, try_step};
 use crate::forces::Contacts;
 use crate::model::bodies::Race;
 use crate::model::state::State;
@@ -58,14 +58,7 @@ impl Simulation {
         if self.model.solver.level == Level::Equilibrium {
             return self.advance_by_equilibria(end, inputs, scripted);
         }
-        if let Some(heat) = &mut self.state.heat {
-            heat.mark(begin);
-        }
-        let script = Script::new(&self.scene, scripted);
-        let mut given = self.inputs;
-        self.script_fixed_races(begin, &mut given);
-        self.inputs = given;
-        script.begin(&mut self.paths, begin);
+        let script = self.begin_script(scripted);
         let mut perturbed: Vec<Perturbed> = inputs
             .iter()
             .map(|inputs| {
@@ -77,16 +70,7 @@ impl Simulation {
             .collect();
         self.paths = self.paths.towards(&self.inputs, begin, end - begin);
         let result = self.follow(&script, end, &mut perturbed);
-        script.set_inputs(&self.scene, &self.paths, self.state.time, &mut self.inputs);
-        // The last step's own evaluation, where it was accepted.
-        let contacts = match &result {
-            Ok(()) => self.workspace.contacts(&self.model),
-            Err(_) => Contacts::new(&self.model, &self.state, &self.conditions()),
-        };
-        self.outputs = Outputs::of(&self.model, &self.state, &contacts, &self.conditions());
-        if script.gives_inputs() {
-            self.paths = self.paths.after_script(&self.inputs, &self.state);
-        }
+        let contacts = self.end_script(&script, result.is_ok());
         result.and_then(|()| self.check_contacts(&contacts))?;
         let outputs = |p: &Perturbed| {
             let mut inputs = p.inputs;
@@ -94,6 +78,44 @@ impl Simulation {
             Outputs::new(&self.model, &p.state, &conditions(&inputs, &p.state))
         };
         Ok(perturbed.iter().map(outputs).collect())
+    }
+
+    /// The script of a communication step that begins now, from the inputs as set; where paths lead is left to the caller.
+    pub(super) fn begin_script(&mut self, scripted: Groups) -> Script {
+        let begin = self.state.time;
+        if let Some(heat) = &mut self.state.heat {
+            heat.mark(begin);
+        }
+        let script = Script::new(&self.scene, scripted);
+        let mut given = self.inputs;
+        self.script_fixed_races(begin, &mut given);
+        self.inputs = given;
+        script.begin(&mut self.paths, begin);
+        script
+    }
+
+    /// Inputs and outputs at the end of a communication step, and the contacts there. The last step's own evaluation serves where it
+    /// was `accepted`.
+    pub(super) fn end_script(&mut self, script: &Script, accepted: bool) -> Contacts {
+        script.set_inputs(&self.scene, &self.paths, self.state.time, &mut self.inputs);
+        let contacts = match accepted {
+            true => self.workspace.contacts(&self.model),
+            false => Contacts::new(&self.model, &self.state, &self.conditions()),
+        };
+        self.outputs = Outputs::of(&self.model, &self.state, &contacts, &self.conditions());
+        if script.gives_inputs() {
+            self.paths = self.paths.after_script(&self.inputs, &self.state);
+        }
+        contacts
+    }
+
+    /// What is imposed on the bearing where a step ends that goes to a time \[s].
+    pub(super) fn imposed(&self, script: &Script, time: f64) -> Boundary {
+        let mut boundary = self.boundary(time);
+        script.impose(&self.scene, &self.paths, &mut boundary);
+        boundary.see_spins(&self.model);
+        boundary.turn_balls(&self.model, &self.state);
+        boundary
     }
 
     /// The scene's script says how a race moves that is fixed in its frame or hinged to it, but for a speed that is the same
@@ -147,13 +169,10 @@ impl Simulation {
             if next.partial_cmp(&self.state.time) != Some(Ordering::Greater) {
                 return Err(SimulationError::LostInRounding { time: self.state.time, step: h });
             }
-            let mut boundary = self.boundary(next);
-            script.impose(&self.scene, &self.paths, &mut boundary);
-            boundary.see_spins(&self.model);
-            boundary.turn_balls(&self.model, &self.state);
+            let boundary = self.imposed(script, next);
             let start = (!perturbed.is_empty()).then(|| self.state.clone());
             let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
-            let (cause, worst) = match tried {
+            let failure = match tried {
                 Ok(()) => {
                     self.check_creep(&boundary)?;
                     if let Some(mut start) = start {
@@ -183,23 +202,31 @@ impl Simulation {
                     }
                     continue;
                 }
-                Err(StepFailure::Newton(_, worst)) => ("Newton's method does not converge", worst),
-                Err(StepFailure::Error(worst)) => ("the local error stays above solver.tolerance", worst),
+                Err(failure) => failure,
             };
             if !self.state.control.above_minimum() {
-                let outputs = Outputs::new(&self.model, &self.state, &self.conditions());
-                let site = failure_site(&self.model, &self.state, &boundary, worst, &self.workspace);
-                let ball = &outputs.balls[site.ball - 1];
-                return Err(SimulationError::StepTooSmall {
-                    time: self.state.time,
-                    min_step: self.model.solver.min_step.0,
-                    cause,
-                    site,
-                    inner_load: ball.inner.load,
-                    outer_load: ball.outer.load,
-                });
+                return Err(self.too_small(failure, &boundary));
             }
         }
         Ok(())
+    }
+
+    /// The step that was tried last failed, and cannot be any smaller.
+    pub(super) fn too_small(&self, failure: StepFailure, boundary: &Boundary) -> SimulationError {
+        let (cause, worst) = match failure {
+            StepFailure::Newton(_, worst) => ("Newton's method does not converge", worst),
+            StepFailure::Error(worst) => ("the local error stays above solver.tolerance", worst),
+        };
+        let outputs = Outputs::new(&self.model, &self.state, &self.conditions());
+        let site = failure_site(&self.model, &self.state, boundary, worst, &self.workspace);
+        let ball = &outputs.balls[site.ball - 1];
+        SimulationError::StepTooSmall {
+            time: self.state.time,
+            min_step: self.model.solver.min_step.0,
+            cause,
+            site,
+            inner_load: ball.inner.load,
+            outer_load: ball.outer.load,
+        }
     }
 }

@@ -18,6 +18,7 @@ mod start;
 mod start_state;
 mod step_limits;
 mod supported;
+pub mod system;
 
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! Where a simulation starts: the quasi-static equilibrium with rolling velocities.
 
-use nalgebra::Vector3;
+use nalgebra::{SMatrix, Vector3};
 
 use super::error::SimulationError;
 use super::inputs::Inputs;
@@ -45,6 +45,41 @@ pub fn from_inputs(
     if supported::is_supported(model) {
         return supported::from_inputs(scene, model, inputs, time);
     }
+    let (problem, origin) = problem_of(scene, inputs, time);
+    let (race, moves) = (problem.race, problem.race.section(scene).drive == Drive::Wrench);
+    let solution = equilibrium::solve(model, &problem)?;
+    if moves {
+        let Pose { position, orientation } = pose_of(&solution);
+        let input = &mut inputs[race];
+        input.pose = Pose { position: origin + position, orientation };
+        let angular_velocity = orientation * Vector3::x() * input.speed;
+        input.twist = Twist { velocity: Vector3::zeros(), angular_velocity };
+    }
+    let poses = PerRace { inner: inputs.inner.pose, outer: inputs.outer.pose };
+    Ok(State { time, ..state(scene, model, inputs, &problem, &solution, &poses)? })
+}
+
+/// External load that holds the inner race, a race with given motion, where the inputs put it, and its derivative by that race's
+/// displacement: forces along x, y, z \[N], moments about y, z [N m], in the bearing's frame.
+///
+/// # Errors
+/// If there is no equilibrium.
+pub fn held_load(
+    scene: &Scene,
+    model: &Model,
+    inputs: &mut Inputs,
+    time: f64,
+) -> Result<([f64; 5], SMatrix<f64, 5, 5>), SimulationError> {
+    if supported::is_supported(model) {
+        return supported::held_load(scene, model, inputs, time);
+    }
+    let (problem, _) = problem_of(scene, inputs, time);
+    let solution = equilibrium::solve(model, &problem)?;
+    Ok((solution.load, solution.stiffness))
+}
+
+/// The equilibrium for given inputs, and where the bearing frame is \[m].
+fn problem_of(scene: &Scene, inputs: &mut Inputs, time: f64) -> (EquilibriumInput, Vector3<f64>) {
     place_fixed(scene, inputs);
     let mut problem = EquilibriumInput::at(scene, Gyroscopic::Friction, time);
     let (race, resting) = match problem.race {
@@ -72,14 +107,5 @@ pub fn from_inputs(
         let motion = [relative.x, relative.y, relative.z, tilt.y, tilt.z];
         problem.conditions = motion.map(Prescribed::Motion);
     }
-    let solution = equilibrium::solve(model, &problem)?;
-    if moves {
-        let Pose { position, orientation } = pose_of(&solution);
-        let input = &mut inputs[race];
-        input.pose = Pose { position: origin + position, orientation };
-        let angular_velocity = orientation * Vector3::x() * input.speed;
-        input.twist = Twist { velocity: Vector3::zeros(), angular_velocity };
-    }
-    let poses = PerRace { inner: inputs.inner.pose, outer: inputs.outer.pose };
-    Ok(State { time, ..state(scene, model, inputs, &problem, &solution, &poses)? })
+    (problem, origin)
 }

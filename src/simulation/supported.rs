@@ -94,6 +94,24 @@ pub fn from_inputs(
     solve(scene, model, inputs, time).map(|(state, _)| state)
 }
 
+/// External load that holds the inner race where the inputs put it, and its derivative by that race's displacement.
+pub fn held_load(
+    scene: &Scene,
+    model: &Model,
+    inputs: &mut Inputs,
+    time: f64,
+) -> Result<([f64; 5], Stiffness), SimulationError> {
+    let (state, solution) = solve(scene, model, inputs, time)?;
+    let conditions = EquilibriumInput::at(scene, Gyroscopic::Friction, time).with_friction();
+    let contacts = Contacts::new(model, &state, &conditions);
+    let Wrench { force, moment } = Totals::of(&contacts, state.balls.len()).on(Race::Inner.into());
+    let stiffness = match &model.supports.outer {
+        Some(support) => in_series(&support.stiffness(), &solution.stiffness),
+        None => solution.stiffness,
+    };
+    Ok(([-force.x, -force.y, -force.z, -moment.y, -moment.z], stiffness))
+}
+
 /// Stiffness of a support in series with a bearing.
 fn in_series(support: &Stiffness, bearing: &Stiffness) -> Stiffness {
     let sum = (support + bearing).lu();

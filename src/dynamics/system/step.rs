@@ -1,0 +1,362 @@
+//! The equations of one trial step of several bearings and the structures that carry their races: one Newton iteration for all.
+//!
+//! Balls are eliminated bearing by bearing. What is left of cages, races that forces move, and structures is the border.
+
+use nalgebra::{DMatrix, DVector, Dyn, LU, OMatrix, U6};
+
+use super::super::equations::BearingStep;
+use super::structure::{Seat, StructureLoad, StructureTrial};
+use crate::model::bodies::{Body, Race};
+use crate::model::state::KeptMatrix;
+use crate::model::structure::{Structure, StructureState};
+use crate::numerics::arrowhead::BLOCK;
+use crate::numerics::hht::HhtStep;
+use crate::numerics::newton::Equations;
+use crate::numerics::size::{larger, largest};
+
+/// A race of a bearing on a seat of a structure.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// Index of the bearing.
+    pub bearing: usize,
+    /// The race.
+    pub race: Race,
+    /// Index of the structure.
+    pub structure: usize,
+    /// Where on it.
+    pub seat: Seat,
+}
+
+/// A structure at the start of a step, and what acts on it.
+#[derive(Clone, Copy, Debug)]
+pub struct StructureStep<'a> {
+    /// The structure.
+    pub model: &'a Structure,
+    /// [`Structure::scales`].
+    pub scales: &'a DVector<f64>,
+    /// State at the start.
+    pub start: &'a StructureState,
+    /// What acts from outside at the end.
+    pub load: &'a StructureLoad,
+}
+
+/// The equations of a step of a system.
+pub struct SystemStep<'a> {
+    /// The bearings.
+    pub bearings: Vec<BearingStep<'a>>,
+    /// The structures.
+    structures: &'a [StructureStep<'a>],
+    /// Their trials.
+    pub trials: Vec<StructureTrial>,
+    joints: &'a [Joint],
+    step: HhtStep,
+    /// First unknown of each bearing, then of each structure, and the end.
+    first: Vec<usize>,
+    /// First border row of each bearing's own bodies, then of each structure, and the end.
+    border: Vec<usize>,
+    matrix: Option<LU<f64, Dyn, Dyn>>,
+    /// How often the borders of the bearings that it has were assembled.
+    assembled: u64,
+    /// [-] residual of each bearing over its tolerance.
+    norms: Vec<f64>,
+}
+
+/// Rows of a bearing's border: those of its own bodies go to the system's border as they are, those of a carried race to its
+/// structure.
+enum Rows<'a> {
+    /// First row in the bearing's border, first row in the system's, how many.
+    Own(usize, usize, usize),
+    /// First row in the bearing's border, and the seat.
+    Carried(usize, &'a Joint),
+}
+
+impl<'a> SystemStep<'a> {
+    /// The equations of a step of bearings whose equations are these, with structures.
+    pub fn new(
+        bearings: Vec<BearingStep<'a>>,
+        structures: &'a [StructureStep<'a>],
+        joints: &'a [Joint],
+        step: HhtStep,
+    ) -> Self {
+        let own_rows = |bearing: &BearingStep<'_>| bearing.model.border_size() - carried_rows(bearing);
+        let sizes = bearings.iter().map(|bearing| {
+            [BLOCK * bearing.start.balls.len() + bearing.model.border_size(), own_rows(bearing)]
+        });
+        let sizes = sizes.chain(structures.iter().map(|one| [one.model.size(); 2]));
+        let (mut first, mut border) = (vec![0], vec![0]);
+        for [unknowns, rows] in sizes {
+            first.push(first[first.len() - 1] + unknowns);
+            border.push(border[border.len() - 1] + rows);
+        }
+        let trials = structures.iter().map(|one| StructureTrial::new(one.start)).collect();
+        Self {
+            bearings,
+            structures,
+            trials,
+            joints,
+            step,
+            first,
+            border,
+            matrix: None,
+            assembled: 0,
+            norms: vec![],
+        }
+    }
+
+    /// Number of unknowns.
+    fn size(&self) -> usize {
+        self.first[self.first.len() - 1]
+    }
+
+    /// First guess: everything keeps its acceleration, balls along their orbits.
+    pub fn guess(&self, unknowns: &mut Vec<f64>, steady_velocity: bool) {
+        unknowns.clear();
+        let mut own = vec![];
+        for bearing in &self.bearings {
+            match steady_velocity {
+                true => bearing.guess_steady_velocity(&mut own),
+                false => bearing.guess_steady_orbit(&mut own),
+            }
+            unknowns.extend(&own);
+        }
+        for one in self.structures {
+            unknowns.extend(one.start.accelerations.iter());
+        }
+    }
+
+    /// Lists pairs of balls that met in the solved step without being looked at; were there some?
+    pub fn list_met(&mut self) -> bool {
+        self.bearings.iter_mut().fold(false, |some, step| step.list_met() || some)
+    }
+
+    /// Goes on without the matrices of earlier steps.
+    pub fn forget_matrices(&mut self) {
+        self.bearings.iter_mut().for_each(|step| step.workspace.kept = KeptMatrix::default());
+    }
+
+    /// Where the rows of a bearing's border go.
+    fn rows(&self, bearing: usize) -> Vec<Rows<'a>> {
+        let model = self.bearings[bearing].model;
+        let mut at = self.border[bearing];
+        let mut rows = vec![];
+        for (body, from) in Body::ALL.into_iter().zip(model.border_offsets()) {
+            let (Some(from), Some(Some(moved))) = (from, model.bodies.get(body)) else {
+                continue;
+            };
+            let joint = self
+                .joints
+                .iter()
+                .find(|joint| moved.carried && joint.bearing == bearing && Body::from(joint.race) == body);
+            match joint {
+                Some(joint) => rows.push(Rows::Carried(from, joint)),
+                None => {
+                    rows.push(Rows::Own(from, at, moved.rows()));
+                    at += moved.rows();
+                }
+            }
+        }
+        rows
+    }
+
+    /// First border row of a structure.
+    fn border_of(&self, structure: usize) -> usize {
+        self.border[self.bearings.len() + structure]
+    }
+
+    /// What the rows of a bearing's border are in the system's: place and matrix of each part.
+    fn parts(&self, bearing: usize) -> Vec<(usize, usize, OMatrix<f64, Dyn, Dyn>)> {
+        let step = &self.bearings[bearing];
+        let length = step.model.race_length();
+        let part = |rows: Rows<'_>| match rows {
+            Rows::Own(from, to, count) => (from, to, DMatrix::identity(count, count)),
+            Rows::Carried(from, joint) => {
+                let motion =
+                    step.workspace.bodies[joint.race].as_ref().and_then(|trial| trial.seat().copied());
+                let unknowns: OMatrix<f64, U6, Dyn> =
+                    StructureTrial::unknowns_of(&joint.seat, &motion.unwrap_or_default(), length);
+                let dynamic = DMatrix::from_fn(BLOCK, unknowns.ncols(), |i, k| unknowns[(i, k)]);
+                (from, self.border_of(joint.structure), dynamic)
+            }
+        };
+        self.rows(bearing).into_iter().map(part).collect()
+    }
+
+    /// Sets the races that structures carry to where these are.
+    fn carry_races(&mut self) {
+        for Joint { bearing, race, structure, seat } in self.joints {
+            let motion = self.trials[*structure].seat(self.structures[*structure].model, seat);
+            let step = &mut self.bearings[*bearing];
+            if let Some(Some(trial)) = step.workspace.bodies.get_mut(*race) {
+                trial.carry(&motion);
+                step.races[*race] = trial.motion_value();
+            }
+        }
+    }
+
+    /// Residuals of the structures under what their bearings do; the largest over the tolerance.
+    fn assemble_structures(&mut self) -> f64 {
+        self.trials.iter_mut().for_each(StructureTrial::clear);
+        let mut tolerance = f64::INFINITY;
+        for Joint { bearing, race, structure, seat } in self.joints {
+            let step = &self.bearings[*bearing];
+            tolerance = tolerance.min(step.force_tolerance);
+            if let Some(trial) = &step.workspace.bodies[*race]
+                && let Some(motion) = trial.seat()
+            {
+                self.trials[*structure].add(seat, motion, &trial.end.bearing_wrench);
+            }
+        }
+        let mut norm = 0.0;
+        for (one, trial) in self.structures.iter().zip(&mut self.trials) {
+            trial.assemble(one.model, one.start, one.load, &self.step);
+            let forces = trial.residual.component_div(one.scales);
+            norm = larger(norm, largest(forces.iter()) / tolerance);
+        }
+        norm
+    }
+
+    /// Assembles and factorises the border.
+    fn factorise(&mut self) {
+        let rows = self.border[self.border.len() - 1];
+        let mut matrix = DMatrix::zeros(rows, rows);
+        for (index, (one, trial)) in self.structures.iter().zip(&self.trials).enumerate() {
+            let (at, size) = (self.border_of(index), one.model.size());
+            matrix.view_mut((at, at), (size, size)).copy_from(&trial.tangent(one.model, &self.step));
+        }
+        for Joint { bearing, race, structure, seat } in self.joints {
+            if let Some(trial) = &self.bearings[*bearing].workspace.bodies[*race]
+                && let Some(motion) = trial.seat()
+            {
+                let moment = &trial.end.bearing_wrench.moment;
+                let turned = self.trials[*structure].turned_moments(seat, motion, moment, &self.step);
+                let (at, size) = (self.border_of(*structure), turned.nrows());
+                let mut view = matrix.view_mut((at, at), (size, size));
+                view += turned;
+            }
+        }
+        for index in 0..self.bearings.len() {
+            let parts = self.parts(index);
+            let reduced = &self.bearings[index].workspace.reduced;
+            for (row, row_to, rows) in &parts {
+                for (column, column_to, columns) in &parts {
+                    let block = reduced.view((*row, *column), (rows.nrows(), columns.nrows()));
+                    let sum = rows.tr_mul(&(block * columns));
+                    let mut view = matrix.view_mut((*row_to, *column_to), sum.shape());
+                    view += sum;
+                }
+            }
+        }
+        self.matrix = Some(matrix.lu());
+    }
+
+    /// The bearing whose residual is largest.
+    pub fn worst(&self) -> usize {
+        index_of_largest(self.norms.iter().copied())
+    }
+
+    /// [-] local error over its tolerance: the largest of all bearings and structures.
+    pub fn local_error(&self) -> f64 {
+        let bearings = self.bearings.iter().map(BearingStep::local_error);
+        let structures = self.structures.iter().zip(&self.trials).map(|(one, trial)| {
+            let scale = self.length_tolerance();
+            let change = (&trial.end.accelerations - &one.start.accelerations).component_mul(one.scales);
+            let gain = (self.step.beta - 0.5 * self.step.alpha_f - 1.0 / 6.0) * self.step.h * self.step.h;
+            let count = change.len().max(1) as f64;
+            (change.norm_squared() / count).sqrt() * gain.abs() / scale
+        });
+        bearings.chain(structures).fold(0.0, larger)
+    }
+
+    /// \[m] local error that is allowed: that of the finest bearing.
+    fn length_tolerance(&self) -> f64 {
+        let of = |step: &BearingStep<'_>| step.model.solver.tolerance * 2.0 * step.model.bearing.ball.radius;
+        self.bearings.iter().map(of).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Index of the largest of some norms; what is not a number is the largest.
+pub fn index_of_largest(norms: impl Iterator<Item = f64>) -> usize {
+    let norm = |norm: f64| if norm.is_nan() { f64::INFINITY } else { norm };
+    norms.enumerate().max_by(|a, b| norm(a.1).total_cmp(&norm(b.1))).map_or(0, |(index, _)| index)
+}
+
+/// Border rows of the races that a structure carries.
+fn carried_rows(bearing: &BearingStep<'_>) -> usize {
+    BLOCK * Race::BOTH.into_iter().filter(|race| bearing.model.is_carried(*race)).count()
+}
+
+impl Equations for SystemStep<'_> {
+    fn residual(&mut self, unknowns: &[f64], with_tangent: bool) -> f64 {
+        let count = self.bearings.len();
+        for (index, (one, trial)) in self.structures.iter().zip(&mut self.trials).enumerate() {
+            let own = &unknowns[self.first[count + index]..self.first[count + index + 1]];
+            trial.move_to(one.model, own, one.start, &self.step, one.load.spin);
+        }
+        self.carry_races();
+        self.norms.clear();
+        for (index, step) in self.bearings.iter_mut().enumerate() {
+            let own = &unknowns[self.first[index]..self.first[index + 1]];
+            self.norms.push(step.residual(own, with_tangent));
+        }
+        let structures = self.assemble_structures();
+        self.norms.iter().fold(structures, |norm, own| larger(norm, *own))
+    }
+
+    fn has_tangent(&self) -> bool {
+        self.bearings.iter().all(Equations::has_tangent)
+    }
+
+    fn correction(&mut self, correction: &mut [f64]) -> bool {
+        self.bearings.iter_mut().for_each(BearingStep::prepare_correction);
+        // Balls that were brought back press differently.
+        self.assemble_structures();
+        let assembled = self.bearings.iter().map(|step| step.assembled).sum();
+        if self.matrix.is_none() || self.assembled != assembled {
+            self.factorise();
+            self.assembled = assembled;
+        }
+        let mut border = DVector::zeros(self.border[self.border.len() - 1]);
+        for (index, trial) in self.trials.iter().enumerate() {
+            border.rows_mut(self.border_of(index), trial.residual.len()).copy_from(&-&trial.residual);
+        }
+        for index in 0..self.bearings.len() {
+            if !self.bearings[index].eliminate_balls() {
+                return false;
+            }
+            let parts = self.parts(index);
+            for (from, to, rows) in &parts {
+                let own = self.bearings[index].workspace.border_correction.rows(*from, rows.nrows());
+                let mut view = border.rows_mut(*to, rows.ncols());
+                view += rows.tr_mul(&own);
+            }
+        }
+        let solved = self.matrix.as_ref().is_some_and(|lu| lu.solve_mut(&mut border));
+        if !solved || !border.iter().all(|v| v.is_finite()) {
+            return false;
+        }
+        let mut regular = true;
+        for index in 0..self.bearings.len() {
+            let parts = self.parts(index);
+            let range = self.first[index]..self.first[index + 1];
+            let step = &mut self.bearings[index];
+            for (from, to, rows) in &parts {
+                let own = rows * border.rows(*to, rows.ncols());
+                step.workspace.border_correction.rows_mut(*from, rows.nrows()).copy_from(&own);
+            }
+            regular &= step.substitute_bodies(&mut correction[range]);
+        }
+        let count = self.bearings.len();
+        for index in 0..self.structures.len() {
+            let own = border.rows(self.border_of(index), self.structures[index].model.size());
+            correction[self.first[count + index]..self.first[count + index + 1]]
+                .copy_from_slice(own.as_slice());
+        }
+        debug_assert_eq!(correction.len(), self.size());
+        regular
+    }
+
+    fn refactor_contraction(&self) -> f64 {
+        let contraction = |step: &BearingStep<'_>| step.model.solver.matrix_reuse;
+        self.bearings.iter().map(contraction).fold(1.0, f64::min)
+    }
+}

@@ -1,0 +1,200 @@
+//! A structure in one trial step: motion from its unknown accelerations, seats of its races, residual and tangent.
+
+use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6, Vector3};
+
+use super::super::carried::SeatMotion;
+use crate::model::structure::{Map, Spin, Structure, StructurePowers, StructureState, Turning};
+use crate::numerics::hht::HhtStep;
+use crate::numerics::motion::Wrench;
+
+/// What acts on a structure from outside at the end of a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StructureLoad {
+    /// Generalised force of loads and weight, the torque that drives it included where the turn is a coordinate.
+    pub force: DVector<f64>,
+    /// Its turn, where that is given.
+    pub spin: Spin,
+    /// [N m] axial moment of the loads, where the turn is given: the drive holds it.
+    pub axial_moment: f64,
+}
+
+/// Where a structure carries a race.
+#[derive(Clone, Debug)]
+pub struct Seat {
+    /// Place (0 to 2) and angles (3 to 5) of the race in its bearing's frame, by the coordinates.
+    pub map: Map,
+    /// \[m] place of the race's origin in that frame while the coordinates are zero.
+    pub offset: Vector3<f64>,
+    /// 1, or -1 where the bearing's x axis points against the shaft's.
+    pub direction: f64,
+}
+
+impl Seat {
+    /// Motion of the race at these coordinates, rates and accelerations.
+    pub fn motion(&self, [q, rates, accelerations]: [&DVector<f64>; 3], given: Option<&Spin>) -> SeatMotion {
+        let halves = |v: &DVector<f64>| {
+            let moved = &self.map * v;
+            (moved.fixed_rows::<3>(0).into_owned(), moved.fixed_rows::<3>(3).into_owned())
+        };
+        let ((place, mut angles), (velocity, mut spins)) = (halves(q), halves(rates));
+        if let Some(spin) = given {
+            angles.x += self.direction * spin.angle;
+            spins.x += self.direction * spin.speed;
+        }
+        SeatMotion {
+            position: self.offset + place,
+            velocity,
+            acceleration: halves(accelerations).0,
+            angles,
+            rates: spins,
+        }
+    }
+}
+
+/// A structure in a trial step.
+#[derive(Clone, Debug)]
+pub struct StructureTrial {
+    /// State at the end of the step.
+    pub end: StructureState,
+    /// What is left of the equations of motion.
+    pub residual: DVector<f64>,
+    /// Generalised force of its bearings.
+    from_bearings: DVector<f64>,
+    /// [N m] moment of its bearings about its axis.
+    axial: f64,
+}
+
+impl StructureTrial {
+    /// Buffers, as at the start of a step.
+    pub fn new(start: &StructureState) -> Self {
+        let zero = DVector::zeros(start.coordinates.len());
+        Self { end: start.clone(), residual: zero.clone(), from_bearings: zero, axial: 0.0 }
+    }
+
+    /// Moves the structure to the end of the step.
+    pub fn move_to(
+        &mut self,
+        model: &Structure,
+        unknowns: &[f64],
+        start: &StructureState,
+        step: &HhtStep,
+        given: Spin,
+    ) {
+        let end = &mut self.end;
+        end.accelerations.copy_from_slice(unknowns);
+        let (before, after) = (&start.accelerations, &end.accelerations);
+        end.rates = &start.rates + (before * (1.0 - step.gamma) + after * step.gamma) * step.h;
+        end.coordinates = &start.coordinates
+            + &start.rates * step.h
+            + (before * (0.5 - step.beta) + after * step.beta) * (step.h * step.h);
+        end.spin = model.spin([&end.coordinates, &end.rates, &end.accelerations], given);
+    }
+
+    /// Motion of a seat at the end of the step.
+    pub fn seat(&self, model: &Structure, seat: &Seat) -> SeatMotion {
+        let StructureState { coordinates, rates, accelerations, spin, .. } = &self.end;
+        let given = (model.turning == Turning::Given).then_some(spin);
+        seat.motion([coordinates, rates, accelerations], given)
+    }
+
+    /// Forgets the forces of bearings.
+    pub fn clear(&mut self) {
+        self.from_bearings.fill(0.0);
+        self.axial = 0.0;
+    }
+
+    /// Adds the wrench of a bearing on the race that it carries on a seat, in the bearing's frame.
+    pub fn add(&mut self, seat: &Seat, motion: &SeatMotion, wrench: &Wrench) {
+        let (moments, _) = motion.generalised(&wrench.moment);
+        self.from_bearings += seat.map.tr_mul(&stack(&wrench.force, &moments));
+        self.axial += seat.direction * moments.x;
+    }
+
+    /// Residual under what acts from outside and the bearings.
+    pub fn assemble(
+        &mut self,
+        model: &Structure,
+        start: &StructureState,
+        load: &StructureLoad,
+        step: &HhtStep,
+    ) {
+        let fraction = 1.0 - step.alpha_f;
+        let end = &mut self.end;
+        let own = model.own_forces(&end.coordinates, &end.rates, &end.spin);
+        end.total = &load.force + &self.from_bearings + own;
+        if model.turning == Turning::Free {
+            let last = model.size() - 1;
+            let lag = model.spin_torque(&end.coordinates, &end.accelerations, &Spin::default());
+            end.total[last] -= lag;
+        }
+        self.residual =
+            &model.mass * &end.accelerations - &end.total * fraction - &start.total * step.alpha_f
+                + &start.remainder;
+        end.remainder.copy_from(&self.residual);
+        let turns = model.turning == Turning::Given;
+        end.torque = match turns {
+            true => {
+                model.spin_torque(&end.coordinates, &end.accelerations, &end.spin)
+                    - self.axial
+                    - load.axial_moment
+            }
+            false => 0.0,
+        };
+        let drive = if turns { (end.torque + load.axial_moment) * end.spin.speed } else { 0.0 };
+        let of_spin = if turns { self.axial * end.spin.speed } else { 0.0 };
+        end.powers = StructurePowers {
+            input: load.force.dot(&end.rates) + drive,
+            bearings: -(self.from_bearings.dot(&end.rates) + of_spin),
+            damping: end.rates.dot(&(&model.damping * &end.rates)),
+        };
+    }
+
+    /// Tangent of the residual by the accelerations, without that of the bearings.
+    pub fn tangent(&self, model: &Structure, step: &HhtStep) -> DMatrix<f64> {
+        let fraction = 1.0 - step.alpha_f;
+        let (position, velocity) = (step.position_gain(), step.velocity_gain());
+        let StructureState { coordinates, rates, accelerations, spin, .. } = &self.end;
+        let mut forces = &model.stiffness * position
+            + &model.damping * velocity
+            + &model.gyroscopic * (velocity * spin.speed + position * 0.5 * spin.acceleration);
+        if model.turning == Turning::Free {
+            let last = model.size() - 1;
+            let by_spin = &model.gyroscopic * (rates * velocity + coordinates * 0.5);
+            let mut column = forces.column_mut(last);
+            column += by_spin;
+            // `1/2 q''^T G q`
+            let of_q = model.gyroscopic.tr_mul(accelerations) * (0.5 * position);
+            let of_accelerations = &model.gyroscopic * coordinates * 0.5;
+            let mut row = forces.row_mut(last);
+            row += (of_q + of_accelerations).transpose();
+        }
+        &model.mass + forces * fraction
+    }
+
+    /// Derivative of the residual by the accelerations through the direction of a bearing's moments alone.
+    pub fn turned_moments(
+        &self,
+        seat: &Seat,
+        motion: &SeatMotion,
+        moment: &Vector3<f64>,
+        step: &HhtStep,
+    ) -> DMatrix<f64> {
+        let (_, by_angles) = motion.generalised(moment);
+        let angles = seat.map.fixed_rows::<3>(3);
+        angles.tr_mul(&(by_angles * angles)) * (-(1.0 - step.alpha_f) * step.position_gain())
+    }
+
+    /// Unknowns of a carried race (acceleration, and angular acceleration in world axes times `length` \[m]) by those of the structure.
+    /// Its transpose takes residual rows of the race (force, moment over `length`) to the structure's.
+    pub fn unknowns_of(seat: &Seat, motion: &SeatMotion, length: f64) -> OMatrix<f64, U6, Dyn> {
+        let mut unknowns = seat.map.clone();
+        let angular = motion.columns() * seat.map.fixed_rows::<3>(3) * length;
+        unknowns.fixed_rows_mut::<3>(3).copy_from(&angular);
+        unknowns
+    }
+}
+
+/// Force and moments as one vector.
+fn stack(force: &Vector3<f64>, moment: &Vector3<f64>) -> nalgebra::Vector6<f64> {
+    crate::model::state::stack(force, moment)
+}

@@ -1,0 +1,188 @@
+//! A structure that carries races: a rigid or flexible shaft, or a housing, as linear equations of motion.
+//!
+//! ```text
+//! M q'' + (C + W G) q' + 1/2 W' G q + K q + m W' = f          W spin of the shaft [rad/s], f loads and bearings
+//! ```
+//! Coordinates `q` are displacements from a frame that does not turn: lengths, angles, or amplitudes of modes. `G` is that of a spin of
+//! 1 rad/s and skew; half of it stands with `W'` as the equations come from the energy `1/2 W q'^T G q` (they do no work then). Tilts
+//! are taken as small: a shaft in bearings tilts by some mrad, what is left out is of their square.
+
+mod beam;
+mod shaft;
+
+use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6, Vector3};
+
+pub use shaft::Shaft;
+
+/// How a structure turns about the x axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turning {
+    /// Not at all: a housing.
+    Still,
+    /// At a speed that is given.
+    Given,
+    /// By its torque: the angle is the last coordinate.
+    Free,
+}
+
+/// Where something acts on a structure: displacement (0 to 2) and rotation (3 to 5) there, world axes, by the coordinates.
+pub type Map = OMatrix<f64, U6, Dyn>;
+
+/// A linear structure.
+#[derive(Clone, Debug)]
+pub struct Structure {
+    /// Mass matrix of the coordinates.
+    pub mass: DMatrix<f64>,
+    /// Damping matrix.
+    pub damping: DMatrix<f64>,
+    /// Stiffness matrix.
+    pub stiffness: DMatrix<f64>,
+    /// Gyroscopic matrix of a spin of 1 rad/s.
+    pub gyroscopic: DMatrix<f64>,
+    /// [kg m2] polar moment of inertia.
+    pub polar_inertia: f64,
+    /// Inertia of the coordinates by an acceleration of the spin; zero where the angle is a coordinate.
+    pub by_spin: DVector<f64>,
+    /// Generalised force of an acceleration of 1 m/s2 of the frame along x, y, z, by column: weights.
+    pub weights: OMatrix<f64, Dyn, nalgebra::U3>,
+    /// How it turns.
+    pub turning: Turning,
+}
+
+/// Motion of a structure, and what it takes to go on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StructureState {
+    /// Coordinates \[m, rad or 1].
+    pub coordinates: DVector<f64>,
+    /// Their rates.
+    pub rates: DVector<f64>,
+    /// Rates of these.
+    pub accelerations: DVector<f64>,
+    /// Total generalised force, the `g` of the HHT scheme.
+    pub total: DVector<f64>,
+    /// What the last step left of the equations of motion, within their tolerance.
+    pub remainder: DVector<f64>,
+    /// Turn and its rates.
+    pub spin: Spin,
+    /// [N m] torque that drives it: that given, or that which holds the given speed.
+    pub torque: f64,
+    /// Powers now.
+    pub powers: StructurePowers,
+    /// Energies since the start.
+    pub energies: StructureEnergies,
+}
+
+/// Turn of a structure about the x axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spin {
+    /// \[rad] angle since the start.
+    pub angle: f64,
+    /// [rad/s] speed.
+    pub speed: f64,
+    /// [rad/s2] acceleration.
+    pub acceleration: f64,
+}
+
+/// Powers of a structure at one instant \[W].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StructurePowers {
+    /// Put in by loads, weight and drive.
+    pub input: f64,
+    /// Taken out by its bearings.
+    pub bearings: f64,
+    /// Lost to its damping.
+    pub damping: f64,
+}
+
+/// Energies of a structure \[J]: sums since the start, and what is stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StructureEnergies {
+    /// Work of loads, weight and drive.
+    pub input: f64,
+    /// Given to its bearings.
+    pub bearings: f64,
+    /// Lost to its damping.
+    pub damping: f64,
+    /// Kinetic and elastic energy.
+    pub stored: f64,
+    /// That at the start.
+    pub at_start: f64,
+}
+
+impl StructureEnergies {
+    /// \[J] put in, but neither given on, lost nor stored.
+    pub fn unaccounted(&self) -> f64 {
+        self.input - self.bearings - self.damping - (self.stored - self.at_start)
+    }
+}
+
+impl Structure {
+    /// Number of coordinates.
+    pub fn size(&self) -> usize {
+        self.mass.nrows()
+    }
+
+    /// \[m] size of a unit of each coordinate: root mean square, over the mass of the structure, of what it moves. Residuals times these
+    /// compare with forces, errors of coordinates with lengths.
+    pub fn scales(&self) -> DVector<f64> {
+        let mass = (0..3).map(|axis| self.total_mass(axis)).fold(f64::MIN_POSITIVE, f64::max);
+        DVector::from_fn(self.size(), |i, _| (self.mass[(i, i)] / mass).sqrt())
+    }
+
+    /// \[kg] mass that an acceleration along an axis meets, where rigid displacements are among the coordinates: `t^T M t`.
+    fn total_mass(&self, axis: usize) -> f64 {
+        let weights = self.weights.column(axis);
+        // `M t = w`, hence `t^T M t = w^T M^-1 w`.
+        let solved = self.mass.clone().lu().solve(&weights.into_owned());
+        solved.map_or(0.0, |t| weights.dot(&t))
+    }
+
+    /// Generalised force of gravity [m/s2].
+    pub fn weight(&self, gravity: &Vector3<f64>) -> DVector<f64> {
+        &self.weights * gravity
+    }
+
+    /// Turn at a state of the coordinates; `given` where that is not one of them.
+    pub fn spin(&self, state: [&DVector<f64>; 3], given: Spin) -> Spin {
+        match self.turning {
+            Turning::Free => {
+                let last = self.size() - 1;
+                Spin { angle: state[0][last], speed: state[1][last], acceleration: state[2][last] }
+            }
+            Turning::Still | Turning::Given => given,
+        }
+    }
+
+    /// Forces of the structure itself: damping, gyroscopic, elastic, and those of a spin that changes.
+    pub fn own_forces(&self, q: &DVector<f64>, rates: &DVector<f64>, spin: &Spin) -> DVector<f64> {
+        let gyroscopic = rates * spin.speed + q * (0.5 * spin.acceleration);
+        let mut force = -(&self.damping * rates) - &self.stiffness * q - &self.gyroscopic * &gyroscopic;
+        match self.turning {
+            Turning::Free => {}
+            Turning::Still | Turning::Given => force -= &self.by_spin * spin.acceleration,
+        }
+        force
+    }
+
+    /// [N m] inertial torque of the coordinates and the spin about the x axis.
+    pub fn spin_torque(&self, q: &DVector<f64>, accelerations: &DVector<f64>, spin: &Spin) -> f64 {
+        self.polar_inertia * spin.acceleration
+            + self.by_spin.dot(accelerations)
+            + 0.5 * accelerations.dot(&(&self.gyroscopic * q))
+    }
+
+    /// \[J] kinetic and elastic energy.
+    pub fn stored(&self, q: &DVector<f64>, rates: &DVector<f64>, spin: &Spin) -> f64 {
+        let own_spin = match self.turning {
+            // Its inertia is in the mass matrix.
+            Turning::Free => 0.0,
+            Turning::Still | Turning::Given => {
+                spin.speed * (0.5 * self.polar_inertia * spin.speed + self.by_spin.dot(rates))
+            }
+        };
+        0.5 * rates.dot(&(&self.mass * rates))
+            + 0.5 * q.dot(&(&self.stiffness * q))
+            + 0.5 * spin.speed * rates.dot(&(&self.gyroscopic * q))
+            + own_spin
+    }
+}

@@ -1,0 +1,158 @@
+//! The shaft of a system as a structure: rigid, or of beams that are reduced to its stations.
+
+use nalgebra::{DMatrix, DVector, OMatrix};
+
+use super::beam::Beams;
+use super::{Map, Structure, Turning};
+use crate::schema::ShaftSection;
+
+/// \[Hz] modes between stations that are kept, where the file does not say so.
+const MODES_UP_TO: f64 = 20e3;
+
+/// A shaft as a structure, and what its stations do.
+#[derive(Clone, Debug)]
+pub struct Shaft {
+    /// The structure.
+    pub structure: Structure,
+    /// Displacement and rotation at each station, by the coordinates.
+    pub stations: Vec<Map>,
+    /// \[Hz] frequencies of the modes that were kept between stations that are held; none of a rigid shaft.
+    pub modes: Vec<f64>,
+}
+
+/// Mass, centre and moments of inertia of rigid parts on one axis.
+#[derive(Clone, Copy, Debug, Default)]
+struct RigidSum {
+    mass: f64,
+    centre: f64,
+    polar: f64,
+    transverse: f64,
+}
+
+impl RigidSum {
+    /// With another part.
+    fn plus(self, other: Self) -> Self {
+        let mass = self.mass + other.mass;
+        let centre = (self.mass * self.centre + other.mass * other.centre) / mass;
+        let moved = |part: &Self| part.transverse + part.mass * (part.centre - centre).powi(2);
+        Self { mass, centre, polar: self.polar + other.polar, transverse: moved(&self) + moved(&other) }
+    }
+}
+
+impl Shaft {
+    /// The shaft of a file, with stations at these positions \[m] along it.
+    ///
+    /// # Errors
+    /// A sentence, where a station lies beyond the ends of a flexible shaft.
+    pub fn new(section: &ShaftSection, stations: &[f64]) -> Result<Self, String> {
+        let turning = if section.torque.is_some() { Turning::Free } else { Turning::Given };
+        if section.section.is_empty() {
+            return Ok(Self::rigid(section, stations, turning));
+        }
+        let discs: Vec<_> = section
+            .disc
+            .iter()
+            .map(|disc| (disc.position.0, [disc.mass.0, disc.polar_inertia.0, disc.transverse_inertia.0]))
+            .collect();
+        let beams = Beams::new(&section.section, section.material, stations, &discs)?;
+        let highest = section.modes_up_to.map_or(MODES_UP_TO, |frequency| frequency.0);
+        let retardation = section.retardation_time.map_or(0.0, |time| time.0);
+        let reduced = beams.reduced(std::f64::consts::TAU * highest);
+        let maps = reduced.stations;
+        let modes = reduced.frequencies.iter().map(|frequency| frequency / std::f64::consts::TAU).collect();
+        let parts = Parts {
+            mass: reduced.mass,
+            damping: &reduced.stiffness * retardation,
+            stiffness: reduced.stiffness,
+            gyroscopic: reduced.gyroscopic,
+            weights: reduced.weights,
+            polar_inertia: reduced.polar_inertia,
+        };
+        Ok(parts.turning(turning, maps, modes))
+    }
+
+    fn rigid(section: &ShaftSection, stations: &[f64], turning: Turning) -> Self {
+        let body = RigidSum {
+            mass: section.mass.map_or(0.0, |mass| mass.0),
+            centre: section.centre.map_or(0.0, |centre| centre.0),
+            polar: section.polar_inertia.map_or(0.0, |inertia| inertia.0),
+            transverse: section.transverse_inertia.map_or(0.0, |inertia| inertia.0),
+        };
+        let whole = section.disc.iter().fold(body, |sum, disc| {
+            sum.plus(RigidSum {
+                mass: disc.mass.0,
+                centre: disc.position.0,
+                polar: disc.polar_inertia.0,
+                transverse: disc.transverse_inertia.0,
+            })
+        });
+        let RigidSum { mass, centre, polar, transverse } = whole;
+        let diagonal = [mass, mass, mass, transverse, transverse];
+        let mut gyroscopic = DMatrix::zeros(5, 5);
+        (gyroscopic[(3, 4)], gyroscopic[(4, 3)]) = (polar, -polar);
+        let map = |position: &f64| {
+            let arm = position - centre;
+            let mut map = Map::zeros(5);
+            for i in 0..3 {
+                map[(i, i)] = 1.0;
+            }
+            (map[(1, 4)], map[(2, 3)]) = (arm, -arm);
+            (map[(4, 3)], map[(5, 4)]) = (1.0, 1.0);
+            map
+        };
+        let weights =
+            OMatrix::from_fn_generic(
+                nalgebra::Dyn(5),
+                nalgebra::Const::<3>,
+                |i, k| {
+                    if i == k { mass } else { 0.0 }
+                },
+            );
+        let parts = Parts {
+            mass: DMatrix::from_diagonal(&DVector::from_row_slice(&diagonal)),
+            damping: DMatrix::zeros(5, 5),
+            stiffness: DMatrix::zeros(5, 5),
+            gyroscopic,
+            weights,
+            polar_inertia: polar,
+        };
+        parts.turning(turning, stations.iter().map(map).collect(), vec![])
+    }
+}
+
+/// A shaft without its turn.
+struct Parts {
+    mass: DMatrix<f64>,
+    damping: DMatrix<f64>,
+    stiffness: DMatrix<f64>,
+    gyroscopic: DMatrix<f64>,
+    weights: OMatrix<f64, nalgebra::Dyn, nalgebra::U3>,
+    polar_inertia: f64,
+}
+
+impl Parts {
+    /// The shaft as it turns: under a torque its angle is one more coordinate.
+    fn turning(self, turning: Turning, maps: Vec<Map>, modes: Vec<f64>) -> Shaft {
+        let Self { mass, damping, stiffness, gyroscopic, weights, polar_inertia } = self;
+        let n = mass.nrows();
+        let size = if turning == Turning::Free { n + 1 } else { n };
+        let wider = |matrix: DMatrix<f64>| matrix.resize(size, size, 0.0);
+        let mut mass = wider(mass);
+        let mut stations: Vec<Map> = maps.into_iter().map(|map| map.resize_horizontally(size, 0.0)).collect();
+        if turning == Turning::Free {
+            mass[(n, n)] = polar_inertia;
+            stations.iter_mut().for_each(|map| map[(3, n)] = 1.0);
+        }
+        let structure = Structure {
+            mass,
+            damping: wider(damping),
+            stiffness: wider(stiffness),
+            gyroscopic: wider(gyroscopic),
+            polar_inertia,
+            by_spin: DVector::zeros(size),
+            weights: weights.resize_vertically(size, 0.0),
+            turning,
+        };
+        Shaft { structure, stations, modes }
+    }
+}

@@ -1,0 +1,138 @@
+//! What the keys of a system must agree in.
+
+use super::{MountedScene, Written};
+use crate::schema::numbers::Range;
+use crate::schema::{SceneError, ShaftSection};
+
+/// Masses of shafts and discs.
+const MASS: Range = Range::above(0.0, 1e6, "kg");
+/// Their moments of inertia.
+const INERTIA: Range = Range::above(0.0, 1e6, "kg m2");
+/// Positions along a shaft.
+const POSITION: Range = Range::closed(-1e3, 1e3, "m");
+
+/// Checks every value against its range, and the keys against one another.
+pub fn check(written: &Written) -> Result<(), SceneError> {
+    let load = &written.load;
+    Range::above(0.0, 1e4, "s").check("load.duration", load.duration.0)?;
+    Range::closed(1e-9, load.duration.0, "s").check("load.output_interval", load.output_interval.0)?;
+    if written.gravity.is_table() {
+        return Err(SceneError::conflict("gravity", "gravity of a system is constant: give three numbers"));
+    }
+    if written.bearing.is_empty() {
+        return Err(SceneError::conflict("bearing", "a shaft needs bearings: give at least one [[bearing]]"));
+    }
+    let mut names: Vec<&str> = written.bearing.iter().map(|bearing| bearing.name.as_str()).collect();
+    names.push("shaft");
+    names.extend(written.shaft.load.iter().map(|load| load.name.as_str()));
+    names.extend(written.shaft.point.iter().map(|point| point.name.as_str()));
+    for (index, name) in names.iter().enumerate() {
+        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        if name.is_empty() || !name.chars().all(plain) {
+            let why = "names are letters, digits, _ and -, such as left";
+            return Err(SceneError::conflict(format!("name = \"{name}\""), why));
+        }
+        if names[..index].contains(name) {
+            let why = "bearings, loads and points of a system need names of their own, other than shaft";
+            return Err(SceneError::conflict(format!("name = \"{name}\""), why));
+        }
+    }
+    for bearing in &written.bearing {
+        let mounting = &bearing.mounting;
+        POSITION.check("bearing.mounting.position", mounting.position.0)?;
+        let preload = mounting.preload;
+        if preload.force.is_some() && preload.displacement.is_some() {
+            let why = "give at most one of force and displacement";
+            return Err(SceneError::conflict("bearing.mounting.preload", why));
+        }
+    }
+    shaft(&written.shaft)
+}
+
+fn shaft(shaft: &ShaftSection) -> Result<(), SceneError> {
+    if shaft.speed.is_some() == shaft.torque.is_some() {
+        return Err(SceneError::conflict("shaft", "give exactly one of speed and torque"));
+    }
+    if shaft.start_speed.is_some() && shaft.torque.is_none() {
+        return Err(SceneError::conflict(
+            "shaft.start_speed",
+            "needs torque: a speed says how fast the shaft turns",
+        ));
+    }
+    let rigid = [
+        ("shaft.mass", shaft.mass.map(|mass| mass.0), MASS),
+        ("shaft.polar_inertia", shaft.polar_inertia.map(|inertia| inertia.0), INERTIA),
+        ("shaft.transverse_inertia", shaft.transverse_inertia.map(|inertia| inertia.0), INERTIA),
+    ];
+    for (key, value, range) in rigid {
+        match (value, shaft.section.is_empty()) {
+            (Some(value), true) => range.check(key, value)?,
+            (None, true) => {
+                let why = "a rigid shaft needs mass, polar_inertia and transverse_inertia; a flexible one [[shaft.section]]";
+                return Err(SceneError::conflict(key, why));
+            }
+            (Some(_), false) => {
+                return Err(SceneError::conflict(
+                    key,
+                    "follows from [[shaft.section]]; add a [[shaft.disc]] instead",
+                ));
+            }
+            (None, false) => {}
+        }
+    }
+    POSITION.check("shaft.centre", shaft.centre.map_or(0.0, |centre| centre.0))?;
+    Range::closed(0.0, 1.0, "s")
+        .check("shaft.retardation_time", shaft.retardation_time.map_or(0.0, |time| time.0))?;
+    let modes = shaft.modes_up_to.map_or(1.0, |frequency| frequency.0);
+    Range::closed(1.0, 1e9, "Hz").check("shaft.modes_up_to", modes)?;
+    for disc in &shaft.disc {
+        POSITION.check("shaft.disc.position", disc.position.0)?;
+        MASS.check("shaft.disc.mass", disc.mass.0)?;
+        INERTIA.check("shaft.disc.polar_inertia", disc.polar_inertia.0)?;
+        INERTIA.check("shaft.disc.transverse_inertia", disc.transverse_inertia.0)?;
+        let unbalance = disc.unbalance.map_or(0.0, |unbalance| unbalance.0);
+        Range::closed(0.0, 1e3, "kg m").check("shaft.disc.unbalance", unbalance)?;
+    }
+    for load in &shaft.load {
+        POSITION.check("shaft.load.position", load.position.0)?;
+    }
+    sections(shaft)
+}
+
+/// Beams that make one piece.
+fn sections(shaft: &ShaftSection) -> Result<(), SceneError> {
+    let mut ends: Vec<(f64, f64)> = vec![];
+    for section in &shaft.section {
+        let (from, to) = (section.from.0, section.to.0);
+        POSITION.check("shaft.section.from", from)?;
+        Range::above(from, POSITION.high, "m").check("shaft.section.to", to)?;
+        let outer = section.outer_diameter.0;
+        Range::above(0.0, 1e2, "m").check("shaft.section.outer_diameter", outer)?;
+        let inner = section.inner_diameter.map_or(0.0, |diameter| diameter.0);
+        Range::closed(0.0, 0.99 * outer, "m").check("shaft.section.inner_diameter", inner)?;
+        ends.push((from, to));
+    }
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for pair in ends.windows(2) {
+        let (left, right) = (pair[0].1, pair[1].0);
+        if (right - left).abs() > 1e-9 {
+            let why = format!(
+                "{right} m: the section before it ends at {left} m, and sections must follow each other without gap or overlap"
+            );
+            return Err(SceneError::conflict("shaft.section.from", why));
+        }
+    }
+    Ok(())
+}
+
+/// All bearings of a system are integrated together.
+pub fn solvers(bearings: &[MountedScene]) -> Result<(), SceneError> {
+    let first = &bearings[0].scene.solver;
+    for bearing in bearings {
+        if bearing.scene.solver.alpha_f != first.alpha_f || bearing.scene.solver.level != first.level {
+            let why = "all bearings of a system are integrated together: give alpha_f and level in [solver] of the system";
+            return Err(SceneError::conflict("solver", why));
+        }
+    }
+    Ok(())
+}

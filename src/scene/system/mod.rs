@@ -1,0 +1,230 @@
+//! The file of a system: a shaft, its bearings, and what loads it.
+//!
+//! It is TOML as the scene of one bearing is. Each `[[bearing]]` has the keys of such a scene by itself (`scene`, a file; or
+//! `catalogue`, a designation), changed by `[bearing.set]`, and where it sits on the shaft, `[bearing.mounting]`.
+
+mod check;
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use super::{Scene, SceneError};
+use crate::catalogue::Request;
+use crate::schema::units::{Acceleration, Time};
+use crate::schema::{Components, Mounting, MountingDirection, ShaftSection, Solver, explain};
+
+/// A shaft with its bearings, as described by a file.
+#[derive(Clone, Debug)]
+pub struct SystemScene {
+    /// One line for results.
+    pub title: String,
+    /// The shaft.
+    pub shaft: ShaftSection,
+    /// The bearings.
+    pub bearings: Vec<MountedScene>,
+    /// [m/s2] acceleration of gravity in the axes of the shaft, constant.
+    pub gravity: Vector3<f64>,
+    /// Simulated time, and distance of rows.
+    pub load: SystemLoad,
+}
+
+/// A bearing of a system.
+#[derive(Clone, Debug)]
+pub struct MountedScene {
+    /// Its name, which names of its variables begin with.
+    pub name: String,
+    /// Where it sits.
+    pub mounting: Mounting,
+    /// The bearing by itself, in axes of its own; its inner race is moved by the shaft.
+    pub scene: Scene,
+}
+
+/// Simulated time, and distance of rows.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SystemLoad {
+    /// \[s] simulated time.
+    pub duration: Time,
+    /// \[s] distance of two rows of results.
+    pub output_interval: Time,
+}
+
+/// The file as it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    #[serde(default)]
+    title: String,
+    shaft: ShaftSection,
+    bearing: Vec<WrittenBearing>,
+    load: SystemLoad,
+    #[serde(default)]
+    gravity: Components<Acceleration>,
+    /// Checked with each bearing's scene.
+    #[serde(default)]
+    solver: Table,
+}
+
+/// A bearing as it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenBearing {
+    name: String,
+    scene: Option<String>,
+    catalogue: Option<String>,
+    mounting: Mounting,
+    #[serde(default)]
+    set: Table,
+}
+
+impl SystemScene {
+    /// Is this text that of a system? It has a section `[shaft]`, which the scene of one bearing has not.
+    pub fn is_system(text: &str) -> bool {
+        toml::from_str::<Table>(text).is_ok_and(|table| table.contains_key("shaft"))
+    }
+
+    /// Reads the file of a system.
+    ///
+    /// # Errors
+    /// See [`SceneError`].
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| SceneError::Read { path: path.display().to_string(), source })?;
+        Self::parse(&text, Some(&path.display().to_string()), path.parent().unwrap_or(Path::new("")))
+    }
+
+    /// Reads a system from text; its files are in a folder, and its own name stands in errors.
+    ///
+    /// # Errors
+    /// See [`SceneError`].
+    pub fn parse(text: &str, file: Option<&str>, folder: &Path) -> Result<Self, SceneError> {
+        let written: Written = toml::from_str(text).map_err(|why| {
+            let spot = why.span().map(|span| span.start);
+            explain::with_place(explain::format_error(text, &why), text, spot, file)
+        })?;
+        let placed = |error| explain::with_place(error, text, None, file);
+        check::check(&written).map_err(placed)?;
+        let Written { title, shaft, bearing, load, gravity, solver } = written;
+        let gravity = gravity.at(0.0);
+        let speed = shaft.speed.as_ref().map_or(0.0, |speed| speed.at(0.0));
+        let given = Given { gravity, speed, load, solver: &solver, folder };
+        let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
+        let bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
+        check::solvers(&bearings).map_err(placed)?;
+        Ok(Self { title, shaft, bearings, gravity, load })
+    }
+
+    /// Settings of the integration: those that steps of all bearings need.
+    pub fn solver(&self) -> Solver {
+        let mut solver = self.bearings[0].scene.solver;
+        for bearing in &self.bearings {
+            let own = bearing.scene.solver;
+            let smaller = |a: Time, b: Time| if b.0 < a.0 { b } else { a };
+            solver.max_step = smaller(solver.max_step, own.max_step);
+            solver.initial_step = smaller(solver.initial_step, own.initial_step);
+            solver.min_step = smaller(solver.min_step, own.min_step);
+        }
+        solver
+    }
+}
+
+/// What all bearings of a system are given.
+struct Given<'a> {
+    gravity: Vector3<f64>,
+    speed: f64,
+    load: SystemLoad,
+    solver: &'a Table,
+    folder: &'a Path,
+}
+
+impl WrittenBearing {
+    /// The bearing with its scene.
+    fn read(self, given: &Given<'_>) -> Result<MountedScene, SceneError> {
+        let Self { name, scene, catalogue, mounting, set } = self;
+        let inside =
+            |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
+        let (text, folder, file) = match (scene, catalogue) {
+            (Some(file), None) => {
+                let path = given.folder.join(&file);
+                let text = std::fs::read_to_string(&path)
+                    .map_err(|source| SceneError::Read { path: path.display().to_string(), source })
+                    .map_err(inside)?;
+                (text, path.parent().unwrap_or(Path::new("")).to_path_buf(), Some(file))
+            }
+            (None, Some(designation)) => {
+                let request = Request { designation: Some(designation.clone()), ..Request::default() };
+                let text = request.bearing().and_then(|bearing| bearing.scene(1));
+                let refuse =
+                    |why| inside(SceneError::conflict("bearing.catalogue", format!("{designation}: {why}")));
+                (text.map_err(refuse)?, given.folder.to_path_buf(), None)
+            }
+            _ => {
+                let why = "give exactly one of scene (a file) and catalogue (a designation)";
+                return Err(inside(SceneError::conflict("bearing", why)));
+            }
+        };
+        let mut table: Table = toml::from_str(&text)
+            .map_err(|why| explain::format_error(&text, &why))
+            .map_err(|why| explain::with_place(why, &text, None, file.as_deref()))
+            .map_err(inside)?;
+        merge(&mut table, set);
+        mount(&mut table, given, mounting.direction);
+        let scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
+        Ok(MountedScene { name, mounting, scene })
+    }
+}
+
+/// Sets keys of a table, section by section.
+fn merge(into: &mut Table, changes: Table) {
+    for (key, value) in changes {
+        match (into.get_mut(&key), value) {
+            (Some(Value::Table(section)), Value::Table(changes)) => merge(section, changes),
+            (_, value) => {
+                into.insert(key, value);
+            }
+        }
+    }
+}
+
+/// Makes a bearing's own scene that of a bearing whose inner race the shaft moves.
+fn mount(table: &mut Table, given: &Given<'_>, direction: MountingDirection) {
+    let section = |table: &mut Table, name: &str| -> Table {
+        match table.remove(name) {
+            Some(Value::Table(section)) => section,
+            _ => Table::new(),
+        }
+    };
+    let mut inner = section(table, "inner");
+    inner.insert("drive".into(), "pose".into());
+    table.insert("inner".into(), inner.into());
+    let mut load = section(table, "load");
+    let outer_speed = load.remove("outer_speed");
+    let mut load = Table::new();
+    load.extend(outer_speed.map(|speed| ("outer_speed".to_string(), speed)));
+    load.insert("duration".into(), given.load.duration.0.into());
+    load.insert("output_interval".into(), given.load.output_interval.0.into());
+    load.insert("inner_speed".into(), (direction.sign() * given.speed).into());
+    for (direction, key) in [
+        ("x", "displacement"),
+        ("y", "displacement"),
+        ("z", "displacement"),
+        ("ry", "rotation"),
+        ("rz", "rotation"),
+    ] {
+        load.insert(direction.into(), Table::from_iter([(key.to_string(), Value::from(0.0))]).into());
+    }
+    table.insert("load".into(), load.into());
+    if !given.solver.is_empty() {
+        table.insert("solver".into(), given.solver.clone().into());
+    }
+    let mut effects = section(table, "effects");
+    if given.gravity != Vector3::zeros() {
+        let sign = direction.sign();
+        let turned = [sign * given.gravity.x, sign * given.gravity.y, given.gravity.z];
+        effects.insert("gravity".into(), turned.map(Value::from).to_vec().into());
+    }
+    table.insert("effects".into(), effects.into());
+}

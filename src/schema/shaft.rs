@@ -1,0 +1,154 @@
+//! The sections of a system: a shaft, what is on it, and how its bearings are mounted.
+
+use serde::Deserialize;
+
+use super::components::Components;
+use super::schedule::{self, Schedule};
+use super::sections::Material;
+use super::units::*;
+
+/// A shaft: a rigid body by its mass and moments of inertia, or beams by their sections; discs can be added to both.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ShaftSection {
+    /// [rad/s] speed about the shaft's x axis; not with `torque`.
+    #[serde(deserialize_with = "some::<AngularVelocity, _>")]
+    pub speed: Option<Schedule>,
+    /// [N m] torque that drives the shaft; not with `speed`.
+    #[serde(deserialize_with = "some::<Moment, _>")]
+    pub torque: Option<Schedule>,
+    /// [rad/s] speed at the start of a shaft under a torque.
+    pub start_speed: Option<AngularVelocity>,
+    /// \[kg] mass of a rigid shaft; not with `section`.
+    pub mass: Option<Mass>,
+    /// [kg m2] moment of inertia of a rigid shaft about its axis.
+    pub polar_inertia: Option<Inertia>,
+    /// [kg m2] moment of inertia of a rigid shaft about the y and z axes through its centre of mass.
+    pub transverse_inertia: Option<Inertia>,
+    /// \[m] position of a rigid shaft's centre of mass along its axis; 0 if not given.
+    pub centre: Option<Length>,
+    /// Beams of a flexible shaft, in any order; together they are one piece.
+    pub section: Vec<BeamSection>,
+    /// Rigid discs on the shaft.
+    pub disc: Vec<Disc>,
+    /// Material of the beams.
+    pub material: Material,
+    /// \[s] retardation time of the beams: stiffness times this is their damping; 0 if not given.
+    pub retardation_time: Option<Time>,
+    /// \[Hz] modes of the shaft between its bearings up to this frequency are kept; 20 kHz if not given.
+    pub modes_up_to: Option<Frequency>,
+    /// Forces and moments at points of the shaft.
+    pub load: Vec<PointLoad>,
+    /// Points whose motion is reported.
+    pub point: Vec<Point>,
+}
+
+/// A beam of one cross-section.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BeamSection {
+    /// \[m] position of its left end along the shaft.
+    pub from: Length,
+    /// \[m] position of its right end.
+    pub to: Length,
+    /// \[m] outer diameter.
+    pub outer_diameter: Length,
+    /// \[m] diameter of its bore; 0 if not given.
+    pub inner_diameter: Option<Length>,
+}
+
+/// A rigid disc.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Disc {
+    /// \[m] position along the shaft.
+    pub position: Length,
+    /// \[kg] mass.
+    pub mass: Mass,
+    /// [kg m2] moment of inertia about the shaft's axis.
+    pub polar_inertia: Inertia,
+    /// [kg m2] moment of inertia about a diameter.
+    pub transverse_inertia: Inertia,
+    /// [kg m] unbalance: mass times its distance from the axis; 0 if not given.
+    pub unbalance: Option<Unbalance>,
+    /// \[rad] azimuth of the unbalance at the start, from +y towards +z; 0 if not given.
+    pub unbalance_azimuth: Option<Angle>,
+}
+
+/// Force and moment at a point of the shaft.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointLoad {
+    /// Its name, for the inputs of a package.
+    pub name: String,
+    /// \[m] position along the shaft.
+    pub position: Length,
+    /// \[N] force, components along x, y, z, each constant or a table.
+    #[serde(default)]
+    pub force: Components<Force>,
+    /// [N m] moment, components about x, y, z.
+    #[serde(default)]
+    pub moment: Components<Moment>,
+}
+
+/// A point whose motion is reported.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Point {
+    /// Its name.
+    pub name: String,
+    /// \[m] position along the shaft.
+    pub position: Length,
+}
+
+/// How a bearing is mounted.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mounting {
+    /// \[m] position of the bearing's centre along the shaft.
+    pub position: Length,
+    /// Where the bearing's x axis points: along the shaft's, or against it.
+    #[serde(default)]
+    pub direction: MountingDirection,
+    /// Preload of the bearing; at most one of both.
+    #[serde(default)]
+    pub preload: Preload,
+}
+
+/// Where the x axis of a bearing points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum MountingDirection {
+    /// Along the shaft's x axis.
+    #[default]
+    #[serde(rename = "+x")]
+    Along,
+    /// Against it: turned by half a turn about z.
+    #[serde(rename = "-x")]
+    Against,
+}
+
+impl MountingDirection {
+    /// 1 or -1.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Along => 1.0,
+            Self::Against => -1.0,
+        }
+    }
+}
+
+/// How far the inner race is pushed along the bearing's +x axis when it is mounted.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table { force = ... } or { displacement = ... }")]
+pub struct Preload {
+    /// \[N] axial force that it takes at rest.
+    pub force: Option<Force>,
+    /// \[m] way, such as what a spacer is ground by.
+    pub displacement: Option<Length>,
+}
+
+fn some<'de, Q: Quantity + for<'a> Deserialize<'a>, D: serde::Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Schedule>, D::Error> {
+    schedule::deserialize::<Q, D>(deserializer).map(Some)
+}

@@ -1,0 +1,174 @@
+//! A system from one row to the next, in steps that end at the knots of its scripts.
+
+use std::cmp::Ordering;
+
+use super::super::script::Script;
+use super::super::{SimulationError, step_limits};
+use super::{System, SystemError, SystemOutputs, loads};
+use crate::dynamics::StepFailure;
+use crate::dynamics::system::{Part, StructureStep, try_step};
+use crate::model::bodies::Race;
+use crate::model::structure::{Spin, Turning};
+use crate::numerics::tilt;
+use crate::scene::Groups;
+
+impl System {
+    /// Runs its own steps to exactly `end` \[s] by the scripts of all bearings and the shaft.
+    ///
+    /// # Errors
+    /// See [`SystemError`]; the state is then that of the last converged step, at [`System::time`].
+    pub fn advance(&mut self, end: f64) -> Result<(), SystemError> {
+        let begin = self.time;
+        if !(end > begin && end.is_finite()) {
+            return Err(SystemError::Backwards { from: begin, to: end });
+        }
+        let scripts: Vec<Script> = self
+            .bearings
+            .iter_mut()
+            .map(|bearing| {
+                bearing.inputs = bearing.scripted_inputs(begin);
+                let script = bearing.begin_script(Groups::ALL);
+                bearing.paths = bearing.paths.towards(&bearing.inputs, begin, end - begin);
+                script
+            })
+            .collect();
+        let result = self.follow(&scripts, end);
+        let mut checked = Ok(());
+        for (index, (bearing, script)) in self.bearings.iter_mut().zip(&scripts).enumerate() {
+            let contacts = bearing.end_script(script, result.is_ok());
+            let kept = bearing.check_contacts(&contacts);
+            bearing.inputs = bearing.scripted_inputs(bearing.state.time);
+            if checked.is_ok() {
+                checked = kept.map_err(|source| (index, source));
+            }
+        }
+        self.report();
+        result?;
+        checked.map_err(|(index, source)| self.of_bearing(index, source))
+    }
+
+    /// Outputs of the state as it is.
+    pub(super) fn report(&mut self) {
+        let torque = match (self.shaft.structure.turning, &self.scene.shaft.torque) {
+            (Turning::Free, Some(torque)) => torque.at(self.time),
+            _ => self.state.torque,
+        };
+        self.outputs = SystemOutputs::of(&self.scene, &self.shaft, &self.state, torque, self.time);
+    }
+
+    fn follow(&mut self, scripts: &[Script], end: f64) -> Result<(), SystemError> {
+        let least = self.scene.solver().min_step.0;
+        let of_bearings = scripts
+            .iter()
+            .zip(&self.bearings)
+            .flat_map(|(script, bearing)| script.knots(&bearing.scene, self.time, end, least));
+        let mut knots: Vec<f64> = of_bearings.chain(loads::knots(&self.scene, self.time, end)).collect();
+        knots.sort_by(f64::total_cmp);
+        let mut last = self.time;
+        knots.retain(|&knot| {
+            let apart = knot - last >= least && end - knot >= least;
+            if apart {
+                last = knot;
+            }
+            apart
+        });
+        knots.into_iter().chain([end]).try_for_each(|stop| self.step_to(scripts, stop))
+    }
+
+    fn step_to(&mut self, scripts: &[Script], end: f64) -> Result<(), SystemError> {
+        while self.time < end {
+            let remaining = end - self.time;
+            let limits = self
+                .bearings
+                .iter()
+                .filter_map(|bearing| step_limits::largest_step(&bearing.model, &bearing.state));
+            limits.for_each(|limit| self.control.cap(limit));
+            let h = self.control.step_within(remaining);
+            // The last step ends at the row to the bit.
+            let last = h >= remaining * (1.0 - 1e-9);
+            let next = if last { end } else { self.time + h };
+            if next.partial_cmp(&self.time) != Some(Ordering::Greater) {
+                return Err(SystemError::LostInRounding { time: self.time, step: h });
+            }
+            let load = loads::at(&self.scene, &self.shaft, &self.state, self.time, next);
+            let speed = self.speed_of_races(&load.spin);
+            let boundaries: Vec<_> = self
+                .bearings
+                .iter()
+                .zip(scripts)
+                .zip(&speed)
+                .map(|((bearing, script), speed)| {
+                    let mut boundary = bearing.imposed(script, next);
+                    boundary.loads[Race::Inner].speed = *speed;
+                    boundary.see_spins(&bearing.model);
+                    boundary
+                })
+                .collect();
+            let structure = &self.shaft.structure;
+            let structures =
+                [StructureStep { model: structure, scales: &self.scales, start: &self.state, load: &load }];
+            let mut parts: Vec<Part<'_>> = self
+                .bearings
+                .iter_mut()
+                .zip(&boundaries)
+                .map(|(bearing, boundary)| Part {
+                    model: &bearing.model,
+                    state: &mut bearing.state,
+                    boundary,
+                    workspace: &mut bearing.workspace,
+                })
+                .collect();
+            let tried =
+                try_step(&mut parts, &structures, &self.joints, h, &mut self.control, &mut self.workspace);
+            drop(parts);
+            match tried {
+                Ok(mut ends) => {
+                    if let Some(end) = ends.pop() {
+                        self.state = end;
+                    }
+                    self.time = next;
+                    self.check_step(&boundaries)?;
+                }
+                Err((index, failure)) => {
+                    if !self.control.above_minimum() {
+                        return Err(self.too_small(index, failure, &boundaries[index]));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn too_small(
+        &self,
+        index: usize,
+        failure: StepFailure,
+        boundary: &crate::dynamics::Boundary,
+    ) -> SystemError {
+        self.of_bearing(index, self.bearings[index].too_small(failure, boundary))
+    }
+
+    /// Refuses a state that the models of shaft and contacts do not hold for.
+    fn check_step(&self, boundaries: &[crate::dynamics::Boundary]) -> Result<(), SystemError> {
+        for (index, (bearing, boundary)) in self.bearings.iter().zip(boundaries).enumerate() {
+            let checked: Result<(), SimulationError> = bearing.check_creep(boundary);
+            checked.map_err(|source| self.of_bearing(index, source))?;
+            let axis = bearing.state.race(Race::Inner).axes[0];
+            let tilt = axis.y.hypot(axis.z);
+            if tilt.is_nan() || tilt > tilt::SMALL {
+                let name = self.scene.bearings[index].name.clone();
+                return Err(SystemError::Tilted { time: self.time, name, tilt, limit: tilt::SMALL });
+            }
+        }
+        Ok(())
+    }
+
+    /// [rad/s] spin of the inner race of every bearing, in its own axes.
+    fn speed_of_races(&self, given: &Spin) -> Vec<f64> {
+        let speed = match self.shaft.structure.turning {
+            Turning::Free => self.state.spin.speed,
+            Turning::Given | Turning::Still => given.speed,
+        };
+        self.scene.bearings.iter().map(|bearing| bearing.mounting.direction.sign() * speed).collect()
+    }
+}

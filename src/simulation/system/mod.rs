@@ -1,0 +1,147 @@
+//! Several bearings on a shaft, in motion together: one implicit step for all.
+
+mod advance;
+mod loads;
+mod outputs;
+mod start;
+
+use std::sync::Arc;
+
+use nalgebra::DVector;
+use thiserror::Error;
+
+use super::{Simulation, SimulationError};
+use crate::dynamics::system::{Joint, SystemWorkspace};
+use crate::model::structure::{Shaft, StructureState};
+use crate::numerics::step_control::StepControl;
+use crate::scene::system::SystemScene;
+pub use outputs::{PointOutput, SystemOutputs};
+
+/// Why a system could not start or go on.
+#[derive(Debug, Error)]
+pub enum SystemError {
+    /// One of its bearings could not.
+    #[error("bearing \"{name}\": {source}")]
+    Bearing {
+        /// The bearing.
+        name: String,
+        /// Why not.
+        source: SimulationError,
+    },
+    /// The shaft cannot be built.
+    #[error("shaft: {0}")]
+    Shaft(String),
+    /// The shaft finds no balance on its bearings.
+    #[error(
+        "the shaft finds no equilibrium on its bearings: after {iterations} iterations {residual:.3e} N are out of balance \
+         (is it held in every direction, axially too?)"
+    )]
+    NoEquilibrium {
+        /// Iterations spent.
+        iterations: u32,
+        /// \[N] largest unbalanced force.
+        residual: f64,
+    },
+    /// A step end that is not a time after the present one.
+    #[error("cannot advance from {from} s to {to} s")]
+    Backwards {
+        /// \[s] present time.
+        from: f64,
+        /// \[s] asked for.
+        to: f64,
+    },
+    /// A bearing is tilted further than a linear shaft is valid for.
+    #[error(
+        "at {time} s the shaft is tilted by {tilt:.3} rad at bearing \"{name}\": more than {limit} rad, the most that its linear \
+         equations hold for"
+    )]
+    Tilted {
+        /// \[s] time.
+        time: f64,
+        /// The bearing.
+        name: String,
+        /// \[rad] tilt.
+        tilt: f64,
+        /// \[rad] largest tilt.
+        limit: f64,
+    },
+    /// So late that a step no longer changes the time.
+    #[error("at {time} s a step of {step} s is lost in rounding: begin nearer to time 0")]
+    LostInRounding {
+        /// \[s] time reached.
+        time: f64,
+        /// \[s] step.
+        step: f64,
+    },
+}
+
+/// A shaft on its bearings in motion. Cloning it saves everything; the clone goes on to the same bits.
+#[derive(Clone, Debug)]
+pub struct System {
+    scene: Arc<SystemScene>,
+    shaft: Arc<Shaft>,
+    /// [`crate::model::structure::Structure::scales`].
+    scales: DVector<f64>,
+    /// The bearings, in the order of the scene.
+    bearings: Vec<Simulation>,
+    joints: Arc<Vec<Joint>>,
+    state: StructureState,
+    control: StepControl,
+    time: f64,
+    outputs: SystemOutputs,
+    workspace: SystemWorkspace,
+}
+
+impl System {
+    /// The scene.
+    pub fn scene(&self) -> &SystemScene {
+        &self.scene
+    }
+
+    /// The shaft.
+    pub fn shaft(&self) -> &Shaft {
+        &self.shaft
+    }
+
+    /// \[s] time.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// State of the shaft.
+    pub fn state(&self) -> &StructureState {
+        &self.state
+    }
+
+    /// The bearings with their names, each in axes of its own; their inner races are where the shaft carries them.
+    pub fn bearings(&self) -> impl Iterator<Item = (&str, &Simulation)> {
+        self.scene.bearings.iter().map(|mounted| mounted.name.as_str()).zip(&self.bearings)
+    }
+
+    /// What the shaft does.
+    pub fn outputs(&self) -> &SystemOutputs {
+        &self.outputs
+    }
+
+    /// An error of one of the bearings.
+    fn of_bearing(&self, index: usize, source: SimulationError) -> SystemError {
+        SystemError::Bearing { name: self.scene.bearings[index].name.clone(), source }
+    }
+}
+
+/// Positions of all stations of a shaft \[m]: bearings, then loads, points and discs.
+fn stations(scene: &SystemScene) -> Vec<f64> {
+    let shaft = &scene.shaft;
+    let bearings = scene.bearings.iter().map(|bearing| bearing.mounting.position.0);
+    let loads = shaft.load.iter().map(|load| load.position.0);
+    let points = shaft.point.iter().map(|point| point.position.0);
+    let discs = shaft.disc.iter().map(|disc| disc.position.0);
+    bearings.chain(loads).chain(points).chain(discs).collect()
+}
+
+/// First station of loads, of points and of discs.
+fn first_stations(scene: &SystemScene) -> [usize; 3] {
+    let loads = scene.bearings.len();
+    let points = loads + scene.shaft.load.len();
+    [loads, points, points + scene.shaft.point.len()]
+}
