@@ -10,6 +10,7 @@ mod player;
 mod report;
 mod run;
 mod scene;
+mod shaft;
 mod summary;
 mod sweep;
 

@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 
 use cpu_time::ThreadTime;
 use indicatif::{ProgressBar, ProgressStyle};
+use roulement::simulation::Simulation;
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::{Rows, play};
-use roulement::simulation::{Simulation, SimulationError};
 use roulement_cli::error::Run;
 use roulement_cli::report::figures::Figures;
 use roulement_cli::report::results::{ResultsError, ResultsWriter};
@@ -40,7 +40,7 @@ pub enum End {
     /// By Ctrl-C.
     Interrupted,
     /// With a step that could not be finished.
-    Failed(SimulationError),
+    Failed(String),
 }
 
 impl Played {
@@ -114,7 +114,7 @@ impl Player {
             Ok(ControlFlow::Break(Stop::Results(why))) => return Err(why),
             Ok(ControlFlow::Break(Stop::Interrupted)) => End::Interrupted,
             Ok(ControlFlow::Continue(())) => End::Reached,
-            Err(why) => End::Failed(why),
+            Err(why) => End::Failed(why.to_string()),
         };
         if let Some(table) = table {
             table.finish()?;
@@ -133,7 +133,7 @@ pub fn put(from: &Path, to: &Path) -> Result<(), String> {
 }
 
 /// A bar with simulated time and an estimate of what is left.
-fn progress_bar(points: u64, words: &str) -> ProgressBar {
+pub(super) fn progress_bar(points: u64, words: &str) -> ProgressBar {
     let bar = ProgressBar::new(points);
     let template =
         format!("{words}simulated {{msg}} [{{bar:40}}] {{percent}} %, {{elapsed}} elapsed, {{eta}} left");

@@ -24,7 +24,7 @@ use signal_hook::flag;
 use super::effects::announce;
 use super::player::{End, Played, Player, put};
 use super::summary::summary;
-use super::{load, say, tell};
+use super::{load, say, shaft, tell};
 
 /// Exit code of a program that Ctrl-C ended: 128 and the number of the signal.
 pub const INTERRUPTED: u8 = 130;
@@ -66,6 +66,13 @@ pub struct Options {
 /// If the simulation cannot start or go on, or files cannot be written.
 pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     let Options { scene, output, json, columns, window, error, means_only, rounds } = options;
+    if shaft::is_system(&scene) {
+        if error.is_some() {
+            return Err("--error is for the scene of one bearing: run a shaft again with a smaller solver.max_step and compare".into());
+        }
+        let choice = Choice { columns, window: window.unwrap_or_default() };
+        return shaft::run(&heeded_interrupt()?, &scene, &output, &choice, json);
+    }
     let mut scene = load(&scene)?;
     if let Some(Some(error)) = error {
         scene.solver.goal = Some(ErrorGoal { error, of: ErrorOf::All });
@@ -252,7 +259,12 @@ impl Place {
 
     /// Leaves plots, means and summary of a run, and says the summary. Error bars and a report of errors are those of runs that
     /// were compared.
-    fn leave(&self, played: &Played, bars: Option<Figures>, errors: &str) -> Result<(), Box<dyn Error>> {
+    pub(super) fn leave(
+        &self,
+        played: &Played,
+        bars: Option<Figures>,
+        errors: &str,
+    ) -> Result<(), Box<dyn Error>> {
         let scene = played.simulation.scene();
         let shown = Shown { figures: played.figures(), bars };
         let text = summary(played, &shown) + errors;
@@ -309,7 +321,7 @@ impl Place {
             ended_early: match &played.end {
                 End::Reached => None,
                 End::Interrupted => Some("interrupted".to_string()),
-                End::Failed(why) => Some(why.to_string()),
+                End::Failed(why) => Some(why.clone()),
             },
         };
         write(&directory.join(record::FILE), |path| record.write(path))?;

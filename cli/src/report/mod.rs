@@ -15,6 +15,7 @@ pub mod plots;
 pub mod polar;
 pub mod quantities;
 pub mod results;
+pub mod shaft;
 pub mod spectrum;
 pub mod style;
 pub mod thinned;

@@ -19,19 +19,19 @@ const START: f64 = 0.02;
 const JUMP: f64 = 5.0;
 
 /// A curve: its name, points, and where it is one of several balls the least and largest values of all of them.
-struct Curve {
-    name: &'static str,
-    points: Vec<(f64, f64)>,
-    band: Vec<(f64, f64)>,
+pub(super) struct Curve {
+    pub name: String,
+    pub points: Vec<(f64, f64)>,
+    pub band: Vec<(f64, f64)>,
 }
 
 /// One panel of a figure.
-struct Panel {
-    x_label: &'static str,
-    y_label: &'static str,
-    curves: Vec<Curve>,
+pub(super) struct Panel {
+    pub x_label: &'static str,
+    pub y_label: &'static str,
+    pub curves: Vec<Curve>,
     /// \[y] smallest range worth magnifying: less is rounding.
-    least: f64,
+    pub least: f64,
 }
 
 impl Panel {
@@ -83,8 +83,8 @@ pub fn write_plots(
 /// A quantity of both contacts of ball 1 over time, within the range of all balls: what figure 7 of the paper shows.
 fn contact_panels(history: &[Outputs]) -> Vec<Panel> {
     let panel = |y_label, least, get: fn(&ContactOutput) -> f64| {
-        let curve = |name, side: fn(&BallOutput) -> &ContactOutput| Curve {
-            name,
+        let curve = |name: &str, side: fn(&BallOutput) -> &ContactOutput| Curve {
+            name: name.into(),
             points: history.iter().map(|o| (o.time * 1e3, get(side(&o.balls[0])))).collect(),
             band: history.iter().map(|o| extremes(o.balls.iter().map(|ball| get(side(ball))))).collect(),
         };
@@ -106,8 +106,8 @@ fn contact_panels(history: &[Outputs]) -> Vec<Panel> {
 }
 
 fn bearing_panels(model: &Model, race: Race, history: &[Outputs]) -> Vec<Panel> {
-    let curve = |name, get: &dyn Fn(&Outputs) -> f64| Curve {
-        name,
+    let curve = |name: &str, get: &dyn Fn(&Outputs) -> f64| Curve {
+        name: name.into(),
         points: history.iter().map(|o| (o.time * 1e3, get(o))).collect(),
         band: vec![],
     };
@@ -172,7 +172,7 @@ fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-fn figure(path: &Path, title: &str, mut panels: Vec<Panel>) -> Result<(), PlotError> {
+pub(super) fn figure(path: &Path, title: &str, mut panels: Vec<Panel>) -> Result<(), PlotError> {
     panels.retain(|panel| !panel.is_nothing());
     let columns = 2;
     let rows = panels.len().div_ceil(columns).max(1);
@@ -211,7 +211,7 @@ fn heights(panel: &Panel) -> std::ops::Range<f64> {
 fn draw(panel: &Panel, area: &Area<'_>) -> Drawn {
     let mut keys = vec![];
     for (curve, colour) in panel.curves.iter().zip(COLOURS) {
-        keys.push((curve.name, Key::Line, colour));
+        keys.push((curve.name.as_str(), Key::Line, colour));
     }
     // Where balls do not differ there is no band to be seen.
     let has_band = |curve: &Curve| curve.band.iter().any(|(low, high)| high - low > 0.01 * panel.least);

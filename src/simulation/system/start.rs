@@ -21,8 +21,12 @@ use crate::scene::system::{MountedScene, SystemScene};
 
 /// [N/m] of a steel bearing's order: what a stiffness is shifted by where a step makes no progress.
 const TYPICAL_STIFFNESS: f64 = 1e7;
-/// [-] accepted imbalance over the forces at work.
+/// [-] imbalance over the forces at work that is aimed at, and that is accepted where rounding in the bearings' equilibria stands against
+/// less.
 const TOLERANCE: f64 = 1e-10;
+const ROUNDED: f64 = 1e-6;
+/// [-] imbalance below which a step must lower it.
+const NEAR: f64 = 1e-4;
 /// [-] longest step over the smallest ball diameter.
 const LONGEST_STEP: f64 = 0.01;
 /// Most steps.
@@ -209,13 +213,17 @@ impl Statics<'_> {
         let longest = LONGEST_STEP * self.bearings.iter().map(smallest).fold(f64::INFINITY, f64::min);
         let mut here = self.evaluate(&state)?;
         let mut shift = 0.0;
+        let mut refused = None;
         let size = |trial: &Trial| trial.residual.component_div(&scales).amax();
         for iterations in 0..MAX_ITERATIONS {
-            if size(&here) <= TOLERANCE * here.force.max(1.0) {
+            let allowed = if shift > 1e12 { ROUNDED } else { TOLERANCE };
+            if size(&here) <= allowed * here.force.max(1.0) {
                 return Ok(state.coordinates);
             }
             if shift > 1e12 {
-                return Err(SystemError::NoEquilibrium { iterations, residual: size(&here) });
+                let residual = size(&here);
+                // What a bearing says is the reason, where it is one.
+                return Err(refused.unwrap_or(SystemError::NoEquilibrium { iterations, residual }));
             }
             let mut matrix = here.stiffness.clone();
             for (i, scale) in scales.iter().enumerate() {
@@ -231,9 +239,10 @@ impl Statics<'_> {
             });
             let trial = step.filter(|step| step.iter().all(|v| v.is_finite())).and_then(|step| {
                 let moved = StructureState { coordinates: &state.coordinates + &step, ..state.clone() };
-                let trial = self.evaluate(&moved).ok()?;
+                let trial = self.evaluate(&moved).map_err(|why| refused = Some(why)).ok()?;
                 let work = 0.5 * (&here.residual + &trial.residual).dot(&step);
-                (work > 0.0 || size(&trial) < size(&here) * (1.0 - 1e-6)).then_some((moved, trial))
+                let downhill = work > 0.0 && size(&here) > NEAR * here.force;
+                (downhill || size(&trial) < size(&here) * (1.0 - 1e-6)).then_some((moved, trial))
             });
             match trial {
                 Some((moved, trial)) => {

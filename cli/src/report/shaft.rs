@@ -1,0 +1,187 @@
+//! What is left of a shaft's run: its table, its plots, its words.
+
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use roulement::scene::system::SystemScene;
+use roulement::simulation::system::{PointOutput, System, SystemOutputs};
+
+use super::number;
+use super::plots::{Curve, Panel, figure};
+use super::results::Window;
+use super::style::PlotError;
+
+/// Names of all points of a shaft whose motion is known: bearings, loads, points.
+pub fn places(scene: &SystemScene) -> Vec<String> {
+    let bearings = scene.bearings.iter().map(|bearing| &bearing.name);
+    let loads = scene.shaft.load.iter().map(|load| &load.name);
+    bearings.chain(loads).chain(scene.shaft.point.iter().map(|point| &point.name)).cloned().collect()
+}
+
+/// Motion at all of these points.
+fn points(outputs: &SystemOutputs) -> impl Iterator<Item = &PointOutput> {
+    outputs.seats.iter().chain(&outputs.loads).chain(&outputs.points)
+}
+
+/// Table of a shaft over time: CSV with units in the header.
+pub struct ShaftTable {
+    file: BufWriter<File>,
+    window: Window,
+}
+
+impl ShaftTable {
+    /// Begins a file.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn create(path: &Path, scene: &SystemScene, window: Window) -> io::Result<Self> {
+        let mut file = BufWriter::new(File::create(path)?);
+        let mut names: Vec<String> =
+            ["time [s]", "shaft.angle [rad]", "shaft.speed [rad/s]", "shaft.torque [N m]"]
+                .map(String::from)
+                .into();
+        for place in places(scene) {
+            let of = [("x", "m"), ("y", "m"), ("z", "m"), ("ry", "rad"), ("rz", "rad")];
+            names.extend(of.map(|(component, unit)| format!("shaft.{place}.{component} [{unit}]")));
+        }
+        writeln!(file, "{}", names.join(","))?;
+        Ok(Self { file, window })
+    }
+
+    /// Writes a row.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write(&mut self, outputs: &SystemOutputs) -> io::Result<()> {
+        if !self.window.contains(outputs.time) {
+            return Ok(());
+        }
+        let mut line = vec![];
+        let mut row = vec![outputs.time, outputs.spin.angle, outputs.spin.speed, outputs.torque];
+        for PointOutput { displacement: d, tilt, .. } in points(outputs) {
+            row.extend([d.x, d.y, d.z, tilt.y, tilt.z]);
+        }
+        for (index, value) in row.into_iter().enumerate() {
+            if index > 0 {
+                line.push(b',');
+            }
+            number::append(&mut line, value);
+        }
+        line.push(b'\n');
+        self.file.write_all(&line)?;
+        self.file.flush()
+    }
+}
+
+/// Draws the shaft's motion at its bearings over time, and its path there.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_plot(
+    scene: &SystemScene,
+    rows: &[SystemOutputs],
+    directory: &Path,
+) -> Result<PathBuf, PlotError> {
+    let names: Vec<&str> = scene.bearings.iter().map(|bearing| bearing.name.as_str()).collect();
+    // As many as there are colours for.
+    let shown = names.len().min(7);
+    let over_time = |y_label, least, get: fn(&PointOutput) -> f64| Panel {
+        x_label: "time [ms]",
+        y_label,
+        curves: (0..shown)
+            .map(|k| Curve {
+                name: names[k].to_string(),
+                points: rows.iter().map(|row| (row.time * 1e3, get(&row.seats[k]))).collect(),
+                band: vec![],
+            })
+            .collect(),
+        least,
+    };
+    let paths = (0..shown).map(|k| Curve {
+        name: names[k].to_string(),
+        points: rows
+            .iter()
+            .map(|row| (row.seats[k].displacement.y * 1e6, row.seats[k].displacement.z * 1e6))
+            .collect(),
+        band: vec![],
+    });
+    let of_shaft = |y_label, least, get: fn(&SystemOutputs) -> f64| Panel {
+        x_label: "time [ms]",
+        y_label,
+        curves: vec![Curve {
+            name: "shaft".into(),
+            points: rows.iter().map(|row| (row.time * 1e3, get(row))).collect(),
+            band: vec![],
+        }],
+        least,
+    };
+    let panels = vec![
+        Panel {
+            x_label: "y [um]",
+            y_label: "path of the shaft at its bearings: z [um]",
+            curves: paths.collect(),
+            least: 1e-3,
+        },
+        over_time("along the axis, x [um]", 1e-3, |point| point.displacement.x * 1e6),
+        over_time("displacement y [um]", 1e-3, |point| point.displacement.y * 1e6),
+        over_time("displacement z [um]", 1e-3, |point| point.displacement.z * 1e6),
+        over_time("tilt about y [urad]", 1e-3, |point| point.tilt.y * 1e6),
+        over_time("tilt about z [urad]", 1e-3, |point| point.tilt.z * 1e6),
+        of_shaft("speed [rad/s]", 1e-3, |row| row.spin.speed),
+        of_shaft("torque that drives the shaft [N m]", 1e-3, |row| row.torque),
+    ];
+    let path = directory.join("shaft.svg");
+    let title = if scene.title.is_empty() { "shaft on its bearings" } else { &scene.title };
+    figure(&path, title, panels)?;
+    Ok(path)
+}
+
+/// What a shaft's run came to, in words: of the shaft, and of its bearings a line each.
+pub fn summary(system: &System, means: &[Option<[f64; 2]>]) -> String {
+    let (scene, outputs) = (system.scene(), system.outputs());
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let mut line = |words: std::fmt::Arguments<'_>| {
+        let _ = writeln!(text, "{words}");
+    };
+    if !scene.title.is_empty() {
+        line(format_args!("{}", scene.title));
+    }
+    line(format_args!("at {:.3} ms", outputs.time * 1e3));
+    let spin = &outputs.spin;
+    line(format_args!("shaft            {:.4} rad/s, driven by {:.5} N m", spin.speed, outputs.torque));
+    if let ([first, .., last], false) = (system.shaft().modes.as_slice(), system.shaft().modes.is_empty()) {
+        let count = system.shaft().modes.len();
+        line(format_args!("shaft modes      {count} between held stations, {first:.0} to {last:.0} Hz"));
+    }
+    for ((name, bearing), (seat, means)) in system.bearings().zip(outputs.seats.iter().zip(means)) {
+        let direction = scene.bearings.iter().find(|mounted| mounted.name == name);
+        let sign = direction.map_or(1.0, |mounted| mounted.mounting.direction.sign());
+        // What the shaft does to the bearing, in the shaft's axes.
+        let force = bearing.outputs().inner.wrench.force;
+        let (axial, radial) = (-sign * force.x, force.y.hypot(force.z));
+        let d = seat.displacement * 1e6;
+        line(format_args!(
+            "{name:<16} shaft at x {:.3} y {:.3} z {:.3} um; it presses with {radial:.1} N across, {axial:.1} N along x",
+            d.x, d.y, d.z
+        ));
+        let loads = bearing.outputs().balls.iter().map(|ball| ball.inner.load);
+        let (least, most) =
+            loads.fold((f64::INFINITY, 0.0f64), |(low, high), load| (low.min(load), high.max(load)));
+        let power = means.map_or(String::new(), |[power, torque]| {
+            format!("; mean losses {power:.3} W, friction torque {torque:.5} N m")
+        });
+        line(format_args!("{:<16} ball loads {least:.1} to {most:.1} N{power}", ""));
+    }
+    let energies = &outputs.energies;
+    line(format_args!(
+        "energy           put in {:.5} J, to bearings {:.5} J, damped {:.5} J, balance {:.2e} J",
+        energies.input,
+        energies.bearings,
+        energies.damping,
+        energies.unaccounted()
+    ));
+    text
+}

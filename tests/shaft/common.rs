@@ -1,0 +1,121 @@
+//! Shafts of the tests.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+use roulement::scene::system::SystemScene;
+use roulement::simulation::system::System;
+
+/// Pinion shaft on two 7206 B back to back: loads of a helical mesh, weight, preload.
+pub const GEARBOX: &str = r#"
+gravity = [0, 0, -9.81]
+
+[shaft]
+speed = "6000 rpm"
+mass = "1.8 kg"
+polar_inertia = "6e-4 kg m^2"
+transverse_inertia = "4e-3 kg m^2"
+
+[[shaft.load]]
+name = "mesh"
+position = "-10 mm"
+force = [337.8, -475.0, 1260.5]
+moment = [30.0, 0, -8.04]
+
+[[bearing]]
+name = "left"
+catalogue = "7206 B"
+mounting = { position = "-50 mm", direction = "+x", preload = { force = "1500 N" } }
+
+[[bearing]]
+name = "right"
+catalogue = "7206 B"
+mounting = { position = "50 mm", direction = "-x", preload = { force = "1500 N" } }
+
+[load]
+duration = "5 ms"
+output_interval = "100 us"
+"#;
+
+/// A flexible shaft of 25 mm with a disc of 2 kg in the middle of 400 mm, on two 6205 with an axial preload.
+pub const ROTOR: &str = r#"
+[shaft]
+speed = "600 rpm"
+
+[[shaft.section]]
+from = "-20 mm"
+to = "420 mm"
+outer_diameter = "25 mm"
+
+[[shaft.disc]]
+position = "200 mm"
+mass = "2 kg"
+polar_inertia = "4e-3 kg m^2"
+transverse_inertia = "2e-3 kg m^2"
+
+[[shaft.load]]
+name = "pull"
+position = "200 mm"
+force = [0, "100 N", 0]
+
+[[bearing]]
+name = "left"
+catalogue = "6205"
+mounting = { position = 0.0, direction = "+x", preload = { force = "300 N" } }
+[bearing.set]
+effects = { creep = "saturated", heathcote_slip = false }
+
+[[bearing]]
+name = "right"
+catalogue = "6205"
+mounting = { position = "400 mm", direction = "-x", preload = { force = "300 N" } }
+[bearing.set]
+effects = { creep = "saturated", heathcote_slip = false }
+
+[load]
+duration = "10 ms"
+output_interval = "1 ms"
+"#;
+
+/// The scene of a text whose files are among the scenes of the project.
+pub fn scene(text: &str) -> SystemScene {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    SystemScene::parse(text, None, &folder).unwrap_or_else(|why| panic!("{why}"))
+}
+
+/// The system of a text, at its start.
+pub fn system(text: &str) -> System {
+    System::new(&scene(text)).unwrap_or_else(|why| panic!("{why}"))
+}
+
+/// Runs a system to a time in one go.
+pub fn run(text: &str, end: f64) -> System {
+    let mut system = system(text);
+    system.advance(end).unwrap_or_else(|why| panic!("{why}"));
+    system
+}
+
+/// Force of every bearing on its inner race, in the shaft's axes.
+pub fn forces(system: &System) -> Vec<Vector3<f64>> {
+    let signs = system.scene().bearings.iter().map(|mounted| mounted.mounting.direction.sign());
+    let forces = system.bearings().map(|(_, bearing)| bearing.outputs().inner.wrench.force);
+    forces.zip(signs).map(|(force, sign)| Vector3::new(sign * force.x, sign * force.y, force.z)).collect()
+}
+
+/// \[J] largest imbalance of energy of the shaft, and of its bearings since a moment whose stored energies are given, each over what was
+/// turned over.
+pub fn imbalance(system: &System, stored: &[f64]) -> [f64; 2] {
+    let energies = &system.outputs().energies;
+    let of_shaft = energies.unaccounted() / (energies.input.abs() + energies.bearings.abs()).max(1e-9);
+    let of_bearings = system.bearings().zip(stored).map(|((_, bearing), before)| {
+        let outputs = bearing.outputs();
+        let left = outputs.work + outputs.stiffened - outputs.dissipated - (outputs.stored_energy - before);
+        left.abs() / bearing.state().energies.turned_over().max(1e-9)
+    });
+    [of_shaft.abs(), of_bearings.fold(0.0, f64::max)]
+}
+
+/// \[J] stored energies of the bearings.
+pub fn stored(system: &System) -> Vec<f64> {
+    system.bearings().map(|(_, bearing)| bearing.outputs().stored_energy).collect()
+}
