@@ -5,6 +5,7 @@ mod components;
 mod error;
 pub mod explain;
 mod inputs;
+mod matrices;
 pub mod numbers;
 pub mod schedule;
 mod sections;
@@ -18,6 +19,7 @@ pub use accuracy::{Accuracy, ErrorGoal, ErrorOf, Follows, Level, SMALLEST_TOLERA
 pub use components::Components;
 pub use error::SceneError;
 pub use inputs::{Giver, Group, Groups, InputGivers};
+pub use matrices::StructureMatrices;
 pub use schedule::Schedule;
 pub use sections::*;
 pub use shaft::*;

@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use super::components::Components;
+use super::matrices::StructureMatrices;
 use super::schedule::{self, Schedule};
 use super::sections::Material;
 use super::units::*;
@@ -29,8 +30,13 @@ pub struct ShaftSection {
     pub centre: Option<Length>,
     /// Beams of a flexible shaft, in any order; together they are one piece.
     pub section: Vec<BeamSection>,
-    /// Rigid discs on the shaft.
+    /// Rigid discs on the shaft; not with `matrices`.
     pub disc: Vec<Disc>,
+    /// File with the matrices of a shaft from another program (docs/shaft.md); instead of `mass` and `section`.
+    pub matrices: Option<String>,
+    /// What that file has.
+    #[serde(skip)]
+    pub read: Option<StructureMatrices>,
     /// Material of the beams.
     pub material: Material,
     /// \[s] retardation time of the beams: stiffness times this is their damping; 0 if not given.

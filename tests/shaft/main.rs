@@ -1,6 +1,11 @@
 //! Several bearings on one shaft.
+#![allow(clippy::unwrap_used)]
 
 mod common;
 mod hard;
 mod motion;
+mod reference;
+#[path = "../scene_reference/sources.rs"]
+#[allow(dead_code)]
+mod sources;
 mod statics;

@@ -175,3 +175,72 @@ fn limit_stiff_beams_move_as_the_rigid_body_of_their_mass_and_inertia() {
     let (a, b) = (one.outputs().loads[0].displacement, other.outputs().loads[0].displacement);
     assert!((a - b).norm() < 0.02 * b.norm() && b.norm() > 1e-7, "{a} {b}");
 }
+
+/// The matrices of the beams, written to a file as another program would.
+#[test]
+fn invariant_a_shaft_from_a_file_of_matrices_moves_as_the_beams_they_are_of() {
+    let beams = run(ROTOR, 5e-4);
+    let shaft = beams.shaft();
+    let rows = |matrix: &nalgebra::DMatrix<f64>| -> Vec<Vec<f64>> {
+        matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+    };
+    let station = |(position, map): (f64, &roulement::model::structure::Map)| {
+        let map: Vec<Vec<f64>> = map.row_iter().map(|row| row.iter().copied().collect()).collect();
+        serde_json::json!({ "position": position, "map": map })
+    };
+    let stations: Vec<_> = [0.0, 0.4, 0.2].into_iter().zip(&shaft.stations).map(station).collect();
+    let structure = &shaft.structure;
+    let mut file = serde_json::json!({
+        "mass": rows(&structure.mass),
+        "stiffness": rows(&structure.stiffness),
+        "gyroscopic": rows(&structure.gyroscopic),
+        "polar_inertia": structure.polar_inertia,
+        "stations": stations,
+    });
+    let folder = std::env::temp_dir().join(format!("roulement-matrices-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let section = ROTOR.find("[[shaft.section]]").unwrap();
+    let load = ROTOR.find("[[shaft.load]]").unwrap();
+    let text = format!("{}{}", &ROTOR[..section], &ROTOR[load..])
+        .replace("[shaft]\n", "[shaft]\nmatrices = \"rotor.json\"\n");
+    let read = |text: &str, file: &serde_json::Value| {
+        std::fs::write(folder.join("rotor.json"), file.to_string()).unwrap();
+        roulement::scene::system::SystemScene::parse(text, None, &folder)
+    };
+    let mut other = roulement::simulation::system::System::new(&read(&text, &file).unwrap()).unwrap();
+    other.advance(5e-4).unwrap();
+    assert_eq!(other.state(), beams.state());
+    // What does not fit is refused with its place.
+    for (text, key, value, part) in [
+        (text.clone(), "mass", serde_json::json!([[1.0]]), "stiffness has"),
+        (text.clone(), "stiffness", serde_json::json!("none"), "rotor.json"),
+        (
+            text.replace("0.0, direction", "0.1, direction"),
+            "title",
+            serde_json::json!("other"),
+            "no station at 0.1 m",
+        ),
+        (format!("gravity = [0, 0, -9.81]\n{text}"), "title", serde_json::json!("other"), "translations"),
+        (
+            text.replace("[shaft]\n", "[shaft]\nmass = 1.0\n"),
+            "title",
+            serde_json::json!("other"),
+            "shaft.mass",
+        ),
+    ] {
+        let kept = file[key].clone();
+        file[key] = value;
+        let refusal = match read(&text, &file) {
+            Ok(scene) => {
+                roulement::simulation::system::System::new(&scene).map(drop).unwrap_err().to_string()
+            }
+            Err(why) => why.to_string(),
+        };
+        assert!(refusal.contains(part), "{refusal}\nshould name {part}");
+        match kept.is_null() {
+            true => drop(file.as_object_mut().unwrap().remove(key)),
+            false => file[key] = kept,
+        }
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}

@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use nalgebra::Vector3;
 use roulement::scene::system::SystemScene;
 use roulement::simulation::system::{PointOutput, System, SystemOutputs};
 
@@ -99,14 +100,14 @@ pub fn write_plot(
             .collect(),
         least,
     };
-    let paths = (0..shown).map(|k| Curve {
-        name: names[k].to_string(),
-        points: rows
-            .iter()
-            .map(|row| (row.seats[k].displacement.y * 1e6, row.seats[k].displacement.z * 1e6))
-            .collect(),
-        band: vec![],
-    });
+    // About where each bearing's point is in the mean of the second half: bearings lie apart by more than they move.
+    let later = &rows[rows.len() / 2..];
+    let path = |k: usize| {
+        let mean =
+            later.iter().map(|row| row.seats[k].displacement).sum::<Vector3<f64>>() / later.len() as f64;
+        let points = rows.iter().map(|row| (row.seats[k].displacement - mean) * 1e6);
+        Curve { name: names[k].to_string(), points: points.map(|d| (d.y, d.z)).collect(), band: vec![] }
+    };
     let of_shaft = |y_label, least, get: fn(&SystemOutputs) -> f64| Panel {
         x_label: "time [ms]",
         y_label,
@@ -120,8 +121,8 @@ pub fn write_plot(
     let panels = vec![
         Panel {
             x_label: "y [um]",
-            y_label: "path of the shaft at its bearings: z [um]",
-            curves: paths.collect(),
+            y_label: "path of the shaft at its bearings about its mean: z [um]",
+            curves: (0..shown).map(path).collect(),
             least: 1e-3,
         },
         over_time("along the axis, x [um]", 1e-3, |point| point.displacement.x * 1e6),

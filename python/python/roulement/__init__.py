@@ -11,7 +11,7 @@ All numbers are SI, angles in radians. Results have the same bits as those of th
 
 import importlib
 
-from . import catalogue, coupling, load_cases
+from . import catalogue, coupling, load_cases, shaft
 from .contacts import LAWS, contact
 from .cost import cost
 from .equilibrium import Equilibrium, equilibrium
@@ -35,6 +35,7 @@ __all__ = [
     "load_cases",
     "package",
     "run",
+    "shaft",
     "sweep",
 ]
 

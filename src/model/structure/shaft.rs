@@ -43,9 +43,21 @@ impl Shaft {
     /// The shaft of a file, with stations at these positions \[m] along it.
     ///
     /// # Errors
-    /// A sentence, where a station lies beyond the ends of a flexible shaft.
+    /// A sentence, where a station lies beyond the ends of a flexible shaft, or is none of its matrices.
     pub fn new(section: &ShaftSection, stations: &[f64]) -> Result<Self, String> {
         let turning = if section.torque.is_some() { Turning::Free } else { Turning::Given };
+        if let Some(read) = &section.read {
+            let maps = stations.iter().map(|position| read.station(*position)).collect::<Result<_, _>>()?;
+            let parts = Parts {
+                mass: read.mass.clone(),
+                damping: read.damping.clone(),
+                stiffness: read.stiffness.clone(),
+                gyroscopic: read.gyroscopic.clone(),
+                weights: read.weights.clone(),
+                polar_inertia: read.polar_inertia,
+            };
+            return Ok(parts.turning(turning, maps, vec![]));
+        }
         if section.section.is_empty() {
             return Ok(Self::rigid(section, stations, turning));
         }

@@ -1,8 +1,10 @@
 //! What the keys of a system must agree in.
 
+use nalgebra::Vector3;
+
 use super::{MountedScene, Written};
 use crate::schema::numbers::Range;
-use crate::schema::{SceneError, ShaftSection};
+use crate::schema::{SceneError, ShaftSection, StructureMatrices};
 
 /// Masses of shafts and discs.
 const MASS: Range = Range::above(0.0, 1e6, "kg");
@@ -65,6 +67,12 @@ fn shaft(shaft: &ShaftSection) -> Result<(), SceneError> {
         ("shaft.transverse_inertia", shaft.transverse_inertia.map(|inertia| inertia.0), INERTIA),
     ];
     for (key, value, range) in rigid {
+        if shaft.matrices.is_some() {
+            match value {
+                None => continue,
+                Some(_) => return Err(SceneError::conflict(key, "is in the file of shaft.matrices")),
+            }
+        }
         match (value, shaft.section.is_empty()) {
             (Some(value), true) => range.check(key, value)?,
             (None, true) => {
@@ -79,6 +87,10 @@ fn shaft(shaft: &ShaftSection) -> Result<(), SceneError> {
             }
             (None, false) => {}
         }
+    }
+    if shaft.matrices.is_some() && !(shaft.section.is_empty() && shaft.disc.is_empty()) {
+        let why = "the file has the whole shaft: take [[shaft.section]] and [[shaft.disc]] out";
+        return Err(SceneError::conflict("shaft.matrices", why));
     }
     POSITION.check("shaft.centre", shaft.centre.map_or(0.0, |centre| centre.0))?;
     Range::closed(0.0, 1.0, "s")
@@ -121,6 +133,16 @@ fn sections(shaft: &ShaftSection) -> Result<(), SceneError> {
             );
             return Err(SceneError::conflict("shaft.section.from", why));
         }
+    }
+    Ok(())
+}
+
+/// Matrices say how gravity acts on them, where there is some.
+pub fn weighs(matrices: &StructureMatrices, gravity: &Vector3<f64>) -> Result<(), SceneError> {
+    if *gravity != Vector3::zeros() && matrices.weights.amax() == 0.0 {
+        let why =
+            "gravity needs translations in the file: the coordinates of a unit displacement along x, y, z";
+        return Err(SceneError::conflict("shaft.matrices", why));
     }
     Ok(())
 }

@@ -14,7 +14,9 @@ use toml::{Table, Value};
 use super::{Scene, SceneError};
 use crate::catalogue::Request;
 use crate::schema::units::{Acceleration, Time};
-use crate::schema::{Components, Mounting, MountingDirection, ShaftSection, Solver, explain};
+use crate::schema::{
+    Components, Mounting, MountingDirection, ShaftSection, Solver, StructureMatrices, explain,
+};
 
 /// A shaft with its bearings, as described by a file.
 #[derive(Clone, Debug)]
@@ -56,14 +58,19 @@ pub struct SystemLoad {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Written {
+    /// One line for plots and results.
     #[serde(default)]
     title: String,
+    /// The shaft.
     shaft: ShaftSection,
+    /// The bearings.
     bearing: Vec<WrittenBearing>,
+    /// Simulated time, and distance of rows.
     load: SystemLoad,
+    /// [m/s2] acceleration of gravity along the shaft's x, y, z, constant: it acts on the shaft and inside the bearings. 0 if not given.
     #[serde(default)]
     gravity: Components<Acceleration>,
-    /// Checked with each bearing's scene.
+    /// Time integration, as in the scene of a bearing; instead of those of the bearings' own scenes.
     #[serde(default)]
     solver: Table,
 }
@@ -72,10 +79,15 @@ struct Written {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WrittenBearing {
+    /// Its name: letters, digits, _ and -.
     name: String,
+    /// File of its scene, beside this one; or `catalogue`.
     scene: Option<String>,
+    /// Its designation in the catalogue, such as 7206 B.
     catalogue: Option<String>,
+    /// Where it sits on the shaft.
     mounting: Mounting,
+    /// Keys of its scene that are changed, section by section.
     #[serde(default)]
     set: Table,
 }
@@ -107,8 +119,13 @@ impl SystemScene {
         })?;
         let placed = |error| explain::with_place(error, text, None, file);
         check::check(&written).map_err(placed)?;
-        let Written { title, shaft, bearing, load, gravity, solver } = written;
+        let Written { title, mut shaft, bearing, load, gravity, solver } = written;
         let gravity = gravity.at(0.0);
+        if let Some(matrices) = &shaft.matrices {
+            let read = StructureMatrices::load(&folder.join(matrices)).map_err(placed)?;
+            check::weighs(&read, &gravity).map_err(placed)?;
+            shaft.read = Some(read);
+        }
         let speed = shaft.speed.as_ref().map_or(0.0, |speed| speed.at(0.0));
         let given = Given { gravity, speed, load, solver: &solver, folder };
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));

@@ -1,0 +1,22 @@
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import Any
+
+from numpy.typing import ArrayLike, NDArray
+
+def reduce(
+    mass: ArrayLike, stiffness: ArrayLike, interface: Sequence[int] | NDArray[Any], highest: float, gyroscopic: ArrayLike | None = None
+) -> dict[str, NDArray[Any]]: ...
+def write(
+    path: str | PathLike[str],
+    mass: ArrayLike,
+    stiffness: ArrayLike,
+    stations: Mapping[float, ArrayLike],
+    *,
+    gyroscopic: ArrayLike | None = None,
+    damping: ArrayLike | None = None,
+    translations: ArrayLike | None = None,
+    polar_inertia: float = 0.0,
+    title: str = "",
+) -> None: ...
+def write_ross(path: str | PathLike[str], rotor: Any, nodes: Sequence[int], highest: float) -> None: ...

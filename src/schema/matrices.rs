@@ -1,0 +1,158 @@
+//! Matrices of a shaft from another program, as a JSON file.
+
+use std::path::Path;
+
+use nalgebra::{DMatrix, Dyn, OMatrix, U3, U6};
+use serde::Deserialize;
+
+use super::error::SceneError;
+
+/// \[m] how far a station may be from where it is asked for.
+const SAME: f64 = 1e-6;
+/// [-] asymmetry of a mass or stiffness matrix over its largest element that is rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// A linear structure in `n` coordinates, as the file has it: matrices by rows, SI.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Matrices {
+    /// Where it is from.
+    #[serde(default)]
+    pub title: String,
+    /// Mass matrix, n x n, symmetric.
+    pub mass: Vec<Vec<f64>>,
+    /// Stiffness matrix, n x n, symmetric.
+    pub stiffness: Vec<Vec<f64>>,
+    /// Damping matrix, n x n; 0 if not given.
+    pub damping: Option<Vec<Vec<f64>>>,
+    /// Gyroscopic matrix of a spin of 1 rad/s, n x n, skew; 0 if not given.
+    pub gyroscopic: Option<Vec<Vec<f64>>>,
+    /// [kg m2] moment of inertia about the axis.
+    #[serde(default)]
+    pub polar_inertia: f64,
+    /// Coordinates of a unit displacement of the whole along x, y and z, n x 3; needed where gravity acts.
+    pub translations: Option<Vec<Vec<f64>>>,
+    /// Places where bearings sit and loads act.
+    pub stations: Vec<MatrixStation>,
+}
+
+/// A place of a structure.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MatrixStation {
+    /// \[m] position along the shaft.
+    pub position: f64,
+    /// Displacement x, y, z and rotation about x, y, z there by the coordinates, 6 x n.
+    pub map: Vec<Vec<f64>>,
+}
+
+/// The same as matrices.
+#[derive(Clone, Debug)]
+pub struct StructureMatrices {
+    /// Mass.
+    pub mass: DMatrix<f64>,
+    /// Stiffness.
+    pub stiffness: DMatrix<f64>,
+    /// Damping.
+    pub damping: DMatrix<f64>,
+    /// Gyroscopic.
+    pub gyroscopic: DMatrix<f64>,
+    /// [kg m2] about the axis.
+    pub polar_inertia: f64,
+    /// Generalised forces of unit accelerations.
+    pub weights: OMatrix<f64, Dyn, U3>,
+    /// Position \[m] and map of every station.
+    pub stations: Vec<(f64, OMatrix<f64, U6, Dyn>)>,
+}
+
+impl StructureMatrices {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// With the file, the matrix and what is wrong with it.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let file = path.display().to_string();
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| SceneError::Read { path: file.clone(), source })?;
+        let wrong = |why: String| SceneError::conflict("shaft.matrices", format!("{file}: {why}"));
+        let read: Matrices = serde_json::from_str(&text).map_err(|why| wrong(why.to_string()))?;
+        read.checked().map_err(wrong)
+    }
+
+    /// Displacement and rotation at a position \[m]; where there is no station, the positions of those there are.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn station(&self, position: f64) -> Result<OMatrix<f64, U6, Dyn>, String> {
+        let found = self.stations.iter().find(|(at, _)| (at - position).abs() <= SAME);
+        found.map(|(_, map)| map.clone()).ok_or_else(|| {
+            let there: Vec<String> = self.stations.iter().map(|(at, _)| at.to_string()).collect();
+            format!("shaft.matrices has no station at {position} m; it has {} m", there.join(", "))
+        })
+    }
+}
+
+impl Matrices {
+    fn checked(self) -> Result<StructureMatrices, String> {
+        let n = self.mass.len();
+        let square = |name: &str, rows: &[Vec<f64>]| matrix(name, rows, n, n);
+        let symmetric = |name: &str, rows: &[Vec<f64>], sign: f64| {
+            let matrix = square(name, rows)?;
+            let left = (&matrix - matrix.transpose() * sign).amax();
+            if left > ROUNDING * matrix.amax() {
+                let kind = if sign > 0.0 { "symmetric" } else { "skew" };
+                return Err(format!("{name} is not {kind}: elements differ by up to {left}"));
+            }
+            Ok((&matrix + matrix.transpose() * sign) * 0.5)
+        };
+        if n == 0 {
+            return Err("mass has no rows".into());
+        }
+        let mass = symmetric("mass", &self.mass, 1.0)?;
+        if mass.clone().cholesky().is_none() {
+            return Err("mass is not positive definite: every coordinate needs some inertia".into());
+        }
+        let zero = || DMatrix::zeros(n, n);
+        let weights = match &self.translations {
+            Some(rows) => &mass * matrix("translations", rows, n, 3)?,
+            None => DMatrix::zeros(n, 3),
+        };
+        let stations = self.stations.iter().map(|station| {
+            let map = matrix(&format!("map of the station at {} m", station.position), &station.map, 6, n)?;
+            Ok((station.position, OMatrix::from_fn_generic(U6, Dyn(n), |i, k| map[(i, k)])))
+        });
+        if !(self.polar_inertia >= 0.0 && self.polar_inertia.is_finite()) {
+            return Err(format!(
+                "polar_inertia = {} kg m2 is out of range: allowed is 0 or more",
+                self.polar_inertia
+            ));
+        }
+        Ok(StructureMatrices {
+            stiffness: symmetric("stiffness", &self.stiffness, 1.0)?,
+            damping: self.damping.as_ref().map_or(Ok(zero()), |rows| square("damping", rows))?,
+            gyroscopic: self
+                .gyroscopic
+                .as_ref()
+                .map_or(Ok(zero()), |rows| symmetric("gyroscopic", rows, -1.0))?,
+            polar_inertia: self.polar_inertia,
+            weights: OMatrix::from_fn_generic(Dyn(n), U3, |i, k| weights[(i, k)]),
+            stations: stations.collect::<Result<_, String>>()?,
+            mass,
+        })
+    }
+}
+
+/// A matrix from its rows.
+fn matrix(name: &str, rows: &[Vec<f64>], height: usize, width: usize) -> Result<DMatrix<f64>, String> {
+    if rows.len() != height || rows.iter().any(|row| row.len() != width) {
+        let widths = rows.first().map_or(0, Vec::len);
+        return Err(format!(
+            "{name} has {} rows of {widths}; it should have {height} of {width}",
+            rows.len()
+        ));
+    }
+    if rows.iter().flatten().any(|value| !value.is_finite()) {
+        return Err(format!("{name} has an element that is no number"));
+    }
+    Ok(DMatrix::from_fn(height, width, |i, k| rows[i][k]))
+}

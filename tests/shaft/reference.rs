@@ -1,0 +1,97 @@
+//! The keys of a system in docs/shaft.md, from the structs that it is read by; `scripts/tables` writes them.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use crate::sources::{Section, Source, sources};
+
+/// Structs, and the section that each is in a file.
+const SECTIONS: [(&str, &str); 10] = [
+    ("Written", ""),
+    ("ShaftSection", "shaft"),
+    ("BeamSection", "shaft.section"),
+    ("Disc", "shaft.disc"),
+    ("PointLoad", "shaft.load"),
+    ("Point", "shaft.point"),
+    ("WrittenBearing", "bearing"),
+    ("Mounting", "bearing.mounting"),
+    ("Preload", "bearing.mounting.preload"),
+    ("SystemLoad", "load"),
+];
+
+fn section<'a>(sources: &'a [Source], name: &str) -> &'a Section {
+    let of = |source: &&Source| {
+        source.path.ends_with("schema/shaft.rs") || source.path.ends_with("scene/system/mod.rs")
+    };
+    let mut found = sources.iter().filter(of).filter_map(|source| source.sections.get(name));
+    found.next().unwrap_or_else(|| panic!("there is no struct {name}"))
+}
+
+fn tables() -> String {
+    let sources = sources();
+    let mut text = String::from("| key | meaning |\n|---|---|\n");
+    for (name, path) in SECTIONS {
+        for field in &section(&sources, name).fields {
+            let nested = SECTIONS.iter().any(|(_, other)| {
+                let key = if path.is_empty() { field.name.clone() } else { format!("{path}.{}", field.name) };
+                *other == key
+            });
+            let doc = field.doc.replace("\\[", "[").replace('|', "\\|");
+            assert!(!doc.is_empty(), "{name}.{} has no documentation", field.name);
+            if !nested {
+                let key = if path.is_empty() { field.name.clone() } else { format!("{path}.{}", field.name) };
+                writeln!(text, "| `{key}` | {doc} |").unwrap();
+            }
+        }
+    }
+    text
+}
+
+#[test]
+fn the_keys_in_the_document_are_those_of_the_sources() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/shaft.md");
+    let text = fs::read_to_string(&path).unwrap();
+    let (before, rest) = text.split_once("<!-- begin keys -->\n").unwrap();
+    let (written, after) = rest.split_once("<!-- end keys -->").unwrap();
+    let tables = format!("\n{}\n", tables());
+    if std::env::var("ROULEMENT_RENEW").is_ok() {
+        fs::write(&path, format!("{before}<!-- begin keys -->\n{tables}<!-- end keys -->{after}")).unwrap();
+    } else {
+        assert_eq!(written, tables, "docs/shaft.md is stale: scripts/tables");
+    }
+}
+
+#[test]
+fn the_example_of_the_document_and_the_shipped_shaft_are_read_and_start() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let document = fs::read_to_string(folder.join("docs/shaft.md")).unwrap();
+    let example = document.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    for text in [example.to_string(), fs::read_to_string(folder.join("scenes/shafts/pinion.toml")).unwrap()] {
+        let system = crate::common::system(&text);
+        assert_eq!(system.bearings().count(), 2);
+    }
+}
+
+#[test]
+fn refusals_name_key_value_and_allowed_range() {
+    for (from, to, parts) in [
+        ("mass = \"1.8 kg\"", "mass = \"-1 kg\"", &["shaft.mass = -1 kg", "(0,"][..]),
+        ("mass = \"1.8 kg\"\n", "", &["shaft.mass", "[[shaft.section]]"]),
+        ("speed = \"6000 rpm\"\n", "", &["shaft", "exactly one of speed and torque"]),
+        ("\"7206 B\"", "\"99999\"", &["bearing \"left\"", "99999"]),
+        ("\"+x\"", "\"x\"", &["direction", "+x", "-x"]),
+        ("\"right\"", "\"left\"", &["left", "names of their own"]),
+        ("position = \"-50 mm\"", "position = \"-50 kg\"", &["position", "-50 kg"]),
+        ("catalogue = \"7206 B\"\n", "", &["exactly one of scene", "catalogue"]),
+        ("[load]", "[laod]", &["laod"]),
+    ] {
+        let text = crate::common::GEARBOX.replacen(from, to, 1);
+        assert_ne!(text, crate::common::GEARBOX, "{from}");
+        let refusal =
+            roulement::scene::system::SystemScene::parse(&text, None, Path::new("")).unwrap_err().to_string();
+        for part in parts {
+            assert!(refusal.contains(part), "{refusal}\nshould name {part}");
+        }
+    }
+}
