@@ -4,8 +4,8 @@ Seats of bearings have the variables that a bearing in pose drive has (`interfac
 the inner race are outputs, forces and moments on the shaft are inputs, all in the axes of the shaft (x along it).
 
 Masters hand values over at communication points, all at once: a bearing that is told a place at one point is there at
-the next one, and its force comes back at that one. So the shaft is a step ahead. It is moved by leapfrog; the force at the middle of a kick is
-the parabola through the last three (`ahead`), known loads are those of that time.
+the next one, and its force comes back at that one. So the shaft is a step ahead. It is moved by leapfrog; the forces of the
+bearings are predicted by a step (`ahead`), mesh and weight are known.
 """
 
 import math
@@ -39,10 +39,14 @@ BASE = {"1": {}, "kg": {"kg": 1}, "m": {"m": 1}, "s": {"s": 1}, "rad": {"rad": 1
         "m/s2": {"m": 1, "s": -2}, "N": {"kg": 1, "m": 1, "s": -2}, "N.m": {"kg": 1, "m": 2, "s": -2}, "kg.m2": {"kg": 1, "m": 2}}
 
 
+# Of the values one to four steps back, for the next one: a straight line is met, delay has no part of third order (which would drive
+# vibration), and of what else is possible with four the sum of squares is least (a parabola through three makes noise at high frequency grow).
+WEIGHTS = (13 / 7, -2 / 7, -1.0, 3 / 7)
+
+
 def ahead(past):
-    """The next one of equally spaced values, from the last three at most, the newest last."""
-    weights = {1: (1,), 2: (-1, 2), 3: (1, -3, 3)}[len(past)]
-    return [sum(weight * values[k] for weight, values in zip(weights, past)) for k in range(len(past[0]))]
+    """The next one of equally spaced lists of values, from the last four, the newest first."""
+    return [sum(weight * values[k] for weight, values in zip(WEIGHTS, past)) for k in range(len(past[0]))]
 
 
 class Shaft(Fmi2Slave):
@@ -109,7 +113,7 @@ class Shaft(Fmi2Slave):
         for seat in SEATS:
             (x, y, z, about_y, about_z), along = self.on_seats[seat], self.set[f"{seat}.along"]
             total = [a + b for a, b in zip(total, (x, y, z, about_y - along * z, about_z + along * y))]
-        self.past = [*self.past[-2:], total]
+        self.past = [total, *(self.past or [total] * 3)[:3]]
         force = [a + b for a, b in zip(ahead(self.past), self.load(current_time + step_size))]
         before, transverse = self.rates, self.set["inertia.transverse"]
         # The gyroscopic moment turns the rate of the tilt, taken as a complex number: half of it before and half after the kick.
