@@ -13,13 +13,16 @@ import shutil
 import subprocess
 import sys
 import time as clock
+import tomllib
 from pathlib import Path
 
 import gearbox
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-STEP, STEPS = 1e-5, 2000  # communication step [s] of system.toml, and steps of its 20 ms
+SYSTEM = tomllib.loads((HERE / "system.toml").read_text())
+STEP, STOP = float(SYSTEM["step"].removesuffix(" us")) * 1e-6, float(SYSTEM["stop"].removesuffix(" ms")) * 1e-3  # [s]
+STEPS = round(STOP / STEP)
 START = 0.01  # of the means [s]: the torque is on, and 23 periods of the mesh are left
 SIDES = {"left": [1, 1, 1], "right": [-1, -1, 1]}  # signs from the axes of a bearing to those of the shaft
 FORCES = [(side, f"inner.force.{axis}") for side in SIDES for axis in "xyz"]
@@ -84,23 +87,28 @@ def turned(rows):
     return np.array(rows) * [1, *SIDES["left"], *SIDES["right"]]
 
 
+def of_means(rows):
+    """Rows from START on."""
+    return rows[rows[:, 0] > START + STEP / 2]
+
+
 def means(rows):
     """What the shaft does to both bearings, mean from START on [N]: opposite to their forces on it; x, y, z of left and right."""
-    return -rows[rows[:, 0] > START + STEP / 2, 1:].mean(axis=0).reshape(2, 3)
+    return -of_means(rows)[:, 1:].mean(axis=0).reshape(2, 3)
 
 
 def table(found):
-    """Prints forces of all masters, and returns the largest difference of a radial force to that by hand, over it."""
+    """Prints forces of all masters (swings are standard deviations), and returns the largest difference of a radial force to that by hand, over it."""
     hand = np.array([np.linalg.norm(radial) for radial in gearbox.by_hand().values()])
     axial = gearbox.mesh(gearbox.TORQUE)[0]
-    print("| master | radial, left [N] | radial, right [N] | axial, left [N] | axial, right [N] | sum of both [N] |")
-    print("|---|---:|---:|---:|---:|---:|")
-    print(f"| by hand | {hand[0]:.1f} | {hand[1]:.1f} | | | {axial:.1f} |")
+    print("| master | radial, left [N] | radial, right [N] | axial, left [N] | axial, right [N] | sum of both [N] | axial, left, swings by [N] |")
+    print("|---|---:|---:|---:|---:|---:|---:|")
+    print(f"| by hand | {hand[0]:.1f} | {hand[1]:.1f} | | | {axial:.1f} | |")
     worst = 0.0
     for master, rows in found.items():
         left, right = mean = means(rows)
-        radial = np.linalg.norm(mean[:, 1:], axis=1)
-        print(f"| {master} | {radial[0]:.1f} | {radial[1]:.1f} | {left[0]:.1f} | {right[0]:.1f} | {left[0] + right[0]:.1f} |")
+        radial, swing = np.linalg.norm(mean[:, 1:], axis=1), of_means(rows)[:, 1].std()
+        print(f"| {master} | {radial[0]:.1f} | {radial[1]:.1f} | {left[0]:.1f} | {right[0]:.1f} | {left[0] + right[0]:.1f} | {swing:.0f} |")
         worst = max(worst, *abs(radial / hand - 1))
     print(f"largest difference of a radial force from that by hand: {worst * 100:.2f} %")
     masters = list(found)
