@@ -114,7 +114,14 @@ fn pairs(text: &str, components: &[Component]) -> Result<Vec<(End, End)>, String
     let inputs: Vec<&Variable> =
         endings.iter().copied().filter(|variable| variable.causality == "input").collect();
     match (endings.first(), inputs.is_empty()) {
-        (None, _) => variable(&components[target], input).map(|_| vec![]),
+        (None, _) => {
+            // Names that end at a dot mean something here, too.
+            let names = variables.iter().flat_map(|variable| {
+                let dots = variable.name.match_indices('.').map(|(at, _)| &variable.name[..at]);
+                dots.chain([variable.name.as_str()])
+            });
+            Err(format!("{} has no variable {input}{}", components[target].name, meant(input, names)))
+        }
         (Some(first), true) => Err(format!(
             "no {to}.* is an input: {}.{} is of causality {}",
             components[target].name, first.name, first.causality
