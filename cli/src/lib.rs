@@ -1,5 +1,5 @@
-//! Parts of the command line: packages, results of runs, their numerical errors, pages that show them, sweeps of many cases, and the
-//! study of accuracy against CPU time.
+//! Parts of the command line: packages, results of runs, their numerical errors, pages that show them, sweeps of many cases, systems of
+//! connected packages, and the study of accuracy against CPU time.
 
 pub mod cost;
 pub mod error;
@@ -8,4 +8,5 @@ pub mod package;
 pub mod page;
 pub mod report;
 pub mod sweep;
+pub mod system;
 pub mod watch;

@@ -10,6 +10,7 @@ use std::process::Command;
 
 use common::Scratch;
 use roulement::scene::Scene;
+use roulement_cli::system::Description;
 use toml::{Table, Value};
 
 /// Commands that take minutes: their arguments are read, they do not run.
@@ -90,6 +91,10 @@ fn workplace(name: &str) -> Scratch {
     let coupled = fs::read_to_string(root().join("examples/coupling/bearing.toml")).unwrap();
     write("examples/coupling/bearing.toml", &coupled);
     fs::create_dir(scratch.path("build")).unwrap();
+    write(
+        "system.toml",
+        "name = \"one\"\nstep = 1e-5\nstop = 1\n[components.bearing]\nscene = \"thrust.toml\"\n",
+    );
     write("cases.csv", "friction.ball_race,load.duration\n0.05,0.001\n0.1,0.001\n");
     let contacts = fs::read_to_string(root().join("tests/data/contact/random.csv")).unwrap();
     let few: Vec<&str> = contacts.lines().take(3).collect();
@@ -121,7 +126,7 @@ fn every_command_of_the_documents_runs() {
                 continue;
             }
             let library = program.parent().unwrap().join("libroulement.so");
-            if arguments[0] == "fmu" && !library.exists() {
+            if ["fmu", "system"].contains(&arguments[0].as_str()) && !library.exists() {
                 println!("{document}: no library beside the program: {line}");
                 continue;
             }
@@ -166,6 +171,11 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                 let table: Table = part.parse().unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
                 if ["grid", "case", "latin_hypercube"].iter().any(|key| table.contains_key(*key)) {
                     sweep(&document, part);
+                    read += 1;
+                    continue;
+                }
+                if table.contains_key("components") {
+                    Description::read(part).unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
                     read += 1;
                     continue;
                 }

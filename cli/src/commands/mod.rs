@@ -13,6 +13,7 @@ mod scene;
 mod shaft;
 mod summary;
 mod sweep;
+mod system;
 
 use std::error::Error;
 use std::io::{self, Write};
@@ -75,6 +76,8 @@ enum Command {
         #[arg(long)]
         name: Option<String>,
     },
+    /// Write packages that are connected, as an SSP file and as an OSP system structure for libcosim, from one description.
+    System(system::Options),
     /// Write where chosen contacts of a run stick and slip at chosen times; CSV.
     Field(field::Options),
     /// Evaluate single rolling contacts of a CSV table; prints CSV.
@@ -172,6 +175,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Bearing(options) => bearing::run(&options)?,
         Command::Effects(options) => effects::run(&options)?,
         Command::Report(options) => report::run(&options)?,
+        Command::System(options) => system::run(&options)?,
         Command::Field(options) => field::run(&options)?,
         Command::Contact(options) => contact::run(&options)?,
         Command::Identify(options) => identify::run(&options)?,

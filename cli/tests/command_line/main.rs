@@ -15,6 +15,7 @@ mod scene_keys;
 mod signs;
 mod spectrum;
 mod sweep;
+mod system;
 
 use std::path::Path;
 use std::process::Command;

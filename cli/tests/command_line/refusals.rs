@@ -124,7 +124,7 @@ fn a_missing_library_is_named() {
 }
 
 /// Header of an ELF library of 64 bits with a piece to load, for a machine by its number.
-fn elf(machine: u8) -> Vec<u8> {
+pub fn elf(machine: u8) -> Vec<u8> {
     let mut file = vec![0; 120];
     file[..7].copy_from_slice(b"\x7fELF\x02\x01\x01");
     // kind, machine, version; where the table of pieces is, its entries' size, their number
