@@ -5,6 +5,7 @@ mod components;
 mod error;
 pub mod explain;
 mod inputs;
+mod machine;
 pub mod numbers;
 pub mod schedule;
 mod sections;
@@ -17,6 +18,7 @@ pub use accuracy::{Accuracy, ErrorGoal, ErrorOf, Follows, Level, SMALLEST_TOLERA
 pub use components::Components;
 pub use error::SceneError;
 pub use inputs::{Giver, Group, Groups, InputGivers};
-pub use schedule::Schedule;
+pub use machine::{GearSection, Machine, RotatingSection};
+pub use schedule::{Schedule, Sine};
 pub use sections::*;
 pub use support::{DirectionMatrix, SupportSection};
