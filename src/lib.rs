@@ -163,6 +163,7 @@
 //! |---|---|
 //! | [`numerics`] | methods that know nothing of bearings: numbers with derivatives, rotations, Newton's method, HHT steps |
 //! | [`kalker`] | rolling contact theories of one scaled patch: linear, polynomials, table, half-space reference |
+//! | [`loads`] | unbalance and gears: what parts of a machine do to their shaft |
 //! | [`contact`] | one contact of a ball with a race, its pocket or another ball, or of the cage with a land: from motion to forces |
 //! | [`schema`] | the parts of a scene: sections, units, schedules, ranges, errors |
 //! | [`effects`] | effects that a scene can switch on, a file each |
@@ -231,6 +232,7 @@ pub mod fmi;
 pub mod forces;
 pub mod interface;
 pub mod kalker;
+pub mod loads;
 pub mod model;
 pub mod numerics;
 pub mod prelude;

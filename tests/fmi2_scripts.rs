@@ -3,6 +3,7 @@
 #![allow(clippy::undocumented_unsafe_blocks)] // every pointer in here lives through its call
 #![allow(clippy::missing_transmute_annotations)] // the type of the logger stands beside
 
+use std::f64::consts::{PI, TAU};
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::ptr;
 use std::sync::Mutex;
@@ -124,6 +125,96 @@ fn invariant_a_package_plays_the_scripts_as_a_native_run_does() {
     }
     // Told once, not at every step.
     assert_eq!(messages.lock().unwrap().iter().filter(|(_, text)| text.contains("script")).count(), 3);
+    unsafe { fmi2FreeInstance(c) };
+}
+
+/// Every building block, gears and unbalance; friction and oil among them.
+const BLOCKS: [(&str, &str); 9] = [
+    ("load.y.force", "{ ramp = [0, 100], from = 0.0002, to = 0.0005 }"),
+    ("load.z.force", "{ sum = [20, { amplitude = 10, frequency = 3000, begin = 0.00015 }] }"),
+    ("load.x.force", "{ table = [[0, 0.6], [0.001, 1.5]], unit = \"kN\" }"),
+    ("friction.ball_race", "{ step = [0.08, 0.02], at = 0.0004 }"),
+    (
+        "film",
+        "{ iso_vg = 68, temperature = 70, lubrication = { mean = 0.5, amplitude = 0.5, frequency = 1000 } }",
+    ),
+    ("load.inner_speed", "{ mean = 650, amplitude = 50, frequency = 500, phase = -1.5707963267948966 }"),
+    ("outer.misalignment.ry", "{ ramp = [0, 1e-4], to = 0.001 }"),
+    (
+        "load.gear",
+        "[{ torque = { ramp = [1, 3], to = 0.001 }, pitch_radius = 0.0238, pressure_angle = 0.35, helix_angle = 0.26, \
+         teeth = 23, ripple = 0.1, offset = 0.01 }]",
+    ),
+    ("load.rotating", "[{ unbalance = 1e-4, offset = -0.01 }]"),
+];
+
+#[test]
+fn invariant_a_package_plays_building_blocks_as_a_native_run_does() {
+    let text = scripted("wrench", &BLOCKS);
+    let (package, messages) = package("blocks", &text);
+    let c = start(&package, 0.0, None);
+    for group in ["loads", "speeds", "friction", "lubrication"] {
+        assert_eq!(count(messages, Status::Ok, &format!("script of {group} is played")), 1, "{group}");
+    }
+    let mut native = Simulation::new(&Scene::parse(&text).unwrap()).unwrap();
+    let names = ["x", "y", "z"];
+    for point in 0..10 {
+        // What the inputs are by default, at the start too.
+        let (given, outputs) = (native.inputs().inner.applied, native.outputs());
+        for (axis, name) in names.into_iter().enumerate() {
+            assert_eq!(
+                get(c, &package, &format!("inner.applied_force.{name}")),
+                given.force[axis],
+                "{point}"
+            );
+            assert_eq!(get(c, &package, &format!("inner.force.{name}")), outputs.inner.wrench.force[axis]);
+        }
+        assert_eq!(get(c, &package, "inner.applied_moment.y"), given.moment.y, "{point}");
+        assert_eq!(get(c, &package, "friction"), native.inputs().friction);
+        assert_eq!(get(c, &package, "lubrication"), native.inputs().effects.lubrication);
+        assert_eq!(get(c, &package, "friction_torque"), outputs.friction_torque);
+        let (time, end) = (f64::from(point) * 1e-4, f64::from(point + 1) * 1e-4);
+        assert_eq!(unsafe { fmi2DoStep(c, time, end - time, 0) }, Status::Ok);
+        native.advance_scripted(time + (end - time)).unwrap();
+    }
+    // By hand at the end: ramp, sine since 0.15 ms, and the mesh at y = r.
+    let (time, speed) = (native.time(), |t: f64| 650.0 * t - 50.0 / (1000.0 * PI) * (1000.0 * PI * t).sin());
+    let torque = (1.0 + 2000.0 * time) * (1.0 + 0.1 * (23.0 * speed(time)).sin());
+    let mesh = torque / 0.0238;
+    let omega = 650.0 - 50.0 * (1000.0 * PI * time).cos();
+    let slowing = 50.0 * 1000.0 * PI * (1000.0 * PI * time).sin();
+    let (sin, cos) = speed(time).sin_cos();
+    let z = 20.0
+        + 10.0 * (TAU * 3000.0 * (time - 1.5e-4)).sin()
+        + mesh
+        + 1e-4 * (omega * omega * sin - slowing * cos);
+    assert!((get(c, &package, "inner.applied_force.z") / z - 1.0).abs() < 1e-12, "{z}");
+    unsafe { fmi2FreeInstance(c) };
+}
+
+#[test]
+fn invariant_a_package_of_a_measured_file_needs_no_file() {
+    let folder = std::env::temp_dir().join(format!("roulement-fmi2-measured-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("m.csv"), "t [us],F [kN]\n0,0.6\n250,0.9\n400,0.7\n").unwrap();
+    let file = "{ file = \"m.csv\", time = \"t [us]\", value = \"F [kN]\" }";
+    let text = Scene::edited_text(&scene_text("wrench"), [("load.x.force", file)]).unwrap();
+    std::fs::write(folder.join("scene.toml"), text).unwrap();
+    let scene = Scene::load(&folder.join("scene.toml")).unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    let package = Package::new("measured", &scene.source);
+    let c = package.start();
+    let mut native = Simulation::new(&scene).unwrap();
+    for point in 0..5 {
+        let time = f64::from(point) * 1e-4;
+        assert_eq!(unsafe { fmi2DoStep(c, time, 1e-4, 0) }, Status::Ok);
+        native.advance_scripted(time + 1e-4).unwrap();
+        assert_eq!(get(c, &package, "inner.force.x"), native.outputs().inner.wrench.force.x);
+        let s = native.time();
+        let expected =
+            if s <= 2.5e-4 { 600.0 + 1.2e6 * s } else { (900.0 - 200.0 * (s - 2.5e-4) / 1.5e-4).max(700.0) };
+        assert!((get(c, &package, "inner.applied_force.x") / expected - 1.0).abs() < 1e-12, "{s}");
+    }
     unsafe { fmi2FreeInstance(c) };
 }
 

@@ -44,7 +44,11 @@ impl Sweep {
         py.detach(|| {
             let cases = match (&path, &text) {
                 (Some(path), _) => Cases::load(path).map_err(failed)?,
-                (None, text) => Cases::from_toml(text.as_deref().unwrap_or_default()).map_err(value)?,
+                (None, text) => {
+                    let mut cases = Cases::from_toml(text.as_deref().unwrap_or_default()).map_err(value)?;
+                    cases.embed_files("".as_ref()).map_err(value)?;
+                    cases
+                }
             };
             let base = match (scene, &cases.scene) {
                 (Some(text), _) => text,

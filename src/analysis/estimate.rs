@@ -12,7 +12,7 @@ use crate::equilibrium::{
 use crate::kalker::nonlinear::KalkerError;
 use crate::model::Model;
 use crate::model::bodies::Race;
-use crate::scene::{Drive, Scene, Schedule};
+use crate::scene::{Drive, Machine, Scene, Schedule};
 
 /// Why nothing is estimated.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -43,8 +43,14 @@ pub fn verdicts(scene: &Scene, model: &Model) -> Result<Vec<Verdict>, EstimateEr
 pub fn of(scene: &Scene, model: &Model) -> Result<Estimate, EstimateError> {
     let directions = Race::loaded(scene).directions(scene);
     let schedules = directions.into_iter().flat_map(|direction| [direction.load, direction.motion]).flatten();
-    let mut times: Vec<f64> =
-        schedules.flat_map(|schedule| schedule.knots(0.0, f64::INFINITY).collect::<Vec<_>>()).collect();
+    let machine = Race::loaded(scene).machine(scene);
+    let schedules = schedules.chain(machine.into_iter().flat_map(Machine::schedules));
+    // Where they have kinks, and where what swings about 0 is largest.
+    let of = |schedule: &Schedule| {
+        let swung = schedule.shortest_period(0.0).map(|period| 0.25 * period);
+        schedule.knots(0.0, f64::INFINITY).chain(swung).collect::<Vec<_>>()
+    };
+    let mut times: Vec<f64> = schedules.flat_map(of).collect();
     times.sort_by(f64::total_cmp);
     let mut found = at(scene, model, 0.0);
     for time in times {

@@ -65,7 +65,7 @@ impl FrameSection {
 
     /// Does a table give it?
     pub fn is_scripted(&self) -> bool {
-        self.schedules().any(Schedule::is_table)
+        self.schedules().any(Schedule::is_scripted)
     }
 
     /// \[m/s2] largest size of the acceleration of the frame's origin, an estimate for scales.

@@ -89,7 +89,7 @@ impl Effect for Settings {
     fn setting(&self) -> Option<String> {
         let acceleration = &self.acceleration;
         let [x, y, z] = self.at(0.0).into();
-        let over_time = if acceleration.is_table() { " at the start, then by a table" } else { "" };
+        let over_time = if acceleration.is_scripted() { " at the start, then by a script" } else { "" };
         (acceleration.largest() != 0.0).then(|| format!("{:?} m/s2{over_time}", [x, y, z]))
     }
 }

@@ -114,10 +114,11 @@ impl EquilibriumInput {
             }
         };
         let orientation = UnitQuaternion::new(Vector3::new(0.0, tilt[0], tilt[1]));
+        let loads = race.load_at(scene, time);
         Self {
             race,
-            conditions: race.directions(scene).map(|direction| match direction.condition() {
-                Condition::Load(schedule) => Prescribed::Load(schedule.at(time)),
+            conditions: std::array::from_fn(|i| match race.directions(scene)[i].condition() {
+                Condition::Load(_) => Prescribed::Load(loads[i]),
                 Condition::Motion(schedule) => Prescribed::Motion(schedule.at(time)),
             }),
             inner_speed: scene.load.inner_speed.at(time),

@@ -23,9 +23,10 @@ use crate::effects::form::FormSection;
 pub use crate::effects::moving_frame::FrameMotion;
 use crate::effects::{film, growth, rating};
 pub use crate::schema::{
-    Accuracy, BearingSection, Components, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction, Giver,
-    Group, Groups, InputGivers, Interface, Level, Load, Material, Misalignment, Orientation, RaceLoad,
-    RaceSection, SceneError, Schedule, Solver, Start, Tilt, Translation, units,
+    Accuracy, BearingSection, Components, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction,
+    GearSection, Giver, Group, Groups, InputGivers, Interface, Level, Load, Machine, Material, Misalignment,
+    Orientation, RaceLoad, RaceSection, RotatingSection, SceneError, Schedule, Sine, Solver, Start, Tilt,
+    Translation, schedule, units,
 };
 use crate::schema::{Follows, explain};
 pub use scales::Scales;
@@ -106,6 +107,28 @@ impl Scene {
 
     /// Reads a scene whose files are in a folder; an error with the spot \[bytes] where the text cannot be read.
     fn read(text: &str, folder: &Path) -> Result<Self, (SceneError, Option<usize>)> {
+        match Self::with_files(text, folder) {
+            // Lines of the text with the tables are not those that the reader of a message has.
+            Ok(Some(text)) => Self::read_whole(&text, folder).map_err(|(why, _)| (why, None)),
+            Ok(None) => Self::read_whole(text, folder),
+            Err(why) => Err((why, None)),
+        }
+    }
+
+    /// The text with the tables of measured files in their place; none if it names no such file.
+    fn with_files(text: &str, folder: &Path) -> Result<Option<String>, SceneError> {
+        if !text.contains("file") {
+            return Ok(None);
+        }
+        // What is no TOML is refused where it is read.
+        let Ok(table) = toml::from_str::<toml::Table>(text) else { return Ok(None) };
+        let mut scene = toml::Value::Table(table);
+        let found = schedule::files::embed(&mut scene, folder, "")?;
+        Ok(scene.as_table().filter(|_| found).map(ToString::to_string))
+    }
+
+    /// Reads a scene whose schedules name no files.
+    fn read_whole(text: &str, folder: &Path) -> Result<Self, (SceneError, Option<usize>)> {
         let mut scene: Self = toml::from_str(text)
             .map_err(|why| (explain::format_error(text, &why), why.span().map(|span| span.start)))?;
         scene.source = text.to_string();

@@ -3,7 +3,7 @@
 
 use toml::Table;
 
-use super::{Scene, Schedule};
+use super::Scene;
 
 /// [m rad/s] speed over pitch diameter, n dm = 3e6 mm/min, beyond which no ball bearing is known to run.
 const FASTEST: f64 = 3e6 * 1e-3 * std::f64::consts::TAU / 60.0;
@@ -69,14 +69,8 @@ impl Scene {
 
     /// [rad/s] largest relative speed of the races.
     fn fastest(&self) -> f64 {
-        let speeds = [&self.load.inner_speed, &self.load.outer_speed];
-        let points = |schedule: &Schedule| match schedule {
-            Schedule::Constant(_) => vec![0.0],
-            Schedule::Table(points) => points.iter().map(|(time, _)| *time).collect(),
-        };
-        // Both change linearly in between.
-        let times = speeds.into_iter().flat_map(points);
-        times.map(|time| (speeds[0].at(time) - speeds[1].at(time)).abs()).fold(0.0, f64::max)
+        let differences = self.load.inner_speed.values_of_difference(&self.load.outer_speed);
+        differences.into_iter().map(f64::abs).fold(0.0, f64::max)
     }
 }
 

@@ -9,6 +9,7 @@ use std::f64::consts::{PI, TAU};
 use super::{Condition, Drive, Scene, Schedule};
 use crate::contact::hertz::HertzContact;
 use crate::effects::frame::FrameSection;
+use crate::model::bodies::Race;
 
 /// [-] approach of unloaded balls over their diameter: a bearing that carries next to nothing.
 const LEAST_APPROACH: f64 = 1e-5;
@@ -93,10 +94,11 @@ fn loads(scene: &Scene) -> [f64; 4] {
     let [gx, gy, gz] = scene.effects.gravity.acceleration.0.each_ref().map(largest);
     // In which direction a moving frame presses a race is not looked at.
     let moving = scene.effects.frame.section.as_ref().map_or(0.0, FrameSection::largest_acceleration);
+    let machine = Race::loaded(scene).machine(scene).map_or([0.0; 3], |machine| machine.largest());
     [
-        loads[0] + weight * gx,
-        (loads[1] + weight * (gy + moving)).hypot(loads[2] + weight * gz),
-        loads[3].hypot(loads[4]),
+        loads[0] + weight * gx + machine[0],
+        (loads[1] + weight * (gy + moving)).hypot(loads[2] + weight * gz) + machine[1],
+        loads[3].hypot(loads[4]) + machine[2],
         pressed,
     ]
 }

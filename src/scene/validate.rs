@@ -2,6 +2,7 @@
 
 use super::numbers::STEP;
 use super::{BearingSection, Condition, Drive, Giver, Group, Scene, SceneError, Schedule};
+use crate::model::bodies::Race;
 use crate::schema::numbers::Range;
 
 /// The directions of a race, in the order of their conditions.
@@ -163,11 +164,45 @@ fn load(scene: &Scene) -> Result<(), SceneError> {
         let why = "needs outer.drive = \"wrench\": another drive holds the outer race, whatever its load";
         return Err(SceneError::conflict("load.outer", why));
     }
-    let varies = |condition: &Condition| matches!(condition, Condition::Load(Schedule::Table(_)));
+    let machine = load.machine(Race::loaded(scene).scripted_speed(scene));
+    if !machine.is_empty() && ![scene.inner.drive, scene.outer.drive].contains(&Drive::Wrench) {
+        let key = if load.rotating.is_empty() { "load.gear" } else { "load.rotating" };
+        let why = "needs inner.drive = \"wrench\" or outer.drive = \"wrench\": a race with another drive is held, whatever \
+                   its load";
+        return Err(SceneError::conflict(key, why));
+    }
+    machine.check()?;
+    motions(scene)?;
+    let varies = |condition: &Condition| matches!(condition, Condition::Load(of) if of.is_scripted());
     if scene.inner.drive != Drive::Wrench && load.conditions().iter().any(varies) {
         let why = "a load that changes needs inner.drive = \"wrench\": otherwise the race is held where the load at \
                    the start puts it";
         return Err(SceneError::conflict("load", why));
     }
     Ok(())
+}
+
+/// Scripted motions of races begin at rest: a sine among them at one of its turning points.
+fn motions(scene: &Scene) -> Result<(), SceneError> {
+    let load = &scene.load;
+    let mut motions: Vec<(String, &Schedule)> = vec![];
+    for (section, directions) in [("load", load.of_inner()), ("load.outer", load.of_outer())] {
+        for (name, direction) in DIRECTIONS.into_iter().zip(directions) {
+            let quantity = if name.starts_with('r') { "rotation" } else { "displacement" };
+            motions.extend(direction.motion.map(|motion| (format!("{section}.{name}.{quantity}"), motion)));
+        }
+    }
+    for (section, race) in [("inner", &scene.inner), ("outer", &scene.outer)] {
+        for (name, tilt) in [("ry", &race.misalignment.ry), ("rz", &race.misalignment.rz)] {
+            motions.push((format!("{section}.misalignment.{name}"), tilt));
+        }
+    }
+    match motions.into_iter().find(|(_, motion)| !motion.begins_at_rest()) {
+        None => Ok(()),
+        Some((key, _)) => {
+            let why = "a motion begins at rest, and a sine does so with phase = \"90 deg\" or \"-90 deg\": allowed are these, \
+                       counted at its begin or at time 0";
+            Err(SceneError::conflict(key, why))
+        }
+    }
 }

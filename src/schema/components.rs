@@ -24,8 +24,8 @@ impl<Q> Components<Q> {
     }
 
     /// Does a table give one of the components?
-    pub fn is_table(&self) -> bool {
-        self.0.iter().any(Schedule::is_table)
+    pub fn is_scripted(&self) -> bool {
+        self.0.iter().any(Schedule::is_scripted)
     }
 
     /// Bound of the vector's length at all times.

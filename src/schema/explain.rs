@@ -105,6 +105,19 @@ fn descend(table: &DeTable<'_>, span: &Range<usize>, path: &mut Vec<String>) -> 
         {
             return true;
         }
+        if let DeValue::Array(entries) = value.get_ref() {
+            for (place, entry) in entries.iter().enumerate() {
+                if let DeValue::Table(inner) = entry.get_ref() {
+                    path.pop();
+                    path.push(format!("{}[{place}]", key.get_ref()));
+                    if descend(inner, span, path) {
+                        return true;
+                    }
+                    path.pop();
+                    path.push(key.get_ref().to_string());
+                }
+            }
+        }
         if within(&key.span()) || within(&value.span()) {
             return true;
         }
@@ -118,9 +131,16 @@ fn start_of(text: &str, key: &str) -> Option<usize> {
     let table = DeTable::parse(text).ok()?;
     let (mut table, mut start) = (table.get_ref(), None);
     for name in key.split('.') {
+        // An entry of a list has its place behind the name.
+        let (name, place) =
+            name.strip_suffix(']').and_then(|name| name.split_once('[')).unwrap_or((name, ""));
         let Some((found, value)) = table.iter().find(|(found, _)| found.get_ref() == name) else { break };
         start = Some(found.span().start);
-        let DeValue::Table(inner) = value.get_ref() else { break };
+        let entry = match value.get_ref() {
+            DeValue::Array(entries) => place.parse().ok().and_then(|place: usize| entries.get(place)),
+            _ => Some(value),
+        };
+        let Some(DeValue::Table(inner)) = entry.map(toml::Spanned::get_ref) else { break };
         table = inner;
     }
     start

@@ -5,6 +5,7 @@ mod components;
 mod error;
 pub mod explain;
 mod inputs;
+mod machine;
 mod matrices;
 pub mod numbers;
 pub mod schedule;
@@ -19,8 +20,9 @@ pub use accuracy::{Accuracy, ErrorGoal, ErrorOf, Follows, Level, SMALLEST_TOLERA
 pub use components::Components;
 pub use error::SceneError;
 pub use inputs::{Giver, Group, Groups, InputGivers};
+pub use machine::{GearSection, Machine, RotatingSection};
 pub use matrices::StructureMatrices;
-pub use schedule::Schedule;
+pub use schedule::{Schedule, Sine};
 pub use sections::*;
 pub use shaft::*;
 pub use support::{DirectionMatrix, SupportSection};

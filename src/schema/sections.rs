@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use super::inputs::InputGivers;
+use super::machine::{GearSection, Machine, RotatingSection};
 use super::schedule::{self, Schedule};
 use super::support::SupportSection;
 use super::units::*;
@@ -232,7 +233,7 @@ pub struct Tilt {
     pub rotation: Option<Schedule>,
 }
 
-fn some_schedule<'de, Q: Quantity + for<'a> Deserialize<'a>, D: serde::Deserializer<'de>>(
+pub(super) fn some_schedule<'de, Q: Quantity + for<'a> Deserialize<'a>, D: serde::Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<Schedule>, D::Error> {
     schedule::deserialize::<Q, D>(deserializer).map(Some)
@@ -272,6 +273,12 @@ pub struct Load {
     pub rz: Tilt,
     /// The same five directions of an outer race under a wrench.
     pub outer: Option<RaceLoad>,
+    /// Forces that turn, added to the loads of the race that a wrench moves.
+    #[serde(default)]
+    pub rotating: Vec<RotatingSection>,
+    /// Meshes of gears on the shaft, added to the same loads.
+    #[serde(default)]
+    pub gear: Vec<GearSection>,
 }
 
 /// Load of a race per direction; a direction left out is free of load.
@@ -334,6 +341,11 @@ fn directions<'a>([x, y, z]: [&'a Translation; 3], [ry, rz]: [&'a Tilt; 2]) -> [
 }
 
 impl Load {
+    /// Parts of the machine on a race of this speed [rad/s].
+    pub fn machine<'a>(&'a self, speed: &'a Schedule) -> Machine<'a> {
+        Machine { rotating: &self.rotating, gears: &self.gear, speed }
+    }
+
     /// The five directions of the inner race, in the order x, y, z, ry, rz.
     pub fn of_inner(&self) -> [Direction<'_>; 5] {
         directions([&self.x, &self.y, &self.z], [&self.ry, &self.rz])

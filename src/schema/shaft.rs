@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use super::components::Components;
+use super::machine::GearSection;
 use super::matrices::StructureMatrices;
 use super::schedule::{self, Schedule};
 use super::sections::Material;
@@ -45,6 +46,8 @@ pub struct ShaftSection {
     pub modes_up_to: Option<Frequency>,
     /// Forces and moments at points of the shaft.
     pub load: Vec<PointLoad>,
+    /// Meshes of helical gears on the shaft; `offset` is the place of the pitch point along it, and the ripple follows its turn.
+    pub gear: Vec<GearSection>,
     /// Points whose motion is reported.
     pub point: Vec<Point>,
 }

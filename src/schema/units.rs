@@ -59,35 +59,70 @@ impl Dimension {
                 _ => refuse(&format!("{written} is no unit of it: write degC or K")),
             };
         }
-        let unknown = format!("{written} is not known as a unit");
-        let Some(mut unit) = spelling::plain(written) else {
-            return refuse(&unknown);
-        };
+        self.unit(written).map(|unit| unit.si(number)).or_else(|why| refuse(&why))
+    }
+
+    /// A unit of it as it is written, such as `mm`.
+    ///
+    /// # Errors
+    /// Why it is none.
+    pub(crate) fn unit(&self, written: &str) -> Result<Unit, String> {
+        let unknown = || format!("{written} is not known as a unit");
+        if self.unit == Ratio::DIMENSION.unit && written == self.unit {
+            return Ok(Unit::Times(1.0));
+        }
+        let mut unit = spelling::plain(written).ok_or_else(unknown)?;
         if self.unit == AngularVelocity::DIMENSION.unit {
             match spelling::of_angular_velocity(&unit) {
                 Some(angular) => unit = angular,
                 None => {
-                    return refuse(&format!(
+                    return Err(format!(
                         "{written} does not say through which angle: write rpm, rad/s or deg/s"
                     ));
                 }
+            }
+        }
+        if self.unit == Frequency::DIMENSION.unit {
+            match spelling::of_angular_velocity(&unit).as_deref() {
+                Some("rpm") => unit = "1/(60 s)".to_string(),
+                Some(_) => return Err(format!("{written} counts angles, no periods: write Hz or rpm")),
+                None => {}
             }
         }
         let question = format!("(1 {}) to 20 sf to {}", spelling::calculable(&unit), self.unit);
         let answer = match fend_core::evaluate(&question, &mut fend_core::Context::new()) {
             Ok(answer) => answer.get_main_result().trim_start_matches("approx. ").to_string(),
             Err(why) if why.contains("incompatible") => {
-                return refuse(&format!("{written} measures something else"));
+                return Err(format!("{written} measures something else"));
             }
-            Err(_) => return refuse(&unknown),
+            Err(_) => return Err(unknown()),
         };
         // The calculator answers "factor unit", exactly for all units but those with pi.
         let factor = answer.split_whitespace().next().and_then(|word| word.parse::<f64>().ok());
         match factor {
             // A power of ten that divides exactly is divided by: 9.525 mm is then the f64 nearest to 0.009525.
-            Some(factor) if factor < 1.0 && (1.0 / factor).fract() == 0.0 => Ok(number / (1.0 / factor)),
-            Some(factor) => Ok(number * factor),
-            None => refuse(&unknown),
+            Some(factor) if factor < 1.0 && (1.0 / factor).fract() == 0.0 => Ok(Unit::Over(1.0 / factor)),
+            Some(factor) => Ok(Unit::Times(factor)),
+            None => Err(unknown()),
+        }
+    }
+}
+
+/// A unit by its factor to SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Unit {
+    /// SI is so many times the number.
+    Times(f64),
+    /// SI is the number over this.
+    Over(f64),
+}
+
+impl Unit {
+    /// A number of this unit in SI.
+    pub(crate) fn si(self, number: f64) -> f64 {
+        match self {
+            Self::Times(factor) => number * factor,
+            Self::Over(divisor) => number / divisor,
         }
     }
 }
@@ -165,6 +200,8 @@ quantities! {
     Mass = "kg", "a mass", ["0.2 kg", "200 g"];
     /// [kg m2]
     Inertia = "kg m^2", "a moment of inertia", ["6e-5 kg m^2", "60 kg mm^2"];
+    /// [kg m] mass times its distance from an axis.
+    Unbalance = "kg m", "an unbalance", ["20 g mm", "1e-5 kg m"];
     /// \[s]
     Time = "s", "a time", ["50 ms", "100 us"];
     /// \[N]
@@ -173,12 +210,10 @@ quantities! {
     Moment = "N m", "a moment", ["2 N m", "500 N mm"];
     /// [rad/s]
     AngularVelocity = "rad/s", "an angular velocity", ["6000 rpm", "36000 deg/s"];
+    /// \[Hz]
+    Frequency = "Hz", "a frequency", ["50 Hz", "2.3 kHz"];
     /// [rad/s2]
     AngularAcceleration = "rad/s^2", "an angular acceleration", ["10 rad/s^2", "0.5 krad/s^2"];
-    /// \[Hz]
-    Frequency = "Hz", "a frequency", ["20 kHz", "500 Hz"];
-    /// [kg m]
-    Unbalance = "kg m", "an unbalance", ["10 g mm", "1e-5 kg m"];
     /// [Pa s]
     Viscosity = "Pa s", "a viscosity", ["18 uPa s", "20 mPa s"];
     /// [N/m]
@@ -258,6 +293,21 @@ mod tests {
         for text in ["10 mm/s", "10 mm s^-1", "10 mm s\u{207b}\u{b9}", "10 mm s-1"] {
             assert_eq!(parse::<Velocity>(text), Ok(0.01), "{text}");
         }
+    }
+
+    #[test]
+    fn closed_form_frequencies_count_periods() {
+        for (text, hertz) in [("2.3 kHz", 2300.0), ("50 1/s", 50.0), ("50 Hz", 50.0)] {
+            assert_eq!(parse::<Frequency>(text), Ok(hertz), "{text}");
+        }
+        for text in ["6000 rpm", "6000 1/min", "6000 /min"] {
+            assert!((parse::<Frequency>(text).unwrap() / 100.0 - 1.0).abs() < 1e-15, "{text}");
+        }
+        for text in ["314 rad/s", "18000 deg/s"] {
+            let message = parse::<Frequency>(text).unwrap_err();
+            assert!(message.contains("write Hz or rpm") && message.contains(text), "{message}");
+        }
+        assert_eq!([parse::<Unbalance>("20 g mm"), parse::<Unbalance>("20 g*mm")], [Ok(2e-5), Ok(2e-5)]);
     }
 
     #[test]

@@ -129,7 +129,7 @@ impl Simulation {
             if matches!(section.drive, Drive::Fixed | Drive::Hinge) {
                 let now = self.paths.races[race].at(time).0;
                 let input = &mut inputs[race];
-                if speed.is_table() {
+                if speed.is_scripted() {
                     input.speed = speed.at(time);
                 }
                 script_motion(&self.scene, race, time, &now, input);
@@ -159,7 +159,8 @@ impl Simulation {
         let mut aside = Workspace::default();
         while self.state.time < end {
             let remaining = end - self.state.time;
-            if let Some(limit) = step_limits::largest_step(&self.model, &self.state) {
+            let period = script.shortest_period(&self.scene, self.state.time);
+            if let Some(limit) = step_limits::largest_step(&self.model, &self.state, period) {
                 self.state.control.cap(limit);
             }
             let h = self.state.control.step_within(remaining);

@@ -241,13 +241,13 @@ impl Simulation {
         let scene = &self.scene;
         inputs.inner.speed = scene.load.inner_speed.at(time);
         inputs.outer.speed = scene.load.outer_speed.at(time);
-        if scene.friction.ball_race.is_table() {
+        if scene.friction.ball_race.is_scripted() {
             inputs.friction = scene.friction.ball_race.at(time);
         }
         if scene.effects.frame.section.is_some() {
             inputs.effects.frame.motion = scene.frame_at(time);
         }
-        if scene.effects.film.schedule().is_some_and(Schedule::is_table) {
+        if scene.effects.film.schedule().is_some_and(Schedule::is_scripted) {
             inputs.effects.lubrication = scene.effects.film.lubrication(time);
         }
         if scene.effects.growth.follows_time() {

@@ -1,7 +1,7 @@
 //! The scene's own script: what its tables say at a time, and which inputs they give in a step.
 //!
-//! A quantity whose schedule is a table is evaluated where an internal step ends, and internal steps end where a table
-//! bends. A constant is no script: it is an input that stays as it is.
+//! A quantity whose schedule is no constant is evaluated where an internal step ends, and internal steps end where it has a kink.
+//! A constant is no script: it is an input that stays as it is.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -13,7 +13,7 @@ use crate::effects::frame::FrameSection;
 use crate::model::bodies::{PerRace, Race};
 use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 use crate::numerics::tilt;
-use crate::scene::{Drive, Group, Groups, RaceSection, Scene, Schedule};
+use crate::scene::{Drive, Group, Groups, Machine, RaceSection, Scene, Schedule};
 
 /// What the script of a scene gives in a step.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +30,8 @@ pub struct Script {
     speeds: PerRace<bool>,
     /// Motions of races that forces do not move.
     pub motions: PerRace<bool>,
+    /// Does any of it swing?
+    swings: bool,
 }
 
 /// Section and scripted speed of a race.
@@ -59,7 +61,7 @@ fn motion_schedules(scene: &Scene, race: Race) -> [Option<&Schedule>; 5] {
         (Race::Outer, Drive::Fixed | Drive::Pose) => {
             let misalignment = &section.misalignment;
             let [ry, rz] =
-                [&misalignment.ry, &misalignment.rz].map(|tilt| Some(tilt).filter(|tilt| tilt.is_table()));
+                [&misalignment.ry, &misalignment.rz].map(|tilt| Some(tilt).filter(|tilt| tilt.is_scripted()));
             [None, None, None, ry, rz]
         }
         _ => [None; 5],
@@ -68,14 +70,14 @@ fn motion_schedules(scene: &Scene, race: Race) -> [Option<&Schedule>; 5] {
 
 /// Does a table move this race, one without a body?
 fn moves(scene: &Scene, race: Race) -> bool {
-    let tables = motion_schedules(scene, race).into_iter().flatten().any(Schedule::is_table);
-    tables || of_race(scene, race).1.is_table()
+    let tables = motion_schedules(scene, race).into_iter().flatten().any(Schedule::is_scripted);
+    tables || of_race(scene, race).1.is_scripted()
 }
 
 /// Does a table give the motion of the bearing's frame, or gravity in it?
 fn has_scripted_frame(scene: &Scene) -> bool {
     let moves = scene.effects.frame.section.as_ref().is_some_and(FrameSection::is_scripted);
-    moves || scene.effects.gravity.acceleration.is_table()
+    moves || scene.effects.gravity.acceleration.is_scripted()
 }
 
 /// Does anything in a scene change by itself with time?
@@ -93,14 +95,15 @@ pub fn follows_time(scene: &Scene) -> bool {
         .flat_map(given)
         .chain(always)
         .chain(misalignment.into_iter().flatten())
-        .any(Schedule::is_table)
+        .any(Schedule::is_scripted)
+        || Race::loaded(scene).machine(scene).is_some_and(|machine| machine.follows_time())
         || scene.effects.growth.follows_time()
         || is_lubrication_scripted(scene)
 }
 
 /// Does a table give the degree of lubrication?
 fn is_lubrication_scripted(scene: &Scene) -> bool {
-    scene.effects.film.schedule().is_some_and(Schedule::is_table)
+    scene.effects.film.schedule().is_some_and(Schedule::is_scripted)
 }
 
 /// Groups of inputs for which a scene has a script; what has no input in a package, such as the speed of a race on a
@@ -110,7 +113,7 @@ pub fn scripted_groups(scene: &Scene) -> Groups {
         let (section, speed) = of_race(scene, race);
         (
             section.drive == Drive::Pose && moves(scene, race),
-            section.drive == Drive::Wrench && speed.is_table(),
+            section.drive == Drive::Wrench && speed.is_scripted(),
         )
     };
     let [inner, outer] = Race::BOTH.map(race);
@@ -118,7 +121,7 @@ pub fn scripted_groups(scene: &Scene) -> Groups {
         .with(Group::Loads, Race::BOTH.into_iter().any(|race| has_scripted_load(scene, race)))
         .with(Group::Speeds, inner.1 || outer.1)
         .with(Group::Tilts, inner.0 || outer.0)
-        .with(Group::Friction, scene.friction.ball_race.is_table())
+        .with(Group::Friction, scene.friction.ball_race.is_scripted())
         .with(Group::Lubrication, is_lubrication_scripted(scene))
         .with(Group::Temperatures, scene.effects.growth.follows_time())
         .with(Group::Frame, scene.effects.frame.section.is_some() && has_scripted_frame(scene))
@@ -126,8 +129,9 @@ pub fn scripted_groups(scene: &Scene) -> Groups {
 
 /// Does a table give the wrench on this race?
 fn has_scripted_load(scene: &Scene, race: Race) -> bool {
-    let tables = load_schedules(scene, race).into_iter().flatten().any(Schedule::is_table);
-    tables && race.section(scene).drive == Drive::Wrench
+    let scripts = load_schedules(scene, race).into_iter().flatten().any(Schedule::is_scripted);
+    let machine = race.machine(scene).is_some_and(|machine| machine.follows_time());
+    (scripts || machine) && race.section(scene).drive == Drive::Wrench
 }
 
 impl Script {
@@ -139,7 +143,7 @@ impl Script {
             let (section, speed) = of_race(scene, race);
             let played = section.drive == Drive::Hinge
                 || section.drive == Drive::Wrench && groups.contains(Group::Speeds);
-            played && speed.is_table()
+            played && speed.is_scripted()
         };
         let motion = |race| {
             let section = of_race(scene, race).0;
@@ -147,7 +151,7 @@ impl Script {
                 || section.drive == Drive::Pose && groups.contains(Group::Tilts);
             played && moves(scene, race)
         };
-        Self {
+        let mut script = Self {
             loads: PerRace::new(|race| groups.contains(Group::Loads) && has_scripted_load(scene, race)),
             friction: given(Group::Friction),
             lubrication: given(Group::Lubrication),
@@ -159,7 +163,12 @@ impl Script {
             },
             speeds: PerRace::new(speed),
             motions: PerRace::new(motion),
-        }
+            swings: false,
+        };
+        let machine = |race: Race| script.loads[race] && race.machine(scene).is_some();
+        script.swings =
+            script.playing(scene).into_iter().any(Schedule::swings) || Race::BOTH.into_iter().any(machine);
+        script
     }
 
     /// Does it give anything that an importer could have given, or a motion of a race without a body?
@@ -172,8 +181,21 @@ impl Script {
             || Race::BOTH.into_iter().any(of_race)
     }
 
-    /// \[s] times within a step at which a table bends, growing, not closer to one another or to the ends than `least`.
-    pub fn knots(&self, scene: &Scene, from: f64, to: f64, least: f64) -> Vec<f64> {
+    /// \[s] shortest period in which something that it gives swings at a time \[s]; none where nothing does.
+    pub fn shortest_period(&self, scene: &Scene, time: f64) -> Option<f64> {
+        if !self.swings {
+            return None;
+        }
+        let machine = Race::BOTH
+            .into_iter()
+            .filter(|race| self.loads[*race])
+            .filter_map(|race| race.machine(scene).and_then(|machine| machine.shortest_period(time)));
+        let playing = self.playing(scene);
+        playing.into_iter().filter_map(|of| of.shortest_period(time)).chain(machine).reduce(f64::min)
+    }
+
+    /// Schedules that it follows.
+    fn playing<'a>(&self, scene: &'a Scene) -> Vec<&'a Schedule> {
         let mut playing: Vec<&Schedule> = vec![];
         if self.friction {
             playing.push(&scene.friction.ball_race);
@@ -194,6 +216,7 @@ impl Script {
             let (section, speed) = of_race(scene, race);
             if self.loads[race] {
                 playing.extend(load_schedules(scene, race).into_iter().flatten());
+                playing.extend(race.machine(scene).into_iter().flat_map(Machine::schedules));
             }
             if self.speeds[race] || self.motions[race] {
                 playing.push(speed);
@@ -208,6 +231,12 @@ impl Script {
                 Drive::Fixed | Drive::Pose => {}
             }
         }
+        playing
+    }
+
+    /// \[s] times within a step at which a schedule has a kink, growing, not closer to one another or to the ends than `least`.
+    pub fn knots(&self, scene: &Scene, from: f64, to: f64, least: f64) -> Vec<f64> {
+        let playing = self.playing(scene);
         let mut knots: Vec<f64> = playing.into_iter().flat_map(|schedule| schedule.knots(from, to)).collect();
         knots.sort_by(f64::total_cmp);
         let mut last = from;
@@ -291,8 +320,7 @@ impl Script {
 
 /// External wrench on a race at a time \[s].
 pub fn applied(scene: &Scene, race: Race, time: f64) -> Wrench {
-    let [x, y, z, ry, rz] =
-        load_schedules(scene, race).map(|schedule| schedule.map_or(0.0, |schedule| schedule.at(time)));
+    let [x, y, z, ry, rz] = race.load_at(scene, time);
     Wrench { force: Vector3::new(x, y, z), moment: Vector3::new(0.0, ry, rz) }
 }
 

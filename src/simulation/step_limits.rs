@@ -1,4 +1,5 @@
-//! Steps that what the balls roll over allows, whatever the local error says: a step must not pass what it did not see.
+//! Steps that what the balls roll over and what the script gives allow, whatever the local error says: a step must not pass what it
+//! did not see.
 
 use std::f64::consts::TAU;
 
@@ -12,22 +13,23 @@ use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::model::state::{BallState, State};
 
-/// Steps to the shortest wave of a race.
+/// Steps to the shortest wave of a race, and to the shortest period of a script.
 const STEPS_PER_WAVE: f64 = 16.0;
 /// [-] step over the half width of a contact, near a spall.
 const STEP_OVER_WIDTH: f64 = 0.3;
 /// Half widths of a contact before and behind a spall in which it counts as near: the drop there is below 0.1 um.
 const NEAR: f64 = 4.0;
 
-/// \[s] largest step from a state; none where the local error alone decides.
-pub(super) fn largest_step(model: &Model, state: &State) -> Option<f64> {
+/// \[s] largest step from a state, with the shortest period \[s] of what the script gives; none where the local error alone decides.
+pub(super) fn largest_step(model: &Model, state: &State, script: Option<f64>) -> Option<f64> {
+    let script = script.map(|period| period / STEPS_PER_WAVE);
     let limit = |race: Race| {
         let waves = model.form[race].as_ref().map(|form| over_waves(form, state, race));
         let spalls = model.spalls[race].as_ref().map(|spalls| over_spalls(spalls, state, race));
         waves.into_iter().chain(spalls).reduce(f64::min)
     };
     let balls = over_spalls_of_balls(model, state);
-    Race::BOTH.into_iter().filter_map(limit).chain(balls).reduce(f64::min)
+    Race::BOTH.into_iter().filter_map(limit).chain(balls).chain(script).reduce(f64::min)
 }
 
 /// [rad/s] speed of a ball along a race.

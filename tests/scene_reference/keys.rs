@@ -215,9 +215,9 @@ impl Reference {
         }
         if over_time || kind.name == "Components" {
             values += if over_time {
-                "; constant, or a table `[[time, value], ...]`"
+                "; constant, a table `[[time, value], ...]`, or a [building block](load-cases.md)"
             } else {
-                "; `{ x, y, z }`, each constant or a table `[[time, value], ...]`"
+                "; a list of x, y, z, each constant, a table `[[time, value], ...]`, or a [building block](load-cases.md)"
             };
         }
         if let Some(range) = names.iter().find_map(|name| range(&format!("{name}.{}", field.name))) {
@@ -236,8 +236,10 @@ impl Reference {
             (_, Some(names)) => json!({ "enum": names }),
             ("usize" | "u32", _) => json!({ "type": "integer" }),
             ("f64", _) => json!({ "type": "number" }),
-            _ if dimension.is_some() && over_time => json!({ "type": ["number", "string", "array"] }),
-            ("Components", _) => json!({ "type": "object" }),
+            _ if dimension.is_some() && over_time => {
+                json!({ "type": ["number", "string", "array", "object"] })
+            }
+            ("Components", _) => json!({ "type": "array" }),
             _ if dimension.is_some() => json!({ "type": ["number", "string"] }),
             _ => json!({}),
         };
@@ -351,8 +353,34 @@ pub fn meaning(doc: &str) -> String {
     parts.collect::<Vec<_>>().join("`")
 }
 
+/// Lists of tables in other sections, with keys that an entry needs.
+pub const LISTS: [(&str, &[(&str, &str)]); 2] = [
+    ("load.rotating", &[("unbalance", "1e-5")]),
+    ("load.gear", &[("torque", "1.0"), ("pitch_radius", "0.02"), ("pressure_angle", "0.3")]),
+];
+
+/// The range of a number of a list of tables, as a refusal of an entry states it.
+fn range_in_list(list: &str, needs: &[(&str, &str)], key: &str) -> Option<String> {
+    let others: String = needs
+        .iter()
+        .filter(|(name, _)| *name != key && key != "force")
+        .map(|(name, value)| format!(", {name} = {value}"))
+        .collect();
+    ["1e300", "-1e300", "1000000000"].into_iter().find_map(|value| {
+        let why =
+            Scene::edited(THRUST, [(list, format!("[{{ {key} = {value}{others} }}]"))]).err()?.to_string();
+        let (about, allowed) = why.split_once("allowed is ")?;
+        about.contains(&format!("{list}[0].{key}")).then(|| allowed.trim_end_matches('.').to_string())
+    })
+}
+
 /// The range of a number, as a refusal states it.
 fn range(key: &str) -> Option<String> {
+    for (list, needs) in LISTS {
+        if let Some(name) = key.strip_prefix(list).and_then(|rest| rest.strip_prefix('.')) {
+            return range_in_list(list, needs, name);
+        }
+    }
     let needs = NEEDS.iter().filter(|(section, _)| key.starts_with(section)).flat_map(|(_, needs)| *needs);
     let needs: Vec<(&str, &str)> = needs.copied().filter(|(needed, _)| *needed != key).collect();
     ["1e300", "-1e300", "[1e300, 1e300, 1e300]", "1000000000"].into_iter().find_map(|value| {

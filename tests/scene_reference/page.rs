@@ -9,6 +9,7 @@ use crate::keys::{Key, Reference, UNION_KEYS, meaning};
 const HEAD: &str = "# Scene reference\n\n\
     Every key of a scene file, from the structs that read it (`cargo test --test scene_reference` compares; `scripts/tables` writes). \
     Numbers are SI, or texts with a unit. A key that is left out has its default; an unknown key is refused. \
+    A value over time may be a table or a building block: [Load cases](load-cases.md). \
     `roulement scene --keys` prints this page, `roulement scene --keys film` what is about a word.\n";
 
 pub fn page(reference: &Reference) -> String {
@@ -39,7 +40,7 @@ fn place<'a>(schema: &'a mut Value, path: &str) -> &'a mut Value {
         let inside = if of_items { &mut inside["items"] } else { inside };
         let properties = inside["properties"].as_object_mut().unwrap_or_else(|| panic!("{path}"));
         properties.entry(key).or_insert_with(|| match path {
-            "defect" => json!({ "type": "array", "items": object() }),
+            "defect" | "load.rotating" | "load.gear" => json!({ "type": "array", "items": object() }),
             _ => object(),
         })
     })

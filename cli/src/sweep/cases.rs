@@ -9,6 +9,7 @@
 //!
 //! [set]                                  # then the same for every case
 //! load.duration = "20 ms"
+//! load.y.force = { mean = "1 kN", amplitude = "100 N", frequency = "2 kHz" }     # a value over time is one value
 //!
 //! [[case]]                               # cases one by one
 //! friction.ball_race = 0.05
@@ -25,6 +26,7 @@
 
 use std::path::{Path, PathBuf};
 
+use roulement::scene::schedule::{files, is_block};
 use roulement::{Scene, SceneError};
 use toml::{Table, Value};
 
@@ -61,6 +63,8 @@ impl Setting {
     pub fn of_cell(cell: &str, unit: Option<&str>) -> Self {
         let text = |text: String| Value::String(text).to_string();
         let toml = match unit {
+            // Values over time have units of their own.
+            Some(_) if cell.starts_with(['{', '[']) => cell.to_string(),
             Some(unit) => text(format!("{cell} {unit}")),
             None if cell.parse::<Value>().is_ok() => cell.to_string(),
             None => text(cell.to_string()),
@@ -99,6 +103,7 @@ impl Cases {
             return Err(failed("there is no case in it".to_string()));
         }
         let folder = path.parent().unwrap_or(Path::new(""));
+        cases.embed_files(folder).map_err(failed)?;
         cases.scene = cases.scene.map(|scene| folder.join(scene));
         Ok(cases)
     }
@@ -181,6 +186,26 @@ impl Cases {
         Ok(cases)
     }
 
+    /// Puts the tables of measured files in the place of the files, whose paths are relative to a folder: a case then follows from its
+    /// text alone.
+    ///
+    /// # Errors
+    /// If a file cannot be read; names the key and the file.
+    pub fn embed_files(&mut self, folder: &Path) -> Result<(), String> {
+        let common = self.common.iter_mut().map(|(key, value)| (&*key, value));
+        let keys = &self.keys;
+        let own = self.rows.iter_mut().flat_map(|row| row.iter_mut().zip(keys));
+        let own = own.filter_map(|(setting, key)| Some((&key.name, &mut setting.as_mut()?.toml)));
+        for (key, text) in common.chain(own).filter(|(_, text)| text.contains("file")) {
+            // What is no value is refused where it is set.
+            let Ok(mut value) = text.parse::<Value>() else { continue };
+            if files::embed(&mut value, folder, key).map_err(|why| why.to_string())? {
+                *text = value.to_string();
+            }
+        }
+        Ok(())
+    }
+
     /// Position of a column, new if it is not there.
     fn column(&mut self, name: &str, unit: &Option<String>) -> Result<usize, String> {
         match self.keys.iter().position(|key| key.name == name && key.unit == *unit) {
@@ -237,7 +262,7 @@ pub fn scene_of(text: &str) -> Result<Scene, SceneError> {
 
 /// All keys of a section with their own sections, down to values.
 fn settings(table: &Table) -> Vec<(String, &Value)> {
-    leaves(table, &|_| false)
+    leaves(table, &is_block)
 }
 
 /// The same; tables that are values themselves are not gone into.

@@ -1,5 +1,6 @@
 //! Cases from ranges of keys.
 
+use roulement::scene::schedule::is_block;
 use toml::{Table, Value};
 
 use super::cases::{Setting, leaves};
@@ -86,20 +87,26 @@ fn number_with_unit(value: &Value) -> Option<(f64, Option<String>)> {
     .filter(|(number, _)| number.is_finite())
 }
 
-/// Is a table a range, and no section?
-fn is_range(table: &Table) -> bool {
-    table.contains_key("from") || table.contains_key("to")
+/// Is a table a range or a value over time, and no section?
+fn is_value(table: &Table) -> bool {
+    table.contains_key("from") || table.contains_key("to") || is_block(table)
+}
+
+/// Is such a table a value over time? A step is no key of a range, but it is easily written for `steps`.
+fn is_script(table: &Table) -> bool {
+    is_block(table) && (table.contains_key("ramp") || !table.contains_key("from"))
 }
 
 /// All combinations of the values of some keys; the last key changes fastest.
 pub fn grid(section: &Table) -> Result<Vec<Row>, String> {
     let mut axes: Vec<(String, Option<String>, Vec<Setting>)> = vec![];
-    for (key, value) in leaves(section, &is_range) {
+    for (key, value) in leaves(section, &is_value) {
         let name = format!("grid.{key}");
         let axis = match value {
             Value::Array(values) if !values.is_empty() => {
                 (key, None, values.iter().map(Setting::of_value).collect())
             }
+            Value::Table(block) if is_script(block) => (key, None, vec![Setting::of_value(value)]),
             Value::Table(range) => {
                 let range = Range::read(&name, range)?;
                 let steps = range.steps.ok_or_else(|| format!("{name}: a range of a grid needs steps"))?;
@@ -144,7 +151,7 @@ pub fn latin_hypercube(section: &Table) -> Result<Vec<Row>, String> {
     };
     let mut random = Random(seed as u64);
     let mut rows: Vec<Row> = vec![vec![]; cases];
-    let mut ranges: Vec<_> = leaves(section, &is_range);
+    let mut ranges: Vec<_> = leaves(section, &is_value);
     ranges.retain(|(key, _)| key != "cases" && key != "seed");
     for (key, value) in ranges {
         let name = format!("latin_hypercube.{key}");

@@ -428,3 +428,96 @@ fn consistency_a_kept_run_is_that_of_its_scene_and_stands_on_the_page() {
         "{told}"
     );
 }
+
+#[test]
+fn consistency_a_case_sets_a_value_over_time_in_csv_and_toml() {
+    let scratch = Scratch::new("sweep-blocks");
+    let measured = "t [ms],F [N]\n0,0\n0.5,80\n1,-20\n";
+    std::fs::write(scratch.path("measured.csv"), measured).unwrap();
+    let ramp = "{ ramp = ['0 N', '0.1 kN'], from = '0.2 ms', to = '0.8 ms' }";
+    let sine = "{ mean = 20, amplitude = 50, frequency = '2 kHz' }";
+    let file = "{ file = 'measured.csv', time = 't [ms]', value = 'F [N]' }";
+    let gear =
+        "[{ torque = '5 N m', pitch_radius = 0.02, pressure_angle = '20 deg', teeth = 23, ripple = 0.1 }]";
+    // The unit of a column is that of plain numbers alone.
+    let table = format!(
+        "load.y.force [kN],load.gear,load.duration\n\"{ramp}\",,1 ms\n\"{sine}\",,1 ms\n\"{file}\",,1 ms\n0.03,\"{gear}\",1 ms\n"
+    );
+    let toml = format!(
+        "[set]\nload.duration = \"1 ms\"\n[[case]]\nload.y.force = {ramp}\n[[case]]\nload.y.force = {sine}\n\
+         [[case]]\nload.y.force = {file}\n[[case]]\nload.y.force = 30\nload.gear = {gear}\n"
+    );
+    let grid = format!(
+        "[set]\nload.duration = \"1 ms\"\n[grid]\nload.y.force = [{ramp}, {sine}]\n[[case]]\nload.x.force = 1500\n"
+    );
+    let powers = |name: &str, text: &str, count: usize| {
+        std::fs::write(scratch.path(name), text).unwrap();
+        let said = good(&sweep(&scratch, name, "out", &[]));
+        assert!(said.contains(&format!("{count} done, 0 failed")), "{said}");
+        let summary = columns(&scratch.read("out/summary.csv"));
+        numbers(&summary["friction_power.mean [W]"])
+    };
+    let of_table = powers("cases.csv", &table, 4);
+    assert_eq!(of_table, powers("cases.toml", &toml, 4));
+    assert_eq!(of_table[..2], powers("grid.toml", &grid, 3)[1..]);
+    // Those of a run.
+    let points = "[[0, 0], [0.0005, 80], [0.001, -20]]";
+    for (case, changes) in
+        [[("load.y.force", ramp)], [("load.y.force", sine)], [("load.y.force", points)]].iter().enumerate()
+    {
+        let changes = [&changes[..], &[("load.duration", "\"1 ms\"")]].concat();
+        good(&scratch.run(&edited("thrust", &changes), "run", &[]));
+        let means = columns(&scratch.read("run/means.csv"));
+        let place = means["quantity"].iter().position(|name| name == "friction power").unwrap();
+        assert_eq!(means["mean"][place].parse::<f64>().unwrap(), of_table[case], "{case}");
+    }
+    let apart = |a: usize, b: usize| of_table[a] != of_table[b];
+    assert!(apart(0, 1) && apart(1, 2) && apart(2, 3) && apart(0, 3), "{of_table:?}");
+    // What is in the file is in the name of the case: it is run again when the file changes, and only then.
+    let again = |there: usize| {
+        let said = good(&sweep(&scratch, "cases.csv", "out", &[]));
+        assert!(said.contains(&format!("4 done, 0 failed, 0 not run; {there} of them")), "{said}");
+        numbers(&columns(&scratch.read("out/summary.csv"))["friction_power.mean [W]"])
+    };
+    assert_eq!(again(4), of_table);
+    std::fs::write(scratch.path("measured.csv"), measured.replace("80", "90")).unwrap();
+    let changed = again(3);
+    assert!(changed[2] != of_table[2] && changed[1] == of_table[1], "{changed:?}");
+    // A file that is not there, or has no such column.
+    for (name, word) in [("'no.csv'", "no.csv"), ("'measured.csv'", "no column \"F [kN]\"")] {
+        let cell = format!("{{ file = {name}, time = 't [ms]', value = 'F [kN]' }}");
+        std::fs::write(scratch.path("bad.csv"), format!("load.y.force\n\"{cell}\"\n")).unwrap();
+        let output = sweep(&scratch, "bad.csv", "out", &[]);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && message.contains(word), "{message}");
+        assert!(message.contains("bad.csv") && message.contains("load.y.force"), "{message}");
+    }
+}
+
+#[test]
+fn invariant_a_run_reads_a_measured_file_beside_its_scene() {
+    let scratch = Scratch::new("run-measured");
+    std::fs::create_dir_all(scratch.path("scenes")).unwrap();
+    std::fs::write(scratch.path("scenes/m.csv"), "t [ms],Fy [kN]\n0,0\n0.5,0.08\n1,0.02\n").unwrap();
+    let base = std::fs::read_to_string(scene("thrust")).unwrap();
+    let text = |force: &str| {
+        let changes = [("load.y.force", force), ("load.duration", "\"1 ms\"")];
+        roulement::Scene::edited_text(&base, changes).unwrap()
+    };
+    let file = text("{ file = 'm.csv', time = 't [ms]', value = 'Fy [kN]' }");
+    std::fs::write(scratch.path("scenes/file.toml"), file).unwrap();
+    std::fs::write(scratch.path("scenes/table.toml"), text("[[0, 0], ['0.5 ms', 80], ['1 ms', 20]]"))
+        .unwrap();
+    let results = ["file", "table"].map(|name| {
+        let path = scratch.path(&format!("scenes/{name}.toml"));
+        good(&roulement(&["run", &path, "-o", &scratch.path(name), "--json"]));
+        scratch.read(&format!("{name}/results.csv"))
+    });
+    assert_eq!(results[0], results[1]);
+    std::fs::write(scratch.path("scenes/m.csv"), "t [ms],Fy [kN]\n0,0\n0,1\n").unwrap();
+    let output = roulement(&["run", &scratch.path("scenes/file.toml"), "-o", &scratch.path("bad")]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    for part in ["file.toml", "load.y.force", "m.csv, line 3", "t [ms] = 0 comes after 0: times must grow"] {
+        assert!(message.contains(part), "{message}\nshould say {part}");
+    }
+}

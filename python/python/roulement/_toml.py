@@ -4,6 +4,9 @@ import json
 
 import numpy as np
 
+BLOCKS = {"ramp", "step", "amplitude", "frequency", "table", "file", "sum"}
+"""Keys of building blocks of values over time: a dictionary with one of them is a value, and no section."""
+
 
 def to_toml(value):
     """Text of a value in TOML: numbers, texts, lists (arrays too) and tables of these.
@@ -31,7 +34,7 @@ def to_toml(value):
 def flat(settings, prefix=""):
     """Keys with their sections and values: {"load": {"x": 1}} and {"load.x": 1} are the same."""
     for key, value in settings.items():
-        if isinstance(value, dict):
+        if isinstance(value, dict) and not BLOCKS & value.keys():
             yield from flat(value, f"{prefix}{key}.")
         else:
             yield f"{prefix}{key}", value

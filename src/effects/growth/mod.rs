@@ -94,7 +94,7 @@ impl Settings {
 
     /// Does a table give one of them?
     pub fn follows_time(&self) -> bool {
-        self.schedules().into_iter().flatten().any(Schedule::is_table)
+        self.schedules().into_iter().flatten().any(Schedule::is_scripted)
     }
 
     /// \[K] rises at a time \[s].

@@ -66,7 +66,7 @@ impl Variables {
             orientation: scene.interface.orientation,
             scripted_speed: [speed, &section.misalignment.ry, &section.misalignment.rz]
                 .iter()
-                .any(|schedule| schedule.is_table()),
+                .any(|schedule| schedule.is_scripted()),
         };
         for quantity in &RACE_VARIABLES {
             let Some(causality) = (quantity.causality)(motion) else {

@@ -18,7 +18,7 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
     let load = &written.load;
     Range::above(0.0, 1e4, "s").check("load.duration", load.duration.0)?;
     Range::closed(1e-9, load.duration.0, "s").check("load.output_interval", load.output_interval.0)?;
-    if written.gravity.is_table() {
+    if written.gravity.is_scripted() {
         return Err(SceneError::conflict("gravity", "gravity of a system is constant: give three numbers"));
     }
     if written.bearing.is_empty() {
@@ -104,6 +104,13 @@ fn shaft(shaft: &ShaftSection) -> Result<(), SceneError> {
         INERTIA.check("shaft.disc.transverse_inertia", disc.transverse_inertia.0)?;
         let unbalance = disc.unbalance.map_or(0.0, |unbalance| unbalance.0);
         Range::closed(0.0, 1e3, "kg m").check("shaft.disc.unbalance", unbalance)?;
+    }
+    for (place, gear) in shaft.gear.iter().enumerate() {
+        gear.check(&format!("shaft.gear[{place}]"))?;
+        if gear.speed.is_some() {
+            let why = "is of a race by itself: the ripple of a gear on a shaft follows the shaft";
+            return Err(SceneError::conflict(format!("shaft.gear[{place}].speed"), why));
+        }
     }
     for load in &shaft.load {
         POSITION.check("shaft.load.position", load.position.0)?;

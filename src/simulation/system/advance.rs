@@ -78,11 +78,14 @@ impl System {
     fn step_to(&mut self, scripts: &[Script], end: f64) -> Result<(), SystemError> {
         while self.time < end {
             let remaining = end - self.time;
-            let limits = self
-                .bearings
-                .iter()
-                .filter_map(|bearing| step_limits::largest_step(&bearing.model, &bearing.state));
-            limits.for_each(|limit| self.control.cap(limit));
+            let of_shaft = loads::shortest_period(&self.scene, &self.state, self.time);
+            for (bearing, script) in self.bearings.iter().zip(scripts) {
+                let own = script.shortest_period(&bearing.scene, self.time);
+                let period = own.into_iter().chain(of_shaft).reduce(f64::min);
+                if let Some(limit) = step_limits::largest_step(&bearing.model, &bearing.state, period) {
+                    self.control.cap(limit);
+                }
+            }
             let h = self.control.step_within(remaining);
             // The last step ends at the row to the bit.
             let last = h >= remaining * (1.0 - 1e-9);

@@ -1,11 +1,15 @@
 //! What acts on the shaft of a system at a time: its weight, loads at points, unbalance, and its drive.
 
-use nalgebra::{Vector3, Vector6};
+use std::f64::consts::TAU;
+
+use nalgebra::Vector6;
 
 use super::first_stations;
 use crate::dynamics::system::StructureLoad;
+use crate::loads::{Mesh, unbalance as unbalance_of};
 use crate::model::state::stack;
 use crate::model::structure::{Shaft, Spin, StructureState, Turning};
+use crate::numerics::motion::Wrench;
 use crate::scene::Schedule;
 use crate::scene::system::SystemScene;
 
@@ -23,7 +27,7 @@ pub fn at(scene: &SystemScene, shaft: &Shaft, state: &StructureState, from: f64,
     let structure = &shaft.structure;
     let free = structure.turning == Turning::Free;
     let spin = if free { ahead(&state.spin, time - from) } else { given_spin(scene, time) };
-    let [loads, _, discs] = first_stations(scene);
+    let [loads, _, discs, gears] = first_stations(scene);
     let mut force = structure.weight(&scene.gravity);
     let mut axial_moment = 0.0;
     let mut add = |station: usize, on: Vector6<f64>| {
@@ -36,12 +40,17 @@ pub fn at(scene: &SystemScene, shaft: &Shaft, state: &StructureState, from: f64,
     for (index, disc) in scene.shaft.disc.iter().enumerate() {
         if let Some(unbalance) = disc.unbalance {
             let azimuth = spin.angle + disc.unbalance_azimuth.map_or(0.0, |azimuth| azimuth.0);
-            let (sin, cos) = azimuth.sin_cos();
-            let outward = Vector3::new(0.0, cos, sin);
-            let along = Vector3::new(0.0, -sin, cos);
-            let inertial = outward * (spin.speed * spin.speed) - along * spin.acceleration;
-            add(discs + index, stack(&(inertial * unbalance.0), &Vector3::zeros()));
+            let Wrench { force, moment } =
+                unbalance_of(unbalance.0, azimuth, spin.speed, spin.acceleration, 0.0);
+            add(discs + index, stack(&force, &moment));
         }
+    }
+    for (index, gear) in scene.shaft.gear.iter().enumerate() {
+        // The pitch point is in the plane of its station.
+        let mesh = Mesh { offset: 0.0, ..gear.mesh() };
+        let factor = gear.ripple().map_or(1.0, |ripple| ripple.factor(spin.angle));
+        let Wrench { force, moment } = mesh.wrench(gear.torque.at(time) * factor);
+        add(gears + index, stack(&force, &moment));
     }
     if let (true, Some(torque)) = (free, &scene.shaft.torque) {
         let last = force.len() - 1;
@@ -56,10 +65,26 @@ fn ahead(spin: &Spin, duration: f64) -> Spin {
     Spin { angle: spin.angle + 0.5 * (spin.speed + speed) * duration, speed, ..*spin }
 }
 
-/// \[s] times at which a table of the shaft's loads or drive bends.
-pub fn knots(scene: &SystemScene, from: f64, to: f64) -> Vec<f64> {
+/// Schedules of the shaft's loads and drive.
+fn schedules(scene: &SystemScene) -> impl Iterator<Item = &Schedule> {
     let shaft = &scene.shaft;
     let components = shaft.load.iter().flat_map(|load| load.force.0.iter().chain(&load.moment.0));
-    let schedules = components.chain(&shaft.speed).chain(&shaft.torque);
-    schedules.flat_map(|schedule: &Schedule| schedule.knots(from, to)).collect()
+    let gears = shaft.gear.iter().map(|gear| &gear.torque);
+    components.chain(&shaft.speed).chain(&shaft.torque).chain(gears)
+}
+
+/// \[s] times at which a table of the shaft's loads or drive bends.
+pub fn knots(scene: &SystemScene, from: f64, to: f64) -> Vec<f64> {
+    schedules(scene).flat_map(|schedule| schedule.knots(from, to)).collect()
+}
+
+/// \[s] shortest period in which a load of the shaft swings, from a script or as the shaft turns; none where none does.
+pub fn shortest_period(scene: &SystemScene, state: &StructureState, time: f64) -> Option<f64> {
+    let shaft = &scene.shaft;
+    let scripted = schedules(scene).filter_map(|schedule| schedule.shortest_period(time));
+    let per_turn = shaft.disc.iter().filter(|disc| disc.unbalance.is_some()).map(|_| 1.0);
+    let meshes = shaft.gear.iter().filter_map(|gear| gear.ripple()).map(|ripple| ripple.teeth);
+    let speed = state.spin.speed.abs();
+    let turning = per_turn.chain(meshes).filter(|_| speed > 0.0).map(|times| TAU / (times * speed));
+    scripted.chain(turning).reduce(f64::min)
 }

@@ -129,19 +129,21 @@ impl System {
     }
 }
 
-/// Positions of all stations of a shaft \[m]: bearings, then loads, points and discs.
+/// Positions of all stations of a shaft \[m]: bearings, then loads, points, discs and gears.
 fn stations(scene: &SystemScene) -> Vec<f64> {
     let shaft = &scene.shaft;
     let bearings = scene.bearings.iter().map(|bearing| bearing.mounting.position.0);
     let loads = shaft.load.iter().map(|load| load.position.0);
     let points = shaft.point.iter().map(|point| point.position.0);
     let discs = shaft.disc.iter().map(|disc| disc.position.0);
-    bearings.chain(loads).chain(points).chain(discs).collect()
+    let gears = shaft.gear.iter().map(|gear| gear.offset.0);
+    bearings.chain(loads).chain(points).chain(discs).chain(gears).collect()
 }
 
-/// First station of loads, of points and of discs.
-fn first_stations(scene: &SystemScene) -> [usize; 3] {
+/// First station of loads, of points, of discs and of gears.
+fn first_stations(scene: &SystemScene) -> [usize; 4] {
     let loads = scene.bearings.len();
     let points = loads + scene.shaft.load.len();
-    [loads, points, points + scene.shaft.point.len()]
+    let discs = points + scene.shaft.point.len();
+    [loads, points, discs, discs + scene.shaft.disc.len()]
 }

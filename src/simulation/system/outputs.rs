@@ -49,7 +49,7 @@ impl SystemOutputs {
             let ([displacement, tilt], [velocity, _]) = (halves(&state.coordinates), halves(&state.rates));
             PointOutput { displacement, velocity, tilt: Vector3::new(0.0, tilt.y, tilt.z) }
         };
-        let [loads, points, discs] = first_stations(scene);
+        let [loads, points, discs, _] = first_stations(scene);
         let of = |range: std::ops::Range<usize>| shaft.stations[range].iter().map(at).collect();
         Self {
             time,
