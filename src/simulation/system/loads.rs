@@ -3,26 +3,18 @@
 use nalgebra::{Vector3, Vector6};
 
 use super::first_stations;
+use super::inputs::Given;
 use crate::dynamics::system::StructureLoad;
 use crate::model::state::stack;
 use crate::model::structure::{Shaft, Spin, StructureState, Turning};
 use crate::scene::Schedule;
-use crate::scene::system::SystemScene;
-
-/// Turn of a shaft at a time \[s], where its speed is given.
-pub fn given_spin(scene: &SystemScene, time: f64) -> Spin {
-    scene.shaft.speed.as_ref().map_or(Spin::default(), |speed| Spin {
-        angle: speed.integral(0.0, time),
-        speed: speed.at(time),
-        acceleration: speed.slope(time),
-    })
-}
 
 /// Load of the shaft at a time \[s]. Where its turn is a coordinate, the direction of unbalance follows it from the state it had.
-pub fn at(scene: &SystemScene, shaft: &Shaft, state: &StructureState, from: f64, time: f64) -> StructureLoad {
+pub fn at(given: &Given<'_>, shaft: &Shaft, state: &StructureState, from: f64, time: f64) -> StructureLoad {
+    let scene = given.scene;
     let structure = &shaft.structure;
     let free = structure.turning == Turning::Free;
-    let spin = if free { ahead(&state.spin, time - from) } else { given_spin(scene, time) };
+    let spin = if free { ahead(&state.spin, time - from) } else { given.spin(time) };
     let [loads, _, discs] = first_stations(scene);
     let mut force = structure.weight(&scene.gravity);
     let mut axial_moment = 0.0;
@@ -30,8 +22,8 @@ pub fn at(scene: &SystemScene, shaft: &Shaft, state: &StructureState, from: f64,
         force += shaft.stations[station].tr_mul(&on);
         axial_moment += on[3];
     };
-    for (index, load) in scene.shaft.load.iter().enumerate() {
-        add(loads + index, stack(&load.force.at(time), &load.moment.at(time)));
+    for index in 0..scene.shaft.load.len() {
+        add(loads + index, given.load(index, time));
     }
     for (index, disc) in scene.shaft.disc.iter().enumerate() {
         if let Some(unbalance) = disc.unbalance {
@@ -43,9 +35,9 @@ pub fn at(scene: &SystemScene, shaft: &Shaft, state: &StructureState, from: f64,
             add(discs + index, stack(&(inertial * unbalance.0), &Vector3::zeros()));
         }
     }
-    if let (true, Some(torque)) = (free, &scene.shaft.torque) {
+    if free {
         let last = force.len() - 1;
-        force[last] += torque.at(time);
+        force[last] += given.torque(time);
     }
     StructureLoad { force, spin, axial_moment }
 }
@@ -56,10 +48,12 @@ fn ahead(spin: &Spin, duration: f64) -> Spin {
     Spin { angle: spin.angle + 0.5 * (spin.speed + speed) * duration, speed, ..*spin }
 }
 
-/// \[s] times at which a table of the shaft's loads or drive bends.
-pub fn knots(scene: &SystemScene, from: f64, to: f64) -> Vec<f64> {
-    let shaft = &scene.shaft;
-    let components = shaft.load.iter().flat_map(|load| load.force.0.iter().chain(&load.moment.0));
-    let schedules = components.chain(&shaft.speed).chain(&shaft.torque);
+/// \[s] times at which a table of the shaft's loads or drive bends, of those that are played.
+pub fn knots(given: &Given<'_>, from: f64, to: f64) -> Vec<f64> {
+    let shaft = &given.scene.shaft;
+    let played = shaft.load.iter().enumerate().filter(|(index, _)| given.plays_load(*index));
+    let components = played.flat_map(|(_, load)| load.force.0.iter().chain(&load.moment.0));
+    let drive = [&shaft.speed, &shaft.torque].into_iter().flatten().filter(|_| given.plays_drive());
+    let schedules = components.chain(drive);
     schedules.flat_map(|schedule: &Schedule| schedule.knots(from, to)).collect()
 }
