@@ -73,8 +73,7 @@ impl Simulation {
             done(instance.setup_experiment(start, None))?;
             instance.enter_initialization();
             for (reference, value) in values {
-                let kind =
-                    instance.variables.rows().get(reference as usize).map_or(Kind::Real, |row| row.kind);
+                let kind = instance.rows().get(reference as usize).map_or(Kind::Real, |row| row.kind);
                 done(instance.set(&[reference], kind, &[value]))?;
             }
             done(instance.exit_initialization())?;

@@ -1,7 +1,7 @@
 //! The file of a system: a shaft, its bearings, and what loads it.
 //!
-//! It is TOML as the scene of one bearing is. Each `[[bearing]]` has the keys of such a scene by itself (`scene`, a file; or
-//! `catalogue`, a designation), changed by `[bearing.set]`, and where it sits on the shaft, `[bearing.mounting]`.
+//! It is TOML as the scene of one bearing is. Each `[[bearing]]` has the keys of such a scene by itself (`scene`, a file or the keys
+//! themselves; or `catalogue`, a designation), changed by `[bearing.set]`, and where it sits on the shaft, `[bearing.mounting]`.
 
 mod check;
 
@@ -29,6 +29,8 @@ pub struct SystemScene {
     pub gravity: Vector3<f64>,
     /// Simulated time, and distance of rows.
     pub load: SystemLoad,
+    /// Its text, which stands alone: every bearing with its whole scene in place of a file or a designation.
+    pub source: String,
 }
 
 /// A bearing of a system.
@@ -73,7 +75,7 @@ struct Written {
 #[serde(deny_unknown_fields)]
 struct WrittenBearing {
     name: String,
-    scene: Option<String>,
+    scene: Option<Value>,
     catalogue: Option<String>,
     mounting: Mounting,
     #[serde(default)]
@@ -114,7 +116,8 @@ impl SystemScene {
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
         let bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
         check::solvers(&bearings).map_err(placed)?;
-        Ok(Self { title, shaft, bearings, gravity, load })
+        let source = standing_alone(text, &bearings);
+        Ok(Self { title, shaft, bearings, gravity, load, source })
     }
 
     /// Settings of the integration: those that steps of all bearings need.
@@ -147,7 +150,8 @@ impl WrittenBearing {
         let inside =
             |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
         let (text, folder, file) = match (scene, catalogue) {
-            (Some(file), None) => {
+            (Some(Value::Table(keys)), None) => (keys.to_string(), given.folder.to_path_buf(), None),
+            (Some(Value::String(file)), None) => {
                 let path = given.folder.join(&file);
                 let text = std::fs::read_to_string(&path)
                     .map_err(|source| SceneError::Read { path: path.display().to_string(), source })
@@ -162,7 +166,7 @@ impl WrittenBearing {
                 (text.map_err(refuse)?, given.folder.to_path_buf(), None)
             }
             _ => {
-                let why = "give exactly one of scene (a file) and catalogue (a designation)";
+                let why = "give exactly one of scene (a file, or its keys) and catalogue (a designation)";
                 return Err(inside(SceneError::conflict("bearing", why)));
             }
         };
@@ -175,6 +179,21 @@ impl WrittenBearing {
         let scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
         Ok(MountedScene { name, mounting, scene })
     }
+}
+
+/// The text of a system with the whole scene of every bearing in it.
+fn standing_alone(text: &str, bearings: &[MountedScene]) -> String {
+    let Ok(mut table) = toml::from_str::<Table>(text) else {
+        return text.to_string();
+    };
+    let written = table.get_mut("bearing").and_then(Value::as_array_mut).into_iter().flatten();
+    for (keys, bearing) in written.filter_map(Value::as_table_mut).zip(bearings) {
+        keys.remove("catalogue");
+        keys.remove("set");
+        let scene = toml::from_str::<Table>(&bearing.scene.source).unwrap_or_default();
+        keys.insert("scene".into(), scene.into());
+    }
+    table.to_string()
 }
 
 /// Sets keys of a table, section by section.
