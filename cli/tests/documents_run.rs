@@ -10,6 +10,7 @@ use std::process::Command;
 
 use common::Scratch;
 use roulement::scene::Scene;
+use roulement::scene::system::SystemScene;
 use toml::{Table, Value};
 
 /// Commands that take minutes: their arguments are read, they do not run.
@@ -91,6 +92,9 @@ fn workplace(name: &str) -> Scratch {
     write("examples/coupling/bearing.toml", &coupled);
     fs::create_dir(scratch.path("build")).unwrap();
     write("cases.csv", "friction.ball_race,load.duration\n0.05,0.001\n0.1,0.001\n");
+    let packaging = fs::read_to_string(root().join("docs/packaging.md")).unwrap();
+    let system = blocks(&packaging, "toml").into_iter().find(|block| block.contains("[shaft]")).unwrap();
+    write("gear.toml", system);
     let contacts = fs::read_to_string(root().join("tests/data/contact/random.csv")).unwrap();
     let few: Vec<&str> = contacts.lines().take(3).collect();
     for name in ["CASES.csv", "tests/data/contact/random.csv"] {
@@ -166,6 +170,12 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                 let table: Table = part.parse().unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
                 if ["grid", "case", "latin_hypercube"].iter().any(|key| table.contains_key(*key)) {
                     sweep(&document, part);
+                    read += 1;
+                    continue;
+                }
+                if SystemScene::is_system(part) {
+                    SystemScene::parse(part, None, &root())
+                        .unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
                     read += 1;
                     continue;
                 }
