@@ -20,6 +20,9 @@ const STEP: f64 = 2e-5;
 const MESH: [f64; 3] = [337.8, -475.0, 1260.5];
 /// [kg] mass of the shaft.
 const MASS: f64 = 1.8;
+/// [-] imbalance over the load at a start, where balls have one common speed and creep, and once that has faded.
+const AT_START: f64 = 0.02;
+const SETTLED: f64 = 2e-3;
 
 /// A gearbox shaft on two bearings back to back, with other keys of `[shaft]`, of the load and of the bearing at the left.
 fn text(shaft: &str, mesh: &str, left: &str) -> String {
@@ -145,7 +148,8 @@ fn invariant_a_package_makes_the_steps_of_the_native_system() {
             advance(&mut native, k..k + 1);
             assert_eq!(bits(&outputs(&package, c)), bits(&native_outputs(&native)), "{index}, step {k}");
         }
-        let expected = if index == 0 { MESH[1] } else { -475.0 - 425.0 * (0.8 - 0.8f64).abs() };
+        // The table has come back to where it began.
+        let expected = MESH[1];
         assert!((get(&package, c, "mesh.force.y") - expected).abs() < 1e-9);
         unsafe { fmi2FreeInstance(c) };
     }
@@ -158,16 +162,21 @@ fn closed_form_bearings_carry_what_is_set() {
     assert_eq!(vector(&package, c, "mesh.force"), Vector3::from(MESH), "start values are those of the file");
     assert_eq!(get(&package, c, "mesh.moment.x"), 30.0);
     let weight = Vector3::new(0.0, 0.0, -9.81 * MASS);
-    let open = of_bearings(&package, c) + Vector3::from(MESH) + weight;
-    assert!(open.norm() < 1e-6, "{open}");
+    let open = |load: Vector3<f64>| {
+        let size = (load + weight).norm();
+        (of_bearings(&package, c) + load + weight).norm() / size
+    };
+    let at_first = open(Vector3::from(MESH));
+    assert!(at_first < AT_START, "{at_first}");
     // Set before the start.
     for (name, value) in [("mesh.force.x", -200.0), ("mesh.force.z", 500.0), ("'fan-end'.force.y", 90.0)] {
         set(&package, c, name, value);
     }
     assert_eq!(unsafe { fmi2ExitInitializationMode(c) }, Status::Ok);
     let load = Vector3::new(-200.0, MESH[1] + 90.0, 500.0);
-    let open = of_bearings(&package, c) + load + weight;
-    assert!(open.norm() < 1e-6, "{open}");
+    assert!(open(load) < AT_START, "{}", open(load));
+    run(c, 0..50);
+    assert!(open(load) < SETTLED, "{}", open(load));
     // Moments about the middle along y and z: force times arm, that of the shaft's weight is none.
     let radial =
         |name: &str, sign: f64| vector(&package, c, name).component_mul(&Vector3::new(sign, sign, 1.0));
@@ -185,8 +194,8 @@ fn closed_form_bearings_carry_what_is_set() {
         + arm(-0.01, Vector3::new(-200.0, MESH[1], 500.0))
         + arm(0.08, Vector3::new(0.0, 90.0, 0.0))
         + Vector3::new(0.0, 0.0, -8.04);
-    // Lever arms of displacements (0.1 mm at most) are left out of linear shafts.
-    assert!(moment.y.abs() < 0.2 && moment.z.abs() < 0.2, "{moment}");
+    let tolerance = SETTLED * 0.05 * (left.norm() + right.norm());
+    assert!(moment.y.abs() < tolerance && moment.z.abs() < tolerance, "{moment} {tolerance}");
     unsafe { fmi2FreeInstance(c) };
 }
 
@@ -381,11 +390,12 @@ fn the_pose_of_a_housing_is_an_input_where_its_race_has_one() {
         assert!((moved - 5e-5).abs() < 1e-5, "{name}: {moved}");
         let turned = get(&package, c, "left.seat.tilt.y") - tilt;
         assert!((turned - 5e-5 / 0.1).abs() < 2e-4, "{name}: {turned}");
-        let open = of_bearings(&package, c) + Vector3::from(MESH) + Vector3::new(0.0, 0.0, -9.81 * MASS);
-        assert!(open.norm() < 1e-6, "{name}: {open}");
-        run(c, 0..5);
+        run(c, 0..50);
+        let load = Vector3::from(MESH) - Vector3::z() * (9.81 * MASS);
+        let open = (of_bearings(&package, c) + load).norm() / load.norm();
+        assert!(open < 2.0 * SETTLED, "{name}: {open}");
         set(&package, c, inputs[1], 1e-4);
-        run(c, 5..20);
+        run(c, 50..60);
         assert!(outputs(&package, c).iter().all(|value| value.is_finite()));
         unsafe { fmi2FreeInstance(c) };
     }

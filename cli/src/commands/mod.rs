@@ -127,8 +127,12 @@ fn load(path: &Path) -> Result<Scene, Box<dyn Error>> {
 
 /// Reads the file of a system; none where the file is not that of one.
 fn system(path: &Path) -> Result<Option<SystemScene>, Box<dyn Error>> {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
-    Ok(if SystemScene::is_system(&text) { Some(SystemScene::load(path)?) } else { None })
+    if !shaft::is_system(path) {
+        return Ok(None);
+    }
+    let scene = SystemScene::load(path)?;
+    tell(scene.notes());
+    Ok(Some(scene))
 }
 
 /// Notes and warnings.

@@ -120,6 +120,15 @@ impl SystemScene {
         Ok(Self { title, shaft, bearings, gravity, load, source })
     }
 
+    /// What the reader of each bearing's scene should know.
+    pub fn notes(&self) -> Vec<String> {
+        let of = |mounted: &MountedScene| {
+            let name = mounted.name.clone();
+            mounted.scene.notes().into_iter().map(move |note| format!("bearing {name}: {note}"))
+        };
+        self.bearings.iter().flat_map(of).collect()
+    }
+
     /// Settings of the integration: those that steps of all bearings need.
     pub fn solver(&self) -> Solver {
         let mut solver = self.bearings[0].scene.solver;
