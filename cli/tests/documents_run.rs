@@ -10,6 +10,7 @@ use std::process::Command;
 
 use common::Scratch;
 use roulement::scene::Scene;
+use roulement::scene::system::SystemScene;
 use roulement_cli::system::Description;
 use toml::{Table, Value};
 
@@ -96,6 +97,9 @@ fn workplace(name: &str) -> Scratch {
         "name = \"one\"\nstep = 1e-5\nstop = 1\n[components.bearing]\nscene = \"thrust.toml\"\n",
     );
     write("cases.csv", "friction.ball_race,load.duration\n0.05,0.001\n0.1,0.001\n");
+    let packaging = fs::read_to_string(root().join("docs/packaging.md")).unwrap();
+    let system = blocks(&packaging, "toml").into_iter().find(|block| block.contains("[shaft]")).unwrap();
+    write("gear.toml", system);
     let contacts = fs::read_to_string(root().join("tests/data/contact/random.csv")).unwrap();
     let few: Vec<&str> = contacts.lines().take(3).collect();
     for name in ["CASES.csv", "tests/data/contact/random.csv"] {
@@ -179,6 +183,12 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                 }
                 if table.contains_key("components") {
                     Description::read(part).unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
+                    read += 1;
+                    continue;
+                }
+                if SystemScene::is_system(part) {
+                    SystemScene::parse(part, None, &root())
+                        .unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
                     read += 1;
                     continue;
                 }

@@ -4,6 +4,7 @@
 //! instance.rs     an instance: its start, its phases, its variables
 //! step.rs         communication steps and derivatives by time
 //! directional.rs  derivatives of the outputs by the inputs
+//! unit/           what an instance simulates: a bearing, or a shaft with its bearings
 //! state.rs        the changing part of an instance: saved, restored, as bytes
 //! resources.rs    the folder that a package was unpacked to
 //! handles.rs      instances and states held by importers
@@ -23,6 +24,7 @@ mod resources;
 mod saved_state;
 mod state;
 mod step;
+mod unit;
 #[allow(non_snake_case)]
 pub mod v2;
 

@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 use super::instance::Instance;
 use super::outcome::{Outcome, Status, error};
 use super::state::State;
-use crate::simulation::Snapshot;
+use super::unit::UnitSnapshot;
 
 /// First bytes of a serialised state: what it is, and the version of its form.
 const MAGIC: &[u8; 8] = b"rlmtFM10";
@@ -17,7 +17,7 @@ const CHECKSUM: usize = 32;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FmuState {
     state: State,
-    simulation: Snapshot,
+    unit: UnitSnapshot,
     /// Identifier of the package that it is of; as bytes it stands before the content.
     #[serde(skip)]
     guid: String,
@@ -26,11 +26,7 @@ pub struct FmuState {
 impl Instance {
     /// The instance as it is.
     pub fn save(&self) -> FmuState {
-        FmuState {
-            state: self.state.clone(),
-            simulation: self.simulation.snapshot(),
-            guid: self.guid.clone(),
-        }
+        FmuState { state: self.state.clone(), unit: self.unit.snapshot(), guid: self.guid.clone() }
     }
 
     /// Refuses a state of another scene, which the library of this one may have given out, too.
@@ -48,8 +44,8 @@ impl Instance {
     /// If the state is of another scene.
     pub fn restore(&mut self, saved: &FmuState) -> Outcome {
         self.check_origin(saved)?;
-        let FmuState { state, simulation: snapshot, .. } = saved;
-        if !state.fits(self.state.values.len()) {
+        let FmuState { state, unit: snapshot, .. } = saved;
+        if !state.fits(&self.state) {
             return error("the FMU state is of another scene");
         }
         let no_number = "the FMU state holds a value that is not a number";
@@ -57,22 +53,23 @@ impl Instance {
             return error(no_number);
         }
         let mut rebuilt = None;
-        if self.variables.parameters_differ(&state.applied, &self.state.applied) {
-            rebuilt = Some(self.with_parameters(&state.applied)?);
+        if self.unit.parameters_differ(&state.applied, &self.state.applied) {
+            let mut unit = self.unit.clone();
+            unit.start_at(0.0, &state.applied)?;
+            rebuilt = Some(unit);
         }
-        let simulation = rebuilt.as_mut().unwrap_or(&mut self.simulation);
-        let here = simulation.snapshot();
-        if !simulation.restore(snapshot) {
+        let unit = rebuilt.as_mut().unwrap_or(&mut self.unit);
+        let here = unit.snapshot();
+        if !unit.restore(snapshot) {
             return error("the FMU state is of another scene");
         }
-        let values = self.variables.values(simulation.inputs(), simulation.outputs());
-        if !values.iter().all(|value| value.is_finite()) {
-            let restored = simulation.restore(&here);
-            debug_assert!(restored, "a snapshot of this very simulation fits it");
+        if !unit.values().iter().all(|value| value.is_finite()) {
+            let restored = unit.restore(&here);
+            debug_assert!(restored, "a snapshot of this very unit fits it");
             return error(no_number);
         }
         if let Some(rebuilt) = rebuilt {
-            self.simulation = rebuilt;
+            self.unit = rebuilt;
         }
         self.state = state.clone();
         self.present = None;

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::Groups;
-use crate::simulation::Snapshot;
+use super::unit::UnitSnapshot;
 
 /// Phase of an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -24,7 +23,7 @@ pub enum Phase {
     Fatal,
 }
 
-/// State of the interface: phase and values as set. The state of the bearing is the simulation's.
+/// State of the interface: phase and values as set. The state of what is simulated is its own.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct State {
     /// Phase.
@@ -43,17 +42,17 @@ pub struct State {
     pub given: Vec<bool>,
     /// Parameters, by value reference, that the simulation runs with.
     pub applied: Vec<f64>,
-    /// Groups of inputs that the importer set or gave a derivative of: their scripts are not played.
-    pub set: Groups,
-    /// Groups of inputs that the scene's script gave in the last communication step.
-    pub played: Groups,
+    /// Scripts, by their number, of inputs that the importer set or gave a derivative of: they are not played.
+    pub set: Vec<bool>,
+    /// Scripts that were played in the last communication step.
+    pub played: Vec<bool>,
     /// The communication point before the last; none before the first step.
-    pub before: Option<Snapshot>,
+    pub before: Option<UnitSnapshot>,
 }
 
 impl State {
     /// State of an instance whose variables have their start values.
-    pub fn new(values: Vec<f64>) -> Self {
+    pub fn new(values: Vec<f64>, scripts: usize) -> Self {
         Self {
             phase: Phase::Instantiated,
             rates: vec![0.0; values.len()],
@@ -62,8 +61,8 @@ impl State {
             changed: false,
             given: vec![false; values.len()],
             applied: values.clone(),
-            set: Groups::default(),
-            played: Groups::default(),
+            set: vec![false; scripts],
+            played: vec![false; scripts],
             before: None,
             values,
         }
@@ -74,9 +73,11 @@ impl State {
         [&self.values, &self.rates, &self.previous_outputs, &self.applied]
     }
 
-    /// Can an instance with that many variables be in this state?
-    pub fn fits(&self, n_variables: usize) -> bool {
+    /// Can an instance be in this state that has as many variables and scripts as this one?
+    pub fn fits(&self, other: &Self) -> bool {
+        let (n_variables, n_scripts) = (other.values.len(), other.set.len());
         self.phase != Phase::Fatal
+            && [&self.set, &self.played].iter().all(|list| list.len() == n_scripts)
             && self.given.len() == n_variables
             && self.lists().iter().all(|list| list.len() == n_variables)
     }

@@ -15,7 +15,7 @@ impl Instance {
     /// (FMI 2.0.4, section 2.1.6); discarded if the step cannot be
     /// finished: the state is then that of the last time reached.
     pub fn do_step(&mut self, time: f64, step: f64) -> Outcome {
-        let now = self.simulation.time();
+        let now = self.unit.time();
         if !(step > 0.0 && step.is_finite()) {
             return error(format!("the communication step {step} s is not positive"));
         }
@@ -32,46 +32,43 @@ impl Instance {
             let end = time + step;
             return error(format!("the communication step to {end} s is beyond the stop time {stop} s"));
         }
-        let inputs = self.next_inputs()?;
+        self.prepare()?;
         // Whatever happens from here on, these are no longer the present values.
         let mut present = self.present.take();
         if self.state.changed {
-            self.simulation.tune(&self.scene_with(&self.state.values)?);
+            self.unit.tune(&self.state.values)?;
             present = None;
             self.state.applied.clone_from(&self.state.values);
             self.state.changed = false;
         }
-        self.state.previous_outputs = present
-            .unwrap_or_else(|| self.variables.values(self.simulation.inputs(), self.simulation.outputs()));
+        self.state.previous_outputs = present.unwrap_or_else(|| self.unit.values());
         self.state.played = self.played();
-        let before = self.state.before.insert(self.simulation.snapshot());
+        let before = self.state.before.insert(self.unit.snapshot());
         self.columns = None;
-        self.simulation.set_inputs(inputs);
-        let advanced = self.simulation.advance_with(time + step, self.state.played);
+        let advanced = self.unit.advance(time + step, &self.state.played);
         // A derivative belongs to the communication point that it was set for.
         self.state.rates.fill(0.0);
-        let reached = self.simulation.time();
+        let reached = self.unit.time();
         self.state.last_step = reached - now;
-        let values = self.variables.values(self.simulation.inputs(), self.simulation.outputs());
+        let values = self.unit.values();
         if !values.iter().all(|value| value.is_finite()) {
-            let restored = self.simulation.restore(before);
-            debug_assert!(restored, "a snapshot of this very simulation fits it");
+            let restored = self.unit.restore(before);
+            debug_assert!(restored, "a snapshot of this very unit fits it");
             self.state.last_step = 0.0;
             return Err((Status::Discard, format!("a result is not a number after {now} s")));
         }
-        let scene = self.simulation.scene();
-        for (index, row) in self.variables.inputs_with_references() {
-            if row.group(scene).is_some_and(|group| self.state.played.contains(group)) {
+        for &index in self.unit.inputs() {
+            if self.unit.script_of(index).is_some_and(|script| self.state.played[script]) {
                 self.state.values[index] = values[index];
             }
         }
         self.present = Some(values);
-        advanced.map_err(|why| (Status::Discard, why.to_string()))
+        advanced
     }
 
     /// \[s] time of the last state that was reached.
     pub fn time(&self) -> f64 {
-        self.simulation.time()
+        self.unit.time()
     }
 
     /// First derivatives of inputs by time.
@@ -80,7 +77,7 @@ impl Instance {
     /// If an order is not 1, a reference not that of an input, or a value not finite; nothing is then set.
     pub fn set_input_derivatives(&mut self, references: &[u32], orders: &[i32], values: &[f64]) -> Outcome {
         for ((reference, order), value) in references.iter().zip(orders).zip(values) {
-            let row = &self.variables.rows()[self.row(*reference, Kind::Real)?];
+            let row = &self.unit.rows()[self.row(*reference, Kind::Real)?];
             if row.causality != Causality::Input {
                 return error(format!("{} is no input: it takes no input derivative", row.name));
             }
@@ -105,7 +102,7 @@ impl Instance {
     pub fn output_derivatives(&self, references: &[u32], orders: &[i32], values: &mut [f64]) -> Outcome {
         for ((reference, order), value) in references.iter().zip(orders).zip(values) {
             let index = self.row(*reference, Kind::Real)?;
-            let row = &self.variables.rows()[index];
+            let row = &self.unit.rows()[index];
             if row.causality != Causality::Output {
                 return error(format!("{} is no output: it has no output derivative", row.name));
             }
@@ -114,7 +111,7 @@ impl Instance {
                     "output derivatives of order {order} are not offered, only of order 1"
                 ));
             }
-            let now = self.variables.value(row, self.simulation.inputs(), self.simulation.outputs());
+            let now = self.unit.value(index);
             let change = now - self.state.previous_outputs[index];
             *value = if self.state.last_step > 0.0 { change / self.state.last_step } else { 0.0 };
         }

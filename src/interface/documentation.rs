@@ -1,9 +1,10 @@
 //! The page that a package brings along: interface, frames, effects, limits, parameters.
 
 use crate::effects::AnyEffect;
-use crate::interface::variables::{Causality, Source, Variable, Variables};
+use crate::interface::variables::{Causality, Source, SystemVariables, Variable, Variables};
 use crate::scene::{Drive, Orientation, Scene};
 use crate::schema::numbers::Variability;
+use crate::simulation::system::System;
 
 const STYLE: &str = "body{font:16px sans-serif;max-width:64em;margin:2em auto;padding:0 1em}\
     td,th{text-align:left;padding:.2em .6em;vertical-align:top}tr:nth-child(even){background:#f3f5f7}\
@@ -52,36 +53,90 @@ fn orientation(orientation: Orientation) -> &'static str {
     }
 }
 
+/// Rows of variables that are wanted, with a column of their own between unit and meaning.
+fn table(
+    rows: &[Variable],
+    wanted: impl Fn(&Variable) -> bool,
+    column: impl Fn(&Variable) -> String,
+) -> String {
+    let cells = |row: &Variable| {
+        let (name, unit, meaning) = (escape(&row.name), escape(row.unit.name), escape(&row.description));
+        let column = escape(&column(row));
+        format!("<tr><td><code>{name}</code></td><td>{unit}</td><td>{column}</td><td>{meaning}</td></tr>\n")
+    };
+    rows.iter().filter(|row| wanted(row)).map(cells).collect()
+}
+
+/// Inputs, outputs and locals.
+fn interface(rows: &[Variable]) -> String {
+    table(
+        rows,
+        |row| row.causality != Causality::Parameter,
+        |row| match row.causality {
+            Causality::Input => "input".into(),
+            Causality::Local => "local".into(),
+            Causality::Output | Causality::Parameter => "output".into(),
+        },
+    )
+}
+
+/// The page of a system's package.
+pub fn system_page(system: &System) -> String {
+    let scene = system.scene();
+    let title = if scene.title.is_empty() { "Shaft on ball bearings" } else { &scene.title };
+    let against = scene.bearings.iter().filter(|bearing| bearing.mounting.direction.sign() < 0.0);
+    let against: Vec<&str> = against.map(|bearing| bearing.name.as_str()).collect();
+    let turned = match against.is_empty() {
+        true => "Here the axes of all bearings are parallel to those of the shaft.".to_string(),
+        false => format!("Here this is so of: {}.", escape(&against.join(", "))),
+    };
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
+         <style>{STYLE}</style></head><body>\n<h1>{title}</h1>\n\
+         <p>A shaft on {bearings} ball bearings, in one implicit step. FMI 2.0 co-simulation, made by roulement {version}.</p>\n\
+         <h2>Frames</h2>\n<p>Right-handed, x is the axis of the shaft. Loads, points and seats are in these axes, about which the shaft \
+         does not turn them. A bearing has axes of its own, with its centre as the origin, and all its variables are in them: those of \
+         a bearing that is mounted against the shaft's axis are turned by half a turn about z (x and y change their sign). {turned}</p>\n\
+         <h2>Steps</h2>\n<p>Inputs are those at the start of a communication step; outputs those at its end. Forces, moments, speed and \
+         torque move linearly to the given values within the step. Steps may vary; they are divided internally by error control. A step \
+         that cannot be finished ends with fmi2Discard at the last time reached. The FMU state holds everything: a replay gives the same \
+         bits. There are no parameters and no directional derivatives.</p>\n\
+         <p>What the file gives as a table over time is played here too, exactly in every internal step: the force and moment of each \
+         named load, the speed or torque of the shaft, and what each bearing has as a script. Setting an input ends the script of \
+         the load, of the drive, or of the group of inputs of its bearing.</p>\n\
+         <h2>Interface</h2>\n<table><tr><th>name</th><th>unit</th><th>causality</th><th>meaning</th></tr>\n{interface}\
+         </table>\n\
+         <h2>System</h2>\n<pre>{source}</pre>\n\
+         <p>Licences of what this package is linked from: <a href=\"licenses/licenses.txt\">licenses/licenses.txt</a>.</p>\n\
+         </body></html>\n",
+        title = escape(title),
+        bearings = scene.bearings.len(),
+        version = env!("CARGO_PKG_VERSION"),
+        interface = interface(SystemVariables::new(system).rows()),
+        source = escape(&scene.source),
+    )
+}
+
 /// The page of a scene's package.
 pub fn page(scene: &Scene) -> String {
     let title = if scene.title.is_empty() { "Ball bearing" } else { &scene.title };
     let variables = Variables::new(scene);
-    let rows = |wanted: &dyn Fn(&Variable) -> bool, column: &dyn Fn(&Variable) -> String| {
-        let cells = |row: &Variable| {
-            let (name, unit, meaning) = (escape(&row.name), escape(row.unit.name), escape(&row.description));
-            let column = escape(&column(row));
-            format!(
-                "<tr><td><code>{name}</code></td><td>{unit}</td><td>{column}</td><td>{meaning}</td></tr>\n"
-            )
-        };
-        variables.rows().iter().filter(|row| wanted(row)).map(cells).collect::<String>()
-    };
-    let interface = rows(&|row| row.causality != Causality::Parameter, &|row| match row.causality {
-        Causality::Input => "input".into(),
-        Causality::Local => "local".into(),
-        Causality::Output | Causality::Parameter => "output".into(),
-    });
-    let parameters = rows(&|row| row.causality == Causality::Parameter, &|row| {
-        let Source::Parameter(parameter) = &row.source else {
-            return String::new();
-        };
-        let when = match parameter.variability {
-            Variability::Fixed => "before the start",
-            Variability::Tunable => "between steps too",
-        };
-        let (start, range) = (parameter.start, parameter.range);
-        format!("{start} ({} to {}), {when}", range.low, range.high)
-    });
+    let interface = interface(variables.rows());
+    let parameters = table(
+        variables.rows(),
+        |row| row.causality == Causality::Parameter,
+        |row| {
+            let Source::Parameter(parameter) = &row.source else {
+                return String::new();
+            };
+            let when = match parameter.variability {
+                Variability::Fixed => "before the start",
+                Variability::Tunable => "between steps too",
+            };
+            let (start, range) = (parameter.start, parameter.range);
+            format!("{start} ({} to {}), {when}", range.low, range.high)
+        },
+    );
     let effects: String = scene.effects.each().into_iter().map(effect).collect();
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\

@@ -7,11 +7,12 @@ use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
 
 use crate::analysis::condensed::Condensed;
-use crate::interface::variables::{Causality, Kind, Source, Variable, Variables};
-use crate::scene::{Drive, Scene};
+use crate::interface::variables::{Causality, Kind, Source, SystemVariables, Variable, Variables};
+use crate::scene::Drive;
 use crate::schema::numbers::Variability;
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::Simulation;
+use crate::simulation::system::System;
 
 /// Model identifier of a package with a name, which its library has as its file name: the name with every character that
 /// is not allowed in C replaced.
@@ -48,21 +49,64 @@ type Xml = Writer<Vec<u8>>;
 pub fn render(simulation: &Simulation, name: &str) -> std::io::Result<ModelDescription> {
     let scene = simulation.scene();
     let variables = Variables::new(scene);
-    let guid = guid(scene, &variables);
-    let xml = document(simulation, name, &variables, &guid)?;
+    let guid = guid(&scene.source, variables.rows());
+    let about = About {
+        title: if scene.title.is_empty() { "ball bearing" } else { &scene.title },
+        name,
+        guid: &guid,
+        directional_derivatives: true,
+        stop: scene.load.duration.0,
+        step: recommended_step(simulation),
+    };
+    let starts = variables.values(simulation.inputs(), simulation.outputs());
+    let xml = document(&about, variables.rows(), &starts)?;
     Ok(ModelDescription { xml, guid })
+}
+
+/// Renders the model description of a started system for a package with a name.
+///
+/// # Errors
+/// Only those of writing to memory.
+pub fn render_system(system: &System, name: &str) -> std::io::Result<ModelDescription> {
+    let scene = system.scene();
+    let variables = SystemVariables::new(system);
+    let guid = guid(&scene.source, variables.rows());
+    let steps = system.bearings().map(|(_, bearing)| passing_step(bearing));
+    let about = About {
+        title: if scene.title.is_empty() { "shaft on ball bearings" } else { &scene.title },
+        name,
+        guid: &guid,
+        directional_derivatives: false,
+        stop: scene.load.duration.0,
+        step: steps.fold(scene.load.output_interval.0, f64::min),
+    };
+    let xml = document(&about, variables.rows(), &variables.values(system))?;
+    Ok(ModelDescription { xml, guid })
+}
+
+/// What a model description says of the whole package.
+struct About<'a> {
+    title: &'a str,
+    name: &'a str,
+    guid: &'a str,
+    /// Are derivatives of outputs by inputs offered?
+    directional_derivatives: bool,
+    /// \[s] end of the default experiment.
+    stop: f64,
+    /// \[s] recommended communication step.
+    step: f64,
 }
 
 /// Identifier of a scene's package: a digest of the scene and of what the variables are, but not of the start values that
 /// were computed, whose last bits may differ between platforms.
-pub fn guid(scene: &Scene, variables: &Variables) -> String {
+pub fn guid(source: &str, rows: &[Variable]) -> String {
     let mut digest = Sha256::new();
     digest.update(env!("CARGO_PKG_VERSION"));
-    for row in variables.rows() {
+    for row in rows {
         let what = (&row.name, row.unit.name, row.kind, row.causality, row.limits, &row.description);
         digest.update(format!("{what:?}"));
     }
-    digest.update(&scene.source);
+    digest.update(source);
     let hex = digest.finalize().iter().take(16).fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text
@@ -70,22 +114,15 @@ pub fn guid(scene: &Scene, variables: &Variables) -> String {
     format!("{{{}-{}-{}-{}-{}}}", &hex[0..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..32])
 }
 
-fn document(
-    simulation: &Simulation,
-    name: &str,
-    variables: &Variables,
-    guid: &str,
-) -> std::io::Result<String> {
-    let scene = simulation.scene();
+fn document(about: &About<'_>, rows: &[Variable], starts: &[f64]) -> std::io::Result<String> {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    let title = if scene.title.is_empty() { "ball bearing" } else { &scene.title };
     xml.create_element("fmiModelDescription")
         .with_attributes([
             ("fmiVersion", "2.0"),
-            ("modelName", name),
-            ("guid", guid),
-            ("description", title),
+            ("modelName", about.name),
+            ("guid", about.guid),
+            ("description", about.title),
             ("version", env!("CARGO_PKG_VERSION")),
             ("generationTool", concat!("roulement ", env!("CARGO_PKG_VERSION"))),
             ("license", env!("CARGO_PKG_LICENSE")),
@@ -93,7 +130,7 @@ fn document(
             ("numberOfEventIndicators", "0"),
         ])
         .write_inner_content(|xml| {
-            co_simulation(xml, &identifier(name))?;
+            co_simulation(xml, about)?;
             unit_definitions(xml)?;
             type_definitions(xml)?;
             xml.create_element("LogCategories").write_inner_content(|xml| {
@@ -103,32 +140,31 @@ fn document(
                 }
                 Ok(())
             })?;
-            default_experiment(xml, simulation)?;
-            let inputs = simulation.inputs();
-            let starts = variables.values(inputs, simulation.outputs());
+            default_experiment(xml, about)?;
             xml.create_element("ModelVariables").write_inner_content(|xml| {
-                for (reference, (row, start)) in variables.rows().iter().zip(starts).enumerate() {
-                    scalar_variable(xml, reference, row, start)?;
+                for (reference, (row, start)) in rows.iter().zip(starts).enumerate() {
+                    scalar_variable(xml, reference, row, *start)?;
                 }
                 Ok(())
             })?;
-            model_structure(xml, variables)
+            model_structure(xml, rows)
         })?;
     let mut text = String::from_utf8(xml.into_inner()).map_err(std::io::Error::other)?;
     text.push('\n');
     Ok(text)
 }
 
-fn co_simulation(xml: &mut Xml, identifier: &str) -> std::io::Result<()> {
+fn co_simulation(xml: &mut Xml, about: &About<'_>) -> std::io::Result<()> {
+    let identifier = identifier(about.name);
     xml.create_element("CoSimulation")
         .with_attributes([
-            ("modelIdentifier", identifier),
+            ("modelIdentifier", identifier.as_str()),
             ("canHandleVariableCommunicationStepSize", "true"),
             ("canInterpolateInputs", "true"),
             ("maxOutputDerivativeOrder", "1"),
             ("canGetAndSetFMUstate", "true"),
             ("canSerializeFMUstate", "true"),
-            ("providesDirectionalDerivative", "true"),
+            ("providesDirectionalDerivative", if about.directional_derivatives { "true" } else { "false" }),
         ])
         .write_empty()?;
     Ok(())
@@ -191,21 +227,11 @@ fn type_definitions(xml: &mut Xml) -> std::io::Result<()> {
 /// scene's own output interval. Where the pose of the inner race is an input, it also is short enough for a shaft that its
 /// master moves by leapfrog (`docs/coupling.md`): half the reciprocal of its angular frequency on the bearing, a quarter of
 /// what is stable. The shaft has the mass that the scene gives, or 1 kg.
-fn default_experiment(xml: &mut Xml, simulation: &Simulation) -> std::io::Result<()> {
-    const POINTS_PER_PASSAGE: f64 = 20.0;
+fn recommended_step(simulation: &Simulation) -> f64 {
     const SHAFT_MASS: f64 = 1.0; // [kg]
     const FREQUENCY_BY_STEP: f64 = 0.5; // [rad]
-    let (scene, outputs) = (simulation.scene(), simulation.outputs());
-    let balls = scene.bearing.balls as f64;
-    // Balls pass a point of a race at their speed relative to it.
-    let speeds = [outputs.inner.twist.angular_velocity.x, outputs.outer.twist.angular_velocity.x];
-    let passing = speeds.map(|speed| balls * (speed - outputs.cage_speed).abs() / std::f64::consts::TAU);
-    let frequency = passing[0].max(passing[1]);
-    let interval = scene.load.output_interval.0;
-    let mut step = interval;
-    if frequency > 0.0 {
-        step = step.min(round_down(1.0 / (POINTS_PER_PASSAGE * frequency)));
-    }
+    let scene = simulation.scene();
+    let mut step = scene.load.output_interval.0.min(passing_step(simulation));
     if scene.inner.drive == Drive::Pose {
         let condensed = Condensed::new(simulation.model(), simulation.state(), &simulation.conditions());
         let stiffness = (0..3).map(|axis| condensed.stiffness[(axis, axis)]).fold(0.0, f64::max);
@@ -214,7 +240,23 @@ fn default_experiment(xml: &mut Xml, simulation: &Simulation) -> std::io::Result
             step = step.min(round_down(FREQUENCY_BY_STEP * (mass / stiffness).sqrt()));
         }
     }
-    let (stop, step) = (scene.load.duration.0.to_string(), step.to_string());
+    step
+}
+
+/// \[s] communication step that resolves the passing of the balls; infinite where they do not pass.
+fn passing_step(simulation: &Simulation) -> f64 {
+    const POINTS_PER_PASSAGE: f64 = 20.0;
+    let outputs = simulation.outputs();
+    let balls = simulation.scene().bearing.balls as f64;
+    // Balls pass a point of a race at their speed relative to it.
+    let speeds = [outputs.inner.twist.angular_velocity.x, outputs.outer.twist.angular_velocity.x];
+    let passing = speeds.map(|speed| balls * (speed - outputs.cage_speed).abs() / std::f64::consts::TAU);
+    let frequency = passing[0].max(passing[1]);
+    if frequency > 0.0 { round_down(1.0 / (POINTS_PER_PASSAGE * frequency)) } else { f64::INFINITY }
+}
+
+fn default_experiment(xml: &mut Xml, about: &About<'_>) -> std::io::Result<()> {
+    let (stop, step) = (about.stop.to_string(), about.step.to_string());
     let attributes = [("startTime", "0"), ("stopTime", stop.as_str()), ("stepSize", step.as_str())];
     xml.create_element("DefaultExperiment").with_attributes(attributes).write_empty()?;
     Ok(())
@@ -289,10 +331,10 @@ fn variability(row: &Variable) -> &'static str {
 /// Outputs are those of the last communication point: after a step none depends on an input as it is then. At the start
 /// they depend on all inputs, as the bearing is one mechanism, and on the parameters, except those of the time
 /// integration; what is counted from the start depends on nothing.
-fn model_structure(xml: &mut Xml, variables: &Variables) -> std::io::Result<()> {
+fn model_structure(xml: &mut Xml, rows: &[Variable]) -> std::io::Result<()> {
     // Indices count from 1.
     let indices = |wanted: &dyn Fn(&Variable) -> bool| {
-        let rows = variables.rows().iter().enumerate();
+        let rows = rows.iter().enumerate();
         rows.filter(|(_, row)| wanted(row)).map(|(index, _)| index + 1).collect::<Vec<_>>()
     };
     let list = |indices: &[usize]| indices.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
@@ -303,8 +345,13 @@ fn model_structure(xml: &mut Xml, variables: &Variables) -> std::io::Result<()> 
         Causality::Output | Causality::Local => false,
     }));
     let from_start = |index: usize| {
-        ["energy.work", "energy.dissipated", "inner.turned", "outer.turned"]
-            .contains(&variables.rows()[index - 1].name.as_str())
+        // Also of a bearing or a shaft, whose name comes first.
+        ["energy.work", "energy.dissipated", "energy.to_bearings", "inner.turned", "outer.turned"].iter().any(
+            |name| {
+                let before = rows[index - 1].name.strip_suffix(name);
+                before.is_some_and(|before| before.is_empty() || before.ends_with('.'))
+            },
+        )
     };
     xml.create_element("ModelStructure").write_inner_content(|xml| {
         for name in ["Outputs", "InitialUnknowns"] {

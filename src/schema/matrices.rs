@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::{DMatrix, Dyn, OMatrix, U3, U6};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::error::SceneError;
 
@@ -13,7 +13,7 @@ const SAME: f64 = 1e-6;
 const ROUNDING: f64 = 1e-6;
 
 /// A linear structure in `n` coordinates, as the file has it: matrices by rows, SI.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Matrices {
     /// Where it is from.
@@ -37,7 +37,7 @@ pub struct Matrices {
 }
 
 /// A place of a structure.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct MatrixStation {
     /// \[m] position along the shaft.
@@ -65,20 +65,27 @@ pub struct StructureMatrices {
     pub stations: Vec<(f64, OMatrix<f64, U6, Dyn>)>,
 }
 
-impl StructureMatrices {
-    /// Reads a file.
+impl Matrices {
+    /// Those that a key gives: the name of a JSON file in a folder, or a table of the same keys.
     ///
     /// # Errors
-    /// With the file, the matrix and what is wrong with it.
-    pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let file = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| SceneError::Read { path: file.clone(), source })?;
-        let wrong = |why: String| SceneError::conflict("shaft.matrices", format!("{file}: {why}"));
-        let read: Matrices = serde_json::from_str(&text).map_err(|why| wrong(why.to_string()))?;
-        read.checked().map_err(wrong)
+    /// With the file and what is wrong with it.
+    pub fn of(given: &toml::Value, folder: &Path) -> Result<Self, SceneError> {
+        let wrong = |file: &str, why: String| SceneError::conflict("shaft.matrices", format!("{file}{why}"));
+        match given {
+            toml::Value::String(name) => {
+                let path = folder.join(name);
+                let file = path.display().to_string();
+                let text = std::fs::read_to_string(&path)
+                    .map_err(|source| SceneError::Read { path: file.clone(), source })?;
+                serde_json::from_str(&text).map_err(|why| wrong(&format!("{file}: "), why.to_string()))
+            }
+            table => table.clone().try_into().map_err(|why: toml::de::Error| wrong("", why.message().into())),
+        }
     }
+}
 
+impl StructureMatrices {
     /// Displacement and rotation at a position \[m]; where there is no station, the positions of those there are.
     ///
     /// # Errors
@@ -93,7 +100,15 @@ impl StructureMatrices {
 }
 
 impl Matrices {
-    fn checked(self) -> Result<StructureMatrices, String> {
+    /// The same as matrices.
+    ///
+    /// # Errors
+    /// With the matrix and what is wrong with it.
+    pub fn checked(&self) -> Result<StructureMatrices, SceneError> {
+        self.read().map_err(|why| SceneError::conflict("shaft.matrices", why))
+    }
+
+    fn read(&self) -> Result<StructureMatrices, String> {
         let n = self.mass.len();
         let square = |name: &str, rows: &[Vec<f64>]| matrix(name, rows, n, n);
         let symmetric = |name: &str, rows: &[Vec<f64>], sign: f64| {

@@ -21,7 +21,7 @@ pub use components::Components;
 pub use error::SceneError;
 pub use inputs::{Giver, Group, Groups, InputGivers};
 pub use machine::{GearSection, Machine, RotatingSection};
-pub use matrices::StructureMatrices;
+pub use matrices::{Matrices, StructureMatrices};
 pub use schedule::{Schedule, Sine};
 pub use sections::*;
 pub use shaft::*;

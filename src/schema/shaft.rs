@@ -33,8 +33,8 @@ pub struct ShaftSection {
     pub section: Vec<BeamSection>,
     /// Rigid discs on the shaft; not with `matrices`.
     pub disc: Vec<Disc>,
-    /// File with the matrices of a shaft from another program (docs/shaft.md); instead of `mass` and `section`.
-    pub matrices: Option<String>,
+    /// JSON file with the matrices of a shaft from another program (docs/shaft.md), or its keys; instead of `mass` and `section`.
+    pub matrices: Option<toml::Value>,
     /// What that file has.
     #[serde(skip)]
     pub read: Option<StructureMatrices>,

@@ -201,11 +201,23 @@ impl Simulation {
     /// another bearing.
     #[must_use]
     pub fn restore(&mut self, snapshot: &Snapshot) -> bool {
+        let same = self.fits(snapshot);
+        if same {
+            self.inputs = snapshot.inputs;
+            self.state.clone_from(&snapshot.state);
+            self.paths.clone_from(&snapshot.paths);
+            self.outputs = Outputs::new(&self.model, &self.state, &self.conditions());
+        }
+        same
+    }
+
+    /// Is this a point that a simulation of the same scene could be at?
+    fn fits(&self, snapshot: &Snapshot) -> bool {
         let constraints = |state: &State| -> Vec<usize> {
             state.bodies.iter().map(|(_, body)| body.multipliers.len()).collect()
         };
         let damaged = |state: &State| state.orientations.as_ref().map(Vec::len);
-        let same = snapshot.state.balls.len() == self.state.balls.len()
+        snapshot.state.balls.len() == self.state.balls.len()
             && constraints(&snapshot.state) == constraints(&self.state)
             && snapshot.state.control.fits(&self.state.control)
             && [0, self.state.balls.len()].contains(&snapshot.state.matrix.balls.len())
@@ -220,14 +232,7 @@ impl Simulation {
             && snapshot.state.heat.is_some() == self.state.heat.is_some()
             && snapshot.state.warm.is_some() == self.state.warm.is_some()
             && damaged(&snapshot.state) == damaged(&self.state)
-            && snapshot.inputs.rises.is_some() == self.inputs.rises.is_some();
-        if same {
-            self.inputs = snapshot.inputs;
-            self.state.clone_from(&snapshot.state);
-            self.paths.clone_from(&snapshot.paths);
-            self.outputs = Outputs::new(&self.model, &self.state, &self.conditions());
-        }
-        same
+            && snapshot.inputs.rises.is_some() == self.inputs.rises.is_some()
     }
 
     /// Outputs of the last communication point.

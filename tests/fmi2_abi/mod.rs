@@ -6,10 +6,12 @@ use std::path::PathBuf;
 use std::ptr;
 
 use roulement::fmi::v2::{CallbackFunctions, Status};
-use roulement::interface::model_description::render;
-use roulement::interface::variables::{Causality, Variable, Variables};
+use roulement::interface::model_description::{render, render_system};
+use roulement::interface::variables::{Causality, SystemVariables, Variable, Variables};
 use roulement::scene::Scene;
+use roulement::scene::system::SystemScene;
 use roulement::simulation::Simulation;
+use roulement::simulation::system::System;
 
 pub type Component = *mut c_void;
 pub type State = *mut c_void;
@@ -128,11 +130,23 @@ unsafe impl Sync for Package {}
 impl Package {
     /// `name` tells the folders of tests that run at the same time apart.
     pub fn new(name: &str, text: &str) -> Self {
-        let folder = std::env::temp_dir().join(format!("roulement-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
-        std::fs::write(folder.join("scene.toml"), text).unwrap();
         let scene = Scene::parse(text).unwrap();
         let guid = render(&Simulation::new(&scene).unwrap(), "bearing").unwrap().guid;
+        Self::of(name, text, guid, Variables::new(&scene).rows().to_vec())
+    }
+
+    /// That of a shaft with its bearings.
+    pub fn of_system(name: &str, text: &str) -> Self {
+        let scene = SystemScene::parse(text, None, "".as_ref()).unwrap();
+        let system = System::new(&scene).unwrap();
+        let guid = render_system(&system, "bearing").unwrap().guid;
+        Self::of(name, &scene.source, guid, SystemVariables::new(&system).rows().to_vec())
+    }
+
+    fn of(name: &str, source: &str, guid: String, rows: Vec<Variable>) -> Self {
+        let folder = std::env::temp_dir().join(format!("roulement-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join("scene.toml"), source).unwrap();
         let callbacks = CallbackFunctions {
             logger: None,
             allocate_memory: None,
@@ -143,7 +157,7 @@ impl Package {
         Self {
             guid: CString::new(guid).unwrap(),
             location: CString::new(format!("file://{}", folder.display())).unwrap(),
-            rows: Variables::new(&scene).rows().to_vec(),
+            rows,
             folder,
             callbacks,
         }

@@ -23,11 +23,13 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand, ValueEnum};
 use roulement::analysis::auto;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
-use roulement::interface::model_description::render;
+use roulement::interface::model_description::{render, render_system};
 use roulement::model::Model;
 use roulement::scene::Scene;
+use roulement::scene::system::SystemScene;
 use roulement::simulation::Simulation;
-use roulement_cli::package::{library_beside_executable, name_of, write_fmu};
+use roulement::simulation::system::System;
+use roulement_cli::package::{library_beside_executable, name_of, write_fmu, write_system_fmu};
 
 /// 3-D dynamic ball bearing for gearbox co-simulation.
 #[derive(Parser)]
@@ -62,9 +64,9 @@ enum Command {
     Effects(effects::Options),
     /// Make one page of results: drawing, plots, spectra, playback; of a run, of several, or of a sweep.
     Report(report::Options),
-    /// Pack a scene as an FMI 2.0 co-simulation FMU.
+    /// Pack a scene, or a shaft with its bearings, as an FMI 2.0 co-simulation FMU.
     Fmu {
-        /// Scene file.
+        /// Scene file, or file of a system.
         scene: PathBuf,
         /// Package to write.
         #[arg(short, long)]
@@ -126,6 +128,16 @@ fn load(path: &Path) -> Result<Scene, Box<dyn Error>> {
     Ok(scene)
 }
 
+/// Reads the file of a system; none where the file is not that of one.
+fn system(path: &Path) -> Result<Option<SystemScene>, Box<dyn Error>> {
+    if !shaft::is_system(path) {
+        return Ok(None);
+    }
+    let scene = SystemScene::load(path)?;
+    tell(scene.notes());
+    Ok(Some(scene))
+}
+
 /// Notes and warnings.
 fn tell(notes: impl IntoIterator<Item = String>) {
     for note in notes {
@@ -168,7 +180,10 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Fmu { scene, output, library, name } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
             let name = name.unwrap_or_else(|| name_of(&output));
-            write_fmu(&load(&scene)?, &name, &libraries, &output)?;
+            match system(&scene)? {
+                Some(system) => write_system_fmu(&system, &name, &libraries, &output)?,
+                None => write_fmu(&load(&scene)?, &name, &libraries, &output)?,
+            }
             say(&format!("{}\n", output.display()))?;
         }
         Command::Scene(options) => scene::run(&options)?,
@@ -181,7 +196,12 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Identify(options) => identify::run(&options)?,
         Command::Cost(options) => cost::run(options)?,
         Command::Describe { scene } => {
-            say(&render(&Simulation::new(&load(&scene)?)?, &name_of(&scene))?.xml)?;
+            let name = name_of(&scene);
+            let description = match system(&scene)? {
+                Some(system) => render_system(&System::new(&system)?, &name)?,
+                None => render(&Simulation::new(&load(&scene)?)?, &name)?,
+            };
+            say(&description.xml)?;
         }
     }
     Ok(ExitCode::SUCCESS)

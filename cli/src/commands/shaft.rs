@@ -55,9 +55,7 @@ pub fn run(
         .into());
     }
     let scene = SystemScene::load(file)?;
-    for mounted in &scene.bearings {
-        tell(mounted.scene.notes().into_iter().map(|note| format!("bearing {}: {note}", mounted.name)));
-    }
+    tell(scene.notes());
     let mut system = System::new(&scene)?;
     let gathered = |(name, bearing): (&str, &roulement::Simulation)| -> Result<Gathered, Box<dyn Error>> {
         let directory = output.join(name);

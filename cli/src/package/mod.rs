@@ -13,8 +13,10 @@ use zip::write::SimpleFileOptions;
 
 use roulement::fmi::SCENE_FILE;
 use roulement::interface::documentation;
-use roulement::interface::model_description::{identifier, render};
+use roulement::interface::model_description::{ModelDescription, identifier, render, render_system};
 use roulement::scene::Scene;
+use roulement::scene::system::SystemScene;
+use roulement::simulation::system::{System, SystemError};
 use roulement::simulation::{Simulation, SimulationError};
 
 /// Why a package was not written.
@@ -23,6 +25,9 @@ pub enum PackageError {
     /// The scene cannot be started, so that its package could not either.
     #[error(transparent)]
     Start(#[from] SimulationError),
+    /// The same of a system.
+    #[error(transparent)]
+    StartSystem(#[from] SystemError),
     /// A file could not be read or written.
     #[error("{what} {path}: {source}")]
     File {
@@ -106,6 +111,15 @@ pub fn name_of(file: &Path) -> String {
     file.file_stem().map_or_else(|| "bearing".into(), |stem| stem.to_string_lossy().into_owned())
 }
 
+/// What is in a package beside its libraries.
+struct Content<'a> {
+    description: ModelDescription,
+    /// The text that its library reads.
+    source: &'a str,
+    /// Its documentation.
+    page: String,
+}
+
 /// Writes the package of a scene under a name, with one library per platform, to `output`; an existing file is replaced only
 /// by a complete one.
 ///
@@ -117,6 +131,31 @@ pub fn write_fmu(
     libraries: &[PathBuf],
     output: &Path,
 ) -> Result<(), PackageError> {
+    let libraries = read_libraries(libraries)?;
+    let description = render(&Simulation::new(scene)?, name)?;
+    let content = Content { description, source: &scene.source, page: documentation::page(scene) };
+    write(&content, name, &libraries, output)
+}
+
+/// Writes the package of a shaft with its bearings, as [`write_fmu`] does that of a bearing.
+///
+/// # Errors
+/// See [`PackageError`].
+pub fn write_system_fmu(
+    scene: &SystemScene,
+    name: &str,
+    libraries: &[PathBuf],
+    output: &Path,
+) -> Result<(), PackageError> {
+    let libraries = read_libraries(libraries)?;
+    let system = System::new(scene)?;
+    let description = render_system(&system, name)?;
+    let content = Content { description, source: &scene.source, page: documentation::system_page(&system) };
+    write(&content, name, &libraries, output)
+}
+
+/// Reads one library per platform.
+fn read_libraries(libraries: &[PathBuf]) -> Result<Vec<(Platform, Vec<u8>)>, PackageError> {
     if let Some(missing) = libraries.iter().find(|library| !library.is_file()) {
         return Err(PackageError::NoLibrary(missing.display().to_string()));
     }
@@ -126,9 +165,16 @@ pub fn write_fmu(
             return Err(PackageError::Twice(platform.folder));
         }
     }
-    let simulation = Simulation::new(scene)?;
-    let (description, identifier) = (render(&simulation, name)?, identifier(name));
+    Ok(libraries)
+}
 
+fn write(
+    content: &Content<'_>,
+    name: &str,
+    libraries: &[(Platform, Vec<u8>)],
+    output: &Path,
+) -> Result<(), PackageError> {
+    let identifier = identifier(name);
     // Without time stamps: the same scene and library give the same bytes.
     let options = SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
@@ -136,14 +182,14 @@ pub fn write_fmu(
         zip.start_file(name, options)?;
         Ok(zip.write_all(content)?)
     };
-    add("modelDescription.xml", description.xml.as_bytes())?;
-    for (Platform { folder, ending, .. }, library) in &libraries {
+    add("modelDescription.xml", content.description.xml.as_bytes())?;
+    for (Platform { folder, ending, .. }, library) in libraries {
         add(&format!("binaries/{folder}/{identifier}.{ending}"), library)?;
     }
-    add(&format!("resources/{SCENE_FILE}"), scene.source.as_bytes())?;
+    add(&format!("resources/{SCENE_FILE}"), content.source.as_bytes())?;
     add("model.png", include_bytes!("../../../assets/model.png"))?;
     add("documentation/licenses/licenses.txt", include_bytes!("../../../assets/licenses.txt"))?;
-    add("documentation/index.html", documentation::page(scene).as_bytes())?;
+    add("documentation/index.html", content.page.as_bytes())?;
     let bytes = zip.finish()?.into_inner();
 
     let partial = output.with_extension("fmu.part");

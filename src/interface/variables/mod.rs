@@ -5,6 +5,8 @@
 mod race_rows;
 mod race_setting;
 mod rows;
+mod shaft_rows;
+mod system;
 
 use thiserror::Error;
 
@@ -19,6 +21,8 @@ use crate::simulation::outputs::Outputs;
 use race_rows::RaceVariable;
 pub use race_setting::InputKind;
 use race_setting::RaceSetting;
+pub use shaft_rows::ShaftSource;
+pub use system::{SystemGroup, SystemVariables};
 
 /// FMI causality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +65,8 @@ pub enum Source {
     Effect(Getter),
     /// A number of the scene.
     Parameter(Parameter),
+    /// The shaft of a system.
+    Shaft(ShaftSource),
 }
 
 /// One variable.
@@ -116,6 +122,14 @@ pub enum InputError {
         /// What is allowed.
         range: Range,
     },
+    /// An input of a bearing of a system.
+    #[error("bearing {name}: {source}")]
+    Bearing {
+        /// The bearing.
+        name: String,
+        /// What is wrong with its input.
+        source: Box<InputError>,
+    },
     /// A rise of temperature that no bearing stands.
     #[error("{name} = {value} K is out of range: allowed is {RISE}")]
     Rise {
@@ -124,6 +138,12 @@ pub enum InputError {
         /// \[K] value.
         value: f64,
     },
+}
+
+/// Value references of the inputs among rows.
+fn references_of_inputs(rows: &[Variable]) -> Vec<usize> {
+    let inputs = rows.iter().enumerate().filter(|(_, row)| row.causality == Causality::Input);
+    inputs.map(|(index, _)| index).collect()
 }
 
 /// The table of a scene.
@@ -144,20 +164,34 @@ impl Variables {
 
     /// The variables that can change in a run, with or without those of every ball.
     pub fn moving(scene: &Scene, per_ball: bool) -> Self {
+        Self::of_bearing(scene, per_ball, None)
+    }
+
+    /// The variables of a bearing of a system: the shaft carries its inner race, and its numbers are no parameters.
+    pub fn carried(scene: &Scene) -> Self {
+        Self::of_bearing(scene, scene.effects.per_ball.on, Some(Race::Inner))
+    }
+
+    fn of_bearing(scene: &Scene, per_ball: bool, carried: Option<Race>) -> Self {
         let mut table = Self { rows: vec![], inputs: vec![] };
-        table.add_race(scene, Race::Inner);
-        table.add_race(scene, Race::Outer);
+        for race in Race::BOTH {
+            table.add_race(scene, race, carried == Some(race));
+        }
         table.add_bearing();
         table.add_effects(scene, per_ball);
         table.add_temperatures(scene);
-        let inputs = table.rows.iter().enumerate().filter(|(_, row)| row.causality == Causality::Input);
-        table.inputs = inputs.map(|(index, _)| index).collect();
+        table.inputs = references_of_inputs(&table.rows);
         table
     }
 
     /// Rows; the index of a row is its value reference.
     pub fn rows(&self) -> &[Variable] {
         &self.rows
+    }
+
+    /// Value references of the inputs.
+    pub fn input_references(&self) -> &[usize] {
+        &self.inputs
     }
 
     /// The inputs with their value references.
@@ -174,6 +208,8 @@ impl Variables {
             Source::Input(input) => (input.get)(&inputs.effects, input.place),
             Source::Bearing(get) => get(outputs),
             Source::Effect(getter) => getter.get(&outputs.reports()),
+            // A bearing by itself has none.
+            Source::Shaft(_) => f64::NAN,
             Source::Race(race, quantity, component) => match (row.causality, &quantity.input) {
                 (Causality::Input, Some(access)) => (access.get)(&inputs[*race], *component),
                 _ => (quantity.read)(&outputs[*race], *component),
@@ -193,14 +229,6 @@ impl Variables {
                 scene.set_number(parameter.key, *value);
             }
         }
-    }
-
-    /// Is a parameter among the values of all rows different?
-    pub fn parameters_differ(&self, one: &[f64], other: &[f64]) -> bool {
-        let differs = |((row, one), other): ((&Variable, &f64), &f64)| {
-            row.causality == Causality::Parameter && one != other
-        };
-        self.rows.iter().zip(one).zip(other).any(differs)
     }
 
     /// Rates of all rows that inputs were given with: those of a twist.

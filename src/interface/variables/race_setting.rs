@@ -17,12 +17,15 @@ pub struct RaceMotion {
     pub orientation: Orientation,
     /// Does a script give its speed or its tilt at all times?
     pub scripted_speed: bool,
+    /// Is it moved by a shaft or a housing, whatever its drive?
+    pub carried: bool,
 }
 
 impl RaceMotion {
     /// Pose and twist: inputs where they are given, outputs where forces move the race.
     pub(super) fn pose(self) -> Option<Causality> {
         match self.drive {
+            _ if self.carried => Some(Causality::Output),
             Drive::Pose => Some(Causality::Input),
             Drive::Wrench | Drive::Hinge => Some(Causality::Output),
             Drive::Fixed => None,
@@ -45,6 +48,7 @@ impl RaceMotion {
     /// The prescribed speed: not where the angular velocity is given instead, or a script says it.
     pub(super) fn speed(self) -> Option<Causality> {
         let given = match self.drive {
+            _ if self.carried => false,
             Drive::Wrench => true,
             Drive::Pose => self.orientation == Orientation::Shaft,
             Drive::Fixed | Drive::Hinge => !self.scripted_speed,

@@ -17,7 +17,7 @@ fn limits(source: &Source) -> [Option<f64>; 2] {
         Source::Friction => [Some(FRICTION.low), Some(FRICTION.high)],
         Source::Parameter(parameter) => [Some(parameter.range.low), Some(parameter.range.high)],
         Source::Rise(_) => [Some(RISE.low), Some(RISE.high)],
-        Source::Bearing(_) | Source::Effect(_) | Source::Input(_) => [None; 2],
+        Source::Bearing(_) | Source::Effect(_) | Source::Input(_) | Source::Shaft(_) => [None; 2],
     }
 }
 
@@ -55,8 +55,8 @@ impl Variables {
         }
     }
 
-    /// Adds what a race has under its drive.
-    pub(super) fn add_race(&mut self, scene: &Scene, race: Race) {
+    /// Adds what a race has under its drive, or as a shaft carries it.
+    pub(super) fn add_race(&mut self, scene: &Scene, race: Race, carried: bool) {
         let (section, speed) = match race {
             Race::Inner => (&scene.inner, &scene.load.inner_speed),
             Race::Outer => (&scene.outer, &scene.load.outer_speed),
@@ -67,6 +67,7 @@ impl Variables {
             scripted_speed: [speed, &section.misalignment.ry, &section.misalignment.rz]
                 .iter()
                 .any(|schedule| schedule.is_scripted()),
+            carried,
         };
         for quantity in &RACE_VARIABLES {
             let Some(causality) = (quantity.causality)(motion) else {

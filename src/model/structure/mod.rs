@@ -11,8 +11,23 @@ mod beam;
 mod shaft;
 
 use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6, Vector3};
+use serde::{Deserialize, Serialize};
 
 pub use shaft::Shaft;
+
+/// Vectors of any length as lists of numbers.
+mod list {
+    use nalgebra::DVector;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(vector: &DVector<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+        vector.as_slice().serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DVector<f64>, D::Error> {
+        Vec::deserialize(deserializer).map(DVector::from_vec)
+    }
+}
 
 /// How a structure turns about the x axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,17 +65,22 @@ pub struct Structure {
 }
 
 /// Motion of a structure, and what it takes to go on.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StructureState {
     /// Coordinates \[m, rad or 1].
+    #[serde(with = "list")]
     pub coordinates: DVector<f64>,
     /// Their rates.
+    #[serde(with = "list")]
     pub rates: DVector<f64>,
     /// Rates of these.
+    #[serde(with = "list")]
     pub accelerations: DVector<f64>,
     /// Total generalised force, the `g` of the HHT scheme.
+    #[serde(with = "list")]
     pub total: DVector<f64>,
     /// What the last step left of the equations of motion, within their tolerance.
+    #[serde(with = "list")]
     pub remainder: DVector<f64>,
     /// Turn and its rates.
     pub spin: Spin,
@@ -73,7 +93,7 @@ pub struct StructureState {
 }
 
 /// Turn of a structure about the x axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spin {
     /// \[rad] angle since the start.
     pub angle: f64,
@@ -84,7 +104,7 @@ pub struct Spin {
 }
 
 /// Powers of a structure at one instant \[W].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StructurePowers {
     /// Put in by loads, weight and drive.
     pub input: f64,
@@ -95,7 +115,7 @@ pub struct StructurePowers {
 }
 
 /// Energies of a structure \[J]: sums since the start, and what is stored.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StructureEnergies {
     /// Work of loads, weight and drive.
     pub input: f64,
@@ -113,6 +133,16 @@ impl StructureEnergies {
     /// \[J] put in, but neither given on, lost nor stored.
     pub fn unaccounted(&self) -> f64 {
         self.input - self.bearings - self.damping - (self.stored - self.at_start)
+    }
+}
+
+impl StructureState {
+    /// Can a structure with that many coordinates be in this state?
+    pub fn fits(&self, size: usize) -> bool {
+        let Self { coordinates, rates, accelerations, total, remainder, .. } = self;
+        [coordinates, rates, accelerations, total, remainder]
+            .iter()
+            .all(|list| list.len() == size && list.iter().all(|value| value.is_finite()))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The file of a system: a shaft, its bearings, and what loads it.
 //!
-//! It is TOML as the scene of one bearing is. Each `[[bearing]]` has the keys of such a scene by itself (`scene`, a file; or
-//! `catalogue`, a designation), changed by `[bearing.set]`, and where it sits on the shaft, `[bearing.mounting]`.
+//! It is TOML as the scene of one bearing is. Each `[[bearing]]` has the keys of such a scene by itself (`scene`, a file or the keys
+//! themselves; or `catalogue`, a designation), changed by `[bearing.set]`, and where it sits on the shaft, `[bearing.mounting]`.
 
 mod check;
 
@@ -14,9 +14,7 @@ use toml::{Table, Value};
 use super::{Scene, SceneError};
 use crate::catalogue::Request;
 use crate::schema::units::{Acceleration, Time};
-use crate::schema::{
-    Components, Mounting, MountingDirection, ShaftSection, Solver, StructureMatrices, explain,
-};
+use crate::schema::{Components, Matrices, Mounting, MountingDirection, ShaftSection, Solver, explain};
 
 /// A shaft with its bearings, as described by a file.
 #[derive(Clone, Debug)]
@@ -31,6 +29,8 @@ pub struct SystemScene {
     pub gravity: Vector3<f64>,
     /// Simulated time, and distance of rows.
     pub load: SystemLoad,
+    /// Its text, which stands alone: every bearing with its whole scene in place of a file or a designation.
+    pub source: String,
 }
 
 /// A bearing of a system.
@@ -81,8 +81,8 @@ struct Written {
 struct WrittenBearing {
     /// Its name: letters, digits, _ and -.
     name: String,
-    /// File of its scene, beside this one; or `catalogue`.
-    scene: Option<String>,
+    /// Its scene: a file beside this one, or the keys of a scene; or `catalogue`.
+    scene: Option<Value>,
     /// Its designation in the catalogue, such as 7206 B.
     catalogue: Option<String>,
     /// Where it sits on the shaft.
@@ -113,6 +113,16 @@ impl SystemScene {
     /// # Errors
     /// See [`SceneError`].
     pub fn parse(text: &str, file: Option<&str>, folder: &Path) -> Result<Self, SceneError> {
+        let placed = |error| explain::with_place(error, text, None, file);
+        match Scene::with_files(text, folder).map_err(placed)? {
+            // Lines of the text with the tables are not those that the reader of a message has.
+            Some(text) => Self::read(&text, None, folder),
+            None => Self::read(text, file, folder),
+        }
+    }
+
+    /// Reads a system whose schedules name no files.
+    fn read(text: &str, file: Option<&str>, folder: &Path) -> Result<Self, SceneError> {
         let written: Written = toml::from_str(text).map_err(|why| {
             let spot = why.span().map(|span| span.start);
             explain::with_place(explain::format_error(text, &why), text, spot, file)
@@ -121,8 +131,10 @@ impl SystemScene {
         check::check(&written).map_err(placed)?;
         let Written { title, mut shaft, bearing, load, gravity, solver } = written;
         let gravity = gravity.at(0.0);
-        if let Some(matrices) = &shaft.matrices {
-            let read = StructureMatrices::load(&folder.join(matrices)).map_err(placed)?;
+        let matrices = shaft.matrices.as_ref().map(|given| Matrices::of(given, folder));
+        let matrices = matrices.transpose().map_err(placed)?;
+        if let Some(matrices) = &matrices {
+            let read = matrices.checked().map_err(placed)?;
             check::weighs(&read, &gravity).map_err(placed)?;
             shaft.read = Some(read);
         }
@@ -131,7 +143,17 @@ impl SystemScene {
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
         let bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
         check::solvers(&bearings).map_err(placed)?;
-        Ok(Self { title, shaft, bearings, gravity, load })
+        let source = standing_alone(text, &bearings, matrices.as_ref());
+        Ok(Self { title, shaft, bearings, gravity, load, source })
+    }
+
+    /// What the reader of each bearing's scene should know.
+    pub fn notes(&self) -> Vec<String> {
+        let of = |mounted: &MountedScene| {
+            let name = mounted.name.clone();
+            mounted.scene.notes().into_iter().map(move |note| format!("bearing {name}: {note}"))
+        };
+        self.bearings.iter().flat_map(of).collect()
     }
 
     /// Settings of the integration: those that steps of all bearings need.
@@ -164,7 +186,8 @@ impl WrittenBearing {
         let inside =
             |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
         let (text, folder, file) = match (scene, catalogue) {
-            (Some(file), None) => {
+            (Some(Value::Table(keys)), None) => (keys.to_string(), given.folder.to_path_buf(), None),
+            (Some(Value::String(file)), None) => {
                 let path = given.folder.join(&file);
                 let text = std::fs::read_to_string(&path)
                     .map_err(|source| SceneError::Read { path: path.display().to_string(), source })
@@ -179,7 +202,7 @@ impl WrittenBearing {
                 (text.map_err(refuse)?, given.folder.to_path_buf(), None)
             }
             _ => {
-                let why = "give exactly one of scene (a file) and catalogue (a designation)";
+                let why = "give exactly one of scene (a file, or its keys) and catalogue (a designation)";
                 return Err(inside(SceneError::conflict("bearing", why)));
             }
         };
@@ -192,6 +215,25 @@ impl WrittenBearing {
         let scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
         Ok(MountedScene { name, mounting, scene })
     }
+}
+
+/// The text of a system with the whole scene of every bearing and the matrices of its shaft in it.
+fn standing_alone(text: &str, bearings: &[MountedScene], matrices: Option<&Matrices>) -> String {
+    let Ok(mut table) = toml::from_str::<Table>(text) else {
+        return text.to_string();
+    };
+    let matrices = matrices.and_then(|matrices| Value::try_from(matrices).ok());
+    if let (Some(shaft), Some(matrices)) = (table.get_mut("shaft").and_then(Value::as_table_mut), matrices) {
+        shaft.insert("matrices".into(), matrices);
+    }
+    let written = table.get_mut("bearing").and_then(Value::as_array_mut).into_iter().flatten();
+    for (keys, bearing) in written.filter_map(Value::as_table_mut).zip(bearings) {
+        keys.remove("catalogue");
+        keys.remove("set");
+        let scene = toml::from_str::<Table>(&bearing.scene.source).unwrap_or_default();
+        keys.insert("scene".into(), scene.into());
+    }
+    table.to_string()
 }
 
 /// Sets keys of a table, section by section.

@@ -4,13 +4,13 @@ use std::cmp::Ordering;
 
 use super::super::script::Script;
 use super::super::{SimulationError, step_limits};
+use super::inputs::{Given, Played, ShaftInputs};
 use super::{System, SystemError, SystemOutputs, loads};
 use crate::dynamics::StepFailure;
 use crate::dynamics::system::{Part, StructureStep, try_step};
 use crate::model::bodies::Race;
 use crate::model::structure::{Spin, Turning};
 use crate::numerics::tilt;
-use crate::scene::Groups;
 
 impl System {
     /// Runs its own steps to exactly `end` \[s] by the scripts of all bearings and the shaft.
@@ -18,6 +18,23 @@ impl System {
     /// # Errors
     /// See [`SystemError`]; the state is then that of the last converged step, at [`System::time`].
     pub fn advance(&mut self, end: f64) -> Result<(), SystemError> {
+        self.inputs = ShaftInputs::scripted(&self.scene, self.time);
+        self.bearings
+            .iter_mut()
+            .for_each(|bearing| bearing.inputs = bearing.scripted_inputs(bearing.state.time));
+        let result = self.advance_with(end, &Played::all(&self.scene));
+        self.bearings
+            .iter_mut()
+            .for_each(|bearing| bearing.inputs = bearing.scripted_inputs(bearing.state.time));
+        result
+    }
+
+    /// Runs its own steps to exactly `end` \[s] under the inputs as set, some of them given by the scripts where there are some: those
+    /// are then those of the time reached. Loads and drive go linearly to what was set.
+    ///
+    /// # Errors
+    /// As [`System::advance`].
+    pub fn advance_with(&mut self, end: f64, played: &Played) -> Result<(), SystemError> {
         let begin = self.time;
         if !(end > begin && end.is_finite()) {
             return Err(SystemError::Backwards { from: begin, to: end });
@@ -25,23 +42,27 @@ impl System {
         let scripts: Vec<Script> = self
             .bearings
             .iter_mut()
-            .map(|bearing| {
-                bearing.inputs = bearing.scripted_inputs(begin);
-                let script = bearing.begin_script(Groups::ALL);
+            .zip(&played.bearings)
+            .map(|(bearing, groups)| {
+                // The shaft moves it.
+                bearing.inputs.inner = bearing.scripted_inputs(begin).inner;
+                let script = bearing.begin_script(*groups);
                 bearing.paths = bearing.paths.towards(&bearing.inputs, begin, end - begin);
                 script
             })
             .collect();
-        let result = self.follow(&scripts, end);
+        self.paths = self.paths.towards(&self.inputs, begin, end - begin);
+        let result = self.follow(&scripts, played, end);
         let mut checked = Ok(());
         for (index, (bearing, script)) in self.bearings.iter_mut().zip(&scripts).enumerate() {
             let contacts = bearing.end_script(script, result.is_ok());
             let kept = bearing.check_contacts(&contacts);
-            bearing.inputs = bearing.scripted_inputs(bearing.state.time);
             if checked.is_ok() {
                 checked = kept.map_err(|source| (index, source));
             }
         }
+        let given = Given { scene: &self.scene, paths: &self.paths, played };
+        (self.inputs, self.paths) = given.reached(&self.inputs, self.time);
         self.report();
         result?;
         checked.map_err(|(index, source)| self.of_bearing(index, source))
@@ -49,20 +70,21 @@ impl System {
 
     /// Outputs of the state as it is.
     pub(super) fn report(&mut self) {
-        let torque = match (self.shaft.structure.turning, &self.scene.shaft.torque) {
-            (Turning::Free, Some(torque)) => torque.at(self.time),
-            _ => self.state.torque,
+        let torque = match self.shaft.structure.turning {
+            Turning::Free => self.paths.torque(self.time),
+            Turning::Given | Turning::Still => self.state.torque,
         };
         self.outputs = SystemOutputs::of(&self.scene, &self.shaft, &self.state, torque, self.time);
     }
 
-    fn follow(&mut self, scripts: &[Script], end: f64) -> Result<(), SystemError> {
+    fn follow(&mut self, scripts: &[Script], played: &Played, end: f64) -> Result<(), SystemError> {
         let least = self.scene.solver().min_step.0;
         let of_bearings = scripts
             .iter()
             .zip(&self.bearings)
             .flat_map(|(script, bearing)| script.knots(&bearing.scene, self.time, end, least));
-        let mut knots: Vec<f64> = of_bearings.chain(loads::knots(&self.scene, self.time, end)).collect();
+        let given = Given { scene: &self.scene, paths: &self.paths, played };
+        let mut knots: Vec<f64> = of_bearings.chain(loads::knots(&given, self.time, end)).collect();
         knots.sort_by(f64::total_cmp);
         let mut last = self.time;
         knots.retain(|&knot| {
@@ -72,13 +94,14 @@ impl System {
             }
             apart
         });
-        knots.into_iter().chain([end]).try_for_each(|stop| self.step_to(scripts, stop))
+        knots.into_iter().chain([end]).try_for_each(|stop| self.step_to(scripts, played, stop))
     }
 
-    fn step_to(&mut self, scripts: &[Script], end: f64) -> Result<(), SystemError> {
+    fn step_to(&mut self, scripts: &[Script], played: &Played, end: f64) -> Result<(), SystemError> {
         while self.time < end {
             let remaining = end - self.time;
-            let of_shaft = loads::shortest_period(&self.scene, &self.state, self.time);
+            let given = Given { scene: &self.scene, paths: &self.paths, played };
+            let of_shaft = loads::shortest_period(&given, &self.state, self.time);
             for (bearing, script) in self.bearings.iter().zip(scripts) {
                 let own = script.shortest_period(&bearing.scene, self.time);
                 let period = own.into_iter().chain(of_shaft).reduce(f64::min);
@@ -93,7 +116,8 @@ impl System {
             if next.partial_cmp(&self.time) != Some(Ordering::Greater) {
                 return Err(SystemError::LostInRounding { time: self.time, step: h });
             }
-            let load = loads::at(&self.scene, &self.shaft, &self.state, self.time, next);
+            let given = Given { scene: &self.scene, paths: &self.paths, played };
+            let load = loads::at(&given, &self.shaft, &self.state, self.time, next);
             let speed = self.speed_of_races(&load.spin);
             let boundaries: Vec<_> = self
                 .bearings

@@ -5,28 +5,20 @@ use std::f64::consts::TAU;
 use nalgebra::Vector6;
 
 use super::first_stations;
+use super::inputs::Given;
 use crate::dynamics::system::StructureLoad;
 use crate::loads::{Mesh, unbalance as unbalance_of};
 use crate::model::state::stack;
 use crate::model::structure::{Shaft, Spin, StructureState, Turning};
 use crate::numerics::motion::Wrench;
 use crate::scene::Schedule;
-use crate::scene::system::SystemScene;
-
-/// Turn of a shaft at a time \[s], where its speed is given.
-pub fn given_spin(scene: &SystemScene, time: f64) -> Spin {
-    scene.shaft.speed.as_ref().map_or(Spin::default(), |speed| Spin {
-        angle: speed.integral(0.0, time),
-        speed: speed.at(time),
-        acceleration: speed.slope(time),
-    })
-}
 
 /// Load of the shaft at a time \[s]. Where its turn is a coordinate, the direction of unbalance follows it from the state it had.
-pub fn at(scene: &SystemScene, shaft: &Shaft, state: &StructureState, from: f64, time: f64) -> StructureLoad {
+pub fn at(given: &Given<'_>, shaft: &Shaft, state: &StructureState, from: f64, time: f64) -> StructureLoad {
+    let scene = given.scene;
     let structure = &shaft.structure;
     let free = structure.turning == Turning::Free;
-    let spin = if free { ahead(&state.spin, time - from) } else { given_spin(scene, time) };
+    let spin = if free { ahead(&state.spin, time - from) } else { given.spin(time) };
     let [loads, _, discs, gears] = first_stations(scene);
     let mut force = structure.weight(&scene.gravity);
     let mut axial_moment = 0.0;
@@ -34,8 +26,8 @@ pub fn at(scene: &SystemScene, shaft: &Shaft, state: &StructureState, from: f64,
         force += shaft.stations[station].tr_mul(&on);
         axial_moment += on[3];
     };
-    for (index, load) in scene.shaft.load.iter().enumerate() {
-        add(loads + index, stack(&load.force.at(time), &load.moment.at(time)));
+    for index in 0..scene.shaft.load.len() {
+        add(loads + index, given.load(index, time));
     }
     for (index, disc) in scene.shaft.disc.iter().enumerate() {
         if let Some(unbalance) = disc.unbalance {
@@ -52,9 +44,9 @@ pub fn at(scene: &SystemScene, shaft: &Shaft, state: &StructureState, from: f64,
         let Wrench { force, moment } = mesh.wrench(gear.torque.at(time) * factor);
         add(gears + index, stack(&force, &moment));
     }
-    if let (true, Some(torque)) = (free, &scene.shaft.torque) {
+    if free {
         let last = force.len() - 1;
-        force[last] += torque.at(time);
+        force[last] += given.torque(time);
     }
     StructureLoad { force, spin, axial_moment }
 }
@@ -65,23 +57,24 @@ fn ahead(spin: &Spin, duration: f64) -> Spin {
     Spin { angle: spin.angle + 0.5 * (spin.speed + speed) * duration, speed, ..*spin }
 }
 
-/// Schedules of the shaft's loads and drive.
-fn schedules(scene: &SystemScene) -> impl Iterator<Item = &Schedule> {
-    let shaft = &scene.shaft;
-    let components = shaft.load.iter().flat_map(|load| load.force.0.iter().chain(&load.moment.0));
-    let gears = shaft.gear.iter().map(|gear| &gear.torque);
-    components.chain(&shaft.speed).chain(&shaft.torque).chain(gears)
+/// Schedules of the shaft's loads and drive that are played.
+fn schedules<'a>(given: &Given<'a>) -> Vec<&'a Schedule> {
+    let shaft = &given.scene.shaft;
+    let played = shaft.load.iter().enumerate().filter(|(index, _)| given.plays_load(*index));
+    let components = played.flat_map(|(_, load)| load.force.0.iter().chain(&load.moment.0));
+    let drive = [&shaft.speed, &shaft.torque].into_iter().flatten().filter(|_| given.plays_drive());
+    components.chain(drive).chain(shaft.gear.iter().map(|gear| &gear.torque)).collect()
 }
 
-/// \[s] times at which a table of the shaft's loads or drive bends.
-pub fn knots(scene: &SystemScene, from: f64, to: f64) -> Vec<f64> {
-    schedules(scene).flat_map(|schedule| schedule.knots(from, to)).collect()
+/// \[s] times at which a table of the shaft's loads or drive bends, of those that are played.
+pub fn knots(given: &Given<'_>, from: f64, to: f64) -> Vec<f64> {
+    schedules(given).into_iter().flat_map(|schedule| schedule.knots(from, to)).collect()
 }
 
 /// \[s] shortest period in which a load of the shaft swings, from a script or as the shaft turns; none where none does.
-pub fn shortest_period(scene: &SystemScene, state: &StructureState, time: f64) -> Option<f64> {
-    let shaft = &scene.shaft;
-    let scripted = schedules(scene).filter_map(|schedule| schedule.shortest_period(time));
+pub fn shortest_period(given: &Given<'_>, state: &StructureState, time: f64) -> Option<f64> {
+    let shaft = &given.scene.shaft;
+    let scripted = schedules(given).into_iter().filter_map(|schedule| schedule.shortest_period(time));
     let per_turn = shaft.disc.iter().filter(|disc| disc.unbalance.is_some()).map(|_| 1.0);
     let meshes = shaft.gear.iter().filter_map(|gear| gear.ripple()).map(|ripple| ripple.teeth);
     let speed = state.spin.speed.abs();

@@ -1,8 +1,10 @@
 //! Several bearings on a shaft, in motion together: one implicit step for all.
 
 mod advance;
+mod inputs;
 mod loads;
 mod outputs;
+mod snapshot;
 mod start;
 
 use std::sync::Arc;
@@ -10,12 +12,16 @@ use std::sync::Arc;
 use nalgebra::DVector;
 use thiserror::Error;
 
-use super::{Simulation, SimulationError};
+use super::inputs::Inputs;
+use super::{Simulation, SimulationError, follows_time};
 use crate::dynamics::system::{Joint, SystemWorkspace};
 use crate::model::structure::{Shaft, StructureState};
 use crate::numerics::step_control::StepControl;
 use crate::scene::system::SystemScene;
+use inputs::ShaftPaths;
+pub use inputs::{Played, ShaftInputs, drive_is_scripted, load_is_scripted};
 pub use outputs::{PointOutput, SystemOutputs};
+pub use snapshot::SystemSnapshot;
 
 /// Why a system could not start or go on.
 #[derive(Debug, Error)]
@@ -85,6 +91,8 @@ pub struct System {
     /// The bearings, in the order of the scene.
     bearings: Vec<Simulation>,
     joints: Arc<Vec<Joint>>,
+    inputs: ShaftInputs,
+    paths: ShaftPaths,
     state: StructureState,
     control: StepControl,
     time: f64,
@@ -116,6 +124,30 @@ impl System {
     /// The bearings with their names, each in axes of its own; their inner races are where the shaft carries them.
     pub fn bearings(&self) -> impl Iterator<Item = (&str, &Simulation)> {
         self.scene.bearings.iter().map(|mounted| mounted.name.as_str()).zip(&self.bearings)
+    }
+
+    /// Inputs of the shaft as set last; those of bearings are [`Simulation::inputs`].
+    pub fn inputs(&self) -> &ShaftInputs {
+        &self.inputs
+    }
+
+    /// Sets the inputs of the next step: loads and drive of the shaft, and those of every bearing in the order of the scene, where what
+    /// is said of inner races counts for nothing. False, with nothing changed, if there are too many or too few.
+    #[must_use]
+    pub fn set_inputs(&mut self, shaft: ShaftInputs, bearings: Vec<Inputs>) -> bool {
+        let fit = shaft.loads.len() == self.inputs.loads.len() && bearings.len() == self.bearings.len();
+        if fit {
+            self.inputs = shaft;
+            self.bearings.iter_mut().zip(bearings).for_each(|(bearing, inputs)| bearing.set_inputs(inputs));
+        }
+        fit
+    }
+
+    /// Does anything change by itself with time?
+    pub fn follows_time(&self) -> bool {
+        drive_is_scripted(&self.scene)
+            || (0..self.scene.shaft.load.len()).any(|load| load_is_scripted(&self.scene, load))
+            || self.bearings.iter().any(|bearing| follows_time(&bearing.scene))
     }
 
     /// What the shaft does.

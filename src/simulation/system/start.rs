@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 
+use super::super::inputs::Inputs;
 use super::super::start::held_load;
 use super::super::{Simulation, SimulationError};
+use super::inputs::{Given, Played, ShaftInputs, ShaftPaths, scripted_spin};
 use super::{System, SystemError, SystemOutputs, loads, stations};
 use crate::dynamics::carried::SeatMotion;
 use crate::dynamics::system::{Joint, Seat, StructureLoad};
@@ -38,6 +40,33 @@ impl System {
     /// # Errors
     /// See [`SystemError`].
     pub fn new(scene: &SystemScene) -> Result<Self, SystemError> {
+        Self::starting_at(scene, 0.0)
+    }
+
+    /// Prepares a system and starts it at a time \[s], from the equilibrium under what its scripts say then.
+    ///
+    /// # Errors
+    /// See [`SystemError`].
+    pub fn starting_at(scene: &SystemScene, time: f64) -> Result<Self, SystemError> {
+        Self::start(scene, time, None)
+    }
+
+    /// Starts again at the present time, from the equilibrium under the present inputs.
+    ///
+    /// # Errors
+    /// See [`SystemError`].
+    pub fn initialise(&mut self) -> Result<(), SystemError> {
+        let bearings: Vec<Inputs> = self.bearings.iter().map(|bearing| bearing.inputs).collect();
+        *self = Self::start(&self.scene, self.time, Some((&self.inputs, &bearings)))?;
+        Ok(())
+    }
+
+    /// Starts under these inputs of shaft and bearings, or those of the scripts.
+    fn start(
+        scene: &SystemScene,
+        time: f64,
+        given: Option<(&ShaftInputs, &[Inputs])>,
+    ) -> Result<Self, SystemError> {
         let shaft = Shaft::new(&scene.shaft, &stations(scene)).map_err(SystemError::Shaft)?;
         let inside = |mounted: &MountedScene| {
             let name = mounted.name.clone();
@@ -46,16 +75,27 @@ impl System {
         let mut bearings = vec![];
         let mut joints = vec![];
         for (index, mounted) in scene.bearings.iter().enumerate() {
-            let bearing = Simulation::new(&mounted.scene).map_err(inside(mounted))?;
+            let mut bearing = Simulation::starting_at(&mounted.scene, time).map_err(inside(mounted))?;
+            if let Some((_, inputs)) = given {
+                bearing.set_inputs(inputs[index]);
+            }
             let offset = preload(mounted, &bearing.model).map_err(inside(mounted))?;
             let seat = seat(&shaft.stations[index], mounted.mounting.direction.sign(), offset);
             joints.push(Joint { bearing: index, race: Race::Inner, structure: 0, seat });
             bearings.push(bearing);
         }
         let structure = &shaft.structure;
-        let mut state = at_rest(structure, initial_spin(scene, structure.turning));
-        let load = loads::at(scene, &shaft, &state, 0.0, 0.0);
-        let mut statics = Statics { scene, structure, load: &load, joints: &joints, bearings: &mut bearings };
+        let scripted = ShaftInputs::scripted(scene, time);
+        let inputs = given.map_or(scripted, |(shaft, _)| shaft.clone());
+        let spin = initial_spin(scene, &inputs, structure.turning, time);
+        let mut state = at_rest(structure, spin);
+        let paths = ShaftPaths::steady(&inputs, time, spin.angle);
+        // What scripts say at this time is among the inputs.
+        let played = Played::none(scene);
+        let load = loads::at(&Given { scene, paths: &paths, played: &played }, &shaft, &state, time, time);
+        let bearings_now = &mut bearings;
+        let mut statics =
+            Statics { scene, time, structure, load: &load, joints: &joints, bearings: bearings_now };
         state.coordinates = statics.solve(&state)?;
         for (joint, mounted) in joints.iter().zip(&scene.bearings) {
             let bearing = &mut bearings[joint.bearing];
@@ -66,15 +106,19 @@ impl System {
         }
         make_consistent(structure, &mut state, &load, &joints, &bearings);
         let solver = scene.solver();
+        let control = StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0);
+        bearings.iter_mut().for_each(|bearing| bearing.state.control = control);
         let mut system = Self {
             scales: structure.scales(),
             scene: Arc::new(scene.clone()),
             shaft: Arc::new(shaft),
             bearings,
             joints: Arc::new(joints),
+            inputs,
+            paths,
             state,
-            control: StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0),
-            time: 0.0,
+            control,
+            time,
             outputs: SystemOutputs::default(),
             workspace: Default::default(),
         };
@@ -84,12 +128,16 @@ impl System {
 }
 
 /// Turn of a shaft at the start.
-fn initial_spin(scene: &SystemScene, turning: Turning) -> Spin {
+fn initial_spin(scene: &SystemScene, inputs: &ShaftInputs, turning: Turning, time: f64) -> Spin {
     match turning {
         Turning::Free => {
             Spin { speed: scene.shaft.start_speed.map_or(0.0, |speed| speed.0), ..Spin::default() }
         }
-        Turning::Given | Turning::Still => loads::given_spin(scene, 0.0),
+        Turning::Given | Turning::Still => {
+            let scripted = scripted_spin(scene, time);
+            let acceleration = if inputs.drive == scripted.speed { scripted.acceleration } else { 0.0 };
+            Spin { speed: inputs.drive, acceleration, ..scripted }
+        }
     }
 }
 
@@ -189,6 +237,8 @@ fn make_consistent(
 /// The shaft at rest on its bearings.
 struct Statics<'a> {
     scene: &'a SystemScene,
+    /// \[s] time of the start.
+    time: f64,
     structure: &'a Structure,
     load: &'a StructureLoad,
     joints: &'a [Joint],
@@ -273,9 +323,10 @@ impl Statics<'_> {
         for joint in self.joints {
             let bearing = &mut self.bearings[joint.bearing];
             place(bearing, &seat_motion(structure, &joint.seat, state));
-            let (load, matrix) =
-                held_load(&bearing.scene, &bearing.model, &mut bearing.inputs, 0.0).map_err(|source| {
-                    SystemError::Bearing { name: self.scene.bearings[joint.bearing].name.clone(), source }
+            let (load, matrix) = held_load(&bearing.scene, &bearing.model, &mut bearing.inputs, self.time)
+                .map_err(|source| SystemError::Bearing {
+                    name: self.scene.bearings[joint.bearing].name.clone(),
+                    source,
                 })?;
             let [x, y, z, about_y, about_z] = load;
             let held = Vector6::new(x, y, z, 0.0, about_y, about_z);

@@ -1,0 +1,206 @@
+//! A shaft with its bearings.
+//!
+//! Its scripts are, in this order: those of every bearing, group by group; one of each named load; that of the drive.
+
+use std::sync::Arc;
+
+use strum::VariantArray;
+
+use super::bearing::{givers, marked};
+use super::{Simulated, UnitSnapshot};
+use crate::fmi::log::Log;
+use crate::fmi::outcome::{Outcome, Status, error};
+use crate::interface::contradiction::Contradiction;
+use crate::interface::variables::{SystemGroup, SystemVariables, Variable};
+use crate::model::bodies::Race;
+use crate::scene::system::SystemScene;
+use crate::scene::{Giver, Group};
+use crate::simulation::inputs::Inputs;
+use crate::simulation::system::{
+    Played, ShaftInputs, System, SystemError, drive_is_scripted, load_is_scripted,
+};
+
+/// Scripts of a bearing.
+const GROUPS: usize = Group::VARIANTS.len();
+
+/// A system with its variables.
+#[derive(Clone)]
+pub struct SystemUnit {
+    variables: Arc<SystemVariables>,
+    system: System,
+    /// Inputs of the next step: of the shaft, and of every bearing.
+    next: (ShaftInputs, Vec<Inputs>),
+}
+
+fn refused(why: SystemError) -> (Status, String) {
+    (Status::Error, why.to_string())
+}
+
+impl SystemUnit {
+    /// A system of a scene, started.
+    ///
+    /// # Errors
+    /// If it does not start.
+    pub fn new(scene: &SystemScene) -> Outcome<Self> {
+        let system = System::new(scene).map_err(refused)?;
+        let variables = Arc::new(SystemVariables::new(&system));
+        let bearings = system.bearings().map(|(_, bearing)| *bearing.inputs()).collect();
+        Ok(Self { variables, next: (system.inputs().clone(), bearings), system })
+    }
+
+    fn bearing_count(&self) -> usize {
+        self.system.scene().bearings.len()
+    }
+
+    /// What a script gives.
+    fn group(&self, script: usize) -> SystemGroup {
+        let (bearings, loads) = (GROUPS * self.bearing_count(), self.system.scene().shaft.load.len());
+        match script.checked_sub(bearings) {
+            None => SystemGroup::Bearing(script / GROUPS, Group::VARIANTS[script % GROUPS]),
+            Some(load) if load < loads => SystemGroup::Load(load),
+            Some(_) => SystemGroup::Drive,
+        }
+    }
+
+    /// Its scripts that are marked.
+    fn played(&self, marks: &[bool]) -> Played {
+        let (bearings, rest) = marks.split_at(GROUPS * self.bearing_count());
+        let (loads, drive) = rest.split_at(self.system.scene().shaft.load.len());
+        Played {
+            loads: loads.to_vec(),
+            drive: drive.contains(&true),
+            bearings: bearings.chunks(GROUPS).map(marked).collect(),
+        }
+    }
+
+    fn take_prepared(&mut self) {
+        let (shaft, bearings) = self.next.clone();
+        let taken = self.system.set_inputs(shaft, bearings);
+        debug_assert!(taken, "they were made for this very system");
+    }
+}
+
+impl Simulated for SystemUnit {
+    fn rows(&self) -> &[Variable] {
+        self.variables.rows()
+    }
+
+    fn inputs(&self) -> &[usize] {
+        self.variables.input_references()
+    }
+
+    fn time(&self) -> f64 {
+        self.system.time()
+    }
+
+    fn value(&self, reference: usize) -> f64 {
+        self.variables.value(reference, &self.system)
+    }
+
+    fn values(&self) -> Vec<f64> {
+        self.variables.values(&self.system)
+    }
+
+    fn follows_time(&self) -> bool {
+        self.system.follows_time()
+    }
+
+    fn start_at(&mut self, time: f64, _values: &[f64]) -> Outcome {
+        self.system = System::starting_at(self.system.scene(), time).map_err(refused)?;
+        Ok(())
+    }
+
+    fn set_start_time(&mut self, time: f64) -> Outcome {
+        if time == self.system.time() { Ok(()) } else { self.start_at(time, &[]) }
+    }
+
+    /// There are no parameters.
+    fn tune(&mut self, _values: &[f64]) -> Outcome {
+        Ok(())
+    }
+
+    fn prepare(&mut self, values: &[f64], rates: &[f64]) -> Outcome {
+        let inputs = self.variables.inputs(values, rates, &self.system);
+        self.next = inputs.map_err(|why| (Status::Error, why.to_string()))?;
+        Ok(())
+    }
+
+    fn initialise(&mut self) -> Outcome {
+        self.take_prepared();
+        self.system.initialise().map_err(refused)
+    }
+
+    fn advance(&mut self, end: f64, played: &[bool]) -> Outcome {
+        self.take_prepared();
+        let played = self.played(played);
+        self.system.advance_with(end, &played).map_err(|why| (Status::Discard, why.to_string()))
+    }
+
+    fn snapshot(&self) -> UnitSnapshot {
+        UnitSnapshot::System(Box::new(self.system.snapshot()))
+    }
+
+    fn restore(&mut self, snapshot: &UnitSnapshot) -> bool {
+        match snapshot {
+            UnitSnapshot::System(snapshot) => self.system.restore(snapshot),
+            UnitSnapshot::Bearing(_) => false,
+        }
+    }
+
+    fn scripts(&self) -> Vec<Option<Giver>> {
+        let scene = self.system.scene();
+        let of_bearings = self.system.bearings().flat_map(|(_, bearing)| givers(bearing.scene()));
+        let loads = (0..scene.shaft.load.len()).map(|load| load_is_scripted(scene, load));
+        let of_shaft = loads.chain([drive_is_scripted(scene)]);
+        of_bearings.chain(of_shaft.map(|scripted| scripted.then_some(Giver::Scene))).collect()
+    }
+
+    fn script_name(&self, script: usize) -> (String, Group) {
+        let scene = self.system.scene();
+        match self.group(script) {
+            SystemGroup::Load(load) => (scene.shaft.load[load].name.clone(), Group::Loads),
+            SystemGroup::Drive => ("the shaft's drive".into(), Group::Speeds),
+            SystemGroup::Bearing(index, group) => {
+                (format!("{group} of {}", scene.bearings[index].name), group)
+            }
+        }
+    }
+
+    fn script_of(&self, reference: usize) -> Option<usize> {
+        let after_bearings = GROUPS * self.bearing_count();
+        Some(match self.variables.group(reference, &self.system)? {
+            SystemGroup::Bearing(index, group) => GROUPS * index + group as usize,
+            SystemGroup::Load(load) => after_bearings + load,
+            SystemGroup::Drive => after_bearings + self.system.scene().shaft.load.len(),
+        })
+    }
+
+    fn zero_quaternion(&self, values: &[f64]) -> Option<String> {
+        let mut bearings = self.variables.bearings().zip(self.system.bearings());
+        bearings.find_map(|((first, variables), (name, _))| {
+            let race = variables.zero_quaternion(&values[first..])?;
+            Some(format!("{name}.{}", race.name()))
+        })
+    }
+
+    fn contradiction(&self, step: f64, played: &[bool]) -> Option<(String, Contradiction)> {
+        let tables = self.variables.bearings().zip(self.system.bearings());
+        let mut bearings = tables.zip(&self.next.1).zip(played.chunks(GROUPS));
+        bearings.find_map(|((((_, variables), (name, bearing)), next), played)| {
+            let given = variables.pose_is_given(Race::Outer) && !marked(played).contains(Group::Tilts);
+            let before = bearing.inputs();
+            let found = given.then(|| Contradiction::between(&before.outer, &next.outer, step))??;
+            Some((format!("the outer race of {name}"), found))
+        })
+    }
+
+    fn announce(&self, log: &Log) {
+        for (name, bearing) in self.system.bearings() {
+            log.write(Status::Ok, &format!("{name}: {}", bearing.scene().effects.simulated()));
+        }
+    }
+
+    fn derivatives(&self, _: Option<&UnitSnapshot>, _: &[bool]) -> Outcome<Vec<Vec<f64>>> {
+        error("directional derivatives of a shaft with its bearings are not offered")
+    }
+}

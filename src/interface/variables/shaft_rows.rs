@@ -1,0 +1,202 @@
+//! The rows of a system's shaft: its loads and drive, its turn, energies, and the motion of its stations.
+
+use super::{Causality, Kind, Source, Variable};
+use crate::scene::system::SystemScene;
+use crate::schema::variable_units::{self as units, Unit};
+use crate::simulation::system::{PointOutput, ShaftInputs, SystemOutputs};
+
+/// Where the value of a variable of the shaft comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum ShaftSource {
+    /// A component of the force at a named load: which load, which component.
+    Force(usize, usize),
+    /// The same of its moment.
+    Moment(usize, usize),
+    /// Speed or torque, whichever drives the shaft.
+    Drive,
+    /// The shaft as a whole.
+    Whole(fn(&SystemOutputs) -> f64),
+    /// Motion of a station.
+    Motion(Station, PointQuantity, usize),
+}
+
+/// A place on the shaft, by its index in the scene.
+#[derive(Clone, Copy, Debug)]
+pub enum Station {
+    /// Under the inner race of a bearing.
+    Seat(usize),
+    /// Where a named load acts.
+    Load(usize),
+    /// A named point.
+    Point(usize),
+}
+
+/// A quantity of a station.
+#[derive(Clone, Copy, Debug)]
+pub enum PointQuantity {
+    /// \[m]
+    Displacement,
+    /// [m/s]
+    Velocity,
+    /// \[rad]
+    Tilt,
+}
+
+impl PointQuantity {
+    const ALL: [Self; 3] = [Self::Displacement, Self::Velocity, Self::Tilt];
+
+    /// Name, unit, typical size, first component and what it is.
+    fn words(self) -> (&'static str, Unit, f64, usize, &'static str) {
+        match self {
+            Self::Displacement => ("displacement", units::METRE, 1e-5, 0, "displacement of the shaft"),
+            Self::Velocity => ("velocity", units::METRE_PER_SECOND, 1e-3, 0, "velocity of the shaft"),
+            Self::Tilt => ("tilt", units::RADIAN, 1e-3, 1, "tilt of the shaft about an axis of its own"),
+        }
+    }
+
+    fn read(self, point: &PointOutput, axis: usize) -> f64 {
+        match self {
+            Self::Displacement => point.displacement[axis],
+            Self::Velocity => point.velocity[axis],
+            Self::Tilt => point.tilt[axis],
+        }
+    }
+}
+
+impl ShaftSource {
+    /// \[unit] value: inputs as set, outputs from the outputs.
+    pub fn value(self, inputs: &ShaftInputs, outputs: &SystemOutputs) -> f64 {
+        match self {
+            Self::Force(load, axis) => inputs.loads[load].force[axis],
+            Self::Moment(load, axis) => inputs.loads[load].moment[axis],
+            Self::Drive => inputs.drive,
+            Self::Whole(get) => get(outputs),
+            Self::Motion(station, quantity, axis) => {
+                let point = match station {
+                    Station::Seat(index) => &outputs.seats[index],
+                    Station::Load(index) => &outputs.loads[index],
+                    Station::Point(index) => &outputs.points[index],
+                };
+                quantity.read(point, axis)
+            }
+        }
+    }
+
+    /// Writes a value into inputs; nothing where it is an output.
+    pub fn set(self, inputs: &mut ShaftInputs, value: f64) {
+        match self {
+            Self::Force(load, axis) => inputs.loads[load].force[axis] = value,
+            Self::Moment(load, axis) => inputs.loads[load].moment[axis] = value,
+            Self::Drive => inputs.drive = value,
+            Self::Whole(_) | Self::Motion(..) => {}
+        }
+    }
+}
+
+/// A name as a part of structured names: in single quotes where it is no plain word.
+pub fn quoted(name: &str) -> String {
+    let plain = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if plain && !name.starts_with(|c: char| c.is_ascii_digit()) { name.into() } else { format!("'{name}'") }
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+fn row(
+    name: String,
+    (unit, nominal): (Unit, f64),
+    causality: Causality,
+    description: String,
+    source: ShaftSource,
+) -> Variable {
+    Variable {
+        name,
+        unit,
+        kind: Kind::Real,
+        causality,
+        nominal,
+        limits: [None; 2],
+        description,
+        source: Source::Shaft(source),
+    }
+}
+
+/// The rows of the shaft of a scene.
+pub fn rows(scene: &SystemScene) -> Vec<Variable> {
+    let shaft = &scene.shaft;
+    let mut rows = vec![];
+    for (index, load) in shaft.load.iter().enumerate() {
+        for (axis, letter) in AXES.into_iter().enumerate() {
+            let name = format!("{}.force.{letter}", quoted(&load.name));
+            let description =
+                format!("force on the shaft at {}, {letter} component, axes of the shaft", load.name);
+            let source = ShaftSource::Force(index, axis);
+            rows.push(row(name, (units::NEWTON, 1e3), Causality::Input, description, source));
+        }
+        for (axis, letter) in AXES.into_iter().enumerate() {
+            let name = format!("{}.moment.{letter}", quoted(&load.name));
+            let description =
+                format!("moment on the shaft at {}, {letter} component, axes of the shaft", load.name);
+            let source = ShaftSource::Moment(index, axis);
+            rows.push(row(name, (units::NEWTON_METRE, 1.0), Causality::Input, description, source));
+        }
+    }
+    turn(scene, &mut rows);
+    for (index, load) in shaft.load.iter().enumerate() {
+        motion(&mut rows, Station::Load(index), &quoted(&load.name), &load.name);
+    }
+    for (index, point) in shaft.point.iter().enumerate() {
+        motion(&mut rows, Station::Point(index), &quoted(&point.name), &point.name);
+    }
+    for (index, bearing) in scene.bearings.iter().enumerate() {
+        let prefix = format!("{}.seat", quoted(&bearing.name));
+        motion(&mut rows, Station::Seat(index), &prefix, &format!("the seat of bearing {}", bearing.name));
+    }
+    rows
+}
+
+/// Drive, turn and energies.
+fn turn(scene: &SystemScene, rows: &mut Vec<Variable>) {
+    let (speed, torque) = ((units::RADIAN_PER_SECOND, 100.0), (units::NEWTON_METRE, 1.0));
+    let drive = (Causality::Input, ShaftSource::Drive);
+    let given_speed = scene.shaft.torque.is_none();
+    let speed_from = match given_speed {
+        true => drive,
+        false => (Causality::Output, ShaftSource::Whole(|o| o.spin.speed)),
+    };
+    let torque_from = match given_speed {
+        true => (Causality::Output, ShaftSource::Whole(|o| o.torque)),
+        false => drive,
+    };
+    let mut add = |name: &str, unit, (causality, source), description: &str| {
+        rows.push(row(name.into(), unit, causality, description.into(), source));
+    };
+    add("shaft.speed", speed, speed_from, "speed of the shaft about its axis");
+    add("shaft.torque", torque, torque_from, "torque that drives the shaft");
+    let mut output = |name: &str, unit, description: &str, get: fn(&SystemOutputs) -> f64| {
+        let source = ShaftSource::Whole(get);
+        rows.push(row(name.into(), unit, Causality::Output, description.into(), source));
+    };
+    let angle = "turn of the shaft since time 0 at a given speed, since the start under a torque";
+    output("shaft.angle", (units::RADIAN, 100.0), angle, |o| o.spin.angle);
+    let joule = (units::JOULE, 1.0);
+    output("shaft.energy.stored", joule, "kinetic and elastic energy of the shaft", |o| o.energies.stored);
+    let work = "work of loads, weight and drive on the shaft since the start";
+    output("shaft.energy.work", joule, work, |o| o.energies.input);
+    let given = "energy that the shaft gave to its bearings since the start";
+    output("shaft.energy.to_bearings", joule, given, |o| o.energies.bearings);
+    let lost = "energy lost to the damping of the shaft since the start";
+    output("shaft.energy.dissipated", joule, lost, |o| o.energies.damping);
+}
+
+/// Motion of a station.
+fn motion(rows: &mut Vec<Variable>, station: Station, prefix: &str, place: &str) {
+    for quantity in PointQuantity::ALL {
+        let (name, unit, nominal, first, what) = quantity.words();
+        for (axis, letter) in AXES.into_iter().enumerate().skip(first) {
+            let name = format!("{prefix}.{name}.{letter}");
+            let description = format!("{what} at {place}, {letter} component, axes of the shaft");
+            let source = ShaftSource::Motion(station, quantity, axis);
+            rows.push(row(name, (unit, nominal), Causality::Output, description, source));
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! What is given from outside a system: loads of the shaft and its drive, and how they move within a communication step.
+
+use nalgebra::{SVector, Vector6};
+use serde::{Deserialize, Serialize};
+
+use super::super::path::Ramp;
+use crate::model::state::stack;
+use crate::model::structure::Spin;
+use crate::numerics::motion::Wrench;
+use crate::scene::system::SystemScene;
+use crate::scene::{Groups, Schedule};
+
+/// Inputs of a shaft, valid at the last communication point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ShaftInputs {
+    /// Force \[N] and moment [N m] at every named load, in the order of the scene, in the shaft's axes.
+    pub loads: Vec<Wrench>,
+    /// Speed [rad/s] or torque [N m], whichever the scene drives the shaft by.
+    pub drive: f64,
+}
+
+impl ShaftInputs {
+    /// Those of the scene's own script at a time \[s].
+    pub fn scripted(scene: &SystemScene, time: f64) -> Self {
+        let wrench = |load: &crate::schema::PointLoad| Wrench {
+            force: load.force.at(time),
+            moment: load.moment.at(time),
+        };
+        let drive = drive_of(scene).map_or(0.0, |drive| drive.at(time));
+        Self { loads: scene.shaft.load.iter().map(wrench).collect(), drive }
+    }
+
+    fn components(&self) -> impl Iterator<Item = Vector6<f64>> {
+        self.loads.iter().map(|Wrench { force, moment }| stack(force, moment))
+    }
+}
+
+/// Inputs that the scripts of a system give. A quantity that is no table is not scripted, whatever stands here.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Played {
+    /// Named loads.
+    pub loads: Vec<bool>,
+    /// Speed or torque.
+    pub drive: bool,
+    /// Groups of inputs of every bearing.
+    pub bearings: Vec<Groups>,
+}
+
+impl Played {
+    /// No script.
+    pub fn none(scene: &SystemScene) -> Self {
+        Self {
+            loads: vec![false; scene.shaft.load.len()],
+            drive: false,
+            bearings: vec![Groups::default(); scene.bearings.len()],
+        }
+    }
+
+    /// All scripts.
+    pub fn all(scene: &SystemScene) -> Self {
+        Self {
+            loads: vec![true; scene.shaft.load.len()],
+            drive: true,
+            bearings: vec![Groups::ALL; scene.bearings.len()],
+        }
+    }
+}
+
+/// What drives the shaft of a scene.
+fn drive_of(scene: &SystemScene) -> Option<&Schedule> {
+    scene.shaft.speed.as_ref().or(scene.shaft.torque.as_ref())
+}
+
+/// Does a table give the speed or the torque of a shaft?
+pub fn drive_is_scripted(scene: &SystemScene) -> bool {
+    drive_of(scene).is_some_and(Schedule::is_scripted)
+}
+
+/// Does a table give something of a named load?
+pub fn load_is_scripted(scene: &SystemScene, load: usize) -> bool {
+    let load = &scene.shaft.load[load];
+    load.force.is_scripted() || load.moment.is_scripted()
+}
+
+/// Turn at a time \[s] of a shaft whose speed the scene gives.
+pub fn scripted_spin(scene: &SystemScene, time: f64) -> Spin {
+    scene.shaft.speed.as_ref().map_or(Spin::default(), |speed| Spin {
+        angle: speed.integral(0.0, time),
+        speed: speed.at(time),
+        acceleration: speed.slope(time),
+    })
+}
+
+/// Turn of a shaft whose speed goes linearly from one value to another and is held afterwards.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct TurnPath {
+    start_time: f64,
+    duration: f64,
+    angle: f64,
+    from: f64,
+    to: f64,
+}
+
+impl TurnPath {
+    /// A steady turn from an angle \[rad] at a speed [rad/s].
+    fn steady(start_time: f64, angle: f64, speed: f64) -> Self {
+        Self { start_time, duration: 1.0, angle, from: speed, to: speed }
+    }
+
+    fn at(&self, time: f64) -> Spin {
+        let Self { start_time, duration, angle, from, to } = *self;
+        let t = time - start_time;
+        if from == to {
+            return Spin { angle: angle + to * t, speed: to, acceleration: 0.0 };
+        }
+        let acceleration = (to - from) / duration;
+        if t > duration {
+            let reached = angle + 0.5 * (from + to) * duration;
+            return Spin { angle: reached + to * (t - duration), speed: to, acceleration: 0.0 };
+        }
+        let speed = if t == duration { to } else { from + acceleration * t };
+        Spin { angle: angle + 0.5 * (from + speed) * t, speed, acceleration }
+    }
+
+    /// From where this path is at a time \[s] to a speed after `duration` \[s]; a steady turn just goes on.
+    fn towards(&self, time: f64, speed: f64, duration: f64) -> Self {
+        if self.from == self.to && self.to == speed {
+            return *self;
+        }
+        let now = self.at(time);
+        Self { start_time: time, duration, angle: now.angle, from: now.speed, to: speed }
+    }
+}
+
+/// Loads and drive of a shaft during a communication step: all change linearly, as applied wrenches of a single bearing do.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ShaftPaths {
+    loads: Vec<Ramp<6>>,
+    torque: Ramp<1>,
+    turn: TurnPath,
+}
+
+impl ShaftPaths {
+    /// Inputs that stay as they are, from a time \[s] and an angle \[rad] on.
+    pub fn steady(inputs: &ShaftInputs, time: f64, angle: f64) -> Self {
+        Self {
+            loads: inputs.components().map(Ramp::constant).collect(),
+            torque: Ramp::constant(SVector::from([inputs.drive])),
+            turn: TurnPath::steady(time, angle, inputs.drive),
+        }
+    }
+
+    /// Paths from here on, over a communication step.
+    pub fn towards(&self, inputs: &ShaftInputs, time: f64, duration: f64) -> Self {
+        let loads = self.loads.iter().zip(inputs.components());
+        Self {
+            loads: loads.map(|(now, next)| now.towards(time, next, duration)).collect(),
+            torque: self.torque.towards(time, SVector::from([inputs.drive]), duration),
+            turn: self.turn.towards(time, inputs.drive, duration),
+        }
+    }
+
+    /// [N m] torque at a time \[s], where that is given.
+    pub fn torque(&self, time: f64) -> f64 {
+        self.torque.at(time)[0]
+    }
+
+    /// Do they lead as many loads?
+    pub fn fits(&self, loads: usize) -> bool {
+        self.loads.len() == loads
+    }
+}
+
+/// What acts on a shaft in a communication step: scripts where they are played, else inputs.
+#[derive(Clone, Copy, Debug)]
+pub struct Given<'a> {
+    /// The scene.
+    pub scene: &'a SystemScene,
+    /// Paths of the inputs.
+    pub paths: &'a ShaftPaths,
+    /// What the scripts give instead.
+    pub played: &'a Played,
+}
+
+impl Given<'_> {
+    /// Force \[N] and moment [N m] of a named load at a time \[s].
+    pub fn load(&self, index: usize, time: f64) -> Vector6<f64> {
+        match self.plays_load(index) {
+            true => {
+                let load = &self.scene.shaft.load[index];
+                stack(&load.force.at(time), &load.moment.at(time))
+            }
+            false => self.paths.loads[index].at(time),
+        }
+    }
+
+    /// Turn at a time \[s], where the speed is given.
+    pub fn spin(&self, time: f64) -> Spin {
+        if self.plays_drive() { scripted_spin(self.scene, time) } else { self.paths.turn.at(time) }
+    }
+
+    /// [N m] torque at a time \[s], where that is given.
+    pub fn torque(&self, time: f64) -> f64 {
+        match (&self.scene.shaft.torque, self.plays_drive()) {
+            (Some(torque), true) => torque.at(time),
+            _ => self.paths.torque(time),
+        }
+    }
+
+    /// Is a load that of its table?
+    pub fn plays_load(&self, index: usize) -> bool {
+        self.played.loads[index] && load_is_scripted(self.scene, index)
+    }
+
+    /// Is speed or torque that of its table?
+    pub fn plays_drive(&self) -> bool {
+        self.played.drive && drive_is_scripted(self.scene)
+    }
+
+    /// Inputs and paths where a step ended that led to a time \[s]: those that scripts gave are where these are, and stay so.
+    pub fn reached(&self, inputs: &ShaftInputs, time: f64) -> (ShaftInputs, ShaftPaths) {
+        let (mut inputs, mut paths) = (inputs.clone(), self.paths.clone());
+        let scripted = ShaftInputs::scripted(self.scene, time);
+        for (index, ramp) in paths.loads.iter_mut().enumerate() {
+            if self.plays_load(index) {
+                inputs.loads[index] = scripted.loads[index];
+                *ramp = Ramp::constant(self.load(index, time));
+            }
+        }
+        if self.plays_drive() {
+            inputs.drive = scripted.drive;
+            paths.torque = Ramp::constant(SVector::from([inputs.drive]));
+            paths.turn = TurnPath::steady(time, self.spin(time).angle, inputs.drive);
+        }
+        (inputs, paths)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_form_a_turn_speeds_up_linearly_and_goes_on() {
+        let steady = TurnPath::steady(0.0, 0.0, 600.0);
+        assert_eq!(steady.towards(0.3, 600.0, 0.1), steady);
+        let path = steady.towards(0.25, 700.0, 0.5);
+        for (time, angle, speed, acceleration) in [
+            (0.25, 150.0, 600.0, 200.0),
+            (0.5, 306.25, 650.0, 200.0),
+            (0.75, 475.0, 700.0, 200.0),
+            (1.75, 1175.0, 700.0, 0.0),
+        ] {
+            assert_eq!(path.at(time), Spin { angle, speed, acceleration }, "{time}");
+        }
+        let on = path.towards(0.75, 700.0, 0.5);
+        assert_eq!(on.at(1.75), path.at(1.75));
+    }
+}

@@ -1,0 +1,128 @@
+"""A shaft with its bearings as one package, in FMPy."""
+
+import math
+
+import numpy as np
+import pytest
+from conftest import Slave, build
+from fmpy import read_model_description, simulate_fmu
+from fmpy.validation import validate_fmu
+
+STEP = 2e-5
+MASS = 1.8
+TEXT = f"""
+gravity = [0, 0, -9.81]
+
+[shaft]
+speed = "6000 rpm"
+mass = "{MASS} kg"
+polar_inertia = "6e-4 kg m^2"
+transverse_inertia = "4e-3 kg m^2"
+
+[[shaft.load]]
+name = "mesh"
+position = "-10 mm"
+force = [337.8, -475.0, 1260.5]
+moment = [30.0, 0, -8.04]
+
+[[shaft.point]]
+name = "drive-end"
+position = "80 mm"
+
+[[bearing]]
+name = "left"
+catalogue = "7206 B"
+mounting = {{ position = "-50 mm", direction = "+x", preload = {{ force = "1500 N" }} }}
+
+[[bearing]]
+name = "right"
+catalogue = "7206 B"
+mounting = {{ position = "50 mm", direction = "-x", preload = {{ force = "1500 N" }} }}
+
+[load]
+duration = "5 ms"
+output_interval = "100 us"
+"""
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    return build(TEXT, tmp_path_factory.mktemp("system"), "gear")
+
+
+def of_bearings(result, row=-1):
+    """[N] force of both bearings on the shaft; the axes of the right one are turned by half a turn about z."""
+    left, right = (
+        np.array([result[f"{side}.inner.force.{axis}"][row] for axis in "xyz"]) for side in ["left", "right"]
+    )
+    return left + right * [-1, -1, 1]
+
+
+def test_fmpy_finds_no_problem(package):
+    assert validate_fmu(str(package)) == []
+
+
+def test_names_units_and_abilities(package):
+    description = read_model_description(package)
+    variables = {v.name: v for v in description.modelVariables}
+    for name, unit, causality, start in [
+        ("mesh.force.x", "N", "input", 337.8),
+        ("mesh.moment.z", "N.m", "input", -8.04),
+        ("shaft.speed", "rad/s", "input", 200 * math.pi),
+        ("shaft.torque", "N.m", "output", None),
+        ("shaft.angle", "rad", "output", None),
+        ("'drive-end'.displacement.y", "m", "output", None),
+        ("left.seat.tilt.z", "rad", "output", None),
+        ("right.inner.moment.y", "N.m", "output", None),
+        ("left.friction", "1", "input", None),
+    ]:
+        variable = variables[name]
+        assert (variable.unit, variable.causality) == (unit, causality), name
+        assert start is None or math.isclose(float(variable.start), start), name
+    abilities = description.coSimulation
+    assert abilities.canGetAndSetFMUstate and abilities.canSerializeFMUstate
+    assert not abilities.providesDirectionalDerivative
+    assert description.defaultExperiment.stopTime == 5e-3
+
+
+def test_bearings_carry_the_load_that_is_set(package):
+    time = [0, 1e-3, 1.5e-3, 4e-3]
+    load = np.array(
+        [(t, z) for t, z in zip(time, [1260.5, 1260.5, 1600, 1600])], dtype=[("time", float), ("mesh.force.z", float)]
+    )
+    names = [f"{side}.inner.force.{axis}" for side in ["left", "right"] for axis in "xyz"]
+    result = simulate_fmu(
+        str(package),
+        stop_time=4e-3,
+        step_size=STEP,
+        output_interval=STEP,
+        input=load,
+        output=[*names, "shaft.angle", "left.inner.turned", "shaft.energy.stored"],
+    )
+    weight = -9.81 * MASS
+    # Balls start at one common speed: their creep takes 1 ms to fade.
+    assert np.allclose(of_bearings(result, 50), [-337.8, 475, -1260.5 - weight], atol=0.01 * 1260)
+    # What is left of the oscillation after the ramp is averaged out.
+    last = np.mean([of_bearings(result, row) for row in range(-50, 0)], axis=0)
+    assert np.allclose(last, [-337.8, 475, -1600 - weight], atol=0.01 * 1600), last
+    assert math.isclose(result["shaft.angle"][-1], 200 * math.pi * 4e-3, rel_tol=1e-9)
+    assert math.isclose(result["left.inner.turned"][-1], result["shaft.angle"][-1], rel_tol=1e-6)
+
+
+def test_a_saved_state_is_replayed_to_the_bit(package, tmp_path):
+    slave = Slave(package, tmp_path / "unzipped").start()
+    try:
+        for k in range(5):
+            slave.fmu.doStep(k * STEP, STEP)
+        state = slave.fmu.getFMUState()
+        ends = []
+        for _ in range(2):
+            slave.fmu.setFMUState(state)
+            slave.set(mesh__force__z=1000.0)
+            for k in range(5, 10):
+                slave.fmu.doStep(k * STEP, STEP)
+            ends.append(list(slave.outputs()))
+        slave.fmu.freeFMUState(state)
+        assert ends[0] == ends[1] and len(ends[0]) > 100
+    finally:
+        slave.close()
