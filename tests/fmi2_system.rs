@@ -201,8 +201,8 @@ fn closed_form_bearings_carry_what_is_set() {
 
 #[test]
 fn invariant_a_load_that_is_set_goes_there_as_a_table_does() {
-    let package = Package::of_system("system-ramp", &plain());
-    let c = package.start();
+    // Its multiples are exact: at a time one rounding behind the end of a table nothing speeds up any more.
+    const STEP: f64 = 1.0 / 65536.0;
     let ramp = |from: f64, to: f64| {
         let (begin, end) = (10.0 * STEP, 11.0 * STEP);
         format!("[[{begin:?}, {from:?}], [{end:?}, {to:?}]]")
@@ -214,24 +214,22 @@ fn invariant_a_load_that_is_set_goes_there_as_a_table_does() {
         "",
     );
     let mut native = System::new(&scene(&tables)).unwrap();
-    let c = {
-        unsafe { fmi2FreeInstance(c) };
-        let c = initialising(&package);
-        set(&package, c, "shaft.speed", 628.0);
-        assert_eq!(unsafe { fmi2ExitInitializationMode(c) }, Status::Ok);
-        c
-    };
+    let package = Package::of_system("system-ramp", &plain());
+    let c = initialising(&package);
+    set(&package, c, "shaft.speed", 628.0);
+    assert_eq!(unsafe { fmi2ExitInitializationMode(c) }, Status::Ok);
     for k in 0..60 {
         if k == 10 {
             set(&package, c, "mesh.force.z", 2000.0);
             set(&package, c, "shaft.speed", 640.0);
         }
-        run(c, k..k + 1);
-        advance(&mut native, k..k + 1);
+        let time = f64::from(k) * STEP;
+        assert_eq!(unsafe { fmi2DoStep(c, time, STEP, 0) }, Status::Ok);
+        native.advance(time + STEP).unwrap();
         let pairs = outputs(&package, c).into_iter().zip(native_outputs(&native));
         for ((ours, theirs), reference) in pairs.zip(package.references(Causality::Output)) {
             let row = &package.rows[reference as usize];
-            // Rounding of times of the table, amplified by stiff contacts.
+            // Rounding, amplified by stiff contacts.
             let tolerance = 1e-6 * theirs.abs().max(row.nominal);
             assert!((ours - theirs).abs() <= tolerance, "step {k}, {}: {ours} {theirs}", row.name);
         }

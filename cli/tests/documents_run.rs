@@ -89,6 +89,8 @@ fn workplace(name: &str) -> Scratch {
             write(copy, &text);
         }
     }
+    let shaft = fs::read_to_string(root().join("scenes/shafts/pinion.toml")).unwrap();
+    write("scenes/shafts/pinion.toml", &shaft);
     let coupled = fs::read_to_string(root().join("examples/coupling/bearing.toml")).unwrap();
     write("examples/coupling/bearing.toml", &coupled);
     fs::create_dir(scratch.path("build")).unwrap();

@@ -82,7 +82,7 @@ def test_names_units_and_abilities(package):
     abilities = description.coSimulation
     assert abilities.canGetAndSetFMUstate and abilities.canSerializeFMUstate
     assert not abilities.providesDirectionalDerivative
-    assert description.defaultExperiment.stopTime == 5e-3
+    assert float(description.defaultExperiment.stopTime) == 5e-3
 
 
 def test_bearings_carry_the_load_that_is_set(package):

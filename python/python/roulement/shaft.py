@@ -65,7 +65,7 @@ def write_ross(path, rotor, nodes, highest):
     mass, stiffness, gyroscopic = (np.zeros((size, size)) for _ in range(3))
     polar = 0.0
     for element in elements:
-        at = [index for _, index in sorted(element.dof_global_index.items(), key=lambda item: list(element.dof_mapping()).index(item[0]))]
+        at = list(element.dof_global_index.values())
         block = np.ix_(at, at)
         mass[block] += element.M()
         stiffness[block] += element.K()

@@ -1,0 +1,52 @@
+"""Shafts from matrices: reduction and the file."""
+
+import json
+
+import numpy as np
+import pytest
+from roulement import shaft
+
+
+def chain(size):
+    """Masses of 1 kg between springs of 1 N/m, free at both ends."""
+    stiffness = 2 * np.eye(size) - np.eye(size, k=1) - np.eye(size, k=-1)
+    stiffness[0, 0] = stiffness[-1, -1] = 1
+    return np.diag(np.linspace(1, 2, size)), stiffness
+
+
+def test_closed_form_a_reduced_structure_has_the_static_stiffness_of_the_whole():
+    mass, stiffness = chain(12)
+    interface = [0, 7]
+    inner = [k for k in range(12) if k not in interface]
+    coupling = stiffness[np.ix_(inner, interface)]
+    exact = stiffness[np.ix_(interface, interface)] - coupling.T @ np.linalg.solve(stiffness[np.ix_(inner, inner)], coupling)
+    for highest in (0.0, 0.1, 1e3):
+        reduced = shaft.reduce(mass, stiffness, interface, highest)
+        assert reduced["stiffness"][:2, :2] == pytest.approx(exact, abs=1e-12)
+        # Modes are not coupled to the interface by stiffness, and have unit mass.
+        assert np.abs(reduced["stiffness"][:2, 2:]).max(initial=0) < 1e-12
+        assert reduced["mass"][2:, 2:] == pytest.approx(np.eye(len(reduced["frequencies"])), abs=1e-12)
+        # A rigid displacement has the whole mass.
+        rigid = np.zeros(len(reduced["mass"]))
+        rigid[:2] = 1
+        assert rigid @ reduced["mass"] @ rigid == pytest.approx(mass.sum())
+
+
+def test_invariant_with_all_modes_frequencies_are_those_of_the_whole():
+    mass, stiffness = chain(9)
+    reduced = shaft.reduce(mass, stiffness, [0, 8], np.inf)
+    whole, small = (np.sort(np.linalg.eigvals(np.linalg.solve(m, k)).real) for m, k in [(mass, stiffness), (reduced["mass"], reduced["stiffness"])])
+    assert small == pytest.approx(whole, abs=1e-12)
+
+
+def test_the_file_has_what_was_given(tmp_path):
+    mass, stiffness = chain(3)
+    stations = {0.1: np.eye(6, 3), 0.4: 2 * np.eye(6, 3)}
+    path = tmp_path / "shaft.json"
+    shaft.write(path, mass, stiffness, stations, translations=np.eye(3), polar_inertia=1e-3, title="chain")
+    file = json.loads(path.read_text())
+    assert file["mass"] == mass.tolist() and file["stiffness"] == stiffness.tolist()
+    assert [station["position"] for station in file["stations"]] == [0.1, 0.4]
+    assert file["stations"][1]["map"] == (2 * np.eye(6, 3)).tolist()
+    assert file["translations"] == np.eye(3).tolist() and "damping" not in file
+    assert (file["title"], file["polar_inertia"]) == ("chain", 1e-3)
