@@ -102,12 +102,8 @@ impl Simulation {
         let mut values = vec![0.0; references.len()];
         let mut instance = self.lock()?;
         for (reference, value) in references.iter().zip(&mut values) {
-            let kind = instance
-                .variables
-                .rows()
-                .get(*reference as usize)
-                .ok_or_else(|| PyKeyError::new_err(*reference))?
-                .kind;
+            let kind =
+                instance.rows().get(*reference as usize).ok_or_else(|| PyKeyError::new_err(*reference))?.kind;
             done(instance.get(&[*reference], kind, std::slice::from_mut(value)))?;
         }
         write(py, &array, &values)
