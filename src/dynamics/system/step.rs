@@ -126,7 +126,9 @@ impl<'a> SystemStep<'a> {
 
     /// Lists pairs of balls that met in the solved step without being looked at; were there some?
     pub fn list_met(&mut self) -> bool {
-        self.bearings.iter_mut().fold(false, |some, step| step.list_met() || some)
+        // All of them look.
+        let met = self.bearings.iter_mut().filter_map(|step| step.list_met().then_some(()));
+        met.count() > 0
     }
 
     /// Goes on without the matrices of earlier steps.

@@ -26,7 +26,7 @@ pub struct BearingUnit {
 }
 
 /// A refusal for a reason.
-fn refused(why: impl ToString) -> (Status, String) {
+fn refused(why: &impl ToString) -> (Status, String) {
     (Status::Error, why.to_string())
 }
 
@@ -51,7 +51,7 @@ impl BearingUnit {
     /// # Errors
     /// If it does not start.
     pub fn new(scene: &Scene) -> Outcome<Self> {
-        let simulation = Simulation::new(scene).map_err(refused)?;
+        let simulation = Simulation::new(scene).map_err(|why| refused(&why))?;
         Ok(Self { variables: Arc::new(Variables::new(scene)), next: *simulation.inputs(), simulation })
     }
 
@@ -59,7 +59,7 @@ impl BearingUnit {
     fn scene_with(&self, values: &[f64]) -> Outcome<Scene> {
         let mut scene = self.simulation.scene().clone();
         self.variables.set_parameters(&mut scene, values);
-        scene.check().map_err(refused)?;
+        scene.check().map_err(|why| refused(&why))?;
         Ok(scene)
     }
 
@@ -121,7 +121,7 @@ impl Simulated for BearingUnit {
 
     fn start_at(&mut self, time: f64, values: &[f64]) -> Outcome {
         let scene = self.scene_with(values)?;
-        self.simulation = Simulation::starting_at(&scene, time).map_err(refused)?;
+        self.simulation = Simulation::starting_at(&scene, time).map_err(|why| refused(&why))?;
         Ok(())
     }
 
@@ -137,13 +137,14 @@ impl Simulated for BearingUnit {
     }
 
     fn prepare(&mut self, values: &[f64], rates: &[f64]) -> Outcome {
-        self.next = self.variables.inputs(values, rates, self.simulation.inputs()).map_err(refused)?;
+        self.next =
+            self.variables.inputs(values, rates, self.simulation.inputs()).map_err(|why| refused(&why))?;
         Ok(())
     }
 
     fn initialise(&mut self) -> Outcome {
         self.simulation.set_inputs(self.next);
-        self.simulation.initialise().map_err(refused)
+        self.simulation.initialise().map_err(|why| refused(&why))
     }
 
     fn advance(&mut self, end: f64, played: &[bool]) -> Outcome {

@@ -32,7 +32,7 @@ pub struct SystemUnit {
     next: (ShaftInputs, Vec<Inputs>),
 }
 
-fn refused(why: SystemError) -> (Status, String) {
+fn refused(why: &SystemError) -> (Status, String) {
     (Status::Error, why.to_string())
 }
 
@@ -42,7 +42,7 @@ impl SystemUnit {
     /// # Errors
     /// If it does not start.
     pub fn new(scene: &SystemScene) -> Outcome<Self> {
-        let system = System::new(scene).map_err(refused)?;
+        let system = System::new(scene).map_err(|why| refused(&why))?;
         let variables = Arc::new(SystemVariables::new(&system));
         let bearings = system.bearings().map(|(_, bearing)| *bearing.inputs()).collect();
         Ok(Self { variables, next: (system.inputs().clone(), bearings), system })
@@ -106,7 +106,7 @@ impl Simulated for SystemUnit {
     }
 
     fn start_at(&mut self, time: f64, _values: &[f64]) -> Outcome {
-        self.system = System::starting_at(self.system.scene(), time).map_err(refused)?;
+        self.system = System::starting_at(self.system.scene(), time).map_err(|why| refused(&why))?;
         Ok(())
     }
 
@@ -127,7 +127,7 @@ impl Simulated for SystemUnit {
 
     fn initialise(&mut self) -> Outcome {
         self.take_prepared();
-        self.system.initialise().map_err(refused)
+        self.system.initialise().map_err(|why| refused(&why))
     }
 
     fn advance(&mut self, end: f64, played: &[bool]) -> Outcome {

@@ -204,8 +204,8 @@ impl Beams {
             map
         };
         Reduced {
-            mass: symmetric(reduce(&self.mass)),
-            stiffness: symmetric(reduce(&self.stiffness)),
+            mass: symmetric(&reduce(&self.mass)),
+            stiffness: symmetric(&reduce(&self.stiffness)),
             gyroscopic: reduce(&self.gyroscopic),
             weights: OMatrix::from_fn_generic(Dyn(n), U3, |i, k| weights[(i, k)]),
             polar_inertia: self.polar_inertia,
@@ -222,7 +222,7 @@ fn modes(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>, highest: f64) -> (DMatri
     let lower = cholesky.l();
     let Some(half) = lower.solve_lower_triangular(stiffness) else { return none };
     let Some(scaled) = lower.solve_lower_triangular(&half.transpose()) else { return none };
-    let eigen = symmetric(scaled).symmetric_eigen();
+    let eigen = symmetric(&scaled).symmetric_eigen();
     let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
     order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
     order.retain(|k| eigen.eigenvalues[*k] <= highest * highest);
@@ -237,8 +237,8 @@ fn modes(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>, highest: f64) -> (DMatri
 }
 
 /// A matrix without what rounding has left of asymmetry.
-fn symmetric(matrix: DMatrix<f64>) -> DMatrix<f64> {
-    (&matrix + matrix.transpose()) * 0.5
+fn symmetric(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    (matrix + matrix.transpose()) * 0.5
 }
 
 /// The beam at a position.

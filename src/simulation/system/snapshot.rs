@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::Snapshot;
+use super::super::{Simulation, Snapshot};
 use super::System;
 use super::inputs::{ShaftInputs, ShaftPaths};
 use crate::model::structure::StructureState;
@@ -35,7 +35,7 @@ impl System {
             state: self.state.clone(),
             control: self.control,
             time: self.time,
-            bearings: self.bearings.iter().map(|bearing| bearing.snapshot()).collect(),
+            bearings: self.bearings.iter().map(Simulation::snapshot).collect(),
         }
     }
 
