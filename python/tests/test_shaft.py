@@ -43,7 +43,7 @@ def test_the_file_has_what_was_given(tmp_path):
     mass, stiffness = chain(3)
     stations = {0.1: np.eye(6, 3), 0.4: 2 * np.eye(6, 3)}
     path = tmp_path / "shaft.json"
-    shaft.write(path, mass, stiffness, stations, translations=np.eye(3), polar_inertia=1e-3, title="chain")
+    shaft.write(path, mass, stiffness, np.eye(3), stations, polar_inertia=1e-3, title="chain")
     file = json.loads(path.read_text())
     assert file["mass"] == mass.tolist() and file["stiffness"] == stiffness.tolist()
     assert [station["position"] for station in file["stations"]] == [0.1, 0.4]

@@ -30,8 +30,8 @@ pub struct Matrices {
     /// [kg m2] moment of inertia about the axis.
     #[serde(default)]
     pub polar_inertia: f64,
-    /// Coordinates of a unit displacement of the whole along x, y and z, n x 3; needed where gravity acts.
-    pub translations: Option<Vec<Vec<f64>>>,
+    /// Coordinates of a unit displacement of the whole along x, y and z, n x 3: they say what it weighs.
+    pub translations: Vec<Vec<f64>>,
     /// Places where bearings sit and loads act.
     pub stations: Vec<MatrixStation>,
 }
@@ -128,10 +128,10 @@ impl Matrices {
             return Err("mass is not positive definite: every coordinate needs some inertia".into());
         }
         let zero = || DMatrix::zeros(n, n);
-        let weights = match &self.translations {
-            Some(rows) => &mass * matrix("translations", rows, n, 3)?,
-            None => DMatrix::zeros(n, 3),
-        };
+        let weights = &mass * matrix("translations", &self.translations, n, 3)?;
+        if weights.column(1).amax() == 0.0 {
+            return Err("translations along y move nothing".into());
+        }
         let stations = self.stations.iter().map(|station| {
             let map = matrix(&format!("map of the station at {} m", station.position), &station.map, 6, n)?;
             Ok((station.position, OMatrix::from_fn_generic(U6, Dyn(n), |i, k| map[(i, k)])))

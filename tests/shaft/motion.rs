@@ -190,11 +190,14 @@ fn invariant_a_shaft_from_a_file_of_matrices_moves_as_the_beams_they_are_of() {
     };
     let stations: Vec<_> = [0.0, 0.4, 0.2].into_iter().zip(&shaft.stations).map(station).collect();
     let structure = &shaft.structure;
+    let weights = nalgebra::DMatrix::from_fn(structure.size(), 3, |i, k| structure.weights[(i, k)]);
+    let translations = structure.mass.clone().lu().solve(&weights).unwrap();
     let mut file = serde_json::json!({
         "mass": rows(&structure.mass),
         "stiffness": rows(&structure.stiffness),
         "gyroscopic": rows(&structure.gyroscopic),
         "polar_inertia": structure.polar_inertia,
+        "translations": rows(&translations),
         "stations": stations,
     });
     let folder = std::env::temp_dir().join(format!("roulement-matrices-{}", std::process::id()));
@@ -209,10 +212,12 @@ fn invariant_a_shaft_from_a_file_of_matrices_moves_as_the_beams_they_are_of() {
     };
     let mut other = roulement::simulation::system::System::new(&read(&text, &file).unwrap()).unwrap();
     other.advance(5e-4).unwrap();
-    assert_eq!(other.state(), beams.state());
+    // Weights are computed from what was computed from them.
+    let apart = (&other.state().coordinates - &beams.state().coordinates).amax();
+    assert!(apart < 1e-12 * beams.state().coordinates.amax(), "{apart}");
     // What does not fit is refused with its place.
     for (text, key, value, part) in [
-        (text.clone(), "mass", serde_json::json!([[1.0]]), "stiffness has"),
+        (text.clone(), "mass", serde_json::json!([[1.0]]), "should have 1 of 3"),
         (text.clone(), "stiffness", serde_json::json!("none"), "rotor.json"),
         (
             text.replace("0.0, direction", "0.1, direction"),
@@ -220,7 +225,7 @@ fn invariant_a_shaft_from_a_file_of_matrices_moves_as_the_beams_they_are_of() {
             serde_json::json!("other"),
             "no station at 0.1 m",
         ),
-        (format!("gravity = [0, 0, -9.81]\n{text}"), "title", serde_json::json!("other"), "translations"),
+        (text.clone(), "translations", serde_json::json!([[1.0]]), "translations has"),
         (
             text.replace("[shaft]\n", "[shaft]\nmass = 1.0\n"),
             "title",

@@ -39,16 +39,17 @@ def reduce(mass, stiffness, interface, highest, gyroscopic=None):
     return reduced
 
 
-def write(path, mass, stiffness, stations, *, gyroscopic=None, damping=None, translations=None, polar_inertia=0.0, title=""):
+def write(path, mass, stiffness, translations, stations, *, gyroscopic=None, damping=None, polar_inertia=0.0, title=""):
     """Writes the matrices of a shaft for `shaft.matrices`.
 
-    `stations` has for each position along the shaft [m] the map there: displacement x, y, z [m] and rotation about x, y, z [rad] by the
-    coordinates, shape (6, n). `gyroscopic` is that of a spin of 1 rad/s. `translations`, shape (n, 3), are the coordinates of a unit
-    displacement of the whole along x, y, z; gravity needs them. `polar_inertia` is the moment of inertia about the axis [kg m2].
+    `translations`, shape (n, 3), are the coordinates of a unit displacement of the whole along x, y, z. `stations` has for each position
+    along the shaft [m] the map there: displacement x, y, z [m] and rotation about x, y, z [rad] by the coordinates, shape (6, n).
+    `gyroscopic` is that of a spin of 1 rad/s. `polar_inertia` is the moment of inertia about the axis [kg m2].
     """
     rows = lambda matrix: np.asarray(matrix, float).tolist()
-    optional = {"gyroscopic": gyroscopic, "damping": damping, "translations": translations}
-    file = {"title": title, "mass": rows(mass), "stiffness": rows(stiffness), "polar_inertia": float(polar_inertia)}
+    optional = {"gyroscopic": gyroscopic, "damping": damping}
+    file = {"title": title, "mass": rows(mass), "stiffness": rows(stiffness), "translations": rows(translations)}
+    file["polar_inertia"] = float(polar_inertia)
     file |= {name: rows(matrix) for name, matrix in optional.items() if matrix is not None}
     file["stations"] = [{"position": float(position), "map": rows(of)} for position, of in stations.items()]
     Path(path).write_text(json.dumps(file))
@@ -88,5 +89,5 @@ def write_ross(path, rotor, nodes, highest):
         # A rigid displacement moves the interface and leaves modes at rest.
         for ours in range(3):
             translations[5 * place + axes[ours], ours] = 1
-    write(path, reduced["mass"], reduced["stiffness"], stations, gyroscopic=reduced["gyroscopic"], translations=translations,
-          polar_inertia=polar, title=f"ROSS rotor, nodes {list(nodes)}")
+    write(path, reduced["mass"], reduced["stiffness"], translations, stations, gyroscopic=reduced["gyroscopic"], polar_inertia=polar,
+          title=f"ROSS rotor, nodes {list(nodes)}")

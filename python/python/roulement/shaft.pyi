@@ -11,11 +11,11 @@ def write(
     path: str | PathLike[str],
     mass: ArrayLike,
     stiffness: ArrayLike,
+    translations: ArrayLike,
     stations: Mapping[float, ArrayLike],
     *,
     gyroscopic: ArrayLike | None = None,
     damping: ArrayLike | None = None,
-    translations: ArrayLike | None = None,
     polar_inertia: float = 0.0,
     title: str = "",
 ) -> None: ...

@@ -1,10 +1,8 @@
 //! What the keys of a system must agree in.
 
-use nalgebra::Vector3;
-
 use super::{MountedScene, Written};
 use crate::schema::numbers::Range;
-use crate::schema::{SceneError, ShaftSection, StructureMatrices};
+use crate::schema::{SceneError, ShaftSection};
 
 /// Masses of shafts and discs.
 const MASS: Range = Range::above(0.0, 1e6, "kg");
@@ -140,16 +138,6 @@ fn sections(shaft: &ShaftSection) -> Result<(), SceneError> {
             );
             return Err(SceneError::conflict("shaft.section.from", why));
         }
-    }
-    Ok(())
-}
-
-/// Matrices say how gravity acts on them, where there is some.
-pub fn weighs(matrices: &StructureMatrices, gravity: &Vector3<f64>) -> Result<(), SceneError> {
-    if *gravity != Vector3::zeros() && matrices.weights.amax() == 0.0 {
-        let why =
-            "gravity needs translations in the file: the coordinates of a unit displacement along x, y, z";
-        return Err(SceneError::conflict("shaft.matrices", why));
     }
     Ok(())
 }

@@ -5,7 +5,7 @@
 
 mod check;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 use serde::Deserialize;
@@ -134,12 +134,10 @@ impl SystemScene {
         let matrices = shaft.matrices.as_ref().map(|given| Matrices::of(given, folder));
         let matrices = matrices.transpose().map_err(placed)?;
         if let Some(matrices) = &matrices {
-            let read = matrices.checked().map_err(placed)?;
-            check::weighs(&read, &gravity).map_err(placed)?;
-            shaft.read = Some(read);
+            shaft.read = Some(matrices.checked().map_err(placed)?);
         }
         let speed = shaft.speed.as_ref().map_or(0.0, |speed| speed.at(0.0));
-        let given = Given { gravity, speed, load, solver: &solver, folder };
+        let given = Shared { gravity, speed, load, solver, folder: folder.to_path_buf() };
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
         let bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
         check::solvers(&bearings).map_err(placed)?;
@@ -171,22 +169,22 @@ impl SystemScene {
 }
 
 /// What all bearings of a system are given.
-struct Given<'a> {
+struct Shared {
     gravity: Vector3<f64>,
     speed: f64,
     load: SystemLoad,
-    solver: &'a Table,
-    folder: &'a Path,
+    solver: Table,
+    folder: PathBuf,
 }
 
 impl WrittenBearing {
     /// The bearing with its scene.
-    fn read(self, given: &Given<'_>) -> Result<MountedScene, SceneError> {
+    fn read(self, given: &Shared) -> Result<MountedScene, SceneError> {
         let Self { name, scene, catalogue, mounting, set } = self;
         let inside =
             |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
         let (text, folder, file) = match (scene, catalogue) {
-            (Some(Value::Table(keys)), None) => (keys.to_string(), given.folder.to_path_buf(), None),
+            (Some(Value::Table(keys)), None) => (keys.to_string(), given.folder.clone(), None),
             (Some(Value::String(file)), None) => {
                 let path = given.folder.join(&file);
                 let text = std::fs::read_to_string(&path)
@@ -199,7 +197,7 @@ impl WrittenBearing {
                 let text = request.bearing().and_then(|bearing| bearing.scene(1));
                 let refuse =
                     |why| inside(SceneError::conflict("bearing.catalogue", format!("{designation}: {why}")));
-                (text.map_err(refuse)?, given.folder.to_path_buf(), None)
+                (text.map_err(refuse)?, given.folder.clone(), None)
             }
             _ => {
                 let why = "give exactly one of scene (a file, or its keys) and catalogue (a designation)";
@@ -249,7 +247,7 @@ fn merge(into: &mut Table, changes: Table) {
 }
 
 /// Makes a bearing's own scene that of a bearing whose inner race the shaft moves.
-fn mount(table: &mut Table, given: &Given<'_>, direction: MountingDirection) {
+fn mount(table: &mut Table, given: &Shared, direction: MountingDirection) {
     let section = |table: &mut Table, name: &str| -> Table {
         match table.remove(name) {
             Some(Value::Table(section)) => section,
