@@ -11,7 +11,7 @@ use crate::loads::{Mesh, unbalance as unbalance_of};
 use crate::model::state::stack;
 use crate::model::structure::{Shaft, Spin, StructureState, Turning};
 use crate::numerics::motion::Wrench;
-use crate::scene::Schedule;
+use crate::scene::{GearSection, Schedule};
 
 /// Load of the shaft at a time \[s]. Where its turn is a coordinate, the direction of unbalance follows it from the state it had.
 pub fn at(given: &Given<'_>, shaft: &Shaft, state: &StructureState, from: f64, time: f64) -> StructureLoad {
@@ -76,7 +76,7 @@ pub fn shortest_period(given: &Given<'_>, state: &StructureState, time: f64) -> 
     let shaft = &given.scene.shaft;
     let scripted = schedules(given).into_iter().filter_map(|schedule| schedule.shortest_period(time));
     let per_turn = shaft.disc.iter().filter(|disc| disc.unbalance.is_some()).map(|_| 1.0);
-    let meshes = shaft.gear.iter().filter_map(|gear| gear.ripple()).map(|ripple| ripple.teeth);
+    let meshes = shaft.gear.iter().filter_map(GearSection::ripple).map(|ripple| ripple.teeth);
     let speed = state.spin.speed.abs();
     let turning = per_turn.chain(meshes).filter(|_| speed > 0.0).map(|times| TAU / (times * speed));
     scripted.chain(turning).reduce(f64::min)
