@@ -88,6 +88,21 @@ fn refusals_name_key_value_and_allowed_range() {
         ("position = \"-50 mm\"", "position = \"-50 kg\"", &["position", "-50 kg"]),
         ("catalogue = \"7206 B\"\n", "", &["exactly one of scene", "catalogue"]),
         ("[load]", "[laod]", &["laod"]),
+        (
+            "[load]",
+            "[solver]\nlevel = \"equilibrium\"\n[load]",
+            &["bearing \"left\": solver.level", "dynamic"],
+        ),
+        (
+            "[load]",
+            "[bearing.set.effects.frame]\nangular_velocity = [1, 0, 0]\n[load]",
+            &["\"right\": effects.frame"],
+        ),
+        (
+            "[load]",
+            "[bearing.set.outer]\ndrive = \"wrench\"\nmass = 0.1\ninertia = [1e-4, 1e-4, 1e-4]\n[load]",
+            &["bearing \"right\"", "outer.drive"],
+        ),
     ] {
         let text = crate::common::GEARBOX.replacen(from, to, 1);
         assert_ne!(text, crate::common::GEARBOX, "{from}");

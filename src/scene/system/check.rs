@@ -2,7 +2,7 @@
 
 use super::{MountedScene, Written};
 use crate::schema::numbers::Range;
-use crate::schema::{SceneError, ShaftSection};
+use crate::schema::{Drive, Level, SceneError, ShaftSection};
 
 /// Masses of shafts and discs.
 const MASS: Range = Range::above(0.0, 1e6, "kg");
@@ -146,10 +146,42 @@ fn sections(shaft: &ShaftSection) -> Result<(), SceneError> {
 pub fn solvers(bearings: &[MountedScene]) -> Result<(), SceneError> {
     let first = &bearings[0].scene.solver;
     for bearing in bearings {
+        alone(bearing)?;
         if bearing.scene.solver.alpha_f != first.alpha_f || bearing.scene.solver.level != first.level {
             let why = "all bearings of a system are integrated together: give alpha_f and level in [solver] of the system";
             return Err(SceneError::conflict("solver", why));
         }
+    }
+    Ok(())
+}
+
+/// What a bearing has by itself alone.
+fn alone(bearing: &MountedScene) -> Result<(), SceneError> {
+    let (scene, name) = (&bearing.scene, &bearing.name);
+    let refuse = |key: &str, why: &str| Err(SceneError::conflict(format!("bearing \"{name}\": {key}"), why));
+    if scene.solver.level == Level::Equilibrium {
+        return refuse(
+            "solver.level",
+            "\"equilibrium\" is for a bearing without a shaft: a shaft with its bearings is dynamic",
+        );
+    }
+    if scene.effects.frame.section.is_some() {
+        return refuse(
+            "effects.frame",
+            "is for a bearing without a shaft: the equations of a shaft have no moving frame",
+        );
+    }
+    if scene.effects.support.sections[0].is_some() {
+        return refuse(
+            "inner.support",
+            "is for a bearing without a shaft: the inner race is a part of the shaft",
+        );
+    }
+    if scene.outer.drive == Drive::Wrench {
+        return refuse(
+            "outer.drive",
+            "\"wrench\" is for a bearing without a shaft: allowed are fixed, hinge, pose, and a support",
+        );
     }
     Ok(())
 }
