@@ -1,4 +1,4 @@
-//! Matrices of a shaft from another program, as a JSON file.
+//! Matrices of a shaft or a housing from another program, as a JSON file.
 
 use std::path::Path;
 
@@ -25,7 +25,7 @@ pub struct Matrices {
     pub stiffness: Vec<Vec<f64>>,
     /// Damping matrix, n x n; 0 if not given.
     pub damping: Option<Vec<Vec<f64>>>,
-    /// Gyroscopic matrix of a spin of 1 rad/s, n x n, skew; 0 if not given.
+    /// Gyroscopic matrix of a spin of 1 rad/s, n x n, skew; 0 if not given, and of a housing.
     pub gyroscopic: Option<Vec<Vec<f64>>>,
     /// [kg m2] moment of inertia about the axis.
     #[serde(default)]
@@ -40,10 +40,38 @@ pub struct Matrices {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct MatrixStation {
-    /// \[m] position along the shaft.
-    pub position: f64,
+    /// \[m] position along the shaft, or place x, y, z.
+    pub position: StationPlace,
     /// Displacement x, y, z and rotation about x, y, z there by the coordinates, 6 x n.
     pub map: Vec<Vec<f64>>,
+}
+
+/// Where a station is.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(untagged)]
+pub enum StationPlace {
+    /// On the axis of the shaft.
+    Along(f64),
+    /// Anywhere.
+    At([f64; 3]),
+}
+
+impl StationPlace {
+    /// \[m] x, y, z.
+    fn place(self) -> [f64; 3] {
+        match self {
+            Self::Along(x) => [x, 0.0, 0.0],
+            Self::At(place) => place,
+        }
+    }
+}
+
+/// A place in words: its x alone where it is on the axis.
+fn in_words(place: [f64; 3]) -> String {
+    match place {
+        [x, 0.0, 0.0] => format!("{x}"),
+        [x, y, z] => format!("[{x}, {y}, {z}]"),
+    }
 }
 
 /// The same as matrices.
@@ -61,17 +89,17 @@ pub struct StructureMatrices {
     pub polar_inertia: f64,
     /// Generalised forces of unit accelerations.
     pub weights: OMatrix<f64, Dyn, U3>,
-    /// Position \[m] and map of every station.
-    pub stations: Vec<(f64, OMatrix<f64, U6, Dyn>)>,
+    /// Place \[m] and map of every station.
+    pub stations: Vec<([f64; 3], OMatrix<f64, U6, Dyn>)>,
 }
 
 impl Matrices {
-    /// Those that a key gives: the name of a JSON file in a folder, or a table of the same keys.
+    /// Those that a value gives: the name of a JSON file in a folder, or a table of the same keys. Errors name its `key`.
     ///
     /// # Errors
     /// With the file and what is wrong with it.
-    pub fn of(given: &toml::Value, folder: &Path) -> Result<Self, SceneError> {
-        let wrong = |file: &str, why: String| SceneError::conflict("shaft.matrices", format!("{file}{why}"));
+    pub fn of(given: &toml::Value, folder: &Path, key: &str) -> Result<Self, SceneError> {
+        let wrong = |file: &str, why: String| SceneError::conflict(key, format!("{file}{why}"));
         match given {
             toml::Value::String(name) => {
                 let path = folder.join(name);
@@ -86,26 +114,27 @@ impl Matrices {
 }
 
 impl StructureMatrices {
-    /// Displacement and rotation at a position \[m]; where there is no station, the positions of those there are.
+    /// Displacement and rotation at a place \[m].
     ///
     /// # Errors
-    /// A sentence.
-    pub fn station(&self, position: f64) -> Result<OMatrix<f64, U6, Dyn>, String> {
-        let found = self.stations.iter().find(|(at, _)| (at - position).abs() <= SAME);
+    /// A sentence with the stations that there are.
+    pub fn station(&self, place: [f64; 3]) -> Result<OMatrix<f64, U6, Dyn>, String> {
+        let here = |at: &[f64; 3]| at.iter().zip(place).all(|(at, place)| (at - place).abs() <= SAME);
+        let found = self.stations.iter().find(|(at, _)| here(at));
         found.map(|(_, map)| map.clone()).ok_or_else(|| {
-            let there: Vec<String> = self.stations.iter().map(|(at, _)| at.to_string()).collect();
-            format!("shaft.matrices has no station at {position} m; it has {} m", there.join(", "))
+            let there: Vec<String> = self.stations.iter().map(|(at, _)| in_words(*at)).collect();
+            format!("the matrices have no station at {} m; they have {} m", in_words(place), there.join(", "))
         })
     }
 }
 
 impl Matrices {
-    /// The same as matrices.
+    /// The same as matrices. Errors name their `key`.
     ///
     /// # Errors
     /// With the matrix and what is wrong with it.
-    pub fn checked(&self) -> Result<StructureMatrices, SceneError> {
-        self.read().map_err(|why| SceneError::conflict("shaft.matrices", why))
+    pub fn checked(&self, key: &str) -> Result<StructureMatrices, SceneError> {
+        self.read().map_err(|why| SceneError::conflict(key, why))
     }
 
     fn read(&self) -> Result<StructureMatrices, String> {
@@ -133,8 +162,12 @@ impl Matrices {
             return Err("translations along y move nothing".into());
         }
         let stations = self.stations.iter().map(|station| {
-            let map = matrix(&format!("map of the station at {} m", station.position), &station.map, 6, n)?;
-            Ok((station.position, OMatrix::from_fn_generic(U6, Dyn(n), |i, k| map[(i, k)])))
+            let place = station.position.place();
+            if place.iter().any(|value| !value.is_finite()) {
+                return Err(format!("a station at {} m", in_words(place)));
+            }
+            let map = matrix(&format!("map of the station at {} m", in_words(place)), &station.map, 6, n)?;
+            Ok((place, OMatrix::from_fn_generic(U6, Dyn(n), |i, k| map[(i, k)])))
         });
         if !(self.polar_inertia >= 0.0 && self.polar_inertia.is_finite()) {
             return Err(format!(

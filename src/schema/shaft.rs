@@ -119,6 +119,8 @@ pub struct Mounting {
     /// Where the bearing's x axis points: along the shaft's, or against it.
     #[serde(default)]
     pub direction: MountingDirection,
+    /// Name of the housing that its outer race sits in; what its scene says of the outer race if not given.
+    pub housing: Option<String>,
     /// Preload of the bearing; at most one of both.
     #[serde(default)]
     pub preload: Preload,

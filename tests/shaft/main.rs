@@ -3,6 +3,7 @@
 
 mod common;
 mod hard;
+mod housing;
 mod motion;
 mod reference;
 #[path = "../scene_reference/sources.rs"]

@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::sources::{Section, Source, sources};
 
 /// Structs, and the section that each is in a file.
-const SECTIONS: [(&str, &str); 11] = [
+const SECTIONS: [(&str, &str); 15] = [
     ("Written", ""),
     ("ShaftSection", "shaft"),
     ("BeamSection", "shaft.section"),
@@ -15,6 +15,10 @@ const SECTIONS: [(&str, &str); 11] = [
     ("PointLoad", "shaft.load"),
     ("GearSection", "shaft.gear"),
     ("Point", "shaft.point"),
+    ("HousingSection", "housing"),
+    ("Foot", "housing.foot"),
+    ("HousingLoad", "housing.load"),
+    ("HousingPoint", "housing.point"),
     ("WrittenBearing", "bearing"),
     ("Mounting", "bearing.mounting"),
     ("Preload", "bearing.mounting.preload"),
@@ -23,7 +27,7 @@ const SECTIONS: [(&str, &str); 11] = [
 
 fn section<'a>(sources: &'a [Source], name: &str) -> &'a Section {
     let of = |source: &&Source| {
-        ["schema/shaft.rs", "schema/machine.rs", "scene/system/mod.rs"]
+        ["schema/shaft.rs", "schema/housing.rs", "schema/machine.rs", "scene/system/mod.rs"]
             .iter()
             .any(|file| source.path.ends_with(file))
     };

@@ -1,4 +1,4 @@
-//! What is left of a shaft's run: its table, its plots, its words.
+//! What is left of a run of a shaft with its housings: its table, its plots, its words.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 use roulement::scene::system::SystemScene;
-use roulement::simulation::system::{PointOutput, System, SystemOutputs};
+use roulement::simulation::system::{HousingOutputs, PointOutput, System, SystemOutputs};
 
 use super::number;
 use super::plots::{Curve, Panel, figure};
@@ -26,7 +26,20 @@ fn points(outputs: &SystemOutputs) -> impl Iterator<Item = &PointOutput> {
     outputs.seats.iter().chain(&outputs.loads).chain(&outputs.points)
 }
 
-/// Table of a shaft over time: CSV with units in the header.
+/// Names of all points of a housing whose motion is known: bearings, loads, points.
+fn places_of_housing(scene: &SystemScene, index: usize) -> impl Iterator<Item = &String> {
+    let housing = &scene.housings[index];
+    let bearings = scene.bearings_in(index).map(|bearing| &scene.bearings[bearing].name);
+    let loads = housing.load.iter().map(|load| &load.name);
+    bearings.chain(loads).chain(housing.point.iter().map(|point| &point.name))
+}
+
+/// Motion at all of these points.
+fn points_of_housing(outputs: &HousingOutputs) -> impl Iterator<Item = &PointOutput> {
+    outputs.seats.iter().chain(&outputs.loads).chain(&outputs.points)
+}
+
+/// Table of a shaft and its housings over time: CSV with units in the header.
 pub struct ShaftTable {
     file: BufWriter<File>,
     window: Window,
@@ -47,6 +60,13 @@ impl ShaftTable {
             let of = [("x", "m"), ("y", "m"), ("z", "m"), ("ry", "rad"), ("rz", "rad")];
             names.extend(of.map(|(component, unit)| format!("shaft.{place}.{component} [{unit}]")));
         }
+        for (index, housing) in scene.housings.iter().enumerate() {
+            for place in places_of_housing(scene, index) {
+                let of = [("x", "m"), ("y", "m"), ("z", "m"), ("rx", "rad"), ("ry", "rad"), ("rz", "rad")];
+                let housing = &housing.name;
+                names.extend(of.map(|(component, unit)| format!("{housing}.{place}.{component} [{unit}]")));
+            }
+        }
         writeln!(file, "{}", names.join(","))?;
         Ok(Self { file, window })
     }
@@ -64,6 +84,9 @@ impl ShaftTable {
         for PointOutput { displacement: d, tilt, .. } in points(outputs) {
             row.extend([d.x, d.y, d.z, tilt.y, tilt.z]);
         }
+        for PointOutput { displacement, tilt, .. } in outputs.housings.iter().flat_map(points_of_housing) {
+            row.extend(displacement.iter().chain(tilt.iter()));
+        }
         for (index, value) in row.into_iter().enumerate() {
             if index > 0 {
                 line.push(b',');
@@ -76,7 +99,7 @@ impl ShaftTable {
     }
 }
 
-/// Draws the shaft's motion at its bearings over time, and its path there.
+/// Draws the shaft's motion at its bearings over time, its path there, and the motion of housings at their bearings.
 ///
 /// # Errors
 /// If the file cannot be written.
@@ -118,7 +141,7 @@ pub fn write_plot(
         }],
         least,
     };
-    let panels = vec![
+    let mut panels = vec![
         Panel {
             x_label: "y [um]",
             y_label: "path of the shaft at its bearings about its mean: z [um]",
@@ -133,10 +156,48 @@ pub fn write_plot(
         of_shaft("speed [rad/s]", 1e-3, |row| row.spin.speed),
         of_shaft("torque that drives the shaft [N m]", 1e-3, |row| row.torque),
     ];
+    panels.extend(of_housings(scene, rows));
     let path = directory.join("shaft.svg");
     let title = if scene.title.is_empty() { "shaft on its bearings" } else { &scene.title };
     figure(&path, title, panels)?;
     Ok(path)
+}
+
+/// Motion of the housings at their bearings over time.
+fn of_housings(scene: &SystemScene, rows: &[SystemOutputs]) -> Vec<Panel> {
+    let seats: Vec<(usize, usize, &str)> = (0..scene.housings.len())
+        .flat_map(|housing| {
+            let bearings = scene.bearings_in(housing).enumerate();
+            bearings.map(move |(seat, bearing)| (housing, seat, scene.bearings[bearing].name.as_str()))
+        })
+        .take(7)
+        .collect();
+    if seats.is_empty() {
+        return vec![];
+    }
+    let over_time = |y_label, get: fn(&PointOutput) -> f64| Panel {
+        x_label: "time [ms]",
+        y_label,
+        curves: seats
+            .iter()
+            .map(|(housing, seat, name)| Curve {
+                name: format!("{} at {name}", scene.housings[*housing].name),
+                points: rows
+                    .iter()
+                    .map(|row| (row.time * 1e3, get(&row.housings[*housing].seats[*seat])))
+                    .collect(),
+                band: vec![],
+            })
+            .collect(),
+        least: 1e-3,
+    };
+    vec![
+        over_time("housing along the axis, x [um]", |point| point.displacement.x * 1e6),
+        over_time("housing, displacement y [um]", |point| point.displacement.y * 1e6),
+        over_time("housing, displacement z [um]", |point| point.displacement.z * 1e6),
+        over_time("housing, tilt about y [urad]", |point| point.tilt.y * 1e6),
+        over_time("housing, tilt about z [urad]", |point| point.tilt.z * 1e6),
+    ]
 }
 
 /// What a shaft's run came to, in words: of the shaft, and of its bearings a line each.
@@ -176,13 +237,29 @@ pub fn summary(system: &System, means: &[Option<[f64; 2]>]) -> String {
         });
         line(format_args!("{:<16} ball loads {least:.1} to {most:.1} N{power}", ""));
     }
-    let energies = &outputs.energies;
-    line(format_args!(
-        "energy           put in {:.5} J, to bearings {:.5} J, damped {:.5} J, balance {:.2e} J",
-        energies.input,
-        energies.bearings,
-        energies.damping,
-        energies.unaccounted()
-    ));
+    let housings = scene.housings.iter().zip(&outputs.housings);
+    for (housing, outputs) in housings.clone() {
+        let at = |point: &PointOutput| {
+            let (d, r) = (point.displacement * 1e6, point.tilt * 1e6);
+            format!(
+                "x {:.3} y {:.3} z {:.3} um, turned by {:.2} {:.2} {:.2} urad",
+                d.x, d.y, d.z, r.x, r.y, r.z
+            )
+        };
+        let first = outputs.seats.first().map_or_else(String::new, at);
+        line(format_args!("{:<16} at its first bearing {first}", housing.name));
+    }
+    let energies = [("energy", &outputs.energies)].into_iter();
+    for (name, energies) in energies.chain(housings.map(|(housing, o)| (housing.name.as_str(), &o.energies)))
+    {
+        line(format_args!(
+            "{:<16} put in {:.5} J, to bearings {:.5} J, damped {:.5} J, balance {:.2e} J",
+            name,
+            energies.input,
+            energies.bearings,
+            energies.damping,
+            energies.unaccounted()
+        ));
+    }
     text
 }

@@ -14,7 +14,7 @@ use crate::numerics::newton::{self, NewtonBuffers, NewtonWork};
 use crate::numerics::size::larger;
 use crate::numerics::step_control::StepControl;
 pub use step::{Joint, StructureStep, SystemStep};
-pub use structure::{Seat, StructureLoad};
+pub use structure::{Seat, StructureLoad, StructureTrial};
 
 /// [-] damping parameter of a system without bearings.
 const DEFAULT_ALPHA: f64 = 0.05;

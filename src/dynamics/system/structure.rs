@@ -3,7 +3,9 @@
 use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6, Vector3};
 
 use super::super::carried::SeatMotion;
-use crate::model::structure::{Map, Spin, Structure, StructurePowers, StructureState, Turning};
+use crate::model::structure::{
+    Map, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
+};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
 
@@ -119,6 +121,31 @@ impl StructureTrial {
         step: &HhtStep,
     ) {
         let fraction = 1.0 - step.alpha_f;
+        self.sum_forces(model, load);
+        let end = &mut self.end;
+        self.residual =
+            &model.mass * &end.accelerations - &end.total * fraction - &start.total * step.alpha_f
+                + &start.remainder;
+        end.remainder.copy_from(&self.residual);
+        self.account(model, load);
+    }
+
+    /// The state where a run starts: accelerations, torque and powers under what acts from outside and the bearings.
+    pub fn started(mut self, model: &Structure, load: &StructureLoad) -> StructureState {
+        self.sum_forces(model, load);
+        let end = &mut self.end;
+        let solved = model.mass.clone().lu().solve(&end.total);
+        end.accelerations = solved.unwrap_or_else(|| DVector::zeros(model.size()));
+        end.spin = model.spin([&end.coordinates, &end.rates, &end.accelerations], end.spin);
+        self.account(model, load);
+        let mut end = self.end;
+        let stored = model.stored(&end.coordinates, &end.rates, &end.spin);
+        end.energies = StructureEnergies { stored, at_start: stored, ..StructureEnergies::default() };
+        end
+    }
+
+    /// Total force.
+    fn sum_forces(&mut self, model: &Structure, load: &StructureLoad) {
         let end = &mut self.end;
         let own = model.own_forces(&end.coordinates, &end.rates, &end.spin);
         end.total = &load.force + &self.from_bearings + own;
@@ -127,10 +154,11 @@ impl StructureTrial {
             let lag = model.spin_torque(&end.coordinates, &end.accelerations, &Spin::default());
             end.total[last] -= lag;
         }
-        self.residual =
-            &model.mass * &end.accelerations - &end.total * fraction - &start.total * step.alpha_f
-                + &start.remainder;
-        end.remainder.copy_from(&self.residual);
+    }
+
+    /// Torque that holds a given speed, and powers.
+    fn account(&mut self, model: &Structure, load: &StructureLoad) {
+        let end = &mut self.end;
         let turns = model.turning == Turning::Given;
         end.torque = match turns {
             true => {

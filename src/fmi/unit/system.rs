@@ -16,9 +16,7 @@ use crate::model::bodies::Race;
 use crate::scene::system::SystemScene;
 use crate::scene::{Giver, Group};
 use crate::simulation::inputs::Inputs;
-use crate::simulation::system::{
-    Played, ShaftInputs, System, SystemError, drive_is_scripted, load_is_scripted,
-};
+use crate::simulation::system::{Played, ShaftInputs, System, SystemError, drive_is_scripted};
 
 /// Scripts of a bearing.
 const GROUPS: usize = Group::VARIANTS.len();
@@ -54,7 +52,7 @@ impl SystemUnit {
 
     /// What a script gives.
     fn group(&self, script: usize) -> SystemGroup {
-        let (bearings, loads) = (GROUPS * self.bearing_count(), self.system.scene().shaft.load.len());
+        let (bearings, loads) = (GROUPS * self.bearing_count(), self.system.scene().loads().count());
         match script.checked_sub(bearings) {
             None => SystemGroup::Bearing(script / GROUPS, Group::VARIANTS[script % GROUPS]),
             Some(load) if load < loads => SystemGroup::Load(load),
@@ -65,7 +63,7 @@ impl SystemUnit {
     /// Its scripts that are marked.
     fn played(&self, marks: &[bool]) -> Played {
         let (bearings, rest) = marks.split_at(GROUPS * self.bearing_count());
-        let (loads, drive) = rest.split_at(self.system.scene().shaft.load.len());
+        let (loads, drive) = rest.split_at(self.system.scene().loads().count());
         Played {
             loads: loads.to_vec(),
             drive: drive.contains(&true),
@@ -150,7 +148,7 @@ impl Simulated for SystemUnit {
     fn scripts(&self) -> Vec<Option<Giver>> {
         let scene = self.system.scene();
         let of_bearings = self.system.bearings().flat_map(|(_, bearing)| givers(bearing.scene()));
-        let loads = (0..scene.shaft.load.len()).map(|load| load_is_scripted(scene, load));
+        let loads = scene.loads().map(|load| load.is_scripted());
         let of_shaft = loads.chain([drive_is_scripted(scene)]);
         of_bearings.chain(of_shaft.map(|scripted| scripted.then_some(Giver::Scene))).collect()
     }
@@ -158,7 +156,9 @@ impl Simulated for SystemUnit {
     fn script_name(&self, script: usize) -> (String, Group) {
         let scene = self.system.scene();
         match self.group(script) {
-            SystemGroup::Load(load) => (scene.shaft.load[load].name.clone(), Group::Loads),
+            SystemGroup::Load(load) => {
+                (scene.loads().nth(load).map_or_else(String::new, |load| load.name.into()), Group::Loads)
+            }
             SystemGroup::Drive => ("the shaft's drive".into(), Group::Speeds),
             SystemGroup::Bearing(index, group) => {
                 (format!("{group} of {}", scene.bearings[index].name), group)
@@ -171,7 +171,7 @@ impl Simulated for SystemUnit {
         Some(match self.variables.group(reference, &self.system)? {
             SystemGroup::Bearing(index, group) => GROUPS * index + group as usize,
             SystemGroup::Load(load) => after_bearings + load,
-            SystemGroup::Drive => after_bearings + self.system.scene().shaft.load.len(),
+            SystemGroup::Drive => after_bearings + self.system.scene().loads().count(),
         })
     }
 

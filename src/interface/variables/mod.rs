@@ -164,18 +164,18 @@ impl Variables {
 
     /// The variables that can change in a run, with or without those of every ball.
     pub fn moving(scene: &Scene, per_ball: bool) -> Self {
-        Self::of_bearing(scene, per_ball, None)
+        Self::of_bearing(scene, per_ball, |_| false)
     }
 
-    /// The variables of a bearing of a system: the shaft carries its inner race, and its numbers are no parameters.
-    pub fn carried(scene: &Scene) -> Self {
-        Self::of_bearing(scene, scene.effects.per_ball.on, Some(Race::Inner))
+    /// The variables of a bearing of a system: structures carry its inner race, perhaps its outer one, and its numbers are no parameters.
+    pub fn carried(scene: &Scene, carried: impl Fn(Race) -> bool) -> Self {
+        Self::of_bearing(scene, scene.effects.per_ball.on, carried)
     }
 
-    fn of_bearing(scene: &Scene, per_ball: bool, carried: Option<Race>) -> Self {
+    fn of_bearing(scene: &Scene, per_ball: bool, carried: impl Fn(Race) -> bool) -> Self {
         let mut table = Self { rows: vec![], inputs: vec![] };
         for race in Race::BOTH {
-            table.add_race(scene, race, carried == Some(race));
+            table.add_race(scene, race, carried(race));
         }
         table.add_bearing();
         table.add_effects(scene, per_ball);

@@ -1,9 +1,9 @@
-//! The rows of a system's shaft: its loads and drive, its turn, energies, and the motion of its stations.
+//! The rows of a system's shaft and housings: loads and drive, turn, energies, and the motion of stations.
 
 use super::{Causality, Kind, Source, Variable};
 use crate::scene::system::SystemScene;
 use crate::schema::variable_units::{self as units, Unit};
-use crate::simulation::system::{PointOutput, ShaftInputs, SystemOutputs};
+use crate::simulation::system::{HousingOutputs, PointOutput, ShaftInputs, SystemOutputs};
 
 /// Where the value of a variable of the shaft comes from.
 #[derive(Clone, Copy, Debug)]
@@ -16,19 +16,42 @@ pub enum ShaftSource {
     Drive,
     /// The shaft as a whole.
     Whole(fn(&SystemOutputs) -> f64),
+    /// A housing as a whole, by its index.
+    Housing(usize, fn(&HousingOutputs) -> f64),
     /// Motion of a station.
     Motion(Station, PointQuantity, usize),
 }
 
-/// A place on the shaft, by its index in the scene.
+/// A place on the shaft, or on the housing with this index, by its index among those of its kind.
 #[derive(Clone, Copy, Debug)]
 pub enum Station {
-    /// Under the inner race of a bearing.
-    Seat(usize),
+    /// Under a race of a bearing.
+    Seat(Option<usize>, usize),
     /// Where a named load acts.
-    Load(usize),
+    Load(Option<usize>, usize),
     /// A named point.
-    Point(usize),
+    Point(Option<usize>, usize),
+}
+
+impl Station {
+    /// The housing that it is on; none on the shaft.
+    fn housing(self) -> Option<usize> {
+        let (Self::Seat(housing, _) | Self::Load(housing, _) | Self::Point(housing, _)) = self;
+        housing
+    }
+
+    /// Its motion.
+    fn of(self, outputs: &SystemOutputs) -> &PointOutput {
+        let (seats, loads, points) = match self.housing().map(|housing| &outputs.housings[housing]) {
+            Some(housing) => (&housing.seats, &housing.loads, &housing.points),
+            None => (&outputs.seats, &outputs.loads, &outputs.points),
+        };
+        match self {
+            Self::Seat(_, index) => &seats[index],
+            Self::Load(_, index) => &loads[index],
+            Self::Point(_, index) => &points[index],
+        }
+    }
 }
 
 /// A quantity of a station.
@@ -45,12 +68,23 @@ pub enum PointQuantity {
 impl PointQuantity {
     const ALL: [Self; 3] = [Self::Displacement, Self::Velocity, Self::Tilt];
 
-    /// Name, unit, typical size, first component and what it is.
-    fn words(self) -> (&'static str, Unit, f64, usize, &'static str) {
-        match self {
-            Self::Displacement => ("displacement", units::METRE, 1e-5, 0, "displacement of the shaft"),
-            Self::Velocity => ("velocity", units::METRE_PER_SECOND, 1e-3, 0, "velocity of the shaft"),
-            Self::Tilt => ("tilt", units::RADIAN, 1e-3, 1, "tilt of the shaft about an axis of its own"),
+    /// Name, unit, typical size, first component and what it is, of a shaft or a housing.
+    fn words(self, of_shaft: bool) -> (&'static str, Unit, f64, usize, &'static str) {
+        match (self, of_shaft) {
+            (Self::Displacement, true) => {
+                ("displacement", units::METRE, 1e-5, 0, "displacement of the shaft")
+            }
+            (Self::Displacement, false) => {
+                ("displacement", units::METRE, 1e-5, 0, "displacement of the housing")
+            }
+            (Self::Velocity, true) => ("velocity", units::METRE_PER_SECOND, 1e-3, 0, "velocity of the shaft"),
+            (Self::Velocity, false) => {
+                ("velocity", units::METRE_PER_SECOND, 1e-3, 0, "velocity of the housing")
+            }
+            (Self::Tilt, true) => {
+                ("tilt", units::RADIAN, 1e-3, 1, "tilt of the shaft about an axis of its own")
+            }
+            (Self::Tilt, false) => ("rotation", units::RADIAN, 1e-3, 0, "rotation of the housing"),
         }
     }
 
@@ -71,14 +105,8 @@ impl ShaftSource {
             Self::Moment(load, axis) => inputs.loads[load].moment[axis],
             Self::Drive => inputs.drive,
             Self::Whole(get) => get(outputs),
-            Self::Motion(station, quantity, axis) => {
-                let point = match station {
-                    Station::Seat(index) => &outputs.seats[index],
-                    Station::Load(index) => &outputs.loads[index],
-                    Station::Point(index) => &outputs.points[index],
-                };
-                quantity.read(point, axis)
-            }
+            Self::Housing(index, get) => get(&outputs.housings[index]),
+            Self::Motion(station, quantity, axis) => quantity.read(station.of(outputs), axis),
         }
     }
 
@@ -88,7 +116,7 @@ impl ShaftSource {
             Self::Force(load, axis) => inputs.loads[load].force[axis] = value,
             Self::Moment(load, axis) => inputs.loads[load].moment[axis] = value,
             Self::Drive => inputs.drive = value,
-            Self::Whole(_) | Self::Motion(..) => {}
+            Self::Whole(_) | Self::Housing(..) | Self::Motion(..) => {}
         }
     }
 }
@@ -120,38 +148,69 @@ fn row(
     }
 }
 
-/// The rows of the shaft of a scene.
+/// The rows of the shaft and the housings of a scene.
 pub fn rows(scene: &SystemScene) -> Vec<Variable> {
     let shaft = &scene.shaft;
     let mut rows = vec![];
-    for (index, load) in shaft.load.iter().enumerate() {
+    for (index, load) in scene.loads().enumerate() {
+        let what = if index < shaft.load.len() { "shaft" } else { "housing" };
         for (axis, letter) in AXES.into_iter().enumerate() {
-            let name = format!("{}.force.{letter}", quoted(&load.name));
+            let name = format!("{}.force.{letter}", quoted(load.name));
             let description =
-                format!("force on the shaft at {}, {letter} component, axes of the shaft", load.name);
+                format!("force on the {what} at {}, {letter} component, axes of the shaft", load.name);
             let source = ShaftSource::Force(index, axis);
             rows.push(row(name, (units::NEWTON, 1e3), Causality::Input, description, source));
         }
         for (axis, letter) in AXES.into_iter().enumerate() {
-            let name = format!("{}.moment.{letter}", quoted(&load.name));
+            let name = format!("{}.moment.{letter}", quoted(load.name));
             let description =
-                format!("moment on the shaft at {}, {letter} component, axes of the shaft", load.name);
+                format!("moment on the {what} at {}, {letter} component, axes of the shaft", load.name);
             let source = ShaftSource::Moment(index, axis);
             rows.push(row(name, (units::NEWTON_METRE, 1.0), Causality::Input, description, source));
         }
     }
     turn(scene, &mut rows);
     for (index, load) in shaft.load.iter().enumerate() {
-        motion(&mut rows, Station::Load(index), &quoted(&load.name), &load.name);
+        motion(&mut rows, Station::Load(None, index), &quoted(&load.name), &load.name);
     }
     for (index, point) in shaft.point.iter().enumerate() {
-        motion(&mut rows, Station::Point(index), &quoted(&point.name), &point.name);
+        motion(&mut rows, Station::Point(None, index), &quoted(&point.name), &point.name);
     }
     for (index, bearing) in scene.bearings.iter().enumerate() {
         let prefix = format!("{}.seat", quoted(&bearing.name));
-        motion(&mut rows, Station::Seat(index), &prefix, &format!("the seat of bearing {}", bearing.name));
+        let place = format!("the seat of bearing {}", bearing.name);
+        motion(&mut rows, Station::Seat(None, index), &prefix, &place);
+    }
+    for index in 0..scene.housings.len() {
+        housing(scene, index, &mut rows);
     }
     rows
+}
+
+/// Energies and motion of a housing.
+fn housing(scene: &SystemScene, index: usize, rows: &mut Vec<Variable>) {
+    let housing = &scene.housings[index];
+    let mut energy = |name: &str, what: &str, get: fn(&HousingOutputs) -> f64| {
+        let name = format!("{}.energy.{name}", quoted(&housing.name));
+        let description = format!("{what} of the housing {}", housing.name);
+        let source = ShaftSource::Housing(index, get);
+        rows.push(row(name, (units::JOULE, 1.0), Causality::Output, description, source));
+    };
+    energy("stored", "kinetic and elastic energy", |o| o.energies.stored);
+    energy("work", "work of loads and weight since the start,", |o| o.energies.input);
+    energy("to_bearings", "energy given to its bearings since the start,", |o| o.energies.bearings);
+    energy("dissipated", "energy lost to the damping since the start,", |o| o.energies.damping);
+    for (own, load) in housing.load.iter().enumerate() {
+        motion(rows, Station::Load(Some(index), own), &quoted(&load.name), &load.name);
+    }
+    for (own, point) in housing.point.iter().enumerate() {
+        motion(rows, Station::Point(Some(index), own), &quoted(&point.name), &point.name);
+    }
+    for (own, bearing) in scene.bearings_in(index).enumerate() {
+        let bearing = &scene.bearings[bearing].name;
+        let prefix = format!("{}.housing", quoted(bearing));
+        motion(rows, Station::Seat(Some(index), own), &prefix, &format!("the seat of bearing {bearing}"));
+    }
 }
 
 /// Drive, turn and energies.
@@ -191,7 +250,7 @@ fn turn(scene: &SystemScene, rows: &mut Vec<Variable>) {
 /// Motion of a station.
 fn motion(rows: &mut Vec<Variable>, station: Station, prefix: &str, place: &str) {
     for quantity in PointQuantity::ALL {
-        let (name, unit, nominal, first, what) = quantity.words();
+        let (name, unit, nominal, first, what) = quantity.words(station.housing().is_none());
         for (axis, letter) in AXES.into_iter().enumerate().skip(first) {
             let name = format!("{prefix}.{name}.{letter}");
             let description = format!("{what} at {place}, {letter} component, axes of the shaft");

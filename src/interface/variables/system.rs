@@ -1,4 +1,4 @@
-//! The table of a system: rows of its shaft, then those of every bearing with its name before them.
+//! The table of a system: rows of its shaft and housings, then those of every bearing with its name before them.
 
 use super::shaft_rows::{self, ShaftSource};
 use super::{InputError, Source, Variable, Variables, references_of_inputs};
@@ -41,7 +41,7 @@ impl SystemVariables {
         let mut rows = shaft_rows::rows(system.scene());
         let mut bearings = vec![];
         for (name, bearing) in system.bearings() {
-            let variables = Variables::carried(bearing.scene());
+            let variables = Variables::carried(bearing.scene(), |race| bearing.model().is_carried(race));
             let first = rows.len();
             rows.extend(variables.rows().iter().map(|row| of_bearing(row, name)));
             bearings.push(Part { first, variables });
@@ -130,7 +130,7 @@ impl SystemVariables {
         match shaft_source(&self.rows[reference])? {
             ShaftSource::Force(load, _) | ShaftSource::Moment(load, _) => Some(SystemGroup::Load(load)),
             ShaftSource::Drive => Some(SystemGroup::Drive),
-            ShaftSource::Whole(_) | ShaftSource::Motion(..) => None,
+            ShaftSource::Whole(_) | ShaftSource::Housing(..) | ShaftSource::Motion(..) => None,
         }
     }
 

@@ -8,12 +8,11 @@
 //! are taken as small: a shaft in bearings tilts by some mrad, what is left out is of their square.
 
 mod beam;
+mod housing;
 mod shaft;
 
 use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6, Vector3};
 use serde::{Deserialize, Serialize};
-
-pub use shaft::Shaft;
 
 /// Vectors of any length as lists of numbers.
 mod list {
@@ -62,6 +61,17 @@ pub struct Structure {
     pub weights: OMatrix<f64, Dyn, nalgebra::U3>,
     /// How it turns.
     pub turning: Turning,
+}
+
+/// A structure that carries races, and what its stations do: places where races sit, loads act or motion is reported.
+#[derive(Clone, Debug)]
+pub struct Carrier {
+    /// The structure.
+    pub structure: Structure,
+    /// Displacement and rotation at each station, by the coordinates.
+    pub stations: Vec<Map>,
+    /// \[Hz] frequencies of the modes that were kept between stations that are held; none of a rigid structure, or of matrices.
+    pub modes: Vec<f64>,
 }
 
 /// Motion of a structure, and what it takes to go on.

@@ -3,22 +3,11 @@
 use nalgebra::{DMatrix, DVector, OMatrix};
 
 use super::beam::Beams;
-use super::{Map, Structure, Turning};
+use super::{Carrier, Map, Structure, Turning};
 use crate::schema::ShaftSection;
 
 /// \[Hz] modes between stations that are kept, where the file does not say so.
 const MODES_UP_TO: f64 = 20e3;
-
-/// A shaft as a structure, and what its stations do.
-#[derive(Clone, Debug)]
-pub struct Shaft {
-    /// The structure.
-    pub structure: Structure,
-    /// Displacement and rotation at each station, by the coordinates.
-    pub stations: Vec<Map>,
-    /// \[Hz] frequencies of the modes that were kept between stations that are held; none of a rigid shaft.
-    pub modes: Vec<f64>,
-}
 
 /// Mass, centre and moments of inertia of rigid parts on one axis.
 #[derive(Clone, Copy, Debug, Default)]
@@ -39,15 +28,16 @@ impl RigidSum {
     }
 }
 
-impl Shaft {
+impl Carrier {
     /// The shaft of a file, with stations at these positions \[m] along it.
     ///
     /// # Errors
     /// A sentence, where a station lies beyond the ends of a flexible shaft, or is none of its matrices.
-    pub fn new(section: &ShaftSection, stations: &[f64]) -> Result<Self, String> {
+    pub fn of_shaft(section: &ShaftSection, stations: &[f64]) -> Result<Self, String> {
         let turning = if section.torque.is_some() { Turning::Free } else { Turning::Given };
         if let Some(read) = &section.read {
-            let maps = stations.iter().map(|position| read.station(*position)).collect::<Result<_, _>>()?;
+            let map = |x: &f64| read.station([*x, 0.0, 0.0]);
+            let maps = stations.iter().map(map).collect::<Result<_, _>>()?;
             let parts = Parts {
                 mass: read.mass.clone(),
                 damping: read.damping.clone(),
@@ -59,7 +49,7 @@ impl Shaft {
             return Ok(parts.turning(turning, maps, vec![]));
         }
         if section.section.is_empty() {
-            return Ok(Self::rigid(section, stations, turning));
+            return Ok(rigid(section, stations, turning));
         }
         let discs: Vec<_> = section
             .disc
@@ -82,54 +72,54 @@ impl Shaft {
         };
         Ok(parts.turning(turning, maps, modes))
     }
+}
 
-    fn rigid(section: &ShaftSection, stations: &[f64], turning: Turning) -> Self {
-        let body = RigidSum {
-            mass: section.mass.map_or(0.0, |mass| mass.0),
-            centre: section.centre.map_or(0.0, |centre| centre.0),
-            polar: section.polar_inertia.map_or(0.0, |inertia| inertia.0),
-            transverse: section.transverse_inertia.map_or(0.0, |inertia| inertia.0),
-        };
-        let whole = section.disc.iter().fold(body, |sum, disc| {
-            sum.plus(RigidSum {
-                mass: disc.mass.0,
-                centre: disc.position.0,
-                polar: disc.polar_inertia.0,
-                transverse: disc.transverse_inertia.0,
-            })
-        });
-        let RigidSum { mass, centre, polar, transverse } = whole;
-        let diagonal = [mass, mass, mass, transverse, transverse];
-        let mut gyroscopic = DMatrix::zeros(5, 5);
-        (gyroscopic[(3, 4)], gyroscopic[(4, 3)]) = (polar, -polar);
-        let map = |position: &f64| {
-            let arm = position - centre;
-            let mut map = Map::zeros(5);
-            for i in 0..3 {
-                map[(i, i)] = 1.0;
-            }
-            (map[(1, 4)], map[(2, 3)]) = (arm, -arm);
-            (map[(4, 3)], map[(5, 4)]) = (1.0, 1.0);
-            map
-        };
-        let weights =
-            OMatrix::from_fn_generic(
-                nalgebra::Dyn(5),
-                nalgebra::Const::<3>,
-                |i, k| {
-                    if i == k { mass } else { 0.0 }
-                },
-            );
-        let parts = Parts {
-            mass: DMatrix::from_diagonal(&DVector::from_row_slice(&diagonal)),
-            damping: DMatrix::zeros(5, 5),
-            stiffness: DMatrix::zeros(5, 5),
-            gyroscopic,
-            weights,
-            polar_inertia: polar,
-        };
-        parts.turning(turning, stations.iter().map(map).collect(), vec![])
-    }
+fn rigid(section: &ShaftSection, stations: &[f64], turning: Turning) -> Carrier {
+    let body = RigidSum {
+        mass: section.mass.map_or(0.0, |mass| mass.0),
+        centre: section.centre.map_or(0.0, |centre| centre.0),
+        polar: section.polar_inertia.map_or(0.0, |inertia| inertia.0),
+        transverse: section.transverse_inertia.map_or(0.0, |inertia| inertia.0),
+    };
+    let whole = section.disc.iter().fold(body, |sum, disc| {
+        sum.plus(RigidSum {
+            mass: disc.mass.0,
+            centre: disc.position.0,
+            polar: disc.polar_inertia.0,
+            transverse: disc.transverse_inertia.0,
+        })
+    });
+    let RigidSum { mass, centre, polar, transverse } = whole;
+    let diagonal = [mass, mass, mass, transverse, transverse];
+    let mut gyroscopic = DMatrix::zeros(5, 5);
+    (gyroscopic[(3, 4)], gyroscopic[(4, 3)]) = (polar, -polar);
+    let map = |position: &f64| {
+        let arm = position - centre;
+        let mut map = Map::zeros(5);
+        for i in 0..3 {
+            map[(i, i)] = 1.0;
+        }
+        (map[(1, 4)], map[(2, 3)]) = (arm, -arm);
+        (map[(4, 3)], map[(5, 4)]) = (1.0, 1.0);
+        map
+    };
+    let weights =
+        OMatrix::from_fn_generic(
+            nalgebra::Dyn(5),
+            nalgebra::Const::<3>,
+            |i, k| {
+                if i == k { mass } else { 0.0 }
+            },
+        );
+    let parts = Parts {
+        mass: DMatrix::from_diagonal(&DVector::from_row_slice(&diagonal)),
+        damping: DMatrix::zeros(5, 5),
+        stiffness: DMatrix::zeros(5, 5),
+        gyroscopic,
+        weights,
+        polar_inertia: polar,
+    };
+    parts.turning(turning, stations.iter().map(map).collect(), vec![])
 }
 
 /// A shaft without its turn.
@@ -144,7 +134,7 @@ struct Parts {
 
 impl Parts {
     /// The shaft as it turns: under a torque its angle is one more coordinate.
-    fn turning(self, turning: Turning, maps: Vec<Map>, modes: Vec<f64>) -> Shaft {
+    fn turning(self, turning: Turning, maps: Vec<Map>, modes: Vec<f64>) -> Carrier {
         let Self { mass, damping, stiffness, gyroscopic, weights, polar_inertia } = self;
         let n = mass.nrows();
         let size = if turning == Turning::Free { n + 1 } else { n };
@@ -165,6 +155,6 @@ impl Parts {
             weights: weights.resize_vertically(size, 0.0),
             turning,
         };
-        Shaft { structure, stations, modes }
+        Carrier { structure, stations, modes }
     }
 }

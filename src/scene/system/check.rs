@@ -1,15 +1,15 @@
 //! What the keys of a system must agree in.
 
-use super::{MountedScene, Written};
+use super::{MountedScene, Written, check_housing};
 use crate::schema::numbers::Range;
 use crate::schema::{Drive, Level, SceneError, ShaftSection};
 
 /// Masses of shafts and discs.
-const MASS: Range = Range::above(0.0, 1e6, "kg");
+pub const MASS: Range = Range::above(0.0, 1e6, "kg");
 /// Their moments of inertia.
-const INERTIA: Range = Range::above(0.0, 1e6, "kg m2");
+pub const INERTIA: Range = Range::above(0.0, 1e6, "kg m2");
 /// Positions along a shaft.
-const POSITION: Range = Range::closed(-1e3, 1e3, "m");
+pub const POSITION: Range = Range::closed(-1e3, 1e3, "m");
 
 /// Checks every value against its range, and the keys against one another.
 pub fn check(written: &Written) -> Result<(), SceneError> {
@@ -26,6 +26,11 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
     names.push("shaft");
     names.extend(written.shaft.load.iter().map(|load| load.name.as_str()));
     names.extend(written.shaft.point.iter().map(|point| point.name.as_str()));
+    for housing in &written.housing {
+        names.push(&housing.name);
+        names.extend(housing.load.iter().map(|load| load.name.as_str()));
+        names.extend(housing.point.iter().map(|point| point.name.as_str()));
+    }
     for (index, name) in names.iter().enumerate() {
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if name.is_empty() || !name.chars().all(plain) {
@@ -33,7 +38,8 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
             return Err(SceneError::conflict(format!("name = \"{name}\""), why));
         }
         if names[..index].contains(name) {
-            let why = "bearings, loads and points of a system need names of their own, other than shaft";
+            let why =
+                "bearings, housings, loads and points of a system need names of their own, other than shaft";
             return Err(SceneError::conflict(format!("name = \"{name}\""), why));
         }
     }
@@ -44,6 +50,23 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
         if preload.force.is_some() && preload.displacement.is_some() {
             let why = "give at most one of force and displacement";
             return Err(SceneError::conflict("bearing.mounting.preload", why));
+        }
+        let housings = || written.housing.iter().map(|housing| housing.name.as_str());
+        if let Some(wanted) = &mounting.housing
+            && !housings().any(|name| name == wanted)
+        {
+            let why = format!(
+                "there is no such [[housing]]; there are: {}",
+                housings().collect::<Vec<_>>().join(", ")
+            );
+            return Err(SceneError::conflict(format!("bearing.mounting.housing = \"{wanted}\""), why));
+        }
+    }
+    for housing in &written.housing {
+        check_housing::housing(housing)?;
+        if !written.bearing.iter().any(|bearing| bearing.mounting.housing.as_ref() == Some(&housing.name)) {
+            let why = "no bearing sits in it: give mounting.housing of one";
+            return Err(SceneError::conflict(format!("housing \"{}\"", housing.name), why));
         }
     }
     shaft(&written.shaft)

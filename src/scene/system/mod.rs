@@ -4,6 +4,7 @@
 //! themselves; or `catalogue`, a designation), changed by `[bearing.set]`, and where it sits on the shaft, `[bearing.mounting]`.
 
 mod check;
+mod check_housing;
 
 use std::path::{Path, PathBuf};
 
@@ -13,8 +14,10 @@ use toml::{Table, Value};
 
 use super::{Scene, SceneError};
 use crate::catalogue::Request;
-use crate::schema::units::{Acceleration, Time};
-use crate::schema::{Components, Matrices, Mounting, MountingDirection, ShaftSection, Solver, explain};
+use crate::schema::units::{Acceleration, Force, Moment, Time};
+use crate::schema::{
+    Components, HousingSection, Matrices, Mounting, MountingDirection, ShaftSection, Solver, explain,
+};
 
 /// A shaft with its bearings, as described by a file.
 #[derive(Clone, Debug)]
@@ -23,6 +26,8 @@ pub struct SystemScene {
     pub title: String,
     /// The shaft.
     pub shaft: ShaftSection,
+    /// Housings that outer races sit in.
+    pub housings: Vec<HousingSection>,
     /// The bearings.
     pub bearings: Vec<MountedScene>,
     /// [m/s2] acceleration of gravity in the axes of the shaft, constant.
@@ -44,6 +49,24 @@ pub struct MountedScene {
     pub scene: Scene,
 }
 
+/// Force and moment at a named point of a shaft or a housing, in the shaft's axes.
+#[derive(Clone, Copy, Debug)]
+pub struct NamedLoad<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// \[N] force.
+    pub force: &'a Components<Force>,
+    /// [N m] moment.
+    pub moment: &'a Components<Moment>,
+}
+
+impl NamedLoad<'_> {
+    /// Does a table give something of it?
+    pub fn is_scripted(&self) -> bool {
+        self.force.is_scripted() || self.moment.is_scripted()
+    }
+}
+
 /// Simulated time, and distance of rows.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -63,6 +86,9 @@ struct Written {
     title: String,
     /// The shaft.
     shaft: ShaftSection,
+    /// Housings that outer races sit in.
+    #[serde(default)]
+    housing: Vec<HousingSection>,
     /// The bearings.
     bearing: Vec<WrittenBearing>,
     /// Simulated time, and distance of rows.
@@ -129,20 +155,29 @@ impl SystemScene {
         })?;
         let placed = |error| explain::with_place(error, text, None, file);
         check::check(&written).map_err(placed)?;
-        let Written { title, mut shaft, bearing, load, gravity, solver } = written;
+        let Written { title, mut shaft, mut housing, bearing, load, gravity, solver } = written;
         let gravity = gravity.at(0.0);
-        let matrices = shaft.matrices.as_ref().map(|given| Matrices::of(given, folder));
-        let matrices = matrices.transpose().map_err(placed)?;
-        if let Some(matrices) = &matrices {
-            shaft.read = Some(matrices.checked().map_err(placed)?);
+        let matrices = |given: &Option<Value>, key: &str| {
+            let read = given.as_ref().map(|given| Matrices::of(given, folder, key)).transpose()?;
+            let checked = read.as_ref().map(|matrices| matrices.checked(key)).transpose()?;
+            Ok((read, checked))
+        };
+        let of_shaft;
+        (of_shaft, shaft.read) = matrices(&shaft.matrices, "shaft.matrices").map_err(placed)?;
+        let mut of_housings = vec![];
+        for housing in &mut housing {
+            let key = format!("housing \"{}\": housing.matrices", housing.name);
+            let (read, checked) = matrices(&housing.matrices, &key).map_err(placed)?;
+            housing.read = checked;
+            of_housings.push(read);
         }
         let speed = shaft.speed.as_ref().map_or(0.0, |speed| speed.at(0.0));
         let given = Shared { gravity, speed, load, solver, folder: folder.to_path_buf() };
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
         let bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
         check::solvers(&bearings).map_err(placed)?;
-        let source = standing_alone(text, &bearings, matrices.as_ref());
-        Ok(Self { title, shaft, bearings, gravity, load, source })
+        let source = standing_alone(text, &bearings, of_shaft.as_ref(), &of_housings);
+        Ok(Self { title, shaft, housings: housing, bearings, gravity, load, source })
     }
 
     /// What the reader of each bearing's scene should know.
@@ -152,6 +187,30 @@ impl SystemScene {
             mounted.scene.notes().into_iter().map(move |note| format!("bearing {name}: {note}"))
         };
         self.bearings.iter().flat_map(of).collect()
+    }
+
+    /// Named loads of the shaft, then those of every housing.
+    pub fn loads(&self) -> impl Iterator<Item = NamedLoad<'_>> {
+        let shaft = self.shaft.load.iter();
+        let shaft =
+            shaft.map(|load| NamedLoad { name: &load.name, force: &load.force, moment: &load.moment });
+        let housings = self.housings.iter().flat_map(|housing| &housing.load);
+        shaft.chain(housings.map(|load| NamedLoad {
+            name: &load.name,
+            force: &load.force,
+            moment: &load.moment,
+        }))
+    }
+
+    /// Housing that the outer race of a bearing sits in, by their indices.
+    pub fn housing_of(&self, bearing: usize) -> Option<usize> {
+        let wanted = self.bearings[bearing].mounting.housing.as_ref()?;
+        self.housings.iter().position(|housing| housing.name == *wanted)
+    }
+
+    /// Bearings that sit in a housing, by their indices.
+    pub fn bearings_in(&self, housing: usize) -> impl Iterator<Item = usize> {
+        (0..self.bearings.len()).filter(move |bearing| self.housing_of(*bearing) == Some(housing))
     }
 
     /// Settings of the integration: those that steps of all bearings need.
@@ -209,20 +268,35 @@ impl WrittenBearing {
             .map_err(|why| explain::with_place(why, &text, None, file.as_deref()))
             .map_err(inside)?;
         merge(&mut table, set);
+        if mounting.housing.is_some() {
+            in_housing(&mut table).map_err(inside)?;
+        }
         mount(&mut table, given, mounting.direction);
         let scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
         Ok(MountedScene { name, mounting, scene })
     }
 }
 
-/// The text of a system with the whole scene of every bearing and the matrices of its shaft in it.
-fn standing_alone(text: &str, bearings: &[MountedScene], matrices: Option<&Matrices>) -> String {
+/// The text of a system with the whole scene of every bearing and the matrices of its shaft and housings in it.
+fn standing_alone(
+    text: &str,
+    bearings: &[MountedScene],
+    of_shaft: Option<&Matrices>,
+    of_housings: &[Option<Matrices>],
+) -> String {
     let Ok(mut table) = toml::from_str::<Table>(text) else {
         return text.to_string();
     };
-    let matrices = matrices.and_then(|matrices| Value::try_from(matrices).ok());
-    if let (Some(shaft), Some(matrices)) = (table.get_mut("shaft").and_then(Value::as_table_mut), matrices) {
-        shaft.insert("matrices".into(), matrices);
+    let put = |into: Option<&mut Value>, matrices: Option<&Matrices>| {
+        let matrices = matrices.and_then(|matrices| Value::try_from(matrices).ok());
+        if let (Some(keys), Some(matrices)) = (into.and_then(Value::as_table_mut), matrices) {
+            keys.insert("matrices".into(), matrices);
+        }
+    };
+    put(table.get_mut("shaft"), of_shaft);
+    let housings = table.get_mut("housing").and_then(Value::as_array_mut).into_iter().flatten();
+    for (keys, matrices) in housings.zip(of_housings) {
+        put(Some(keys), matrices.as_ref());
     }
     let written = table.get_mut("bearing").and_then(Value::as_array_mut).into_iter().flatten();
     for (keys, bearing) in written.filter_map(Value::as_table_mut).zip(bearings) {
@@ -246,14 +320,36 @@ fn merge(into: &mut Table, changes: Table) {
     }
 }
 
+/// Takes a section out of a table; an empty one if there is none.
+fn section(table: &mut Table, name: &str) -> Table {
+    match table.remove(name) {
+        Some(Value::Table(section)) => section,
+        _ => Table::new(),
+    }
+}
+
+/// Makes a bearing's own scene that of a bearing whose outer race a housing moves.
+fn in_housing(table: &mut Table) -> Result<(), SceneError> {
+    let mut outer = section(table, "outer");
+    let why = "the outer race sits in mounting.housing, which moves it";
+    if let Some(key) = ["support", "misalignment"].into_iter().find(|key| outer.contains_key(*key)) {
+        return Err(SceneError::conflict(format!("outer.{key}"), why));
+    }
+    if outer.get("drive").and_then(Value::as_str).is_some_and(|drive| drive != "fixed" && drive != "pose") {
+        return Err(SceneError::conflict("outer.drive", why));
+    }
+    if let Some(load) = table.get_mut("load").and_then(Value::as_table_mut)
+        && load.contains_key("outer_speed")
+    {
+        return Err(SceneError::conflict("load.outer_speed", why));
+    }
+    outer.insert("drive".into(), "pose".into());
+    table.insert("outer".into(), outer.into());
+    Ok(())
+}
+
 /// Makes a bearing's own scene that of a bearing whose inner race the shaft moves.
 fn mount(table: &mut Table, given: &Shared, direction: MountingDirection) {
-    let section = |table: &mut Table, name: &str| -> Table {
-        match table.remove(name) {
-            Some(Value::Table(section)) => section,
-            _ => Table::new(),
-        }
-    };
     let mut inner = section(table, "inner");
     inner.insert("drive".into(), "pose".into());
     table.insert("inner".into(), inner.into());

@@ -44,8 +44,11 @@ impl System {
             .iter_mut()
             .zip(&played.bearings)
             .map(|(bearing, groups)| {
-                // The shaft moves it.
-                bearing.inputs.inner = bearing.scripted_inputs(begin).inner;
+                // Structures move these.
+                let scripted = bearing.scripted_inputs(begin);
+                for race in Race::BOTH.into_iter().filter(|race| bearing.model.is_carried(*race)) {
+                    bearing.inputs[race] = scripted[race];
+                }
                 let script = bearing.begin_script(*groups);
                 bearing.paths = bearing.paths.towards(&bearing.inputs, begin, end - begin);
                 script
@@ -70,11 +73,11 @@ impl System {
 
     /// Outputs of the state as it is.
     pub(super) fn report(&mut self) {
-        let torque = match self.shaft.structure.turning {
+        let torque = match self.carriers[0].structure.turning {
             Turning::Free => self.paths.torque(self.time),
-            Turning::Given | Turning::Still => self.state.torque,
+            Turning::Given | Turning::Still => self.states[0].torque,
         };
-        self.outputs = SystemOutputs::of(&self.scene, &self.shaft, &self.state, torque, self.time);
+        self.outputs = SystemOutputs::of(&self.scene, &self.carriers, &self.states, torque, self.time);
     }
 
     fn follow(&mut self, scripts: &[Script], played: &Played, end: f64) -> Result<(), SystemError> {
@@ -101,7 +104,7 @@ impl System {
         while self.time < end {
             let remaining = end - self.time;
             let given = Given { scene: &self.scene, paths: &self.paths, played };
-            let of_shaft = loads::shortest_period(&given, &self.state, self.time);
+            let of_shaft = loads::shortest_period(&given, &self.states[0], self.time);
             for (bearing, script) in self.bearings.iter().zip(scripts) {
                 let own = script.shortest_period(&bearing.scene, self.time);
                 let period = own.into_iter().chain(of_shaft).reduce(f64::min);
@@ -117,8 +120,8 @@ impl System {
                 return Err(SystemError::LostInRounding { time: self.time, step: h });
             }
             let given = Given { scene: &self.scene, paths: &self.paths, played };
-            let load = loads::at(&given, &self.shaft, &self.state, self.time, next);
-            let speed = self.speed_of_races(&load.spin);
+            let loads = loads::at(&given, &self.carriers, &self.states[0], self.time, next);
+            let speed = self.speed_of_races(&loads[0].spin);
             let boundaries: Vec<_> = self
                 .bearings
                 .iter()
@@ -131,9 +134,18 @@ impl System {
                     boundary
                 })
                 .collect();
-            let structure = &self.shaft.structure;
-            let structures =
-                [StructureStep { model: structure, scales: &self.scales, start: &self.state, load: &load }];
+            let structures: Vec<_> = self
+                .carriers
+                .iter()
+                .zip(&self.scales)
+                .zip(self.states.iter().zip(&loads))
+                .map(|((carrier, scales), (start, load))| StructureStep {
+                    model: &carrier.structure,
+                    scales,
+                    start,
+                    load,
+                })
+                .collect();
             let mut parts: Vec<Part<'_>> = self
                 .bearings
                 .iter_mut()
@@ -149,10 +161,8 @@ impl System {
                 try_step(&mut parts, &structures, &self.joints, h, &mut self.control, &mut self.workspace);
             drop(parts);
             match tried {
-                Ok(mut ends) => {
-                    if let Some(end) = ends.pop() {
-                        self.state = end;
-                    }
+                Ok(ends) => {
+                    self.states = ends;
                     self.time = next;
                     self.check_step(&boundaries)?;
                 }
@@ -180,11 +190,14 @@ impl System {
         for (index, (bearing, boundary)) in self.bearings.iter().zip(boundaries).enumerate() {
             let checked: Result<(), SimulationError> = bearing.check_creep(boundary);
             checked.map_err(|source| self.of_bearing(index, source))?;
-            let axis = bearing.state.race(Race::Inner).axes[0];
-            let tilt = axis.y.hypot(axis.z);
-            if tilt.is_nan() || tilt > tilt::SMALL {
-                let name = self.scene.bearings[index].name.clone();
-                return Err(SystemError::Tilted { time: self.time, name, tilt, limit: tilt::SMALL });
+            for race in Race::BOTH.into_iter().filter(|race| bearing.model.is_carried(*race)) {
+                let axis = bearing.state.race(race).axes[0];
+                let tilt = axis.y.hypot(axis.z);
+                if tilt.is_nan() || tilt > tilt::SMALL {
+                    let (time, name) = (self.time, self.scene.bearings[index].name.clone());
+                    let race = race.name();
+                    return Err(SystemError::Tilted { time, name, race, tilt, limit: tilt::SMALL });
+                }
             }
         }
         Ok(())
@@ -192,8 +205,8 @@ impl System {
 
     /// [rad/s] spin of the inner race of every bearing, in its own axes.
     fn speed_of_races(&self, given: &Spin) -> Vec<f64> {
-        let speed = match self.shaft.structure.turning {
-            Turning::Free => self.state.spin.speed,
+        let speed = match self.carriers[0].structure.turning {
+            Turning::Free => self.states[0].spin.speed,
             Turning::Given | Turning::Still => given.speed,
         };
         self.scene.bearings.iter().map(|bearing| bearing.mounting.direction.sign() * speed).collect()

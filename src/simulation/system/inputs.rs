@@ -7,13 +7,13 @@ use super::super::path::Ramp;
 use crate::model::state::stack;
 use crate::model::structure::Spin;
 use crate::numerics::motion::Wrench;
-use crate::scene::system::SystemScene;
+use crate::scene::system::{NamedLoad, SystemScene};
 use crate::scene::{Groups, Schedule};
 
-/// Inputs of a shaft, valid at the last communication point.
+/// Inputs of a shaft and housings, valid at the last communication point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShaftInputs {
-    /// Force \[N] and moment [N m] at every named load, in the order of the scene, in the shaft's axes.
+    /// Force \[N] and moment [N m] at every named load, in the order of [`SystemScene::loads`], in the shaft's axes.
     pub loads: Vec<Wrench>,
     /// Speed [rad/s] or torque [N m], whichever the scene drives the shaft by.
     pub drive: f64,
@@ -22,12 +22,10 @@ pub struct ShaftInputs {
 impl ShaftInputs {
     /// Those of the scene's own script at a time \[s].
     pub fn scripted(scene: &SystemScene, time: f64) -> Self {
-        let wrench = |load: &crate::schema::PointLoad| Wrench {
-            force: load.force.at(time),
-            moment: load.moment.at(time),
-        };
+        let wrench =
+            |load: NamedLoad<'_>| Wrench { force: load.force.at(time), moment: load.moment.at(time) };
         let drive = drive_of(scene).map_or(0.0, |drive| drive.at(time));
-        Self { loads: scene.shaft.load.iter().map(wrench).collect(), drive }
+        Self { loads: scene.loads().map(wrench).collect(), drive }
     }
 
     fn components(&self) -> impl Iterator<Item = Vector6<f64>> {
@@ -50,7 +48,7 @@ impl Played {
     /// No script.
     pub fn none(scene: &SystemScene) -> Self {
         Self {
-            loads: vec![false; scene.shaft.load.len()],
+            loads: vec![false; scene.loads().count()],
             drive: false,
             bearings: vec![Groups::default(); scene.bearings.len()],
         }
@@ -59,7 +57,7 @@ impl Played {
     /// All scripts.
     pub fn all(scene: &SystemScene) -> Self {
         Self {
-            loads: vec![true; scene.shaft.load.len()],
+            loads: vec![true; scene.loads().count()],
             drive: true,
             bearings: vec![Groups::ALL; scene.bearings.len()],
         }
@@ -74,12 +72,6 @@ fn drive_of(scene: &SystemScene) -> Option<&Schedule> {
 /// Does a table give the speed or the torque of a shaft?
 pub fn drive_is_scripted(scene: &SystemScene) -> bool {
     drive_of(scene).is_some_and(Schedule::is_scripted)
-}
-
-/// Does a table give something of a named load?
-pub fn load_is_scripted(scene: &SystemScene, load: usize) -> bool {
-    let load = &scene.shaft.load[load];
-    load.force.is_scripted() || load.moment.is_scripted()
 }
 
 /// Turn at a time \[s] of a shaft whose speed the scene gives.
@@ -185,12 +177,9 @@ pub struct Given<'a> {
 impl Given<'_> {
     /// Force \[N] and moment [N m] of a named load at a time \[s].
     pub fn load(&self, index: usize, time: f64) -> Vector6<f64> {
-        match self.plays_load(index) {
-            true => {
-                let load = &self.scene.shaft.load[index];
-                stack(&load.force.at(time), &load.moment.at(time))
-            }
-            false => self.paths.loads[index].at(time),
+        match self.scene.loads().nth(index) {
+            Some(load) if self.plays_load(index) => stack(&load.force.at(time), &load.moment.at(time)),
+            _ => self.paths.loads[index].at(time),
         }
     }
 
@@ -209,7 +198,7 @@ impl Given<'_> {
 
     /// Is a load that of its table?
     pub fn plays_load(&self, index: usize) -> bool {
-        self.played.loads[index] && load_is_scripted(self.scene, index)
+        self.played.loads[index] && self.scene.loads().nth(index).is_some_and(|load| load.is_scripted())
     }
 
     /// Is speed or torque that of its table?

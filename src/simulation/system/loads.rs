@@ -1,20 +1,49 @@
-//! What acts on the shaft of a system at a time: its weight, loads at points, unbalance, and its drive.
+//! What acts on the structures of a system at a time: weight, loads at points, unbalance and drive of its shaft.
 
 use std::f64::consts::TAU;
 
 use nalgebra::Vector6;
 
-use super::first_stations;
 use super::inputs::Given;
+use super::{first_stations, housing_stations};
 use crate::dynamics::system::StructureLoad;
 use crate::loads::{Mesh, unbalance as unbalance_of};
 use crate::model::state::stack;
-use crate::model::structure::{Shaft, Spin, StructureState, Turning};
+use crate::model::structure::{Carrier, Spin, StructureState, Turning};
 use crate::numerics::motion::Wrench;
 use crate::scene::{GearSection, Schedule};
 
-/// Load of the shaft at a time \[s]. Where its turn is a coordinate, the direction of unbalance follows it from the state it had.
-pub fn at(given: &Given<'_>, shaft: &Shaft, state: &StructureState, from: f64, time: f64) -> StructureLoad {
+/// Loads of the shaft and the housings at a time \[s]. Where the shaft's turn is a coordinate, the direction of unbalance follows it
+/// from the state it had.
+pub fn at(
+    given: &Given<'_>,
+    carriers: &[Carrier],
+    state: &StructureState,
+    from: f64,
+    time: f64,
+) -> Vec<StructureLoad> {
+    let mut first = given.scene.shaft.load.len();
+    let housings = given.scene.housings.iter().zip(&carriers[1..]).enumerate();
+    let of_housings = housings.map(|(index, (housing, carrier))| {
+        let mut force = carrier.structure.weight(&given.scene.gravity);
+        let [loads, _] = housing_stations(given.scene, index);
+        for own in 0..housing.load.len() {
+            force += carrier.stations[loads + own].tr_mul(&given.load(first + own, time));
+        }
+        first += housing.load.len();
+        StructureLoad { force, spin: Spin::default(), axial_moment: 0.0 }
+    });
+    let of_shaft = on_shaft(given, &carriers[0], state, from, time);
+    [of_shaft].into_iter().chain(of_housings).collect()
+}
+
+fn on_shaft(
+    given: &Given<'_>,
+    shaft: &Carrier,
+    state: &StructureState,
+    from: f64,
+    time: f64,
+) -> StructureLoad {
     let scene = given.scene;
     let structure = &shaft.structure;
     let free = structure.turning == Turning::Free;
@@ -57,21 +86,21 @@ fn ahead(spin: &Spin, duration: f64) -> Spin {
     Spin { angle: spin.angle + 0.5 * (spin.speed + speed) * duration, speed, ..*spin }
 }
 
-/// Schedules of the shaft's loads and drive that are played.
+/// Schedules of named loads and the drive that are played.
 fn schedules<'a>(given: &Given<'a>) -> Vec<&'a Schedule> {
     let shaft = &given.scene.shaft;
-    let played = shaft.load.iter().enumerate().filter(|(index, _)| given.plays_load(*index));
+    let played = given.scene.loads().enumerate().filter(|(index, _)| given.plays_load(*index));
     let components = played.flat_map(|(_, load)| load.force.0.iter().chain(&load.moment.0));
     let drive = [&shaft.speed, &shaft.torque].into_iter().flatten().filter(|_| given.plays_drive());
     components.chain(drive).chain(shaft.gear.iter().map(|gear| &gear.torque)).collect()
 }
 
-/// \[s] times at which a table of the shaft's loads or drive bends, of those that are played.
+/// \[s] times at which a table of a load or of the drive bends, of those that are played.
 pub fn knots(given: &Given<'_>, from: f64, to: f64) -> Vec<f64> {
     schedules(given).into_iter().flat_map(|schedule| schedule.knots(from, to)).collect()
 }
 
-/// \[s] shortest period in which a load of the shaft swings, from a script or as the shaft turns; none where none does.
+/// \[s] shortest period in which a load swings, from a script or as the shaft turns; none where none does.
 pub fn shortest_period(given: &Given<'_>, state: &StructureState, time: f64) -> Option<f64> {
     let shaft = &given.scene.shaft;
     let scripted = schedules(given).into_iter().filter_map(|schedule| schedule.shortest_period(time));

@@ -6,6 +6,7 @@ mod loads;
 mod outputs;
 mod snapshot;
 mod start;
+mod statics;
 
 use std::sync::Arc;
 
@@ -15,12 +16,12 @@ use thiserror::Error;
 use super::inputs::Inputs;
 use super::{Simulation, SimulationError, follows_time};
 use crate::dynamics::system::{Joint, SystemWorkspace};
-use crate::model::structure::{Shaft, StructureState};
+use crate::model::structure::{Carrier, StructureState};
 use crate::numerics::step_control::StepControl;
 use crate::scene::system::SystemScene;
 use inputs::ShaftPaths;
-pub use inputs::{Played, ShaftInputs, drive_is_scripted, load_is_scripted};
-pub use outputs::{PointOutput, SystemOutputs};
+pub use inputs::{Played, ShaftInputs, drive_is_scripted};
+pub use outputs::{HousingOutputs, PointOutput, SystemOutputs};
 pub use snapshot::SystemSnapshot;
 
 /// Why a system could not start or go on.
@@ -34,9 +35,14 @@ pub enum SystemError {
         /// Why not.
         source: SimulationError,
     },
-    /// The shaft cannot be built.
-    #[error("shaft: {0}")]
-    Shaft(String),
+    /// The shaft or a housing cannot be built.
+    #[error("{name}: {why}")]
+    Structure {
+        /// What it is.
+        name: String,
+        /// Why not.
+        why: String,
+    },
     /// The shaft finds no balance on its bearings.
     #[error(
         "the shaft finds no equilibrium on its bearings: after {iterations} iterations {residual:.3e} N are out of balance \
@@ -56,16 +62,18 @@ pub enum SystemError {
         /// \[s] asked for.
         to: f64,
     },
-    /// A bearing is tilted further than a linear shaft is valid for.
+    /// A bearing is tilted further than linear structures are valid for.
     #[error(
-        "at {time} s the shaft is tilted by {tilt:.3} rad at bearing \"{name}\": more than {limit} rad, the most that its linear \
-         equations hold for"
+        "at {time} s the {race} race of bearing \"{name}\" is tilted by {tilt:.3} rad: more than {limit} rad, the most that the linear \
+         equations of a shaft or a housing hold for"
     )]
     Tilted {
         /// \[s] time.
         time: f64,
         /// The bearing.
         name: String,
+        /// Its race.
+        race: &'static str,
         /// \[rad] tilt.
         tilt: f64,
         /// \[rad] largest tilt.
@@ -85,15 +93,17 @@ pub enum SystemError {
 #[derive(Clone, Debug)]
 pub struct System {
     scene: Arc<SystemScene>,
-    shaft: Arc<Shaft>,
-    /// [`crate::model::structure::Structure::scales`].
-    scales: DVector<f64>,
+    /// The shaft, then the housings in the order of the scene.
+    carriers: Arc<Vec<Carrier>>,
+    /// [`crate::model::structure::Structure::scales`] of each.
+    scales: Vec<DVector<f64>>,
     /// The bearings, in the order of the scene.
     bearings: Vec<Simulation>,
     joints: Arc<Vec<Joint>>,
     inputs: ShaftInputs,
     paths: ShaftPaths,
-    state: StructureState,
+    /// State of each structure.
+    states: Vec<StructureState>,
     control: StepControl,
     time: f64,
     outputs: SystemOutputs,
@@ -107,8 +117,8 @@ impl System {
     }
 
     /// The shaft.
-    pub fn shaft(&self) -> &Shaft {
-        &self.shaft
+    pub fn shaft(&self) -> &Carrier {
+        &self.carriers[0]
     }
 
     /// \[s] time.
@@ -118,7 +128,7 @@ impl System {
 
     /// State of the shaft.
     pub fn state(&self) -> &StructureState {
-        &self.state
+        &self.states[0]
     }
 
     /// The bearings with their names, each in axes of its own; their inner races are where the shaft carries them.
@@ -131,8 +141,8 @@ impl System {
         &self.inputs
     }
 
-    /// Sets the inputs of the next step: loads and drive of the shaft, and those of every bearing in the order of the scene, where what
-    /// is said of inner races counts for nothing. False, with nothing changed, if there are too many or too few.
+    /// Sets the inputs of the next step: loads and drive, and those of every bearing in the order of the scene, where what is said of
+    /// races on the shaft or in a housing counts for nothing. False, with nothing changed, if there are too many or too few.
     #[must_use]
     pub fn set_inputs(&mut self, shaft: ShaftInputs, bearings: Vec<Inputs>) -> bool {
         let fit = shaft.loads.len() == self.inputs.loads.len() && bearings.len() == self.bearings.len();
@@ -146,7 +156,7 @@ impl System {
     /// Does anything change by itself with time?
     pub fn follows_time(&self) -> bool {
         drive_is_scripted(&self.scene)
-            || (0..self.scene.shaft.load.len()).any(|load| load_is_scripted(&self.scene, load))
+            || self.scene.loads().any(|load| load.is_scripted())
             || self.bearings.iter().any(|bearing| follows_time(&bearing.scene))
     }
 
@@ -178,4 +188,20 @@ fn first_stations(scene: &SystemScene) -> [usize; 4] {
     let points = loads + scene.shaft.load.len();
     let discs = points + scene.shaft.point.len();
     [loads, points, discs, discs + scene.shaft.disc.len()]
+}
+
+/// Places of all stations of a housing \[m]: its bearings, then its loads and points.
+fn places_of_housing(scene: &SystemScene, index: usize) -> Vec<[f64; 3]> {
+    let housing = &scene.housings[index];
+    let seats =
+        scene.bearings_in(index).map(|bearing| [scene.bearings[bearing].mounting.position.0, 0.0, 0.0]);
+    let loads = housing.load.iter().map(|load| load.position.map(|length| length.0));
+    let points = housing.point.iter().map(|point| point.position.map(|length| length.0));
+    seats.chain(loads).chain(points).collect()
+}
+
+/// First station of a housing's loads and of its points.
+fn housing_stations(scene: &SystemScene, index: usize) -> [usize; 2] {
+    let loads = scene.bearings_in(index).count();
+    [loads, loads + scene.housings[index].load.len()]
 }

@@ -13,7 +13,8 @@ use crate::numerics::step_control::StepControl;
 pub struct SystemSnapshot {
     inputs: ShaftInputs,
     paths: ShaftPaths,
-    state: StructureState,
+    /// Of the shaft, and of every housing.
+    states: Vec<StructureState>,
     control: StepControl,
     time: f64,
     bearings: Vec<Snapshot>,
@@ -32,7 +33,7 @@ impl System {
         SystemSnapshot {
             inputs: self.inputs.clone(),
             paths: self.paths.clone(),
-            state: self.state.clone(),
+            states: self.states.clone(),
             control: self.control,
             time: self.time,
             bearings: self.bearings.iter().map(Simulation::snapshot).collect(),
@@ -47,13 +48,18 @@ impl System {
             && self.bearings.iter().zip(&snapshot.bearings).all(|(bearing, snapshot)| bearing.fits(snapshot))
             && snapshot.inputs.loads.len() == loads
             && snapshot.paths.fits(loads)
-            && snapshot.state.fits(self.shaft.structure.size())
+            && snapshot.states.len() == self.states.len()
+            && self
+                .carriers
+                .iter()
+                .zip(&snapshot.states)
+                .all(|(one, state)| state.fits(one.structure.size()))
             && snapshot.control.fits(&self.control)
             && snapshot.bearings.iter().all(|bearing| bearing.time() == snapshot.time);
         if same {
             self.inputs.clone_from(&snapshot.inputs);
             self.paths.clone_from(&snapshot.paths);
-            self.state.clone_from(&snapshot.state);
+            self.states.clone_from(&snapshot.states);
             self.control = snapshot.control;
             self.time = snapshot.time;
             let restored = self.bearings.iter_mut().zip(&snapshot.bearings);

@@ -1,38 +1,23 @@
-//! Where a system starts: the shaft in balance on its bearings under its loads, balls in the quasi-static equilibrium of that.
+//! Where a system starts: shaft and housings in balance with the bearings under their loads, balls in the quasi-static equilibrium of that.
 
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector, Vector3, Vector6};
+use nalgebra::{DVector, Vector3};
 
 use super::super::inputs::Inputs;
-use super::super::start::held_load;
 use super::super::{Simulation, SimulationError};
 use super::inputs::{Given, Played, ShaftInputs, ShaftPaths, scripted_spin};
-use super::{System, SystemError, SystemOutputs, loads, stations};
-use crate::dynamics::carried::SeatMotion;
-use crate::dynamics::system::{Joint, Seat, StructureLoad};
+use super::statics::Statics;
+use super::{System, SystemError, SystemOutputs, loads, places_of_housing, stations};
+use crate::dynamics::system::{Joint, Seat, StructureLoad, StructureTrial};
 use crate::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::model::structure::{
-    Map, Shaft, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
+    Carrier, Map, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
 };
-use crate::numerics::motion::Wrench;
 use crate::numerics::step_control::StepControl;
 use crate::scene::system::{MountedScene, SystemScene};
-
-/// [N/m] of a steel bearing's order: what a stiffness is shifted by where a step makes no progress.
-const TYPICAL_STIFFNESS: f64 = 1e7;
-/// [-] imbalance over the forces at work that is aimed at, and that is accepted where rounding in the bearings' equilibria stands against
-/// less.
-const TOLERANCE: f64 = 1e-10;
-const ROUNDED: f64 = 1e-6;
-/// [-] imbalance below which a step must lower it.
-const NEAR: f64 = 1e-4;
-/// [-] longest step over the smallest ball diameter.
-const LONGEST_STEP: f64 = 0.01;
-/// Most steps.
-const MAX_ITERATIONS: u32 = 400;
 
 impl System {
     /// Prepares a system and starts it at time 0, from the equilibrium under its loads.
@@ -67,56 +52,79 @@ impl System {
         time: f64,
         given: Option<(&ShaftInputs, &[Inputs])>,
     ) -> Result<Self, SystemError> {
-        let shaft = Shaft::new(&scene.shaft, &stations(scene)).map_err(SystemError::Shaft)?;
+        let carriers = carriers(scene)?;
         let inside = |mounted: &MountedScene| {
             let name = mounted.name.clone();
             move |source: SimulationError| SystemError::Bearing { name, source }
         };
         let mut bearings = vec![];
         let mut joints = vec![];
+        let mut seated = vec![0; carriers.len()];
         for (index, mounted) in scene.bearings.iter().enumerate() {
             let mut bearing = Simulation::starting_at(&mounted.scene, time).map_err(inside(mounted))?;
             if let Some((_, inputs)) = given {
                 bearing.set_inputs(inputs[index]);
             }
             let offset = preload(mounted, &bearing.model).map_err(inside(mounted))?;
-            let seat = seat(&shaft.stations[index], mounted.mounting.direction.sign(), offset);
-            joints.push(Joint { bearing: index, race: Race::Inner, structure: 0, seat });
+            let housing = scene.housing_of(index).map(|housing| (Race::Outer, housing + 1, 0.0));
+            for (race, structure, offset) in [(Race::Inner, 0, offset)].into_iter().chain(housing) {
+                let station = &carriers[structure].stations[seated[structure]];
+                seated[structure] += 1;
+                let seat = seat(station, mounted.mounting.direction.sign(), offset);
+                joints.push(Joint { bearing: index, race, structure, seat });
+            }
             bearings.push(bearing);
         }
-        let structure = &shaft.structure;
         let scripted = ShaftInputs::scripted(scene, time);
         let inputs = given.map_or(scripted, |(shaft, _)| shaft.clone());
-        let spin = initial_spin(scene, &inputs, structure.turning, time);
-        let mut state = at_rest(structure, spin);
+        let turning = carriers[0].structure.turning;
+        let spin = initial_spin(scene, &inputs, turning, time);
+        let mut states: Vec<StructureState> = carriers
+            .iter()
+            .enumerate()
+            .map(|(index, one)| at_rest(&one.structure, if index == 0 { spin } else { Spin::default() }))
+            .collect();
         let paths = ShaftPaths::steady(&inputs, time, spin.angle);
         // What scripts say at this time is among the inputs.
         let played = Played::none(scene);
-        let load = loads::at(&Given { scene, paths: &paths, played: &played }, &shaft, &state, time, time);
-        let bearings_now = &mut bearings;
-        let mut statics =
-            Statics { scene, time, structure, load: &load, joints: &joints, bearings: bearings_now };
-        state.coordinates = statics.solve(&state)?;
-        for (joint, mounted) in joints.iter().zip(&scene.bearings) {
-            let bearing = &mut bearings[joint.bearing];
-            place(bearing, &seat_motion(structure, &joint.seat, &state));
-            bearing.initialise().map_err(inside(mounted))?;
-            Arc::make_mut(&mut bearing.model).carry(joint.race);
-            bearing.settle();
+        let loads =
+            loads::at(&Given { scene, paths: &paths, played: &played }, &carriers, &states[0], time, time);
+        let scales: Vec<_> = carriers.iter().map(|one| one.structure.scales()).collect();
+        let mut statics = Statics {
+            scene,
+            time,
+            carriers: &carriers,
+            scales: &scales,
+            loads: &loads,
+            joints: &joints,
+            bearings: &mut bearings,
+            friction: vec![0.0; scene.bearings.len()],
+        };
+        statics.solve(&mut states)?;
+        statics.initialise(&states)?;
+        // Housings feel the friction torque of their bearings too, which those say that are in balance.
+        if carriers.len() > 1 {
+            statics.see_friction();
+            statics.solve(&mut states)?;
+            statics.initialise(&states)?;
         }
-        make_consistent(structure, &mut state, &load, &joints, &bearings);
+        for joint in &joints {
+            Arc::make_mut(&mut bearings[joint.bearing].model).carry(joint.race);
+        }
+        bearings.iter_mut().for_each(Simulation::settle);
+        let states = started(&carriers, &states, &loads, &joints, &bearings);
         let solver = scene.solver();
         let control = StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0);
         bearings.iter_mut().for_each(|bearing| bearing.state.control = control);
         let mut system = Self {
-            scales: structure.scales(),
             scene: Arc::new(scene.clone()),
-            shaft: Arc::new(shaft),
+            carriers: Arc::new(carriers),
+            scales,
             bearings,
             joints: Arc::new(joints),
             inputs,
             paths,
-            state,
+            states,
             control,
             time,
             outputs: SystemOutputs::default(),
@@ -125,6 +133,17 @@ impl System {
         system.report();
         Ok(system)
     }
+}
+
+/// The shaft, then the housings.
+fn carriers(scene: &SystemScene) -> Result<Vec<Carrier>, SystemError> {
+    let named = |name: String| move |why| SystemError::Structure { name, why };
+    let shaft = Carrier::of_shaft(&scene.shaft, &stations(scene)).map_err(named("shaft".into()));
+    let housings = scene.housings.iter().enumerate().map(|(index, housing)| {
+        let name = format!("housing \"{}\"", housing.name);
+        Carrier::of_housing(housing, &places_of_housing(scene, index)).map_err(named(name))
+    });
+    [shaft].into_iter().chain(housings).collect()
 }
 
 /// Turn of a shaft at the start.
@@ -182,169 +201,19 @@ fn seat(station: &Map, direction: f64, offset: f64) -> Seat {
     Seat { map, offset: Vector3::new(offset, 0.0, 0.0), direction }
 }
 
-/// Motion of a seat.
-fn seat_motion(structure: &Structure, seat: &Seat, state: &StructureState) -> SeatMotion {
-    let StructureState { coordinates, rates, accelerations, spin, .. } = state;
-    let given = (structure.turning == Turning::Given).then_some(spin);
-    seat.motion([coordinates, rates, accelerations], given)
-}
-
-/// Puts the inner race of a bearing on its seat.
-fn place(bearing: &mut Simulation, seat: &SeatMotion) {
-    let input = &mut bearing.inputs.inner;
-    input.pose = seat.pose();
-    input.twist = seat.twist();
-    input.speed = seat.rates.x;
-    input.axis = None;
-}
-
-/// Accelerations and torque of the structure in its state, under what the bearings do.
-fn make_consistent(
-    structure: &Structure,
-    state: &mut StructureState,
-    load: &StructureLoad,
+/// States of the structures where a run starts, with accelerations under what the bearings do.
+fn started(
+    carriers: &[Carrier],
+    states: &[StructureState],
+    loads: &[StructureLoad],
     joints: &[Joint],
     bearings: &[Simulation],
-) {
-    let mut total = &load.force + structure.own_forces(&state.coordinates, &state.rates, &state.spin);
-    let mut axial = 0.0;
-    let mut from_bearings = DVector::zeros(structure.size());
-    for Joint { bearing, race, seat, .. } in joints {
-        let Wrench { force, moment } = bearings[*bearing].state.race(*race).bearing_wrench;
-        let (moments, _) = seat_motion(structure, seat, state).generalised(&moment);
-        from_bearings += seat.map.tr_mul(&crate::model::state::stack(&force, &moments));
-        axial += seat.direction * moments.x;
+) -> Vec<StructureState> {
+    let mut trials: Vec<_> = states.iter().map(StructureTrial::new).collect();
+    for Joint { bearing, race, structure, seat } in joints {
+        let motion = trials[*structure].seat(&carriers[*structure].structure, seat);
+        trials[*structure].add(seat, &motion, &bearings[*bearing].state.race(*race).bearing_wrench);
     }
-    total += &from_bearings;
-    state.accelerations =
-        structure.mass.clone().lu().solve(&total).unwrap_or_else(|| DVector::zeros(structure.size()));
-    state.spin = structure.spin([&state.coordinates, &state.rates, &state.accelerations], state.spin);
-    state.total = total;
-    let turns = structure.turning == Turning::Given;
-    let inertial = structure.spin_torque(&state.coordinates, &state.accelerations, &state.spin);
-    state.torque = if turns { inertial - axial - load.axial_moment } else { 0.0 };
-    let drive = if turns { (state.torque + load.axial_moment) * state.spin.speed } else { 0.0 };
-    let of_spin = if turns { axial * state.spin.speed } else { 0.0 };
-    state.powers = StructurePowers {
-        input: load.force.dot(&state.rates) + drive,
-        bearings: -(from_bearings.dot(&state.rates) + of_spin),
-        damping: state.rates.dot(&(&structure.damping * &state.rates)),
-    };
-    let stored = structure.stored(&state.coordinates, &state.rates, &state.spin);
-    state.energies = StructureEnergies { stored, at_start: stored, ..StructureEnergies::default() };
-}
-
-/// The shaft at rest on its bearings.
-struct Statics<'a> {
-    scene: &'a SystemScene,
-    /// \[s] time of the start.
-    time: f64,
-    structure: &'a Structure,
-    load: &'a StructureLoad,
-    joints: &'a [Joint],
-    bearings: &'a mut [Simulation],
-}
-
-/// A trial of the statics.
-struct Trial {
-    residual: DVector<f64>,
-    stiffness: DMatrix<f64>,
-    /// \[N] largest force at work.
-    force: f64,
-}
-
-impl Statics<'_> {
-    /// Coordinates in balance. What is shifted where a step makes no progress is the stiffness; a step is progress where the
-    /// unbalanced forces do work in it, as the potential then falls.
-    fn solve(&mut self, start: &StructureState) -> Result<DVector<f64>, SystemError> {
-        let scales = self.structure.scales();
-        let mut state = start.clone();
-        let smallest = |bearing: &Simulation| 2.0 * bearing.model.bearing.ball.radius;
-        let longest = LONGEST_STEP * self.bearings.iter().map(smallest).fold(f64::INFINITY, f64::min);
-        let mut here = self.evaluate(&state)?;
-        let mut shift = 0.0;
-        let mut refused = None;
-        let size = |trial: &Trial| trial.residual.component_div(&scales).amax();
-        for iterations in 0..MAX_ITERATIONS {
-            let allowed = if shift > 1e12 { ROUNDED } else { TOLERANCE };
-            if size(&here) <= allowed * here.force.max(1.0) {
-                return Ok(state.coordinates);
-            }
-            if shift > 1e12 {
-                let residual = size(&here);
-                // What a bearing says is the reason, where it is one.
-                return Err(refused.unwrap_or(SystemError::NoEquilibrium { iterations, residual }));
-            }
-            let mut matrix = here.stiffness.clone();
-            for (i, scale) in scales.iter().enumerate() {
-                matrix[(i, i)] += shift * TYPICAL_STIFFNESS * scale * scale;
-            }
-            self.hold_turn(&mut matrix);
-            let step = matrix.lu().solve(&here.residual).map(|mut step| {
-                let way = step.component_mul(&scales).amax();
-                if way > longest {
-                    step *= longest / way;
-                }
-                step
-            });
-            let trial = step.filter(|step| step.iter().all(|v| v.is_finite())).and_then(|step| {
-                let moved = StructureState { coordinates: &state.coordinates + &step, ..state.clone() };
-                let trial = self.evaluate(&moved).map_err(|why| refused = Some(why)).ok()?;
-                let work = 0.5 * (&here.residual + &trial.residual).dot(&step);
-                let downhill = work > 0.0 && size(&here) > NEAR * here.force;
-                (downhill || size(&trial) < size(&here) * (1.0 - 1e-6)).then_some((moved, trial))
-            });
-            match trial {
-                Some((moved, trial)) => {
-                    (state, here) = (moved, trial);
-                    shift = if shift < 1e-9 { 0.0 } else { shift * 0.1 };
-                }
-                None => shift = if shift == 0.0 { 1e-9 } else { shift * 5.0 },
-            }
-        }
-        Err(SystemError::NoEquilibrium { iterations: MAX_ITERATIONS, residual: size(&here) })
-    }
-
-    /// The turn of a shaft is not a matter of statics.
-    fn hold_turn(&self, matrix: &mut DMatrix<f64>) {
-        if self.structure.turning == Turning::Free {
-            let last = matrix.nrows() - 1;
-            matrix.row_mut(last).fill(0.0);
-            matrix.column_mut(last).fill(0.0);
-            matrix[(last, last)] = 1.0;
-        }
-    }
-
-    fn evaluate(&mut self, state: &StructureState) -> Result<Trial, SystemError> {
-        let structure = self.structure;
-        let mut residual = &self.load.force - &structure.stiffness * &state.coordinates;
-        let mut stiffness = structure.stiffness.clone();
-        let mut force = self.load.force.component_div(&structure.scales()).amax();
-        for joint in self.joints {
-            let bearing = &mut self.bearings[joint.bearing];
-            place(bearing, &seat_motion(structure, &joint.seat, state));
-            let (load, matrix) = held_load(&bearing.scene, &bearing.model, &mut bearing.inputs, self.time)
-                .map_err(|source| SystemError::Bearing {
-                    name: self.scene.bearings[joint.bearing].name.clone(),
-                    source,
-                })?;
-            let [x, y, z, about_y, about_z] = load;
-            let held = Vector6::new(x, y, z, 0.0, about_y, about_z);
-            residual -= joint.seat.map.tr_mul(&held);
-            force = force.max(held.fixed_rows::<3>(0).amax());
-            let row = |i: usize| if i < 3 { i } else { i + 1 };
-            let mut whole = nalgebra::Matrix6::zeros();
-            for i in 0..5 {
-                for k in 0..5 {
-                    whole[(row(i), row(k))] = matrix[(i, k)];
-                }
-            }
-            stiffness += joint.seat.map.tr_mul(&(whole * &joint.seat.map));
-        }
-        if structure.turning == Turning::Free {
-            let last = residual.len() - 1;
-            residual[last] = 0.0;
-        }
-        Ok(Trial { residual, stiffness, force })
-    }
+    let all = trials.into_iter().zip(carriers.iter().zip(loads));
+    all.map(|(trial, (carrier, load))| trial.started(&carrier.structure, load)).collect()
 }

@@ -1,0 +1,248 @@
+//! Shaft and housings at rest with their bearings, which are in quasi-static equilibrium themselves.
+
+use nalgebra::{DMatrix, DVector, Matrix6, Vector3, Vector6};
+
+use super::super::start::held_load;
+use super::super::{Simulation, SimulationError};
+use super::SystemError;
+use crate::dynamics::carried::SeatMotion;
+use crate::dynamics::system::{Joint, StructureLoad, StructureTrial};
+use crate::model::bodies::Race;
+use crate::model::state::stack;
+use crate::model::structure::{Carrier, Map, StructureState, Turning};
+use crate::scene::system::SystemScene;
+
+/// [N/m] of a steel bearing's order: what a stiffness is shifted by where a step makes no progress.
+const TYPICAL_STIFFNESS: f64 = 1e7;
+/// [-] imbalance over the forces at work that is aimed at, and that is accepted where rounding in the bearings' equilibria stands against
+/// less.
+const TOLERANCE: f64 = 1e-10;
+const ROUNDED: f64 = 1e-6;
+/// [-] imbalance below which a step must lower it.
+const NEAR: f64 = 1e-4;
+/// [-] longest step over the smallest ball diameter.
+const LONGEST_STEP: f64 = 0.01;
+/// Most steps.
+const MAX_ITERATIONS: u32 = 400;
+
+/// The structures at rest with their bearings. Vectors have the coordinates of all structures, one after the other.
+pub struct Statics<'a> {
+    /// The scene.
+    pub scene: &'a SystemScene,
+    /// \[s] time of the start.
+    pub time: f64,
+    /// The structures.
+    pub carriers: &'a [Carrier],
+    /// Of each structure.
+    pub scales: &'a [DVector<f64>],
+    /// What acts on each from outside.
+    pub loads: &'a [StructureLoad],
+    /// Races on their seats.
+    pub joints: &'a [Joint],
+    /// The bearings.
+    pub bearings: &'a mut [Simulation],
+    /// [N m] moment of each bearing on its outer race about its axis.
+    pub friction: Vec<f64>,
+}
+
+/// Puts a race of a bearing on its seat.
+fn place(bearing: &mut Simulation, race: Race, seat: &SeatMotion) {
+    let input = &mut bearing.inputs[race];
+    input.pose = seat.pose();
+    input.twist = seat.twist();
+    input.speed = seat.rates.x;
+    input.axis = None;
+}
+
+/// A trial of the statics.
+struct Trial {
+    residual: DVector<f64>,
+    stiffness: DMatrix<f64>,
+    /// \[N] largest force at work.
+    force: f64,
+}
+
+impl Statics<'_> {
+    /// Sets the coordinates to those in balance. What is shifted where a step makes no progress is the stiffness; a step is progress
+    /// where the unbalanced forces do work in it, as the potential then falls.
+    pub fn solve(&mut self, states: &mut [StructureState]) -> Result<(), SystemError> {
+        let scales = joined(self.scales.iter());
+        let smallest = |bearing: &Simulation| 2.0 * bearing.model.bearing.ball.radius;
+        let longest = LONGEST_STEP * self.bearings.iter().map(smallest).fold(f64::INFINITY, f64::min);
+        let mut at = joined(states.iter().map(|state| &state.coordinates));
+        let mut here = self.evaluate(states)?;
+        let mut shift = 0.0;
+        let mut refused = None;
+        let size = |trial: &Trial| trial.residual.component_div(&scales).amax();
+        for iterations in 0..MAX_ITERATIONS {
+            let allowed = if shift > 1e12 { ROUNDED } else { TOLERANCE };
+            if size(&here) <= allowed * here.force.max(1.0) {
+                return Ok(());
+            }
+            if shift > 1e12 {
+                let residual = size(&here);
+                // What a bearing says is the reason, where it is one.
+                return Err(refused.unwrap_or(SystemError::NoEquilibrium { iterations, residual }));
+            }
+            let mut matrix = here.stiffness.clone();
+            for (i, scale) in scales.iter().enumerate() {
+                matrix[(i, i)] += shift * TYPICAL_STIFFNESS * scale * scale;
+            }
+            self.hold_turn(&mut matrix);
+            let step = matrix.lu().solve(&here.residual).map(|mut step| {
+                let way = step.component_mul(&scales).amax();
+                if way > longest {
+                    step *= longest / way;
+                }
+                step
+            });
+            let trial = step.filter(|step| step.iter().all(|v| v.is_finite())).and_then(|step| {
+                let moved = &at + &step;
+                self.set(states, &moved);
+                let trial = self.evaluate(states).map_err(|why| refused = Some(why)).ok()?;
+                let work = 0.5 * (&here.residual + &trial.residual).dot(&step);
+                let downhill = work > 0.0 && size(&here) > NEAR * here.force;
+                (downhill || size(&trial) < size(&here) * (1.0 - 1e-6)).then_some((moved, trial))
+            });
+            match trial {
+                Some((moved, trial)) => {
+                    (at, here) = (moved, trial);
+                    shift = if shift < 1e-9 { 0.0 } else { shift * 0.1 };
+                }
+                None => {
+                    self.set(states, &at);
+                    shift = if shift == 0.0 { 1e-9 } else { shift * 5.0 };
+                }
+            }
+        }
+        Err(SystemError::NoEquilibrium { iterations: MAX_ITERATIONS, residual: size(&here) })
+    }
+
+    /// First coordinate of each structure, and their number.
+    fn first(&self) -> Vec<usize> {
+        self.carriers.iter().fold(vec![0], |mut first, one| {
+            first.push(first[first.len() - 1] + one.structure.size());
+            first
+        })
+    }
+
+    /// Sets the coordinates of all structures.
+    fn set(&self, states: &mut [StructureState], all: &DVector<f64>) {
+        for (state, from) in states.iter_mut().zip(self.first()) {
+            let size = state.coordinates.len();
+            state.coordinates.copy_from(&all.rows(from, size));
+        }
+    }
+
+    /// The turn of a shaft is not a matter of statics.
+    fn hold_turn(&self, matrix: &mut DMatrix<f64>) {
+        if let Some(turn) = self.turn() {
+            matrix.row_mut(turn).fill(0.0);
+            matrix.column_mut(turn).fill(0.0);
+            matrix[(turn, turn)] = 1.0;
+        }
+    }
+
+    /// The coordinate that is the turn of the shaft.
+    fn turn(&self) -> Option<usize> {
+        let shaft = &self.carriers[0].structure;
+        (shaft.turning == Turning::Free).then(|| shaft.size() - 1)
+    }
+
+    /// Puts the races of all bearings where the structures are.
+    fn place_races(&mut self, states: &[StructureState]) {
+        for Joint { bearing, race, structure, seat } in self.joints {
+            let trial = StructureTrial::new(&states[*structure]);
+            place(
+                &mut self.bearings[*bearing],
+                *race,
+                &trial.seat(&self.carriers[*structure].structure, seat),
+            );
+        }
+    }
+
+    fn evaluate(&mut self, states: &[StructureState]) -> Result<Trial, SystemError> {
+        self.place_races(states);
+        let first = self.first();
+        let size = first[first.len() - 1];
+        let mut residual = DVector::zeros(size);
+        let mut stiffness = DMatrix::zeros(size, size);
+        let mut force = 0.0f64;
+        let loads = self.carriers.iter().zip(self.loads).zip(self.scales);
+        for (((Carrier { structure, .. }, load), scales), (from, state)) in
+            loads.zip(first.iter().zip(states))
+        {
+            let own = &load.force - &structure.stiffness * &state.coordinates;
+            residual.rows_mut(*from, own.len()).copy_from(&own);
+            let own = structure.size();
+            stiffness.view_mut((*from, *from), (own, own)).copy_from(&structure.stiffness);
+            force = force.max(load.force.component_div(scales).amax());
+        }
+        for index in 0..self.bearings.len() {
+            let bearing = &mut self.bearings[index];
+            let (load, matrix) = held_load(&bearing.scene, &bearing.model, &mut bearing.inputs, self.time)
+                .map_err(|source| self.of_bearing(index, source))?;
+            let [x, y, z, about_y, about_z] = load;
+            let held = Vector6::new(x, y, z, 0.0, about_y, about_z);
+            let inputs = &self.bearings[index].inputs;
+            let arm = inputs.inner.pose.position - inputs.outer.pose.position;
+            force = force.max(held.fixed_rows::<3>(0).amax());
+            let row = |i: usize| if i < 3 { i } else { i + 1 };
+            let mut whole = Matrix6::zeros();
+            for i in 0..5 {
+                for k in 0..5 {
+                    whole[(row(i), row(k))] = matrix[(i, k)];
+                }
+            }
+            // Motion of the inner race against the outer one, by all coordinates.
+            let mut relative = Map::zeros(size);
+            for Joint { race, structure, seat, .. } in
+                self.joints.iter().filter(|joint| joint.bearing == index)
+            {
+                let (sign, on_race) = match race {
+                    Race::Inner => (1.0, -held),
+                    Race::Outer => {
+                        let moment = held.fixed_rows::<3>(3) + arm.cross(&held.fixed_rows::<3>(0));
+                        let turning = Vector3::x() * self.friction[index];
+                        (-1.0, stack(&held.fixed_rows::<3>(0).into_owned(), &(moment + turning)))
+                    }
+                };
+                let own = seat.map.tr_mul(&on_race);
+                let mut view = residual.rows_mut(first[*structure], own.len());
+                view += own;
+                let mut view = relative.columns_mut(first[*structure], seat.map.ncols());
+                view += &seat.map * sign;
+            }
+            stiffness += relative.tr_mul(&(whole * &relative));
+        }
+        if let Some(turn) = self.turn() {
+            residual[turn] = 0.0;
+        }
+        Ok(Trial { residual, stiffness, force })
+    }
+
+    /// Starts the bearings with their races where the structures are.
+    pub fn initialise(&mut self, states: &[StructureState]) -> Result<(), SystemError> {
+        self.place_races(states);
+        for index in 0..self.bearings.len() {
+            self.bearings[index].initialise().map_err(|source| self.of_bearing(index, source))?;
+        }
+        Ok(())
+    }
+
+    /// Takes the friction torques of bearings that were started.
+    pub fn see_friction(&mut self) {
+        let torque = |bearing: &Simulation| bearing.outputs.outer.wrench.moment.x;
+        self.friction = self.bearings.iter().map(torque).collect();
+    }
+
+    fn of_bearing(&self, index: usize, source: SimulationError) -> SystemError {
+        SystemError::Bearing { name: self.scene.bearings[index].name.clone(), source }
+    }
+}
+
+/// Vectors of the structures as one.
+fn joined<'a>(parts: impl Iterator<Item = &'a DVector<f64>>) -> DVector<f64> {
+    let all: Vec<f64> = parts.flat_map(|part| part.iter().copied()).collect();
+    DVector::from_vec(all)
+}
