@@ -41,12 +41,12 @@ def test_invariant_with_all_modes_frequencies_are_those_of_the_whole():
 
 def test_the_file_has_what_was_given(tmp_path):
     mass, stiffness = chain(3)
-    stations = {0.1: np.eye(6, 3), 0.4: 2 * np.eye(6, 3)}
+    stations = {0.1: np.eye(6, 3), (0.4, 0, -0.1): 2 * np.eye(6, 3)}
     path = tmp_path / "shaft.json"
     shaft.write(path, mass, stiffness, np.eye(3), stations, polar_inertia=1e-3, title="chain")
     file = json.loads(path.read_text())
     assert file["mass"] == mass.tolist() and file["stiffness"] == stiffness.tolist()
-    assert [station["position"] for station in file["stations"]] == [0.1, 0.4]
+    assert [station["position"] for station in file["stations"]] == [0.1, [0.4, 0, -0.1]]
     assert file["stations"][1]["map"] == (2 * np.eye(6, 3)).tolist()
     assert file["translations"] == np.eye(3).tolist() and "damping" not in file
     assert (file["title"], file["polar_inertia"]) == ("chain", 1e-3)

@@ -1,6 +1,6 @@
-"""Shafts from other programs for scenes with a shaft: matrices, reduced to the stations where bearings sit and loads act.
+"""Shafts and housings from other programs for scenes with a shaft: matrices, reduced to the stations where bearings sit and loads act.
 
-`roulement run` reads the file as `shaft.matrices` (docs/shaft.md). Coordinates are displacements [m] and rotations [rad] of nodes, or
+`roulement run` reads the file as `shaft.matrices` or `housing.matrices` (docs/shaft.md). Coordinates are displacements [m] and rotations [rad] of nodes, or
 amplitudes of modes; x is the axis of the shaft.
 """
 
@@ -40,10 +40,10 @@ def reduce(mass, stiffness, interface, highest, gyroscopic=None):
 
 
 def write(path, mass, stiffness, translations, stations, *, gyroscopic=None, damping=None, polar_inertia=0.0, title=""):
-    """Writes the matrices of a shaft for `shaft.matrices`.
+    """Writes the matrices of a shaft for `shaft.matrices`, or of a housing for `housing.matrices`.
 
     `translations`, shape (n, 3), are the coordinates of a unit displacement of the whole along x, y, z. `stations` has for each position
-    along the shaft [m] the map there: displacement x, y, z [m] and rotation about x, y, z [rad] by the coordinates, shape (6, n).
+    along the shaft [m], or place (x, y, z) [m], the map there: displacement x, y, z [m] and rotation about x, y, z [rad] by the coordinates, shape (6, n).
     `gyroscopic` is that of a spin of 1 rad/s. `polar_inertia` is the moment of inertia about the axis [kg m2].
     """
     rows = lambda matrix: np.asarray(matrix, float).tolist()
@@ -51,7 +51,7 @@ def write(path, mass, stiffness, translations, stations, *, gyroscopic=None, dam
     file = {"title": title, "mass": rows(mass), "stiffness": rows(stiffness), "translations": rows(translations)}
     file["polar_inertia"] = float(polar_inertia)
     file |= {name: rows(matrix) for name, matrix in optional.items() if matrix is not None}
-    file["stations"] = [{"position": float(position), "map": rows(of)} for position, of in stations.items()]
+    file["stations"] = [{"position": np.asarray(position, float).tolist(), "map": rows(of)} for position, of in stations.items()]
     Path(path).write_text(json.dumps(file))
 
 

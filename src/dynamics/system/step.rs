@@ -59,15 +59,68 @@ pub struct SystemStep<'a> {
     assembled: u64,
     /// [-] residual of each bearing over its tolerance.
     norms: Vec<f64>,
+    /// Where the rows of each bearing's border are in the system's.
+    shares: Vec<Vec<Share<'a>>>,
 }
 
-/// Rows of a bearing's border: those of its own bodies go to the system's border as they are, those of a carried race to its
-/// structure.
-enum Rows<'a> {
-    /// First row in the bearing's border, first row in the system's, how many.
-    Own(usize, usize, usize),
-    /// First row in the bearing's border, and the seat.
-    Carried(usize, &'a Joint),
+/// Rows of a bearing's border: those of its own bodies are rows of the system's border, those of a carried race follow from its
+/// structure's.
+#[derive(Debug)]
+struct Share<'a> {
+    /// First row in the bearing's border.
+    from: usize,
+    /// Rows of the system's border.
+    to: Vec<usize>,
+    /// Of a carried race: its joint, and its unknowns by those of the structure.
+    carried: Option<(&'a Joint, OMatrix<f64, U6, Dyn>)>,
+}
+
+impl Share<'_> {
+    /// How many rows of the bearing's border.
+    fn count(&self) -> usize {
+        if self.carried.is_some() { BLOCK } else { self.to.len() }
+    }
+
+    /// Adds right-hand sides of the bearing's rows to those of the system.
+    fn project(&self, own: &DVector<f64>, border: &mut DVector<f64>) {
+        let own = own.rows(self.from, self.count());
+        match &self.carried {
+            None => self.to.iter().zip(own.iter()).for_each(|(k, value)| border[*k] += value),
+            Some((_, by)) => {
+                self.to.iter().zip(by.tr_mul(&own).iter()).for_each(|(k, value)| border[*k] += value);
+            }
+        }
+    }
+
+    /// Unknowns of the bearing's rows from those of the system.
+    fn lift(&self, border: &DVector<f64>, own: &mut DVector<f64>) {
+        let given = DVector::from_iterator(self.to.len(), self.to.iter().map(|k| border[*k]));
+        let mut rows = own.rows_mut(self.from, self.count());
+        match &self.carried {
+            None => rows.copy_from(&given),
+            Some((_, by)) => rows.copy_from(&(by * given)),
+        }
+    }
+
+    /// Adds the block of a bearing's border in these rows and the columns of another share to the system's.
+    fn add_block(&self, columns: &Self, reduced: &DMatrix<f64>, matrix: &mut DMatrix<f64>) {
+        let block = reduced.view((self.from, columns.from), (self.count(), columns.count()));
+        let right = match &columns.carried {
+            None => block.into_owned(),
+            Some((_, by)) => {
+                DMatrix::from_columns(&by.column_iter().map(|one| block * one).collect::<Vec<_>>())
+            }
+        };
+        let whole = match &self.carried {
+            None => right,
+            Some((_, by)) => DMatrix::from_columns(
+                &right.column_iter().map(|one| by.tr_mul(&one)).collect::<Vec<DVector<f64>>>(),
+            ),
+        };
+        for (column, to) in whole.column_iter().zip(&columns.to) {
+            self.to.iter().zip(column.iter()).for_each(|(row, value)| matrix[(*row, *to)] += value);
+        }
+    }
 }
 
 impl<'a> SystemStep<'a> {
@@ -89,7 +142,7 @@ impl<'a> SystemStep<'a> {
             border.push(border[border.len() - 1] + rows);
         }
         let trials = structures.iter().map(|one| StructureTrial::new(one.start)).collect();
-        Self {
+        let mut equations = Self {
             bearings,
             structures,
             trials,
@@ -100,7 +153,10 @@ impl<'a> SystemStep<'a> {
             matrix: None,
             assembled: 0,
             norms: vec![],
-        }
+            shares: vec![],
+        };
+        equations.shares = (0..equations.bearings.len()).map(|bearing| equations.share(bearing)).collect();
+        equations
     }
 
     /// Number of unknowns.
@@ -136,11 +192,11 @@ impl<'a> SystemStep<'a> {
         self.bearings.iter_mut().for_each(|step| step.workspace.kept = KeptMatrix::default());
     }
 
-    /// Where the rows of a bearing's border go.
-    fn rows(&self, bearing: usize) -> Vec<Rows<'a>> {
+    /// Where the rows of a bearing's border are.
+    fn share(&self, bearing: usize) -> Vec<Share<'a>> {
         let model = self.bearings[bearing].model;
         let mut at = self.border[bearing];
-        let mut rows = vec![];
+        let mut shares = vec![];
         for (body, from) in Body::ALL.into_iter().zip(model.border_offsets()) {
             let (Some(from), Some(Some(moved))) = (from, model.bodies.get(body)) else {
                 continue;
@@ -149,38 +205,27 @@ impl<'a> SystemStep<'a> {
                 .joints
                 .iter()
                 .find(|joint| moved.carried && joint.bearing == bearing && Body::from(joint.race) == body);
-            match joint {
-                Some(joint) => rows.push(Rows::Carried(from, joint)),
-                None => {
-                    rows.push(Rows::Own(from, at, moved.rows()));
-                    at += moved.rows();
+            let share = match joint {
+                Some(joint) => {
+                    let first = self.border_of(joint.structure);
+                    let to: Vec<_> = joint.seat.coordinates().iter().map(|k| first + k).collect();
+                    let by = OMatrix::<f64, U6, Dyn>::zeros(to.len());
+                    Share { from, to, carried: Some((joint, by)) }
                 }
-            }
+                None => {
+                    let to = (at..at + moved.rows()).collect();
+                    at += moved.rows();
+                    Share { from, to, carried: None }
+                }
+            };
+            shares.push(share);
         }
-        rows
+        shares
     }
 
     /// First border row of a structure.
     fn border_of(&self, structure: usize) -> usize {
         self.border[self.bearings.len() + structure]
-    }
-
-    /// What the rows of a bearing's border are in the system's: place and matrix of each part.
-    fn parts(&self, bearing: usize) -> Vec<(usize, usize, OMatrix<f64, Dyn, Dyn>)> {
-        let step = &self.bearings[bearing];
-        let length = step.model.race_length();
-        let part = |rows: Rows<'_>| match rows {
-            Rows::Own(from, to, count) => (from, to, DMatrix::identity(count, count)),
-            Rows::Carried(from, joint) => {
-                let motion =
-                    step.workspace.bodies[joint.race].as_ref().and_then(|trial| trial.seat().copied());
-                let unknowns: OMatrix<f64, U6, Dyn> =
-                    StructureTrial::unknowns_of(&joint.seat, &motion.unwrap_or_default(), length);
-                let dynamic = DMatrix::from_fn(BLOCK, unknowns.ncols(), |i, k| unknowns[(i, k)]);
-                (from, self.border_of(joint.structure), dynamic)
-            }
-        };
-        self.rows(bearing).into_iter().map(part).collect()
     }
 
     /// Sets the races that structures carry to where these are.
@@ -191,6 +236,14 @@ impl<'a> SystemStep<'a> {
             if let Some(Some(trial)) = step.workspace.bodies.get_mut(*race) {
                 trial.carry(&motion);
                 step.races[*race] = trial.motion_value();
+            }
+        }
+        for (shares, step) in self.shares.iter_mut().zip(&self.bearings) {
+            let length = step.model.race_length();
+            for (joint, by) in shares.iter_mut().filter_map(|share| share.carried.as_mut()) {
+                let motion =
+                    step.workspace.bodies[joint.race].as_ref().and_then(|trial| trial.seat().copied());
+                *by = StructureTrial::unknowns_of(&joint.seat, &motion.unwrap_or_default(), length);
             }
         }
     }
@@ -231,21 +284,19 @@ impl<'a> SystemStep<'a> {
             {
                 let moment = &trial.end.bearing_wrench.moment;
                 let turned = self.trials[*structure].turned_moments(seat, motion, moment, &self.step);
-                let (at, size) = (self.border_of(*structure), turned.nrows());
-                let mut view = matrix.view_mut((at, at), (size, size));
-                view += turned;
+                let at = self.border_of(*structure);
+                for (i, row) in seat.coordinates().iter().enumerate() {
+                    for (k, column) in seat.coordinates().iter().enumerate() {
+                        matrix[(at + row, at + column)] += turned[(i, k)];
+                    }
+                }
             }
         }
-        for index in 0..self.bearings.len() {
-            let parts = self.parts(index);
-            let reduced = &self.bearings[index].workspace.reduced;
-            for (row, row_to, rows) in &parts {
-                for (column, column_to, columns) in &parts {
-                    let block = reduced.view((*row, *column), (rows.nrows(), columns.nrows()));
-                    let sum = rows.tr_mul(&(block * columns));
-                    let mut view = matrix.view_mut((*row_to, *column_to), sum.shape());
-                    view += sum;
-                }
+        for (step, shares) in self.bearings.iter().zip(&self.shares) {
+            for rows in shares {
+                shares.iter().for_each(|columns| {
+                    rows.add_block(columns, &step.workspace.reduced, &mut matrix);
+                });
             }
         }
         self.matrix = Some(matrix.lu());
@@ -325,12 +376,8 @@ impl Equations for SystemStep<'_> {
             if !self.bearings[index].eliminate_balls() {
                 return false;
             }
-            let parts = self.parts(index);
-            for (from, to, rows) in &parts {
-                let own = self.bearings[index].workspace.border_correction.rows(*from, rows.nrows());
-                let mut view = border.rows_mut(*to, rows.ncols());
-                view += rows.tr_mul(&own);
-            }
+            let own = &self.bearings[index].workspace.border_correction;
+            self.shares[index].iter().for_each(|share| share.project(own, &mut border));
         }
         let solved = self.matrix.as_ref().is_some_and(|lu| lu.solve_mut(&mut border));
         if !solved || !border.iter().all(|v| v.is_finite()) {
@@ -338,13 +385,10 @@ impl Equations for SystemStep<'_> {
         }
         let mut regular = true;
         for index in 0..self.bearings.len() {
-            let parts = self.parts(index);
             let range = self.first[index]..self.first[index + 1];
             let step = &mut self.bearings[index];
-            for (from, to, rows) in &parts {
-                let own = rows * border.rows(*to, rows.ncols());
-                step.workspace.border_correction.rows_mut(*from, rows.nrows()).copy_from(&own);
-            }
+            let own = &mut step.workspace.border_correction;
+            self.shares[index].iter().for_each(|share| share.lift(&border, own));
             regular &= step.substitute_bodies(&mut correction[range]);
         }
         let count = self.bearings.len();

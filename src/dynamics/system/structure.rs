@@ -1,8 +1,9 @@
 //! A structure in one trial step: motion from its unknown accelerations, seats of its races, residual and tangent.
 
-use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6, Vector3};
+use nalgebra::{DMatrix, DVector, DVectorViewMut, Dyn, OMatrix, U6, Vector3, Vector6};
 
 use super::super::carried::SeatMotion;
+use crate::model::state::stack;
 use crate::model::structure::{
     Map, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
 };
@@ -23,19 +24,52 @@ pub struct StructureLoad {
 /// Where a structure carries a race.
 #[derive(Clone, Debug)]
 pub struct Seat {
-    /// Place (0 to 2) and angles (3 to 5) of the race in its bearing's frame, by the coordinates.
-    pub map: Map,
+    /// Coordinates of the structure that move it: a few of many where the structure is flexible.
+    coordinates: Vec<usize>,
+    /// Place (0 to 2) and angles (3 to 5) of the race in its bearing's frame, by these coordinates.
+    map: Map,
     /// \[m] place of the race's origin in that frame while the coordinates are zero.
-    pub offset: Vector3<f64>,
+    offset: Vector3<f64>,
     /// 1, or -1 where the bearing's x axis points against the shaft's.
-    pub direction: f64,
+    direction: f64,
 }
 
 impl Seat {
+    /// At a station, in a bearing whose x axis points along the shaft (1) or against it (-1, by half a turn about z); with the place of
+    /// the race's origin along x \[m] while the coordinates are zero.
+    pub fn new(station: &Map, direction: f64, offset: f64) -> Self {
+        let coordinates: Vec<usize> =
+            (0..station.ncols()).filter(|k| station.column(*k).amax() > 0.0).collect();
+        let signs = [direction, direction, 1.0];
+        let map = Map::from_fn(coordinates.len(), |row, k| station[(row, coordinates[k])] * signs[row % 3]);
+        Self { coordinates, map, offset: Vector3::new(offset, 0.0, 0.0), direction }
+    }
+
+    /// Coordinates of the structure that move it.
+    pub fn coordinates(&self) -> &[usize] {
+        &self.coordinates
+    }
+
+    /// Adds the generalised force of a force and moments about the axes of the angles, in the bearing's frame.
+    pub fn add_force(&self, force: &Vector6<f64>, into: &mut DVectorViewMut<'_, f64>) {
+        let own = self.map.tr_mul(force);
+        self.coordinates.iter().zip(own.iter()).for_each(|(k, value)| into[*k] += value);
+    }
+
+    /// The map by all of `size` coordinates from `first` on.
+    pub fn spread(&self, size: usize, first: usize) -> Map {
+        let mut map = Map::zeros(size);
+        for (column, k) in self.map.column_iter().zip(&self.coordinates) {
+            map.set_column(first + k, &column);
+        }
+        map
+    }
+
     /// Motion of the race at these coordinates, rates and accelerations.
     pub fn motion(&self, [q, rates, accelerations]: [&DVector<f64>; 3], given: Option<&Spin>) -> SeatMotion {
         let halves = |v: &DVector<f64>| {
-            let moved = &self.map * v;
+            let moved = self.coordinates.iter().zip(self.map.column_iter());
+            let moved = moved.fold(Vector6::zeros(), |sum, (k, column)| sum + column * v[*k]);
             (moved.fixed_rows::<3>(0).into_owned(), moved.fixed_rows::<3>(3).into_owned())
         };
         let ((place, mut angles), (velocity, mut spins)) = (halves(q), halves(rates));
@@ -108,7 +142,7 @@ impl StructureTrial {
     /// Adds the wrench of a bearing on the race that it carries on a seat, in the bearing's frame.
     pub fn add(&mut self, seat: &Seat, motion: &SeatMotion, wrench: &Wrench) {
         let (moments, _) = motion.generalised(&wrench.moment);
-        self.from_bearings += seat.map.tr_mul(&stack(&wrench.force, &moments));
+        seat.add_force(&stack(&wrench.force, &moments), &mut self.from_bearings.as_view_mut());
         self.axial += seat.direction * moments.x;
     }
 
@@ -199,7 +233,8 @@ impl StructureTrial {
         &model.mass + forces * fraction
     }
 
-    /// Derivative of the residual by the accelerations through the direction of a bearing's moments alone.
+    /// Derivative of the residual by the accelerations through the direction of a bearing's moments alone; rows and columns are
+    /// [`Seat::coordinates`].
     pub fn turned_moments(
         &self,
         seat: &Seat,
@@ -212,7 +247,8 @@ impl StructureTrial {
         angles.tr_mul(&(by_angles * angles)) * (-(1.0 - step.alpha_f) * step.position_gain())
     }
 
-    /// Unknowns of a carried race (acceleration, and angular acceleration in world axes times `length` \[m]) by those of the structure.
+    /// Unknowns of a carried race (acceleration, and angular acceleration in world axes times `length` \[m]) by those of
+    /// [`Seat::coordinates`].
     /// Its transpose takes residual rows of the race (force, moment over `length`) to the structure's.
     pub fn unknowns_of(seat: &Seat, motion: &SeatMotion, length: f64) -> OMatrix<f64, U6, Dyn> {
         let mut unknowns = seat.map.clone();
@@ -220,9 +256,4 @@ impl StructureTrial {
         unknowns.fixed_rows_mut::<3>(3).copy_from(&angular);
         unknowns
     }
-}
-
-/// Force and moments as one vector.
-fn stack(force: &Vector3<f64>, moment: &Vector3<f64>) -> nalgebra::Vector6<f64> {
-    crate::model::state::stack(force, moment)
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::{DVector, Vector3};
+use nalgebra::DVector;
 
 use super::super::inputs::Inputs;
 use super::super::{Simulation, SimulationError};
@@ -14,7 +14,7 @@ use crate::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::model::structure::{
-    Carrier, Map, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
+    Carrier, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
 };
 use crate::numerics::step_control::StepControl;
 use crate::scene::system::{MountedScene, SystemScene};
@@ -70,7 +70,7 @@ impl System {
             for (race, structure, offset) in [(Race::Inner, 0, offset)].into_iter().chain(housing) {
                 let station = &carriers[structure].stations[seated[structure]];
                 seated[structure] += 1;
-                let seat = seat(station, mounted.mounting.direction.sign(), offset);
+                let seat = Seat::new(station, mounted.mounting.direction.sign(), offset);
                 joints.push(Joint { bearing: index, race, structure, seat });
             }
             bearings.push(bearing);
@@ -192,13 +192,6 @@ fn preload(mounted: &MountedScene, model: &Model) -> Result<f64, SimulationError
     (problem.inner_speed, problem.outer_speed) = (0.0, 0.0);
     problem.frame = Default::default();
     Ok(equilibrium::solve(model, &problem)?.displacement[0])
-}
-
-/// The seat of a bearing at a station, whose x axis points along the shaft (1) or against it (-1), by half a turn about z.
-fn seat(station: &Map, direction: f64, offset: f64) -> Seat {
-    let signs = [direction, direction, 1.0];
-    let map = Map::from_fn(station.ncols(), |row, column| station[(row, column)] * signs[row % 3]);
-    Seat { map, offset: Vector3::new(offset, 0.0, 0.0), direction }
 }
 
 /// States of the structures where a run starts, with accelerations under what the bearings do.

@@ -207,11 +207,9 @@ impl Statics<'_> {
                         (-1.0, stack(&held.fixed_rows::<3>(0).into_owned(), &(moment + turning)))
                     }
                 };
-                let own = seat.map.tr_mul(&on_race);
-                let mut view = residual.rows_mut(first[*structure], own.len());
-                view += own;
-                let mut view = relative.columns_mut(first[*structure], seat.map.ncols());
-                view += &seat.map * sign;
+                let own = self.carriers[*structure].structure.size();
+                seat.add_force(&on_race, &mut residual.rows_mut(first[*structure], own));
+                relative += seat.spread(size, first[*structure]) * sign;
             }
             stiffness += relative.tr_mul(&(whole * &relative));
         }
