@@ -376,8 +376,9 @@ def in_words(results):
     inside, quick, outside = "inside, mesh in the file", "inside, mesh in the file, `balanced`", "leapfrog, `fast`"
     longest, most = STEPS[-1], max(served(results, "leapfrog"))
     return f"""Measured on this shaft, without weight: one FMU has an error of the radial forces of {error(inside, longest)} at communication steps of {longest} us.
-Two FMUs under leapfrog have {error("leapfrog", 20)} at 20 us, {error("leapfrog", most)} at {most} us, and are unstable beyond. CPU time of the same error is about the
-same: a simulated second takes {cost(quick, longest)} inside with `balanced` ({error(quick, longest)}, {longest} us), {cost(outside, 20)} outside with `fast` ({error(outside, 20)}, 20 us).
+Two FMUs under leapfrog have {error("leapfrog", 20)} at 20 us, {error("leapfrog", most)} at {most} us, and are unstable beyond.
+CPU time of the same error is about the same. A simulated second takes {cost(quick, longest)} inside with `balanced`
+({error(quick, longest)}, steps of {longest} us), and {cost(outside, 20)} outside with `fast` ({error(outside, 20)}, steps of 20 us).
 [Coupling](coupling.md#the-shaft-inside-instead) has all of it."""
 
 
