@@ -1,6 +1,6 @@
 """A helical pinion shaft on two 7206 B, back to back: mesh ripple, a housing that tilts, a loss of lubrication. docs/gearbox.md explains it.
 
-Usage: gearbox.py DIRECTORY [MILLISECONDS]    (all 80 ms if not given)
+Usage: gearbox.py DIRECTORY [MILLISECONDS [DOCUMENT]]    (all 80 ms if not given; the table is put into the document)
 Leaves there: the packages of both bearings, gearbox.csv, and gearbox.png where matplotlib is installed. Needs FMPy.
 """
 
@@ -59,11 +59,25 @@ def scenes():
     return {"left": scene.with_({"load.inner_speed": SPEED}), "right": scene.with_({"load.inner_speed": -SPEED} | TILT)}
 
 
+def of_ball(name):
+    """That variable of every ball."""
+    return [f"ball[{ball}].{name}" for ball in range(1, BALLS + 1)]
+
+
+# What is drawn and tabled of each bearing: names of its variables.
+WANTED = {
+    "force": [f"inner.force.{axis}" for axis in "xyz"],
+    "loss": ["friction_power"],
+    "rolling": ["rolling_power.inner", "rolling_power.outer"],
+    "cage": ["cage.speed"],
+    "life": ["life.L10r"],
+    "load": of_ball("inner.load"),
+    "azimuth": of_ball("azimuth"),
+}
+
+
 def run(folder, duration):
     """Runs both packages on the shaft; returns columns over time by names, those of a bearing by its side and a name."""
-    of_ball = lambda name: [f"ball[{ball}].{name}" for ball in range(1, BALLS + 1)]
-    wanted = {"force": [f"inner.force.{axis}" for axis in "xyz"], "loss": ["friction_power"], "life": ["life.L10r"],
-              "load": of_ball("inner.load"), "azimuth": of_ball("azimuth")}
     sides = {side: FmuBearing.load(roulement.package(scene, folder / f"{side}.fmu")) for side, scene in scenes().items()}
     both = Bearings((sides["left"], LEFT, 1), (sides["right"], RIGHT, -1))
     shaft = Leapfrog(both, rigid(MASS, TRANSVERSE), load, gyroscopic(POLAR, SPEED))
@@ -72,22 +86,23 @@ def run(folder, duration):
         shaft.step(STEP)
         if step % ROWS == 0:
             row = {"time": shaft.time, "shaft": shaft.place}
-            rows.append(row | {(side, key): bearing.read(names) for side, bearing in sides.items() for key, names in wanted.items()})
+            rows.append(row | {(side, key): bearing.read(names) for side, bearing in sides.items() for key, names in WANTED.items()})
     print(f"{duration * 1e3:.0f} ms in {clock.process_time() - began:.1f} s of CPU time (two packages, communication steps of {STEP * 1e6:.0f} us)")
     for bearing in sides.values():
         bearing.close()
-    found = {key: np.array([row[key] for row in rows]) for key in rows[0]}
-    # From the axes of the right bearing to those of the shaft.
-    found["right", "force"] = found["right", "force"] * [-1, -1, 1]
-    found["right", "azimuth"] = np.pi - found["right", "azimuth"]
-    return found
+    return in_axes_of_shaft({key: np.array([row[key] for row in rows]) for key in rows[0]})
 
 
-def means(found):
-    """Prints a table of what each phase comes to, and returns the radial force on each bearing over that by hand."""
-    ratios = {}
-    print("| phase | bearing | radial force, by hand [N] | axial force [N] | ball loads [N] | losses [W] | life L10r [h] |")
-    print("|---|---|---:|---:|---:|---:|---:|")
+def in_axes_of_shaft(found):
+    """The same with what is in the axes of the right bearing turned to those of the shaft."""
+    turned = {"force": found["right", "force"] * [-1, -1, 1], "azimuth": np.pi - found["right", "azimuth"], "cage": -found["right", "cage"]}
+    return found | {("right", key): of for key, of in turned.items()}
+
+
+def table(found):
+    """What each phase comes to, as a table of Markdown."""
+    lines = ["| phase | bearing | radial force, by hand [N] | axial force [N] | ball loads [N] | losses [W] | life L10r [h] |"]
+    lines.append("|---|---|---:|---:|---:|---:|---:|")
     for phase, (start, end) in PHASES.items():
         at = (found["time"] > start) & (found["time"] < end + STEP)
         for side, hand in by_hand().items() if at.any() else ():
@@ -96,9 +111,16 @@ def means(found):
             radial, hand = np.linalg.norm(radial), np.linalg.norm(hand)
             loads, losses = found[side, "load"][at], found[side, "loss"][at].mean()
             hours = 1e6 / np.mean(1 / found[side, "life"][at]) / (SPEED / (2 * np.pi) * 3600)
-            print(f"| {phase} | {side} | {radial:.0f}, {hand:.0f} | {abs(axial):.0f} | {loads.min():.0f} to {loads.max():.0f} | {losses:.1f} | {hours:.0f} |")
-            ratios[phase, side] = radial / hand
-    return ratios
+            balls = f"{loads.min():.0f} to {loads.max():.0f}"
+            lines.append(f"| {phase} | {side} | {radial:.0f}, {hand:.0f} | {abs(axial):.0f} | {balls} | {losses:.1f} | {hours:.0f} |")
+    return "\n".join(lines)
+
+
+def put(path, name, text):
+    """Puts a text into a document, between `<!-- begin NAME -->` and `<!-- end -->`."""
+    begin, end = f"<!-- begin {name} -->", "<!-- end -->"
+    head, rest = path.read_text().split(begin)
+    path.write_text(f"{head}{begin}\n\n{text}\n\n{end}{rest.split(end, 1)[1]}")
 
 
 def over_azimuth(found, side, at, bins=72):
@@ -111,14 +133,14 @@ def over_azimuth(found, side, at, bins=72):
 
 
 def picture(found, path):
-    """Ball loads over azimuth in each phase, path of the shaft, losses, and loads of three balls over time."""
+    """Ball loads over azimuth in each phase, path of the shaft; losses, cage speeds, and loads of three balls of each bearing over time."""
     import matplotlib
 
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    figure = pyplot.figure(figsize=(12, 7.4), layout="constrained")
-    grid = figure.add_gridspec(2, 6)
+    figure = pyplot.figure(figsize=(12, 10.2), layout="constrained")
+    grid = figure.add_gridspec(3, 6, height_ratios=(1.25, 1, 1))
     time, colours = found["time"] * 1e3, dict(zip(PHASES, ("tab:blue", "tab:orange", "tab:green")))
     within = {phase: (found["time"] > start) & (found["time"] <= end) for phase, (start, end) in PHASES.items() if np.any(found["time"] > start)}
     for place, side in enumerate(("left", "right")):
@@ -136,20 +158,28 @@ def picture(found, path):
     for phase, at in within.items():
         orbit.plot(found["shaft"][at, 1] * 1e6, found["shaft"][at, 2] * 1e6, lw=0.7, color=colours[phase])
     orbit.set(title="path of the shaft's middle", xlabel="y [um]", ylabel="z [um]", aspect="equal", adjustable="datalim")
-    losses, loads = figure.add_subplot(grid[1, :3]), figure.add_subplot(grid[1, 3:])
+    losses, cages, *loads = (figure.add_subplot(grid[row, half]) for row in (1, 2) for half in (slice(3), slice(3, None)))
     for side, colour in (("left", "tab:gray"), ("right", "tab:red")):
         losses.plot(time, found[side, "loss"], lw=0.6, color=colour, label=side)
-    losses.set(title="friction losses of both bearings", xlabel="time [ms]", ylabel="[W]", ylim=(0, None))
-    losses.legend(loc="lower right", frameon=False)
-    for ball, colour in zip((0, 4, 8), ("tab:purple", "tab:brown", "tab:cyan")):
-        loads.plot(time, found["right", "load"][:, ball], lw=0.7, color=colour, label=f"ball {ball + 1}")
-    loads.set(title="right bearing: loads of three of its 13 balls", xlabel="time [ms]", ylabel="[N]", ylim=(0, None))
-    loads.legend(loc="upper right", bbox_to_anchor=(1, 0.95), frameon=False, ncols=3)
-    for axes in (losses, loads):
-        axes.set_ylim(0, axes.get_ylim()[1] * 1.25)
+        losses.plot(time, found[side, "rolling"].sum(axis=1), lw=0.6, ls="--", color=colour, label=f"{side}, rolling in oil alone")
+        cages.plot(time, found[side, "cage"] * 30 / np.pi, lw=0.8, color=colour, label=side)
+    losses.set(title="friction losses of both bearings", ylabel="[W]")
+    losses.legend(loc="lower left", frameon=False, ncols=2, fontsize=8)
+    cages.set(title="cage speeds (mean of the balls)", ylabel="[rpm]")
+    cages.legend(loc="lower left", frameon=False, ncols=2)
+    for axes, side in zip(loads, ("left", "right")):
+        for ball, colour in zip((0, 4, 8), ("tab:purple", "tab:brown", "tab:cyan")):
+            axes.plot(time, found[side, "load"][:, ball], lw=0.7, color=colour, label=f"ball {ball + 1}")
+        axes.set(title=f"{side} bearing: loads of three of its {BALLS} balls", xlabel="time [ms]", ylabel="[N]")
+        axes.legend(loc="upper right", bbox_to_anchor=(1, 0.95), frameon=False, ncols=3)
+    for axes in (losses, cages, *loads):
+        # Room for what happens; cage speeds are all but the same.
+        low, high = axes.get_ylim() if axes is cages else (0, axes.get_ylim()[1])
+        axes.set_ylim(low, high + 0.25 * (high - low))
         for start, what in ((0, "torque comes on"), (30, "right housing tilts by 1 mrad"), (60, "oil is lost")):
-            axes.axvline(start, color="black", lw=0.6, ls=":")
-            axes.annotate(what, (start + 0.5, 0.99), xycoords=("data", "axes fraction"), va="top", fontsize=8)
+            if start <= time[-1]:
+                axes.axvline(start, color="black", lw=0.6, ls=":")
+                axes.annotate(what, (start + 0.5, 0.99), xycoords=("data", "axes fraction"), va="top", fontsize=8)
     figure.savefig(path, dpi=110)
 
 
@@ -157,7 +187,9 @@ if __name__ == "__main__":
     folder = Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
     found = run(folder, float(sys.argv[2]) * 1e-3 if len(sys.argv) > 2 else 0.08)
-    means(found)
+    print(table(found))
+    if len(sys.argv) > 3:
+        put(Path(sys.argv[3]), "packages coupled", table(found))
     columns = {"time [s]": found["time"]} | {f"shaft.{name}": found["shaft"][:, k] for k, name in enumerate(("x [m]", "y [m]", "z [m]", "ry [rad]", "rz [rad]"))}
     columns |= {f"{side}.force.{axis} [N]": found[side, "force"][:, k] for side in ("left", "right") for k, axis in enumerate("xyz")}
     columns |= {f"{side}.friction_power [W]": found[side, "loss"][:, 0] for side in ("left", "right")}

@@ -69,6 +69,28 @@ def test_closed_form_the_gearbox_has_the_forces_of_statics(tmp_path):
     assert abs((left - right) / (30.0 / 0.0238 * np.tan(np.radians(15))) - 1) < 0.01, said
     table = np.genfromtxt(tmp_path / "gearbox.csv", delimiter=",", names=True)
     assert len(table) == 750 and np.isfinite(table["time_s"]).all()
+    # 30 ms is the first phase alone.
+    assert_is_written("packages coupled", said, phases=1)
+
+
+def test_the_gearbox_with_its_shaft_inside_is_that_of_its_page(tmp_path):
+    assert_is_written("shaft inside", python(ROOT / "examples" / "gearbox" / "inside.py", tmp_path), phases=3)
+    drawn = importlib.util.find_spec("matplotlib") is not None
+    assert (tmp_path / "inside.png").exists() == drawn
+
+
+def assert_is_written(name, said, phases):
+    """Is the table that an example of the gearbox has printed that of docs/gearbox.md? Numbers within half a percent, or 1 in the last digit."""
+    written = (ROOT / "docs" / "gearbox.md").read_text().split(f"<!-- begin {name} -->")[1].split("<!-- end -->")[0]
+    rows_of = lambda text: [line for line in text.splitlines() if line.startswith("| ") and not line.startswith("| phase")]
+    rows, old = rows_of(said), rows_of(written)
+    assert len(rows) == 2 * phases and len(old) == 6
+    number = re.compile(r"\d+(?:\.\d+)?")
+    for row, before in zip(rows, old):
+        assert number.sub("", row) == number.sub("", before)
+        for new, of in zip(number.findall(row), number.findall(before), strict=True):
+            last = 0.1 if "." in of else 1
+            assert abs(float(new) - float(of)) <= max(0.005 * float(of), 1.001 * last), f"docs/gearbox.md is out of date: {row} for {before}"
 
 
 @pytest.mark.parametrize("document, least", [("docs/python.md", 5), ("README.md", 1)])
