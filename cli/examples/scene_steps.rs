@@ -1,13 +1,17 @@
 //! Plays the first milliseconds of a scene and prints how many steps it took: `scene_steps SCENE.toml MILLISECONDS [EFFECT]`, with
-//! the example of an effect (by its key) in the scene if one is named. `scripts/step-instructions` counts the instructions of these.
+//! the example of an effect (by its key) in the scene if one is named. A scene of a shaft also tells how many coordinates its structures
+//! have. `scripts/step-instructions` and `scripts/shaft-cost` count the instructions of these.
 
 use std::error::Error;
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use roulement::effects::Effects;
 use roulement::scene::Scene;
+use roulement::scene::system::SystemScene;
 use roulement::simulation::Simulation;
 use roulement::simulation::play::{Rows, play};
+use roulement::simulation::system::System;
 use toml::{Table, Value};
 
 /// Adds a part of a scene to it.
@@ -43,6 +47,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut text = std::fs::read_to_string(scene)?;
     if let Some(key) = effect {
         text = with(&text, key)?;
+    }
+    if SystemScene::is_system(&text) {
+        let mut system = System::new(&SystemScene::load(Path::new(scene))?)?;
+        system.advance(milliseconds.parse::<f64>()? * 1e-3)?;
+        let steps = system.bearings().next().map_or(0, |(_, bearing)| bearing.state().statistics.steps);
+        println!("{steps} {}", system.shaft().structure.size());
+        return Ok(());
     }
     let scene = Scene::edited(&text, [("load.duration", format!("\"{milliseconds} ms\""))])?;
     let mut simulation = Simulation::new(&scene)?;

@@ -55,18 +55,39 @@ fn tables() -> String {
     text
 }
 
-#[test]
-fn the_keys_in_the_document_are_those_of_the_sources() {
+/// Compares a part of docs/shaft.md with what it should be, or renews it.
+fn compare_part(name: &str, table: &str, script: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/shaft.md");
     let text = fs::read_to_string(&path).unwrap();
-    let (before, rest) = text.split_once("<!-- begin keys -->\n").unwrap();
-    let (written, after) = rest.split_once("<!-- end keys -->").unwrap();
-    let tables = format!("\n{}\n", tables());
+    let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
+    let (before, rest) = text.split_once(&begin).unwrap();
+    let (written, after) = rest.split_once(&end).unwrap();
+    let table = format!("\n{table}\n");
     if std::env::var("ROULEMENT_RENEW").is_ok() {
-        fs::write(&path, format!("{before}<!-- begin keys -->\n{tables}<!-- end keys -->{after}")).unwrap();
+        fs::write(&path, format!("{before}{begin}{table}{end}{after}")).unwrap();
     } else {
-        assert_eq!(written, tables, "docs/shaft.md is stale: scripts/tables");
+        assert_eq!(written, table, "docs/shaft.md is stale: {script}");
     }
+}
+
+#[test]
+fn the_document_has_the_keys_of_the_sources_and_the_costs_of_the_record() {
+    // One after the other: both renew one file.
+    compare_part("keys", &tables(), "scripts/tables");
+    let record =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/shaft-cost.csv"))
+            .unwrap();
+    let rows: Vec<Vec<&str>> = record.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let mut table = String::from(
+        "| bearings | rigid shaft: thousand instructions per step and bearing | beams: thousand instructions per step and bearing | coordinates of the beams |\n|---|---|---|---|\n",
+    );
+    for [shaft, bearings, _, cost] in rows.iter().map(|row| <[&str; 4]>::try_from(row.as_slice()).unwrap()) {
+        if shaft == "rigid" {
+            let beams = rows.iter().find(|row| row[0] == "beams" && row[1] == bearings).unwrap();
+            writeln!(table, "| {bearings} | {cost} | {} | {} |", beams[3], beams[2]).unwrap();
+        }
+    }
+    compare_part("costs", &table, "scripts/shaft-cost");
 }
 
 #[test]
