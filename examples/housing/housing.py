@@ -1,8 +1,9 @@
 """A flexible housing by scikit-fem for the pinion shaft of the gearbox: finite elements, reduction, and the run. docs/shaft.md explains it.
 
-Usage: housing.py DIRECTORY [MILLISECONDS]    (40 ms if not given; the program from ROULEMENT_BIN, or `roulement` on the path)
+Usage: housing.py DIRECTORY [MILLISECONDS [DOCUMENT]]    (40 ms if not given; the program from ROULEMENT_BIN, or `roulement` on the path; tables are put
+into the document)
 Leaves there: housing.json, the scenes and results of the flexible and the rigid housing, and housing.png where matplotlib is installed.
-Needs `pip install scikit-fem`.
+Needs `pip install -r examples/housing/requirements.txt`.
 """
 
 import importlib.util
@@ -22,10 +23,10 @@ YOUNG, POISSON, DENSITY = 72e9, 0.33, 2680.0  # cast aluminium AlSi10Mg [Pa, -, 
 BORE, BLOCK = 0.031, 0.044  # radius of the bores, half the width of the end walls: 7206 B has 62 mm outside
 WALLS = {"left": -0.05, "right": 0.05}  # their middles along the shaft, where the bearings are
 THICK, SIDE, PLATE, BOTTOM = 0.016, 0.008, 0.012, -0.072  # of end walls, as wide as a bearing, of side walls, of the plate; its lower face
-FOOT = 0.024  # side of the square under each corner that is clamped
-LONG, WIDE = WALLS["right"] + THICK / 2 + FOOT, BLOCK + SIDE + FOOT  # half the length (x) and the width (y) of the plate
+FLANGE = 0.024  # what the plate stands out by; its corners are clamped, from below, as far as the inner faces of the walls
+LONG, WIDE = WALLS["right"] + THICK / 2 + FLANGE, BLOCK + SIDE + FLANGE  # half the length (x) and the width (y) of the plate
 TOP = (WALLS["left"], 0.0, BLOCK)  # middle of the left wall's upper face: the shock is here
-HIGHEST = 15e3  # modes up to here [Hz], while the interface is held
+HIGHEST = 20e3  # modes up to here [Hz], while the interface is held
 RATIO = 0.01  # damping ratio at the first frequency and at 5 kHz: proportional damping
 SHOCK = 4000.0  # largest force [N], along -y, of a triangle of 0.5 ms at half of the run
 GRAVITY = [0.0, 0.0, -9.81]  # [m/s2]
@@ -47,7 +48,7 @@ def mesh(size):
     at = grid.p[:, grid.t].mean(axis=1)
     ends = np.min([np.abs(at[0] - wall) for wall in WALLS.values()], axis=0) < THICK / 2
     ends &= (np.abs(at[1]) < BLOCK) & (np.abs(at[1:]).max(axis=0) > half)
-    sides = (np.abs(at[0]) < LONG - FOOT) & (np.abs(np.abs(at[1]) - BLOCK - SIDE / 2) < SIDE / 2)
+    sides = (np.abs(at[0]) < LONG - FLANGE) & (np.abs(np.abs(at[1]) - BLOCK - SIDE / 2) < SIDE / 2)
     grid = grid.restrict(np.flatnonzero(ends | sides | (at[2] < BOTTOM + PLATE)))
     # From the hole to the block places move outwards: to the circle, not at all, and linearly between.
     curved = skfem.MeshHex2.from_mesh(grid)
@@ -105,7 +106,7 @@ class Housing:
         top = near(z, TOP[2]) & (np.abs(x - TOP[0]) < THICK / 2 + 1e-6) & (np.abs(y) < BORE * 0.75 + 1e-6)
         self.points = {side: ((wall, 0.0, 0.0), bore & (np.abs(x - wall) < THICK / 2 + 1e-6)) for side, wall in WALLS.items()}
         self.points["top"] = (TOP, top)
-        self.feet = near(z, BOTTOM) & (np.abs(x) > LONG - FOOT - 1e-6) & (np.abs(y) > WIDE - FOOT - 1e-6)
+        self.feet = near(z, BOTTOM) & (np.abs(x) > LONG - FLANGE - THICK - 1e-6) & (np.abs(y) > BLOCK - 1e-6)
         self.by = tied(self.places, self.points, self.feet)
         self.mass, self.stiffness = (self.by.T @ matrix @ self.by for matrix in (mass, stiffness))
         # Gravity pulls at all nodes, held ones too; what pulls at the free ones moves them.
@@ -207,14 +208,19 @@ def table(path):
 
 
 def run(folder, duration, flexible):
-    """Runs a scene; returns its columns over time: of the shaft, and of each bearing with its name in front. SI."""
+    """Runs a scene of some seconds; returns its `results`."""
     name = "flexible" if flexible else "rigid"
     path = folder / f"{name}.toml"
     path.write_text(scene(duration, flexible))
     subprocess.run([os.environ.get("ROULEMENT_BIN", "roulement"), "run", path, "-o", folder / name], check=True, stdout=subprocess.DEVNULL)
-    found = table(folder / name / "shaft.csv")
+    return results(folder / name)
+
+
+def results(folder):
+    """Columns of a run over time, SI: of the shaft, and of each bearing with its name in front."""
+    found = table(folder / "shaft.csv")
     for side in WALLS:
-        found |= {f"{side}.{column}": of for column, of in table(folder / name / side / "results.csv").items()}
+        found |= {f"{side}.{column}": of for column, of in table(folder / side / "results.csv").items()}
     return found
 
 
@@ -250,32 +256,37 @@ def loads(found, side, at):
 
 
 def report(housing, of, flexible, rigid):
-    """What was found, in words."""
-    count, at = len(of["free"]), windows(flexible)
-    print(f"{housing.mesh.t.shape[1]} elements, {housing.mass.shape[0]} coordinates, {housing.total:.2f} kg; reduced to {count}")
-    exact = housing.frequencies(6)
-    print("first frequencies [Hz]      " + " ".join(f"{value:8.1f}" for value in exact))
-    print("the same, reduced           " + " ".join(f"{value:8.1f}" for value in of["free"][:6]))
+    """What was found, as tables of Markdown."""
+    at, join = windows(flexible), lambda values, digits: ", ".join(f"{value:.{digits}f}" for value in values)
+    exact, small = housing.compliance(), np.linalg.inv(of["stiffness"])
+    solved = by_statics(housing, flexible, at["before"])
+    lines = ["| housing | all elements | reduced |", "|---|---:|---:|"]
+    lines.append(f"| coordinates | {housing.mass.shape[0]} | {len(of['free'])} |")
+    lines.append(f"| first frequencies [Hz] | {join(housing.frequencies(4), 0)} | {join(of['free'][:4], 0)} |")
     for side in WALLS:
-        stiffness = 1e-6 / np.diag(housing.compliance())[housing.at(side)[:3]]
-        print(f"stiffness, {side:<5} x, y, z [N/um]   " + " ".join(f"{value:8.1f}" for value in stiffness))
-    for row in ("start", "before"):
-        solved = by_statics(housing, flexible, at[row])
-        for side in WALLS:
-            pair = (moved(flexible, side, at[row]), solved[housing.at(side)])
-            texts = [" ".join(f"{value:7.3f}" for value in which[:3] * 1e6) for which in pair]
-            print(f"bore {side:<5} {row:<6} x, y, z [um]   {texts[0]}   by all elements {texts[1]}")
-    print("| bearing | housing | axial force [N] | ball loads [N] | largest after the shock [N] | losses [W] |")
-    print("|---|---|---:|---:|---:|---:|")
+        pair = (join(1e-6 / np.diag(which)[housing.at(side)[:3]], 1) for which in (exact, small))
+        lines.append(f"| stiffness at the {side} bore along x, y, z [N/um] | {' | '.join(pair)} |")
+    for side in WALLS:
+        pair = (join(1e6 * which[:3], 3) for which in (solved[housing.at(side)], moved(flexible, side, at["before"])))
+        lines.append(f"| the bearings push the {side} bore by x, y, z [um] | {' | '.join(pair)} |")
+    still, largest = (np.mean(flexible["case.shock.y"][at["before"]]), flexible["case.shock.y"][at["after"]].min())
+    static = exact[tuple(housing.at("top")[[1, 1]])] * SHOCK
+    lines.append(f"| the shock pushes its point by [um] | {1e6 * static:.1f} (at rest) | {1e6 * (still - largest):.1f} (in the run) |")
+    lines += ["", "| bearing | housing | axial force [N] | ball loads [N] | largest after the shock [N] | losses [W] |", "|---|---|---:|---:|---:|---:|"]
     for side in WALLS:
         for name, found in (("rigid", rigid), ("flexible", flexible)):
             before, after = (loads(found, side, at[part]) for part in ("before", "after"))
             axial, losses = abs(wrench(found, side, at["before"])[0]), found[f"{side}.friction_power"][at["before"]].mean()
-            shock = f"{after.max():.0f}" if name == "flexible" else "no shock"
-            print(f"| {side} | {name} | {axial:.0f} | {before.min():.0f} to {before.max():.0f} | {shock} | {losses:.1f} |")
-    for point in ("shock", "left", "right"):
-        y = flexible[f"case.{point}.y"]
-        print(f"shock: {point:<5} along y {1e6 * (y[at['after']].min() - y[at['before']].mean()):8.2f} um")
+            shock = f"{after.max():.0f}" if name == "flexible" else ""
+            lines.append(f"| {side} | {name} | {axial:.0f} | {before.min():.0f} to {before.max():.0f} | {shock} | {losses:.1f} |")
+    return "\n".join(lines)
+
+
+def put(path, text):
+    """Puts a text into a document, between `<!-- begin housing -->` and `<!-- end -->`."""
+    begin, end = "<!-- begin housing -->", "<!-- end -->"
+    head, rest = path.read_text().split(begin)
+    path.write_text(f"{head}{begin}\n\n{text}\n\n{end}{rest.split(end, 1)[1]}")
 
 
 def picture(housing, flexible, rigid, path):
@@ -327,9 +338,9 @@ def picture(housing, flexible, rigid, path):
         axes[1].fill_between(time, every.min(axis=0), every.max(axis=0), color=colour, alpha=0.4, lw=0, label=f"{side} bearing")
     shock = time[-1] / 2
     axes[0].set(title=f"shock of {SHOCK / 1e3:.0f} kN along -y: displacement y [um]", xlim=(shock - 1, min(shock + 4, time[-1])))
-    axes[1].set(title="least and largest ball load [N]", xlabel="time [ms]", ylim=(0, None))
+    axes[1].set(title="least and largest ball load [N]", xlabel="time [ms]", ylim=(0, 1.3 * axes[1].get_ylim()[1]))
     for one in axes:
-        one.legend(loc="upper right", frameon=False, fontsize=8)
+        one.legend(loc="lower right" if one is axes[0] else "upper right", frameon=False, fontsize=8, ncols=3)
         one.title.set_fontsize(10)
     figure.savefig(path, dpi=100)
 
@@ -342,6 +353,10 @@ if __name__ == "__main__":
     of = reduced(housing)
     write(folder / "housing.json", housing, of)
     flexible, rigid = (run(folder, duration, which) for which in (True, False))
-    report(housing, of, flexible, rigid)
+    print(f"{housing.mesh.t.shape[1]} elements, {housing.total:.2f} kg")
+    said = report(housing, of, flexible, rigid)
+    print(said)
+    if len(sys.argv) > 3:
+        put(Path(sys.argv[3]), said)
     if importlib.util.find_spec("matplotlib"):
         picture(housing, flexible, rigid, folder / "housing.png")
