@@ -10,13 +10,14 @@ import importlib.util
 import os
 import subprocess
 import sys
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 import roulement.shaft
 import skfem
 from scipy import sparse
-from scipy.sparse.linalg import eigsh, splu
+from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 YOUNG, POISSON, DENSITY = 72e9, 0.33, 2680.0  # cast aluminium AlSi10Mg [Pa, -, kg/m3]
 # A box without a lid on a plate: two end walls with a bore each and two side walls, in the axes of the shaft [m].
@@ -119,9 +120,10 @@ class Housing:
         """Indices of the six coordinates of a point."""
         return 6 * list(self.points).index(point) + np.arange(6)
 
-    def solved(self, force):
-        """Coordinates [m, rad] under generalised forces [N, N m]: statics of all elements."""
-        return splu(self.stiffness.tocsc()).solve(force)
+    @cached_property
+    def solved(self):
+        """Function of generalised forces [N, N m] that gives coordinates [m, rad]: statics of all elements."""
+        return splu(self.stiffness.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}).solve
 
     def compliance(self):
         """Displacement and rotation of the points by forces and moments there [m/N, ...]."""
@@ -130,7 +132,8 @@ class Housing:
 
     def frequencies(self, count):
         """The first frequencies of the free interface [Hz], of all elements."""
-        values = eigsh(self.stiffness.tocsc(), count, self.mass.tocsc(), sigma=0.0, return_eigenvectors=False)
+        inverse = LinearOperator(self.mass.shape, matvec=self.solved, dtype=float)
+        values = eigsh(self.stiffness.tocsc(), count, self.mass.tocsc(), sigma=0.0, OPinv=inverse, return_eigenvectors=False)
         return np.sqrt(np.sort(values)) / (2 * np.pi)
 
 

@@ -77,7 +77,8 @@ def write(path, mass, stiffness, translations, stations, *, weights=None, gyrosc
     `translations`, shape (n, 3), are the coordinates of a unit displacement of the whole along x, y, z. `stations` has for each position
     along the shaft [m], or place (x, y, z) [m], the map there: displacement x, y, z [m] and rotation about x, y, z [rad] by the coordinates, shape (6, n).
     A structure that is held cannot be displaced as a whole: then `translations` is None, and `weights`, shape (n, 3), are the generalised forces of
-    an acceleration of 1 m/s2 along x, y, z [kg, ...]. Of full matrices and `shapes` of a reduction: `shapes.T @ mass @ unit`, where `unit` moves all of it.
+    an acceleration of 1 m/s2 along x, y, z [kg, kg m]. After a reduction: `shapes.T @ (mass @ unit)[free]`, with the mass of all coordinates, held ones
+    too, and those of a displacement of everything by 1 along x, y, z.
     `gyroscopic` is that of a spin of 1 rad/s. `polar_inertia` is the moment of inertia about the axis [kg m2].
     """
     if (translations is None) == (weights is None):
