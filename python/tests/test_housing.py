@@ -87,6 +87,16 @@ def test_closed_form_the_housing_has_the_mass_of_its_drawing_and_no_energy_of_ri
     assert np.abs(stiffness @ motion).max() < 1e-12 * abs(stiffness).sum(axis=1).max()
 
 
+def test_closed_form_weights_are_those_of_a_body_force(example, housing):
+    basis = skfem.Basis(housing.mesh, skfem.ElementHex2(), intorder=4)
+    pull = example.DENSITY * skfem.LinearForm(lambda v, _: v).assemble(basis)
+    assert pull.sum() == pytest.approx(housing.total, rel=1e-12)
+    # Mass of held nodes pulls at free ones of the same elements, too.
+    exact = housing.by.T @ np.kron(np.eye(3), pull[:, None])
+    assert np.abs(housing.weights - exact).max() < 1e-12 * housing.total
+    assert np.abs(exact).sum(axis=0).max() < 0.99 * housing.total
+
+
 def test_invariant_finer_elements_change_little(example, housing):
     coarse = example.Housing(0.03)
     for side in ("left", "right", "top"):
