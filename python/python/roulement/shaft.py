@@ -32,7 +32,7 @@ def reduce(mass, stiffness, interface, highest, gyroscopic=None):
     shapes[outer, np.arange(len(outer))] = 1
     shapes[np.ix_(inner, np.arange(len(outer)))] = -static
     shapes[np.ix_(inner, np.arange(len(outer), shapes.shape[1]))] = modes
-    of = lambda matrix: shapes.T @ (matrix @ shapes)
+    of = lambda matrix: shapes.T @ matrix @ shapes
     reduced = {"mass": of(mass), "stiffness": of(stiffness), "shapes": shapes, "frequencies": np.sqrt(np.maximum(values, 0)) / (2 * np.pi)}
     reduced["gyroscopic"] = np.zeros_like(reduced["mass"]) if gyroscopic is None else of(gyroscopic if sparse else np.asarray(gyroscopic, float))
     return reduced
