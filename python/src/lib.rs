@@ -28,5 +28,5 @@ mod _native {
     #[pymodule_export]
     use crate::simulations::{Simulation, State};
     #[pymodule_export]
-    use crate::sweeps::{Sweep, case_row};
+    use crate::sweeps::{Sweep, base_scene, case_row};
 }

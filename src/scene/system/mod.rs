@@ -142,18 +142,32 @@ impl SystemScene {
         let placed = |error| explain::with_place(error, text, None, file);
         match Scene::with_files(text, folder).map_err(placed)? {
             // Lines of the text with the tables are not those that the reader of a message has.
-            Some(text) => Self::read(&text, None, folder),
-            None => Self::read(text, file, folder),
+            Some(text) => {
+                Self::read(&text, folder, |error, spot| explain::with_place(error, &text, spot, None))
+            }
+            None => Self::read(text, folder, |error, spot| explain::with_place(error, text, spot, file)),
         }
     }
 
+    /// Reads a system from a text that stands alone, as [`SystemScene::source`] does; errors name no lines, which nobody has written.
+    ///
+    /// # Errors
+    /// See [`SceneError`].
+    pub fn edited(text: &str) -> Result<Self, SceneError> {
+        Self::read(text, Path::new(""), |error, _| error)
+    }
+
     /// Reads a system whose schedules name no files.
-    fn read(text: &str, file: Option<&str>, folder: &Path) -> Result<Self, SceneError> {
+    fn read(
+        text: &str,
+        folder: &Path,
+        place: impl Fn(SceneError, Option<usize>) -> SceneError,
+    ) -> Result<Self, SceneError> {
         let written: Written = toml::from_str(text).map_err(|why| {
             let spot = why.span().map(|span| span.start);
-            explain::with_place(explain::format_error(text, &why), text, spot, file)
+            place(explain::format_error(text, &why), spot)
         })?;
-        let placed = |error| explain::with_place(error, text, None, file);
+        let placed = |error| place(error, None);
         check::check(&written).map_err(placed)?;
         let Written { title, mut shaft, mut housing, bearing, load, gravity, solver } = written;
         let gravity = gravity.at(0.0);
