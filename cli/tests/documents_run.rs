@@ -194,6 +194,25 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                     read += 1;
                     continue;
                 }
+                // A housing is added to the shaft that is shipped, bearings take the place of those with their names.
+                if table.get("housing").is_some_and(Value::is_array) {
+                    let pinion = fs::read_to_string(root().join("scenes/shafts/pinion.toml")).unwrap();
+                    let mut system: Table = pinion.parse().unwrap();
+                    for (key, value) in table {
+                        match system.get_mut(&key).and_then(Value::as_array_mut) {
+                            Some(there) => {
+                                let new = value.as_array().unwrap();
+                                there.retain(|old| new.iter().all(|new| new["name"] != old["name"]));
+                                there.extend(new.iter().cloned());
+                            }
+                            None => drop(system.insert(key, value)),
+                        }
+                    }
+                    SystemScene::parse(&system.to_string(), None, &root())
+                        .unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
+                    read += 1;
+                    continue;
+                }
                 // With a bearing it is a whole scene, without one it is added to another.
                 let whole = table.contains_key("bearing");
                 let mut scene: Table = if whole { Table::new() } else { thrust.parse().unwrap() };

@@ -24,9 +24,9 @@ mod _native {
     #[pymodule_export]
     use crate::runs::{run, write_parquet};
     #[pymodule_export]
-    use crate::scenes::{Scene, cost, package};
+    use crate::scenes::{Scene, cost, package, package_shaft};
     #[pymodule_export]
     use crate::simulations::{Simulation, State};
     #[pymodule_export]
-    use crate::sweeps::{Sweep, case_row};
+    use crate::sweeps::{Sweep, base_scene, case_row};
 }

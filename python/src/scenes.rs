@@ -8,9 +8,10 @@ use pyo3::prelude::*;
 use roulement::analysis::{auto, estimate};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::interface::model_description::render;
+use roulement::scene::system::SystemScene;
 use roulement::{Model, scene};
 use roulement_cli::cost::{Choice, report, study_of};
-use roulement_cli::package::write_fmu;
+use roulement_cli::package::{write_fmu, write_system_fmu};
 use roulement_cli::report::json;
 
 use crate::failures::{file, runtime, scene as refused, value};
@@ -108,6 +109,21 @@ pub fn package(
     name: &str,
 ) -> PyResult<()> {
     py.detach(|| write_fmu(&scene.resolved()?, name, &libraries, &path).map_err(file))
+}
+
+/// Writes the FMU of a shaft with its bearings from its file.
+#[pyfunction]
+pub fn package_shaft(
+    py: Python<'_>,
+    file_of_shaft: PathBuf,
+    path: PathBuf,
+    libraries: Vec<PathBuf>,
+    name: &str,
+) -> PyResult<()> {
+    py.detach(|| {
+        let scene = SystemScene::load(&file_of_shaft).map_err(refused)?;
+        write_system_fmu(&scene, name, &libraries, &path).map_err(file)
+    })
 }
 
 /// Runs the study of accuracy against CPU time into a directory; gives the files.

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use roulement_cli::sweep::SweepError;
 use roulement_cli::sweep::all;
 use roulement_cli::sweep::case::{self, Wanted};
-use roulement_cli::sweep::cases::Cases;
+use roulement_cli::sweep::cases::{Cases, base_of};
 use roulement_cli::sweep::store::{from_text, to_text};
 
 use crate::failures::{file, scene as refused, value};
@@ -52,7 +52,7 @@ impl Sweep {
             };
             let base = match (scene, &cases.scene) {
                 (Some(text), _) => text,
-                (None, Some(path)) => roulement::Scene::load(path).map_err(refused)?.source,
+                (None, Some(path)) => base_of(path).map_err(refused)?.0,
                 (None, None) => return Err(value("name the base scene")),
             };
             let wanted = Wanted { columns, tables: None };
@@ -146,6 +146,12 @@ impl Sweep {
         let count = self.sweep.names.len();
         if case < count { Ok(()) } else { Err(value(format!("case {case} is not there: there are {count}"))) }
     }
+}
+
+/// Text of a base scene in a file, of a bearing or of a shaft with its bearings.
+#[pyfunction]
+pub fn base_scene(py: Python<'_>, path: PathBuf) -> PyResult<String> {
+    py.detach(|| base_of(&path).map(|(text, _)| text).map_err(refused))
 }
 
 /// Row of a case from the text of its scene, as text: what a worker on another machine does.

@@ -27,9 +27,15 @@ const SECTIONS: [(&str, &str); 15] = [
 
 fn section<'a>(sources: &'a [Source], name: &str) -> &'a Section {
     let of = |source: &&Source| {
-        ["schema/shaft.rs", "schema/housing.rs", "schema/machine.rs", "scene/system/mod.rs"]
-            .iter()
-            .any(|file| source.path.ends_with(file))
+        [
+            "schema/shaft.rs",
+            "schema/housing.rs",
+            "schema/machine.rs",
+            "scene/system/mod.rs",
+            "scene/system/bearing.rs",
+        ]
+        .iter()
+        .any(|file| source.path.ends_with(file))
     };
     let mut found = sources.iter().filter(of).filter_map(|source| source.sections.get(name));
     found.next().unwrap_or_else(|| panic!("there is no struct {name}"))
@@ -95,7 +101,9 @@ fn the_example_of_the_document_and_the_shipped_shaft_are_read_and_start() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let document = fs::read_to_string(folder.join("docs/shaft.md")).unwrap();
     let example = document.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
-    for text in [example.to_string(), fs::read_to_string(folder.join("scenes/shafts/pinion.toml")).unwrap()] {
+    let shipped = ["pinion", "housing"]
+        .map(|name| fs::read_to_string(folder.join(format!("scenes/shafts/{name}.toml"))).unwrap());
+    for text in [example.to_string()].into_iter().chain(shipped) {
         let system = crate::common::system(&text);
         assert_eq!(system.bearings().count(), 2);
     }

@@ -24,7 +24,7 @@ use signal_hook::flag;
 use super::effects::announce;
 use super::player::{End, Played, Player, put};
 use super::summary::summary;
-use super::{load, say, shaft, tell};
+use super::{load, say, shaft, system, tell};
 
 /// Exit code of a program that Ctrl-C ended: 128 and the number of the signal.
 pub const INTERRUPTED: u8 = 130;
@@ -66,12 +66,13 @@ pub struct Options {
 /// If the simulation cannot start or go on, or files cannot be written.
 pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     let Options { scene, output, json, columns, window, error, means_only, rounds } = options;
-    if shaft::is_system(&scene) {
+    if let Some(system) = system(&scene)? {
         if error.is_some() {
             return Err("--error is for the scene of one bearing: run a shaft again with a smaller solver.max_step and compare".into());
         }
         let choice = Choice { columns, window: window.unwrap_or_default() };
-        return shaft::run(&heeded_interrupt()?, &scene, &output, &choice, json);
+        let said = if json { Said::Json } else { Said::Text };
+        return shaft::run(&heeded_interrupt()?, "", &system, &output, &choice, said);
     }
     let mut scene = load(&scene)?;
     if let Some(Some(error)) = error {

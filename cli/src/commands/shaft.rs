@@ -36,16 +36,17 @@ struct Gathered {
     watch: Watch,
 }
 
-/// Simulates a shaft into a directory. What has been simulated until an error or Ctrl-C is kept.
+/// Simulates a shaft into a directory, with words before its progress. What has been simulated until an error or Ctrl-C is kept.
 ///
 /// # Errors
 /// If the simulation cannot start or go on, or files cannot be written.
 pub fn run(
     interrupted: &Arc<AtomicBool>,
-    file: &Path,
+    words: &str,
+    scene: &SystemScene,
     output: &Path,
     choice: &Choice,
-    json: bool,
+    said: Said,
 ) -> Result<ExitCode, Box<dyn Error>> {
     if is_parquet(output) {
         return Err(format!(
@@ -54,9 +55,7 @@ pub fn run(
         )
         .into());
     }
-    let scene = SystemScene::load(file)?;
-    tell(scene.notes());
-    let mut system = System::new(&scene)?;
+    let mut system = System::new(scene)?;
     let gathered = |(name, bearing): (&str, &roulement::Simulation)| -> Result<Gathered, Box<dyn Error>> {
         let directory = output.join(name);
         fs::create_dir_all(&directory)
@@ -69,9 +68,9 @@ pub fn run(
     };
     let mut gathered = system.bearings().map(gathered).collect::<Result<Vec<_>, _>>()?;
     let written = |why: std::io::Error| format!("cannot write {}: {why}", output.join("shaft.csv").display());
-    let mut table = ShaftTable::create(&output.join("shaft.csv"), &scene, choice.window).map_err(written)?;
+    let mut table = ShaftTable::create(&output.join("shaft.csv"), scene, choice.window).map_err(written)?;
     let rows = Rows { interval: scene.load.output_interval.0, duration: scene.load.duration.0 };
-    let progress = progress_bar(rows.count(), "");
+    let progress = progress_bar(rows.count(), words);
     let (begin, cpu) = (Instant::now(), ThreadTime::now());
     let mut shaft_rows: Thinned<SystemOutputs> = Thinned::default();
     let mut end = End::Reached;
@@ -141,8 +140,8 @@ pub fn run(
     );
     let summary = output.join("summary.txt");
     fs::write(&summary, &text).map_err(|why| format!("cannot write {}: {why}", summary.display()))?;
-    let plot = shaft::write_plot(&scene, &shaft_rows.finish(), output)?;
-    if json {
+    let plot = shaft::write_plot(scene, &shaft_rows.finish(), output)?;
+    if said == Said::Json {
         text = format!("{:#}\n", serde_json::Value::Object(values));
     } else {
         text += &format!(
@@ -159,7 +158,7 @@ pub fn run(
             );
         }
     }
-    let said = say(&text);
+    let said = if said == Said::Nothing { Ok(()) } else { say(&text) };
     match end {
         End::Reached => said.map(|()| ExitCode::SUCCESS).map_err(Into::into),
         End::Interrupted => {

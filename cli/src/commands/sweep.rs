@@ -10,18 +10,17 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use roulement::Scene;
 use roulement_cli::error::MOST_ROUNDS;
 use roulement_cli::page::record;
 use roulement_cli::report::results::Choice;
 use roulement_cli::sweep::all::{Sweep, threads as cores};
 use roulement_cli::sweep::case::Wanted;
-use roulement_cli::sweep::cases::{Cases, scene_of};
+use roulement_cli::sweep::cases::{CaseScene, Cases, base_of, scene_of};
 use roulement_cli::sweep::store::aside;
 
 use super::player::Player;
 use super::run::{INTERRUPTED, Place, Said, heeded_interrupt, simulate};
-use super::{say, tell};
+use super::{say, shaft, tell};
 
 /// Options of `roulement sweep`.
 #[derive(Args)]
@@ -83,10 +82,10 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     if let Some(case) = runs.iter().find(|case| **case > cases.rows.len()) {
         return Err(format!("--runs {case}: {} has {} cases", table.display(), cases.rows.len()).into());
     }
-    let base = Scene::load(&scene)?;
-    tell(base.notes());
+    let (base, notes) = base_of(&scene)?;
+    tell(notes);
     let wanted = Wanted { columns, tables: tables.map(Format::ending) };
-    let sweep = Sweep::new(cases, base.source, wanted, &output)?;
+    let sweep = Sweep::new(cases, base, wanted, &output)?;
     let missing = sweep.missing();
     let interrupted = heeded_interrupt()?;
     let bar = ProgressBar::new(missing.len() as u64);
@@ -132,15 +131,28 @@ fn keep_run(sweep: &Sweep, case: usize, interrupted: &Arc<AtomicBool>) -> Result
     if !kept.is_dir() {
         let part = aside(&kept);
         let scene = scene_of(&sweep.cases.text_of(&sweep.base, case - 1)?);
-        let place =
-            Place { output: part.clone(), files: true, choice: Choice::default(), said: Said::Nothing };
-        let player = Player { interrupted: Arc::clone(interrupted), words: format!("case {case}: ") };
-        let ended =
-            scene.map_err(Into::into).and_then(|scene| simulate(&player, &scene, &place, false, MOST_ROUNDS));
+        let words = format!("case {case}: ");
+        let (ended, made) = match scene {
+            Ok(CaseScene::Bearing(scene)) => {
+                let place = Place {
+                    output: part.clone(),
+                    files: true,
+                    choice: Choice::default(),
+                    said: Said::Nothing,
+                };
+                let player = Player { interrupted: Arc::clone(interrupted), words };
+                (simulate(&player, &scene, &place, false, MOST_ROUNDS).map(drop), record::FILE)
+            }
+            Ok(CaseScene::System(scene)) => {
+                let run = shaft::run(interrupted, &words, &scene, &part, &Choice::default(), Said::Nothing);
+                (run.map(drop), "shaft.svg")
+            }
+            Err(why) => (Err(why.into()), record::FILE),
+        };
         if let Err(why) = ended {
             tell([format!("case {case}: {why}")]);
         }
-        if interrupted.load(Ordering::Relaxed) || !part.join(record::FILE).is_file() {
+        if interrupted.load(Ordering::Relaxed) || !part.join(made).is_file() {
             // It may not have been begun.
             let _ = fs::remove_dir_all(part);
             return Ok(());

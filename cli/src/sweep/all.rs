@@ -5,11 +5,12 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use roulement::{Scene, SceneError};
+use roulement::SceneError;
 
 use super::SweepError;
 use super::case::{self, Wanted};
-use super::cases::{Cases, Setting, scene_of};
+use super::cases::{CaseScene, Cases, Setting, scene_of};
+use super::shaft;
 use super::store::{Store, aside};
 use crate::report::results::{Choice, Columns};
 
@@ -45,8 +46,13 @@ impl Sweep {
             first_read((0..names.len()).filter(sets), read, &format!("no case that sets {}", key.name))?;
         }
         if let Some(scene) = first_read(0..names.len(), read, "no case")? {
-            let choice = Choice { columns: wanted.columns.clone(), ..Choice::default() };
-            Columns::new(&scene, &choice)?;
+            match scene {
+                CaseScene::Bearing(scene) => {
+                    let choice = Choice { columns: wanted.columns.clone(), ..Choice::default() };
+                    drop(Columns::new(&scene, &choice)?);
+                }
+                CaseScene::System(scene) => shaft::check(&scene, &wanted)?,
+            }
         }
         let store = Store::new(directory)?;
         let is_number = |setting: &Setting| setting.shown.parse::<f64>().is_ok();
@@ -123,9 +129,9 @@ impl Sweep {
 /// The first of some cases whose scene can be read; none if there is no case.
 fn first_read(
     cases: impl Iterator<Item = usize>,
-    read: impl Fn(usize) -> Result<Scene, SceneError>,
+    read: impl Fn(usize) -> Result<CaseScene, SceneError>,
     what: &str,
-) -> Result<Option<Scene>, SweepError> {
+) -> Result<Option<CaseScene>, SweepError> {
     let mut first = None;
     for case in cases {
         match read(case) {

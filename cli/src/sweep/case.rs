@@ -10,8 +10,9 @@ use roulement::simulation::Simulation;
 use roulement::simulation::play::{Rows, play};
 
 use super::SweepError;
-use super::cases::scene_of;
+use super::cases::{CaseScene, scene_of};
 use super::extremes::{Gathered, OF_BALLS};
+use super::shaft;
 use crate::error::{Compared, Refined, Run, refine};
 use crate::report::cells::{Cell, Column};
 use crate::report::means::Means;
@@ -33,7 +34,7 @@ pub struct Wanted {
 pub type Row = Vec<(Column, Cell)>;
 
 /// Why a run has no result.
-enum Ended {
+pub(super) enum Ended {
     /// It was interrupted.
     Interrupted,
     /// It failed, or what is wanted of it is not there.
@@ -54,15 +55,23 @@ struct Done {
 /// # Errors
 /// If the file of the table cannot be written. A case that fails is no error.
 pub fn run(
-    scene: &Scene,
+    scene: &CaseScene,
     wanted: &Wanted,
     table: Option<&Path>,
     interrupted: &AtomicBool,
 ) -> Result<Option<Row>, SweepError> {
-    match measured(scene, wanted, table, interrupted) {
-        Ok((done, goal)) => {
+    let own = match scene {
+        CaseScene::Bearing(scene) => measured(scene, wanted, table, interrupted).map(|(done, goal)| {
+            let mut row = vec![number("time", "s", done.simulation.time())];
+            row.extend(summary(&done.simulation, &done.seen, &done.gathered, goal));
+            row
+        }),
+        CaseScene::System(scene) => shaft::run(scene, wanted, interrupted),
+    };
+    match own {
+        Ok(own) => {
             let mut row = ended("done", "");
-            row.extend(summary(&done, goal));
+            row.extend(own);
             Ok(Some(row))
         }
         Err(Ended::Failed(why)) => Ok(Some(ended("failed", &why))),
@@ -174,7 +183,7 @@ pub fn key_of(quantity: &str) -> String {
     of_race("inner").or_else(|| of_race("outer")).unwrap_or_else(|| quantity.replace(' ', "_"))
 }
 
-fn number(name: &str, unit: &str, value: f64) -> (Column, Cell) {
+pub(super) fn number(name: &str, unit: &str, value: f64) -> (Column, Cell) {
     (Column::number(name, unit), if value.is_nan() { Cell::Empty } else { Cell::Number(value) })
 }
 
@@ -190,10 +199,14 @@ fn settled(means: &Means) -> &'static str {
     }
 }
 
-/// What came of a case.
-fn summary(done: &Done, goal: Option<&'static str>) -> Row {
-    let Done { simulation, seen, gathered } = done;
-    let mut row = vec![number("time", "s", simulation.time())];
+/// What came of a bearing.
+pub(super) fn summary(
+    simulation: &Simulation,
+    seen: &Seen,
+    gathered: &Gathered,
+    goal: Option<&'static str>,
+) -> Row {
+    let mut row = vec![];
     if let Some(means) = &seen.means {
         row.push((Column::text("settled"), Cell::Text(settled(means).to_string())));
         let needed = means.needed().filter(|_| means.unsettled().next().is_some());

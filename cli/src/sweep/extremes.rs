@@ -49,6 +49,58 @@ pub struct OfColumn {
     sum: f64,
 }
 
+impl OfColumn {
+    /// Before the first row.
+    pub fn new(name: &str, unit: &str) -> Self {
+        Self {
+            name: name.to_string(),
+            unit: unit.to_string(),
+            extremes: Extremes::NONE,
+            end: f64::NAN,
+            sum: 0.0,
+        }
+    }
+
+    /// Takes the value of a row, which counts for the mean or not.
+    pub fn push(&mut self, value: f64, counts: bool) {
+        self.extremes.push(value);
+        self.end = value;
+        if counts {
+            self.sum += value;
+        }
+    }
+}
+
+/// Rows of a run, and those that means are over.
+#[derive(Clone, Copy, Debug)]
+pub struct Counted {
+    /// First row of the window of means.
+    begin: u64,
+    rows: u64,
+}
+
+impl Counted {
+    /// Of a run with so many rows, that of the start included.
+    pub fn new(rows: u64) -> Self {
+        Self { begin: Blocks::window_begins(rows), rows: 0 }
+    }
+
+    /// Is the present row in the window of means?
+    pub fn counts(&self) -> bool {
+        self.rows >= self.begin
+    }
+
+    /// Goes on to the next row.
+    pub fn next(&mut self) {
+        self.rows += 1;
+    }
+
+    /// Mean of a column over the window of means.
+    pub fn mean(&self, of: &OfColumn) -> f64 {
+        of.sum / (self.rows - self.begin.min(self.rows)) as f64
+    }
+}
+
 /// All of them.
 pub struct Gathered {
     /// Of the quantities whose means are reported.
@@ -58,9 +110,7 @@ pub struct Gathered {
     /// Chosen columns.
     pub chosen: Vec<OfColumn>,
     columns: Option<Columns>,
-    /// First row of the window of means, and rows so far.
-    begin: u64,
-    rows: u64,
+    counted: Counted,
 }
 
 impl Gathered {
@@ -75,21 +125,17 @@ impl Gathered {
             let choice = Choice { columns: chosen.to_vec(), ..Choice::default() };
             Some(Columns::new(simulation.scene(), &choice)?)
         };
-        let of = |(name, unit): (&str, &str)| OfColumn {
-            name: name.to_string(),
-            unit: unit.to_string(),
-            extremes: Extremes::NONE,
-            end: f64::NAN,
-            sum: 0.0,
-        };
         Ok(Self {
             quantities: [Extremes::NONE; COUNT],
             balls: [Extremes::NONE; OF_BALLS.len()],
             // All but the time.
-            chosen: columns.iter().flat_map(|columns| columns.names().skip(1)).map(of).collect(),
+            chosen: columns
+                .iter()
+                .flat_map(|columns| columns.names().skip(1))
+                .map(|(name, unit)| OfColumn::new(name, unit))
+                .collect(),
             columns,
-            begin: Blocks::window_begins(rows),
-            rows: 0,
+            counted: Counted::new(rows),
         })
     }
 
@@ -103,18 +149,14 @@ impl Gathered {
         if let Some(row) = self.columns.as_ref().and_then(|columns| columns.row(simulation.inputs(), outputs))
         {
             for (of, value) in self.chosen.iter_mut().zip(row.skip(1)) {
-                of.extremes.push(value);
-                of.end = value;
-                if self.rows >= self.begin {
-                    of.sum += value;
-                }
+                of.push(value, self.counted.counts());
             }
         }
-        self.rows += 1;
+        self.counted.next();
     }
 
     /// Mean of a chosen column over the window of means.
     pub fn mean(&self, of: &OfColumn) -> f64 {
-        of.sum / (self.rows - self.begin.min(self.rows)) as f64
+        self.counted.mean(of)
     }
 }

@@ -5,6 +5,7 @@
 //! | `cases` | which cases: a table of scene keys, CSV or TOML |
 //! | `ranges` | cases from ranges: grid and Latin hypercube |
 //! | `case` | one case, from its scene to its row of the summary |
+//! | `shaft` | the same of a shaft with its bearings |
 //! | `extremes` | least and largest values of a run, means of chosen columns |
 //! | `store` | rows of finished cases on the disk, by a hash of all that they follow from |
 //! | `all` | all cases on some threads |
@@ -15,6 +16,7 @@ pub mod case;
 pub mod cases;
 mod extremes;
 mod ranges;
+mod shaft;
 pub mod store;
 pub mod summary;
 

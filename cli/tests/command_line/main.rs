@@ -12,6 +12,7 @@ mod refusals;
 mod report;
 mod runs;
 mod scene_keys;
+mod shaft;
 mod signs;
 mod spectrum;
 mod sweep;

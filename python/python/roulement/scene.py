@@ -98,9 +98,13 @@ def package(scene, path, library=None, name=None):
     that of the model, of the file if not given.
     Raises OSError if a library is missing or of another platform.
     """
+    return _package(_native.package, scene._native, path, library, name)
+
+
+def _package(write, of, path, library, name):
     if library is None:
         library = find_libraries()
     elif isinstance(library, (str, os.PathLike)):
         library = [library]
-    _native.package(scene._native, Path(path), [Path(of) for of in library], name or Path(path).stem)
+    write(of, Path(path), [Path(of) for of in library], name or Path(path).stem)
     return Path(path)

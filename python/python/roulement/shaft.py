@@ -9,6 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from . import _native
+from .scene import _package
+
 
 def reduce(mass, stiffness, interface, highest, gyroscopic=None):
     """Reduces a structure to the coordinates of its interface and the modes between them (Craig and Bampton 1968).
@@ -93,6 +96,11 @@ def write(path, mass, stiffness, translations, stations, *, weights=None, gyrosc
     file |= {name: rows(matrix) for name, matrix in optional.items() if matrix is not None}
     file["stations"] = [{"position": np.asarray(position, float).tolist(), "map": rows(of)} for position, of in stations.items()]
     Path(path).write_text(json.dumps(file))
+
+
+def package(file, path, library=None, name=None):
+    """Writes the FMI 2.0 package of a shaft with its bearings from its file; returns its path. Options as of `roulement.package`."""
+    return _package(_native.package_shaft, Path(file), path, library, name)
 
 
 def write_ross(path, rotor, nodes, highest):

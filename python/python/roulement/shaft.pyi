@@ -1,5 +1,6 @@
 from collections.abc import Mapping, Sequence
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +18,7 @@ def write(
     mass: ArrayLike,
     stiffness: ArrayLike,
     translations: ArrayLike | None,
-    stations: Mapping[Any, ArrayLike],
+    stations: Mapping[float, ArrayLike] | Mapping[tuple[float, float, float], ArrayLike],
     *,
     weights: ArrayLike | None = None,
     gyroscopic: ArrayLike | None = None,
@@ -25,4 +26,10 @@ def write(
     polar_inertia: float = 0.0,
     title: str = "",
 ) -> None: ...
+def package(
+    file: str | PathLike[str],
+    path: str | PathLike[str],
+    library: str | PathLike[str] | Sequence[str | PathLike[str]] | None = None,
+    name: str | None = None,
+) -> Path: ...
 def write_ross(path: str | PathLike[str], rotor: Any, nodes: Sequence[int], highest: float) -> None: ...

@@ -20,7 +20,6 @@ import numpy as np
 
 from . import _native
 from ._toml import flat, to_toml
-from .scene import Scene
 
 PATIENCE = 600.0
 """How long a scheduler that has gone is waited for [s]."""
@@ -71,8 +70,10 @@ def _array(cells):
 def _open(cases, scene, output, columns):
     """The cases and their directory."""
     if isinstance(scene, (str, os.PathLike)):
-        scene = Scene.load(scene)
-    options = {"scene": scene.source if scene else None, "columns": [columns] if isinstance(columns, str) else list(columns)}
+        text = _native.base_scene(Path(scene))
+    else:
+        text = scene.source if scene else None
+    options = {"scene": text, "columns": [columns] if isinstance(columns, str) else list(columns)}
     if isinstance(cases, (str, os.PathLike)):
         return _native.Sweep(Path(output), path=Path(cases), **options)
     if isinstance(cases, dict):

@@ -188,6 +188,12 @@ fn alone(bearing: &MountedScene) -> Result<(), SceneError> {
             "\"equilibrium\" is for a bearing without a shaft: a shaft with its bearings is dynamic",
         );
     }
+    if scene.solver.goal.is_some() {
+        return refuse(
+            "solver.accuracy",
+            "{ error = ... } is for a bearing without a shaft: give \"fast\", \"balanced\" or \"reference\", or max_step and tolerance",
+        );
+    }
     if scene.effects.frame.section.is_some() {
         return refuse(
             "effects.frame",

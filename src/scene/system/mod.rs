@@ -3,21 +3,20 @@
 //! It is TOML as the scene of one bearing is. Each `[[bearing]]` has the keys of such a scene by itself (`scene`, a file or the keys
 //! themselves; or `catalogue`, a designation), changed by `[bearing.set]`, and where it sits on the shaft, `[bearing.mounting]`.
 
+mod bearing;
 mod check;
 mod check_housing;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use bearing::{Shared, WrittenBearing};
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::{Scene, SceneError};
-use crate::catalogue::Request;
 use crate::schema::units::{Acceleration, Force, Moment, Time};
-use crate::schema::{
-    Components, HousingSection, Matrices, Mounting, MountingDirection, ShaftSection, Solver, explain,
-};
+use crate::schema::{Components, HousingSection, Matrices, Mounting, ShaftSection, Solver, explain};
 
 /// A shaft with its bearings, as described by a file.
 #[derive(Clone, Debug)]
@@ -101,23 +100,6 @@ struct Written {
     solver: Table,
 }
 
-/// A bearing as it is written.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct WrittenBearing {
-    /// Its name: letters, digits, _ and -.
-    name: String,
-    /// Its scene: a file beside this one, or the keys of a scene; or `catalogue`.
-    scene: Option<Value>,
-    /// Its designation in the catalogue, such as 7206 B.
-    catalogue: Option<String>,
-    /// Where it sits on the shaft.
-    mounting: Mounting,
-    /// Keys of its scene that are changed, section by section.
-    #[serde(default)]
-    set: Table,
-}
-
 impl SystemScene {
     /// Is this text that of a system? It has a section `[shaft]`, which the scene of one bearing has not.
     pub fn is_system(text: &str) -> bool {
@@ -142,18 +124,32 @@ impl SystemScene {
         let placed = |error| explain::with_place(error, text, None, file);
         match Scene::with_files(text, folder).map_err(placed)? {
             // Lines of the text with the tables are not those that the reader of a message has.
-            Some(text) => Self::read(&text, None, folder),
-            None => Self::read(text, file, folder),
+            Some(text) => {
+                Self::read(&text, folder, |error, spot| explain::with_place(error, &text, spot, None))
+            }
+            None => Self::read(text, folder, |error, spot| explain::with_place(error, text, spot, file)),
         }
     }
 
+    /// Reads a system from a text that stands alone, as [`SystemScene::source`] does; errors name no lines, which nobody has written.
+    ///
+    /// # Errors
+    /// See [`SceneError`].
+    pub fn edited(text: &str) -> Result<Self, SceneError> {
+        Self::read(text, Path::new(""), |error, _| error)
+    }
+
     /// Reads a system whose schedules name no files.
-    fn read(text: &str, file: Option<&str>, folder: &Path) -> Result<Self, SceneError> {
+    fn read(
+        text: &str,
+        folder: &Path,
+        place: impl Fn(SceneError, Option<usize>) -> SceneError,
+    ) -> Result<Self, SceneError> {
         let written: Written = toml::from_str(text).map_err(|why| {
             let spot = why.span().map(|span| span.start);
-            explain::with_place(explain::format_error(text, &why), text, spot, file)
+            place(explain::format_error(text, &why), spot)
         })?;
-        let placed = |error| explain::with_place(error, text, None, file);
+        let placed = |error| place(error, None);
         check::check(&written).map_err(placed)?;
         let Written { title, mut shaft, mut housing, bearing, load, gravity, solver } = written;
         let gravity = gravity.at(0.0);
@@ -176,7 +172,8 @@ impl SystemScene {
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
         let bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
         check::solvers(&bearings).map_err(placed)?;
-        let source = standing_alone(text, &bearings, of_shaft.as_ref(), &of_housings);
+        let source =
+            standing_alone(text, &bearings, of_shaft.as_ref(), &of_housings, gravity != Vector3::zeros());
         Ok(Self { title, shaft, housings: housing, bearings, gravity, load, source })
     }
 
@@ -227,62 +224,13 @@ impl SystemScene {
     }
 }
 
-/// What all bearings of a system are given.
-struct Shared {
-    gravity: Vector3<f64>,
-    speed: f64,
-    load: SystemLoad,
-    solver: Table,
-    folder: PathBuf,
-}
-
-impl WrittenBearing {
-    /// The bearing with its scene.
-    fn read(self, given: &Shared) -> Result<MountedScene, SceneError> {
-        let Self { name, scene, catalogue, mounting, set } = self;
-        let inside =
-            |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
-        let (text, folder, file) = match (scene, catalogue) {
-            (Some(Value::Table(keys)), None) => (keys.to_string(), given.folder.clone(), None),
-            (Some(Value::String(file)), None) => {
-                let path = given.folder.join(&file);
-                let text = std::fs::read_to_string(&path)
-                    .map_err(|source| SceneError::Read { path: path.display().to_string(), source })
-                    .map_err(inside)?;
-                (text, path.parent().unwrap_or(Path::new("")).to_path_buf(), Some(file))
-            }
-            (None, Some(designation)) => {
-                let request = Request { designation: Some(designation.clone()), ..Request::default() };
-                let text = request.bearing().and_then(|bearing| bearing.scene(1));
-                let refuse =
-                    |why| inside(SceneError::conflict("bearing.catalogue", format!("{designation}: {why}")));
-                (text.map_err(refuse)?, given.folder.clone(), None)
-            }
-            _ => {
-                let why = "give exactly one of scene (a file, or its keys) and catalogue (a designation)";
-                return Err(inside(SceneError::conflict("bearing", why)));
-            }
-        };
-        let mut table: Table = toml::from_str(&text)
-            .map_err(|why| explain::format_error(&text, &why))
-            .map_err(|why| explain::with_place(why, &text, None, file.as_deref()))
-            .map_err(inside)?;
-        merge(&mut table, set);
-        if mounting.housing.is_some() {
-            in_housing(&mut table).map_err(inside)?;
-        }
-        mount(&mut table, given, mounting.direction);
-        let scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
-        Ok(MountedScene { name, mounting, scene })
-    }
-}
-
-/// The text of a system with the whole scene of every bearing and the matrices of its shaft and housings in it.
+/// The text of a system with the whole scene of every bearing and the matrices of its shaft and housings in it; does gravity act?
 fn standing_alone(
     text: &str,
     bearings: &[MountedScene],
     of_shaft: Option<&Matrices>,
     of_housings: &[Option<Matrices>],
+    weighs: bool,
 ) -> String {
     let Ok(mut table) = toml::from_str::<Table>(text) else {
         return text.to_string();
@@ -293,6 +241,7 @@ fn standing_alone(
             keys.insert("matrices".into(), matrices);
         }
     };
+    let solver = table.contains_key("solver");
     put(table.get_mut("shaft"), of_shaft);
     let housings = table.get_mut("housing").and_then(Value::as_array_mut).into_iter().flatten();
     for (keys, matrices) in housings.zip(of_housings) {
@@ -302,82 +251,15 @@ fn standing_alone(
     for (keys, bearing) in written.filter_map(Value::as_table_mut).zip(bearings) {
         keys.remove("catalogue");
         keys.remove("set");
-        let scene = toml::from_str::<Table>(&bearing.scene.source).unwrap_or_default();
+        let mut scene = toml::from_str::<Table>(&bearing.scene.source).unwrap_or_default();
+        // What the system says of all its bearings stands there alone: who changes it there changes it.
+        if solver {
+            scene.remove("solver");
+        }
+        if let (Some(effects), true) = (scene.get_mut("effects").and_then(Value::as_table_mut), weighs) {
+            effects.remove("gravity");
+        }
         keys.insert("scene".into(), scene.into());
     }
     table.to_string()
-}
-
-/// Sets keys of a table, section by section.
-fn merge(into: &mut Table, changes: Table) {
-    for (key, value) in changes {
-        match (into.get_mut(&key), value) {
-            (Some(Value::Table(section)), Value::Table(changes)) => merge(section, changes),
-            (_, value) => {
-                into.insert(key, value);
-            }
-        }
-    }
-}
-
-/// Takes a section out of a table; an empty one if there is none.
-fn section(table: &mut Table, name: &str) -> Table {
-    match table.remove(name) {
-        Some(Value::Table(section)) => section,
-        _ => Table::new(),
-    }
-}
-
-/// Makes a bearing's own scene that of a bearing whose outer race a housing moves.
-fn in_housing(table: &mut Table) -> Result<(), SceneError> {
-    let mut outer = section(table, "outer");
-    let why = "the outer race sits in mounting.housing, which moves it";
-    if let Some(key) = ["support", "misalignment"].into_iter().find(|key| outer.contains_key(*key)) {
-        return Err(SceneError::conflict(format!("outer.{key}"), why));
-    }
-    if outer.get("drive").and_then(Value::as_str).is_some_and(|drive| drive != "fixed" && drive != "pose") {
-        return Err(SceneError::conflict("outer.drive", why));
-    }
-    if let Some(load) = table.get_mut("load").and_then(Value::as_table_mut)
-        && load.contains_key("outer_speed")
-    {
-        return Err(SceneError::conflict("load.outer_speed", why));
-    }
-    outer.insert("drive".into(), "pose".into());
-    table.insert("outer".into(), outer.into());
-    Ok(())
-}
-
-/// Makes a bearing's own scene that of a bearing whose inner race the shaft moves.
-fn mount(table: &mut Table, given: &Shared, direction: MountingDirection) {
-    let mut inner = section(table, "inner");
-    inner.insert("drive".into(), "pose".into());
-    table.insert("inner".into(), inner.into());
-    let mut load = section(table, "load");
-    let outer_speed = load.remove("outer_speed");
-    let mut load = Table::new();
-    load.extend(outer_speed.map(|speed| ("outer_speed".to_string(), speed)));
-    load.insert("duration".into(), given.load.duration.0.into());
-    load.insert("output_interval".into(), given.load.output_interval.0.into());
-    load.insert("inner_speed".into(), (direction.sign() * given.speed).into());
-    for (direction, key) in [
-        ("x", "displacement"),
-        ("y", "displacement"),
-        ("z", "displacement"),
-        ("ry", "rotation"),
-        ("rz", "rotation"),
-    ] {
-        load.insert(direction.into(), Table::from_iter([(key.to_string(), Value::from(0.0))]).into());
-    }
-    table.insert("load".into(), load.into());
-    if !given.solver.is_empty() {
-        table.insert("solver".into(), given.solver.clone().into());
-    }
-    let mut effects = section(table, "effects");
-    if given.gravity != Vector3::zeros() {
-        let sign = direction.sign();
-        let turned = [sign * given.gravity.x, sign * given.gravity.y, given.gravity.z];
-        effects.insert("gravity".into(), turned.map(Value::from).to_vec().into());
-    }
-    table.insert("effects".into(), effects.into());
 }

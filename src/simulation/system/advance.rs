@@ -26,6 +26,7 @@ impl System {
         self.bearings
             .iter_mut()
             .for_each(|bearing| bearing.inputs = bearing.scripted_inputs(bearing.state.time));
+        self.see_races();
         result
     }
 
@@ -71,8 +72,22 @@ impl System {
         checked.map_err(|(index, source)| self.of_bearing(index, source))
     }
 
+    /// Sets what the inputs of bearings say of races that structures carry to where these are.
+    fn see_races(&mut self) {
+        for bearing in &mut self.bearings {
+            for race in Race::BOTH.into_iter().filter(|race| bearing.model.is_carried(*race)) {
+                let (state, input) = (bearing.state.race(race), &mut bearing.inputs[race]);
+                input.pose = state.pose;
+                input.twist = state.twist();
+                input.speed = state.rate.x;
+                input.axis = None;
+            }
+        }
+    }
+
     /// Outputs of the state as it is.
     pub(super) fn report(&mut self) {
+        self.see_races();
         let torque = match self.carriers[0].structure.turning {
             Turning::Free => self.paths.torque(self.time),
             Turning::Given | Turning::Still => self.states[0].torque,

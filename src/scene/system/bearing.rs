@@ -1,0 +1,161 @@
+//! A bearing of a system as it is written, and how its own scene becomes that of a bearing on a shaft.
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::Vector3;
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use super::{MountedScene, SystemLoad};
+use crate::catalogue::Request;
+use crate::scene::{Scene, SceneError};
+use crate::schema::{Mounting, MountingDirection, explain};
+
+/// A bearing as it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WrittenBearing {
+    /// Its name: letters, digits, _ and -.
+    pub name: String,
+    /// Its scene: a file beside this one, or the keys of a scene; or `catalogue`.
+    pub scene: Option<Value>,
+    /// Its designation in the catalogue, such as 7206 B.
+    pub catalogue: Option<String>,
+    /// Where it sits on the shaft.
+    pub mounting: Mounting,
+    /// Keys of its scene that are changed, section by section.
+    #[serde(default)]
+    pub set: Table,
+}
+
+/// What all bearings of a system are given.
+pub struct Shared {
+    /// [m/s2] gravity in the axes of the shaft.
+    pub gravity: Vector3<f64>,
+    /// [rad/s] speed of the shaft at the start.
+    pub speed: f64,
+    /// Simulated time, and distance of rows.
+    pub load: SystemLoad,
+    /// Keys of the time integration.
+    pub solver: Table,
+    /// Where files are.
+    pub folder: PathBuf,
+}
+
+impl WrittenBearing {
+    /// The bearing with its scene.
+    ///
+    /// # Errors
+    /// With its name and what is wrong.
+    pub fn read(self, given: &Shared) -> Result<MountedScene, SceneError> {
+        let Self { name, scene, catalogue, mounting, set } = self;
+        let inside =
+            |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
+        let (text, folder, file) = match (scene, catalogue) {
+            (Some(Value::Table(keys)), None) => (keys.to_string(), given.folder.clone(), None),
+            (Some(Value::String(file)), None) => {
+                let path = given.folder.join(&file);
+                let text = std::fs::read_to_string(&path)
+                    .map_err(|source| SceneError::Read { path: path.display().to_string(), source })
+                    .map_err(inside)?;
+                (text, path.parent().unwrap_or(Path::new("")).to_path_buf(), Some(file))
+            }
+            (None, Some(designation)) => {
+                let request = Request { designation: Some(designation.clone()), ..Request::default() };
+                let text = request.bearing().and_then(|bearing| bearing.scene(1));
+                let refuse =
+                    |why| inside(SceneError::conflict("bearing.catalogue", format!("{designation}: {why}")));
+                (text.map_err(refuse)?, given.folder.clone(), None)
+            }
+            _ => {
+                let why = "give exactly one of scene (a file, or its keys) and catalogue (a designation)";
+                return Err(inside(SceneError::conflict("bearing", why)));
+            }
+        };
+        let mut table: Table = toml::from_str(&text)
+            .map_err(|why| explain::format_error(&text, &why))
+            .map_err(|why| explain::with_place(why, &text, None, file.as_deref()))
+            .map_err(inside)?;
+        merge(&mut table, set);
+        if mounting.housing.is_some() {
+            in_housing(&mut table).map_err(inside)?;
+        }
+        mount(&mut table, given, mounting.direction);
+        let scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
+        Ok(MountedScene { name, mounting, scene })
+    }
+}
+
+/// Sets keys of a table, section by section.
+fn merge(into: &mut Table, changes: Table) {
+    for (key, value) in changes {
+        match (into.get_mut(&key), value) {
+            (Some(Value::Table(section)), Value::Table(changes)) => merge(section, changes),
+            (_, value) => {
+                into.insert(key, value);
+            }
+        }
+    }
+}
+
+/// Takes a section out of a table; an empty one if there is none.
+fn section(table: &mut Table, name: &str) -> Table {
+    match table.remove(name) {
+        Some(Value::Table(section)) => section,
+        _ => Table::new(),
+    }
+}
+
+/// Makes a bearing's own scene that of a bearing whose outer race a housing moves.
+fn in_housing(table: &mut Table) -> Result<(), SceneError> {
+    let mut outer = section(table, "outer");
+    let why = "the outer race sits in mounting.housing, which moves it";
+    if let Some(key) = ["support", "misalignment"].into_iter().find(|key| outer.contains_key(*key)) {
+        return Err(SceneError::conflict(format!("outer.{key}"), why));
+    }
+    if outer.get("drive").and_then(Value::as_str).is_some_and(|drive| drive != "fixed" && drive != "pose") {
+        return Err(SceneError::conflict("outer.drive", why));
+    }
+    if let Some(load) = table.get_mut("load").and_then(Value::as_table_mut)
+        && load.contains_key("outer_speed")
+    {
+        return Err(SceneError::conflict("load.outer_speed", why));
+    }
+    outer.insert("drive".into(), "pose".into());
+    table.insert("outer".into(), outer.into());
+    Ok(())
+}
+
+/// Makes a bearing's own scene that of a bearing whose inner race the shaft moves.
+fn mount(table: &mut Table, given: &Shared, direction: MountingDirection) {
+    let mut inner = section(table, "inner");
+    inner.insert("drive".into(), "pose".into());
+    table.insert("inner".into(), inner.into());
+    let mut load = section(table, "load");
+    let outer_speed = load.remove("outer_speed");
+    let mut load = Table::new();
+    load.extend(outer_speed.map(|speed| ("outer_speed".to_string(), speed)));
+    load.insert("duration".into(), given.load.duration.0.into());
+    load.insert("output_interval".into(), given.load.output_interval.0.into());
+    load.insert("inner_speed".into(), (direction.sign() * given.speed).into());
+    for (direction, key) in [
+        ("x", "displacement"),
+        ("y", "displacement"),
+        ("z", "displacement"),
+        ("ry", "rotation"),
+        ("rz", "rotation"),
+    ] {
+        load.insert(direction.into(), Table::from_iter([(key.to_string(), Value::from(0.0))]).into());
+    }
+    table.insert("load".into(), load.into());
+    if !given.solver.is_empty() {
+        table.insert("solver".into(), given.solver.clone().into());
+    }
+    let mut effects = section(table, "effects");
+    if given.gravity != Vector3::zeros() {
+        let sign = direction.sign();
+        let turned = [sign * given.gravity.x, sign * given.gravity.y, given.gravity.z];
+        effects.insert("gravity".into(), turned.map(Value::from).to_vec().into());
+    }
+    table.insert("effects".into(), effects.into());
+}
