@@ -40,6 +40,44 @@ def test_invariant_with_all_modes_frequencies_are_those_of_the_whole():
     assert small == pytest.approx(whole, abs=1e-12)
 
 
+def test_invariant_sparse_matrices_are_reduced_as_dense_ones():
+    from scipy import sparse
+
+    mass, stiffness = chain(100)
+    interface = [80, 0]
+    # Of 98 modes between 0 and 0.3 Hz some, none, more than are looked for at first, and all.
+    for highest, least, most in ((0.03, 5, 20), (0.0, 0, 0), (0.12, 25, 47), (1.0, 98, 98)):
+        whole = shaft.reduce(mass, stiffness, interface, highest)
+        small = shaft.reduce(sparse.csc_array(mass), sparse.csc_array(stiffness), interface, highest)
+        assert least <= len(small["frequencies"]) <= most
+        assert small["frequencies"] == pytest.approx(whole["frequencies"], rel=1e-9)
+        assert small["stiffness"][:2, :2] == pytest.approx(whole["stiffness"][:2, :2], abs=1e-12)
+        # Modes have a sign of their own.
+        signs = np.sign(np.sum(small["shapes"][:, 2:] * whole["shapes"][:, 2:], axis=0))
+        assert np.abs(small["shapes"][:, 2:] * signs - whole["shapes"][:, 2:]).max(initial=0) < 1e-6
+        assert small["shapes"][:, :2] == pytest.approx(whole["shapes"][:, :2], abs=1e-12)
+        again = shaft.reduce(sparse.csc_array(mass), sparse.csc_array(stiffness), interface, highest)
+        assert all(np.array_equal(small[key], again[key]) for key in small)
+
+
+def test_closed_form_weights_of_a_structure_that_is_held(tmp_path):
+    """A chain on a spring to the ground: what the file's translations weigh is what gravity does, and moves the interface as it does the whole."""
+    mass, stiffness = chain(12)
+    stiffness[0, 0] += 1
+    reduced = shaft.reduce(mass, stiffness, [7], 0.1)
+    weights = reduced["shapes"].T @ mass @ np.ones((12, 3))
+    path = tmp_path / "held.json"
+    shaft.write(path, reduced["mass"], reduced["stiffness"], None, {0.0: np.zeros((6, len(weights)))}, weights=weights)
+    file = json.loads(path.read_text())
+    read = np.array(file["mass"]) @ file["translations"]
+    assert read == pytest.approx(weights, rel=1e-9)
+    exact = np.linalg.solve(stiffness, mass @ np.ones(12))[7]
+    assert np.linalg.solve(reduced["stiffness"], read[:, 0])[0] == pytest.approx(exact, rel=1e-9)
+    for translations, weights in ((None, None), (np.eye(3), np.eye(3))):
+        with pytest.raises(ValueError, match="either"):
+            shaft.write(path, np.eye(3), np.eye(3), translations, {}, weights=weights)
+
+
 def test_the_file_has_what_was_given(tmp_path):
     mass, stiffness = chain(3)
     stations = {0.1: np.eye(6, 3), (0.4, 0, -0.1): 2 * np.eye(6, 3)}

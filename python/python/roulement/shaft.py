@@ -19,36 +19,76 @@ def reduce(mass, stiffness, interface, highest, gyroscopic=None):
     `interface` are indices of coordinates to keep, `highest` is the largest frequency of modes to keep [Hz], while the interface is held.
     Returns a dict of the reduced matrices `mass`, `stiffness`, `gyroscopic`, the `shapes` (coordinates of the whole by the reduced ones) and
     the `frequencies` of the modes [Hz]. The interface's coordinates come first, in the order given.
+
+    Matrices may be sparse ones of SciPy. They are then factorised as such, and only the modes that are kept are computed: for thousands of
+    coordinates, of which few modes are wanted.
     """
-    mass, stiffness = np.asarray(mass, float), np.asarray(stiffness, float)
-    size = len(mass)
+    sparse = hasattr(mass, "tocsc") and hasattr(stiffness, "tocsc")
+    mass, stiffness = (matrix.tocsc() if sparse else np.asarray(matrix, float) for matrix in (mass, stiffness))
     outer = np.asarray(interface)
-    inner = np.setdiff1d(np.arange(size), outer)
-    static = -np.linalg.solve(stiffness[np.ix_(inner, inner)], stiffness[np.ix_(inner, outer)])
-    lower = np.linalg.cholesky(mass[np.ix_(inner, inner)])
-    half = np.linalg.solve(lower, stiffness[np.ix_(inner, inner)])
-    scaled = np.linalg.solve(lower, half.T)
-    values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
-    frequencies = np.sqrt(np.maximum(values, 0)) / (2 * np.pi)
-    kept = frequencies <= highest
-    modes = np.linalg.solve(lower.T, vectors[:, kept])
-    shapes = np.zeros((size, len(outer) + kept.sum()))
+    inner = np.setdiff1d(np.arange(mass.shape[0]), outer)
+    part = lambda matrix, rows, columns: matrix[rows][:, columns]
+    static, values, modes = (_sparse_modes if sparse else _dense_modes)(
+        part(mass, inner, inner), part(stiffness, inner, inner), part(stiffness, inner, outer), (2 * np.pi * highest) ** 2
+    )
+    shapes = np.zeros((mass.shape[0], len(outer) + len(values)))
     shapes[outer, np.arange(len(outer))] = 1
-    shapes[np.ix_(inner, np.arange(len(outer)))] = static
+    shapes[np.ix_(inner, np.arange(len(outer)))] = -static
     shapes[np.ix_(inner, np.arange(len(outer), shapes.shape[1]))] = modes
-    of = lambda matrix: shapes.T @ np.asarray(matrix, float) @ shapes
-    reduced = {"mass": of(mass), "stiffness": of(stiffness), "shapes": shapes, "frequencies": frequencies[kept]}
-    reduced["gyroscopic"] = np.zeros_like(reduced["mass"]) if gyroscopic is None else of(gyroscopic)
+    of = lambda matrix: shapes.T @ matrix @ shapes
+    reduced = {"mass": of(mass), "stiffness": of(stiffness), "shapes": shapes, "frequencies": np.sqrt(np.maximum(values, 0)) / (2 * np.pi)}
+    reduced["gyroscopic"] = np.zeros_like(reduced["mass"]) if gyroscopic is None else of(gyroscopic if sparse else np.asarray(gyroscopic, float))
     return reduced
 
 
-def write(path, mass, stiffness, translations, stations, *, gyroscopic=None, damping=None, polar_inertia=0.0, title=""):
+def _dense_modes(mass, stiffness, coupling, highest):
+    """Solution of `stiffness x = coupling`; eigenvalues up to `highest` [1/s2] and modes, of unit mass."""
+    lower = np.linalg.cholesky(mass)
+    half = np.linalg.solve(lower, stiffness)
+    scaled = np.linalg.solve(lower, half.T)
+    values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
+    kept = values <= highest
+    return np.linalg.solve(stiffness, coupling), values[kept], np.linalg.solve(lower.T, vectors[:, kept])
+
+
+def _sparse_modes(mass, stiffness, coupling, highest):
+    """The same of sparse matrices: Lanczos's method on the inverse, for ever more modes until one is above `highest`."""
+    from scipy.sparse.linalg import LinearOperator, eigsh, splu
+
+    size = mass.shape[0]
+    # The stiffness is symmetric and positive definite: no pivots.
+    solve = splu(stiffness, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}).solve
+    static = solve(coupling.toarray())
+    # The same start every time, for the same bits.
+    start = np.random.default_rng(0).standard_normal(size)
+    count, values, vectors = 12, np.zeros(0), np.zeros((size, 0))
+    while len(values) == 0 or values[-1] <= highest:
+        count *= 2
+        if count >= size:
+            return _dense_modes(mass.toarray(), stiffness.toarray(), coupling.toarray(), highest)
+        inverse = LinearOperator((size, size), matvec=solve, dtype=float)
+        values, vectors = eigsh(stiffness, count, mass, sigma=0.0, OPinv=inverse, v0=start)
+        order = np.argsort(values)
+        values, vectors = values[order], vectors[:, order]
+    kept = values <= highest
+    return static, values[kept], vectors[:, kept]
+
+
+def write(path, mass, stiffness, translations, stations, *, weights=None, gyroscopic=None, damping=None, polar_inertia=0.0, title=""):
     """Writes the matrices of a shaft for `shaft.matrices`, or of a housing for `housing.matrices`.
 
     `translations`, shape (n, 3), are the coordinates of a unit displacement of the whole along x, y, z. `stations` has for each position
     along the shaft [m], or place (x, y, z) [m], the map there: displacement x, y, z [m] and rotation about x, y, z [rad] by the coordinates, shape (6, n).
+    A structure that is held cannot be displaced as a whole: then `translations` is None, and `weights`, shape (n, 3), are the generalised forces of
+    an acceleration of 1 m/s2 along x, y, z [kg, kg m]. After a reduction: `shapes.T @ (mass @ unit)[free]`, with the mass of all coordinates, held ones
+    too, and those of a displacement of everything by 1 along x, y, z.
     `gyroscopic` is that of a spin of 1 rad/s. `polar_inertia` is the moment of inertia about the axis [kg m2].
     """
+    if (translations is None) == (weights is None):
+        raise ValueError("either translations or weights: the one that is not given is None")
+    if translations is None:
+        # The file has coordinates whose weights, by the mass, are these: the rigid displacement as near as the coordinates come to it.
+        translations = np.linalg.solve(np.asarray(mass, float), np.asarray(weights, float))
     rows = lambda matrix: np.asarray(matrix, float).tolist()
     optional = {"gyroscopic": gyroscopic, "damping": damping}
     file = {"title": title, "mass": rows(mass), "stiffness": rows(stiffness), "translations": rows(translations)}

@@ -5,16 +5,22 @@ from typing import Any
 
 from numpy.typing import ArrayLike, NDArray
 
+# Matrices are arrays, or sparse ones of SciPy, which is not needed for arrays.
 def reduce(
-    mass: ArrayLike, stiffness: ArrayLike, interface: Sequence[int] | NDArray[Any], highest: float, gyroscopic: ArrayLike | None = None
+    mass: ArrayLike | Any,
+    stiffness: ArrayLike | Any,
+    interface: Sequence[int] | NDArray[Any],
+    highest: float,
+    gyroscopic: ArrayLike | Any | None = None,
 ) -> dict[str, NDArray[Any]]: ...
 def write(
     path: str | PathLike[str],
     mass: ArrayLike,
     stiffness: ArrayLike,
-    translations: ArrayLike,
+    translations: ArrayLike | None,
     stations: Mapping[float, ArrayLike] | Mapping[tuple[float, float, float], ArrayLike],
     *,
+    weights: ArrayLike | None = None,
     gyroscopic: ArrayLike | None = None,
     damping: ArrayLike | None = None,
     polar_inertia: float = 0.0,
