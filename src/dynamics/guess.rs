@@ -98,7 +98,7 @@ impl Workspace {
         trend.changes.extend(solved.zip(&self.steady).map(|(solved, steady)| solved - steady));
         let of_balls = BLOCK * self.balls.len();
         let alone = model.border_size() == 0 && self.neighbours.is_empty();
-        let group = if alone { BLOCK } else { of_balls };
+        let group = if alone { BLOCK } else { of_balls.max(1) };
         let groups = trend.changes[..of_balls].chunks_exact(group).zip(self.expected.chunks_exact(group));
         trend.smooth.clear();
         trend.smooth.extend(groups.map(|(changes, expected)| {
