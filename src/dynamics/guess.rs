@@ -10,6 +10,11 @@ use crate::model::state::Trend;
 use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::orbit_turn::OrbitTurn;
 
+/// [-] change of the accelerations of balls in a step over their size that a guess may go on with. Balls that come to rest have none that
+/// stay: the guess would take them through the bend that friction has there (a bearing at a standstill then took a fifth more
+/// corrections, and a fifth more of new blocks).
+const SMALL: f64 = 0.05;
+
 impl BearingStep<'_> {
     /// First guess: accelerations and multipliers change as they did in the last step, where they have done so smoothly, and stay as they
     /// are elsewhere; those of a ball turn with its orbit.
@@ -99,14 +104,17 @@ impl Workspace {
         let of_balls = BLOCK * self.balls.len();
         let alone = model.border_size() == 0 && self.neighbours.is_empty();
         let group = if alone { BLOCK } else { of_balls.max(1) };
+        let square = |list: &[f64]| list.iter().map(|x| x * x).sum::<f64>();
         let groups = trend.changes[..of_balls].chunks_exact(group).zip(self.expected.chunks_exact(group));
         trend.smooth.clear();
-        trend.smooth.extend(groups.map(|(changes, expected)| {
-            let size: f64 = changes.iter().map(|change| change * change).sum();
-            let missed: f64 =
-                changes.iter().zip(expected).map(|(change, e)| (change - e) * (change - e)).sum();
-            missed < size
-        }));
+        trend.smooth.extend(groups.zip(self.steady.chunks_exact(group)).map(
+            |((changes, expected), steady)| {
+                let missed: f64 =
+                    changes.iter().zip(expected).map(|(change, e)| (change - e) * (change - e)).sum();
+                let change = square(changes);
+                missed < change && change < SMALL * SMALL * square(steady)
+            },
+        ));
     }
 }
 

@@ -276,7 +276,7 @@ pub struct Trend {
     pub step: f64,
     /// Changes of the unknowns beyond the turn of orbits, in their units; empty before the first step.
     pub changes: Vec<f64>,
-    /// Did they come nearer to what the step before led to expect than to nothing? Of each ball between races of prescribed motion, which
+    /// Were they small, and nearer to what the step before led to expect than to nothing? Of each ball between races of prescribed motion, which
     /// it follows alone; else one for all.
     pub smooth: Vec<bool>,
 }
