@@ -8,7 +8,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use roulement::dynamics::{BodyLoad, Boundary, Workspace, make_consistent, try_step};
 use roulement::model::bodies::{Bodies, Constraint, PerRace, Race, RigidBody};
 use roulement::model::energies::{Energies, Powers};
-use roulement::model::state::{BallState, BodyState, KeptMatrix, State, Statistics};
+use roulement::model::state::{BallState, BodyState, KeptMatrix, State, Statistics, Trend};
 use roulement::model::{Conditions, Model};
 use roulement::numerics::motion::{Pose, Twist, Wrench};
 use roulement::numerics::rotation;
@@ -55,6 +55,7 @@ impl Flight {
             control: StepControl::new(h, h, h),
             force_tolerance: 0.0,
             matrix: KeptMatrix::default(),
+            trend: Trend::default(),
             powers: Powers::default(),
             energies: Energies::default(),
             statistics: Statistics::default(),

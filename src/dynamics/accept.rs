@@ -17,7 +17,7 @@ use crate::forces::{
 use crate::model::Model;
 use crate::model::bodies::{Body, PerRace, Race};
 use crate::model::energies::{Energies, Powers, Pressed};
-use crate::model::state::{BallState, BodyState, State, axes_of};
+use crate::model::state::{BallState, BodyState, State, Trend, axes_of};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
 use crate::numerics::step_control::LARGEST_CUT;
@@ -275,6 +275,7 @@ pub fn renew_polynomials(model: &Model, state: &mut State, boundary: &Boundary) 
 /// Multipliers hold the constrained directions still (or at the given rate of the spin speed [rad/s2]).
 pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     renew_polynomials(model, state, boundary);
+    state.trend = Trend::default();
     let contacts = Contacts::new(model, state, &boundary.conditions);
     let ball_model = &model.bearing.ball;
     let ambient = model.ambient(&boundary.frame);

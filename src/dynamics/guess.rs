@@ -2,22 +2,49 @@
 
 use nalgebra::Vector6;
 
+use super::Workspace;
 use super::equations::BearingStep;
+use crate::model::Model;
 use crate::model::bodies::{Body, Constraint, Race};
+use crate::model::state::Trend;
 use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::orbit_turn::OrbitTurn;
 
+/// [-] change of the accelerations of balls in a step over their size that a guess may go on with. Balls that come to rest have none that
+/// stay: the guess would take them through the bend that friction has there (a bearing at a standstill then took a fifth more
+/// corrections, and a fifth more of new blocks).
+const SMALL: f64 = 0.05;
+
 impl BearingStep<'_> {
-    /// First guess: accelerations and multipliers stay as they are; those of a ball turn with its orbit.
-    pub fn guess_steady_orbit(&self, unknowns: &mut Vec<f64>) {
+    /// First guess: accelerations and multipliers change as they did in the last step, where they have done so smoothly, and stay as they
+    /// are elsewhere; those of a ball turn with its orbit.
+    pub fn guess_steady_trend(&mut self, unknowns: &mut Vec<f64>) {
         self.guess_steady_acceleration(unknowns);
+        let Workspace { steady, expected, .. } = &mut *self.workspace;
+        let Trend { step, changes, smooth } = &self.start.trend;
+        expected.clear();
+        if changes.len() == unknowns.len() {
+            expected.extend(changes.iter().map(|change| change * (self.step.h / step)));
+        } else {
+            expected.resize(unknowns.len(), 0.0);
+        }
         let race = self.start.race(Race::Outer);
-        for (ball, unknowns) in self.start.balls.iter().zip(unknowns.chunks_exact_mut(BLOCK)) {
+        let changes = expected.chunks_exact_mut(BLOCK);
+        for ((ball, unknowns), change) in
+            self.start.balls.iter().zip(unknowns.chunks_exact_mut(BLOCK)).zip(changes)
+        {
             let offset = ball.position - race.pose.position;
             let ahead = offset + (ball.velocity - race.velocity) * self.step.h;
             let turn = OrbitTurn::between(&offset, &ahead);
-            let guess = turn.stacked(&Vector6::from_row_slice(unknowns));
-            unknowns.copy_from_slice(guess.as_slice());
+            for vector in [unknowns, change] {
+                vector.copy_from_slice(turn.stacked(&Vector6::from_row_slice(vector)).as_slice());
+            }
+        }
+        steady.clone_from(unknowns);
+        let group = unknowns.len() / smooth.len().max(1);
+        let groups = unknowns.chunks_exact_mut(group.max(1)).zip(expected.chunks_exact(group.max(1)));
+        for ((unknowns, changes), _) in groups.zip(smooth).filter(|(_, smooth)| **smooth) {
+            unknowns.iter_mut().zip(changes).for_each(|(unknown, change)| *unknown += change);
         }
     }
 
@@ -61,6 +88,33 @@ impl BearingStep<'_> {
                 }
             }
         }
+    }
+}
+
+impl Workspace {
+    /// Takes over how accelerations and multipliers have changed in a solved step of `h` \[s], and whether a guess that goes on with
+    /// such changes would have been the better one.
+    pub(super) fn follow_trend(&self, model: &Model, trend: &mut Trend, h: f64) {
+        let balls = self.balls.iter().flat_map(|trial| trial.unknowns.iter());
+        let bodies = self.bodies.iter().filter_map(|(_, trial)| trial.as_ref());
+        let solved = balls.chain(bodies.flat_map(|trial| &trial.unknowns));
+        trend.step = h;
+        trend.changes.clear();
+        trend.changes.extend(solved.zip(&self.steady).map(|(solved, steady)| solved - steady));
+        let of_balls = BLOCK * self.balls.len();
+        let alone = model.border_size() == 0 && self.neighbours.is_empty();
+        let group = if alone { BLOCK } else { of_balls.max(1) };
+        let square = |list: &[f64]| list.iter().map(|x| x * x).sum::<f64>();
+        let groups = trend.changes[..of_balls].chunks_exact(group).zip(self.expected.chunks_exact(group));
+        trend.smooth.clear();
+        trend.smooth.extend(groups.zip(self.steady.chunks_exact(group)).map(
+            |((changes, expected), steady)| {
+                let missed: f64 =
+                    changes.iter().zip(expected).map(|(change, e)| (change - e) * (change - e)).sum();
+                let change = square(changes);
+                missed < change && change < SMALL * SMALL * square(steady)
+            },
+        ));
     }
 }
 

@@ -17,7 +17,7 @@ use crate::numerics::size::{larger, largest};
 
 /// [-] price of one more correction, per ball, over that of a new block (benches/speed.rs): where balls are solved together and all
 /// are evaluated, and where each is alone.
-const TOGETHER: f64 = 0.3;
+const TOGETHER: f64 = 0.1;
 const ALONE: f64 = 0.2;
 /// Most steps in a row that begin with a new block before an old one is tried again.
 const LONGEST_PAUSE: u8 = 31;
@@ -273,30 +273,16 @@ impl BearingStep<'_> {
 
     /// Corrections of balls and bodies at once.
     fn correct_all(&mut self, correction: &mut [f64]) -> bool {
-        self.take_right_sides();
-        let offsets = self.model.border_offsets();
-        let Workspace {
-            balls,
-            kept,
-            neighbours,
-            arrowhead,
-            ring,
-            ball_corrections: x,
-            border_correction: y,
-            ..
-        } = &mut *self.workspace;
-        let solved = if neighbours.is_empty() {
-            kept.balls.len() == balls.len()
-                && arrowhead.solve(kept.balls.iter().map(|kept| &kept.block), x, y)
-        } else {
-            ring.solve(x, y, offsets)
-        };
-        self.give(correction);
-        solved
+        self.eliminate_balls() && self.solve_bodies() && self.substitute_bodies(correction)
     }
 
-    /// Takes the right-hand sides of balls and bodies; of a bearing that is part of a system, with the balls taken out of those of the
-    /// bodies. False without a matrix.
+    /// Solves what the balls have left of the rows of the bodies, where these are no part of a larger system; false if that is singular.
+    fn solve_bodies(&mut self) -> bool {
+        let Workspace { neighbours, arrowhead, ring, border_correction: y, .. } = &mut *self.workspace;
+        if neighbours.is_empty() { arrowhead.solve_border(y) } else { ring.solve_border(y) }
+    }
+
+    /// Takes the right-hand sides of balls and bodies, with the balls taken out of those of the bodies. False without a matrix.
     pub(super) fn eliminate_balls(&mut self) -> bool {
         self.take_right_sides();
         let offsets = self.model.border_offsets();

@@ -88,6 +88,10 @@ pub struct Workspace {
     ball_corrections: Vec<Vector6<f64>>,
     border_correction: DVector<f64>,
     unknowns: Vec<f64>,
+    /// Accelerations and multipliers that do not change in the step but for the turn of orbits.
+    steady: Vec<f64>,
+    /// How they would change if they went on as in the last step.
+    expected: Vec<f64>,
     newton: NewtonBuffers,
 }
 
@@ -139,7 +143,7 @@ pub fn try_step(
     let mut statistics = state.statistics;
     let mut equations = BearingStep::new(model, state, boundary, h, workspace);
     equations.list_near();
-    equations.guess_steady_orbit(&mut unknowns);
+    equations.guess_steady_trend(&mut unknowns);
     let mut solve = |equations: &mut BearingStep<'_>, unknowns: &mut [f64]| {
         if equations.begin_with_first_law() {
             newton::solve(equations, unknowns, &mut buffers, &mut statistics.newton)?;
@@ -188,6 +192,8 @@ pub fn try_step(
     state.matrix = std::mem::take(&mut workspace.kept);
     state.statistics = statistics;
     state.control = control;
-    accept(model, state, boundary, &step, (workspace, &end?));
+    let end = end?;
+    workspace.follow_trend(model, &mut state.trend, h);
+    accept(model, state, boundary, &step, (workspace, &end));
     Ok(())
 }

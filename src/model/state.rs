@@ -224,6 +224,8 @@ pub struct State {
     pub force_tolerance: f64,
     /// Newton matrix of the last steps, as far as it is kept.
     pub matrix: KeptMatrix,
+    /// How accelerations have changed in the last step: first guesses go on with it.
+    pub trend: Trend,
     /// Powers now.
     pub powers: Powers,
     /// Energies since the start.
@@ -265,6 +267,18 @@ impl State {
     pub fn difference(&self, ball: usize, race: Race) -> Option<&Difference> {
         self.differences.get(ball).map(|differences| &differences[race])
     }
+}
+
+/// How the unknowns of a step, accelerations and multipliers, have changed in the last one.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Trend {
+    /// \[s] size of that step.
+    pub step: f64,
+    /// Changes of the unknowns beyond the turn of orbits, in their units; empty before the first step.
+    pub changes: Vec<f64>,
+    /// Were they small, and nearer to what the step before led to expect than to nothing? Of each ball between races of prescribed motion, which
+    /// it follows alone; else one for all.
+    pub smooth: Vec<bool>,
 }
 
 /// What steps share of their Newton matrices: the balls, eliminated. It is part of the state, as many steps use it.

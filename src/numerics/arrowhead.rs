@@ -189,12 +189,12 @@ impl Arrowhead {
         border: &mut DVector<f64>,
     ) -> bool {
         self.eliminate(blocks.clone(), x, border);
-        if let Some(lu) = &self.border
-            && !lu.solve_mut(border)
-        {
-            return false;
-        }
-        self.substitute(blocks, x, border)
+        self.solve_border(border) && self.substitute(blocks, x, border)
+    }
+
+    /// Solves in place for the right-hand side of the border that the blocks were taken out of; false if its matrix is singular.
+    pub fn solve_border(&self, border: &mut DVector<f64>) -> bool {
+        self.border.as_ref().is_none_or(|lu| lu.solve_mut(border))
     }
 
     /// Takes the right-hand sides of the blocks out of that of the border.

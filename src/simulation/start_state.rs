@@ -18,7 +18,7 @@ use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{Bodies, PerRace, Race};
 use crate::model::energies::{Energies, Powers};
-use crate::model::state::{BallState, BodyState, KeptMatrix, State, Statistics};
+use crate::model::state::{BallState, BodyState, KeptMatrix, State, Statistics, Trend};
 use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 use crate::numerics::step_control::StepControl;
 use crate::scene::{Drive, Scene};
@@ -193,6 +193,7 @@ pub fn state(
         control: StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0),
         force_tolerance: 0.0,
         matrix: KeptMatrix::default(),
+        trend: Trend::default(),
         powers: Powers::default(),
         energies: Energies::default(),
         statistics: Statistics::default(),

@@ -107,6 +107,7 @@ pub fn try_step(
     }
     for (part, end) in parts.iter_mut().zip(&step_ends) {
         let Part { model, state, boundary, workspace } = part;
+        workspace.follow_trend(model, &mut state.trend, h);
         accept(model, state, boundary, &step, (workspace, end));
         state.control = *control;
     }

@@ -164,14 +164,14 @@ impl<'a> SystemStep<'a> {
         self.first[self.first.len() - 1]
     }
 
-    /// First guess: everything keeps its acceleration, balls along their orbits.
-    pub fn guess(&self, unknowns: &mut Vec<f64>, steady_velocity: bool) {
+    /// First guess: everything keeps its acceleration, balls along their orbits; those of bearings change as they did before.
+    pub fn guess(&mut self, unknowns: &mut Vec<f64>, steady_velocity: bool) {
         unknowns.clear();
         let mut own = vec![];
-        for bearing in &self.bearings {
+        for bearing in &mut self.bearings {
             match steady_velocity {
                 true => bearing.guess_steady_velocity(&mut own),
-                false => bearing.guess_steady_orbit(&mut own),
+                false => bearing.guess_steady_trend(&mut own),
             }
             unknowns.extend(&own);
         }
