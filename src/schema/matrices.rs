@@ -30,7 +30,8 @@ pub struct Matrices {
     /// [kg m2] moment of inertia about the axis.
     #[serde(default)]
     pub polar_inertia: f64,
-    /// Coordinates of a unit displacement of the whole along x, y and z, n x 3: they say what it weighs.
+    /// Coordinates of a unit displacement of the whole along x, y and z, n x 3: the mass times these is what it weighs. Of a structure that is
+    /// held, which has no such displacement, the inverse of the mass times its weights.
     pub translations: Vec<Vec<f64>>,
     /// Places where bearings sit and loads act.
     pub stations: Vec<MatrixStation>,
