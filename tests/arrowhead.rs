@@ -82,7 +82,9 @@ fn closed_form_agrees_with_the_dense_solution() {
         let mut balls: Vec<_> =
             (0..n_balls).map(|j| rhs.fixed_rows::<BLOCK>(BLOCK * j).into_owned()).collect();
         let mut tail = rhs.rows(border_start, n_border).into_owned();
-        assert!(arrowhead.solve(blocks.iter().map(|(block, _)| block), &mut balls, &mut tail));
+        let eliminated = || blocks.iter().map(|(block, _)| block);
+        arrowhead.eliminate(eliminated(), &mut balls, &mut tail);
+        assert!(arrowhead.solve_border(&mut tail) && arrowhead.substitute(eliminated(), &mut balls, &tail));
         for (j, x) in balls.iter().enumerate() {
             assert!((x - exact.fixed_rows::<BLOCK>(BLOCK * j)).norm() < 1e-11 * exact.norm());
         }
@@ -98,7 +100,7 @@ fn a_singular_matrix_is_refused() {
     let member = Member { slot: 0, from: 0, axes: Matrix3::identity() };
     let mut arrowhead = Arrowhead::default();
     arrowhead.factorise([].into_iter(), &[member], border);
-    assert!(!arrowhead.solve([].into_iter(), &mut [], &mut DVector::repeat(BLOCK, 1.0)));
+    assert!(!arrowhead.solve_border(&mut DVector::repeat(BLOCK, 1.0)));
 }
 
 #[test]
@@ -155,7 +157,8 @@ fn closed_form_rings_agree_with_the_dense_solution() {
         ring.factorise(&blocks.iter().collect::<Vec<_>>(), &links, &border, offsets);
         let mut balls: Vec<_> = (0..n).map(|j| rhs.fixed_rows::<BLOCK>(BLOCK * j).into_owned()).collect();
         let mut tail = rhs.rows(BLOCK * n, n_border).into_owned();
-        assert!(ring.solve(&mut balls, &mut tail, offsets));
+        ring.eliminate(&mut balls, &mut tail, offsets);
+        assert!(ring.solve_border(&mut tail) && ring.substitute(&mut balls, &tail, offsets));
         let error = balls
             .iter()
             .enumerate()
@@ -167,5 +170,7 @@ fn closed_form_rings_agree_with_the_dense_solution() {
     }
     let mut ring = Ring::default();
     ring.factorise(&[&Block::default()], &[], &DMatrix::zeros(0, 0), [None; SLOTS]);
-    assert!(!ring.solve(&mut [Vector6::repeat(1.0)], &mut DVector::zeros(0), [None; SLOTS]));
+    let mut ball = [Vector6::repeat(1.0)];
+    ring.eliminate(&mut ball, &mut DVector::zeros(0), [None; SLOTS]);
+    assert!(!ring.substitute(&mut ball, &DVector::zeros(0), [None; SLOTS]));
 }

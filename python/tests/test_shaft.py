@@ -1,11 +1,15 @@
 """Shafts from matrices: reduction and the file."""
 
 import json
+import re
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
 from roulement import shaft, sweep
+
+SCENES = Path(__file__).resolve().parents[2] / "scenes"
 
 
 def chain(size):
@@ -91,44 +95,28 @@ def test_the_file_has_what_was_given(tmp_path):
     assert (file["title"], file["polar_inertia"]) == ("chain", 1e-3)
 
 
-SHAFT = """
-[shaft]
-speed = "6000 rpm"
-mass = "1.8 kg"
-polar_inertia = "6e-4 kg m^2"
-transverse_inertia = "4e-3 kg m^2"
-[[shaft.load]]
-name = "mesh"
-position = "-10 mm"
-force = [337.8, -475.0, 1260.5]
-[[bearing]]
-name = "left"
-catalogue = "7206 B"
-mounting = { position = "-50 mm", preload = { force = "1500 N" } }
-[[bearing]]
-name = "right"
-catalogue = "7206 B"
-mounting = { position = "50 mm", direction = "-x", preload = { force = "1500 N" } }
-[load]
-duration = "0.2 ms"
-output_interval = "20 us"
-"""
+@pytest.fixture
+def pinion(tmp_path):
+    """The shipped shaft, for 0.2 ms."""
+    text = (SCENES / "shafts/pinion.toml").read_text()
+    short = re.sub(r'duration = ".*"', 'duration = "0.2 ms"', text)
+    file = tmp_path / "pinion.toml"
+    file.write_text(re.sub(r'output_interval = ".*"', 'output_interval = "20 us"', short))
+    return file
 
 
-def test_a_shaft_is_packaged_from_its_file(tmp_path):
-    (tmp_path / "pinion.toml").write_text(SHAFT)
+def test_a_shaft_is_packaged_from_its_file(pinion, tmp_path):
     try:
-        path = shaft.package(tmp_path / "pinion.toml", tmp_path / "pinion.fmu")
+        path = shaft.package(pinion, tmp_path / "pinion.fmu")
     except FileNotFoundError:
         pytest.skip("built without the library of packages")
     description = zipfile.ZipFile(path).read("modelDescription.xml").decode()
     assert 'modelName="pinion"' in description and 'name="mesh.force.z"' in description
 
 
-def test_cases_of_a_shaft_run_in_a_sweep(tmp_path):
-    (tmp_path / "pinion.toml").write_text(SHAFT)
+def test_cases_of_a_shaft_run_in_a_sweep(pinion, tmp_path):
     cases = {"bearing.left.set.friction.ball_race": [0.05, 0.1], "shaft.load.mesh.force.z": ["1 kN", "2 kN"]}
-    table = sweep.run(cases, tmp_path / "pinion.toml", tmp_path / "out")
+    table = sweep.run(cases, pinion, tmp_path / "out")
     assert list(table["status"]) == ["done"] * 4
     # Twice the force deflects the shaft further, and friction costs power.
     z, power = table["left.seat.displacement.z.end"], table["left.friction_power.mean"]

@@ -181,17 +181,6 @@ impl Arrowhead {
         border
     }
 
-    /// Solves in place for the right-hand sides of these blocks and the border; false if the matrix is singular.
-    pub fn solve<'a>(
-        &mut self,
-        blocks: impl Iterator<Item = &'a Eliminated> + Clone,
-        x: &mut [Vector6<f64>],
-        border: &mut DVector<f64>,
-    ) -> bool {
-        self.eliminate(blocks.clone(), x, border);
-        self.solve_border(border) && self.substitute(blocks, x, border)
-    }
-
     /// Solves in place for the right-hand side of the border that the blocks were taken out of; false if its matrix is singular.
     pub fn solve_border(&self, border: &mut DVector<f64>) -> bool {
         self.border.as_ref().is_none_or(|lu| lu.solve_mut(border))

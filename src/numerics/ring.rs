@@ -90,12 +90,6 @@ impl Ring {
         schur
     }
 
-    /// Solves in place for the right-hand sides of blocks and border; false if the matrix is singular.
-    pub fn solve(&self, blocks: &mut [Vector6<f64>], border: &mut DVector<f64>, offsets: Offsets) -> bool {
-        self.eliminate(blocks, border, offsets);
-        self.solve_border(border) && self.substitute(blocks, border, offsets)
-    }
-
     /// Solves in place for the right-hand side of the border that the blocks were taken out of; false if its matrix is singular.
     pub fn solve_border(&self, border: &mut DVector<f64>) -> bool {
         self.border.as_ref().is_none_or(|lu| lu.solve_mut(border))

@@ -84,50 +84,38 @@ impl Scene {
 
 /// Sets a key, or takes it out where the value is empty; why that cannot be done. A part of a list is named by its `name`, by its
 /// number from 0, or by x, y, z where it is one of three.
-fn change(table: &mut Table, key: &str, value: &str) -> Result<(), String> {
-    if key.split('.').any(str::is_empty) {
-        return Err("a key is names with dots between them".to_string());
-    }
-    let (path, last) = key.rsplit_once('.').map_or((None, key), |(path, last)| (Some(path), last));
-    let mut names = path.into_iter().flat_map(|path| path.split('.'));
-    let mut inner = match names.next() {
-        None => return set(table, last, value),
-        Some(name) => table.entry(name).or_insert_with(|| Value::Table(Table::new())),
-    };
-    let mut at = path.unwrap_or_default().split('.').next().unwrap_or_default();
-    for name in names {
-        inner = match inner {
-            Value::Table(section) => section.entry(name).or_insert_with(|| Value::Table(Table::new())),
-            Value::Array(list) => {
-                let place = place_in(list, at, name)?;
-                &mut list[place]
-            }
-            _ => return Err(format!("{at} is no section")),
-        };
-        at = name;
-    }
-    match inner {
-        Value::Table(section) => set(section, last, value),
-        Value::Array(list) => {
-            let place = place_in(list, at, last)?;
-            match value.is_empty() {
-                true => drop(list.remove(place)),
-                false => list[place] = parsed(value)?,
-            }
-            Ok(())
+fn change(section: &mut Table, key: &str, value: &str) -> Result<(), String> {
+    let (name, rest) = split(key)?;
+    match rest {
+        Some(rest) => {
+            change_in(section.entry(name).or_insert_with(|| Table::new().into()), name, rest, value)
         }
-        _ => Err(format!("{at} is no section")),
+        None if value.is_empty() => section.remove(name).map(drop).ok_or("it is not in the scene".into()),
+        None => parsed(value).map(|value| drop(section.insert(name.to_string(), value))),
     }
 }
 
-/// Sets a key of a section, or takes it out.
-fn set(section: &mut Table, name: &str, value: &str) -> Result<(), String> {
-    if value.is_empty() {
-        section.remove(name).ok_or("it is not in the scene")?;
-    } else {
-        section.insert(name.to_string(), parsed(value)?);
+/// The same of a key of a section or of a part of a list, whose own key is `at`.
+fn change_in(inner: &mut Value, at: &str, key: &str, value: &str) -> Result<(), String> {
+    let list = match inner {
+        Value::Table(section) => return change(section, key, value),
+        Value::Array(list) => list,
+        _ => return Err(format!("{at} is no section")),
+    };
+    let (part, rest) = split(key)?;
+    let place = place_in(list, at, part)?;
+    match rest {
+        Some(rest) => return change_in(&mut list[place], part, rest, value),
+        None if value.is_empty() => drop(list.remove(place)),
+        None => list[place] = parsed(value)?,
     }
     Ok(())
+}
+
+/// First name of a key, and the rest of it.
+fn split(key: &str) -> Result<(&str, Option<&str>), String> {
+    let (name, rest) = key.split_once('.').map_or((key, None), |(name, rest)| (name, Some(rest)));
+    if name.is_empty() { Err("a key is names with dots between them".to_string()) } else { Ok((name, rest)) }
 }
 
 /// A value; the parser's own message is of several lines with a marker, here it stands in one.
@@ -153,6 +141,105 @@ fn place_in(list: &[Value], key: &str, part: &str) -> Result<usize, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Condition, Schedule};
+
+    const THRUST: &str = include_str!("../../scenes/thrust.toml");
+    const CAGE: &str = include_str!("../../scenes/cage.toml");
+
+    fn refusal(changes: &[(&str, &str)]) -> String {
+        Scene::edited(THRUST, changes.iter().copied()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn values_of_every_kind_are_set() {
+        let changes = [
+            ("title", "\"a \\\"title\\\"\""),
+            ("bearing.balls", "12"),
+            ("friction.ball_race", "0.1"),
+            ("bearing.pitch_diameter", "\"60 mm\""),
+            ("effects.heathcote_slip", "true"),
+            ("effects.gravity", "[0, 0, -9.81]"),
+            ("load.inner_speed", "[[0, 0], [\"1 ms\", \"60 rpm\"]]"),
+            ("load.x", "{ displacement = 1e-6 }"),
+        ];
+        let scene = Scene::edited(THRUST, changes).unwrap();
+        assert_eq!((scene.title.as_str(), scene.bearing.balls), ("a \"title\"", 12));
+        assert_eq!((scene.friction.ball_race.at(0.0), scene.bearing.pitch_diameter.0), (0.1, 0.06));
+        assert!(scene.effects.groove_slip.on);
+        assert_eq!(scene.effects.gravity.acceleration, [0.0, 0.0, -9.81].into());
+        assert!((scene.load.inner_speed.at(5e-4) - std::f64::consts::PI).abs() < 1e-12);
+        assert_eq!(scene.load.conditions()[0], Condition::Motion(Schedule::Constant(1e-6)));
+        // What was not named is as it was.
+        let plain = Scene::parse(THRUST).unwrap();
+        assert_eq!(format!("{:?}", scene.solver), format!("{:?}", plain.solver));
+        assert_eq!(format!("{:?}", scene.inner), format!("{:?}", plain.inner));
+    }
+
+    #[test]
+    fn sections_are_made_and_changes_follow_one_another() {
+        let changes = [
+            ("start.orbital_speed", "10.0"),
+            ("load.y.force", "\"1 N\""),
+            ("load.y.force", "\"300 N\""),
+            ("outer.misalignment.ry", "[[0.0, 0.0], [\"2 ms\", 3e-4]]"),
+        ];
+        let scene = Scene::edited(THRUST, changes).unwrap();
+        assert_eq!(scene.start.orbital_speed.map(|speed| speed.0), Some(10.0));
+        assert_eq!(scene.load.conditions()[1], Condition::Load(Schedule::Constant(300.0)));
+    }
+
+    #[test]
+    fn an_empty_value_takes_a_key_or_a_section_out() {
+        let keys = ["cage", "effects.cage", "friction.ball_cage", "friction.cage_race", "load.z"];
+        let scene = Scene::edited(CAGE, keys.map(|key| (key, ""))).unwrap();
+        assert!(!scene.effects.cage.on);
+        assert_eq!(scene.load.conditions()[2], Scene::parse(THRUST).unwrap().load.conditions()[2]);
+        let scene =
+            Scene::edited(THRUST, [("bearing.contact_angle", ""), ("bearing.diametral_clearance", "1e-5")]);
+        assert_eq!(scene.unwrap().bearing.diametral_clearance.map(|clearance| clearance.0), Some(1e-5));
+        // Needed keys are missed.
+        assert!(refusal(&[("bearing.balls", "")]).contains("bearing.balls is missing"));
+    }
+
+    #[test]
+    fn the_source_is_the_changed_text_and_gives_the_same_scene() {
+        for text in [THRUST, CAGE, include_str!("../../scenes/radial.toml")] {
+            let same = Scene::edited(text, [("title", "\"other\""); 0]).unwrap();
+            let again = Scene::parse(&same.source).unwrap();
+            assert_eq!(format!("{same:?}"), format!("{again:?}"));
+            let mut written = Scene::parse(text).unwrap();
+            written.source = same.source.clone();
+            assert_eq!(format!("{same:?}"), format!("{written:?}"));
+        }
+        let scene = Scene::edited(THRUST, [("solver.max_step", "0.1e-5")]).unwrap();
+        assert_eq!(Scene::parse(&scene.source).unwrap().solver.max_step.0, 0.1e-5);
+    }
+
+    #[test]
+    fn errors_name_the_key() {
+        for (key, value, parts) in [
+            ("title.text", "1", &["title.text", "title is no section"][..]),
+            ("load.inner_speed.at.start", "1", &["load.inner_speed.at.start", "inner_speed is no section"]),
+            ("load.x.force", "1500 N", &["load.x.force", "1500 N"]),
+            ("load.x.force", "1\ny = 2", &["load.x.force"]),
+            ("load.x.force", " ", &["load.x.force"]),
+            ("load.z", "", &["load.z", "not in the scene"]),
+            ("strat.spin_balance", "", &["strat.spin_balance", "not in the scene"]),
+            ("", "1", &["names"]),
+            ("load..force", "1", &["load..force", "names"]),
+            // Known to be wrong only by the scene.
+            ("load.duraton", "1", &["load.duraton", "did you mean duration?"]),
+            ("friction.ball_race", "-1", &["friction.ball_race = -1", "[0, 2]"]),
+            ("load.x.displacement", "0", &["load.x", "at most one"]),
+        ] {
+            let message = refusal(&[(key, value)]);
+            for part in parts {
+                assert!(message.contains(part), "{message}\nshould name {part}");
+            }
+        }
+        let message = Scene::edited("[load", [("title", "\"other\"")]).unwrap_err().to_string();
+        assert!(message.contains("[load"), "{message}");
+    }
 
     #[test]
     fn parts_of_lists_are_named_by_name_number_or_axis() {

@@ -42,6 +42,13 @@ pub struct RaceInput {
     pub speed: f64,
 }
 
+impl RaceInput {
+    /// Says where a race is that a structure carries, and its spin [rad/s].
+    pub fn follow(&mut self, pose: Pose, twist: Twist, speed: f64) {
+        *self = Self { pose, twist, speed, axis: None, ..*self };
+    }
+}
+
 /// All inputs of a bearing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {

@@ -7,35 +7,7 @@ use roulement::scene::system::SystemScene;
 use roulement::simulation::system::System;
 
 /// Pinion shaft on two 7206 B back to back: loads of a helical mesh, weight, preload.
-pub const GEARBOX: &str = r#"
-gravity = [0, 0, -9.81]
-
-[shaft]
-speed = "6000 rpm"
-mass = "1.8 kg"
-polar_inertia = "6e-4 kg m^2"
-transverse_inertia = "4e-3 kg m^2"
-
-[[shaft.load]]
-name = "mesh"
-position = "-10 mm"
-force = [337.8, -475.0, 1260.5]
-moment = [30.0, 0, -8.04]
-
-[[bearing]]
-name = "left"
-catalogue = "7206 B"
-mounting = { position = "-50 mm", direction = "+x", preload = { force = "1500 N" } }
-
-[[bearing]]
-name = "right"
-catalogue = "7206 B"
-mounting = { position = "50 mm", direction = "-x", preload = { force = "1500 N" } }
-
-[load]
-duration = "5 ms"
-output_interval = "100 us"
-"#;
+pub const GEARBOX: &str = include_str!("../../scenes/shafts/pinion.toml");
 
 /// A flexible shaft of 25 mm with a disc of 2 kg in the middle of 400 mm, on two 6205 with an axial preload.
 pub const ROTOR: &str = r#"

@@ -1,65 +1,26 @@
 //! A shaft with its bearings in a housing: its run, and sweeps of it.
 
-use std::collections::HashMap;
-
+use super::sweep::{columns, good, numbers};
 use super::*;
 
-const SCENE: &str = r#"
-[shaft]
-speed = "6000 rpm"
-mass = "1.8 kg"
-polar_inertia = "6e-4 kg m^2"
-transverse_inertia = "4e-3 kg m^2"
-
-[[shaft.load]]
-name = "mesh"
-position = "-10 mm"
-force = [337.8, -475.0, 1260.5]
-
-[[housing]]
-name = "case"
-mass = "12 kg"
-inertia = [0.06, 0.08, 0.08]
-stiffness = [2e8, 2e8, 4e8, 4e6, 4e6, 4e6]
-
-[[bearing]]
-name = "left"
-catalogue = "7206 B"
-mounting = { position = "-50 mm", housing = "case", preload = { force = "1500 N" } }
-
-[[bearing]]
-name = "right"
-catalogue = "7206 B"
-mounting = { position = "50 mm", direction = "-x", housing = "case", preload = { force = "1500 N" } }
-
-[load]
-duration = "0.4 ms"
-output_interval = "20 us"
-"#;
-
-fn columns(text: &str) -> HashMap<String, Vec<String>> {
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let header = reader.headers().unwrap().clone();
-    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
-    let column = |i: usize| rows.iter().map(|row| row[i].to_string()).collect();
-    header.iter().enumerate().map(|(i, name)| (name.to_string(), column(i))).collect()
-}
-
-fn numbers(texts: &[String]) -> Vec<f64> {
-    texts.iter().map(|text| text.parse().unwrap()).collect()
+/// The shaft in a housing that is shipped, for 0.4 ms.
+fn shipped() -> String {
+    let text = std::fs::read_to_string(scene("shafts/housing")).unwrap();
+    let short = text.replace("\"20 ms\"", "\"0.4 ms\"").replace("\"50 us\"", "\"20 us\"");
+    assert_ne!(short, text);
+    short
 }
 
 fn run(command: &[&str]) -> String {
-    let output = roulement(command);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8_lossy(&output.stdout).into_owned()
+    good(&roulement(command))
 }
 
 /// Races of bearings are, in their own tables, where the shaft and the housing are.
 #[test]
 fn consistency_races_are_where_shaft_and_housing_are() {
     let scratch = Scratch::new("shaft-run");
-    std::fs::write(scratch.path("shaft.toml"), SCENE).unwrap();
+    let base_text = shipped();
+    std::fs::write(scratch.path("shaft.toml"), &base_text).unwrap();
     let said = run(&["run", &scratch.path("shaft.toml"), "-o", &scratch.path("out")]);
     assert!(said.contains("case             at its first bearing"), "{said}");
     let shaft = columns(&scratch.read("out/shaft.csv"));
@@ -89,7 +50,8 @@ fn consistency_races_are_where_shaft_and_housing_are() {
 #[test]
 fn consistency_cases_of_a_shaft_are_runs_of_its_changed_file() {
     let scratch = Scratch::new("shaft-sweep");
-    std::fs::write(scratch.path("shaft.toml"), SCENE).unwrap();
+    let base_text = shipped();
+    std::fs::write(scratch.path("shaft.toml"), &base_text).unwrap();
     let cases = "bearing.left.set.friction.ball_race,shaft.load.mesh.force.z [kN],housing.case.mass\n0.05,1.5,\n,,20 kg\n";
     std::fs::write(scratch.path("cases.csv"), cases).unwrap();
     let (base, table, to) = (scratch.path("shaft.toml"), scratch.path("cases.csv"), scratch.path("sweep"));
@@ -99,17 +61,17 @@ fn consistency_cases_of_a_shaft_are_runs_of_its_changed_file() {
     let summary = columns(&scratch.read("sweep/summary.csv"));
     assert_eq!(summary["status"], ["done", "done"]);
     let changed = [
-        SCENE
+        base_text
             .replacen(
                 "[[bearing]]\nname = \"right\"",
                 "[bearing.set]\nfriction.ball_race = 0.05\n[[bearing]]\nname = \"right\"",
                 1,
             )
             .replace("1260.5]", "\"1.5 kN\"]"),
-        SCENE.replace("\"12 kg\"", "\"20 kg\""),
+        base_text.replace("\"12 kg\"", "\"20 kg\""),
     ];
     for (case, text) in changed.iter().enumerate() {
-        assert_ne!(text, SCENE);
+        assert_ne!(*text, base_text);
         std::fs::write(scratch.path("changed.toml"), text).unwrap();
         run(&["run", &scratch.path("changed.toml"), "-o", &scratch.path("run")]);
         let left = columns(&scratch.read("run/left/results.csv"));

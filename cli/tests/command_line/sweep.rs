@@ -10,7 +10,7 @@ use parquet::record::Field;
 use super::*;
 
 /// A table by its columns.
-fn columns(text: &str) -> HashMap<String, Vec<String>> {
+pub fn columns(text: &str) -> HashMap<String, Vec<String>> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers().unwrap().clone();
     let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
@@ -23,12 +23,12 @@ fn sweep(scratch: &Scratch, cases: &str, to: &str, options: &[&str]) -> Output {
     roulement(&[&["sweep", &cases, "--scene", &base, "-o", &to], options].concat())
 }
 
-fn good(output: &Output) -> String {
+pub fn good(output: &Output) -> String {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-fn numbers(texts: &[String]) -> Vec<f64> {
+pub fn numbers(texts: &[String]) -> Vec<f64> {
     texts.iter().map(|text| text.parse().unwrap()).collect()
 }
 

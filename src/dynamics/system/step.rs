@@ -230,20 +230,16 @@ impl<'a> SystemStep<'a> {
 
     /// Sets the races that structures carry to where these are.
     fn carry_races(&mut self) {
-        for Joint { bearing, race, structure, seat } in self.joints {
-            let motion = self.trials[*structure].seat(self.structures[*structure].model, seat);
-            let step = &mut self.bearings[*bearing];
-            if let Some(Some(trial)) = step.workspace.bodies.get_mut(*race) {
-                trial.carry(&motion);
-                step.races[*race] = trial.motion_value();
-            }
-        }
-        for (shares, step) in self.shares.iter_mut().zip(&self.bearings) {
+        for (shares, step) in self.shares.iter_mut().zip(&mut self.bearings) {
             let length = step.model.race_length();
             for (joint, by) in shares.iter_mut().filter_map(|share| share.carried.as_mut()) {
-                let motion =
-                    step.workspace.bodies[joint.race].as_ref().and_then(|trial| trial.seat().copied());
-                *by = StructureTrial::unknowns_of(&joint.seat, &motion.unwrap_or_default(), length);
+                let Joint { race, structure, seat, .. } = *joint;
+                let motion = self.trials[*structure].seat(self.structures[*structure].model, seat);
+                *by = StructureTrial::unknowns_of(seat, &motion, length);
+                if let Some(Some(trial)) = step.workspace.bodies.get_mut(*race) {
+                    trial.carry(&motion);
+                    step.races[*race] = trial.motion_value();
+                }
             }
         }
     }

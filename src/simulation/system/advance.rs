@@ -76,11 +76,8 @@ impl System {
     fn see_races(&mut self) {
         for bearing in &mut self.bearings {
             for race in Race::BOTH.into_iter().filter(|race| bearing.model.is_carried(*race)) {
-                let (state, input) = (bearing.state.race(race), &mut bearing.inputs[race]);
-                input.pose = state.pose;
-                input.twist = state.twist();
-                input.speed = state.rate.x;
-                input.axis = None;
+                let state = bearing.state.race(race);
+                bearing.inputs[race].follow(state.pose, state.twist(), state.rate.x);
             }
         }
     }

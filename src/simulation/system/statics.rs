@@ -47,11 +47,7 @@ pub struct Statics<'a> {
 
 /// Puts a race of a bearing on its seat.
 fn place(bearing: &mut Simulation, race: Race, seat: &SeatMotion) {
-    let input = &mut bearing.inputs[race];
-    input.pose = seat.pose();
-    input.twist = seat.twist();
-    input.speed = seat.rates.x;
-    input.axis = None;
+    bearing.inputs[race].follow(seat.pose(), seat.twist(), seat.rates.x);
 }
 
 /// A trial of the statics.
