@@ -85,9 +85,11 @@ fn arc_radius(contact: &ContactModel<'_>) -> f64 {
     contact.surface.raceway.groove_radius - contact.surface.ball_radius
 }
 
-/// Balance of a ball (0 is the first).
+/// Balance of a ball (0 is the first) between the races of its contacts.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 pub fn balance(
     model: &Model,
+    contacts: &PerRace<ContactModel<'_>>,
     input: &EquilibriumInput,
     shared: &Shared,
     index: usize,
@@ -96,7 +98,6 @@ pub fn balance(
     let ball = &model.bearing.ball;
     let azimuth = model.bearing.ball_azimuth(index);
     let (radial, tangential) = azimuth_directions(azimuth);
-    let contacts = model.contacts(&input.surroundings());
     let (outer_groove, ball_radius) = (&contacts.outer.surface.raceway, contacts.outer.surface.ball_radius);
     let angle = D::variable(place.x, 0, 1.0).scale(1.0 / arc_radius(&contacts.outer));
     let distance = D::variable(place.y, 1, 1.0);
@@ -174,7 +175,7 @@ pub fn balance(
     let (axial, radial_force) = (total.x, total.dot(&constant_vector(&radial)) + centrifugal_force);
     let mut residual = [axial * cosine - radial_force * sine, axial * sine + radial_force * cosine];
     if shared.cage_speed.value == 0.0 {
-        let middle = middle_of_gap(&contacts, shared, azimuth);
+        let middle = middle_of_gap(contacts, shared, azimuth);
         residual[0] -= (angle.scale(arc_radius(&contacts.outer)) - D::constant(middle.x)).scale(IDLE_HOLD);
         residual[1] -= (distance - D::constant(middle.y)).scale(IDLE_HOLD);
     }
@@ -224,12 +225,13 @@ pub fn middle_of_gap(contacts: &PerRace<ContactModel<'_>>, shared: &Shared, azim
 /// in balance at any speeds, where another place may be out of reach of Newton's method or be none.
 pub fn bottom_of_outer_groove(
     model: &Model,
+    contacts: &PerRace<ContactModel<'_>>,
     input: &EquilibriumInput,
     shared: &Shared,
     index: usize,
 ) -> Place {
-    let touching = Vector2::new(0.0, arc_radius(&model.contact(Race::Outer, &input.surroundings())));
-    let there = balance(model, input, shared, index, &touching);
+    let touching = Vector2::new(0.0, arc_radius(&contacts.outer));
+    let there = balance(model, contacts, input, shared, index, &touching);
     let depth = (there.centrifugal_force.value / there.stiffness.outer.value).powf(2.0 / 3.0);
     touching + Vector2::new(0.0, depth)
 }
@@ -240,6 +242,7 @@ pub fn bottom_of_outer_groove(
 /// contacts are open. `None` if the residual does not come below `tolerance` \[N].
 pub fn settle(
     model: &Model,
+    contacts: &PerRace<ContactModel<'_>>,
     input: &EquilibriumInput,
     shared: &Shared,
     index: usize,
@@ -250,7 +253,7 @@ pub fn settle(
     let longest = 0.02 * diameter;
     let balance_radius = 0.5 * model.bearing.pitch_diameter;
     let norm = |b: &BallBalance| b.residual[0].value.hypot(b.residual[1].value);
-    let mut here = balance(model, input, shared, index, place);
+    let mut here = balance(model, contacts, input, shared, index, place);
     let mut shift = 0.0;
     for _ in 0..MAX_ITERATIONS {
         let r = Vector2::new(here.residual[0].value, here.residual[1].value);
@@ -269,7 +272,7 @@ pub fn settle(
             }
         }
         let trial_place = step.map(|step| *place + step);
-        let trial = trial_place.map(|p| balance(model, input, shared, index, &p));
+        let trial = trial_place.map(|p| balance(model, contacts, input, shared, index, &p));
         match (trial, trial_place) {
             (Some(trial), Some(p)) if norm(&trial) < norm(&here) || opens(&here, &trial) => {
                 *place = p;

@@ -252,12 +252,13 @@ pub fn evaluate(
         // From where it was, from between the races, or from the bottom of the outer groove.
         let kept = start.map(|places| places[j]);
         let fresh: [&dyn Fn() -> Place; 2] = [&|| middle_of_gap(&contacts, &shared, azimuth), &|| {
-            bottom_of_outer_groove(model, input, &shared, j)
+            bottom_of_outer_groove(model, &contacts, input, &shared, j)
         }];
         let settled = |shared: &Shared| {
             let starts = kept.into_iter().chain(fresh.iter().map(|place| place()));
             starts.into_iter().find_map(|mut place| {
-                settle(model, input, shared, j, &mut place, tolerance).map(|balance| (balance, place))
+                settle(model, &contacts, input, shared, j, &mut place, tolerance)
+                    .map(|balance| (balance, place))
             })
         };
         // A free ball that would fall off the side of a groove stays where it is, as if without weight.
