@@ -24,8 +24,13 @@ use crate::numerics::step_control::LARGEST_CUT;
 
 /// \[N] residual that is small enough for any bearing (paper section 5).
 const FORCE_TOLERANCE: f64 = 1e-6;
-/// [-] residual over the largest contact load that is small enough: nine digits of the load.
-const RELATIVE_TOLERANCE: f64 = 1e-9;
+/// [-] residual over the largest contact load that is small enough for any step: nine digits of the load.
+const LEAST_RELATIVE: f64 = 1e-9;
+/// [-] residual over the largest contact load that no step may leave, however large its error: six digits of the load. At five the
+/// light contacts of a bearing with a load zone would be left with a thousandth of their own load.
+const MOST_RELATIVE: f64 = 1e-6;
+/// [-] what Newton's method may leave of the local error of a step.
+const SHARE_OF_ERROR: f64 = 0.01;
 /// [-] units of round-off that positions put into forces through the stiffest contact: 1100 m from the origin Newton's
 /// method still reached one unit in every step (tests/hard_cases/extremes.rs); the rest is margin.
 const ROUND_OFF_UNITS: f64 = 10.0;
@@ -133,13 +138,14 @@ impl StepEnd {
     }
 }
 
-/// Takes over a solved step that ends like this.
+/// Takes over a solved step that ends like this, with its local error over the tolerance.
 pub fn accept(
     model: &Model,
     state: &mut State,
     boundary: &Boundary,
     step: &HhtStep,
     (workspace, end): (&Workspace, &StepEnd),
+    error: f64,
 ) {
     state.time = boundary.time;
     state.statistics.steps += 1;
@@ -186,7 +192,8 @@ pub fn accept(
     record(model, state, &solved, &boundary.conditions, Some(step.h));
     let raceways = workspace.balls.iter().flat_map(|ball| ball.raceways.iter().copied());
     let pairs = raceways.chain(solved.between_balls().map(|pair| pair.forces));
-    state.force_tolerance = force_tolerance(pairs, reach(model, state));
+    let error = error * model.solver.tolerance * 2.0 * model.bearing.ball.radius;
+    state.force_tolerance = force_tolerance(pairs, reach(model, state), error);
 }
 
 /// What rings and balls have grown by, and what these contacts set against it.
@@ -222,9 +229,12 @@ fn reach(model: &Model, state: &State) -> f64 {
     races[0].max(races[1]) + model.race_length()
 }
 
-/// \[N] residual below which nothing but rounding remains: nine digits of the largest load, or a last digit of a
-/// coordinate times the stiffness `dQ/dx` of the stiffest contact.
-fn force_tolerance(contacts: impl Iterator<Item = PairForces>, reach: f64) -> f64 {
+/// \[N] residual that is small enough for the next step, after one with a local error \[m]: with the stiffness `dQ/dx` of the stiffest
+/// contact it moves nothing by more than a hundredth of that error, within six to nine digits of the largest load. Nor less than rounding
+/// leaves: a last digit of a coordinate times that stiffness.
+///
+/// What a step leaves the next one makes good, so that it never adds up ([`BallState::remainder`]).
+fn force_tolerance(contacts: impl Iterator<Item = PairForces>, reach: f64, error: f64) -> f64 {
     // `dQ/dx = 1.5 K^(2/3) Q^(1/3)`; the root is taken once, of the largest
     let (mut load, mut cube) = (0.0f64, 0.0f64);
     for contact in contacts {
@@ -233,7 +243,8 @@ fn force_tolerance(contacts: impl Iterator<Item = PairForces>, reach: f64) -> f6
     }
     let stiffness = 1.5 * cube.cbrt();
     let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness * reach;
-    FORCE_TOLERANCE.max(RELATIVE_TOLERANCE * load).max(round_off)
+    let wanted = (SHARE_OF_ERROR * stiffness * error).clamp(LEAST_RELATIVE * load, MOST_RELATIVE * load);
+    FORCE_TOLERANCE.max(wanted).max(round_off)
 }
 
 impl BallTrial {
@@ -310,5 +321,5 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     state.grown = model.growth.as_ref().map(|_| grown(&contacts, state, boundary));
     record(model, state, &contacts, &boundary.conditions, None);
     let pairs = contacts.raceway_pairs().chain(contacts.between_balls().map(|pair| pair.forces));
-    state.force_tolerance = force_tolerance(pairs, reach(model, state));
+    state.force_tolerance = force_tolerance(pairs, reach(model, state), 0.0);
 }

@@ -167,6 +167,7 @@ pub fn try_step(
     statistics.contact_values += equations.contact_values;
     statistics.contact_tangents += equations.contact_tangents;
     let mut control = state.control;
+    let mut local = 0.0;
     let end = match solved {
         Err(failure) => {
             statistics.rejected_newton += 1;
@@ -174,7 +175,7 @@ pub fn try_step(
             Err(StepFailure::Newton(failure, equations.worst_residual()))
         }
         Ok(()) => {
-            let local = equations.local_error();
+            local = equations.local_error();
             let end = StepEnd::new(model, state, boundary, h, equations.workspace);
             let energy = end.energy_error(model, state, boundary, h, equations.workspace);
             match control.judge(larger(local, energy)) {
@@ -194,6 +195,6 @@ pub fn try_step(
     state.control = control;
     let end = end?;
     workspace.follow_trend(model, &mut state.trend, h);
-    accept(model, state, boundary, &step, (workspace, &end));
+    accept(model, state, boundary, &step, (workspace, &end), local);
     Ok(())
 }

@@ -108,7 +108,7 @@ pub fn try_step(
     for (part, end) in parts.iter_mut().zip(&step_ends) {
         let Part { model, state, boundary, workspace } = part;
         workspace.follow_trend(model, &mut state.trend, h);
-        accept(model, state, boundary, &step, (workspace, end));
+        accept(model, state, boundary, &step, (workspace, end), local);
         state.control = *control;
     }
     let ends = structures.iter().zip(trials).map(|(one, end)| finished(one, end, &step));
