@@ -181,10 +181,10 @@ pub fn kinetic_energy_of(ball: &Ball, motion: &BallMotion<f64>) -> f64 {
 /// \[J] kinetic energy of balls and of the bodies that forces move.
 pub fn kinetic_energy<'a>(
     model: &Model,
-    balls: impl Iterator<Item = &'a BallMotion<f64>>,
+    balls: impl Iterator<Item = BallMotion<f64>>,
     bodies: impl Iterator<Item = (&'a RigidBody, &'a BodyState)>,
 ) -> f64 {
-    let of_ball = |motion: &BallMotion<f64>| kinetic_energy_of(&model.bearing.ball, motion);
+    let of_ball = |motion: BallMotion<f64>| kinetic_energy_of(&model.bearing.ball, &motion);
     let of_body = |(body, state): (&RigidBody, &BodyState)| {
         0.5 * body.mass * state.velocity.norm_squared()
             + 0.5 * state.rate.component_mul(&body.inertia).dot(&state.rate)
@@ -194,11 +194,10 @@ pub fn kinetic_energy<'a>(
 
 /// \[J] kinetic and elastic energy of a state with these contacts, that of supports included.
 pub fn stored_energy(model: &Model, state: &State, contacts: &Contacts) -> f64 {
-    let motions: Vec<_> = state.balls.iter().map(BallState::motion).collect();
     let bodies = model.bodies.iter().zip(state.bodies.iter());
     let moved = bodies.filter_map(|((_, body), (_, state))| Some((body.as_ref()?, state)));
-    kinetic_energy(model, motions.iter(), moved)
-        + elastic_energy(model, contacts, motions.len())
+    kinetic_energy(model, state.balls.iter().map(BallState::motion), moved)
+        + elastic_energy(model, contacts, state.balls.len())
         + supports_energy(&state.supports)
 }
 

@@ -37,6 +37,18 @@ impl<S: Scalar> From<&BallRaceContact<S>> for PairForces<S> {
     }
 }
 
+impl BallMotion<Lanes> {
+    /// Motions of up to [`WIDTH`] balls, lane by lane; lanes without a ball repeat the last.
+    pub fn of_balls(balls: &[BallMotion<f64>]) -> Self {
+        let ball = |lane: usize| &balls[lane.min(balls.len() - 1)];
+        Self {
+            position: Lanes::vector(|lane| ball(lane).position),
+            velocity: Lanes::vector(|lane| ball(lane).velocity),
+            angular_velocity: Lanes::vector(|lane| ball(lane).angular_velocity),
+        }
+    }
+}
+
 /// Contacts of up to [`WIDTH`] balls with a race, lane by lane.
 #[derive(Clone, Debug)]
 pub struct ContactGroup(BallRaceContact<Lanes>);
@@ -47,30 +59,26 @@ impl ContactGroup {
         Self(contact.zip_with(contact, |x, _| Lanes::constant(x)))
     }
 
-    /// Evaluates the contacts of up to [`WIDTH`] balls, to the same bits as [`ContactModel::evaluate`].
+    /// Evaluates the contacts of [`WIDTH`] balls, to the same bits as [`ContactModel::evaluate`].
     pub fn evaluate(
         &mut self,
         contact: &ContactModel<'_>,
         race: &RaceMotion<f64>,
-        balls: &[BallMotion<f64>],
+        balls: &BallMotion<Lanes>,
     ) {
-        let Some(last) = balls.len().checked_sub(1) else {
-            return;
-        };
-        // Lanes without a ball repeat the last.
-        let ball = |lane: usize| &balls[lane.min(last)];
-        let motion = BallMotion {
-            position: Lanes::vector(|lane| ball(lane).position),
-            velocity: Lanes::vector(|lane| ball(lane).velocity),
-            angular_velocity: Lanes::vector(|lane| ball(lane).angular_velocity),
-        };
         let evaluate = match (contact.law, contact.is_usual()) {
             (Law::Frictionless, true) => press_lanes,
             (Law::Frictionless, false) => press_shaped_lanes,
             (_, true) => roll_lanes,
             (_, false) => roll_shaped_lanes,
         };
-        evaluate(contact, race, &motion, &mut self.0);
+        evaluate(contact, race, balls, &mut self.0);
+    }
+
+    /// All contacts, lane by lane.
+    #[inline(always)]
+    pub fn lanes(&self) -> &BallRaceContact<Lanes> {
+        &self.0
     }
 
     /// Puts a contact into its lane; that of the first lane goes into all.

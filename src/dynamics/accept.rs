@@ -1,6 +1,6 @@
 //! From solved equations to the next state, and from a motion to a consistent state.
 
-use super::ball::BallTrial;
+use super::group::Groups;
 use super::neighbours::NeighbourTrial;
 use super::record::record;
 use super::support::supports_of;
@@ -43,7 +43,7 @@ struct Solved<'a> {
 
 impl Pairs for Solved<'_> {
     fn of_ball(&self, ball: usize) -> impl Iterator<Item = (Body, PairForces)> {
-        self.workspace.balls[ball].pairs().map(|(body, pair)| (body, *pair))
+        Body::ALL.into_iter().filter_map(move |body| Some((body, self.workspace.pair(ball, body)?)))
     }
 
     fn between_balls(&self) -> impl Iterator<Item = BallPair> {
@@ -72,13 +72,13 @@ impl StepEnd {
         let solved = Solved { workspace, guide: model.cage_guide() };
         let n_balls = workspace.balls.len();
         let totals = Totals::of(&solved, n_balls);
-        let motions = || workspace.balls.iter().map(|trial| &trial.motion);
+        let motions = || (0..n_balls).map(|ball| workspace.groups.motion(ball));
         let ambient = model.ambient(&boundary.frame);
         let mut powers = Powers {
-            input: power_into_balls(&ambient, motions().copied()),
+            input: power_into_balls(&ambient, motions()),
             friction: totals.friction_power,
             damping: totals.damping_power,
-            around: power_lost_around(&ambient, motions().copied()),
+            around: power_lost_around(&ambient, motions()),
         };
         for (body, trial) in workspace.bodies.iter() {
             match (body, trial) {
@@ -92,11 +92,12 @@ impl StepEnd {
         }
         let of_race = |race: Race| workspace.bodies[race].as_ref().map(|trial| &trial.end);
         let supports = supports_of(model, of_race, boundary, &mut powers);
-        let stiffened = |(ball, trial): (&BallState, &BallTrial)| {
-            let now = |race| Pressed::new(&trial.raceways[race]).stiffened(&ball.pressed[race]);
+        let stiffened = |(index, ball): (usize, &BallState)| {
+            let now =
+                |race| Pressed::new(&workspace.groups.pair(index, race)).stiffened(&ball.pressed[race]);
             now(Race::Inner) + now(Race::Outer)
         };
-        let stiffened = state.balls.iter().zip(&workspace.balls).map(stiffened);
+        let stiffened = state.balls.iter().enumerate().map(stiffened);
         let mut energies = state.energies;
         let left = energies.add((&state.powers, &powers), h, stiffened.fold(0.0, |sum, work| sum + work));
         if model.solver.energy_error > 0.0 {
@@ -129,11 +130,12 @@ impl StepEnd {
             return 0.0;
         }
         let ball = &model.bearing.ball;
-        let of_ball = |(state, trial): (&BallState, &BallTrial)| {
-            (kinetic_energy_of(ball, &trial.motion) - kinetic_energy_of(ball, &state.motion())).abs()
+        let of_ball = |(index, state): (usize, &BallState)| {
+            let now = kinetic_energy_of(ball, &workspace.groups.motion(index));
+            (now - kinetic_energy_of(ball, &state.motion())).abs()
         };
         let exchanged =
-            || state.balls.iter().zip(&workspace.balls).map(of_ball).fold(0.0, |sum, energy| sum + energy);
+            || state.balls.iter().enumerate().map(of_ball).fold(0.0, |sum, energy| sum + energy);
         self.energies.error_since(&state.energies, exchanged, solver.energy_error)
     }
 }
@@ -149,8 +151,8 @@ pub fn accept(
 ) {
     state.time = boundary.time;
     state.statistics.steps += 1;
-    for (ball, trial) in state.balls.iter_mut().zip(&workspace.balls) {
-        *ball = trial.end(model.bearing.ball.radius);
+    for (index, ball) in state.balls.iter_mut().enumerate() {
+        *ball = workspace.groups.end(index, model.bearing.ball.radius);
     }
     for ((body, state), (_, trial)) in state.bodies.iter_mut().zip(workspace.bodies.iter()) {
         let (turned, spin) = ((state.turned, state.turned_rest), state.rate.x);
@@ -190,7 +192,8 @@ pub fn accept(
         state.grown = Some(grown);
     }
     record(model, state, &solved, &boundary.conditions, Some(step.h));
-    let raceways = workspace.balls.iter().flat_map(|ball| ball.raceways.iter().copied());
+    let pair = |ball: usize| Race::BOTH.map(|race| workspace.groups.pair(ball, race));
+    let raceways = (0..workspace.balls.len()).flat_map(pair);
     let pairs = raceways.chain(solved.between_balls().map(|pair| pair.forces));
     let error = error * model.solver.tolerance * 2.0 * model.bearing.ball.radius;
     state.force_tolerance = force_tolerance(pairs, reach(model, state), error);
@@ -247,18 +250,19 @@ fn force_tolerance(contacts: impl Iterator<Item = PairForces>, reach: f64, error
     FORCE_TOLERANCE.max(wanted).max(round_off)
 }
 
-impl BallTrial {
-    /// State at the end of the step.
-    fn end(&self, radius: f64) -> BallState {
+impl Groups {
+    /// State of a ball at the end of the step.
+    fn end(&self, ball: usize, radius: f64) -> BallState {
+        let (motion, unknowns) = (self.motion(ball), self.unknowns(ball));
         BallState {
-            position: self.motion.position,
-            velocity: self.motion.velocity,
-            angular_velocity: self.motion.angular_velocity,
-            acceleration: self.unknowns.fixed_rows::<3>(0).into_owned(),
-            angular_acceleration: self.unknowns.fixed_rows::<3>(3) / radius,
-            total: self.total,
-            remainder: self.remainder,
-            pressed: PerRace::new(|race| Pressed::new(&self.raceways[race])),
+            position: motion.position,
+            velocity: motion.velocity,
+            angular_velocity: motion.angular_velocity,
+            acceleration: unknowns.fixed_rows::<3>(0).into_owned(),
+            angular_acceleration: unknowns.fixed_rows::<3>(3) / radius,
+            total: self.total(ball),
+            remainder: self.remainder(ball),
+            pressed: PerRace::new(|race| Pressed::new(&self.pair(ball, race))),
         }
     }
 }

@@ -1,23 +1,24 @@
-//! One ball in one trial step: motion from its unknown accelerations, pairs, residual and tangent blocks.
+//! One ball in one trial step: what only some balls have, and the tangent of its residual.
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
+use super::ball_equations::BallEquations;
 use super::body::{BodyTrial, RaceSeen};
 use super::cage::CageTrial;
 use super::directions::{D, DIRECTIONS, by_first, by_second, constant_race, scale_moments, seed};
+use super::group::BallGroup;
 use super::reaction::Reaction;
-use crate::contact::many::ContactGroup;
 use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::effects::ambient::Ambient;
-use crate::forces::on_ball;
 use crate::kalker::scaled_law::Difference;
 use crate::model::Model;
 use crate::model::bodies::{Bodies, Body, PerRace, Race};
 use crate::model::cage::CageModel;
-use crate::model::state::{BallState, stack};
-use crate::numerics::arrowhead::{Block, SLOTS};
+use crate::model::state::stack;
+use crate::numerics::arrowhead::{BLOCK, Block, SLOTS};
 use crate::numerics::hht::HhtStep;
+use crate::numerics::lanes::Lanes;
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::Dual;
 
@@ -55,52 +56,58 @@ impl<'a> Surroundings<'a> {
         Self { model, contacts, ambient, differences, races, cage: model.cage.as_ref().zip(cage) }
     }
 
-    /// Evaluates the contacts of some balls, the first of them ball `first`, with both races.
-    pub fn evaluate_group(
-        &self,
-        first: usize,
-        motions: &[BallMotion<f64>],
-        group: &mut PerRace<ContactGroup>,
-    ) {
+    /// Evaluates all pairs of a group of balls that have moved, the first of them ball `first`, and what they leave of their equations.
+    pub fn evaluate_group(&self, first: usize, trials: &mut [BallTrial], group: &mut BallGroup) {
         for race in Race::BOTH {
             let (contact, seen) = (&self.contacts[race], self.races[race].motion);
-            match self.differences.get(first..first + motions.len()) {
+            match self.differences.get(first..first + trials.len()) {
                 None if contact.surface.tells_balls() => {
-                    group[race].evaluate(&contact.of_ball(first, None), seen, motions);
+                    group.evaluate(race, &contact.of_ball(first, None), seen);
                 }
-                None => group[race].evaluate(contact, seen, motions),
+                None => group.evaluate(race, contact, seen),
                 Some(differences) => {
-                    for (lane, (motion, of_ball)) in motions.iter().zip(differences).enumerate() {
+                    for (lane, of_ball) in differences.iter().enumerate() {
                         let contact = contact.of_ball(first + lane, Some(&of_ball[race]));
-                        group[race].set(lane, &contact.evaluate(motion, seen));
+                        group.set(race, lane, &contact.evaluate(&group.motion(lane), seen));
                     }
                 }
             }
         }
+        if let Some((cage, seen)) = self.cage {
+            for (lane, trial) in trials.iter_mut().enumerate() {
+                trial.pocket =
+                    cage.pocket_contact(first + lane, &group.motion(lane), &seen.value, seen.oil);
+            }
+        }
+        let touched = trials.iter().any(|trial| trial.pocket.is_some() || trial.pushed.is_some());
+        group.balance(self.ambient, touched.then(|| by_lane(trials)).as_ref());
     }
 }
 
-/// One ball in a trial step.
+/// What pockets and neighbours do to the balls of a group.
+fn by_lane(trials: &[BallTrial]) -> [Wrench<Lanes>; 2] {
+    let mut of = [Wrench::<Lanes>::default(); 2];
+    for (lane, trial) in trials.iter().enumerate() {
+        let pocket = trial.pocket.as_ref().map(PairForces::on_first);
+        let pushed = trial.pushed.as_ref().map(|push| push.wrench);
+        for (lanes, wrench) in of.iter_mut().zip([pocket, pushed]) {
+            let Wrench { force, moment } = wrench.unwrap_or_default();
+            for i in 0..3 {
+                lanes.force[i].0[lane] = force[i];
+                lanes.moment[i].0[lane] = moment[i];
+            }
+        }
+    }
+    of
+}
+
+/// What one ball has beside its lane of a group ([`super::group`]).
 #[derive(Clone, Debug)]
 pub struct BallTrial {
-    /// [m/s2] centre acceleration, and [m/s2] angular acceleration times ball radius.
-    pub unknowns: Vector6<f64>,
-    /// Motion at the end of the step.
-    pub motion: BallMotion<f64>,
-    /// Contacts with the races at the end of the step.
-    pub raceways: PerRace<PairForces>,
-    /// All of these contacts where they were evaluated with derivatives; else they are in a lane of a group.
-    pub contacts: Option<PerRace<BallRaceContact<f64>>>,
     /// Contact with the cage's pocket at the end of the step, where they touch.
     pub pocket: Option<PairForces>,
     /// What its neighbours do to it at the end of the step, where it touches one.
     pub pushed: Option<Push>,
-    /// Total force and moment at the end of the step.
-    pub total: Wrench,
-    /// What is left of the equations of motion.
-    pub remainder: Wrench,
-    /// \[N] residual; moments over the ball radius.
-    pub residual: Vector6<f64>,
     /// Tangent, with its couplings to the bodies.
     pub block: Block,
     /// Is its block of the matrix to be computed anew?
@@ -131,51 +138,15 @@ impl Push {
 
 impl BallTrial {
     /// Buffers for a ball.
-    pub fn new(ball: &BallState) -> Self {
+    pub fn new() -> Self {
         Self {
-            unknowns: Vector6::zeros(),
-            motion: ball.motion(),
-            raceways: PerRace::new(|_| PairForces::none()),
-            contacts: None,
             pocket: None,
             pushed: None,
-            total: ball.total,
-            remainder: Wrench::default(),
-            residual: Vector6::zeros(),
             block: Block::default(),
             renewed: false,
             before: 0.0,
             repaired: None,
             reactions: [None; SLOTS],
-        }
-    }
-
-    /// Moves the ball to the end of a step.
-    pub fn move_to(&mut self, unknowns: Vector6<f64>, radius: f64, step: &HhtStep, start: &BallState) {
-        self.unknowns = unknowns;
-        let acceleration = Vector3::new(unknowns[0], unknowns[1], unknowns[2]);
-        let angular_acceleration = Vector3::new(unknowns[3], unknowns[4], unknowns[5]) / radius;
-        self.motion = BallMotion {
-            position: start.position + step.displacement(&start.velocity, &start.acceleration, &acceleration),
-            velocity: step.velocity(&start.velocity, &start.acceleration, &acceleration),
-            angular_velocity: step.velocity(
-                &start.angular_velocity,
-                &start.angular_acceleration,
-                &angular_acceleration,
-            ),
-        };
-    }
-
-    /// The pairs of this ball: the body that it touches, and the forces.
-    pub fn pairs(&self) -> impl Iterator<Item = (Body, &PairForces)> {
-        Body::ALL.into_iter().filter_map(|body| Some((body, self.pair(body)?)))
-    }
-
-    /// The forces between this ball and a body; none where it does not touch the cage.
-    pub fn pair(&self, body: Body) -> Option<&PairForces> {
-        match body {
-            Body::Race(race) => Some(&self.raceways[race]),
-            Body::Cage => self.pocket.as_ref(),
         }
     }
 
@@ -188,54 +159,37 @@ impl BallTrial {
         }
     }
 
-    /// Evaluates contacts, residual and their derivatives.
-    pub fn evaluate_with_tangent(
+    /// Tangent of the residual of a ball that moves like this, with its couplings to the bodies.
+    pub fn differentiate(
         &mut self,
         index: usize,
+        motion: &BallMotion<f64>,
         around: &Surroundings<'_>,
         step: &HhtStep,
-        start: &BallState,
     ) {
-        let mut tangent = self.contacts_with_tangent(index, around, step);
-        self.evaluate_pocket(index, around, step, Some(&mut tangent));
-        self.assemble(around.model, around.ambient, step, start, Some(&mut tangent));
-    }
-
-    /// Evaluates contacts, residual and their derivatives by the ball's own unknowns alone.
-    pub fn evaluate_alone(
-        &mut self,
-        index: usize,
-        around: &Surroundings<'_>,
-        step: &HhtStep,
-        start: &BallState,
-    ) {
-        let Surroundings { model, contacts, ambient, differences, races, cage } = around;
-        let seeded = seed(&self.motion, step, model.bearing.ball.radius);
-        let mut tangent = Matrix6::zeros();
-        let values = PerRace::new(|race| {
-            let contact = contacts[race].of_ball(index, differences.get(index).map(|of_ball| &of_ball[race]));
-            let (value, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);
-            tangent += by_ball;
-            value
-        });
-        self.raceways = PerRace::new(|race| PairForces::from(&values[race]));
-        self.contacts = Some(values);
-        self.reactions = [None; SLOTS];
-        if let Some((cage, trial)) = cage {
-            self.pocket = cage.pocket_contact(index, &self.motion, &trial.value, trial.oil);
-            if self.pocket.is_some()
-                && let Some(forces) = cage.pocket_contact(index, &seeded, &trial.value.constant(), trial.oil)
-            {
-                tangent += by_first(&forces.force, &forces.moment);
+        let mut tangent = self.contacts_with_tangent(index, motion, around, step);
+        let slot = Body::Cage.index();
+        self.block.right[slot].fill(0.0);
+        self.block.left[slot].fill(0.0);
+        self.block.own[slot].fill(0.0);
+        if let (Some((cage, trial)), Some(_)) = (around.cage, &self.pocket) {
+            let radius = around.model.bearing.ball.radius;
+            let seeded = seed::<DIRECTIONS>(motion, step, radius);
+            if let Some(forces) = cage.pocket_contact(index, &seeded, &trial.motion, trial.oil) {
+                tangent += self.couple(Body::Cage, &forces, step, radius);
             }
         }
-        self.assemble(model, ambient, step, start, Some(&mut tangent));
+        if let Some(push) = &self.pushed {
+            tangent += push.tangent;
+        }
+        self.block.diagonal = around.tangent_of_residual(tangent, motion, step);
     }
 
-    /// Evaluates the contacts with the races and returns their derivatives.
+    /// Derivatives of the contacts with the races.
     fn contacts_with_tangent(
         &mut self,
         index: usize,
+        motion: &BallMotion<f64>,
         around: &Surroundings<'_>,
         step: &HhtStep,
     ) -> Matrix6<f64> {
@@ -243,64 +197,17 @@ impl BallTrial {
         let radius = model.bearing.ball.radius;
         let mut tangent = Matrix6::zeros();
         self.reactions = [None; SLOTS];
-        let values = PerRace::new(|race| {
-            let contact = contacts[race].of_ball(index, differences.get(index).map(|of_ball| &of_ball[race]));
-            match races[race].moved() {
-                None => {
-                    let seeded = seed(&self.motion, step, radius);
-                    let (value, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);
-                    tangent += by_ball;
-                    value
-                }
-                Some(motion) => {
-                    let seeded = seed(&self.motion, step, radius);
-                    let contact = by_ball_and_race(&contact, &seeded, motion);
-                    let forces = PairForces::from(&contact);
-                    tangent += self.couple(race.into(), &forces, step, radius);
-                    contact.values()
-                }
-            }
-        });
-        self.raceways = PerRace::new(|race| PairForces::from(&values[race]));
-        self.contacts = Some(values);
-        tangent
-    }
-
-    /// Takes over contacts with the races that were evaluated without derivatives, from a lane of a group.
-    pub fn take_contacts(&mut self, group: &PerRace<ContactGroup>, lane: usize) {
         for race in Race::BOTH {
-            self.raceways[race] = group[race].forces(lane);
+            let contact = contacts[race].of_ball(index, differences.get(index).map(|of_ball| &of_ball[race]));
+            tangent += match races[race].moved() {
+                None => by_ball_alone(&contact, &seed(motion, step, radius), races[race].motion).1,
+                Some(moved) => {
+                    let forces = by_ball_and_race(&contact, &seed(motion, step, radius), moved);
+                    self.couple(race.into(), &PairForces::from(&forces), step, radius)
+                }
+            };
         }
-        self.contacts = None;
-        self.reactions = [None; SLOTS];
-    }
-
-    /// Evaluates the contact with the cage, and adds its derivatives to a tangent if there is one.
-    pub fn evaluate_pocket(
-        &mut self,
-        index: usize,
-        around: &Surroundings<'_>,
-        step: &HhtStep,
-        tangent: Option<&mut Matrix6<f64>>,
-    ) {
-        let Some((cage, trial)) = around.cage else {
-            return;
-        };
-        self.pocket = cage.pocket_contact(index, &self.motion, &trial.value, trial.oil);
-        let Some(tangent) = tangent else {
-            return;
-        };
-        let slot = Body::Cage.index();
-        self.block.right[slot].fill(0.0);
-        self.block.left[slot].fill(0.0);
-        self.block.own[slot].fill(0.0);
-        if self.pocket.is_some() {
-            let radius = around.model.bearing.ball.radius;
-            let seeded = seed::<DIRECTIONS>(&self.motion, step, radius);
-            if let Some(forces) = cage.pocket_contact(index, &seeded, &trial.motion, trial.oil) {
-                *tangent += self.couple(Body::Cage, &forces, step, radius);
-            }
-        }
+        tangent
     }
 
     /// Takes over the reaction of a pair and its derivatives by the body's unknowns; returns those by the ball's.
@@ -310,43 +217,66 @@ impl BallTrial {
         self.reactions[body.index()] = Some(Reaction::on_second(forces));
         by_first(&forces.force, &forces.moment)
     }
+}
 
-    /// Residual of the ball whose pairs are evaluated, and its tangent if their derivatives are given.
-    pub fn assemble(
-        &mut self,
-        model: &Model,
-        ambient: &Ambient,
+/// A ball by itself, with all bodies where they are.
+#[derive(Clone, Copy, Debug)]
+pub struct BallAlone {
+    /// \[N] residual.
+    pub residual: Vector6<f64>,
+    /// Its derivatives by the ball's own unknowns.
+    pub tangent: Matrix6<f64>,
+}
+
+impl BallAlone {
+    /// The ball `index` with these unknowns.
+    pub fn new(
+        index: usize,
+        equations: &BallEquations,
+        unknowns: &Vector6<f64>,
+        around: &Surroundings<'_>,
         step: &HhtStep,
-        start: &BallState,
-        mut tangent: Option<&mut Matrix6<f64>>,
-    ) {
-        let ball = &model.bearing.ball;
-        let fraction = 1.0 - step.alpha_f;
-        let outside = ambient.on_ball(&self.motion);
-        self.total = on_ball(self.pairs().map(|(_, pair)| pair.on_first()), outside);
-        if let (Some(tangent), true) = (&mut tangent, ambient.depends_on_motion()) {
-            **tangent += by_motion(ambient, &seed(&self.motion, step, ball.radius));
+    ) -> Self {
+        let Surroundings { model, contacts, ambient, differences, races, cage } = around;
+        let unknowns: [f64; BLOCK] = (*unknowns).into();
+        let motion = equations.motion(&unknowns);
+        let seeded = seed(&motion, step, model.bearing.ball.radius);
+        let mut tangent = Matrix6::zeros();
+        let mut total = ambient.on_ball(&motion);
+        for race in Race::BOTH {
+            let contact = contacts[race].of_ball(index, differences.get(index).map(|of_ball| &of_ball[race]));
+            let (value, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);
+            total = total.plus(PairForces::from(&value).on_first());
+            tangent += by_ball;
         }
-        if let Some(push) = &self.pushed {
-            self.total = self.total.plus(push.wrench);
-            tangent.iter_mut().for_each(|tangent| **tangent += push.tangent);
+        if let Some((cage, trial)) = cage
+            && let Some(pocket) = cage.pocket_contact(index, &motion, &trial.value, trial.oil)
+        {
+            total = total.plus(pocket.on_first());
+            if let Some(forces) = cage.pocket_contact(index, &seeded, &trial.value.constant(), trial.oil) {
+                tangent += by_first(&forces.force, &forces.moment);
+            }
         }
-        let blended = start.total.blend(&self.total, fraction);
-        let acceleration = Vector3::new(self.unknowns[0], self.unknowns[1], self.unknowns[2]);
-        let angular_acceleration =
-            Vector3::new(self.unknowns[3], self.unknowns[4], self.unknowns[5]) / ball.radius;
-        // What the last step left is made good here, as of the bodies.
-        self.remainder = Wrench {
-            force: acceleration * ball.mass - blended.force + start.remainder.force,
-            moment: angular_acceleration * ball.inertia - blended.moment + start.remainder.moment,
-        };
-        self.residual = stack(&self.remainder.force, &(self.remainder.moment / ball.radius));
-        if let Some(tangent) = tangent {
-            let rotational = ball.inertia / (ball.radius * ball.radius);
-            let inertia = stack(&Vector3::repeat(ball.mass), &Vector3::repeat(rotational));
-            self.block.diagonal =
-                Matrix6::from_diagonal(&inertia) - scale_moments(*tangent, ball.radius) * fraction;
+        let residual = equations.residual(&equations.remainder(&unknowns, &total)).into();
+        Self { residual, tangent: around.tangent_of_residual(tangent, &motion, step) }
+    }
+}
+
+impl Surroundings<'_> {
+    /// Tangent of a ball's residual from that of its pairs.
+    fn tangent_of_residual(
+        &self,
+        mut tangent: Matrix6<f64>,
+        motion: &BallMotion<f64>,
+        step: &HhtStep,
+    ) -> Matrix6<f64> {
+        let ball = &self.model.bearing.ball;
+        if self.ambient.depends_on_motion() {
+            tangent += by_motion(self.ambient, &seed(motion, step, ball.radius));
         }
+        let rotational = ball.inertia / (ball.radius * ball.radius);
+        let inertia = stack(&Vector3::repeat(ball.mass), &Vector3::repeat(rotational));
+        Matrix6::from_diagonal(&inertia) - scale_moments(tangent, ball.radius) * (1.0 - step.alpha_f)
     }
 }
 

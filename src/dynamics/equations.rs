@@ -1,14 +1,15 @@
 //! The equations of one trial step: residual, Newton matrix and its solution.
 
-use nalgebra::Vector6;
+use nalgebra::Vector3;
 
 use super::ball::{BallTrial, Surroundings};
+use super::ball_equations::BallEquations;
 use super::body::{BodyTrial, RaceSeen};
 use super::body_sums::{BodyLoad, BodyScales, BodyStep};
 use super::cage::CageTrial;
 use super::{Boundary, Workspace};
 use crate::contact::many::ContactGroup;
-use crate::contact::{BallMotion, ContactModel, RaceMotion};
+use crate::contact::{ContactModel, RaceMotion};
 use crate::effects::ambient::Ambient;
 use crate::model::Model;
 use crate::model::bodies::{Body, PerRace, Race, RigidBody};
@@ -59,28 +60,25 @@ impl<'a> BearingStep<'a> {
         h: f64,
         workspace: &'a mut Workspace,
     ) -> Self {
-        if workspace.balls.len() != start.balls.len() {
-            workspace.balls = start.balls.iter().map(BallTrial::new).collect();
-            workspace.groups.clear();
-        }
+        workspace.balls.resize_with(start.balls.len(), BallTrial::new);
         workspace.prepare_bodies(model, start);
         if let Some(cage) = &mut workspace.cage {
             cage.oil = model.oil_around_cage(&boundary.conditions);
         }
         let contacts = model.contacts_facing(&boundary.conditions, boundary.orientations.as_ref());
         let races = PerRace::new(|race| race_motion(&boundary.motion[race].0, &boundary.motion[race].1));
-        if let (true, Some(ball)) = (workspace.groups.is_empty(), start.balls.first()) {
-            let group = PerRace::new(|race| {
-                ContactGroup::filled(&contacts[race].evaluate(&ball.motion(), &races[race]))
-            });
-            workspace.groups = vec![group; start.balls.len().div_ceil(WIDTH)];
-        }
+        let step = HhtStep::new(model.solver.alpha_f, h);
+        let equations = |ball: usize| BallEquations::new(&start.balls[ball], &model.bearing.ball, &step);
+        workspace.groups.begin(start.balls.len(), equations, || {
+            let motion = start.balls[0].motion();
+            PerRace::new(|race| ContactGroup::filled(&contacts[race].evaluate(&motion, &races[race])))
+        });
         Self {
             model,
             contacts,
             ambient: model.ambient(&boundary.frame),
             start,
-            step: HhtStep::new(model.solver.alpha_f, h),
+            step,
             boundary,
             races,
             force_tolerance: start.force_tolerance,
@@ -149,55 +147,32 @@ impl<'a> BearingStep<'a> {
         }
     }
 
-    /// Moves the balls to the end of the step and evaluates their pairs, residuals and, of those to be renewed, tangents.
-    ///
-    /// Under prescribed races balls whose unknowns did not change keep their last evaluation.
-    fn evaluate_balls(&mut self, unknowns: &[f64]) {
+    /// Moves the balls to the end of the step. Under prescribed races balls whose unknowns did not change keep their last evaluation.
+    fn move_balls(&mut self, unknowns: &[f64]) {
         let all = self.fresh || !self.balls_are_independent();
+        self.workspace.groups.move_to(&unknowns[..BLOCK * self.start.balls.len()], all);
+        self.fresh = false;
+    }
+
+    /// Evaluates pairs and residuals of the groups of balls that have moved.
+    pub(super) fn evaluate_moved(&mut self) {
         let workspace = &mut *self.workspace;
         let bodies = (&self.races, &workspace.bodies, workspace.cage.as_ref());
         let acts = (&self.contacts, &self.ambient);
         let around = Surroundings::new(self.model, acts, &self.start.differences, bodies);
-        let step = &self.step;
-        let radius = self.model.bearing.ball.radius;
-        let mut motions = [BallMotion::at_rest(); WIDTH];
-        let groups = workspace.balls.chunks_mut(WIDTH).zip(&mut workspace.groups);
-        for (index, (trials, group)) in groups.enumerate() {
-            let first = WIDTH * index;
-            let mut changed = [all; WIDTH];
-            for (lane, trial) in trials.iter_mut().enumerate() {
-                let at = BLOCK * (first + lane);
-                let unknown = Vector6::from_row_slice(&unknowns[at..at + BLOCK]);
-                changed[lane] |= unknown != trial.unknowns || trial.renewed;
-                if changed[lane] {
-                    trial.move_to(unknown, radius, &self.step, &self.start.balls[first + lane]);
-                }
-                motions[lane] = trial.motion;
-            }
-            if changed == [false; WIDTH] {
-                continue;
-            }
-            if trials.iter().zip(changed).any(|(trial, changed)| changed && !trial.renewed) {
-                around.evaluate_group(first, &motions[..trials.len()], group);
-            }
-            for (lane, trial) in trials.iter_mut().enumerate() {
-                let index = first + lane;
-                if trial.renewed {
-                    self.contact_tangents += 2;
-                    trial.evaluate_with_tangent(index, &around, step, &self.start.balls[index]);
-                } else if changed[lane] {
-                    self.contact_values += 2;
-                    trial.take_contacts(group, lane);
-                    trial.evaluate_pocket(index, &around, step, None);
-                    trial.assemble(self.model, &self.ambient, step, &self.start.balls[index], None);
-                }
+        for (index, (trials, group)) in
+            workspace.balls.chunks_mut(WIDTH).zip(workspace.groups.iter_mut()).enumerate()
+        {
+            let moved = group.moved.iter().filter(|moved| **moved).count();
+            if moved > 0 {
+                self.contact_values += 2 * moved as u64;
+                around.evaluate_group(WIDTH * index, trials, group);
             }
         }
-        self.fresh = false;
     }
 
-    /// Evaluates the balls to be renewed where they are, with tangents.
-    pub(super) fn evaluate_renewed(&mut self) {
+    /// Derivatives of the balls to be renewed where they are, and their couplings to the bodies.
+    pub(super) fn differentiate_renewed(&mut self) {
         let workspace = &mut *self.workspace;
         let bodies = (&self.races, &workspace.bodies, workspace.cage.as_ref());
         let acts = (&self.contacts, &self.ambient);
@@ -205,7 +180,7 @@ impl<'a> BearingStep<'a> {
         let length = self.model.race_length();
         for (index, trial) in workspace.balls.iter_mut().enumerate().filter(|(_, trial)| trial.renewed) {
             self.contact_tangents += 2;
-            trial.evaluate_with_tangent(index, &around, &self.step, &self.start.balls[index]);
+            trial.differentiate(index, &workspace.groups.motion(index), &around, &self.step);
             for (slot, body) in workspace.bodies.iter() {
                 if let Some(body) = body {
                     trial.couple_body(slot, body, &self.step, length);
@@ -214,23 +189,24 @@ impl<'a> BearingStep<'a> {
         }
     }
 
-    /// Sums the forces of all pairs on the bodies that forces move, and sets the couplings of balls with new tangents.
+    /// Sums the forces of all pairs on the bodies that forces move.
     pub(super) fn scatter(&mut self) -> [Wrench; SLOTS] {
-        let length = self.model.race_length();
         let mut sums = [Wrench::default(); SLOTS];
-        let Workspace { balls, bodies, cage, .. } = &mut *self.workspace;
-        for trial in balls {
-            for slot in Body::ALL {
-                let Some(Some(body)) = bodies.get(slot) else {
-                    continue;
-                };
-                let at = slot.index();
-                if let Some(pair) = trial.pair(slot) {
-                    sums[at] = sums[at].plus(Wrench { force: -pair.force, moment: pair.other_moment });
-                }
-                if trial.renewed {
-                    trial.couple_body(slot, body, &self.step, length);
-                }
+        let Workspace { balls, groups, bodies, cage, .. } = &mut *self.workspace;
+        for (body, _) in bodies.iter().filter(|(_, trial)| trial.is_some()) {
+            let sum = &mut sums[body.index()];
+            let mut add = |force: &Vector3<f64>, moment: &Vector3<f64>| {
+                sum.force -= force;
+                sum.moment += moment;
+            };
+            match body {
+                Body::Race(race) => (0..balls.len()).for_each(|ball| {
+                    let (force, moment) = groups.on_race(ball, race);
+                    add(&force, &moment);
+                }),
+                Body::Cage => balls.iter().filter_map(|trial| trial.pocket.as_ref()).for_each(|pair| {
+                    add(&pair.force, &pair.other_moment);
+                }),
             }
         }
         if let (Some(model), Some(cage)) = (&self.model.cage, cage.as_mut())
@@ -344,17 +320,19 @@ impl Equations for BearingStep<'_> {
         if factorises {
             self.differentiate_bodies();
         }
-        self.evaluate_neighbours(unknowns, with_tangent);
-        self.evaluate_balls(unknowns);
+        self.move_balls(unknowns);
+        self.evaluate_neighbours(with_tangent);
+        self.evaluate_moved();
         let mut norm = 0.0f64;
-        for trial in &self.workspace.balls {
-            norm = larger(norm, largest(&trial.residual) / self.force_tolerance);
+        for ball in 0..self.workspace.balls.len() {
+            norm = larger(norm, self.workspace.groups.size(ball) / self.force_tolerance);
         }
         if !independent {
             let sums = self.scatter();
             norm = larger(norm, self.assemble_bodies(&sums));
         }
         if renewed {
+            self.differentiate_renewed();
             self.eliminate_renewed();
         }
         if factorises {

@@ -79,11 +79,10 @@ pub fn failure_site(
     let radius = model.bearing.ball.radius;
     let before = &before;
     let changes = |ball: usize| {
-        let trial = &workspace.balls[ball];
         Body::ALL.into_iter().filter_map(move |contact| {
             let old = before_of(before, ball, contact);
-            let new = trial.pair(contact);
-            let force = change(old.as_ref(), new, radius)?;
+            let new = workspace.pair(ball, contact);
+            let force = change(old.as_ref(), new.as_ref(), radius)?;
             Some(Change { ball, contact, force })
         })
     };

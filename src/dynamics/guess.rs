@@ -95,7 +95,8 @@ impl Workspace {
     /// Takes over how accelerations and multipliers have changed in a solved step of `h` \[s], and whether a guess that goes on with
     /// such changes would have been the better one.
     pub(super) fn follow_trend(&self, model: &Model, trend: &mut Trend, h: f64) {
-        let balls = self.balls.iter().flat_map(|trial| trial.unknowns.iter());
+        let solved: Vec<_> = (0..self.balls.len()).map(|ball| self.groups.unknowns(ball)).collect();
+        let balls = solved.iter().flatten();
         let bodies = self.bodies.iter().filter_map(|(_, trial)| trial.as_ref());
         let solved = balls.chain(bodies.flat_map(|trial| &trial.unknowns));
         trend.step = h;

@@ -24,7 +24,7 @@ impl BearingStep<'_> {
     /// Where the residual is largest.
     pub fn worst_residual(&self) -> Worst {
         let tolerance = self.force_tolerance;
-        let balls = self.workspace.balls.iter().map(|ball| largest(&ball.residual) / tolerance);
+        let balls = (0..self.start.balls.len()).map(|ball| self.workspace.groups.size(ball) / tolerance);
         // A sum that is not a number wins over any violation.
         let bodies = self.moved().map(|(body, _, trial)| {
             let residual = largest(trial.residual.rows(0, 6).iter()) / tolerance;
@@ -48,9 +48,10 @@ impl BearingStep<'_> {
     /// Square of the local error of every ball over its tolerance; rotations count as displacements at its surface.
     fn ball_errors(&self) -> impl Iterator<Item = f64> {
         let radius = self.model.bearing.ball.radius;
-        self.start.balls.iter().zip(&self.workspace.balls).map(move |(start, trial)| {
-            let acceleration = trial.unknowns.fixed_rows::<3>(0).into_owned();
-            let angular = trial.unknowns.fixed_rows::<3>(3).into_owned();
+        self.start.balls.iter().enumerate().map(move |(ball, start)| {
+            let unknowns = self.workspace.groups.unknowns(ball);
+            let acceleration = unknowns.fixed_rows::<3>(0).into_owned();
+            let angular = unknowns.fixed_rows::<3>(3).into_owned();
             self.square(
                 (&start.acceleration, &acceleration),
                 (&(start.angular_acceleration * radius), &angular),

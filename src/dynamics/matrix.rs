@@ -6,14 +6,13 @@
 use nalgebra::{DMatrix, Vector3};
 
 use super::Workspace;
-use super::ball::BallTrial;
 use super::equations::BearingStep;
 use crate::model::bodies::{Body, Race};
 use crate::model::state::{KeptBlock, Wear};
 use crate::numerics::arrowhead::{BLOCK, Block, Eliminated, Member, Offsets};
 use crate::numerics::orbit_turn::OrbitTurn;
 use crate::numerics::ring::Link;
-use crate::numerics::size::{larger, largest};
+use crate::numerics::size::larger;
 
 /// [-] price of one more correction, per ball, over that of a new block (benches/speed.rs): where balls are solved together and all
 /// are evaluated, and where each is alone.
@@ -75,9 +74,9 @@ impl BearingStep<'_> {
     /// Notes which old blocks have led nowhere, before all are computed anew.
     pub(super) fn give_up_old(&mut self) {
         let tolerance = self.force_tolerance;
-        let Workspace { balls, kept, .. } = &mut *self.workspace;
-        for (trial, KeptBlock { wear, .. }) in balls.iter().zip(&mut kept.balls) {
-            if !wear.new && trial.before > 1.0 && largest(&trial.residual) > tolerance {
+        let Workspace { balls, groups, kept, .. } = &mut *self.workspace;
+        for (ball, (trial, KeptBlock { wear, .. })) in balls.iter().zip(&mut kept.balls).enumerate() {
+            if !wear.new && trial.before > 1.0 && groups.size(ball) > tolerance {
                 wear.put_off();
             }
         }
@@ -90,13 +89,12 @@ impl BearingStep<'_> {
     fn mark_worn(&mut self) -> bool {
         let together = !self.balls_are_independent();
         let tolerance = self.force_tolerance;
-        let Workspace { balls, kept, .. } = &mut *self.workspace;
-        let norm = |trial: &BallTrial| largest(&trial.residual) / tolerance;
+        let Workspace { balls, groups, kept, .. } = &mut *self.workspace;
         let correction = TOGETHER * balls.len() as f64;
         let before = balls.iter().map(|trial| trial.before).fold(0.0, larger);
         let (mut bad, mut most, mut price) = (0.0, 0.0f64, 0.0);
-        for (trial, kept) in balls.iter_mut().zip(&mut kept.balls) {
-            let now = norm(trial);
+        for (ball, (trial, kept)) in balls.iter_mut().zip(&mut kept.balls).enumerate() {
+            let now = groups.size(ball) / tolerance;
             trial.renewed = now > 1.0;
             if !trial.renewed {
                 continue;
@@ -123,7 +121,7 @@ impl BearingStep<'_> {
     pub(super) fn eliminate_renewed(&mut self) {
         self.workspace.list_members(self.model.border_offsets());
         let origin = self.races_origin();
-        let Workspace { balls, kept, members, neighbours, factorised, .. } = &mut *self.workspace;
+        let Workspace { balls, groups, kept, members, neighbours, factorised, .. } = &mut *self.workspace;
         if !neighbours.is_empty() {
             *factorised = false;
             return;
@@ -139,7 +137,7 @@ impl BearingStep<'_> {
             };
             let last = kept.balls.get(index).map(|kept| kept.wear).unwrap_or_default();
             let wear = Wear { price: 0.0, new: true, ..last };
-            let new = KeptBlock { block, offset: trial.motion.position - origin, wear };
+            let new = KeptBlock { block, offset: groups.position(index) - origin, wear };
             match kept.balls.get_mut(index) {
                 Some(kept) => *kept = new,
                 None => kept.balls.push(new),
@@ -159,6 +157,7 @@ impl BearingStep<'_> {
         let carries = Race::BOTH.into_iter().any(|race| self.model.is_carried(race));
         let Workspace {
             balls,
+            groups,
             bodies,
             cage,
             kept,
@@ -186,11 +185,10 @@ impl BearingStep<'_> {
             border.view_mut((own, race), size).copy_from(&cage.cage_by_race);
         }
         if neighbours.is_empty() {
-            let turned = |(trial, kept): (&BallTrial, &'_ KeptBlock)| {
-                OrbitTurn::between(&kept.offset, &(trial.motion.position - origin))
+            let turned = |ball: usize, kept: &KeptBlock| {
+                OrbitTurn::between(&kept.offset, &(groups.position(ball) - origin))
             };
-            let blocks = balls.iter().zip(&kept.balls);
-            let blocks = blocks.map(|(trial, kept)| (&kept.block, turned((trial, kept))));
+            let blocks = kept.balls.iter().enumerate().map(|(ball, kept)| (&kept.block, turned(ball, kept)));
             match carries {
                 true => *reduced = arrowhead.reduce(blocks, members, border),
                 false => arrowhead.factorise(blocks, members, border),
@@ -240,7 +238,7 @@ impl BearingStep<'_> {
         if renewed {
             self.renewals += 1;
             self.differentiate_bodies();
-            self.evaluate_renewed();
+            self.differentiate_renewed();
             self.eliminate_renewed();
             if !self.balls_are_independent() {
                 self.factorise();
@@ -248,23 +246,24 @@ impl BearingStep<'_> {
         }
         self.corrections += 1;
         let tolerance = self.force_tolerance;
-        for trial in &mut self.workspace.balls {
-            trial.before = largest(&trial.residual) / tolerance;
+        let Workspace { balls, groups, .. } = &mut *self.workspace;
+        for (ball, trial) in balls.iter_mut().enumerate() {
+            trial.before = groups.size(ball) / tolerance;
         }
     }
 
     /// Corrections of balls between races of prescribed motion. A ball that is solved already stays where it is.
     fn correct_balls(&self, correction: &mut [f64]) -> bool {
         let origin = self.races_origin();
-        let Workspace { balls, kept, .. } = &*self.workspace;
+        let Workspace { balls, groups, kept, .. } = &*self.workspace;
         let mut regular = kept.balls.len() == balls.len();
-        for ((trial, kept), x) in balls.iter().zip(&kept.balls).zip(correction.chunks_exact_mut(BLOCK)) {
-            if largest(&trial.residual) <= self.force_tolerance {
+        for (ball, (kept, x)) in kept.balls.iter().zip(correction.chunks_exact_mut(BLOCK)).enumerate() {
+            if groups.size(ball) <= self.force_tolerance {
                 x.fill(0.0);
                 continue;
             }
-            let turn = OrbitTurn::between(&kept.offset, &(trial.motion.position - origin));
-            let solution = turn.stacked(&(kept.block.inverse * turn.back().stacked(&-trial.residual)));
+            let turn = OrbitTurn::between(&kept.offset, &(groups.position(ball) - origin));
+            let solution = turn.stacked(&(kept.block.inverse * turn.back().stacked(&-groups.residual(ball))));
             regular &= solution.iter().all(|v| v.is_finite());
             x.copy_from_slice(solution.as_slice());
         }
@@ -326,10 +325,10 @@ impl BearingStep<'_> {
     /// Takes the right-hand sides of balls and bodies.
     fn take_right_sides(&mut self) {
         let rows = self.model.border_size();
-        let Workspace { balls, bodies, members, ball_corrections: x, border_correction: y, .. } =
+        let Workspace { balls, groups, bodies, members, ball_corrections: x, border_correction: y, .. } =
             &mut *self.workspace;
         x.clear();
-        x.extend(balls.iter().map(|trial| -trial.residual));
+        x.extend((0..balls.len()).map(|ball| -groups.residual(ball)));
         y.resize_vertically_mut(rows, 0.0);
         for member in members.iter() {
             if let Some(trial) = Body::ALL.get(member.slot).and_then(|body| bodies.get(*body)?.as_ref()) {

@@ -2,6 +2,7 @@
 
 mod accept;
 mod ball;
+mod ball_equations;
 mod body;
 mod body_sums;
 mod cage;
@@ -9,6 +10,7 @@ pub mod carried;
 mod directions;
 mod equations;
 mod failure;
+mod group;
 mod guess;
 mod local_error;
 mod matrix;
@@ -23,14 +25,13 @@ pub mod system;
 
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector6};
 
-use crate::contact::many::ContactGroup;
+use crate::contact::pair::PairForces;
 use crate::effects::moving_frame::FrameMotion;
 use crate::forces::{BallContacts, Contacts};
-use crate::model::bodies::{Bodies, PerRace};
+use crate::model::bodies::{Bodies, Body, PerRace};
 use crate::model::state::{KeptMatrix, State};
 use crate::model::{Conditions, Model};
 use crate::numerics::arrowhead::{Arrowhead, Member};
-use crate::numerics::lanes::WIDTH;
 use crate::numerics::motion::{Pose, Twist};
 use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure};
 use crate::numerics::ring::Ring;
@@ -42,6 +43,7 @@ use body::BodyTrial;
 pub use body_sums::BodyLoad;
 use cage::CageTrial;
 use equations::BearingStep;
+use group::Groups;
 pub use failure::{FailureSite, Worst, failure_site};
 use neighbours::NeighbourTrial;
 pub use sensitivity::advance_perturbed;
@@ -67,8 +69,8 @@ pub struct Boundary {
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     balls: Vec<BallTrial>,
-    /// Contacts of the balls with the races, as evaluated last without derivatives: those of [`WIDTH`] balls in each.
-    groups: Vec<PerRace<ContactGroup>>,
+    /// Motion, contacts, forces and residuals of the balls.
+    groups: Groups,
     /// The state's matrix during a step.
     kept: KeptMatrix,
     /// Trials of the bodies that forces move; empty before the first step.
@@ -96,16 +98,18 @@ pub struct Workspace {
 }
 
 impl Workspace {
+    /// Forces between a ball and the body that it touches; none where it does not touch the cage.
+    fn pair(&self, ball: usize, body: Body) -> Option<PairForces> {
+        match body {
+            Body::Race(race) => Some(self.groups.pair(ball, race)),
+            Body::Cage => self.balls[ball].pocket,
+        }
+    }
+
     /// All contacts at the end of the step that was accepted last with this workspace.
     pub fn contacts(&self, model: &Model) -> Contacts {
         let of_ball = |(index, trial): (usize, &BallTrial)| {
-            let group = &self.groups[index / WIDTH];
-            BallContacts {
-                raceways: trial
-                    .contacts
-                    .unwrap_or_else(|| PerRace::new(|race| group[race].contact(index % WIDTH))),
-                pocket: trial.pocket,
-            }
+            BallContacts { raceways: self.groups.contacts(index), pocket: trial.pocket }
         };
         let lands = self.cage.as_ref().map_or([None; 2], |cage| cage.lands);
         let ball_pairs = self.neighbours.iter().filter_map(NeighbourTrial::touching).collect();

@@ -3,7 +3,7 @@
 //! Most steps have none: at the start of a step those pairs are listed that may touch before its end, and only these are
 //! looked at. Should another pair have met in the solved step, it joins the list and the step is solved again.
 
-use nalgebra::{Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix6, Vector3};
 
 use super::Workspace;
 use super::ball::{BallTrial, Push};
@@ -17,7 +17,6 @@ use crate::forces::BallPair;
 use crate::model::Model;
 use crate::model::bearing::neighbours;
 use crate::model::state::{KeptMatrix, State};
-use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::ring::Link;
 use crate::numerics::scalar::constant_vector;
@@ -56,11 +55,11 @@ impl NeighbourTrial {
     fn evaluate(
         &mut self,
         (contact, damping): (&BallBallModel, Damping),
+        motions: &[BallMotion<f64>; 2],
         balls: &mut [BallTrial],
         step: &HhtStep,
         with_tangent: bool,
     ) {
-        let motions = [self.first, self.second].map(|ball| balls[ball].motion);
         self.forces = contact.evaluate(&motions[0], &motions[1], damping);
         let mut own = [Matrix6::zeros(); 2];
         if with_tangent {
@@ -151,7 +150,7 @@ impl BearingStep<'_> {
         let workspace = &mut *self.workspace;
         let is_listed = |first: usize| workspace.neighbours.iter().any(|neighbour| neighbour.first == first);
         let met = |(first, second): (usize, usize)| {
-            let [first, second] = [first, second].map(|ball| workspace.balls[ball].motion.position);
+            let [first, second] = [first, second].map(|ball| workspace.groups.position(ball));
             (second - first).norm_squared() < contact.diameter * contact.diameter
         };
         let pairs = || neighbours(workspace.balls.len());
@@ -163,38 +162,39 @@ impl BearingStep<'_> {
         true
     }
 
-    /// Moves the balls to the end of the step and evaluates the listed pairs; with derivatives if asked for.
-    pub(super) fn evaluate_neighbours(&mut self, unknowns: &[f64], with_tangent: bool) {
+    /// Evaluates the listed pairs of the balls that have moved to the end of the step; with derivatives if asked for.
+    pub(super) fn evaluate_neighbours(&mut self, with_tangent: bool) {
         let Some(contact) = &self.model.ball_contact else {
             return;
         };
-        let Workspace { balls, neighbours, .. } = &mut *self.workspace;
+        let Workspace { balls, groups, neighbours, .. } = &mut *self.workspace;
         if neighbours.is_empty() {
             return;
         }
-        let trials = balls.iter_mut().zip(&self.start.balls);
-        for ((trial, start), unknowns) in trials.zip(unknowns.chunks_exact(BLOCK)) {
-            trial.move_to(Vector6::from_row_slice(unknowns), 0.5 * contact.diameter, &self.step, start);
-            trial.pushed = None;
-        }
+        balls.iter_mut().for_each(|trial| trial.pushed = None);
         for pair in neighbours {
-            pair.evaluate((contact, self.model.damping), balls, &self.step, with_tangent);
+            let motions = [pair.first, pair.second].map(|ball| groups.motion(ball));
+            pair.evaluate((contact, self.model.damping), &motions, balls, &self.step, with_tangent);
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector6;
+
+    use super::super::ball_equations::BallEquations;
     use super::*;
+    use crate::model::bearing::Ball;
     use crate::model::bodies::PerRace;
     use crate::model::state::BallState;
     use crate::numerics::motion::Wrench;
 
-    /// Two balls that press on each other, after a step with these unknowns.
-    fn moved(unknowns: &[Vector6<f64>; 2], step: &HhtStep) -> [BallTrial; 2] {
-        let radius = 5e-3;
-        [0, 1].map(|ball: usize| {
-            let side = if ball == 0 { -1.0 } else { 1.0 };
+    /// Motions of two balls that press on each other, after a step with these unknowns.
+    fn moved(unknowns: &[Vector6<f64>; 2], step: &HhtStep) -> [BallMotion<f64>; 2] {
+        let ball = Ball { radius: 5e-3, mass: 4e-3, inertia: 4e-8 };
+        [0, 1].map(|index: usize| {
+            let side = if index == 0 { -1.0 } else { 1.0 };
             let start = BallState {
                 position: Vector3::new(1e-3, side * 4e-3 * 0.9999, side * 3e-3 * 0.9999),
                 velocity: Vector3::new(0.1, -0.2 * side, 0.05),
@@ -205,9 +205,7 @@ mod tests {
                 remainder: Wrench::default(),
                 pressed: PerRace::default(),
             };
-            let mut trial = BallTrial::new(&start);
-            trial.move_to(unknowns[ball], radius, step, &start);
-            trial
+            BallEquations::new(&start, &ball, step).motion(&unknowns[index].into())
         })
     }
 
@@ -217,9 +215,10 @@ mod tests {
         let at =
             [Vector6::new(10.0, -20.0, 30.0, 5.0, 15.0, -8.0), Vector6::new(-4.0, 7.0, 9.0, 2.0, 3.0, 1.0)];
         let evaluate = |unknowns: &[Vector6<f64>; 2], with_tangent: bool| {
-            let mut balls = moved(unknowns, &step);
+            let mut balls = [BallTrial::new(), BallTrial::new()];
             let mut pair = NeighbourTrial::new((0, 1));
-            pair.evaluate((&contact, 0.02.into()), &mut balls, &step, with_tangent);
+            let motions = moved(unknowns, &step);
+            pair.evaluate((&contact, 0.02.into()), &motions, &mut balls, &step, with_tangent);
             (pair, balls.map(|ball| ball.pushed.unwrap()))
         };
         let force = |push: &Push| -> Vector6<f64> {

@@ -4,12 +4,15 @@
 //! depth of that contact. Newton's method then comes back by a factor of two or three at a time, and all other balls would be evaluated
 //! as often. Its six equations with the bodies where they are cost two contacts an iteration.
 
+use std::cmp::Ordering;
+
 use nalgebra::Vector6;
 
-use super::ball::{BallTrial, Surroundings};
+use super::ball::{BallAlone, Surroundings};
+use super::ball_equations::BallEquations;
 use super::equations::BearingStep;
+use super::group::Groups;
 use crate::model::bodies::Race;
-use crate::model::state::BallState;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::size::largest;
 
@@ -29,32 +32,40 @@ impl BearingStep<'_> {
     /// then to be computed anew.
     pub(super) fn repair_balls(&mut self) -> bool {
         let workspace = &mut *self.workspace;
-        let (tolerance, mass) = (self.force_tolerance, self.model.bearing.ball.mass);
-        let thrown =
-            workspace.balls.iter().filter(|trial| trial.is_thrown(tolerance, &self.step, mass)).count();
-        if thrown == 0 || thrown as f64 > MANY * workspace.balls.len() as f64 {
+        let (balls, groups) = (&mut workspace.balls, &mut workspace.groups);
+        let (tolerance, ball) = (self.force_tolerance, &self.model.bearing.ball);
+        let is_thrown = |index: usize, groups: &Groups| groups.is_thrown(index, tolerance, &self.step, ball.mass);
+        let thrown = (0..balls.len()).filter(|index| is_thrown(*index, groups)).count();
+        if thrown == 0 || thrown as f64 > MANY * balls.len() as f64 {
             return false;
         }
         let bodies = (&self.races, &workspace.bodies, workspace.cage.as_ref());
         let acts = (&self.contacts, &self.ambient);
         let around = Surroundings::new(self.model, acts, &self.start.differences, bodies);
-        for (index, (trial, start)) in workspace.balls.iter_mut().zip(&self.start.balls).enumerate() {
-            if trial.is_thrown(tolerance, &self.step, mass) {
-                let target = tolerance.max(LEFT * largest(&trial.residual));
-                let evaluations = trial.balance(index, &around, &self.step, start, target);
-                self.contact_tangents += 2 * u64::from(evaluations);
+        for (index, (trial, start)) in balls.iter_mut().zip(&self.start.balls).enumerate() {
+            if is_thrown(index, groups) {
+                let equations = BallEquations::new(start, ball, &self.step);
+                let alone = |unknowns: &Vector6<f64>| {
+                    self.contact_tangents += 2;
+                    BallAlone::new(index, &equations, unknowns, &around, &self.step)
+                };
+                let from = groups.unknowns(index);
+                let to = balance(from, tolerance.max(LEFT * groups.size(index)), alone);
+                trial.repaired = Some(to - from);
+                groups.put(index, &to);
             }
         }
+        self.evaluate_moved();
         true
     }
 }
 
-impl BallTrial {
-    /// Is the ball so far out of balance that Newton's method would have to follow the bend of a contact? A stiff contact bends as soon
+impl Groups {
+    /// Is a ball so far out of balance that Newton's method would have to follow the bend of a contact? A stiff contact bends as soon
     /// as its depth changes; in short steps the ball's mass leaves little of that.
-    fn is_thrown(&self, tolerance: f64, step: &HhtStep, mass: f64) -> bool {
-        let size = largest(&self.residual);
-        let [inner, outer] = Race::BOTH.map(|race| &self.raceways[race]);
+    fn is_thrown(&self, ball: usize, tolerance: f64, step: &HhtStep, mass: f64) -> bool {
+        let size = self.size(ball);
+        let [inner, outer] = Race::BOTH.map(|race| self.pair(ball, race));
         let deeper = if inner.load > outer.load { inner } else { outer };
         // Without a contact any way is too far: it ends in one.
         let depth = deeper.approach.max(0.0);
@@ -62,53 +73,38 @@ impl BallTrial {
         let slope = if deeper.load > 0.0 { 1.5 * deeper.load / depth } else { 0.0 };
         size > tolerance && gain * size / (mass + gain * slope) > THROWN * depth
     }
+}
 
-    /// Solves the ball's own equations to a residual \[N], or as far as that goes; how often were its contacts evaluated?
-    fn balance(
-        &mut self,
-        index: usize,
-        around: &Surroundings<'_>,
-        step: &HhtStep,
-        start: &BallState,
-        target: f64,
-    ) -> u32 {
-        let radius = around.model.bearing.ball.radius;
-        let from = self.unknowns;
-        let evaluate = |trial: &mut Self, unknowns: Vector6<f64>| {
-            trial.move_to(unknowns, radius, step, start);
-            trial.evaluate_alone(index, around, step, start);
-            largest(&trial.residual)
+/// Solves a ball's own equations to a residual \[N], or as far as that goes.
+fn balance(
+    from: Vector6<f64>,
+    target: f64,
+    mut evaluate: impl FnMut(&Vector6<f64>) -> BallAlone,
+) -> Vector6<f64> {
+    let mut at = from;
+    let mut here = evaluate(&at);
+    let mut norm = largest(&here.residual);
+    let mut evaluations = 1;
+    while norm > target && evaluations < MOST {
+        let Some(full) = here.tangent.lu().solve(&-here.residual) else {
+            break;
         };
-        let mut norm = evaluate(self, from);
-        let mut evaluations = 1;
-        while norm > target && evaluations < MOST {
-            let at = self.unknowns;
-            let Some(full) = self.block.diagonal.lu().solve(&-self.residual) else {
-                break;
-            };
-            let mut length = 1.0;
-            let next = loop {
-                let next = evaluate(self, at + full * length);
-                evaluations += 1;
-                if next < norm * (1.0 - 1e-4 * length) || evaluations >= MOST {
-                    break next;
-                }
-                length *= 0.5;
-            };
-            if next < norm {
-                norm = next;
-            } else {
-                // Not a number either.
-                norm = evaluate(self, at);
-                evaluations += 1;
-                break;
-            }
-        }
-        if !norm.is_finite() {
-            evaluate(self, from);
+        let mut length = 1.0;
+        let (next, next_norm) = loop {
+            let next = evaluate(&(at + full * length));
+            let size = largest(&next.residual);
             evaluations += 1;
+            if size < norm * (1.0 - 1e-4 * length) || evaluations >= MOST {
+                break (next, size);
+            }
+            length *= 0.5;
+        };
+        // Not a number either.
+        if next_norm.partial_cmp(&norm) != Some(Ordering::Less) {
+            break;
         }
-        self.repaired = Some(self.unknowns - from);
-        evaluations
+        at += full * length;
+        (here, norm) = (next, next_norm);
     }
+    if norm.is_finite() { at } else { from }
 }

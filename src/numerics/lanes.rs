@@ -8,6 +8,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 use nalgebra::Vector3;
 
 use crate::numerics::scalar::{Scalar, SmoothMap, Values};
+use crate::numerics::size::larger;
 
 /// Numbers per vector: as many as a register of 256 bits holds.
 pub const WIDTH: usize = 4;
@@ -43,6 +44,12 @@ impl Lanes {
     #[inline(always)]
     pub fn at_least(self, bound: f64) -> Self {
         self.map(|x| if x > bound { x } else { bound })
+    }
+
+    /// The larger of each number and the size of another; NaN where one of them is ([`crate::numerics::size::larger`]).
+    #[inline(always)]
+    pub fn larger_size(self, other: Self) -> Self {
+        self.zip(other, |a, b| larger(a, b.abs()))
     }
 
     #[inline(always)]

@@ -1,0 +1,148 @@
+//! Equations of motion of a ball in one step, of one or of several at a time: where unknown accelerations take it, and what forces
+//! leave of them.
+
+use nalgebra::Vector3;
+
+use crate::contact::BallMotion;
+use crate::model::bearing::Ball;
+use crate::model::state::BallState;
+use crate::numerics::hht::HhtStep;
+use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::numerics::motion::Wrench;
+use crate::numerics::scalar::Scalar;
+
+/// A ball's unknowns or residual: vectors of translation, then of rotation.
+pub type Six<S> = [S; 6];
+
+/// The equations of a ball in a step from a given state.
+///
+/// Unknowns are the acceleration of its centre [m/s2] and its angular acceleration times its radius [m/s2].
+#[derive(Clone, Copy, Debug)]
+pub struct BallEquations<S: Scalar = f64> {
+    step: HhtStep,
+    mass: f64,
+    inertia: f64,
+    radius: f64,
+    /// Motion at the start.
+    start: BallMotion<S>,
+    /// \[m] way over the step at the velocity of the start.
+    way: Vector3<S>,
+    /// Shares of the accelerations at the start in displacement and velocities.
+    pull: Vector3<S>,
+    gain: Vector3<S>,
+    angular_gain: Vector3<S>,
+    /// Share of force and moment at the start in those of the step.
+    held: Wrench<S>,
+    /// What the last step left: it is made good here, as of the bodies.
+    owed: Wrench<S>,
+}
+
+impl BallEquations {
+    /// Those of a step from a state.
+    #[inline]
+    pub fn new(start: &BallState, ball: &Ball, step: &HhtStep) -> Self {
+        let held = 1.0 - fraction(step);
+        Self {
+            step: *step,
+            mass: ball.mass,
+            inertia: ball.inertia,
+            radius: ball.radius,
+            start: start.motion(),
+            way: start.velocity * step.h,
+            pull: start.acceleration * (0.5 - step.beta),
+            gain: start.acceleration * (1.0 - step.gamma),
+            angular_gain: start.angular_acceleration * (1.0 - step.gamma),
+            held: Wrench { force: start.total.force * held, moment: start.total.moment * held },
+            owed: start.remainder,
+        }
+    }
+}
+
+impl BallEquations<Lanes> {
+    /// Those of several balls, by lane.
+    pub fn of_lanes(of: impl Fn(usize) -> BallEquations) -> Self {
+        let each: [BallEquations; WIDTH] = std::array::from_fn(of);
+        let vector = |part: fn(&BallEquations) -> &Vector3<f64>| Lanes::vector(|lane| *part(&each[lane]));
+        let BallEquations { step, mass, inertia, radius, .. } = each[0];
+        Self {
+            step,
+            mass,
+            inertia,
+            radius,
+            start: BallMotion {
+                position: vector(|one| &one.start.position),
+                velocity: vector(|one| &one.start.velocity),
+                angular_velocity: vector(|one| &one.start.angular_velocity),
+            },
+            way: vector(|one| &one.way),
+            pull: vector(|one| &one.pull),
+            gain: vector(|one| &one.gain),
+            angular_gain: vector(|one| &one.angular_gain),
+            held: Wrench { force: vector(|one| &one.held.force), moment: vector(|one| &one.held.moment) },
+            owed: Wrench { force: vector(|one| &one.owed.force), moment: vector(|one| &one.owed.moment) },
+        }
+    }
+}
+
+impl<S: Scalar> BallEquations<S> {
+    /// Acceleration and angular acceleration of unknowns.
+    #[inline(always)]
+    fn accelerations(&self, unknowns: &Six<S>) -> [Vector3<S>; 2] {
+        let [ax, ay, az, bx, by, bz] = *unknowns;
+        let radius = S::constant(self.radius);
+        [Vector3::new(ax, ay, az), Vector3::new(bx / radius, by / radius, bz / radius)]
+    }
+
+    /// Motion at the end of the step.
+    #[inline(always)]
+    pub fn motion(&self, unknowns: &Six<S>) -> BallMotion<S> {
+        let Self { start, step, .. } = self;
+        let [acceleration, angular] = self.accelerations(unknowns);
+        let (beta, gamma, h) = (step.beta, step.gamma, step.h);
+        let moved = |i: usize| {
+            start.position[i] + (self.way[i] + (self.pull[i] + acceleration[i].scale(beta)).scale(h * h))
+        };
+        let faster = |from: S, gain: S, acceleration: S| from + (gain + acceleration.scale(gamma)).scale(h);
+        BallMotion {
+            position: Vector3::new(moved(0), moved(1), moved(2)),
+            velocity: vector(|i| faster(start.velocity[i], self.gain[i], acceleration[i])),
+            angular_velocity: vector(|i| faster(start.angular_velocity[i], self.angular_gain[i], angular[i])),
+        }
+    }
+
+    /// What is left of the equations under the total force and moment at the end of the step.
+    #[inline(always)]
+    pub fn remainder(&self, unknowns: &Six<S>, total: &Wrench<S>) -> Wrench<S> {
+        let [acceleration, angular] = self.accelerations(unknowns);
+        let fraction = fraction(&self.step);
+        let left = |inertial: S, total: S, held: S, owed: S| inertial - (total.scale(fraction) + held) + owed;
+        let Self { held, owed, .. } = self;
+        Wrench {
+            force: vector(|i| {
+                left(acceleration[i].scale(self.mass), total.force[i], held.force[i], owed.force[i])
+            }),
+            moment: vector(|i| {
+                left(angular[i].scale(self.inertia), total.moment[i], held.moment[i], owed.moment[i])
+            }),
+        }
+    }
+
+    /// \[N] residual of what is left: moments over the radius.
+    #[inline(always)]
+    pub fn residual(&self, remainder: &Wrench<S>) -> Six<S> {
+        let radius = S::constant(self.radius);
+        let Wrench { force, moment } = remainder;
+        [force.x, force.y, force.z, moment.x / radius, moment.y / radius, moment.z / radius]
+    }
+}
+
+/// [-] share of the forces at the end of a step.
+fn fraction(step: &HhtStep) -> f64 {
+    1.0 - step.alpha_f
+}
+
+/// A vector by components.
+#[inline(always)]
+fn vector<S: Scalar>(of: impl Fn(usize) -> S) -> Vector3<S> {
+    Vector3::new(of(0), of(1), of(2))
+}

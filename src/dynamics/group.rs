@@ -1,0 +1,272 @@
+//! Balls of a trial step, four at a time: motion, contacts, forces and residual of each group in the lanes of vectors.
+//!
+//! Only what few balls need is kept ball by ball ([`BallTrial`](super::ball::BallTrial)).
+
+use nalgebra::{Vector3, Vector6};
+
+use super::ball_equations::{BallEquations, Six};
+use crate::contact::many::ContactGroup;
+use crate::contact::pair::PairForces;
+use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
+use crate::effects::ambient::Ambient;
+use crate::model::bodies::{PerRace, Race};
+use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::numerics::motion::Wrench;
+use crate::numerics::scalar::Scalar;
+
+/// Up to [`WIDTH`] balls in one trial step. Lanes without a ball repeat the last.
+#[derive(Clone, Debug)]
+pub struct BallGroup {
+    equations: BallEquations<Lanes>,
+    unknowns: Six<Lanes>,
+    motion: BallMotion<Lanes>,
+    /// Contacts with the races.
+    contacts: PerRace<ContactGroup>,
+    /// Which balls were moved since their forces were evaluated?
+    pub moved: [bool; WIDTH],
+    balance: Balance,
+}
+
+/// Forces on balls, and what is left of their equations.
+#[derive(Clone, Debug)]
+struct Balance {
+    total: Wrench<Lanes>,
+    remainder: Wrench<Lanes>,
+    residual: Six<Lanes>,
+    /// \[N] largest component of the residual.
+    size: Lanes,
+}
+
+impl BallGroup {
+    /// Buffers for balls with these equations, and contacts of any kind.
+    fn new(equations: &BallEquations<Lanes>, contacts: &PerRace<ContactGroup>) -> Self {
+        let zero = Lanes::constant(0.0);
+        let unknowns = [zero; 6];
+        let balance = Balance {
+            total: Wrench::default(),
+            remainder: Wrench::default(),
+            residual: unknowns,
+            size: zero,
+        };
+        Self {
+            equations: *equations,
+            unknowns,
+            motion: equations.motion(&unknowns),
+            contacts: contacts.clone(),
+            moved: [true; WIDTH],
+            balance,
+        }
+    }
+
+    /// Moves its balls to the end of the step: `unknowns` are those of all its balls. Notes which moved, or that `all` count as moved.
+    fn move_to(&mut self, unknowns: &[f64], all: bool) {
+        let last = unknowns.len() / 6 - 1;
+        let lane = |lane: usize| 6 * lane.min(last);
+        let new: Six<Lanes> = std::array::from_fn(|k| Lanes::from_fn(|l| unknowns[lane(l) + k]));
+        self.moved = std::array::from_fn(|l| {
+            l <= last && (all || new.iter().zip(&self.unknowns).any(|(new, old)| new.0[l] != old.0[l]))
+        });
+        self.unknowns = new;
+        move_lanes(&self.equations, &self.unknowns, &mut self.motion);
+    }
+
+    /// Evaluates the contacts of its balls with a race.
+    pub fn evaluate(&mut self, race: Race, contact: &ContactModel<'_>, seen: &RaceMotion<f64>) {
+        self.contacts[race].evaluate(contact, seen, &self.motion);
+    }
+
+    /// Takes over the contact of the ball in a lane with a race, evaluated elsewhere.
+    pub fn set(&mut self, race: Race, lane: usize, contact: &BallRaceContact<f64>) {
+        self.contacts[race].set(lane, contact);
+    }
+
+    /// Forces on its balls by their contacts, by what acts from outside, and by pockets and neighbours; what they leave.
+    pub fn balance(&mut self, ambient: &Ambient, touched: Option<&[Wrench<Lanes>; 2]>) {
+        self.moved = [false; WIDTH];
+        let contacts = [Race::Inner, Race::Outer].map(|race| self.contacts[race].lanes());
+        let mut total = ambient.on_ball(&self.motion);
+        sum_lanes(contacts, &mut total);
+        for more in touched.into_iter().flatten() {
+            total.force += more.force;
+            total.moment += more.moment;
+        }
+        balance_lanes(&self.equations, &self.unknowns, &total, &mut self.balance);
+    }
+
+    /// Motion of the ball in a lane.
+    #[inline]
+    pub fn motion(&self, lane: usize) -> BallMotion<f64> {
+        let BallMotion { position, velocity, angular_velocity } = &self.motion;
+        let [position, velocity, angular_velocity] =
+            [position, velocity, angular_velocity].map(|v| in_lane(v, lane));
+        BallMotion { position, velocity, angular_velocity }
+    }
+}
+
+/// All balls of a trial step.
+#[derive(Clone, Debug, Default)]
+pub struct Groups(Vec<BallGroup>);
+
+impl Groups {
+    /// Begins a step: balls with these equations. `contact` gives contacts to fill new buffers with.
+    pub fn begin(
+        &mut self,
+        balls: usize,
+        equations: impl Fn(usize) -> BallEquations,
+        contact: impl FnOnce() -> PerRace<ContactGroup>,
+    ) {
+        let groups = balls.div_ceil(WIDTH);
+        let of_group = |group: usize| {
+            BallEquations::of_lanes(|lane| equations((WIDTH * group + lane).min(balls - 1)))
+        };
+        if self.0.len() == groups {
+            self.0.iter_mut().enumerate().for_each(|(index, group)| group.equations = of_group(index));
+        } else {
+            let contacts = contact();
+            self.0 = (0..groups).map(|group| BallGroup::new(&of_group(group), &contacts)).collect();
+        }
+    }
+
+    /// Moves one ball somewhere else.
+    pub fn put(&mut self, ball: usize, unknowns: &Vector6<f64>) {
+        let (group, lane) = (&mut self.0[ball / WIDTH], ball % WIDTH);
+        for (lanes, unknown) in group.unknowns.iter_mut().zip(unknowns) {
+            lanes.0[lane] = *unknown;
+        }
+        group.moved[lane] = true;
+        move_lanes(&group.equations, &group.unknowns, &mut group.motion);
+    }
+
+    /// Moves the balls to the end of the step; `all` count as moved, or those whose unknowns have changed.
+    pub fn move_to(&mut self, unknowns: &[f64], all: bool) {
+        for (group, unknowns) in self.0.iter_mut().zip(unknowns.chunks(6 * WIDTH)) {
+            group.move_to(unknowns, all);
+        }
+    }
+
+    /// The groups.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut BallGroup> {
+        self.0.iter_mut()
+    }
+
+    #[inline]
+    fn place(&self, ball: usize) -> (&BallGroup, usize) {
+        (&self.0[ball / WIDTH], ball % WIDTH)
+    }
+
+    /// [m/s2] acceleration of a ball's centre, and its angular acceleration times its radius.
+    #[inline]
+    pub fn unknowns(&self, ball: usize) -> Vector6<f64> {
+        let (group, lane) = self.place(ball);
+        six_in_lane(&group.unknowns, lane)
+    }
+
+    /// Motion of a ball at the end of the step.
+    #[inline]
+    pub fn motion(&self, ball: usize) -> BallMotion<f64> {
+        let (group, lane) = self.place(ball);
+        group.motion(lane)
+    }
+
+    /// \[m] centre of a ball at the end of the step.
+    #[inline]
+    pub fn position(&self, ball: usize) -> Vector3<f64> {
+        let (group, lane) = self.place(ball);
+        in_lane(&group.motion.position, lane)
+    }
+
+    /// Forces between a ball and a race.
+    #[inline]
+    pub fn pair(&self, ball: usize, race: Race) -> PairForces {
+        let (group, lane) = self.place(ball);
+        group.contacts[race].forces(lane)
+    }
+
+    /// Force of a race on a ball, and moment on the race.
+    #[inline]
+    pub fn on_race(&self, ball: usize, race: Race) -> (Vector3<f64>, Vector3<f64>) {
+        let (group, lane) = self.place(ball);
+        let contact = group.contacts[race].lanes();
+        (in_lane(&contact.force, lane), in_lane(&contact.race_moment, lane))
+    }
+
+    /// Contacts of a ball with the races.
+    pub fn contacts(&self, ball: usize) -> PerRace<BallRaceContact<f64>> {
+        let (group, lane) = self.place(ball);
+        PerRace::new(|race| group.contacts[race].contact(lane))
+    }
+
+    /// Total force and moment on a ball.
+    #[inline]
+    pub fn total(&self, ball: usize) -> Wrench {
+        let (group, lane) = self.place(ball);
+        wrench_in_lane(&group.balance.total, lane)
+    }
+
+    /// What is left of a ball's equations of motion.
+    #[inline]
+    pub fn remainder(&self, ball: usize) -> Wrench {
+        let (group, lane) = self.place(ball);
+        wrench_in_lane(&group.balance.remainder, lane)
+    }
+
+    /// \[N] residual of a ball; moments over its radius.
+    #[inline]
+    pub fn residual(&self, ball: usize) -> Vector6<f64> {
+        let (group, lane) = self.place(ball);
+        six_in_lane(&group.balance.residual, lane)
+    }
+
+    /// \[N] largest component of a ball's residual; NaN if one is.
+    #[inline]
+    pub fn size(&self, ball: usize) -> f64 {
+        let (group, lane) = self.place(ball);
+        group.balance.size.0[lane]
+    }
+}
+
+/// Moves balls. Compiled twice, as contacts are ([`crate::contact::many`]).
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn move_lanes(equations: &BallEquations<Lanes>, unknowns: &Six<Lanes>, motion: &mut BallMotion<Lanes>) {
+    *motion = equations.motion(unknowns);
+}
+
+/// Adds what two contacts do to balls.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn sum_lanes(contacts: [&BallRaceContact<Lanes>; 2], total: &mut Wrench<Lanes>) {
+    for contact in contacts {
+        for i in 0..3 {
+            total.force[i] += contact.force[i];
+            total.moment[i] += contact.ball_moment[i];
+        }
+    }
+}
+
+/// What forces leave of the equations of balls.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn balance_lanes(
+    equations: &BallEquations<Lanes>,
+    unknowns: &Six<Lanes>,
+    total: &Wrench<Lanes>,
+    balance: &mut Balance,
+) {
+    let remainder = equations.remainder(unknowns, total);
+    let residual = equations.residual(&remainder);
+    let size = residual.iter().fold(Lanes::constant(0.0), |size, x| size.larger_size(*x));
+    *balance = Balance { total: *total, remainder, residual, size };
+}
+
+#[inline(always)]
+fn in_lane(v: &Vector3<Lanes>, lane: usize) -> Vector3<f64> {
+    Vector3::new(v.x.0[lane], v.y.0[lane], v.z.0[lane])
+}
+
+#[inline(always)]
+fn wrench_in_lane(wrench: &Wrench<Lanes>, lane: usize) -> Wrench {
+    Wrench { force: in_lane(&wrench.force, lane), moment: in_lane(&wrench.moment, lane) }
+}
+
+#[inline(always)]
+fn six_in_lane(six: &Six<Lanes>, lane: usize) -> Vector6<f64> {
+    Vector6::from_fn(|k, _| six[k].0[lane])
+}
