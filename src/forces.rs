@@ -90,8 +90,9 @@ impl Contacts {
 
     /// Force and moment of all its pairs on a ball, on top of `start`.
     pub fn on_ball(&self, ball: usize, start: Wrench) -> Wrench {
-        let touched = on_ball(self.of_ball(ball).map(|(_, pair)| pair.on_first()), start);
-        self.neighbours_on(ball).fold(touched, Wrench::plus)
+        let mut sum = start;
+        self.of_ball(ball, |_, pair| sum = sum.plus(pair.on_first()));
+        self.neighbours_on(ball).fold(sum, Wrench::plus)
     }
 
     /// Force and moment on a ball of each neighbour that it touches.
@@ -120,8 +121,9 @@ fn touching_balls(model: &Model, state: &State) -> Vec<BallPair> {
 
 /// Pairs of bodies that touch, in one order for all sums: by ball, between balls, then between bodies.
 pub trait Pairs {
-    /// Pairs of a ball and the body that it touches.
-    fn of_ball(&self, ball: usize) -> impl Iterator<Item = (Body, PairForces)>;
+    /// Shows the pairs of a ball, each with the body that it touches. No iterator: its items would have to be in memory, and sums over
+    /// all balls need few of their numbers.
+    fn of_ball(&self, ball: usize, see: impl FnMut(Body, &PairForces));
 
     /// Pairs of two balls.
     fn between_balls(&self) -> impl Iterator<Item = BallPair>;
@@ -131,10 +133,15 @@ pub trait Pairs {
 }
 
 impl Pairs for Contacts {
-    fn of_ball(&self, ball: usize) -> impl Iterator<Item = (Body, PairForces)> {
+    #[inline(always)]
+    fn of_ball(&self, ball: usize, mut see: impl FnMut(Body, &PairForces)) {
         let BallContacts { raceways, pocket } = &self.balls[ball];
-        let races = Body::ALL.into_iter().zip(raceways.iter().map(PairForces::from));
-        races.chain(pocket.iter().map(|pair| (Body::Cage, *pair)))
+        for race in Race::BOTH {
+            see(race.into(), &PairForces::from(&raceways[race]));
+        }
+        if let Some(pair) = pocket {
+            see(Body::Cage, pair);
+        }
     }
 
     fn between_balls(&self) -> impl Iterator<Item = BallPair> {
@@ -157,13 +164,13 @@ pub fn between_cage_and_lands(
 
 /// \[J] elastic energy of all pairs of a bearing with `n_balls` balls.
 pub fn elastic_energy(model: &Model, pairs: &impl Pairs, n_balls: usize) -> f64 {
-    let of_body = |(body, pair): (Body, PairForces)| match body {
+    let of_body = |body: Body, pair: &PairForces| match body {
         Body::Race(_) => pair.elastic_energy(),
         Body::Cage => model.cage.as_ref().map_or(0.0, |cage| cage.pocket.elastic_energy(pair.approach)),
     };
     let mut energy = 0.0;
     for ball in 0..n_balls {
-        pairs.of_ball(ball).for_each(|pair| energy += of_body(pair));
+        pairs.of_ball(ball, |body, pair| energy += of_body(body, pair));
     }
     pairs.between_balls().for_each(|pair| energy += pair.forces.elastic_energy());
     if let Some((_, land)) = model.cage.as_ref().and_then(|cage| cage.land.as_ref()) {
@@ -221,9 +228,7 @@ impl Totals {
     pub fn of(pairs: &impl Pairs, n_balls: usize) -> Self {
         let mut totals = Self::default();
         for ball in 0..n_balls {
-            for (body, pair) in pairs.of_ball(ball) {
-                totals.add_to_second(body, &pair);
-            }
+            pairs.of_ball(ball, |body, pair| totals.add_to_second(body, pair));
         }
         for BallPair { forces, .. } in pairs.between_balls() {
             totals.friction_power += forces.friction_power;
@@ -238,6 +243,7 @@ impl Totals {
         totals
     }
 
+    #[inline(always)]
     fn add_to_second(&mut self, body: Body, pair: &PairForces) {
         let wrench = &mut self.bodies[body.index()];
         wrench.force -= pair.force;
@@ -250,9 +256,4 @@ impl Totals {
     pub fn on(&self, body: Body) -> Wrench {
         self.bodies[body.index()]
     }
-}
-
-/// Sum of what its pairs do to a ball, on top of `start`.
-pub fn on_ball(pairs: impl Iterator<Item = Wrench>, start: Wrench) -> Wrench {
-    pairs.fold(start, Wrench::plus)
 }

@@ -42,8 +42,14 @@ struct Solved<'a> {
 }
 
 impl Pairs for Solved<'_> {
-    fn of_ball(&self, ball: usize) -> impl Iterator<Item = (Body, PairForces)> {
-        Body::ALL.into_iter().filter_map(move |body| Some((body, self.workspace.pair(ball, body)?)))
+    #[inline(always)]
+    fn of_ball(&self, ball: usize, mut see: impl FnMut(Body, &PairForces)) {
+        for race in Race::BOTH {
+            see(race.into(), &self.workspace.groups.pair(ball, race));
+        }
+        if let Some(pair) = &self.workspace.balls[ball].pocket {
+            see(Body::Cage, pair);
+        }
     }
 
     fn between_balls(&self) -> impl Iterator<Item = BallPair> {
@@ -192,11 +198,8 @@ pub fn accept(
         state.grown = Some(grown);
     }
     record(model, state, &solved, &boundary.conditions, Some(step.h));
-    let pair = |ball: usize| Race::BOTH.map(|race| workspace.groups.pair(ball, race));
-    let raceways = (0..workspace.balls.len()).flat_map(pair);
-    let pairs = raceways.chain(solved.between_balls().map(|pair| pair.forces));
     let error = error * model.solver.tolerance * 2.0 * model.bearing.ball.radius;
-    state.force_tolerance = force_tolerance(pairs, reach(model, state), error);
+    state.force_tolerance = force_tolerance(&solved, state.balls.len(), reach(model, state), error);
 }
 
 /// What rings and balls have grown by, and what these contacts set against it.
@@ -237,13 +240,21 @@ fn reach(model: &Model, state: &State) -> f64 {
 /// leaves: a last digit of a coordinate times that stiffness.
 ///
 /// What a step leaves the next one makes good, so that it never adds up ([`BallState::remainder`]).
-fn force_tolerance(contacts: impl Iterator<Item = PairForces>, reach: f64, error: f64) -> f64 {
+fn force_tolerance(pairs: &impl Pairs, balls: usize, reach: f64, error: f64) -> f64 {
     // `dQ/dx = 1.5 K^(2/3) Q^(1/3)`; the root is taken once, of the largest
     let (mut load, mut cube) = (0.0f64, 0.0f64);
-    for contact in contacts {
+    let mut see = |contact: &PairForces| {
         load = load.max(contact.load);
         cube = cube.max(contact.stiffness * contact.stiffness * contact.load);
+    };
+    for ball in 0..balls {
+        pairs.of_ball(ball, |body, contact| {
+            if let Body::Race(_) = body {
+                see(contact);
+            }
+        });
     }
+    pairs.between_balls().for_each(|pair| see(&pair.forces));
     let stiffness = 1.5 * cube.cbrt();
     let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness * reach;
     let wanted = (SHARE_OF_ERROR * stiffness * error).clamp(LEAST_RELATIVE * load, MOST_RELATIVE * load);
@@ -324,6 +335,5 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     state.energies.stored = stored_energy(model, state, &contacts);
     state.grown = model.growth.as_ref().map(|_| grown(&contacts, state, boundary));
     record(model, state, &contacts, &boundary.conditions, None);
-    let pairs = contacts.raceway_pairs().chain(contacts.between_balls().map(|pair| pair.forces));
-    state.force_tolerance = force_tolerance(pairs, reach(model, state), 0.0);
+    state.force_tolerance = force_tolerance(&contacts, state.balls.len(), reach(model, state), 0.0);
 }

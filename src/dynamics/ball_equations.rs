@@ -7,7 +7,7 @@ use crate::contact::BallMotion;
 use crate::model::bearing::Ball;
 use crate::model::state::BallState;
 use crate::numerics::hht::HhtStep;
-use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::numerics::lanes::Lanes;
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::Scalar;
 
@@ -37,54 +37,75 @@ pub struct BallEquations<S: Scalar = f64> {
     owed: Wrench<S>,
 }
 
+/// A ball at the start of a step.
+struct Start<S: Scalar> {
+    motion: BallMotion<S>,
+    acceleration: Vector3<S>,
+    angular_acceleration: Vector3<S>,
+    total: Wrench<S>,
+    remainder: Wrench<S>,
+}
+
 impl BallEquations {
     /// Those of a step from a state.
-    #[inline]
     pub fn new(start: &BallState, ball: &Ball, step: &HhtStep) -> Self {
+        let start = Start {
+            motion: start.motion(),
+            acceleration: start.acceleration,
+            angular_acceleration: start.angular_acceleration,
+            total: start.total,
+            remainder: start.remainder,
+        };
+        Self::of(&start, ball, step)
+    }
+}
+
+impl BallEquations<Lanes> {
+    /// Those of steps from several states, by lane.
+    #[inline(always)]
+    pub fn of_lanes<'a>(start: impl Fn(usize) -> &'a BallState, ball: &Ball, step: &HhtStep) -> Self {
+        let vector = |part: fn(&BallState) -> &Vector3<f64>| Lanes::vector(|lane| *part(start(lane)));
+        let start = Start {
+            motion: BallMotion {
+                position: vector(|one| &one.position),
+                velocity: vector(|one| &one.velocity),
+                angular_velocity: vector(|one| &one.angular_velocity),
+            },
+            acceleration: vector(|one| &one.acceleration),
+            angular_acceleration: vector(|one| &one.angular_acceleration),
+            total: Wrench { force: vector(|one| &one.total.force), moment: vector(|one| &one.total.moment) },
+            remainder: Wrench {
+                force: vector(|one| &one.remainder.force),
+                moment: vector(|one| &one.remainder.moment),
+            },
+        };
+        Self::of(&start, ball, step)
+    }
+}
+
+impl<S: Scalar> BallEquations<S> {
+    #[inline(always)]
+    fn of(start: &Start<S>, ball: &Ball, step: &HhtStep) -> Self {
+        let scaled = |v: &Vector3<S>, factor: f64| vector(|i| v[i].scale(factor));
         let held = 1.0 - fraction(step);
         Self {
             step: *step,
             mass: ball.mass,
             inertia: ball.inertia,
             radius: ball.radius,
-            start: start.motion(),
-            way: start.velocity * step.h,
-            pull: start.acceleration * (0.5 - step.beta),
-            gain: start.acceleration * (1.0 - step.gamma),
-            angular_gain: start.angular_acceleration * (1.0 - step.gamma),
-            held: Wrench { force: start.total.force * held, moment: start.total.moment * held },
+            start: start.motion,
+            way: scaled(&start.motion.velocity, step.h),
+            pull: scaled(&start.acceleration, 0.5 - step.beta),
+            gain: scaled(&start.acceleration, 1.0 - step.gamma),
+            angular_gain: scaled(&start.angular_acceleration, 1.0 - step.gamma),
+            held: Wrench {
+                force: scaled(&start.total.force, held),
+                moment: scaled(&start.total.moment, held),
+            },
             owed: start.remainder,
         }
     }
-}
 
-impl BallEquations<Lanes> {
-    /// Those of several balls, by lane.
-    pub fn of_lanes(of: impl Fn(usize) -> BallEquations) -> Self {
-        let each: [BallEquations; WIDTH] = std::array::from_fn(of);
-        let vector = |part: fn(&BallEquations) -> &Vector3<f64>| Lanes::vector(|lane| *part(&each[lane]));
-        let BallEquations { step, mass, inertia, radius, .. } = each[0];
-        Self {
-            step,
-            mass,
-            inertia,
-            radius,
-            start: BallMotion {
-                position: vector(|one| &one.start.position),
-                velocity: vector(|one| &one.start.velocity),
-                angular_velocity: vector(|one| &one.start.angular_velocity),
-            },
-            way: vector(|one| &one.way),
-            pull: vector(|one| &one.pull),
-            gain: vector(|one| &one.gain),
-            angular_gain: vector(|one| &one.angular_gain),
-            held: Wrench { force: vector(|one| &one.held.force), moment: vector(|one| &one.held.moment) },
-            owed: Wrench { force: vector(|one| &one.owed.force), moment: vector(|one| &one.owed.moment) },
-        }
-    }
-}
-
-impl<S: Scalar> BallEquations<S> {
     /// Acceleration and angular acceleration of unknowns.
     #[inline(always)]
     fn accelerations(&self, unknowns: &Six<S>) -> [Vector3<S>; 2] {

@@ -3,7 +3,6 @@
 use nalgebra::Vector3;
 
 use super::ball::{BallTrial, Surroundings};
-use super::ball_equations::BallEquations;
 use super::body::{BodyTrial, RaceSeen};
 use super::body_sums::{BodyLoad, BodyScales, BodyStep};
 use super::cage::CageTrial;
@@ -68,8 +67,7 @@ impl<'a> BearingStep<'a> {
         let contacts = model.contacts_facing(&boundary.conditions, boundary.orientations.as_ref());
         let races = PerRace::new(|race| race_motion(&boundary.motion[race].0, &boundary.motion[race].1));
         let step = HhtStep::new(model.solver.alpha_f, h);
-        let equations = |ball: usize| BallEquations::new(&start.balls[ball], &model.bearing.ball, &step);
-        workspace.groups.begin(start.balls.len(), equations, || {
+        workspace.groups.begin(&start.balls, (&model.bearing.ball, &step), || {
             let motion = start.balls[0].motion();
             PerRace::new(|race| ContactGroup::filled(&contacts[race].evaluate(&motion, &races[race])))
         });

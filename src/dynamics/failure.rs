@@ -114,7 +114,13 @@ fn largest(changes: impl Iterator<Item = Change>) -> Option<Change> {
 
 /// The forces between a ball and a body at the start of the step.
 fn before_of(contacts: &Contacts, ball: usize, body: Body) -> Option<PairForces> {
-    contacts.of_ball(ball).find_map(|(other, pair)| (other == body).then_some(pair))
+    let mut found = None;
+    contacts.of_ball(ball, |other, pair| {
+        if other == body {
+            found = Some(*pair);
+        }
+    });
+    found
 }
 
 /// \[N] change of the force on a ball, and of its moment over the radius \[m]; none where they never touched.

@@ -9,7 +9,10 @@ use crate::contact::many::ContactGroup;
 use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::effects::ambient::Ambient;
+use crate::model::bearing::Ball;
 use crate::model::bodies::{PerRace, Race};
+use crate::model::state::BallState;
+use crate::numerics::hht::HhtStep;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::Scalar;
@@ -108,22 +111,23 @@ impl BallGroup {
 pub struct Groups(Vec<BallGroup>);
 
 impl Groups {
-    /// Begins a step: balls with these equations. `contact` gives contacts to fill new buffers with.
+    /// Begins a step of these balls. `contact` gives contacts to fill new buffers with.
     pub fn begin(
         &mut self,
-        balls: usize,
-        equations: impl Fn(usize) -> BallEquations,
+        balls: &[BallState],
+        (ball, step): (&Ball, &HhtStep),
         contact: impl FnOnce() -> PerRace<ContactGroup>,
     ) {
-        let groups = balls.div_ceil(WIDTH);
-        let of_group = |group: usize| {
-            BallEquations::of_lanes(|lane| equations((WIDTH * group + lane).min(balls - 1)))
-        };
-        if self.0.len() == groups {
-            self.0.iter_mut().enumerate().for_each(|(index, group)| group.equations = of_group(index));
-        } else {
+        if self.0.len() != balls.len().div_ceil(WIDTH) {
             let contacts = contact();
-            self.0 = (0..groups).map(|group| BallGroup::new(&of_group(group), &contacts)).collect();
+            let of_group = |balls: &[BallState]| {
+                let equations = BallEquations::of_lanes(|lane| lane_of(balls, lane), ball, step);
+                BallGroup::new(&equations, &contacts)
+            };
+            self.0 = balls.chunks(WIDTH).map(of_group).collect();
+        }
+        for (group, balls) in self.0.iter_mut().zip(balls.chunks(WIDTH)) {
+            begin_lanes(balls, (ball, step), &mut group.equations);
         }
     }
 
@@ -225,7 +229,19 @@ impl Groups {
     }
 }
 
-/// Moves balls. Compiled twice, as contacts are ([`crate::contact::many`]).
+/// The ball of a lane: lanes without one repeat the last.
+#[inline(always)]
+fn lane_of<T>(balls: &[T], lane: usize) -> &T {
+    &balls[lane.min(balls.len() - 1)]
+}
+
+/// Equations of balls at the start of a step. Compiled twice, as contacts are ([`crate::contact::many`]).
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn begin_lanes(balls: &[BallState], (ball, step): (&Ball, &HhtStep), equations: &mut BallEquations<Lanes>) {
+    *equations = BallEquations::of_lanes(|lane| lane_of(balls, lane), ball, step);
+}
+
+/// Moves balls.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn move_lanes(equations: &BallEquations<Lanes>, unknowns: &Six<Lanes>, motion: &mut BallMotion<Lanes>) {
     *motion = equations.motion(unknowns);

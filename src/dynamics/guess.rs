@@ -6,7 +6,7 @@ use super::Workspace;
 use super::equations::BearingStep;
 use crate::model::Model;
 use crate::model::bodies::{Body, Constraint, Race};
-use crate::model::state::Trend;
+use crate::model::state::{Trend, stack};
 use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::orbit_turn::OrbitTurn;
 
@@ -52,8 +52,8 @@ impl BearingStep<'_> {
     fn guess_steady_acceleration(&self, unknowns: &mut Vec<f64>) {
         unknowns.clear();
         for ball in &self.start.balls {
-            unknowns.extend(ball.acceleration.iter());
-            unknowns.extend(ball.angular_acceleration.iter().map(|a| a * self.model.bearing.ball.radius));
+            let angular = ball.angular_acceleration * self.model.bearing.ball.radius;
+            unknowns.extend_from_slice(stack(&ball.acceleration, &angular).as_slice());
         }
         let length = self.model.race_length();
         for ((_, state), (_, body)) in self.start.bodies.iter().zip(self.model.bodies.iter()) {
@@ -92,16 +92,12 @@ impl BearingStep<'_> {
 }
 
 impl Workspace {
-    /// Takes over how accelerations and multipliers have changed in a solved step of `h` \[s], and whether a guess that goes on with
+    /// Takes over how the accelerations and multipliers of a `solved` step of `h` \[s] have changed, and whether a guess that goes on with
     /// such changes would have been the better one.
-    pub(super) fn follow_trend(&self, model: &Model, trend: &mut Trend, h: f64) {
-        let solved: Vec<_> = (0..self.balls.len()).map(|ball| self.groups.unknowns(ball)).collect();
-        let balls = solved.iter().flatten();
-        let bodies = self.bodies.iter().filter_map(|(_, trial)| trial.as_ref());
-        let solved = balls.chain(bodies.flat_map(|trial| &trial.unknowns));
+    pub(super) fn follow_trend(&self, model: &Model, trend: &mut Trend, solved: &[f64], h: f64) {
         trend.step = h;
         trend.changes.clear();
-        trend.changes.extend(solved.zip(&self.steady).map(|(solved, steady)| solved - steady));
+        trend.changes.extend(solved.iter().zip(&self.steady).map(|(solved, steady)| solved - steady));
         let of_balls = BLOCK * self.balls.len();
         let alone = model.border_size() == 0 && self.neighbours.is_empty();
         let group = if alone { BLOCK } else { of_balls.max(1) };

@@ -198,7 +198,7 @@ pub fn try_step(
     state.statistics = statistics;
     state.control = control;
     let end = end?;
-    workspace.follow_trend(model, &mut state.trend, h);
+    workspace.follow_trend(model, &mut state.trend, &workspace.unknowns, h);
     accept(model, state, boundary, &step, (workspace, &end), local);
     Ok(())
 }

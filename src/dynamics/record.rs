@@ -1,6 +1,5 @@
 //! What a run keeps of its steps: heat by contact and powers of loads, for reports, and temperatures, which later steps follow.
 
-use crate::contact::pair::PairForces;
 use crate::effects::heat::ByContact;
 use crate::effects::heat_balance::Heating;
 use crate::forces::{BallPair, Pairs};
@@ -12,7 +11,7 @@ use crate::model::{Conditions, Model};
 pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, conditions: &Conditions, h: Option<f64>) {
     let (balls, spins) = (state.balls.len(), Race::BOTH.map(|race| state.race(race).rate.x));
     if let (Some(rating), Some(sums)) = (&model.rating, &mut state.rating) {
-        let loads = (0..balls).map(|ball| loads_of(pairs.of_ball(ball)));
+        let loads = (0..balls).map(|ball| loads_of(pairs, ball));
         let rates = rating.rates(loads, spins[0] - spins[1]);
         match h {
             Some(h) => sums.add(rates, h),
@@ -21,7 +20,7 @@ pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, conditions: 
     }
     if let (Some(balance), Some(warm), Some(h)) = (&model.heat_balance, &mut state.warm, h) {
         let mut roots = [0.0; 2];
-        for loads in (0..balls).map(|ball| loads_of(pairs.of_ball(ball))) {
+        for loads in (0..balls).map(|ball| loads_of(pairs, ball)) {
             for (sum, load) in roots.iter_mut().zip(loads) {
                 *sum += load.sqrt();
             }
@@ -45,24 +44,24 @@ pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, conditions: 
 }
 
 /// \[N] loads of a ball on the inner and the outer race.
-fn loads_of(pairs: impl Iterator<Item = (Body, PairForces)>) -> [f64; 2] {
+fn loads_of(pairs: &impl Pairs, ball: usize) -> [f64; 2] {
     let mut loads = [0.0; 2];
-    for (body, pair) in pairs {
+    pairs.of_ball(ball, |body, pair| {
         if let Body::Race(race) = body {
             loads[race as usize] = pair.load;
         }
-    }
+    });
     loads
 }
 
 /// \[W] powers lost to friction, by what touches.
 fn powers(pairs: &impl Pairs, balls: usize) -> ByContact {
     let mut powers = ByContact::default();
-    for (body, pair) in (0..balls).flat_map(|ball| pairs.of_ball(ball)) {
-        match body {
+    for ball in 0..balls {
+        pairs.of_ball(ball, |body, pair| match body {
             Body::Race(race) => powers.races[race as usize] += pair.friction_power,
             Body::Cage => powers.pockets += pair.friction_power,
-        }
+        });
     }
     for BallPair { forces, .. } in pairs.between_balls() {
         powers.balls += forces.friction_power;

@@ -9,6 +9,7 @@ use super::{Boundary, StepFailure, Workspace, Worst};
 use crate::model::Model;
 use crate::model::state::{State, Statistics};
 use crate::model::structure::{StructureEnergies, StructureState};
+use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::newton::{self, NewtonBuffers, NewtonWork};
 use crate::numerics::size::larger;
@@ -105,9 +106,12 @@ pub fn try_step(
         let worst = step::index_of_largest(ends.iter().map(|end| end.local));
         return Err((worst, StepFailure::Error(ends[worst].error)));
     }
+    let mut rest = &unknowns[..];
     for (part, end) in parts.iter_mut().zip(&step_ends) {
         let Part { model, state, boundary, workspace } = part;
-        workspace.follow_trend(model, &mut state.trend, h);
+        let (own, others) = rest.split_at(BLOCK * state.balls.len() + model.border_size());
+        rest = others;
+        workspace.follow_trend(model, &mut state.trend, own, h);
         accept(model, state, boundary, &step, (workspace, end), local);
         state.control = *control;
     }
