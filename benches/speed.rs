@@ -67,7 +67,7 @@ fn contact_values_together(bencher: Bencher, law: &str) {
     let balls: [_; WIDTH] = std::array::from_fn(|lane| simulation.state().balls[lane].motion());
     let mut group = ContactGroup::filled(&contact.evaluate(&balls[0], &race));
     bencher.counter(ItemsCount::new(WIDTH)).bench_local(|| {
-        group.evaluate(&contact, divan::black_box(&race), divan::black_box(&balls));
+        group.evaluate(&contact, divan::black_box(&race), divan::black_box(&BallMotion::of_balls(&balls)));
         group.forces(0).load
     });
 }

@@ -249,7 +249,7 @@ fn invariant_films_act_and_react_and_lose_power() {
         let open = contact.evaluate(&away, &race);
         assert!(open.load == 0.0 && open.force == Vector3::zeros(), "{name}: {open:?}");
         let mut together = ContactGroup::filled(&forces);
-        together.evaluate(contact, &race, &[ball, away, ball]);
+        together.evaluate(contact, &race, &BallMotion::of_balls(&[ball, away, ball]));
         assert_eq!([together.contact(1), together.contact(2)], [open, forces], "{name}");
     });
 }
@@ -325,7 +325,7 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             // With the vectors that this processor has.
             for count in 1..=WIDTH {
                 let mut together = ContactGroup::filled(&alone[3]);
-                together.evaluate(&contact, &race_motion, &motions[..count]);
+                together.evaluate(&contact, &race_motion, &BallMotion::of_balls(&motions[..count]));
                 for (lane, alone) in alone[..count].iter().enumerate() {
                     assert_eq!(together.contact(lane), *alone, "{name}");
                 }
@@ -434,7 +434,7 @@ fn invariant_oblique_contacts_beside_straight_ones_have_the_bits_of_one() {
             let alone = motions.each_ref().map(|ball| contact.evaluate(ball, &race_motion));
             assert!(alone[2].rolling_cosine.abs() < 0.9 && alone[0].rolling_cosine.abs() > 0.995);
             let mut together = ContactGroup::filled(&alone[0]);
-            together.evaluate(&contact, &race_motion, &motions);
+            together.evaluate(&contact, &race_motion, &BallMotion::of_balls(&motions));
             for (lane, alone) in alone.iter().enumerate() {
                 assert_eq!(together.contact(lane), *alone, "{law} {race:?} {lane}");
             }

@@ -227,7 +227,7 @@ fn invariant_lanes_are_single_balls_to_the_bit_and_derivatives_are_differences()
         assert!(alone.iter().filter(|contact| contact.load > 0.0).count() > 12);
         for (some, alone) in motions.chunks(4).zip(alone.chunks(4)) {
             let mut together = ContactGroup::filled(&alone[0]);
-            together.evaluate(&contact, &seen, some);
+            together.evaluate(&contact, &seen, &BallMotion::of_balls(some));
             for (lane, alone) in alone.iter().enumerate() {
                 assert_eq!(together.contact(lane), *alone);
             }

@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{UnitQuaternion, Vector3};
+use roulement::contact::BallMotion;
 use roulement::contact::many::ContactGroup;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use roulement::model::bodies::Race;
@@ -241,7 +242,7 @@ fn invariant_lanes_are_single_balls_to_the_bit_and_derivatives_are_differences()
                 .map(|lane| contact.of_ball(first + lane, None).evaluate(&some[lane], &seen))
                 .collect();
             let mut together = ContactGroup::filled(&alone[0]);
-            together.evaluate(&contact.of_ball(first, None), &seen, some);
+            together.evaluate(&contact.of_ball(first, None), &seen, &BallMotion::of_balls(some));
             for (lane, alone) in alone.iter().enumerate() {
                 assert!(alone.load > 10.0);
                 assert_eq!(together.contact(lane), *alone);

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use roulement::Model;
+use roulement::contact::BallMotion;
 use roulement::contact::many::ContactGroup;
 use roulement::effects::growth::rings::{Cylinder, Fit};
 use roulement::equilibrium::{self, Equilibrium, EquilibriumInput, Gyroscopic};
@@ -479,7 +480,7 @@ fn regression_warm_contacts_of_four_balls_at_a_time_are_those_of_one_to_the_bit(
         let motion = simulation.state().race(race).motion();
         let balls: [_; WIDTH] = std::array::from_fn(|lane| simulation.state().balls[3 * lane].motion());
         let mut group = ContactGroup::filled(&contacts[race].evaluate(&balls[0], &motion));
-        group.evaluate(&contacts[race], &motion, &balls);
+        group.evaluate(&contacts[race], &motion, &BallMotion::of_balls(&balls));
         for (lane, ball) in balls.iter().enumerate() {
             assert_eq!(group.contact(lane), contacts[race].evaluate(ball, &motion));
         }

@@ -114,7 +114,14 @@ fn roll_lanes(
     balls: &BallMotion<Lanes>,
     contacts: &mut BallRaceContact<Lanes>,
 ) {
-    *contacts = contact.rolling(balls, &in_lanes(race));
+    // Assigned in two places: chosen between, both results would have to be in memory first.
+    let race = in_lanes(race);
+    let (along, oblique) = contact.rolling_along::<_, false, false>(balls, &race);
+    if oblique {
+        *contacts = contact.rolling_obliquely(balls, &race);
+    } else {
+        *contacts = along;
+    }
 }
 
 /// Contacts without friction, alike.

@@ -158,7 +158,7 @@ pub fn accept(
     state.time = boundary.time;
     state.statistics.steps += 1;
     for (index, ball) in state.balls.iter_mut().enumerate() {
-        *ball = workspace.groups.end(index, model.bearing.ball.radius);
+        workspace.groups.end(index, model.bearing.ball.radius, ball);
     }
     for ((body, state), (_, trial)) in state.bodies.iter_mut().zip(workspace.bodies.iter()) {
         let (turned, spin) = ((state.turned, state.turned_rest), state.rate.x);
@@ -262,18 +262,17 @@ fn force_tolerance(pairs: &impl Pairs, balls: usize, reach: f64, error: f64) -> 
 }
 
 impl Groups {
-    /// State of a ball at the end of the step.
-    fn end(&self, ball: usize, radius: f64) -> BallState {
-        let (motion, unknowns) = (self.motion(ball), self.unknowns(ball));
-        BallState {
-            position: motion.position,
-            velocity: motion.velocity,
-            angular_velocity: motion.angular_velocity,
-            acceleration: unknowns.fixed_rows::<3>(0).into_owned(),
-            angular_acceleration: unknowns.fixed_rows::<3>(3) / radius,
-            total: self.total(ball),
-            remainder: self.remainder(ball),
-            pressed: PerRace::new(|race| Pressed::new(&self.pair(ball, race))),
+    /// Writes the state of a ball at the end of the step.
+    fn end(&self, ball: usize, radius: f64, state: &mut BallState) {
+        let unknowns = self.unknowns(ball);
+        (state.position, state.velocity) = (self.position(ball), self.motion(ball).velocity);
+        state.angular_velocity = self.motion(ball).angular_velocity;
+        state.acceleration = unknowns.fixed_rows::<3>(0).into_owned();
+        state.angular_acceleration = unknowns.fixed_rows::<3>(3) / radius;
+        state.total = self.total(ball);
+        state.remainder = self.remainder(ball);
+        for race in Race::BOTH {
+            state.pressed[race] = Pressed::new(&self.pair(ball, race));
         }
     }
 }

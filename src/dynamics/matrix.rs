@@ -263,7 +263,7 @@ impl BearingStep<'_> {
                 continue;
             }
             let turn = OrbitTurn::between(&kept.offset, &(groups.position(ball) - origin));
-            let solution = turn.stacked(&(kept.block.inverse * turn.back().stacked(&-groups.residual(ball))));
+            let solution = kept.block.solve(&turn, &-groups.residual(ball));
             regular &= solution.iter().all(|v| v.is_finite());
             x.copy_from_slice(solution.as_slice());
         }

@@ -78,7 +78,7 @@ impl Member {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Eliminated {
     /// `A^-1`: a product costs a quarter of two triangular solves.
-    pub inverse: Matrix6<f64>,
+    inverse: Matrix6<f64>,
     /// Its coupling to each member of the border.
     couplings: Vec<Coupling>,
 }
@@ -115,6 +115,13 @@ impl Eliminated {
             Coupling { right: right(member), left, rest: members.iter().map(rest).collect() }
         };
         Some(Self { inverse, couplings: members.iter().map(coupling).collect() })
+    }
+
+    /// Solves for a right-hand side of the block alone; `turn` is that since it was eliminated.
+    pub fn solve(&self, turn: &OrbitTurn, right: &Vector6<f64>) -> Vector6<f64> {
+        let mut x = *right;
+        solve_one(self, turn, &mut x);
+        x
     }
 
     /// Is it coupled to so many members? A check for blocks that come from outside.
@@ -165,11 +172,7 @@ impl Arrowhead {
         sums.resize(count * count, Matrix6::zeros());
         for (block, turn) in blocks {
             self.turns.push(turn);
-            for (row, coupling) in block.couplings.iter().enumerate() {
-                for (column, rest) in coupling.rest.iter().enumerate() {
-                    sums[count * row + column] += turn.matrix(rest);
-                }
-            }
+            add_one(block, &turn, sums);
         }
         for (row, a) in members.iter().enumerate() {
             for (column, b) in members.iter().enumerate() {
@@ -196,10 +199,7 @@ impl Arrowhead {
         self.worlds.clear();
         self.worlds.resize(self.members.len(), Vector6::zeros());
         for ((block, turn), x) in blocks.zip(&self.turns).zip(&mut *x) {
-            *x = block.inverse * turn.back().stacked(x);
-            for (coupling, load) in block.couplings.iter().zip(&mut self.worlds) {
-                *load -= turn.stacked(&(coupling.left * *x));
-            }
+            eliminate_one(block, turn, x, &mut self.worlds);
         }
         for (member, load) in self.members.iter().zip(&self.worlds) {
             let mut rows = border.fixed_rows_mut::<BLOCK>(member.from);
@@ -218,11 +218,53 @@ impl Arrowhead {
             *world = member.world(&border.fixed_rows::<BLOCK>(member.from).into_owned());
         }
         for ((block, turn), x) in blocks.zip(&self.turns).zip(&mut *x) {
-            for (coupling, moved) in block.couplings.iter().zip(&self.worlds) {
-                *x -= coupling.right * turn.back().stacked(moved);
-            }
-            *x = turn.stacked(x);
+            substitute_one(block, turn, x, &self.worlds);
         }
         x.iter().all(|x| x.iter().all(|v| v.is_finite())) && border.iter().all(|v| v.is_finite())
+    }
+}
+
+/// A matrix times a vector, column by column; inlined, so that it becomes vector instructions where there are some.
+#[inline(always)]
+fn product(matrix: &Matrix6<f64>, x: &Vector6<f64>) -> Vector6<f64> {
+    let mut sum = Vector6::zeros();
+    for k in 0..BLOCK {
+        for i in 0..BLOCK {
+            sum[i] += matrix[(i, k)] * x[k];
+        }
+    }
+    sum
+}
+
+/// Solves for a right-hand side of a block alone. Compiled twice, as contacts are ([`crate::contact::many`]), like the next ones.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn solve_one(block: &Eliminated, turn: &OrbitTurn, x: &mut Vector6<f64>) {
+    *x = turn.stacked(&product(&block.inverse, &turn.back().stacked(x)));
+}
+
+/// Takes the right-hand side of a block out of loads on the members.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn eliminate_one(block: &Eliminated, turn: &OrbitTurn, x: &mut Vector6<f64>, loads: &mut [Vector6<f64>]) {
+    *x = product(&block.inverse, &turn.back().stacked(x));
+    for (coupling, load) in block.couplings.iter().zip(loads) {
+        *load -= turn.stacked(&product(&coupling.left, x));
+    }
+}
+
+/// The solution of a block, from that of the members.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn substitute_one(block: &Eliminated, turn: &OrbitTurn, x: &mut Vector6<f64>, members: &[Vector6<f64>]) {
+    for (coupling, moved) in block.couplings.iter().zip(members) {
+        *x -= product(&coupling.right, &turn.back().stacked(moved));
+    }
+    *x = turn.stacked(x);
+}
+
+/// Adds what a block leaves in rows and columns of each two members.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn add_one(block: &Eliminated, turn: &OrbitTurn, sums: &mut [Matrix6<f64>]) {
+    let of_blocks = block.couplings.iter().flat_map(|coupling| &coupling.rest);
+    for (sum, rest) in sums.iter_mut().zip(of_blocks) {
+        *sum += turn.matrix(rest);
     }
 }

@@ -11,7 +11,7 @@ pub struct OrbitTurn {
 
 impl OrbitTurn {
     /// The turn that takes the azimuth of one point to that of another; none for a point on the axis.
-    #[inline]
+    #[inline(always)]
     pub fn between(from: &Vector3<f64>, to: &Vector3<f64>) -> Self {
         let (cos, sin) = (from.y * to.y + from.z * to.z, from.y * to.z - from.z * to.y);
         let size = (cos * cos + sin * sin).sqrt();
@@ -19,19 +19,19 @@ impl OrbitTurn {
     }
 
     /// The opposite turn.
-    #[inline]
+    #[inline(always)]
     pub fn back(self) -> Self {
         Self { sin: -self.sin, ..self }
     }
 
     /// Turns a vector.
-    #[inline]
+    #[inline(always)]
     pub fn vector(&self, v: &Vector3<f64>) -> Vector3<f64> {
         Vector3::new(v.x, self.cos * v.y - self.sin * v.z, self.sin * v.y + self.cos * v.z)
     }
 
     /// Turns two stacked vectors.
-    #[inline]
+    #[inline(always)]
     pub fn stacked(&self, v: &Vector6<f64>) -> Vector6<f64> {
         let first = self.vector(&Vector3::new(v[0], v[1], v[2]));
         let second = self.vector(&Vector3::new(v[3], v[4], v[5]));
@@ -39,7 +39,7 @@ impl OrbitTurn {
     }
 
     /// Turns rows and columns of a matrix of two stacked vectors by two.
-    #[inline]
+    #[inline(always)]
     pub fn matrix(&self, m: &Matrix6<f64>) -> Matrix6<f64> {
         let (cos, sin) = (self.cos, self.sin);
         let mut turned = *m;
