@@ -126,28 +126,33 @@ impl<'a> BearingStep<'a> {
         &self.races.outer
     }
 
-    /// Moves the bodies to the end of the step.
-    fn move_bodies(&mut self, unknowns: &[f64]) {
+    /// Moves the bodies to the end of the step; may one of them be somewhere else than at the last evaluation?
+    fn move_bodies(&mut self, unknowns: &[f64]) -> bool {
+        let mut moved = false;
         let length = self.model.race_length();
         let offsets = self.model.border_offsets();
         let border = &unknowns[BLOCK * self.start.balls.len()..];
         for ((body, trial), (_, start)) in self.workspace.bodies.iter_mut().zip(self.start.bodies.iter()) {
             if let (Some(trial), Some(from)) = (trial, offsets[body.index()]) {
                 if trial.is_carried() {
+                    moved = true;
                     continue;
                 }
-                trial.move_to(&border[from..from + trial.unknowns.len()], start, &self.step, length);
+                let own = &border[from..from + trial.unknowns.len()];
+                moved |= own != trial.unknowns;
+                trial.move_to(own, start, &self.step, length);
                 match body {
                     Body::Race(race) => self.races[race] = trial.motion_value(),
                     Body::Cage => self.workspace.cage.iter_mut().for_each(|cage| cage.see(trial)),
                 }
             }
         }
+        moved
     }
 
-    /// Moves the balls to the end of the step. Under prescribed races balls whose unknowns did not change keep their last evaluation.
-    fn move_balls(&mut self, unknowns: &[f64]) {
-        let all = self.fresh || !self.balls_are_independent();
+    /// Moves the balls to the end of the step. Where the bodies stay, balls whose unknowns did not change keep their last evaluation.
+    fn move_balls(&mut self, unknowns: &[f64], bodies_moved: bool) {
+        let all = self.fresh || bodies_moved || !self.workspace.neighbours.is_empty();
         self.workspace.groups.move_to(&unknowns[..BLOCK * self.start.balls.len()], all);
         self.fresh = false;
     }
@@ -313,12 +318,12 @@ impl Equations for BearingStep<'_> {
         let renewed = self.workspace.balls.iter().any(|trial| trial.renewed);
         self.renewals += u64::from(renewed && !with_tangent);
         // bodies first: the balls see them move
-        self.move_bodies(unknowns);
+        let moved = self.move_bodies(unknowns);
         let factorises = !independent && (renewed || !self.workspace.factorised);
         if factorises {
             self.differentiate_bodies();
         }
-        self.move_balls(unknowns);
+        self.move_balls(unknowns, moved);
         self.evaluate_neighbours(with_tangent);
         self.evaluate_moved();
         let mut norm = 0.0f64;
