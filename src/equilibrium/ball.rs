@@ -9,7 +9,7 @@ use crate::effects::moving_frame::MovingFrame;
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{PerRace, Race};
-use crate::numerics::scalar::{Dual, Scalar, constant_vector};
+use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, values};
 
 /// Directions of differentiation: ball axial and radial, x, y, z, ry, rz of the race that moves, cage speed.
 pub const DIRECTIONS: usize = 8;
@@ -18,6 +18,8 @@ pub const SHARED: usize = 2;
 /// Number of shared unknowns.
 pub const N_SHARED: usize = 6;
 type D = Dual<DIRECTIONS>;
+/// A number with its derivatives by the ball's own coordinates.
+type Own = Dual<SHARED>;
 
 /// [N/m] hold of a ball that nothing else holds, towards the middle of its gap; bearing at rest only. Its force,
 /// below 1e-6 N in any gap, is far below what loads are resolved to.
@@ -29,50 +31,70 @@ const MAX_ITERATIONS: u32 = 100;
 
 /// The inner race as the balls see it: relative to the outer race, with derivatives by the shared unknowns.
 #[derive(Clone, Copy, Debug)]
-pub struct Shared {
+pub struct Shared<S: Scalar = D> {
     /// \[m] origin of the inner race.
-    pub position: Vector3<D>,
+    pub position: Vector3<S>,
     /// [-] axis of the inner race.
-    pub axis: Vector3<D>,
+    pub axis: Vector3<S>,
     /// [-] y axis of each race, which azimuths on it are counted from.
     pub across: PerRace<Vector3<f64>>,
     /// [rad/s] cage speed.
-    pub cage_speed: D,
+    pub cage_speed: S,
     /// [m/s2] gravity on the balls; what it does along the orbit is left to friction.
-    pub gravity: Vector3<D>,
+    pub gravity: Vector3<S>,
     /// The frame that the bearing is seen from, where it moves; places count from the outer race.
-    pub frame: Option<MovingFrame<D>>,
+    pub frame: Option<MovingFrame<S>>,
+}
+
+impl Shared {
+    /// The same without derivatives.
+    fn fixed(&self) -> Shared<Own> {
+        let fixed = |v: &Vector3<D>| v.map(|c| Own::constant(c.value));
+        Shared {
+            position: fixed(&self.position),
+            axis: fixed(&self.axis),
+            across: self.across,
+            cage_speed: Own::constant(self.cage_speed.value),
+            gravity: fixed(&self.gravity),
+            frame: self.frame.as_ref().map(|frame| MovingFrame {
+                arm: fixed(&frame.arm),
+                acceleration: fixed(&frame.acceleration),
+                turn: fixed(&frame.turn),
+                change: fixed(&frame.change),
+            }),
+        }
+    }
 }
 
 /// Forces on one ball, all relative to the outer race's frame.
 #[derive(Clone, Copy, Debug)]
-pub struct BallBalance {
+pub struct BallBalance<S: Scalar = D> {
     /// \[N] unbalanced force along the two coordinates of [`Place`].
-    pub residual: [D; 2],
+    pub residual: [S; 2],
     /// \[N] force on the ball of the race that moves.
-    pub force: Vector3<D>,
+    pub force: Vector3<S>,
     /// [N m] moment, about that race's origin, of the external load that holds it against this ball.
-    pub moment: Vector3<D>,
+    pub moment: Vector3<S>,
     /// \[N] load on the inner race.
-    pub inner_load: D,
+    pub inner_load: S,
     /// \[N] load on the outer race.
-    pub outer_load: D,
+    pub outer_load: S,
     /// [rad/s] orbital speed that this ball alone would take (outer race control).
-    pub own_orbital_speed: D,
+    pub own_orbital_speed: S,
     /// Inner contact.
-    pub inner: GrooveContact<D>,
+    pub inner: GrooveContact<S>,
     /// Outer contact.
-    pub outer: GrooveContact<D>,
+    pub outer: GrooveContact<S>,
     /// [N/m^1.5] Hertz stiffness of inner and outer contact.
-    pub stiffness: PerRace<D>,
+    pub stiffness: PerRace<S>,
     /// \[N] centrifugal force.
-    pub centrifugal_force: D,
+    pub centrifugal_force: S,
     /// [N m] gyroscopic moment; negative for a positive contact angle, as in Harris.
-    pub gyroscopic_moment: D,
+    pub gyroscopic_moment: S,
     /// [rad/s] angular velocity of the ball, axial and radial component.
-    pub angular_velocity: [D; 2],
+    pub angular_velocity: [S; 2],
     /// \[m] centre of the ball, axial and radial.
-    pub centre: [D; 2],
+    pub centre: [S; 2],
 }
 
 /// Where a ball is in its azimuthal plane, polar about the outer groove centre: arc and distance \[m]. A ball that
@@ -95,18 +117,45 @@ pub fn balance(
     index: usize,
     place: &Place,
 ) -> BallBalance {
+    let place = [D::variable(place.x, 0, 1.0), D::variable(place.y, 1, 1.0)];
+    balance_at(model, contacts, input, shared, index, place)
+}
+
+/// The same with derivatives by the ball's own coordinates alone.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn balance_alone(
+    model: &Model,
+    contacts: &PerRace<ContactModel<'_>>,
+    input: &EquilibriumInput,
+    shared: &Shared<Own>,
+    index: usize,
+    place: &Place,
+) -> BallBalance<Own> {
+    let place = [Own::variable(place.x, 0, 1.0), Own::variable(place.y, 1, 1.0)];
+    balance_at(model, contacts, input, shared, index, place)
+}
+
+#[inline(always)]
+fn balance_at<S: Single>(
+    model: &Model,
+    contacts: &PerRace<ContactModel<'_>>,
+    input: &EquilibriumInput,
+    shared: &Shared<S>,
+    index: usize,
+    place: [S; 2],
+) -> BallBalance<S> {
     let ball = &model.bearing.ball;
     let azimuth = model.bearing.ball_azimuth(index);
     let (radial, tangential) = azimuth_directions(azimuth);
     let (outer_groove, ball_radius) = (&contacts.outer.surface.raceway, contacts.outer.surface.ball_radius);
-    let angle = D::variable(place.x, 0, 1.0).scale(1.0 / arc_radius(&contacts.outer));
-    let distance = D::variable(place.y, 1, 1.0);
+    let angle = place[0].scale(1.0 / arc_radius(&contacts.outer));
+    let distance = place[1];
     let sine = angle.map_smooth(|x| (x.sin(), x.cos()));
     let cosine = angle.map_smooth(|x| (x.cos(), -x.sin()));
-    let axial_place = distance * sine + D::constant(outer_groove.groove_offset);
-    let radius = distance * cosine + D::constant(outer_groove.groove_circle_radius);
+    let axial_place = distance * sine + S::constant(outer_groove.groove_offset);
+    let radius = distance * cosine + S::constant(outer_groove.groove_circle_radius);
     let position =
-        radial.map(|c| radius.scale(c)) + Vector3::new(axial_place, D::constant(0.0), D::constant(0.0));
+        radial.map(|c| radius.scale(c)) + Vector3::new(axial_place, S::constant(0.0), S::constant(0.0));
     let [inner_race, outer_race] = [
         RaceMotion::resting(shared.position, shared.axis, shared.across.inner),
         RaceMotion::resting(
@@ -119,12 +168,12 @@ pub fn balance(
     let here = PerRace::new(|race| contacts[race].of_ball(index, None));
     let (inner, inner_lean) = GrooveContact::new(&here.inner.surface, &offset, &inner_race);
     let (outer, outer_lean) = GrooveContact::new(&here.outer.surface, &position, &outer_race);
-    let stiffness_of = |model: &ContactModel<'_>, contact: &GrooveContact<D>| {
+    let stiffness_of = |model: &ContactModel<'_>, contact: &GrooveContact<S>| {
         model.stiffness_of(model.shape.stiffness(contact.circumferential_curvature))
     };
     let stiffness =
         PerRace { inner: stiffness_of(&here.inner, &inner), outer: stiffness_of(&here.outer, &outer) };
-    let load = |contact: &GrooveContact<D>, gain: D, stiffness: D| {
+    let load = |contact: &GrooveContact<S>, gain: S, stiffness: S| {
         let depth = contact.approach.positive_part();
         stiffness * depth * depth.sqrt() * gain
     };
@@ -134,20 +183,20 @@ pub fn balance(
     // rolling without slip at both contacts and without spin at the outer one (Jones's outer race control)
     let (inner_cos, inner_sin) = (-inner.normal.dot(&inner.radial), -inner.normal.dot(&shared.axis));
     let (outer_cos, outer_sin) = (outer.normal.dot(&outer.radial), outer.normal.x);
-    let g = D::constant(ball_radius) / radius;
+    let g = S::constant(ball_radius) / radius;
     let ratio =
-        (D::one_minus(g * inner_cos)) / (D::constant(1.0) + inner_cos * outer_cos + inner_sin * outer_sin);
+        (S::one_minus(g * inner_cos)) / (S::constant(1.0) + inner_cos * outer_cos + inner_sin * outer_sin);
     let own_orbital_speed =
-        ratio.scale(input.inner_speed - input.outer_speed) + D::constant(input.outer_speed);
-    let roll = (shared.cage_speed - D::constant(input.outer_speed)) / g;
-    let spin = [D::constant(input.outer_speed) - roll * outer_cos, roll * outer_sin];
+        ratio.scale(input.inner_speed - input.outer_speed) + S::constant(input.outer_speed);
+    let roll = (shared.cage_speed - S::constant(input.outer_speed)) / g;
+    let spin = [S::constant(input.outer_speed) - roll * outer_cos, roll * outer_sin];
 
     // inertia
     let centrifugal_force = (radius * shared.cage_speed.square()).scale(ball.mass);
     let mut gyroscopic_moment = -(shared.cage_speed * spin[1]).scale(ball.inertia);
     let mut outside = shared.gravity.map(|c| c.scale(ball.mass));
     if let Some(frame) = &shared.frame {
-        let tangent = constant_vector::<D>(&tangential);
+        let tangent = constant_vector::<S>(&tangential);
         let field = frame.field(&position, &tangent.map(|c| c * shared.cage_speed * radius));
         outside += field.map(|c| c.scale(ball.mass));
         // The moment along the orbit that the ball's spin asks for, turning with the frame; the others are left to friction.
@@ -157,14 +206,14 @@ pub fn balance(
     // friction forces along n x e_t whose moments about the centre give the gyroscopic moment
     let needed = gyroscopic_moment.scale(1.0 / ball_radius);
     let [inner_friction, outer_friction] = match input.gyroscopic {
-        Gyroscopic::None => [D::constant(0.0); 2],
-        Gyroscopic::OuterRaceControl => [D::constant(0.0), needed],
+        Gyroscopic::None => [S::constant(0.0); 2],
+        Gyroscopic::OuterRaceControl => [S::constant(0.0), needed],
         Gyroscopic::Friction => {
-            let total = inner_load + outer_load + D::constant(f64::MIN_POSITIVE);
+            let total = inner_load + outer_load + S::constant(f64::MIN_POSITIVE);
             // Shared in proportion to the loads; beyond the friction limit the ball pivots and the force stays there.
-            let limit = total.scale(input.friction) + D::constant(1e-12);
+            let limit = total.scale(input.friction) + S::constant(1e-12);
             let x = needed / limit;
-            let carried = needed / (D::constant(1.0) + x.square().square()).sqrt().sqrt();
+            let carried = needed / (S::constant(1.0) + x.square().square()).sqrt().sqrt();
             [carried * inner_load / total, carried * outer_load / total]
         }
     };
@@ -174,10 +223,10 @@ pub fn balance(
     let total = inner_force + outer_force + outside;
     let (axial, radial_force) = (total.x, total.dot(&constant_vector(&radial)) + centrifugal_force);
     let mut residual = [axial * cosine - radial_force * sine, axial * sine + radial_force * cosine];
-    if shared.cage_speed.value == 0.0 {
+    if shared.cage_speed.value() == 0.0 {
         let middle = middle_of_gap(contacts, shared, azimuth);
-        residual[0] -= (angle.scale(arc_radius(&contacts.outer)) - D::constant(middle.x)).scale(IDLE_HOLD);
-        residual[1] -= (distance - D::constant(middle.y)).scale(IDLE_HOLD);
+        residual[0] -= (angle.scale(arc_radius(&contacts.outer)) - S::constant(middle.x)).scale(IDLE_HOLD);
+        residual[1] -= (distance - S::constant(middle.y)).scale(IDLE_HOLD);
     }
     let (force, from, contact, edge) = match input.race {
         Race::Inner => (inner_force, offset, &inner, inner_lean.moment(inner_load)),
@@ -203,11 +252,15 @@ pub fn balance(
 }
 
 /// Ball place with the same approach or gap at both races, on the line of the groove centres.
-pub fn middle_of_gap(contacts: &PerRace<ContactModel<'_>>, shared: &Shared, azimuth: f64) -> Place {
+pub fn middle_of_gap<S: Single>(
+    contacts: &PerRace<ContactModel<'_>>,
+    shared: &Shared<S>,
+    azimuth: f64,
+) -> Place {
     let (radial, _) = azimuth_directions(azimuth);
     let (inner, outer) = (&contacts.inner.surface.raceway, &contacts.outer.surface.raceway);
-    let position = shared.position.map(|c| c.value);
-    let axis = shared.axis.map(|c| c.value);
+    let position = values(&shared.position);
+    let axis = values(&shared.axis);
     // Groove centre of the inner race in the ball's plane, to first order in the tilt.
     let across = (radial - axis * radial.dot(&axis)).normalize();
     let centre = position + axis * inner.groove_offset + across * inner.groove_circle_radius;
@@ -239,7 +292,8 @@ pub fn bottom_of_outer_groove(
 /// Finds the place where a ball (0 is the first) is in balance, starting from `place`; returns the balance there.
 ///
 /// Newton's method with a Levenberg shift: the forces derive (nearly) from a potential that is convex but flat where
-/// contacts are open. `None` if the residual does not come below `tolerance` \[N].
+/// contacts are open. It needs derivatives by the ball's coordinates alone; those by the shared unknowns are of the place that
+/// it finds. `None` if the residual does not come below `tolerance` \[N].
 pub fn settle(
     model: &Model,
     contacts: &PerRace<ContactModel<'_>>,
@@ -252,8 +306,9 @@ pub fn settle(
     let diameter = 2.0 * model.bearing.ball.radius;
     let longest = 0.02 * diameter;
     let balance_radius = 0.5 * model.bearing.pitch_diameter;
-    let norm = |b: &BallBalance| b.residual[0].value.hypot(b.residual[1].value);
-    let mut here = balance(model, contacts, input, shared, index, place);
+    let norm = |b: &BallBalance<Own>| b.residual[0].value.hypot(b.residual[1].value);
+    let fixed = shared.fixed();
+    let mut here = balance_alone(model, contacts, input, &fixed, index, place);
     let mut shift = 0.0;
     for _ in 0..MAX_ITERATIONS {
         let r = Vector2::new(here.residual[0].value, here.residual[1].value);
@@ -261,7 +316,7 @@ pub fn settle(
         // A coordinate cannot be set finer than its last digit.
         let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness.amax() * balance_radius;
         if r.norm() <= tolerance.max(round_off) {
-            return Some(here);
+            return Some(balance(model, contacts, input, shared, index, place));
         }
         let shifted = stiffness + Matrix2::identity() * shift;
         let mut step = shifted.lu().solve(&r).filter(|s| s.iter().all(|c| c.is_finite()));
@@ -272,7 +327,7 @@ pub fn settle(
             }
         }
         let trial_place = step.map(|step| *place + step);
-        let trial = trial_place.map(|p| balance(model, contacts, input, shared, index, &p));
+        let trial = trial_place.map(|p| balance_alone(model, contacts, input, &fixed, index, &p));
         match (trial, trial_place) {
             (Some(trial), Some(p)) if norm(&trial) < norm(&here) || opens(&here, &trial) => {
                 *place = p;
@@ -293,7 +348,7 @@ pub fn settle(
 }
 
 /// A free ball on its way to a race: the force does not fall until it gets there.
-fn opens(here: &BallBalance, trial: &BallBalance) -> bool {
-    let free = |b: &BallBalance| b.inner_load.value == 0.0 && b.outer_load.value == 0.0;
+fn opens(here: &BallBalance<Own>, trial: &BallBalance<Own>) -> bool {
+    let free = |b: &BallBalance<Own>| b.inner_load.value == 0.0 && b.outer_load.value == 0.0;
     free(here) && free(trial)
 }
