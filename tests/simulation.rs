@@ -302,6 +302,29 @@ fn invariant_outputs_of_the_last_step_are_those_of_its_state() {
 }
 
 #[test]
+fn invariant_outputs_are_those_of_their_point_whenever_they_are_asked_for() {
+    let friction = scene(THRUST, &[("inner.drive", "\"pose\"")]);
+    let tuned = scene(THRUST, &[("inner.drive", "\"pose\""), ("effects.damping", "\"0.1 s/m\"")]);
+    let mut asked = Simulation::new(&friction).unwrap();
+    asked.advance(1.3e-4).unwrap();
+    let mut silent = Simulation::new(&friction).unwrap();
+    silent.advance(1.3e-4).unwrap();
+    let expected = asked.outputs().clone();
+    // Inputs and parameters of the next step are not those that led here.
+    silent.set_inputs(Inputs { friction: 0.02, ..*silent.inputs() });
+    assert_eq!(*silent.clone().outputs(), expected);
+    silent.tune(&tuned);
+    assert_eq!(*silent.outputs(), expected);
+    // A step that fails leaves the outputs of where it ended.
+    let mut inputs = *asked.inputs();
+    inputs.inner.pose.position.x = f64::NAN;
+    asked.set_inputs(inputs);
+    assert!(asked.advance(2e-4).is_err());
+    assert_eq!(asked.outputs().time, asked.time());
+    assert_eq!(asked.outputs().balls[0].position, asked.state().balls[0].position);
+}
+
+#[test]
 fn invariant_what_is_not_a_number_is_never_a_solution() {
     let mut simulation = Simulation::new(&Scene::parse(THRUST).unwrap()).unwrap();
     for direction in 0..3 {

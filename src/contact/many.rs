@@ -10,7 +10,31 @@ use crate::numerics::lanes::Lanes;
 use crate::numerics::lanes::WIDTH;
 use crate::numerics::scalar::{Scalar, constant_vector};
 
+/// Where a ball touches a race.
+#[derive(Clone, Copy, Debug)]
+pub struct Touch {
+    /// \[m] approach; positive in contact.
+    pub approach: f64,
+    /// \[N] normal load.
+    pub load: f64,
+    /// [-] unit normal, out of the ball into the raceway.
+    pub normal: Vector3<f64>,
+    /// [-] unit radial direction of the race through the ball centre.
+    pub radial: Vector3<f64>,
+}
+
 impl<S: Scalar> BallRaceContact<S> {
+    #[inline(always)]
+    fn touch_with(&self, of: impl Fn(&S) -> f64) -> Touch {
+        let vector = |v: &Vector3<S>| Vector3::new(of(&v.x), of(&v.y), of(&v.z));
+        Touch {
+            approach: of(&self.geometry.approach),
+            load: of(&self.load),
+            normal: vector(&self.geometry.normal),
+            radial: vector(&self.geometry.radial),
+        }
+    }
+
     /// What the contact does, number by number.
     ///
     /// By reference: a lane picked from a copy would need the whole copy in memory.
@@ -94,6 +118,12 @@ impl ContactGroup {
     #[inline(always)]
     pub fn contact(&self, lane: usize) -> BallRaceContact<f64> {
         self.0.zip_with(&self.0, |lanes, _| lanes.0[lane])
+    }
+
+    /// Where the ball in a lane touches the race.
+    #[inline]
+    pub fn touch(&self, lane: usize) -> Touch {
+        self.0.touch_with(|lanes| lanes.0[lane])
     }
 
     /// The forces in a lane.

@@ -5,7 +5,7 @@
 use nalgebra::{Vector3, Vector6};
 
 use super::ball_equations::{BallEquations, Six};
-use crate::contact::many::ContactGroup;
+use crate::contact::many::{ContactGroup, Touch};
 use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::effects::ambient::Ambient;
@@ -192,6 +192,13 @@ impl Groups {
         let (group, lane) = self.place(ball);
         let contact = group.contacts[race].lanes();
         (in_lane(&contact.force, lane), in_lane(&contact.race_moment, lane))
+    }
+
+    /// Where a ball touches a race.
+    #[inline]
+    pub fn touch(&self, ball: usize, race: Race) -> Touch {
+        let (group, lane) = self.place(ball);
+        group.contacts[race].touch(lane)
     }
 
     /// Contacts of a ball with the races.

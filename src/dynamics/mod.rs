@@ -25,10 +25,11 @@ pub mod system;
 
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector6};
 
+use crate::contact::many::Touch;
 use crate::contact::pair::PairForces;
 use crate::effects::moving_frame::FrameMotion;
-use crate::forces::{BallContacts, Contacts};
-use crate::model::bodies::{Bodies, Body, PerRace};
+use crate::forces::{BallContacts, BallPair, Contacts};
+use crate::model::bodies::{Bodies, Body, PerRace, Race};
 use crate::model::state::{KeptMatrix, State};
 use crate::model::{Conditions, Model};
 use crate::numerics::arrowhead::{Arrowhead, Member};
@@ -112,8 +113,18 @@ impl Workspace {
             BallContacts { raceways: self.groups.contacts(index), pocket: trial.pocket }
         };
         let lands = self.cage.as_ref().map_or([None; 2], |cage| cage.lands);
-        let ball_pairs = self.neighbours.iter().filter_map(NeighbourTrial::touching).collect();
+        let ball_pairs = self.touching_balls().collect();
         Contacts::from_parts(model, self.balls.iter().enumerate().map(of_ball).collect(), ball_pairs, lands)
+    }
+
+    /// Neighbouring balls that touch at the end of that step.
+    pub fn touching_balls(&self) -> impl Iterator<Item = BallPair> {
+        self.neighbours.iter().filter_map(NeighbourTrial::touching)
+    }
+
+    /// Where a ball (0 is the first) touches a race at the end of that step.
+    pub fn touch(&self, ball: usize, race: Race) -> Touch {
+        self.groups.touch(ball, race)
     }
 }
 

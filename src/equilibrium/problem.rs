@@ -324,10 +324,11 @@ impl<'a> Problem<'a> {
                 }
             }
         }
+        let on = |race| solution.balls.iter().map(move |ball| ball.report.on(race));
         for race in Race::BOTH {
-            self.model
-                .bearing
-                .check_shoulders(race, solution.balls.iter().map(|ball| ball.report.on(race)))?;
+            self.model.bearing.check_shoulders(race, on(race).map(|(load, _)| load), |ball| {
+                solution.balls[ball].report.on(race).1
+            })?;
         }
         Ok(solution)
     }

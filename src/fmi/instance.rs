@@ -26,8 +26,10 @@ pub struct Instance {
     pub state: State,
     /// \[s] defined end of the experiment.
     pub stop: Option<f64>,
-    /// Values of all variables at this point, if a step has led here.
+    /// Values of all variables at this point, if a step has led here and many were asked for.
     pub present: Option<Vec<f64>>,
+    /// Values of all variables at the point before, if a derivative by time was asked for.
+    pub previous: Option<Vec<f64>>,
     /// Derivatives of outputs by inputs at this point, if they were asked for.
     pub columns: Option<Vec<Vec<f64>>>,
     /// What was warned of.
@@ -36,6 +38,9 @@ pub struct Instance {
 
 /// [-] steps in a row whose poses contradict their twists before that is told: a vibration may do so where it turns back.
 const CONTRADICTIONS: u32 = 3;
+
+/// Variables read in one call for which all values are computed together: one by one they take longer.
+const MANY: usize = 16;
 
 /// Warnings, each of which is given once.
 #[derive(Clone, Copy, Debug, Default)]
@@ -98,6 +103,7 @@ impl Instance {
             unit,
             stop: None,
             present: None,
+            previous: None,
             columns: None,
             warned: Warned::default(),
         }
@@ -118,6 +124,7 @@ impl Instance {
             state: self.state.clone(),
             stop: self.stop,
             present: self.present.clone(),
+            previous: self.previous.clone(),
             columns: self.columns.clone(),
             warned: self.warned,
         }
@@ -214,7 +221,6 @@ impl Instance {
     /// If the inputs allow no start.
     pub fn exit_initialization(&mut self) -> Outcome {
         self.refresh()?;
-        self.state.previous_outputs = self.unit.values();
         self.state.phase = Phase::StepComplete;
         self.announce_scripts();
         self.unit.announce(&self.log);
@@ -250,6 +256,7 @@ impl Instance {
         self.state.applied.clone_from(&values);
         self.state.values = values;
         self.present = None;
+        self.previous = None;
         self.columns = None;
         self.state.changed = false;
         Ok(())
@@ -313,6 +320,7 @@ impl Instance {
         self.state = State::new(self.unit.values(), self.unit.scripts().len());
         self.stop = None;
         self.present = None;
+        self.previous = None;
         self.columns = None;
         self.warned = Warned::default();
     }
@@ -338,16 +346,26 @@ impl Instance {
         if self.state.phase == Phase::Initialization {
             self.refresh()?;
         }
+        let stepped = self.state.last_step > 0.0;
+        if stepped && self.present.is_none() && references.len() > MANY {
+            self.present = Some(self.unit.values());
+        }
+        let (rows, set, present) = (self.unit.rows(), &self.state.values[..], self.present.as_deref());
         for (reference, value) in references.iter().zip(values) {
-            let index = self.row(*reference, kind)?;
-            let row = &self.unit.rows()[index];
+            let index = *reference as usize;
+            let Some(row) = rows.get(index).filter(|row| row.kind == kind) else {
+                return self.row(*reference, kind).map(drop);
+            };
             *value = match row.causality {
-                Causality::Input | Causality::Parameter => self.state.values[index],
-                Causality::Output | Causality::Local => match &self.present {
+                Causality::Input | Causality::Parameter => set[index],
+                Causality::Output | Causality::Local => match present {
                     Some(present) => present[index],
                     None => self.unit.value(index),
                 },
             };
+            if stepped && !value.is_finite() {
+                return error(format!("{} is not a number at {} s", row.name, self.unit.time()));
+            }
         }
         Ok(())
     }

@@ -32,8 +32,8 @@ pub struct State {
     pub values: Vec<f64>,
     /// First derivatives of the inputs.
     pub rates: Vec<f64>,
-    /// Outputs at the communication point before the last.
-    pub previous_outputs: Vec<f64>,
+    /// Values at the communication point before the last, where parameters were set there: of those that applied before.
+    pub tuned_outputs: Option<Vec<f64>>,
     /// \[s] duration of the last communication step; 0 before the first.
     pub last_step: f64,
     /// Were inputs (before the start) or parameters set that the simulation does not know of yet?
@@ -56,7 +56,7 @@ impl State {
         Self {
             phase: Phase::Instantiated,
             rates: vec![0.0; values.len()],
-            previous_outputs: values.clone(),
+            tuned_outputs: None,
             last_step: 0.0,
             changed: false,
             given: vec![false; values.len()],
@@ -69,8 +69,8 @@ impl State {
     }
 
     /// All numbers by value reference.
-    fn lists(&self) -> [&[f64]; 4] {
-        [&self.values, &self.rates, &self.previous_outputs, &self.applied]
+    fn lists(&self) -> impl Iterator<Item = &Vec<f64>> {
+        [&self.values, &self.rates, &self.applied].into_iter().chain(&self.tuned_outputs)
     }
 
     /// Can an instance be in this state that has as many variables and scripts as this one?
@@ -79,10 +79,10 @@ impl State {
         self.phase != Phase::Fatal
             && [&self.set, &self.played].iter().all(|list| list.len() == n_scripts)
             && self.given.len() == n_variables
-            && self.lists().iter().all(|list| list.len() == n_variables)
+            && self.lists().all(|list| list.len() == n_variables)
     }
 
     pub fn is_finite(&self) -> bool {
-        self.lists().into_iter().flatten().chain([&self.last_step]).all(|value| value.is_finite())
+        self.lists().flatten().chain([&self.last_step]).all(|value| value.is_finite())
     }
 }

@@ -34,24 +34,25 @@ impl Instance {
         }
         self.prepare()?;
         // Whatever happens from here on, these are no longer the present values.
-        let mut present = self.present.take();
+        self.present = None;
+        self.previous = None;
+        self.columns = None;
+        // A point that a step has led to is found again from its snapshot, but for parameters that have changed.
+        self.state.tuned_outputs = None;
         if self.state.changed {
             self.unit.tune(&self.state.values)?;
-            present = None;
+            self.state.tuned_outputs = Some(self.unit.values());
             self.state.applied.clone_from(&self.state.values);
             self.state.changed = false;
         }
-        self.state.previous_outputs = present.unwrap_or_else(|| self.unit.values());
         self.state.played = self.played();
         let before = self.state.before.insert(self.unit.snapshot());
-        self.columns = None;
         let advanced = self.unit.advance(time + step, &self.state.played);
         // A derivative belongs to the communication point that it was set for.
         self.state.rates.fill(0.0);
         let reached = self.unit.time();
         self.state.last_step = reached - now;
-        let values = self.unit.values();
-        if !values.iter().all(|value| value.is_finite()) {
+        if !self.unit.is_finite() {
             let restored = self.unit.restore(before);
             debug_assert!(restored, "a snapshot of this very unit fits it");
             self.state.last_step = 0.0;
@@ -59,10 +60,9 @@ impl Instance {
         }
         for &index in self.unit.inputs() {
             if self.unit.script_of(index).is_some_and(|script| self.state.played[script]) {
-                self.state.values[index] = values[index];
+                self.state.values[index] = self.unit.value(index);
             }
         }
-        self.present = Some(values);
         advanced
     }
 
@@ -99,7 +99,7 @@ impl Instance {
     ///
     /// # Errors
     /// If an order is not 1 or a reference not that of an output.
-    pub fn output_derivatives(&self, references: &[u32], orders: &[i32], values: &mut [f64]) -> Outcome {
+    pub fn output_derivatives(&mut self, references: &[u32], orders: &[i32], values: &mut [f64]) -> Outcome {
         for ((reference, order), value) in references.iter().zip(orders).zip(values) {
             let index = self.row(*reference, Kind::Real)?;
             let row = &self.unit.rows()[index];
@@ -111,10 +111,29 @@ impl Instance {
                     "output derivatives of order {order} are not offered, only of order 1"
                 ));
             }
-            let now = self.unit.value(index);
-            let change = now - self.state.previous_outputs[index];
-            *value = if self.state.last_step > 0.0 { change / self.state.last_step } else { 0.0 };
+            *value = 0.0;
+            if self.state.last_step > 0.0 {
+                let change = self.unit.value(index) - self.previous_outputs()?[index];
+                *value = change / self.state.last_step;
+            }
         }
         Ok(())
+    }
+
+    /// Values of all rows at the communication point before the last, computed when first asked for.
+    fn previous_outputs(&mut self) -> Outcome<&[f64]> {
+        let values = match (self.previous.take(), &self.state.tuned_outputs, &self.state.before) {
+            (Some(values), _, _) => values,
+            (None, Some(values), _) => values.clone(),
+            (None, None, Some(before)) => {
+                let mut unit = self.unit.clone();
+                if !unit.restore(before) {
+                    return error("the start of the last step is of another scene");
+                }
+                unit.values()
+            }
+            (None, None, None) => self.unit.values(),
+        };
+        Ok(self.previous.insert(values))
     }
 }

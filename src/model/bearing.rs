@@ -118,13 +118,12 @@ impl Bearing {
     pub fn check_shoulders(
         &self,
         race: Race,
-        contacts: impl Iterator<Item = (f64, f64)> + Clone,
+        loads: impl Iterator<Item = f64> + Clone,
+        towards_x: impl Fn(usize) -> f64,
     ) -> Result<(), BeyondShoulder> {
-        let largest = contacts.clone().fold(0.0, |largest: f64, (load, _)| largest.max(load));
-        for (index, (load, towards_x)) in
-            contacts.enumerate().filter(|(_, (load, _))| *load > SMALL_LOAD * largest)
-        {
-            let Some(beyond) = self.shoulders[race].beyond(towards_x) else {
+        let largest = loads.clone().fold(0.0, f64::max);
+        for (index, load) in loads.enumerate().filter(|(_, load)| *load > SMALL_LOAD * largest) {
+            let Some(beyond) = self.shoulders[race].beyond(towards_x(index)) else {
                 continue;
             };
             let why = if self.free_contact_angle > 0.0 && beyond.side != loaded_side(race) {

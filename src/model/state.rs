@@ -263,6 +263,34 @@ impl State {
         self.bodies.get(Body::Cage)
     }
 
+    /// Are all numbers finite that outputs are computed from? Powers and energies are those of all contacts.
+    pub fn is_finite(&self) -> bool {
+        let of_ball = |ball: &BallState| {
+            let BallState { position, velocity, angular_velocity, .. } = ball;
+            let BallState { acceleration, angular_acceleration, total, .. } = ball;
+            position.sum()
+                + velocity.sum()
+                + angular_velocity.sum()
+                + acceleration.sum()
+                + angular_acceleration.sum()
+                + wrench_sum(total)
+        };
+        let of_body = |(_, body): (Body, &BodyState)| {
+            let Pose { position, orientation } = &body.pose;
+            let rest = position.sum() + orientation.coords.sum() + body.velocity.sum() + body.rate.sum();
+            rest + wrench_sum(&body.bearing_wrench) + body.multipliers.iter().sum::<f64>() + body.turned
+        };
+        let of_support = |support: &SupportState| wrench_sum(&support.wrench) + support.energy;
+        let Powers { input, friction, damping, around } = self.powers;
+        let warm = self.warm.map_or(0.0, |warm| warm.rises.iter().sum::<f64>() + warm.out);
+        let energies = self.energies.input + self.energies.lost() + self.energies.stiffened;
+        // A sum of numbers of which one is not finite is not finite.
+        let sum = self.balls.iter().map(of_ball).sum::<f64>()
+            + self.bodies.iter().map(of_body).sum::<f64>()
+            + self.supports.iter().flatten().map(of_support).sum::<f64>();
+        (sum + self.time + input + friction + damping + around + energies + warm).is_finite()
+    }
+
     /// Difference of Kalker's polynomials from the table at a ball's contact with a race, where they are simulated.
     pub fn difference(&self, ball: usize, race: Race) -> Option<&Difference> {
         self.differences.get(ball).map(|differences| &differences[race])
@@ -312,6 +340,10 @@ pub struct Wear {
     pub pause: u8,
     /// Was it computed for the present step?
     pub new: bool,
+}
+
+fn wrench_sum(wrench: &Wrench) -> f64 {
+    wrench.force.sum() + wrench.moment.sum()
 }
 
 /// Force and moment as one vector.

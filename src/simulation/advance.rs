@@ -9,7 +9,6 @@ use super::outputs::Outputs;
 use super::script::{Script, script_motion};
 use super::{Simulation, conditions, step_limits};
 use crate::dynamics::{Boundary, StepFailure, Workspace, advance_perturbed, failure_site, try_step};
-use crate::forces::Contacts;
 use crate::model::bodies::Race;
 use crate::model::state::State;
 use crate::scene::{Drive, Groups, Level};
@@ -70,8 +69,8 @@ impl Simulation {
             .collect();
         self.paths = self.paths.towards(&self.inputs, begin, end - begin);
         let result = self.follow(&script, end, &mut perturbed);
-        let contacts = self.end_script(&script, result.is_ok());
-        result.and_then(|()| self.check_contacts(&contacts))?;
+        self.end_script(&script, result.is_ok());
+        result.and_then(|()| self.check_contacts())?;
         let outputs = |p: &Perturbed| {
             let mut inputs = p.inputs;
             script.set_inputs(&self.scene, &p.paths, p.state.time, &mut inputs);
@@ -94,19 +93,13 @@ impl Simulation {
         script
     }
 
-    /// Inputs and outputs at the end of a communication step, and the contacts there. The last step's own evaluation serves where it
-    /// was `accepted`.
-    pub(super) fn end_script(&mut self, script: &Script, accepted: bool) -> Contacts {
+    /// Inputs at the end of a communication step. The last step's own evaluation serves for outputs where it was `accepted`.
+    pub(super) fn end_script(&mut self, script: &Script, accepted: bool) {
         script.set_inputs(&self.scene, &self.paths, self.state.time, &mut self.inputs);
-        let contacts = match accepted {
-            true => self.workspace.contacts(&self.model),
-            false => Contacts::new(&self.model, &self.state, &self.conditions()),
-        };
-        self.outputs = Outputs::of(&self.model, &self.state, &contacts, &self.conditions());
+        self.reach(accepted);
         if script.gives_inputs() {
             self.paths = self.paths.after_script(&self.inputs, &self.state);
         }
-        contacts
     }
 
     /// What is imposed on the bearing where a step ends that goes to a time \[s].

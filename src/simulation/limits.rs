@@ -7,7 +7,6 @@ use super::{Simulation, SimulationError};
 use crate::contact::creep::Law;
 use crate::dynamics::Boundary;
 use crate::equilibrium::MAX_APPROACH;
-use crate::forces::Contacts;
 use crate::model::bearing::neighbours;
 use crate::model::bodies::Race;
 use crate::scene::BearingSection;
@@ -34,15 +33,15 @@ impl Simulation {
         Err(SimulationError::TooManyBalls { balls: bearing.n_balls, fit, overlap })
     }
 
-    /// Refuses contacts that no material takes, or where no groove is.
-    pub(super) fn check_contacts(&self, contacts: &Contacts) -> Result<(), SimulationError> {
+    /// Refuses contacts of the step that was accepted last which no material takes, or where no groove is.
+    pub(super) fn check_contacts(&self) -> Result<(), SimulationError> {
         let diameter = 2.0 * self.model.bearing.ball.radius;
         let thrust = self.model.bearing.is_thrust_bearing();
         let [least, most] = self.model.bearing.contact_angles();
         for race in Race::BOTH {
             let axis = self.state.race(race).motion().axis;
-            for (index, ball) in contacts.balls.iter().enumerate() {
-                let contact = &ball.raceways[race].geometry;
+            for index in 0..self.state.balls.len() {
+                let contact = self.workspace.touch(index, race);
                 let (time, ball, approach) = (self.state.time, index + 1, contact.approach);
                 // The groove of the inner race opens away from its axis, that of the outer race towards it.
                 let out = if race == Race::Inner { -1.0 } else { 1.0 };
@@ -62,8 +61,8 @@ impl Simulation {
                 }
             }
         }
-        self.check_shoulders(contacts)?;
-        for pair in &contacts.ball_pairs {
+        self.check_shoulders()?;
+        for pair in self.workspace.touching_balls() {
             let (time, approach) = (self.state.time, pair.forces.approach);
             if approach > MAX_APPROACH * diameter {
                 let (ball, next) = (pair.first + 1, pair.second + 1);
@@ -97,13 +96,14 @@ impl Simulation {
     }
 
     /// Refuses contacts beyond the shoulders of their race.
-    fn check_shoulders(&self, contacts: &Contacts) -> Result<(), SimulationError> {
+    fn check_shoulders(&self) -> Result<(), SimulationError> {
         for race in Race::BOTH {
             let axis = self.state.race(race).axes[0];
-            let on_race = contacts.balls.iter().map(|ball| &ball.raceways[race]);
+            let touch = |ball| self.workspace.touch(ball, race);
+            let angle = |ball| towards_x(&touch(ball).normal, &touch(ball).radial, &axis);
             self.model
                 .bearing
-                .check_shoulders(race, on_race.map(|contact| (contact.load, towards_x(contact, &axis))))
+                .check_shoulders(race, (0..self.state.balls.len()).map(|ball| touch(ball).load), angle)
                 .map_err(|contact| SimulationError::BeyondShoulder { time: self.state.time, contact })?;
         }
         Ok(())

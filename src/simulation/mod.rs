@@ -10,6 +10,7 @@ mod orientation;
 pub mod outputs;
 mod path;
 pub mod play;
+mod point;
 mod quasi_static;
 mod script;
 mod slip;
@@ -34,7 +35,7 @@ use crate::scene::{Groups, Scene, Schedule};
 pub use error::SimulationError;
 use input_paths::InputPaths;
 use inputs::Inputs;
-use outputs::Outputs;
+use point::Point;
 pub use script::{follows_time, scripted_groups};
 
 /// All that changes in a simulation: enough to go on from here to the same bits, in any instance of the same scene.
@@ -60,7 +61,7 @@ pub struct Simulation {
     inputs: Inputs,
     state: State,
     paths: InputPaths,
-    outputs: Outputs,
+    point: Point,
     workspace: Workspace,
 }
 
@@ -93,14 +94,14 @@ impl Simulation {
         let model = Arc::new(model);
         let (inputs, state) = start::from_equilibrium(scene, &model, time)?;
         let paths = InputPaths::steady(&inputs, &state);
-        let outputs = Outputs::new(&model, &state, &conditions(&inputs, &state));
+        let point = Point::new(conditions(&inputs, &state), false);
         let mut simulation = Self {
             scene: Arc::new(scene.clone()),
             model,
             inputs,
             state,
             paths,
-            outputs,
+            point,
             workspace: Workspace::default(),
         };
         simulation.check_room()?;
@@ -124,6 +125,8 @@ impl Simulation {
 
     /// Goes on with a scene that differs in tunable parameters alone.
     pub fn tune(&mut self, scene: &Scene) {
+        // Outputs of this point are those of the parameters that led here.
+        self.outputs();
         let gravity = self.scene.effects.gravity.at(0.0);
         Arc::make_mut(&mut self.model).tune(scene);
         self.scene = Arc::new(scene.clone());
@@ -149,7 +152,7 @@ impl Simulation {
     fn settle(&mut self) {
         let boundary = self.boundary(self.state.time);
         make_consistent(&self.model, &mut self.state, &boundary);
-        self.outputs = Outputs::new(&self.model, &self.state, &self.conditions());
+        self.reach(false);
     }
 
     /// \[s] time.
@@ -206,7 +209,7 @@ impl Simulation {
             self.inputs = snapshot.inputs;
             self.state.clone_from(&snapshot.state);
             self.paths.clone_from(&snapshot.paths);
-            self.outputs = Outputs::new(&self.model, &self.state, &self.conditions());
+            self.reach(false);
         }
         same
     }
@@ -233,11 +236,6 @@ impl Simulation {
             && snapshot.state.warm.is_some() == self.state.warm.is_some()
             && damaged(&snapshot.state) == damaged(&self.state)
             && snapshot.inputs.rises.is_some() == self.inputs.rises.is_some()
-    }
-
-    /// Outputs of the last communication point.
-    pub fn outputs(&self) -> &Outputs {
-        &self.outputs
     }
 
     /// Inputs of the scene's own script at a time \[s]: loads, speeds, scripted motions and friction.

@@ -27,7 +27,7 @@ impl Simulation {
             .map(|inputs| {
                 let mut other = self.clone();
                 other.go_to_equilibrium(&script, *inputs, end)?;
-                Ok(other.outputs)
+                Ok(other.outputs().clone())
             })
             .collect::<Result<_, SimulationError>>()?;
         self.go_to_equilibrium(&script, self.inputs, end)?;
@@ -67,7 +67,7 @@ impl Simulation {
         if let (Some(mut sums), Some(now)) = (before.rating, &self.state.rating) {
             sums.add_until(now, end - before.time);
             self.state.rating = Some(sums);
-            self.outputs = Outputs::new(&self.model, &self.state, &self.conditions());
+            self.reach(false);
         }
         self.check_creep(&self.boundary(end))
     }

@@ -108,7 +108,13 @@ impl Simulated for BearingUnit {
 
     fn value(&self, reference: usize) -> f64 {
         let row = &self.variables.rows()[reference];
-        self.variables.value(row, self.simulation.inputs(), self.simulation.outputs())
+        let given = self.variables.input_value(row, self.simulation.inputs());
+        given
+            .unwrap_or_else(|| self.variables.value(row, self.simulation.inputs(), self.simulation.outputs()))
+    }
+
+    fn is_finite(&self) -> bool {
+        self.simulation.is_finite()
     }
 
     fn values(&self) -> Vec<f64> {

@@ -65,6 +65,9 @@ pub trait Simulated {
     /// Values of all rows.
     fn values(&self) -> Vec<f64>;
 
+    /// Are all numbers finite that values are computed from?
+    fn is_finite(&self) -> bool;
+
     /// Does anything change by itself with time?
     fn follows_time(&self) -> bool;
 

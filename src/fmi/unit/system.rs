@@ -99,6 +99,10 @@ impl Simulated for SystemUnit {
         self.variables.values(&self.system)
     }
 
+    fn is_finite(&self) -> bool {
+        self.values().iter().all(|value| value.is_finite())
+    }
+
     fn follows_time(&self) -> bool {
         self.system.follows_time()
     }

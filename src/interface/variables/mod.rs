@@ -11,7 +11,7 @@ mod system;
 use thiserror::Error;
 
 use crate::effects::growth::RISE;
-use crate::effects::{Getter, InputRow};
+use crate::effects::{Getter, InputRow, Reports};
 use crate::model::bodies::{PerRace, Race};
 use crate::scene::{Drive, Group, Scene};
 use crate::schema::numbers::{FRICTION, Parameter, Range};
@@ -201,25 +201,41 @@ impl Variables {
 
     /// Value of a row: inputs from the inputs as set, outputs from the outputs.
     pub fn value(&self, row: &Variable, inputs: &Inputs, outputs: &Outputs) -> f64 {
+        self.value_with(row, inputs, outputs, &outputs.reports())
+    }
+
+    fn value_with(&self, row: &Variable, inputs: &Inputs, outputs: &Outputs, reports: &Reports<'_>) -> f64 {
         match &row.source {
-            Source::Friction => inputs.friction,
-            Source::Rise(part) => inputs.rises.map_or(0.0, |rises| rises[*part]),
-            Source::Parameter(parameter) => parameter.start,
-            Source::Input(input) => (input.get)(&inputs.effects, input.place),
             Source::Bearing(get) => get(outputs),
-            Source::Effect(getter) => getter.get(&outputs.reports()),
-            // A bearing by itself has none.
-            Source::Shaft(_) => f64::NAN,
-            Source::Race(race, quantity, component) => match (row.causality, &quantity.input) {
-                (Causality::Input, Some(access)) => (access.get)(&inputs[*race], *component),
-                _ => (quantity.read)(&outputs[*race], *component),
-            },
+            Source::Effect(getter) => getter.get(reports),
+            Source::Race(race, quantity, component) if row.causality != Causality::Input => {
+                (quantity.read)(&outputs[*race], *component)
+            }
+            // A bearing by itself has no others.
+            _ => self.input_value(row, inputs).unwrap_or(f64::NAN),
         }
     }
 
-    /// Start values of all rows.
+    /// Value of a row that no outputs are needed for: of an input as set, of a parameter at the start.
+    pub fn input_value(&self, row: &Variable, inputs: &Inputs) -> Option<f64> {
+        match &row.source {
+            Source::Friction => Some(inputs.friction),
+            Source::Rise(part) => Some(inputs.rises.map_or(0.0, |rises| rises[*part])),
+            Source::Parameter(parameter) => Some(parameter.start),
+            Source::Input(input) => Some((input.get)(&inputs.effects, input.place)),
+            Source::Race(race, RaceVariable { input: Some(access), .. }, component)
+                if row.causality == Causality::Input =>
+            {
+                Some((access.get)(&inputs[*race], *component))
+            }
+            Source::Race(..) | Source::Bearing(_) | Source::Effect(_) | Source::Shaft(_) => None,
+        }
+    }
+
+    /// Values of all rows.
     pub fn values(&self, inputs: &Inputs, outputs: &Outputs) -> Vec<f64> {
-        self.rows.iter().map(|row| self.value(row, inputs, outputs)).collect()
+        let reports = outputs.reports();
+        self.rows.iter().map(|row| self.value_with(row, inputs, outputs, &reports)).collect()
     }
 
     /// Writes the parameters among the values of all rows into a scene.

@@ -59,10 +59,9 @@ impl System {
         let result = self.follow(&scripts, played, end);
         let mut checked = Ok(());
         for (index, (bearing, script)) in self.bearings.iter_mut().zip(&scripts).enumerate() {
-            let contacts = bearing.end_script(script, result.is_ok());
-            let kept = bearing.check_contacts(&contacts);
-            if checked.is_ok() {
-                checked = kept.map_err(|source| (index, source));
+            bearing.end_script(script, result.is_ok());
+            if result.is_ok() && checked.is_ok() {
+                checked = bearing.check_contacts().map_err(|source| (index, source));
             }
         }
         let given = Given { scene: &self.scene, paths: &self.paths, played };

@@ -226,7 +226,7 @@ impl Statics<'_> {
 
     /// Takes the friction torques of bearings that were started.
     pub fn see_friction(&mut self) {
-        let torque = |bearing: &Simulation| bearing.outputs.outer.wrench.moment.x;
+        let torque = |bearing: &Simulation| bearing.outputs().outer.wrench.moment.x;
         self.friction = self.bearings.iter().map(torque).collect();
     }
 

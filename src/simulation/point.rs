@@ -1,0 +1,49 @@
+//! Outputs of the last communication point: computed when they are first asked for, once.
+
+use std::sync::OnceLock;
+
+use super::outputs::Outputs;
+use super::{Simulation, conditions};
+use crate::model::Conditions;
+
+/// What the outputs of a communication point depend on, beside model and state.
+#[derive(Clone, Debug)]
+pub(super) struct Point {
+    /// Conditions there: inputs that are set later are those of the next step.
+    conditions: Conditions,
+    /// Has a step led here whose contacts the workspace holds?
+    stepped: bool,
+    /// The outputs, once they were asked for.
+    outputs: OnceLock<Outputs>,
+}
+
+impl Point {
+    /// A point under these conditions.
+    pub fn new(conditions: Conditions, stepped: bool) -> Self {
+        Self { conditions, stepped, outputs: OnceLock::new() }
+    }
+}
+
+impl Simulation {
+    /// Outputs of the last communication point.
+    pub fn outputs(&self) -> &Outputs {
+        let Point { conditions, stepped, outputs } = &self.point;
+        outputs.get_or_init(|| {
+            let (model, state) = (&self.model, &self.state);
+            match stepped {
+                true => Outputs::of(model, state, &self.workspace.contacts(model), conditions),
+                false => Outputs::new(model, state, conditions),
+            }
+        })
+    }
+
+    /// The state as it is becomes that of the last communication point; `stepped` if the last step with this workspace led to it.
+    pub(super) fn reach(&mut self, stepped: bool) {
+        self.point = Point::new(conditions(&self.inputs, &self.state), stepped);
+    }
+
+    /// Are all numbers finite that outputs are computed from?
+    pub fn is_finite(&self) -> bool {
+        self.state.is_finite()
+    }
+}
