@@ -310,7 +310,11 @@ fn invariant_lanes_are_single_balls_to_the_bit() {
             for first in [0, 4, 8] {
                 let mut together = ContactGroup::filled(&alone[0]);
                 let count = 4.min(9 - first);
-                together.evaluate(&contact.of_ball(first, None), &seen, &BallMotion::of_balls(&motions[first..first + count]));
+                together.evaluate(
+                    &contact.of_ball(first, None),
+                    &seen,
+                    &BallMotion::of_balls(&motions[first..first + count]),
+                );
                 for lane in 0..count {
                     assert_eq!(together.contact(lane), alone[first + lane], "{first} {lane}");
                 }

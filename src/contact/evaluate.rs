@@ -249,7 +249,11 @@ impl ContactModel<'_> {
     /// the usual contact would hand over to it would have to be in memory.
     #[cold]
     #[inline(never)]
-    pub(super) fn rolling_obliquely<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+    pub(super) fn rolling_obliquely<S: Scalar>(
+        &self,
+        ball: &BallMotion<S>,
+        race: &RaceMotion<S>,
+    ) -> BallRaceContact<S> {
         self.rolling_along::<S, true, false>(ball, race).0
     }
 

@@ -24,13 +24,8 @@ use crate::numerics::step_control::LARGEST_CUT;
 
 /// \[N] residual that is small enough for any bearing (paper section 5).
 const FORCE_TOLERANCE: f64 = 1e-6;
-/// [-] residual over the largest contact load that is small enough for any step: nine digits of the load.
-const LEAST_RELATIVE: f64 = 1e-9;
-/// [-] residual over the largest contact load that no step may leave, however large its error. Friction, a tenth of the load, is then known to
-/// a few millionths in every step. Five times as much would save 2 to 5 % of a step where contacts strike, and nothing elsewhere.
-const MOST_RELATIVE: f64 = 2e-7;
-/// [-] what Newton's method may leave of the local error of a step.
-const SHARE_OF_ERROR: f64 = 0.01;
+/// [-] residual over the largest contact load that is small enough: nine digits of the load.
+const RELATIVE_TOLERANCE: f64 = 1e-9;
 /// [-] units of round-off that positions put into forces through the stiffest contact: 1100 m from the origin Newton's
 /// method still reached one unit in every step (tests/hard_cases/extremes.rs); the rest is margin.
 const ROUND_OFF_UNITS: f64 = 10.0;
@@ -99,8 +94,7 @@ impl StepEnd {
         let of_race = |race: Race| workspace.bodies[race].as_ref().map(|trial| &trial.end);
         let supports = supports_of(model, of_race, boundary, &mut powers);
         let stiffened = |(index, ball): (usize, &BallState)| {
-            let now =
-                |race| Pressed::new(&workspace.groups.pair(index, race)).stiffened(&ball.pressed[race]);
+            let now = |race| Pressed::new(&workspace.groups.pair(index, race)).stiffened(&ball.pressed[race]);
             now(Race::Inner) + now(Race::Outer)
         };
         let stiffened = state.balls.iter().enumerate().map(stiffened);
@@ -140,20 +134,18 @@ impl StepEnd {
             let now = kinetic_energy_of(ball, &workspace.groups.motion(index));
             (now - kinetic_energy_of(ball, &state.motion())).abs()
         };
-        let exchanged =
-            || state.balls.iter().enumerate().map(of_ball).fold(0.0, |sum, energy| sum + energy);
+        let exchanged = || state.balls.iter().enumerate().map(of_ball).fold(0.0, |sum, energy| sum + energy);
         self.energies.error_since(&state.energies, exchanged, solver.energy_error)
     }
 }
 
-/// Takes over a solved step that ends like this, with its local error over the tolerance.
+/// Takes over a solved step that ends like this.
 pub fn accept(
     model: &Model,
     state: &mut State,
     boundary: &Boundary,
     step: &HhtStep,
     (workspace, end): (&Workspace, &StepEnd),
-    error: f64,
 ) {
     state.time = boundary.time;
     state.statistics.steps += 1;
@@ -198,8 +190,7 @@ pub fn accept(
         state.grown = Some(grown);
     }
     record(model, state, &solved, &boundary.conditions, Some(step.h));
-    let error = error * model.solver.tolerance * 2.0 * model.bearing.ball.radius;
-    state.force_tolerance = force_tolerance(&solved, state.balls.len(), reach(model, state), error);
+    state.force_tolerance = force_tolerance(&solved, state.balls.len(), reach(model, state));
 }
 
 /// What rings and balls have grown by, and what these contacts set against it.
@@ -235,12 +226,9 @@ fn reach(model: &Model, state: &State) -> f64 {
     races[0].max(races[1]) + model.race_length()
 }
 
-/// \[N] residual that is small enough for the next step, after one with a local error \[m]: with the stiffness `dQ/dx` of the stiffest
-/// contact it moves nothing by more than a hundredth of that error, within some 1e-7 and 1e-9 of the largest load. Nor less than rounding
-/// leaves: a last digit of a coordinate times that stiffness.
-///
-/// What a step leaves the next one makes good, so that it never adds up ([`BallState::remainder`]).
-fn force_tolerance(pairs: &impl Pairs, balls: usize, reach: f64, error: f64) -> f64 {
+/// \[N] residual below which nothing but rounding remains: nine digits of the largest load, or a last digit of a
+/// coordinate times the stiffness `dQ/dx` of the stiffest contact.
+fn force_tolerance(pairs: &impl Pairs, balls: usize, reach: f64) -> f64 {
     // `dQ/dx = 1.5 K^(2/3) Q^(1/3)`; the root is taken once, of the largest
     let (mut load, mut cube) = (0.0f64, 0.0f64);
     let mut see = |contact: &PairForces| {
@@ -257,9 +245,7 @@ fn force_tolerance(pairs: &impl Pairs, balls: usize, reach: f64, error: f64) -> 
     pairs.between_balls().for_each(|pair| see(&pair.forces));
     let stiffness = 1.5 * cube.cbrt();
     let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness * reach;
-    let wanted =
-        (SHARE_OF_ERROR * stiffness * error).clamp(LEAST_RELATIVE * load, MOST_RELATIVE * load);
-    FORCE_TOLERANCE.max(wanted).max(round_off)
+    FORCE_TOLERANCE.max(RELATIVE_TOLERANCE * load).max(round_off)
 }
 
 impl Groups {
@@ -335,5 +321,5 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     state.energies.stored = stored_energy(model, state, &contacts);
     state.grown = model.growth.as_ref().map(|_| grown(&contacts, state, boundary));
     record(model, state, &contacts, &boundary.conditions, None);
-    state.force_tolerance = force_tolerance(&contacts, state.balls.len(), reach(model, state), 0.0);
+    state.force_tolerance = force_tolerance(&contacts, state.balls.len(), reach(model, state));
 }

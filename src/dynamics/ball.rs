@@ -75,8 +75,7 @@ impl<'a> Surroundings<'a> {
         }
         if let Some((cage, seen)) = self.cage {
             for (lane, trial) in trials.iter_mut().enumerate() {
-                trial.pocket =
-                    cage.pocket_contact(first + lane, &group.motion(lane), &seen.value, seen.oil);
+                trial.pocket = cage.pocket_contact(first + lane, &group.motion(lane), &seen.value, seen.oil);
             }
         }
         let touched = trials.iter().any(|trial| trial.pocket.is_some() || trial.pushed.is_some());

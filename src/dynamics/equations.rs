@@ -114,6 +114,7 @@ impl<'a> BearingStep<'a> {
         self.contacts = self.model.contacts_facing(conditions, orientations.as_ref());
         self.force_tolerance = self.start.force_tolerance;
         self.workspace.kept = KeptMatrix::default();
+        self.workspace.groups.forget();
     }
 
     /// Are the balls independent of each other, because no body has unknowns and no two balls may touch?

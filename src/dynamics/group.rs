@@ -25,7 +25,7 @@ pub struct BallGroup {
     motion: BallMotion<Lanes>,
     /// Contacts with the races.
     contacts: PerRace<ContactGroup>,
-    /// Which balls were moved since their forces were evaluated?
+    /// Which balls are to be evaluated, as they have moved since then?
     pub moved: [bool; WIDTH],
     balance: Balance,
 }
@@ -67,7 +67,8 @@ impl BallGroup {
         let lane = |lane: usize| 6 * lane.min(last);
         let new: Six<Lanes> = std::array::from_fn(|k| Lanes::from_fn(|l| unknowns[lane(l) + k]));
         self.moved = std::array::from_fn(|l| {
-            l <= last && (all || new.iter().zip(&self.unknowns).any(|(new, old)| new.0[l] != old.0[l]))
+            let moved = || new.iter().zip(&self.unknowns).any(|(new, old)| new.0[l] != old.0[l]);
+            l <= last && (all || self.moved[l] || moved())
         });
         self.unknowns = new;
         move_lanes(&self.equations, &self.unknowns, &mut self.motion);
@@ -146,6 +147,11 @@ impl Groups {
         for (group, unknowns) in self.0.iter_mut().zip(unknowns.chunks(6 * WIDTH)) {
             group.move_to(unknowns, all);
         }
+    }
+
+    /// Forgets what was evaluated: forces where the balls are will be others.
+    pub fn forget(&mut self) {
+        self.0.iter_mut().for_each(|group| group.moved = [true; WIDTH]);
     }
 
     /// The groups.

@@ -44,8 +44,8 @@ use body::BodyTrial;
 pub use body_sums::BodyLoad;
 use cage::CageTrial;
 use equations::BearingStep;
-use group::Groups;
 pub use failure::{FailureSite, Worst, failure_site};
+use group::Groups;
 use neighbours::NeighbourTrial;
 pub use sensitivity::advance_perturbed;
 
@@ -109,8 +109,9 @@ impl Workspace {
 
     /// All contacts at the end of the step that was accepted last with this workspace.
     pub fn contacts(&self, model: &Model) -> Contacts {
-        let of_ball = |(index, trial): (usize, &BallTrial)| {
-            BallContacts { raceways: self.groups.contacts(index), pocket: trial.pocket }
+        let of_ball = |(index, trial): (usize, &BallTrial)| BallContacts {
+            raceways: self.groups.contacts(index),
+            pocket: trial.pocket,
         };
         let lands = self.cage.as_ref().map_or([None; 2], |cage| cage.lands);
         let ball_pairs = self.touching_balls().collect();
@@ -182,7 +183,6 @@ pub fn try_step(
     statistics.contact_values += equations.contact_values;
     statistics.contact_tangents += equations.contact_tangents;
     let mut control = state.control;
-    let mut local = 0.0;
     let end = match solved {
         Err(failure) => {
             statistics.rejected_newton += 1;
@@ -190,7 +190,7 @@ pub fn try_step(
             Err(StepFailure::Newton(failure, equations.worst_residual()))
         }
         Ok(()) => {
-            local = equations.local_error();
+            let local = equations.local_error();
             let end = StepEnd::new(model, state, boundary, h, equations.workspace);
             let energy = end.energy_error(model, state, boundary, h, equations.workspace);
             match control.judge(larger(local, energy)) {
@@ -210,6 +210,6 @@ pub fn try_step(
     state.control = control;
     let end = end?;
     workspace.follow_trend(model, &mut state.trend, &workspace.unknowns, h);
-    accept(model, state, boundary, &step, (workspace, &end), local);
+    accept(model, state, boundary, &step, (workspace, &end));
     Ok(())
 }

@@ -34,7 +34,8 @@ impl BearingStep<'_> {
         let workspace = &mut *self.workspace;
         let (balls, groups) = (&mut workspace.balls, &mut workspace.groups);
         let (tolerance, ball) = (self.force_tolerance, &self.model.bearing.ball);
-        let is_thrown = |index: usize, groups: &Groups| groups.is_thrown(index, tolerance, &self.step, ball.mass);
+        let is_thrown =
+            |index: usize, groups: &Groups| groups.is_thrown(index, tolerance, &self.step, ball.mass);
         let thrown = (0..balls.len()).filter(|index| is_thrown(*index, groups)).count();
         if thrown == 0 || thrown as f64 > MANY * balls.len() as f64 {
             return false;

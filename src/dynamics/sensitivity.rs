@@ -43,7 +43,7 @@ pub fn advance_perturbed<'a>(
         equations.residual(&unknowns, false);
         let step = equations.step;
         let end = StepEnd::new(model, state, &boundary, h, workspace);
-        accept(model, state, &boundary, &step, (workspace, &end), 0.0);
+        accept(model, state, &boundary, &step, (workspace, &end));
     }
     regular
 }

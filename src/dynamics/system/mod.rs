@@ -112,7 +112,7 @@ pub fn try_step(
         let (own, others) = rest.split_at(BLOCK * state.balls.len() + model.border_size());
         rest = others;
         workspace.follow_trend(model, &mut state.trend, own, h);
-        accept(model, state, boundary, &step, (workspace, end), local);
+        accept(model, state, boundary, &step, (workspace, end));
         state.control = *control;
     }
     let ends = structures.iter().zip(trials).map(|(one, end)| finished(one, end, &step));
