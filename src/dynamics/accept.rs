@@ -251,9 +251,9 @@ fn force_tolerance(pairs: &impl Pairs, balls: usize, reach: f64) -> f64 {
 impl Groups {
     /// Writes the state of a ball at the end of the step.
     fn end(&self, ball: usize, radius: f64, state: &mut BallState) {
-        let unknowns = self.unknowns(ball);
-        (state.position, state.velocity) = (self.position(ball), self.motion(ball).velocity);
-        state.angular_velocity = self.motion(ball).angular_velocity;
+        let (motion, unknowns) = (self.motion(ball), self.unknowns(ball));
+        (state.position, state.velocity) = (motion.position, motion.velocity);
+        state.angular_velocity = motion.angular_velocity;
         state.acceleration = unknowns.fixed_rows::<3>(0).into_owned();
         state.angular_acceleration = unknowns.fixed_rows::<3>(3) / radius;
         state.total = self.total(ball);

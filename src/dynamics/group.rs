@@ -12,6 +12,7 @@ use crate::effects::ambient::Ambient;
 use crate::model::bearing::Ball;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::state::BallState;
+use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::motion::Wrench;
@@ -63,8 +64,8 @@ impl BallGroup {
 
     /// Moves its balls to the end of the step: `unknowns` are those of all its balls. Notes which moved, or that `all` count as moved.
     fn move_to(&mut self, unknowns: &[f64], all: bool) {
-        let last = unknowns.len() / 6 - 1;
-        let lane = |lane: usize| 6 * lane.min(last);
+        let last = unknowns.len() / BLOCK - 1;
+        let lane = |lane: usize| BLOCK * lane.min(last);
         let new: Six<Lanes> = std::array::from_fn(|k| Lanes::from_fn(|l| unknowns[lane(l) + k]));
         self.moved = std::array::from_fn(|l| {
             let moved = || new.iter().zip(&self.unknowns).any(|(new, old)| new.0[l] != old.0[l]);
@@ -144,7 +145,7 @@ impl Groups {
 
     /// Moves the balls to the end of the step; `all` count as moved, or those whose unknowns have changed.
     pub fn move_to(&mut self, unknowns: &[f64], all: bool) {
-        for (group, unknowns) in self.0.iter_mut().zip(unknowns.chunks(6 * WIDTH)) {
+        for (group, unknowns) in self.0.iter_mut().zip(unknowns.chunks(BLOCK * WIDTH)) {
             group.move_to(unknowns, all);
         }
     }
