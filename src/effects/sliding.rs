@@ -14,8 +14,10 @@ const RINGS: usize = 8;
 const RAYS: usize = 8;
 /// Parts that the spin of a ball is shared out to both races in.
 const SHARES: usize = 8;
-/// Steps of the golden section for the creepage.
-const SECTIONS: usize = 24;
+/// Most steps for the creepage; where the power has kinks, a step halves what is left.
+const STEPS: usize = 40;
+/// [-] change of the creepage over the slip of the groove that counts as none. The power is least there: it changes by about its square.
+const SETTLED: f64 = 1e-7;
 
 impl Estimate {
     /// \[W] friction power of complete sliding, as if spin and slip of grooves each acted alone.
@@ -62,56 +64,90 @@ fn bent(contact: &ContactEstimate) -> f64 {
 /// \[W] power of both together, without and with the slip of grooves. Each ball's spin goes to the races such that the power is
 /// least, which is where its friction moments are in balance.
 pub fn powers_together(estimate: &Estimate) -> [f64; 2] {
-    let of_ball = |ball: usize, groove: f64| {
+    let places = places();
+    let of_ball = |ball: usize| -> [f64; 2] {
         let of: Vec<_> = estimate.contacts.iter().filter(|contact| contact.ball == ball).collect();
-        let spin = of.iter().map(|contact| contact.spin.abs()).fold(0.0, f64::max);
-        let shared = |outer: f64| {
-            of.iter()
-                .map(|contact| {
-                    let share = if contact.race == 0 { 1.0 - outer } else { outer };
-                    sliding(contact, share * spin, groove * bent(contact))
-                })
-                .sum::<f64>()
-        };
         // A ball that one race alone carries spins on the other for nothing.
         if of.len() < 2 {
-            return of.iter().map(|contact| sliding(contact, 0.0, groove * bent(contact))).sum();
+            return [0.0, of.iter().map(|contact| rolling(contact, bent(contact))).sum()];
         }
-        (0..=SHARES).map(|k| shared(k as f64 / SHARES as f64)).fold(f64::INFINITY, f64::min)
+        let spin = of.iter().map(|contact| contact.spin.abs()).fold(0.0, f64::max);
+        let shared = |outer: f64| {
+            let power = |contact: &&ContactEstimate| {
+                let share = if contact.race == 0 { 1.0 - outer } else { outer };
+                sliding(contact, share * spin, bent(contact), &places)
+            };
+            of.iter().map(power).sum::<f64>()
+        };
+        // Spin alone takes power in proportion: all of it is on the race where it takes less.
+        let alone = of.iter().map(|contact| spinning(contact, spin, &places)).fold(f64::INFINITY, f64::min);
+        let together = (0..=SHARES).map(|k| shared(k as f64 / SHARES as f64)).fold(f64::INFINITY, f64::min);
+        [alone, together]
     };
     let balls = estimate.contacts.iter().map(|contact| contact.ball + 1).max().unwrap_or(0);
-    [0.0, 1.0].map(|groove| estimate.friction * (0..balls).map(|ball| of_ball(ball, groove)).sum::<f64>())
+    let powers: Vec<_> = (0..balls).map(of_ball).collect();
+    [0, 1].map(|groove| estimate.friction * powers.iter().map(|power| power[groove]).sum::<f64>())
+}
+
+/// Places over a half of the ellipse, along and across rolling over its semi-axes, which carry as much load each.
+type Places = [[f64; 2]; RINGS * RAYS];
+
+fn places() -> Places {
+    std::array::from_fn(|index| {
+        let (ring, ray) = (index / RAYS, index % RAYS);
+        // A Hertzian load is uniform in the cube of its height over the ellipse.
+        let height = ((ring as f64 + 0.5) / RINGS as f64).cbrt();
+        let radius = (1.0 - height * height).sqrt();
+        let (y, x) = (PI * ((ray as f64 + 0.5) / RAYS as f64 - 0.5)).sin_cos();
+        [radius * x, radius * y]
+    })
+}
+
+/// \[W] power of a contact without spin over the friction coefficient, by the slip of its groove at the end of the ellipse \[m/s].
+fn rolling(contact: &ContactEstimate, bent: f64) -> f64 {
+    FREE_ROLLING * contact.load * bent
+}
+
+/// \[W] power of a contact over the friction coefficient by its spin [rad/s] alone.
+fn spinning(contact: &ContactEstimate, spin: f64, places: &Places) -> f64 {
+    let [along, across] = contact.semi_axes.map(|axis| axis * spin);
+    let slips = places.iter().map(|[x, y]| (across * y).hypot(along * x));
+    contact.load * slips.sum::<f64>() / places.len() as f64
 }
 
 /// \[W] power of a contact over the friction coefficient, free to roll: angular velocity of spin [rad/s], slip of its groove at the end
-/// of the ellipse [m/s].
-fn sliding(contact: &ContactEstimate, spin: f64, bent: f64) -> f64 {
+/// of the ellipse \[m/s].
+fn sliding(contact: &ContactEstimate, spin: f64, bent: f64, places: &Places) -> f64 {
     if spin == 0.0 {
-        return FREE_ROLLING * contact.load * bent;
+        return rolling(contact, bent);
     }
     let [along, across] = contact.semi_axes.map(|axis| axis * spin);
-    let power = |creep: f64| {
-        let (mut sum, mut weights) = (0.0, 0.0);
-        for ring in 0..RINGS {
-            // A Hertzian load is uniform in the cube of its height over the ellipse.
-            let height = ((ring as f64 + 0.5) / RINGS as f64).cbrt();
-            let radius = (1.0 - height * height).sqrt();
-            for ray in 0..RAYS {
-                let (y, x) = (PI * ((ray as f64 + 0.5) / RAYS as f64 - 0.5)).sin_cos();
-                let (x, y) = (radius * x, radius * y);
-                sum += (bent * y * y - creep - across * y).hypot(along * x);
-                weights += 1.0;
-            }
-        }
-        contact.load * sum / weights
-    };
-    // Least power: no force along rolling.
-    let golden = 0.5 * (5.0f64.sqrt() - 1.0);
+    // Slip along rolling with no creepage, and across it.
+    let slips = places.map(|[x, y]| [bent * y * y - across * y, along * x]);
+    // Least power: no force along rolling. Newton's method on that force, between creepages where it has either sign.
     let (mut low, mut high) = (-bent, bent);
-    for _ in 0..SECTIONS {
-        let width = golden * (high - low);
-        let (left, right) = (high - width, low + width);
-        if power(left) < power(right) { high = right } else { low = left }
+    let mut creep = 0.0;
+    for _ in 0..STEPS {
+        let (mut force, mut slope) = (0.0, 0.0);
+        for [forwards, sideways] in slips {
+            let (forwards, square) = (forwards - creep, sideways * sideways);
+            let inverse = 1.0 / (forwards * forwards + square).sqrt();
+            force += forwards * inverse;
+            slope += square * inverse * inverse * inverse;
+        }
+        if force > 0.0 {
+            low = creep
+        } else {
+            high = creep
+        }
+        let newton = creep + force / slope;
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        let step = (next - creep).abs();
+        creep = next;
+        if step <= SETTLED * bent {
+            break;
+        }
     }
-    power(0.5 * (low + high))
+    let power: f64 = slips.iter().map(|[forwards, sideways]| (forwards - creep).hypot(*sideways)).sum();
+    contact.load * power / slips.len() as f64
 }
