@@ -28,11 +28,14 @@ pub enum EstimateError {
     Unloaded,
 }
 
+/// What estimates say, or why nothing.
+pub type Verdicts = Result<Vec<Verdict>, EstimateError>;
+
 /// What estimates say of all effects in a scene.
 ///
 /// # Errors
 /// See [`EstimateError`].
-pub fn verdicts(scene: &Scene, model: &Model) -> Result<Vec<Verdict>, EstimateError> {
+pub fn verdicts(scene: &Scene, model: &Model) -> Verdicts {
     Ok(scene.effects.verdicts(&of(scene, model)?))
 }
 

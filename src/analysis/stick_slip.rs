@@ -4,6 +4,8 @@
 //! The half-space solver computes them from load, ellipse and creepages that the contact has in the simulation, whatever law its
 //! forces there are of.
 
+use serde::{Deserialize, Serialize};
+
 use crate::contact::BallRaceContact;
 use crate::contact::film::Film;
 use crate::kalker::half_space::{CellState, HalfSpace, HalfSpaceError, cells};
@@ -42,6 +44,94 @@ pub struct FieldPoint {
     pub sticks: bool,
 }
 
+/// What the field of a contact that carries load with friction follows from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FieldCause {
+    /// \[m] semi-axes of the ellipse along and transverse to rolling.
+    pub semi_axes: [f64; 2],
+    /// \[Pa] largest pressure.
+    pub pressure: f64,
+    /// [-] friction coefficient.
+    pub friction: f64,
+    /// [-] creepage along rolling and across it, of spin, and by the curvature of the groove, scaled as in [`crate::kalker`].
+    pub creepage: [f64; 4],
+    /// [-] Poisson's ratio.
+    pub poisson_ratio: f64,
+    /// \[Pa] shear modulus.
+    pub shear_modulus: f64,
+    /// [m/s] speed of rolling.
+    pub rolling_speed: f64,
+}
+
+impl FieldCause {
+    /// That of the contact of a ball (0 is the first) with a race in a state; none of a contact that carries no load, or has no friction.
+    pub fn of(
+        model: &Model,
+        state: &State,
+        conditions: &Conditions,
+        (ball, race): (usize, Race),
+    ) -> Option<Self> {
+        let (motion, race_motion) = (state.balls[ball].motion(), state.race(race).motion());
+        let contacts = model.contact(race, conditions).facing(state.orientations.as_ref());
+        let contacts = contacts.of_ball(ball, state.difference(ball, race));
+        let contact = contacts.completed(&contacts.evaluate(&motion, &race_motion), &motion, &race_motion);
+        // Of a film its friction coefficient; that it yields before it slides is no part of the half-space.
+        let in_oil = |film: &Film<'_>| film.forces(&contacts.film_loading(&contact)).friction;
+        let friction = contacts.film.as_ref().map_or(conditions.friction, in_oil);
+        let rolling = friction > 0.0 && contact.load > 0.0;
+        rolling.then(|| Self::of_contact(model, friction, &contact))
+    }
+
+    fn of_contact(model: &Model, friction: f64, contact: &BallRaceContact<f64>) -> Self {
+        let materials = &model.bearing.materials;
+        let root = contact.geometry.approach.sqrt();
+        let semi_axes @ [a, b] = contact.semi_axes.map(|axis| axis * root);
+        let mean = (a * b).sqrt();
+        let pressure = 1.5 * contact.load / (std::f64::consts::PI * a * b);
+        // Frame C has x along the rolling direction; the kernel's x is along the circumference.
+        let along = if contact.rolling_cosine < 0.0 { -1.0 } else { 1.0 };
+        let (poisson_ratio, shear_modulus) = (materials.poisson_ratio, materials.shear_modulus);
+        let scale = shear_modulus / (friction * pressure);
+        let creepage = [
+            along * contact.creepage.longitudinal * scale,
+            along * contact.creepage.lateral * scale,
+            contact.creepage.spin * mean * scale,
+            along * contact.creepage.curvature.unwrap_or(0.0) * mean * mean * scale,
+        ];
+        let rolling_speed = contact.rolling_speed;
+        Self { semi_axes, pressure, friction, creepage, poisson_ratio, shear_modulus, rolling_speed }
+    }
+
+    /// The field on about `n` times `n` cells.
+    ///
+    /// # Errors
+    /// See [`HalfSpaceError`].
+    pub fn field(&self, n: usize) -> Result<Field, HalfSpaceError> {
+        let Self { semi_axes, pressure, friction, poisson_ratio, .. } = *self;
+        let ([a, b], [x, y, spin, curvature]) = (semi_axes, self.creepage);
+        let mean = (a * b).sqrt();
+        let scale = self.shear_modulus / (friction * pressure);
+        let creepage = ScaledCreepage { x, y, spin, curvature };
+        let patch = Patch { axis_ratio: a / b, poisson_ratio, rolling_angle: 0.0 };
+        let grid = HalfSpace::with_cells(&patch, cells(&patch, n))?;
+        let solution = grid.solve(&creepage, None)?;
+        let point = |cell: CellState| FieldPoint {
+            place: cell.place.map(|place| place * mean),
+            area: cell.area * mean * mean,
+            pressure: pressure * cell.bound,
+            traction: cell.traction.map(|traction| traction * friction * pressure),
+            slip: cell.slip.map(|slip| slip / scale * self.rolling_speed),
+            sticks: cell.sticks,
+        };
+        Ok(Field {
+            semi_axes,
+            forces: solution.forces,
+            stick: solution.stick,
+            points: grid.states(&creepage, &solution).into_iter().map(point).collect(),
+        })
+    }
+}
+
 /// The field of the contact of a ball (0 is the first) with a race in a state, on about `n` times `n` cells; none of a contact
 /// that carries no load, or has no friction.
 ///
@@ -51,55 +141,8 @@ pub fn field(
     model: &Model,
     state: &State,
     conditions: &Conditions,
-    (ball, race): (usize, Race),
+    contact: (usize, Race),
     n: usize,
 ) -> Result<Option<Field>, HalfSpaceError> {
-    let (motion, race_motion) = (state.balls[ball].motion(), state.race(race).motion());
-    let contacts = model.contact(race, conditions).facing(state.orientations.as_ref());
-    let contacts = contacts.of_ball(ball, state.difference(ball, race));
-    let contact = contacts.completed(&contacts.evaluate(&motion, &race_motion), &motion, &race_motion);
-    // Of a film its friction coefficient; that it yields before it slides is no part of the half-space.
-    let in_oil = |film: &Film<'_>| film.forces(&contacts.film_loading(&contact)).friction;
-    let friction = contacts.film.as_ref().map_or(conditions.friction, in_oil);
-    let rolling = friction > 0.0 && contact.load > 0.0;
-    if rolling { of_contact(model, friction, &contact, n).map(Some) } else { Ok(None) }
-}
-
-fn of_contact(
-    model: &Model,
-    friction: f64,
-    contact: &BallRaceContact<f64>,
-    n: usize,
-) -> Result<Field, HalfSpaceError> {
-    let materials = &model.bearing.materials;
-    let root = contact.geometry.approach.sqrt();
-    let semi_axes @ [a, b] = contact.semi_axes.map(|axis| axis * root);
-    let mean = (a * b).sqrt();
-    let pressure = 1.5 * contact.load / (std::f64::consts::PI * a * b);
-    // Frame C has x along the rolling direction; the kernel's x is along the circumference.
-    let along = if contact.rolling_cosine < 0.0 { -1.0 } else { 1.0 };
-    let scale = materials.shear_modulus / (friction * pressure);
-    let creepage = ScaledCreepage {
-        x: along * contact.creepage.longitudinal * scale,
-        y: along * contact.creepage.lateral * scale,
-        spin: contact.creepage.spin * mean * scale,
-        curvature: along * contact.creepage.curvature.unwrap_or(0.0) * mean * mean * scale,
-    };
-    let patch = Patch { axis_ratio: a / b, poisson_ratio: materials.poisson_ratio, rolling_angle: 0.0 };
-    let grid = HalfSpace::with_cells(&patch, cells(&patch, n))?;
-    let solution = grid.solve(&creepage, None)?;
-    let point = |cell: CellState| FieldPoint {
-        place: cell.place.map(|place| place * mean),
-        area: cell.area * mean * mean,
-        pressure: pressure * cell.bound,
-        traction: cell.traction.map(|traction| traction * friction * pressure),
-        slip: cell.slip.map(|slip| slip / scale * contact.rolling_speed),
-        sticks: cell.sticks,
-    };
-    Ok(Field {
-        semi_axes,
-        forces: solution.forces,
-        stick: solution.stick,
-        points: grid.states(&creepage, &solution).into_iter().map(point).collect(),
-    })
+    FieldCause::of(model, state, conditions, contact).map(|cause| cause.field(n)).transpose()
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use roulement::analysis::estimate;
+use roulement::analysis::estimate::{self, Verdicts};
 use roulement::effects::estimate::{Standing, Verdict, digits, missed};
 use roulement::effects::shoulder::SUBJECT as SHOULDERS;
 use roulement::model::Model;
@@ -40,18 +40,20 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
 }
 
 /// Says what is on, and what is off and would matter; nothing more where nothing can be estimated but why.
-pub fn announce(scene: &Scene, model: &Model) {
-    let lines = match estimate::verdicts(scene, model) {
-        Ok(verdicts) => missed(&verdicts),
+pub fn announce(scene: &Scene, verdicts: &Verdicts) {
+    let lines = match verdicts {
+        Ok(verdicts) => missed(verdicts),
         Err(why) => vec![why.to_string()],
     };
     tell([scene.effects.simulated()].into_iter().chain(lines));
 }
 
 /// What was on in a run and did not matter, a line each; `cut` tells whether a shoulder cut a contact in it.
-pub fn idle_in(scene: &Scene, model: &Model, cut: bool) -> Vec<String> {
-    let Ok(verdicts) = estimate::verdicts(scene, model) else { return vec![] };
-    let idle = verdicts.iter().filter(|verdict| verdict.is_idle() && !(cut && verdict.subject == SHOULDERS));
+pub fn idle_in(verdicts: &Verdicts, cut: bool) -> Vec<String> {
+    let idle = verdicts
+        .iter()
+        .flatten()
+        .filter(|verdict| verdict.is_idle() && !(cut && verdict.subject == SHOULDERS));
     idle.map(|verdict| format!("{}: {}", verdict.subject, verdict.sentence)).collect()
 }
 

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
+use roulement::analysis::estimate::{self, Verdicts};
 use roulement::scene::units::Time;
 use roulement::scene::{ErrorGoal, ErrorOf, Scene, Solver};
 use roulement::simulation::Simulation;
@@ -115,8 +116,9 @@ pub fn simulate(
     rounds: u32,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let simulation = Simulation::new(scene)?;
+    let verdicts = estimate::verdicts(simulation.scene(), simulation.model());
     if place.said != Said::Nothing {
-        announce(simulation.scene(), simulation.model());
+        announce(simulation.scene(), &verdicts);
     }
     if place.files {
         fs::create_dir_all(&place.output)
@@ -124,10 +126,10 @@ pub fn simulate(
     }
     let table = ResultsWriter::create(&place.results(), scene, &place.choice)?;
     if wants_error || scene.solver.goal.is_some() {
-        return measured(player, simulation, table, place, rounds);
+        return measured(player, simulation, table, place, &verdicts, rounds);
     }
     let played = player.play(simulation, Some(table), "")?;
-    place.leave(&played, None, "")?;
+    place.leave(&played, &verdicts, None, "")?;
     ended(played)
 }
 
@@ -150,6 +152,7 @@ fn measured(
     simulation: Simulation,
     table: ResultsWriter,
     place: &Place,
+    verdicts: &Verdicts,
     most: u32,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let scene = simulation.scene().clone();
@@ -161,7 +164,7 @@ fn measured(
     let mut rounds = Rounds::new(scene.solver.goal, most);
     let mut played = player.play(simulation, Some(table), "round 1: ")?;
     if !matches!(played.end, End::Reached) {
-        place.leave(&played, None, "")?;
+        place.leave(&played, verdicts, None, "")?;
         return ended(played);
     }
     rounds.push(played.take_comparable());
@@ -199,7 +202,7 @@ fn measured(
         break (judgement, next.end);
     };
     played.seen.means = rounds.means();
-    place.leave(&played, rounds.bars(), &rounds.report())?;
+    place.leave(&played, verdicts, rounds.bars(), &rounds.report())?;
     let round = rounds.count() + 1;
     match (end, judgement) {
         (End::Interrupted, _) => {
@@ -263,15 +266,16 @@ impl Place {
     pub(super) fn leave(
         &self,
         played: &Played,
+        verdicts: &Verdicts,
         bars: Option<Figures>,
         errors: &str,
     ) -> Result<(), Box<dyn Error>> {
         let scene = played.simulation.scene();
         let shown = Shown { figures: played.figures(), bars };
-        let text = summary(played, &shown) + errors;
+        let text = summary(played, &shown, verdicts) + errors;
         let mut plots = vec![];
         if self.files {
-            plots = self.write_files(played, &shown, &text)?;
+            plots = self.write_files(played, verdicts, &shown, &text)?;
         }
         let listed = match self.said {
             Said::Nothing => return Ok(()),
@@ -297,6 +301,7 @@ impl Place {
     fn write_files(
         &self,
         played: &Played,
+        verdicts: &Verdicts,
         shown: &Shown,
         text: &str,
     ) -> Result<Vec<PathBuf>, Box<dyn Error>> {
@@ -317,6 +322,7 @@ impl Place {
             rows: &played.plotted,
             seen: &played.seen,
             shown,
+            verdicts,
             summary: text,
             took: [played.wall.as_secs_f64(), played.cpu],
             ended_early: match &played.end {

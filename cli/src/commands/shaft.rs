@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use cpu_time::ThreadTime;
+use roulement::analysis::estimate;
 use roulement::scene::system::SystemScene;
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::Rows;
@@ -118,7 +119,8 @@ pub fn run(
         };
         let place =
             Place { output: output.join(name), files: true, choice: choice.clone(), said: Said::Nothing };
-        place.leave(&played, None, "")?;
+        let verdicts = estimate::verdicts(bearing.scene(), bearing.model());
+        place.leave(&played, &verdicts, None, "")?;
         let shown = Shown { figures: played.figures(), bars: None };
         values.insert(name.to_string(), json::summary(bearing, &played.seen, &shown));
         let figure = |name: &str| shown.figures.get(name);

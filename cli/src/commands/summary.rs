@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use roulement::analysis::estimate::Verdicts;
 use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement_cli::report::figures::Shown;
@@ -14,10 +15,10 @@ use super::effects::idle_in;
 use super::player::Played;
 
 /// Summary of a run, with error bars where figures have them.
-pub fn summary(run: &Played, shown: &Shown) -> String {
+pub fn summary(run: &Played, shown: &Shown, verdicts: &Verdicts) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
-    let _ = write_summary(&mut text, run, shown);
+    let _ = write_summary(&mut text, run, shown, verdicts);
     text
 }
 
@@ -106,7 +107,7 @@ fn write_limits(out: &mut String, limits: &Limits, shown: &Shown) -> std::fmt::R
     Ok(())
 }
 
-fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Result {
+fn write_summary(out: &mut String, run: &Played, shown: &Shown, verdicts: &Verdicts) -> std::fmt::Result {
     let Played { simulation, seen, wall, .. } = run;
     let Seen { means, spectrum, energy, limits, estimate, .. } = seen;
     let now = simulation.outputs();
@@ -176,7 +177,7 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown) -> std::fmt::Res
             if estimate.has_blows() { BLOWS } else { "" }
         )?;
     }
-    for line in idle_in(simulation.scene(), simulation.model(), limits.over_shoulders != [0.0; 2]) {
+    for line in idle_in(verdicts, limits.over_shoulders != [0.0; 2]) {
         writeln!(out, "did not matter   {line}")?;
     }
     let s = &now.statistics;

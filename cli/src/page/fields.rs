@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use roulement::analysis::stick_slip::{Field, field};
+use roulement::analysis::stick_slip::{Field, FieldCause};
 use roulement::model::bodies::Race;
 use roulement::simulation::Simulation;
 use serde_json::{Value, json};
@@ -13,9 +13,9 @@ use super::grid::Grid;
 /// [-] cells across an ellipse.
 const CELLS: usize = 24;
 
-/// The contacts of the ball with the largest and of the one with the least load as they are now; those without load, without friction
-/// or without a solution are left out.
-pub fn at_end(simulation: &Simulation) -> Vec<Value> {
+/// What the fields follow from of the contacts of the ball with the largest and of the one with the least load as they are now; those
+/// without load or without friction are left out. The fields themselves take longer than a short run: they are solved for a page.
+pub fn causes(simulation: &Simulation) -> Vec<Value> {
     let load = |ball: usize| simulation.outputs().balls[ball].inner.load;
     let balls = 0..simulation.outputs().balls.len();
     let most = balls.clone().max_by(|a, b| load(*a).total_cmp(&load(*b)));
@@ -25,10 +25,20 @@ pub fn at_end(simulation: &Simulation) -> Vec<Value> {
         .chain(least.filter(|ball| Some(*ball) != most && differs(load(*ball), most.map(load))));
     let of = |(ball, race): (usize, Race)| {
         let (model, state) = (simulation.model(), simulation.state());
-        let field = field(model, state, &simulation.conditions(), (ball, race), CELLS).ok().flatten()?;
-        Some(to_json(simulation.time(), ball + 1, race.name(), &field))
+        let cause = FieldCause::of(model, state, &simulation.conditions(), (ball, race))?;
+        Some(json!({ "time": simulation.time(), "ball": ball + 1, "race": race.name(), "cause": cause }))
     };
     chosen.flat_map(|ball| Race::BOTH.map(|race| (ball, race))).filter_map(of).collect()
+}
+
+/// The fields of causes; those without a solution are left out.
+pub fn solved(causes: &Value) -> Vec<Value> {
+    let of = |contact: &Value| {
+        let cause: FieldCause = serde_json::from_value(contact["cause"].clone()).ok()?;
+        let (ball, race) = (contact["ball"].as_u64()?, contact["race"].as_str()?);
+        Some(to_json(contact["time"].as_f64()?, ball as usize, race, &cause.field(CELLS).ok()?))
+    };
+    causes.as_array().into_iter().flatten().filter_map(of).collect()
 }
 
 /// Is a load another one than the largest?

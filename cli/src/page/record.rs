@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use roulement::analysis::estimate;
+use roulement::analysis::estimate::Verdicts;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::Outputs;
@@ -30,6 +30,8 @@ pub struct Run<'a> {
     pub seen: &'a Seen,
     /// Figures and their error bars.
     pub shown: &'a Shown,
+    /// What estimates of effects say.
+    pub verdicts: &'a Verdicts,
     /// The summary in words.
     pub summary: &'a str,
     /// \[s] wall and CPU time.
@@ -41,7 +43,7 @@ pub struct Run<'a> {
 impl Run<'_> {
     /// The record.
     pub fn to_json(&self) -> Value {
-        let Self { simulation, rows, seen, shown, summary, took, ended_early } = self;
+        let Self { simulation, rows, seen, shown, verdicts, summary, took, ended_early } = self;
         let (scene, model) = (simulation.scene(), simulation.model());
         let statistics = &simulation.outputs().statistics;
         json!({
@@ -53,7 +55,7 @@ impl Run<'_> {
             "bearing": bearing::describe(scene, model),
             "summary": json::summary(simulation, seen, shown),
             "summary_text": summary,
-            "effects": effects(scene, simulation),
+            "effects": effects(scene, verdicts),
             "cost": {
                 "wall": took[0],
                 "cpu": took[1],
@@ -69,7 +71,7 @@ impl Run<'_> {
             },
             "spectrum": seen.spectrum.as_ref().map(spectrum),
             "history": history::columns(rows).to_json(),
-            "fields": fields::at_end(simulation),
+            "field_causes": fields::causes(simulation),
         })
     }
 
@@ -83,8 +85,7 @@ impl Run<'_> {
 }
 
 /// Which effects are on, and what all of them would matter; nothing where that cannot be estimated.
-fn effects(scene: &Scene, simulation: &Simulation) -> Value {
-    let verdicts = estimate::verdicts(scene, simulation.model());
+fn effects(scene: &Scene, verdicts: &Verdicts) -> Value {
     let why = verdicts.as_ref().err().map(ToString::to_string);
     let mut effects = json::effects(scene, verdicts.as_deref().unwrap_or_default()).unwrap_or(Value::Null);
     effects["simulated"] = scene.effects.simulated().into();
@@ -101,7 +102,7 @@ fn spectrum(spectrum: &Spectrum) -> Value {
     })
 }
 
-/// Reads the record of a directory of results.
+/// Reads the record of a directory of results, with the fields of its contacts.
 ///
 /// # Errors
 /// If there is none, or it is of another form.
@@ -114,10 +115,15 @@ pub fn read(directory: &Path) -> Result<Value, String> {
             directory.display()
         )
     })?;
-    let record: Value = serde_json::from_str(&text)
+    let mut record: Value = serde_json::from_str(&text)
         .map_err(|why| format!("{} is no record of a run: {why}", path.display()))?;
     match record["form"].as_u64() {
-        Some(FORM) => Ok(record),
+        Some(FORM) => {
+            if record["fields"].is_null() {
+                record["fields"] = fields::solved(&record["field_causes"]).into();
+            }
+            Ok(record)
+        }
         Some(other) => Err(format!(
             "{} has form {other}, this program reads {FORM}: run the scene again",
             path.display()
