@@ -136,9 +136,9 @@ fn sliding(contact: &ContactEstimate, spin: f64, bent: f64, places: &Places) -> 
             slope += square * inverse * inverse * inverse;
         }
         if force > 0.0 {
-            low = creep
+            low = creep;
         } else {
-            high = creep
+            high = creep;
         }
         let newton = creep + force / slope;
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
