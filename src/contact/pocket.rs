@@ -20,7 +20,8 @@ use super::shape::ShapeAt;
 use crate::contact::BallMotion;
 use crate::contact::materials::Pair;
 use crate::kalker::LinearError;
-use crate::numerics::scalar::{Scalar, Single, cross, dot};
+use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::numerics::scalar::{Scalar, Single, constant_vector, cross, dot};
 
 /// [-] axis ratio of the most slender patch with creep coefficients. A tighter cylinder (clearance below 0.8 % of the ball)
 /// takes those of this patch: the ball spins in its pocket and slides completely, where they hardly matter.
@@ -80,6 +81,23 @@ impl PocketModel {
         let axis = pocket_axis(cage, direction);
         let offset = ball.position - cage.position;
         self.off_centre(&offset, &axis).norm() - self.half_clearance
+    }
+
+    /// Which of four balls touch their pockets, or have oil of a viscosity [Pa s] between them?
+    pub fn near(
+        &self,
+        balls: &BallMotion<Lanes>,
+        cage: &BodyMotion<f64>,
+        directions: &[[f64; 2]; WIDTH],
+        oil: f64,
+    ) -> [bool; WIDTH] {
+        if oil > 0.0 && self.sphere_circle.is_none() {
+            return [true; WIDTH];
+        }
+        let mut approach = Lanes::constant(0.0);
+        approach_lanes(self, balls, cage, directions, &mut approach);
+        // What is not a number is carried on.
+        approach.0.map(|approach| approach > 0.0 || approach.is_nan())
     }
 
     /// Where a ball is off the pocket's axis or centre.
@@ -210,6 +228,22 @@ impl PocketModel {
         }
         around.map(|component| component / distance) + cross(&cage.angular_velocity, normal)
     }
+}
+
+/// \[m] approaches of balls and pockets, to the bits of [`PocketModel::touching`]. Compiled twice, as contacts are
+/// ([`crate::contact::many`]).
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn approach_lanes(
+    pocket: &PocketModel,
+    balls: &BallMotion<Lanes>,
+    cage: &BodyMotion<f64>,
+    directions: &[[f64; 2]; WIDTH],
+    approach: &mut Lanes,
+) {
+    let axis = Lanes::vector(|lane| pocket_axis(cage, directions[lane]));
+    let offset = balls.position - constant_vector::<Lanes>(&cage.position);
+    let off_centre = pocket.off_centre(&offset, &axis);
+    *approach = dot(&off_centre, &off_centre).sqrt() - Lanes::constant(pocket.half_clearance);
 }
 
 /// World direction of the axis of a pocket.

@@ -5,9 +5,9 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 use super::ball_equations::BallEquations;
 use super::body::{BodyTrial, RaceSeen};
 use super::cage::CageTrial;
-use super::directions::{D, DIRECTIONS, by_first, by_second, constant_race, scale_moments, seed};
+use super::directions::{D, by_first, constant_race, scale_moments, seed};
 use super::group::BallGroup;
-use super::reaction::Reaction;
+use super::reaction::{PairTangent, Reaction};
 use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::effects::ambient::Ambient;
@@ -74,8 +74,12 @@ impl<'a> Surroundings<'a> {
             }
         }
         if let Some((cage, seen)) = self.cage {
+            let near = cage.near_pockets(first, group.motions(), &seen.value, seen.oil);
             for (lane, trial) in trials.iter_mut().enumerate() {
-                trial.pocket = cage.pocket_contact(first + lane, &group.motion(lane), &seen.value, seen.oil);
+                trial.pocket = match near[lane] {
+                    true => cage.pocket_contact(first + lane, &group.motion(lane), &seen.value, seen.oil),
+                    false => None,
+                };
             }
         }
         let touched = trials.iter().any(|trial| trial.pocket.is_some() || trial.pushed.is_some());
@@ -173,9 +177,8 @@ impl BallTrial {
         self.block.own[slot].fill(0.0);
         if let (Some((cage, trial)), Some(_)) = (around.cage, &self.pocket) {
             let radius = around.model.bearing.ball.radius;
-            let seeded = seed::<DIRECTIONS>(motion, step, radius);
-            if let Some(forces) = cage.pocket_contact(index, &seeded, &trial.motion, trial.oil) {
-                tangent += self.couple(Body::Cage, &forces, step, radius);
+            if let Some(pair) = by_ball_and_cage((cage, index), &seed(motion, step, radius), trial) {
+                tangent += self.couple(Body::Cage, &pair, step, radius);
             }
         }
         if let Some(push) = &self.pushed {
@@ -201,8 +204,8 @@ impl BallTrial {
             tangent += match races[race].moved() {
                 None => by_ball_alone(&contact, &seed(motion, step, radius), races[race].motion).1,
                 Some(moved) => {
-                    let forces = by_ball_and_race(&contact, &seed(motion, step, radius), moved);
-                    self.couple(race.into(), &PairForces::from(&forces), step, radius)
+                    let pair = by_ball_and_race(&contact, &seed(motion, step, radius), moved);
+                    self.couple(race.into(), &pair, step, radius)
                 }
             };
         }
@@ -210,11 +213,10 @@ impl BallTrial {
     }
 
     /// Takes over the reaction of a pair and its derivatives by the body's unknowns; returns those by the ball's.
-    fn couple(&mut self, body: Body, forces: &PairForces<D>, step: &HhtStep, radius: f64) -> Matrix6<f64> {
-        let by_body = scale_moments(by_second(&forces.force, &forces.moment), radius);
-        self.block.right[body.index()] = by_body * -(1.0 - step.alpha_f);
-        self.reactions[body.index()] = Some(Reaction::on_second(forces));
-        by_first(&forces.force, &forces.moment)
+    fn couple(&mut self, body: Body, pair: &PairTangent, step: &HhtStep, radius: f64) -> Matrix6<f64> {
+        self.block.right[body.index()] = scale_moments(pair.by_second, radius) * -(1.0 - step.alpha_f);
+        self.reactions[body.index()] = Some(pair.on_second);
+        pair.by_first
     }
 }
 
@@ -297,12 +299,19 @@ fn by_ball_alone(
     (contact.values(), by_first(&contact.force, &contact.ball_moment))
 }
 
-/// A contact with a race that forces move, with derivatives by the unknowns of both.
+/// Derivatives of a contact with a race that forces move, by the unknowns of both.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn by_ball_and_race(
-    contact: &ContactModel<'_>,
+fn by_ball_and_race(contact: &ContactModel<'_>, ball: &BallMotion<D>, race: &RaceMotion<D>) -> PairTangent {
+    PairTangent::of(&PairForces::from(&contact.evaluate(ball, race)))
+}
+
+/// Derivatives of a contact with the cage, by the unknowns of both; none where they do not touch.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn by_ball_and_cage(
+    (cage, index): (&CageModel, usize),
     ball: &BallMotion<D>,
-    race: &RaceMotion<D>,
-) -> BallRaceContact<D> {
-    contact.evaluate(ball, race)
+    trial: &CageTrial,
+) -> Option<PairTangent> {
+    let pair = cage.pocket_contact(index, ball, &trial.motion, trial.oil)?;
+    Some(PairTangent::of(&pair))
 }

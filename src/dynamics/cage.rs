@@ -79,9 +79,13 @@ impl CageTrial {
         let Some((_, land)) = &model.land else {
             return [None; 2];
         };
+        if self.lands.iter().all(Option::is_none) {
+            return [None; 2];
+        }
+        let race = race.with_derivatives();
         [0, 1].map(|side: usize| {
             self.lands[side].as_ref()?;
-            self.with_derivatives(land, land.positions[side], race, step)
+            self.with_derivatives(land, land.positions[side], &race, step)
         })
     }
 
@@ -90,7 +94,7 @@ impl CageTrial {
         &self,
         land: &LandModel,
         position: f64,
-        race: &RaceSeen<'_>,
+        race: &RaceMotion<D>,
         step: &HhtStep,
     ) -> Option<LandReactions> {
         let translation = |v: &Vector3<f64>, gain: f64| Vector3::from_fn(|i, _| D::variable(v[i], i, gain));
@@ -101,14 +105,26 @@ impl CageTrial {
             velocity: translation(&self.value.velocity, step.velocity_gain()),
             angular_velocity: self.motion.angular_velocity.map(exchange_bodies),
         };
-        let pair = land.evaluate(&cage, &race.with_derivatives(), position, self.oil)?;
-        let on_cage = Reaction::on_first(&pair);
-        Some(LandReactions {
-            on_cage: Reaction {
-                force: on_cage.force.map(exchange_bodies),
-                moment: on_cage.moment.map(exchange_bodies),
-            },
-            on_race: Reaction::on_second(&pair),
-        })
+        by_cage_and_race(land, &cage, race, (position, self.oil))
     }
+}
+
+/// Reactions of a land at a position \[m] of the cage, in oil of a viscosity [Pa s] or dry. Compiled twice, as contacts are
+/// ([`crate::contact::many`]).
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn by_cage_and_race(
+    land: &LandModel,
+    cage: &BodyMotion<D>,
+    race: &RaceMotion<D>,
+    (position, oil): (f64, f64),
+) -> Option<LandReactions> {
+    let pair = land.evaluate(cage, race, position, oil)?;
+    let on_cage = Reaction::on_first(&pair);
+    Some(LandReactions {
+        on_cage: Reaction {
+            force: on_cage.force.map(exchange_bodies),
+            moment: on_cage.moment.map(exchange_bodies),
+        },
+        on_race: Reaction::on_second(&pair),
+    })
 }

@@ -54,11 +54,13 @@ pub fn by_first<const N: usize>(force: &Vector3<Dual<N>>, moment: &Vector3<Dual<
 }
 
 /// Derivatives of force (rows 0 to 2) and moment (rows 3 to 5) by the second body's unknowns.
+#[inline(always)]
 pub fn by_second(force: &Vector3<D>, moment: &Vector3<D>) -> Matrix6<f64> {
     Matrix6::from_fn(|i, k| by_second_unknown(if i < 3 { &force[i] } else { &moment[i - 3] }, k))
 }
 
 /// Derivative by unknown k of the second body: translation (0 to 2), rotation (3 to 5).
+#[inline(always)]
 pub fn by_second_unknown(x: &D, k: usize) -> f64 {
     if k < 3 { -x.derivatives[k] } else { x.derivatives[SECOND_ROTATION + k - 3] }
 }

@@ -98,6 +98,11 @@ impl BallGroup {
         balance_lanes(&self.equations, &self.unknowns, &total, &mut self.balance);
     }
 
+    /// Motion of its balls.
+    pub fn motions(&self) -> &BallMotion<Lanes> {
+        &self.motion
+    }
+
     /// Motion of the ball in a lane.
     #[inline]
     pub fn motion(&self, lane: usize) -> BallMotion<f64> {

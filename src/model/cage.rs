@@ -12,6 +12,7 @@ use crate::contact::pocket::PocketModel;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::effects::cage::{CageSection, Guidance};
 use crate::kalker::LinearError;
+use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::scalar::Single;
 use crate::scene::Scene;
 
@@ -88,6 +89,19 @@ impl CageModel {
         oil: f64,
     ) -> Option<PairForces<S>> {
         self.pocket.evaluate(ball, cage, self.directions[index], oil)
+    }
+
+    /// Which of four balls, of which the first is ball `first`, do something to their pockets, in oil of a viscosity [Pa s] or dry?
+    pub fn near_pockets(
+        &self,
+        first: usize,
+        balls: &BallMotion<Lanes>,
+        cage: &BodyMotion<f64>,
+        oil: f64,
+    ) -> [bool; WIDTH] {
+        let last = self.directions.len() - 1;
+        let directions = std::array::from_fn(|lane| self.directions[(first + lane).min(last)]);
+        self.pocket.near(balls, cage, &directions, oil)
     }
 
     /// \[m] approach of a ball and its pocket; negative is a gap.
