@@ -23,7 +23,7 @@ type Own = Dual<SHARED>;
 
 /// [N/m] hold of a ball that nothing else holds, towards the middle of its gap; bearing at rest only. Its force,
 /// below 1e-6 N in any gap, is far below what loads are resolved to.
-const IDLE_HOLD: f64 = 1e-3;
+pub const IDLE_HOLD: f64 = 1e-3;
 /// [-] units in the last place of the ball's coordinates that count as balanced.
 const ROUND_OFF_UNITS: f64 = 4.0;
 /// Iterations of one ball.
@@ -47,14 +47,14 @@ pub struct Shared<S: Scalar = D> {
 }
 
 impl Shared {
-    /// The same without derivatives.
-    fn fixed(&self) -> Shared<Own> {
-        let fixed = |v: &Vector3<D>| v.map(|c| Own::constant(c.value));
+    /// The same as numbers of which it is independent.
+    pub fn fixed<S: Scalar>(&self) -> Shared<S> {
+        let fixed = |v: &Vector3<D>| v.map(|c| S::constant(c.value));
         Shared {
             position: fixed(&self.position),
             axis: fixed(&self.axis),
             across: self.across,
-            cage_speed: Own::constant(self.cage_speed.value),
+            cage_speed: S::constant(self.cage_speed.value),
             gravity: fixed(&self.gravity),
             frame: self.frame.as_ref().map(|frame| MovingFrame {
                 arm: fixed(&frame.arm),
@@ -103,7 +103,7 @@ pub type Place = Vector2<f64>;
 
 /// \[m] distance of the ball centre from the groove centre where a ball touches a race without load. That of the outer race turns
 /// the arc of a [`Place`] into an angle.
-fn arc_radius(contact: &ContactModel<'_>) -> f64 {
+pub fn arc_radius(contact: &ContactModel<'_>) -> f64 {
     contact.surface.raceway.groove_radius - contact.surface.ball_radius
 }
 
@@ -133,6 +133,19 @@ fn balance_alone(
 ) -> BallBalance<Own> {
     let place = [Own::variable(place.x, 0, 1.0), Own::variable(place.y, 1, 1.0)];
     balance_at(model, contacts, input, shared, index, place)
+}
+
+/// The same without derivatives.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+pub fn balance_value(
+    model: &Model,
+    contacts: &PerRace<ContactModel<'_>>,
+    input: &EquilibriumInput,
+    shared: &Shared<f64>,
+    index: usize,
+    place: &Place,
+) -> BallBalance<f64> {
+    balance_at(model, contacts, input, shared, index, [place.x, place.y])
 }
 
 #[inline(always)]
