@@ -7,6 +7,7 @@
 
 mod ball;
 mod guess;
+mod light_ball;
 mod problem;
 mod report;
 mod trial;
@@ -269,7 +270,7 @@ pub struct Equilibrium {
     pub cage_speed: f64,
     /// [-] largest residual over the size of the forces.
     pub residual: f64,
-    /// Iterations on the displacements.
+    /// Iterations on the displacements, after a guess.
     pub iterations: u32,
     /// The bearing as it has grown, where growth is simulated.
     pub growth: Option<GrowthOutput>,

@@ -3,7 +3,8 @@
 use nalgebra::{Matrix2, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::ball::{
-    BallBalance, DIRECTIONS, N_SHARED, Place, SHARED, Shared, bottom_of_outer_groove, middle_of_gap, settle,
+    BallBalance, DIRECTIONS, N_SHARED, Place, SHARED, Shared, balance, bottom_of_outer_groove, middle_of_gap,
+    settle,
 };
 use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
 use crate::effects::moving_frame::MovingFrame;
@@ -279,21 +280,27 @@ pub fn evaluate(
         let settled = |shared: &Shared| {
             let starts = kept.into_iter().chain(fresh.iter().map(|place| place()));
             starts.into_iter().find_map(|mut place| {
-                settle(model, &contacts, input, shared, j, &mut place, tolerance)
-                    .map(|balance| (balance, place))
+                settle(model, &contacts, input, shared, j, &mut place, tolerance).then_some(place)
             })
         };
-        // A free ball that would fall off the side of a groove stays where it is, as if without weight.
-        let weightless = Shared { gravity: constant_vector(&Vector3::zeros()), frame: None, ..shared };
-        let weighs = values(&shared.gravity) != Vector3::zeros() || shared.frame.is_some();
-        let fallen = || weighs.then(|| settled(&weightless)).flatten();
-        let settled = settled(&shared).or_else(fallen);
-        let Some((balance, place)) = settled else {
+        let (place, forces) = match settled(&shared) {
+            Some(place) => (Some(place), shared),
+            // A free ball that would fall off the side of a groove stays where it is, as if without weight.
+            None => {
+                let weighs = values(&shared.gravity) != Vector3::zeros() || shared.frame.is_some();
+                let weightless =
+                    Shared { gravity: constant_vector(&Vector3::zeros()), frame: None, ..shared };
+                (weighs.then(|| settled(&weightless)).flatten(), weightless)
+            }
+        };
+        let Some(place) = place else {
             return Err(EquilibriumError::Ball {
                 ball: j + 1,
                 displacement: std::array::from_fn(|i| unknowns[i]),
             });
         };
+        trial.balances.push(balance(model, &contacts, input, &forces, j, &place));
+        let balance = &trial.balances[j];
         // rows in the bearing frame: external load and cage excess
         let force = axes.in_world(&balance.force);
         let moment = axes.in_world(&balance.moment);
@@ -321,7 +328,6 @@ pub fn evaluate(
         }
         trial.cage_excess += excess.value;
         trial.inner_load_sum += balance.inner_load.value;
-        trial.balances.push(balance);
         trial.places.push(place);
     }
     Ok(trial)
@@ -337,6 +343,7 @@ pub fn finish(
     iterations: u32,
 ) -> Equilibrium {
     let cage_speed = unknowns[5];
+    let axis = shared(model, input, unknowns).axis.map(D::value);
     let balls = (0..model.bearing.n_balls)
         .map(|j| {
             let azimuth = model.bearing.ball_azimuth(j);
@@ -349,7 +356,7 @@ pub fn finish(
                 position: Vector3::x() * axial + radial * radius,
                 velocity: tangential * (cage_speed * radius),
                 angular_velocity: Vector3::x() * spin[0] + radial * spin[1],
-                report: BallReport::new(model, balance, &shared(model, input, unknowns).axis.map(D::value)),
+                report: BallReport::new(model, balance, &axis),
             }
         })
         .collect();
