@@ -9,7 +9,7 @@ use crate::effects::moving_frame::MovingFrame;
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{PerRace, Race};
-use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, values};
+use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, cross, dot, values};
 
 /// Directions of differentiation: ball axial and radial, x, y, z, ry, rz of the race that moves, cage speed.
 pub const DIRECTIONS: usize = 8;
@@ -23,7 +23,7 @@ type Own = Dual<SHARED>;
 
 /// [N/m] hold of a ball that nothing else holds, towards the middle of its gap; bearing at rest only. Its force,
 /// below 1e-6 N in any gap, is far below what loads are resolved to.
-const IDLE_HOLD: f64 = 1e-3;
+pub const IDLE_HOLD: f64 = 1e-3;
 /// [-] units in the last place of the ball's coordinates that count as balanced.
 const ROUND_OFF_UNITS: f64 = 4.0;
 /// Iterations of one ball.
@@ -47,14 +47,14 @@ pub struct Shared<S: Scalar = D> {
 }
 
 impl Shared {
-    /// The same without derivatives.
-    fn fixed(&self) -> Shared<Own> {
-        let fixed = |v: &Vector3<D>| v.map(|c| Own::constant(c.value));
+    /// The same as numbers of which it is independent.
+    pub fn fixed<S: Scalar>(&self) -> Shared<S> {
+        let fixed = |v: &Vector3<D>| v.map(|c| S::constant(c.value));
         Shared {
             position: fixed(&self.position),
             axis: fixed(&self.axis),
             across: self.across,
-            cage_speed: Own::constant(self.cage_speed.value),
+            cage_speed: S::constant(self.cage_speed.value),
             gravity: fixed(&self.gravity),
             frame: self.frame.as_ref().map(|frame| MovingFrame {
                 arm: fixed(&frame.arm),
@@ -103,7 +103,7 @@ pub type Place = Vector2<f64>;
 
 /// \[m] distance of the ball centre from the groove centre where a ball touches a race without load. That of the outer race turns
 /// the arc of a [`Place`] into an angle.
-fn arc_radius(contact: &ContactModel<'_>) -> f64 {
+pub fn arc_radius(contact: &ContactModel<'_>) -> f64 {
     contact.surface.raceway.groove_radius - contact.surface.ball_radius
 }
 
@@ -121,7 +121,18 @@ pub fn balance(
     balance_at(model, contacts, input, shared, index, place)
 }
 
-/// The same with derivatives by the ball's own coordinates alone.
+/// What settling a ball needs of its balance: derivatives by the ball's own coordinates alone.
+#[derive(Clone, Copy)]
+struct OwnBalance {
+    /// \[N] unbalanced force along the two coordinates of [`Place`].
+    residual: [Own; 2],
+    /// Does a race press on it?
+    touches: bool,
+    /// [N/m^1.5] Hertz stiffness of the outer contact.
+    outer_stiffness: f64,
+}
+
+/// The same for less: what settling a ball needs.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn balance_alone(
     model: &Model,
@@ -130,9 +141,27 @@ fn balance_alone(
     shared: &Shared<Own>,
     index: usize,
     place: &Place,
-) -> BallBalance<Own> {
+) -> OwnBalance {
     let place = [Own::variable(place.x, 0, 1.0), Own::variable(place.y, 1, 1.0)];
-    balance_at(model, contacts, input, shared, index, place)
+    let whole = balance_at(model, contacts, input, shared, index, place);
+    OwnBalance {
+        residual: whole.residual,
+        touches: whole.inner_load.value != 0.0 || whole.outer_load.value != 0.0,
+        outer_stiffness: whole.stiffness.outer.value,
+    }
+}
+
+/// The same without derivatives.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+pub fn balance_value(
+    model: &Model,
+    contacts: &PerRace<ContactModel<'_>>,
+    input: &EquilibriumInput,
+    shared: &Shared<f64>,
+    index: usize,
+    place: &Place,
+) -> BallBalance<f64> {
+    balance_at(model, contacts, input, shared, index, [place.x, place.y])
 }
 
 #[inline(always)]
@@ -150,8 +179,9 @@ fn balance_at<S: Single>(
     let (outer_groove, ball_radius) = (&contacts.outer.surface.raceway, contacts.outer.surface.ball_radius);
     let angle = place[0].scale(1.0 / arc_radius(&contacts.outer));
     let distance = place[1];
-    let sine = angle.map_smooth(|x| (x.sin(), x.cos()));
-    let cosine = angle.map_smooth(|x| (x.cos(), -x.sin()));
+    let (sin, cos) = angle.value().sin_cos();
+    let sine = angle.map_smooth(|_| (sin, cos));
+    let cosine = angle.map_smooth(|_| (cos, -sin));
     let axial_place = distance * sine + S::constant(outer_groove.groove_offset);
     let radius = distance * cosine + S::constant(outer_groove.groove_circle_radius);
     let position =
@@ -181,8 +211,8 @@ fn balance_at<S: Single>(
     let outer_load = load(&outer, outer_lean.gain, stiffness.outer);
 
     // rolling without slip at both contacts and without spin at the outer one (Jones's outer race control)
-    let (inner_cos, inner_sin) = (-inner.normal.dot(&inner.radial), -inner.normal.dot(&shared.axis));
-    let (outer_cos, outer_sin) = (outer.normal.dot(&outer.radial), outer.normal.x);
+    let (inner_cos, inner_sin) = (-dot(&inner.normal, &inner.radial), -dot(&inner.normal, &shared.axis));
+    let (outer_cos, outer_sin) = (dot(&outer.normal, &outer.radial), outer.normal.x);
     let g = S::constant(ball_radius) / radius;
     let ratio =
         (S::one_minus(g * inner_cos)) / (S::constant(1.0) + inner_cos * outer_cos + inner_sin * outer_sin);
@@ -218,10 +248,10 @@ fn balance_at<S: Single>(
         }
     };
     let tangent = constant_vector(&tangential);
-    let inner_force = -inner.normal * inner_load + inner.normal.cross(&tangent) * inner_friction;
-    let outer_force = -outer.normal * outer_load + outer.normal.cross(&tangent) * outer_friction;
+    let inner_force = -inner.normal * inner_load + cross(&inner.normal, &tangent) * inner_friction;
+    let outer_force = -outer.normal * outer_load + cross(&outer.normal, &tangent) * outer_friction;
     let total = inner_force + outer_force + outside;
-    let (axial, radial_force) = (total.x, total.dot(&constant_vector(&radial)) + centrifugal_force);
+    let (axial, radial_force) = (total.x, dot(&total, &constant_vector(&radial)) + centrifugal_force);
     let mut residual = [axial * cosine - radial_force * sine, axial * sine + radial_force * cosine];
     if shared.cage_speed.value() == 0.0 {
         let middle = middle_of_gap(contacts, shared, azimuth);
@@ -233,7 +263,7 @@ fn balance_at<S: Single>(
         Race::Outer => (outer_force, position, &outer, outer_lean.moment(outer_load)),
     };
     let arm = from + contact.normal.map(|c| c.scale(ball_radius));
-    let moment = arm.cross(&force);
+    let moment = cross(&arm, &force);
     BallBalance {
         residual,
         force,
@@ -289,11 +319,10 @@ pub fn bottom_of_outer_groove(
     touching + Vector2::new(0.0, depth)
 }
 
-/// Finds the place where a ball (0 is the first) is in balance, starting from `place`; returns the balance there.
+/// Finds the place where a ball (0 is the first) is in balance, starting from `place`.
 ///
 /// Newton's method with a Levenberg shift: the forces derive (nearly) from a potential that is convex but flat where
-/// contacts are open. It needs derivatives by the ball's coordinates alone; those by the shared unknowns are of the place that
-/// it finds. `None` if the residual does not come below `tolerance` \[N].
+/// contacts are open. It needs derivatives by the ball's coordinates alone. False if the residual does not come below `tolerance` \[N].
 pub fn settle(
     model: &Model,
     contacts: &PerRace<ContactModel<'_>>,
@@ -302,11 +331,11 @@ pub fn settle(
     index: usize,
     place: &mut Place,
     tolerance: f64,
-) -> Option<BallBalance> {
+) -> bool {
     let diameter = 2.0 * model.bearing.ball.radius;
     let longest = 0.02 * diameter;
     let balance_radius = 0.5 * model.bearing.pitch_diameter;
-    let norm = |b: &BallBalance<Own>| b.residual[0].value.hypot(b.residual[1].value);
+    let norm = |b: &OwnBalance| b.residual[0].value.hypot(b.residual[1].value);
     let fixed = shared.fixed();
     let mut here = balance_alone(model, contacts, input, &fixed, index, place);
     let mut shift = 0.0;
@@ -316,7 +345,7 @@ pub fn settle(
         // A coordinate cannot be set finer than its last digit.
         let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness.amax() * balance_radius;
         if r.norm() <= tolerance.max(round_off) {
-            return Some(balance(model, contacts, input, shared, index, place));
+            return true;
         }
         let shifted = stiffness + Matrix2::identity() * shift;
         let mut step = shifted.lu().solve(&r).filter(|s| s.iter().all(|c| c.is_finite()));
@@ -336,19 +365,18 @@ pub fn settle(
             }
             _ => {
                 // from a thousandth of the stiffness at a micrometre upwards
-                let scale = 1.5 * here.stiffness.outer.value * 1e-3;
+                let scale = 1.5 * here.outer_stiffness * 1e-3;
                 shift = if shift == 0.0 { 1e-3 * scale } else { shift * 8.0 };
                 if shift > 1e9 * scale {
-                    return None;
+                    return false;
                 }
             }
         }
     }
-    None
+    false
 }
 
 /// A free ball on its way to a race: the force does not fall until it gets there.
-fn opens(here: &BallBalance<Own>, trial: &BallBalance<Own>) -> bool {
-    let free = |b: &BallBalance<Own>| b.inner_load.value == 0.0 && b.outer_load.value == 0.0;
-    free(here) && free(trial)
+fn opens(here: &OwnBalance, trial: &OwnBalance) -> bool {
+    !here.touches && !trial.touches
 }

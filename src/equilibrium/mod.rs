@@ -6,6 +6,8 @@
 //! weighted by the inner loads. Unknowns are the free displacements and the cage speed; balls are eliminated.
 
 mod ball;
+mod guess;
+mod light_ball;
 mod problem;
 mod report;
 mod trial;
@@ -268,7 +270,7 @@ pub struct Equilibrium {
     pub cage_speed: f64,
     /// [-] largest residual over the size of the forces.
     pub residual: f64,
-    /// Iterations on the displacements.
+    /// Iterations on the displacements, after a guess.
     pub iterations: u32,
     /// The bearing as it has grown, where growth is simulated.
     pub growth: Option<GrowthOutput>,
@@ -280,13 +282,35 @@ pub struct Equilibrium {
 
 /// Solves a quasi-static problem.
 ///
-/// Newton's method from the centred race for a falling residual, then for a falling potential; then from the bearing at
-/// rest through growing speeds; last from a race that its loads have pushed off the centre.
+/// Newton's method from a guess; where that leads nowhere, as [`solve_without_guess`].
 ///
 /// # Errors
 /// See [`EquilibriumError`]; an unconverged result is never returned.
 pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, EquilibriumError> {
     let problem = Problem::new(model, input);
+    from_guess(&problem).map_or_else(|| from_centre(&problem), Ok)
+}
+
+/// Solves a quasi-static problem from the plain start, the centred race: the same in more time.
+///
+/// Newton's method from the centred race for a falling residual, then for a falling potential; then from the bearing at
+/// rest through growing speeds; last from a race that its loads have pushed off the centre.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_without_guess(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, EquilibriumError> {
+    from_centre(&Problem::new(model, input))
+}
+
+/// The solution that a guess leads to, if it does.
+fn from_guess(problem: &Problem<'_>) -> Option<Equilibrium> {
+    let guess = guess::guess(problem)?;
+    let found = problem.search(guess.unknowns, Some(&guess.trial.places), Progress::Residual).ok()?;
+    problem.check(problem.finish(&found)).ok()
+}
+
+fn from_centre(problem: &Problem<'_>) -> Result<Equilibrium, EquilibriumError> {
+    let Problem { model, input, .. } = *problem;
     let downhill = |start| problem.search(start, None, Progress::Work);
     let mut failure = match problem.search(problem.centred(), None, Progress::Residual) {
         Ok(found) => return problem.check(problem.finish(&found)),

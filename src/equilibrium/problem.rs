@@ -1,6 +1,6 @@
 //! A quasi-static problem as equations: unknowns, residual, and the search for its root.
 
-use super::ball::{N_SHARED, Place, SHARED};
+use super::ball::{BallBalance, N_SHARED, Place, SHARED};
 use super::trial::{D, SharedMatrix, SharedVector, Trial, evaluate, finish, outside_of_race};
 use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
 use crate::contact::form::SHORTEST;
@@ -14,6 +14,8 @@ use crate::numerics::size::{larger, largest};
 const TOLERANCE: f64 = 1e-11;
 /// [-] residual below which steps must lower the residual, even where the search follows the potential.
 const NEAR: f64 = 1e-4;
+/// [-] thrust over radial load that settles which sides of the grooves carry it: two states at once were seen to 0.005.
+const SETTLING_THRUST: f64 = 0.05;
 /// Iterations on the displacements; a typical solve takes 5 to 15.
 const MAX_ITERATIONS: u32 = 400;
 /// Names of the five directions.
@@ -29,21 +31,36 @@ pub enum Progress {
 }
 
 /// Where a search ended.
-pub struct Found {
+pub struct Found<B = BallBalance> {
     /// Displacements and cage speed.
     pub unknowns: SharedVector,
     /// Forces there.
-    pub trial: Trial,
+    pub trial: Trial<B>,
     /// [-] largest residual over the forces at work.
     pub residual: f64,
     /// Iterations spent.
+    pub iterations: u32,
+    /// Was the tolerance reached?
+    pub converged: bool,
+}
+
+/// What a search may spend, and what it is after.
+#[derive(Clone, Copy)]
+pub struct Effort {
+    /// [-] residual over the size of the forces at work that is enough.
+    pub tolerance: f64,
+    /// [-] residual below which a step without progress ends the search.
+    pub enough: f64,
+    /// Most iterations on the displacements.
     pub iterations: u32,
 }
 
 /// A quasi-static problem with the sizes that make its residuals and steps comparable.
 pub struct Problem<'a> {
-    model: &'a Model,
-    input: &'a EquilibriumInput,
+    /// The bearing.
+    pub model: &'a Model,
+    /// Its conditions.
+    pub input: &'a EquilibriumInput,
     /// [N, N m] what acts from outside on the race in the middle, where forces move it: its weight, a moving frame.
     outside: [f64; 5],
     /// \[m] ball diameter.
@@ -53,7 +70,7 @@ pub struct Problem<'a> {
     /// [rad/s] larger speed of the races.
     speed_scale: f64,
     /// \[N] forces that are known beforehand: loads, inertia, and the smallest load worth resolving.
-    known_force: f64,
+    pub known_force: f64,
     /// \[N] the last of these: a ball loaded by an approach of a millionth of its diameter.
     smallest: f64,
 }
@@ -134,19 +151,28 @@ impl<'a> Problem<'a> {
     }
 
     /// \[N] size of the forces at work.
-    fn reference(&self, trial: &Trial) -> f64 {
+    fn reference<B>(&self, trial: &Trial<B>) -> f64 {
         self.known_force.max(trial.inner_load_sum)
     }
 
+    /// Does a thrust settle where the race is that can tilt? Without one it can lie against either side of the grooves, and which
+    /// one is found depends on where a search begins. So it may where it cannot tilt.
+    pub fn is_settled_by_thrust(&self) -> bool {
+        let free = |i: usize| matches!(self.input.conditions[i], Prescribed::Load(_));
+        let load = |i: usize| self.imposed_load(i, &self.outside).unwrap_or(0.0);
+        let tilts = free(3) || free(4);
+        !tilts || (free(0) && load(0).abs() > SETTLING_THRUST * load(1).hypot(load(2)))
+    }
+
     /// Unbalanced load of every free direction.
-    fn unbalanced(&self, trial: &Trial) -> SharedVector {
+    fn unbalanced<B>(&self, trial: &Trial<B>) -> SharedVector {
         let outside = trial.outside.map(D::value);
         let of = |i| self.imposed_load(i, &outside).map_or(0.0, |load| load - trial.load[i]);
         SharedVector::from_fn(|i, _| if i < 5 { of(i) } else { 0.0 })
     }
 
     /// [-] residual: unbalanced loads over a force `scale` \[N], excess of the cage speed over a load `weight` \[N].
-    fn residual_over(&self, trial: &Trial, scale: f64, weight: f64) -> SharedVector {
+    fn residual_over<B>(&self, trial: &Trial<B>, scale: f64, weight: f64) -> SharedVector {
         let mut residual = self.unbalanced(trial);
         for i in 0..5 {
             residual[i] /= self.size(i) * scale;
@@ -158,7 +184,7 @@ impl<'a> Problem<'a> {
     }
 
     /// [-] residual over the size of the forces at work.
-    fn residual(&self, trial: &Trial) -> SharedVector {
+    fn residual<B>(&self, trial: &Trial<B>) -> SharedVector {
         self.residual_over(trial, self.reference(trial), trial.inner_load_sum.max(1e-9 * self.smallest))
     }
 
@@ -166,20 +192,46 @@ impl<'a> Problem<'a> {
         evaluate(self.model, self.input, unknowns, places, 0.01 * TOLERANCE * self.known_force)
     }
 
-    /// Newton's method with a shift of the stiffness where a step makes no progress.
+    /// The balance from a start: displacements, and places of the balls where they are known.
     pub fn search(
         &self,
         start: SharedVector,
         places: Option<&[Place]>,
-        mut progress: Progress,
+        progress: Progress,
     ) -> Result<Found, EquilibriumError> {
-        let downhill = progress == Progress::Work;
+        let effort = Effort { tolerance: TOLERANCE, enough: 0.0, iterations: MAX_ITERATIONS };
+        let evaluate = |unknowns: &SharedVector, before: Option<&Trial>| {
+            self.evaluate(unknowns, before.map(|trial| &*trial.places).or(places))
+        };
+        let found = self.descend(start, progress, effort, evaluate)?;
+        if found.converged {
+            return Ok(found);
+        }
+        // Downhill all the way to where no bearing is: that is the reason.
+        if progress == Progress::Work {
+            self.check(self.finish(&found))?;
+        }
+        let Found { unknowns, trial, residual, iterations, .. } = found;
+        let direction = DIRECTION_NAMES[self.residual(&trial).rows(0, 5).iamax()];
+        let displacement = std::array::from_fn(|i| unknowns[i]);
+        Err(EquilibriumError::NoConvergence { residual, direction, iterations, displacement })
+    }
+
+    /// Newton's method with a shift of the stiffness where a step makes no progress; `evaluate` gives the forces at
+    /// displacements, from those of the last accepted ones.
+    pub fn descend<B>(
+        &self,
+        start: SharedVector,
+        mut progress: Progress,
+        effort: Effort,
+        evaluate: impl Fn(&SharedVector, Option<&Trial<B>>) -> Result<Trial<B>, EquilibriumError>,
+    ) -> Result<Found<B>, EquilibriumError> {
         let mut unknowns = start;
-        let mut here = self.evaluate(&unknowns, places)?;
+        let mut here = evaluate(&unknowns, None)?;
         let mut residual = self.residual(&here);
         let mut shift = 0.0;
         let mut iterations = 0;
-        let reached = |residual: &SharedVector| largest(residual) <= TOLERANCE;
+        let reached = |residual: &SharedVector| largest(residual) <= effort.tolerance;
         while !reached(&residual) {
             iterations += 1;
             let trial = self.newton_step(&here, shift).and_then(|mut step| {
@@ -190,7 +242,7 @@ impl<'a> Problem<'a> {
                     step *= limit / longest;
                 }
                 let moved = unknowns + step;
-                self.evaluate(&moved, Some(&here.places)).ok().map(|trial| (moved, trial))
+                evaluate(&moved, Some(&here)).ok().map(|trial| (moved, trial))
             });
             match trial.filter(|(moved, trial)| self.accepts(progress, &here, trial, &(moved - unknowns))) {
                 Some((moved, trial)) => {
@@ -202,42 +254,33 @@ impl<'a> Problem<'a> {
                 None => shift = if shift == 0.0 { 1e-9 } else { shift * 5.0 },
             }
             // Round-off of the balls' places bounds what can be reached.
-            let stalled = shift > 1e12;
-            if stalled && largest(&residual) < 100.0 * TOLERANCE {
+            let stalled = shift > if largest(&residual) < effort.enough { 0.0 } else { 1e12 };
+            if stalled && largest(&residual) < 100.0 * effort.tolerance {
                 break;
             }
             if stalled && progress == Progress::Work {
                 // The bottom of a potential with kinks: the residual may know the rest of the way.
                 progress = Progress::Residual;
                 shift = 0.0;
-            } else if stalled || iterations == MAX_ITERATIONS {
-                let found = Found { unknowns, trial: here, residual: largest(&residual), iterations };
-                // Downhill all the way to where no bearing is: that is the reason.
-                if downhill {
-                    self.check(self.finish(&found))?;
-                }
-                return Err(EquilibriumError::NoConvergence {
-                    residual: largest(&residual),
-                    direction: DIRECTION_NAMES[residual.rows(0, 5).iamax()],
-                    iterations,
-                    displacement: std::array::from_fn(|i| unknowns[i]),
-                });
+            } else if stalled || iterations == effort.iterations {
+                let residual = largest(&residual);
+                return Ok(Found { unknowns, trial: here, residual, iterations, converged: false });
             }
         }
-        Ok(Found { unknowns, trial: here, residual: largest(&residual), iterations })
+        Ok(Found { unknowns, trial: here, residual: largest(&residual), iterations, converged: true })
     }
 
     /// Is a step progress?
-    fn accepts(&self, progress: Progress, here: &Trial, trial: &Trial, step: &SharedVector) -> bool {
+    fn accepts<B>(&self, progress: Progress, here: &Trial<B>, trial: &Trial<B>, step: &SharedVector) -> bool {
         // A race that touches nothing yet moves without its residual falling.
-        let touches = |trial: &Trial| trial.inner_load_sum > 1e-9 * self.reference(trial);
+        let touches = |trial: &Trial<B>| trial.inner_load_sum > 1e-9 * self.reference(trial);
         if !touches(here) && !touches(trial) {
             return true;
         }
         // What has to fall is the residual over its own forces or with one scale for both: over its own forces alone, a
         // race that has to let go of its balls would seem further from balance the less it carries.
         let scale = self.reference(here);
-        let merit = |trial: &Trial| self.residual_over(trial, scale, scale).norm();
+        let merit = |trial: &Trial<B>| self.residual_over(trial, scale, scale).norm();
         let falls = |now: f64, before: f64| now < before * (1.0 - 1e-6);
         let smaller = falls(self.residual(trial).norm(), self.residual(here).norm())
             || falls(merit(trial), merit(here));
@@ -252,7 +295,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Newton step of the free directions and the cage speed, its matrix shifted by `shift` typical stiffnesses.
-    fn newton_step(&self, here: &Trial, shift: f64) -> Option<SharedVector> {
+    fn newton_step<B>(&self, here: &Trial<B>, shift: f64) -> Option<SharedVector> {
         // [N/m] of a steel bearing's order; only its order matters.
         const TYPICAL_STIFFNESS: f64 = 1e7;
         let mut matrix = here.tangent;

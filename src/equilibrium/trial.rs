@@ -3,7 +3,8 @@
 use nalgebra::{Matrix2, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::ball::{
-    BallBalance, DIRECTIONS, N_SHARED, Place, SHARED, Shared, bottom_of_outer_groove, middle_of_gap, settle,
+    BallBalance, DIRECTIONS, N_SHARED, Place, SHARED, Shared, balance, bottom_of_outer_groove, middle_of_gap,
+    settle,
 };
 use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
 use crate::effects::moving_frame::MovingFrame;
@@ -12,7 +13,9 @@ use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{PerRace, Race};
 use crate::numerics::motion::Pose;
-use crate::numerics::rotation::{conformal_product, from_rotation_vector, rotate, tilt_to, turn};
+use crate::numerics::rotation::{
+    conformal_product, from_rotation_vector, rotate, tilt_to, to_quaternion, turn,
+};
 use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, cross, values};
 
 /// A number with its derivatives.
@@ -22,8 +25,10 @@ pub type SharedVector = SVector<f64, N_SHARED>;
 /// Derivatives by them.
 pub type SharedMatrix = SMatrix<f64, N_SHARED, N_SHARED>;
 
-/// One evaluation at given displacements: all balls settled.
-pub struct Trial {
+/// One evaluation at given displacements: all balls settled. `B` is what is kept of each.
+pub struct Trial<B = BallBalance> {
+    /// Displacements and cage speed.
+    pub unknowns: SharedVector,
     /// [N, N m] external load that holds the race that moves.
     pub load: SVector<f64, 5>,
     /// [N rad/s] weighted excess of the balls' own orbital speed over the cage speed.
@@ -35,13 +40,30 @@ pub struct Trial {
     /// \[N] sum of the inner loads.
     pub inner_load_sum: f64,
     /// Balance of every ball.
-    pub balances: Vec<BallBalance>,
+    pub balances: Vec<B>,
     /// Place of every ball.
     pub places: Vec<Place>,
 }
 
+impl<B> Trial<B> {
+    /// That of a bearing without balls, which are to be added.
+    pub fn empty(model: &Model, input: &EquilibriumInput, unknowns: &SharedVector) -> Self {
+        let n = model.bearing.n_balls;
+        Self {
+            unknowns: *unknowns,
+            load: SVector::zeros(),
+            outside: outside_of_race(model, input, unknowns),
+            cage_excess: 0.0,
+            tangent: SharedMatrix::zeros(),
+            inner_load_sum: 0.0,
+            balances: Vec::with_capacity(n),
+            places: Vec::with_capacity(n),
+        }
+    }
+}
+
 /// Axes of the outer race in the bearing frame, those that balls are looked at in.
-enum OuterAxes {
+pub enum OuterAxes {
     /// Of a race that rests.
     Resting(UnitQuaternion<f64>),
     /// Of a race that moves: conformal vector of its rotation.
@@ -49,7 +71,8 @@ enum OuterAxes {
 }
 
 impl OuterAxes {
-    fn new(input: &EquilibriumInput, unknowns: &SharedVector) -> Self {
+    /// Those at these displacements.
+    pub fn new(input: &EquilibriumInput, unknowns: &SharedVector) -> Self {
         match input.race {
             Race::Inner => Self::Resting(input.resting.orientation),
             Race::Outer => {
@@ -75,6 +98,14 @@ impl OuterAxes {
         }
     }
 
+    /// Their orientation in the bearing frame.
+    pub fn orientation(&self) -> UnitQuaternion<f64> {
+        match self {
+            Self::Resting(orientation) => *orientation,
+            Self::Moving(rotation) => to_quaternion(&values(rotation)),
+        }
+    }
+
     /// Gravity \[m/s2] in these axes.
     fn gravity(&self, gravity: &Vector3<f64>) -> Vector3<D> {
         match self {
@@ -89,7 +120,7 @@ fn variable(unknowns: &SharedVector, i: usize) -> D {
 }
 
 /// The inner race relative to the outer one, with derivatives.
-fn shared(model: &Model, input: &EquilibriumInput, unknowns: &SharedVector) -> Shared {
+pub fn shared(model: &Model, input: &EquilibriumInput, unknowns: &SharedVector) -> Shared {
     let axes = OuterAxes::new(input, unknowns);
     let moved = Vector3::from_fn(|i, _| variable(unknowns, i));
     let (position, axis) = match input.race {
@@ -238,15 +269,7 @@ pub fn evaluate(
     let axes = OuterAxes::new(input, unknowns);
     let contacts = model.contacts(&input.surroundings());
     let n = model.bearing.n_balls;
-    let mut trial = Trial {
-        load: SVector::zeros(),
-        outside: outside_of_race(model, input, unknowns),
-        cage_excess: 0.0,
-        tangent: SharedMatrix::zeros(),
-        inner_load_sum: 0.0,
-        balances: Vec::with_capacity(n),
-        places: Vec::with_capacity(n),
-    };
+    let mut trial = Trial::empty(model, input, unknowns);
     for j in 0..n {
         let azimuth = model.bearing.ball_azimuth(j);
         // From where it was, from between the races, or from the bottom of the outer groove.
@@ -257,21 +280,27 @@ pub fn evaluate(
         let settled = |shared: &Shared| {
             let starts = kept.into_iter().chain(fresh.iter().map(|place| place()));
             starts.into_iter().find_map(|mut place| {
-                settle(model, &contacts, input, shared, j, &mut place, tolerance)
-                    .map(|balance| (balance, place))
+                settle(model, &contacts, input, shared, j, &mut place, tolerance).then_some(place)
             })
         };
-        // A free ball that would fall off the side of a groove stays where it is, as if without weight.
-        let weightless = Shared { gravity: constant_vector(&Vector3::zeros()), frame: None, ..shared };
-        let weighs = values(&shared.gravity) != Vector3::zeros() || shared.frame.is_some();
-        let fallen = || weighs.then(|| settled(&weightless)).flatten();
-        let settled = settled(&shared).or_else(fallen);
-        let Some((balance, place)) = settled else {
+        let (place, forces) = match settled(&shared) {
+            Some(place) => (Some(place), shared),
+            // A free ball that would fall off the side of a groove stays where it is, as if without weight.
+            None => {
+                let weighs = values(&shared.gravity) != Vector3::zeros() || shared.frame.is_some();
+                let weightless =
+                    Shared { gravity: constant_vector(&Vector3::zeros()), frame: None, ..shared };
+                (weighs.then(|| settled(&weightless)).flatten(), weightless)
+            }
+        };
+        let Some(place) = place else {
             return Err(EquilibriumError::Ball {
                 ball: j + 1,
                 displacement: std::array::from_fn(|i| unknowns[i]),
             });
         };
+        trial.balances.push(balance(model, &contacts, input, &forces, j, &place));
+        let balance = &trial.balances[j];
         // rows in the bearing frame: external load and cage excess
         let force = axes.in_world(&balance.force);
         let moment = axes.in_world(&balance.moment);
@@ -299,7 +328,6 @@ pub fn evaluate(
         }
         trial.cage_excess += excess.value;
         trial.inner_load_sum += balance.inner_load.value;
-        trial.balances.push(balance);
         trial.places.push(place);
     }
     Ok(trial)
@@ -315,6 +343,7 @@ pub fn finish(
     iterations: u32,
 ) -> Equilibrium {
     let cage_speed = unknowns[5];
+    let axis = shared(model, input, unknowns).axis.map(D::value);
     let balls = (0..model.bearing.n_balls)
         .map(|j| {
             let azimuth = model.bearing.ball_azimuth(j);
@@ -327,7 +356,7 @@ pub fn finish(
                 position: Vector3::x() * axial + radial * radius,
                 velocity: tangential * (cage_speed * radius),
                 angular_velocity: Vector3::x() * spin[0] + radial * spin[1],
-                report: BallReport::new(model, balance, &shared(model, input, unknowns).axis.map(D::value)),
+                report: BallReport::new(model, balance, &axis),
             }
         })
         .collect();
