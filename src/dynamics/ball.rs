@@ -201,7 +201,7 @@ impl BallTrial {
             tangent += match races[race].moved() {
                 None => by_ball_alone(&contact, &seed(motion, step, radius), races[race].motion).1,
                 Some(moved) => {
-                    let forces = by_ball_and_race(&contact, &seed(motion, step, radius), moved);
+                    let forces = by_ball_and_race(&contact, &seed(motion, step, radius), &moved);
                     self.couple(race.into(), &PairForces::from(&forces), step, radius)
                 }
             };
