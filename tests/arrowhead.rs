@@ -6,9 +6,11 @@ mod random;
 
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, Rotation3, Vector3, Vector6};
 use random::Random;
-use roulement::numerics::arrowhead::{Arrowhead, BLOCK, Block, Eliminated, Member, SLOTS};
+use roulement::numerics::arrowhead::{Arrowhead, BLOCK, Block, Eliminated, Member, SLOTS, Six};
+use roulement::numerics::lanes::{Lanes, WIDTH};
 use roulement::numerics::orbit_turn::OrbitTurn;
 use roulement::numerics::ring::{Link, Ring};
+use roulement::numerics::scalar::Scalar;
 
 /// Turns the last three of six rows.
 fn turned(axes: &Matrix3<f64>) -> Matrix6<f64> {
@@ -43,9 +45,11 @@ fn closed_form_agrees_with_the_dense_solution() {
             offsets.iter().enumerate().map(&mut member).collect()
         };
         let (then, now) = (members(&mut random), members(&mut random));
-        let border = DMatrix::from_fn(n_border, n_border, |_, _| random());
+        let mut border = DMatrix::from_fn(n_border, n_border, |_, _| random());
         dense.view_mut((border_start, border_start), (n_border, n_border)).copy_from(&border);
-        let mut blocks = vec![];
+        let groups = n_balls.div_ceil(WIDTH);
+        let mut blocks = vec![Eliminated::none(offsets.len()); groups];
+        let mut ends = vec![Vector3::y(); WIDTH * groups];
         for j in 0..n_balls {
             let mut block = Block::default();
             let angle = 3.0 * random();
@@ -70,23 +74,39 @@ fn closed_form_agrees_with_the_dense_solution() {
                 let mut rows = dense.fixed_view_mut::<BLOCK, BLOCK>(at, at);
                 rows += own;
             }
-            let turn = OrbitTurn::between(&Vector3::y(), &Vector3::new(0.0, angle.cos(), angle.sin()));
-            blocks.push((Eliminated::new(&block, &then).unwrap(), turn));
-            assert!(blocks[j].0.fits(offsets.len()) && !blocks[j].0.fits(offsets.len() + 1));
+            ends[j] = Vector3::new(0.0, angle.cos(), angle.sin());
+            assert!(blocks[j / WIDTH].put(j % WIDTH, &block, &then));
         }
+        assert!(blocks.iter().all(|group| group.fits(offsets.len()) && !group.fits(offsets.len() + 1)));
+        let turn = |group: usize| {
+            OrbitTurn::between(
+                &Vector3::y().map(Lanes::constant),
+                &Lanes::vector(|lane| ends[WIDTH * group + lane]),
+            )
+        };
         let rhs = DVector::from_fn(size, |_, _| random());
         let exact = dense.lu().solve(&rhs).unwrap();
 
         let mut arrowhead = Arrowhead::default();
-        arrowhead.factorise(blocks.iter().map(|(block, turn)| (block, *turn)), &now, border);
-        let mut balls: Vec<_> =
-            (0..n_balls).map(|j| rhs.fixed_rows::<BLOCK>(BLOCK * j).into_owned()).collect();
+        let turned = blocks.iter().enumerate().map(|(group, blocks)| (blocks, turn(group)));
+        arrowhead.factorise(turned, &now, &mut border);
+        // lanes without a block have no right-hand side
+        let lane = |j: usize, k: usize| if j < n_balls { rhs[BLOCK * j + k] } else { 0.0 };
+        let mut balls: Vec<Six<Lanes>> = (0..groups)
+            .map(|group| std::array::from_fn(|k| Lanes::from_fn(|l| lane(WIDTH * group + l, k))))
+            .collect();
+        let alone = balls.clone();
         let mut tail = rhs.rows(border_start, n_border).into_owned();
-        let eliminated = || blocks.iter().map(|(block, _)| block);
-        arrowhead.eliminate(eliminated(), &mut balls, &mut tail);
-        assert!(arrowhead.solve_border(&mut tail) && arrowhead.substitute(eliminated(), &mut balls, &tail));
-        for (j, x) in balls.iter().enumerate() {
+        arrowhead.eliminate(blocks.iter(), &mut balls, &mut tail);
+        assert!(arrowhead.solve_border(&mut tail) && arrowhead.substitute(blocks.iter(), &mut balls, &tail));
+        for j in 0..n_balls {
+            let x = Vector6::from(balls[j / WIDTH].map(|lanes| lanes.0[j % WIDTH]));
             assert!((x - exact.fixed_rows::<BLOCK>(BLOCK * j)).norm() < 1e-11 * exact.norm());
+        }
+        // Without a border a block is solved alone.
+        for (group, mut x) in alone.into_iter().enumerate().filter(|_| offsets.is_empty()) {
+            blocks[group].solve(&turn(group), &mut x);
+            assert_eq!(x, balls[group]);
         }
         assert!((tail - exact.rows(border_start, n_border)).norm() < 1e-11 * exact.norm());
     }
@@ -94,12 +114,12 @@ fn closed_form_agrees_with_the_dense_solution() {
 
 #[test]
 fn a_singular_matrix_is_refused() {
-    assert_eq!(Eliminated::new(&Block::default(), &[]), None);
+    assert!(!Eliminated::none(0).put(0, &Block::default(), &[]));
     let mut border = DMatrix::identity(BLOCK, BLOCK);
     border[(2, 2)] = 0.0;
     let member = Member { slot: 0, from: 0, axes: Matrix3::identity() };
     let mut arrowhead = Arrowhead::default();
-    arrowhead.factorise([].into_iter(), &[member], border);
+    arrowhead.factorise([].into_iter(), &[member], &mut border);
     assert!(!arrowhead.solve_border(&mut DVector::repeat(BLOCK, 1.0)));
 }
 

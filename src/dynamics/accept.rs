@@ -157,7 +157,7 @@ pub fn accept(
         let (turned, spin) = ((state.turned, state.turned_rest), state.rate.x);
         match (body, trial) {
             (_, Some(trial)) => {
-                state.clone_from(&trial.end);
+                state.copy_from(&trial.end);
                 state.angular_velocity = trial.turn.angular_velocity;
                 state.axes = match (body, &workspace.cage) {
                     (Body::Cage, Some(cage)) => cage.value.axes,

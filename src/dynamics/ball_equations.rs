@@ -6,13 +6,11 @@ use nalgebra::Vector3;
 use crate::contact::BallMotion;
 use crate::model::bearing::Ball;
 use crate::model::state::BallState;
+use crate::numerics::arrowhead::Six;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::Scalar;
-
-/// A ball's unknowns or residual: vectors of translation, then of rotation.
-pub type Six<S> = [S; 6];
 
 /// The equations of a ball in a step from a given state.
 ///

@@ -4,9 +4,9 @@ use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, Vector3};
 
 use super::body_sums::{Along, BodyLoad, BodyStep, Held, Sums, in_moving_frame};
 use super::carried::SeatMotion;
-use super::directions::{D, by_first, by_second, by_second_unknown, constant_race};
+use super::directions::{D, SECOND_ROTATION, by_first, by_second, constant_race};
 use super::reaction::Reaction;
-use super::step_turn::{OWN_ROTATION, Own, StepTurn, as_second};
+use super::step_turn::{Own, StepTurn, as_second};
 use super::support::{Flange, on_race};
 use crate::contact::RaceMotion;
 use crate::contact::body::BodyMotion;
@@ -44,10 +44,10 @@ pub struct BodyTrial {
     turn_vector: Vector3<f64>,
     /// The rotation with derivatives, where those were asked for.
     derived: Option<StepTurn<Own>>,
-    /// Motion as the balls see it, with derivatives by the rotation, where those were asked for.
-    motion: RaceMotion<D>,
     /// Where it is carried, of a race that is part of a structure.
     seat: Option<SeatMotion>,
+    /// Motion of a carried race as the balls see it, with derivatives by the rotation, where those were asked for.
+    carried: Option<RaceMotion<D>>,
 }
 
 impl BodyTrial {
@@ -65,8 +65,8 @@ impl BodyTrial {
             turn: StepTurn::new(&zero, zero, zero, start.pose.orientation),
             turn_vector: zero,
             derived: None,
-            motion: constant_race(&start.motion()),
             seat: body.carried.then(SeatMotion::default),
+            carried: None,
         }
     }
 
@@ -120,29 +120,19 @@ impl BodyTrial {
     /// Adds derivatives to the motion, where they are not there yet.
     pub fn differentiate(&mut self, start: &BodyState, step: &HhtStep, length: f64) {
         if let Some(seat) = &self.seat {
-            self.motion = seat.differentiated(step, length, self.motion_value().across);
+            self.carried = Some(seat.differentiated(step, length, self.motion_value().across));
             return;
         }
         if self.derived.is_some() {
             return;
         }
-        let variable = |v: &Vector3<f64>, gain: f64| {
-            Vector3::from_fn(|i, _| Own::variable(v[i], OWN_ROTATION + i, gain))
-        };
-        let turned = StepTurn::new(
+        let variable = |v: &Vector3<f64>, gain: f64| Vector3::from_fn(|i, _| Own::variable(v[i], i, gain));
+        self.derived = Some(StepTurn::new(
             &variable(&self.turn_vector, step.position_gain() / length),
             variable(&self.turn.rate, step.velocity_gain() / length),
             variable(&self.turn.rate_derivative, 1.0 / length),
             start.pose.orientation,
-        );
-        self.motion = RaceMotion {
-            position: constant_vector(&self.end.pose.position),
-            axis: as_second(&turned.axis),
-            across: self.end.pose.orientation * Vector3::y(),
-            velocity: constant_vector(&self.end.velocity),
-            angular_velocity: as_second(&turned.angular_velocity),
-        };
-        self.derived = Some(turned);
+        ));
     }
 
     /// Motion as the balls see it.
@@ -157,12 +147,21 @@ impl BodyTrial {
     }
 
     /// The same with derivatives by the rotation, after [`BodyTrial::differentiate`].
-    pub fn motion(&self) -> &RaceMotion<D> {
-        debug_assert!(
-            self.derived.is_some() || self.is_carried(),
-            "derivatives of this motion were not computed"
-        );
-        &self.motion
+    pub fn motion(&self) -> RaceMotion<D> {
+        match (&self.carried, &self.derived) {
+            (Some(carried), _) => *carried,
+            (None, Some(turned)) => RaceMotion {
+                position: constant_vector(&self.end.pose.position),
+                axis: as_second(&turned.axis),
+                across: self.end.pose.orientation * Vector3::y(),
+                velocity: constant_vector(&self.end.velocity),
+                angular_velocity: as_second(&turned.angular_velocity),
+            },
+            (None, None) => {
+                debug_assert!(false, "derivatives of this motion were not computed");
+                constant_race(&self.motion_value())
+            }
+        }
     }
 
     /// Residual under the sum of all pairs on the body.
@@ -244,26 +243,31 @@ impl BodyTrial {
             self.block.copy_from(&own);
             return;
         }
-        let Self { end, derived, block, unknowns, .. } = self;
+        let Self { end, derived, block, unknowns, turn: value, .. } = self;
         let Some(turn) = derived else {
             debug_assert!(false, "derivatives of this motion were not computed");
             return;
         };
-        let own = |sum: &Vector3<f64>, part: fn(&Reaction) -> &Vector3<D>| {
-            Vector3::from_fn(|i, _| {
-                let by = |k: usize| reactions.clone().map(|one| by_second_unknown(&part(one)[i], k)).sum();
-                Own { value: sum[i], derivatives: std::array::from_fn(by) }
-            })
-        };
+        // Derivatives by the rotation; those by the translation are those of reactions and of what holds positions.
         let mut sums = Sums {
-            force: own(&end.bearing_wrench.force, |reaction| &reaction.force),
-            moment: own(&end.bearing_wrench.moment, |reaction| &reaction.moment),
+            force: constant_vector::<Own>(&end.bearing_wrench.force),
+            moment: constant_vector(&end.bearing_wrench.moment),
             drive: Own::constant(0.0),
         };
+        let (mut force_by_place, mut moment_by_place) = (Matrix3::zeros(), Matrix3::zeros());
+        for reaction in reactions.clone() {
+            for i in 0..3 {
+                for k in 0..3 {
+                    sums.force[i].derivatives[k] += reaction.force[i].derivatives[SECOND_ROTATION + k];
+                    sums.moment[i].derivatives[k] += reaction.moment[i].derivatives[SECOND_ROTATION + k];
+                    force_by_place[(i, k)] -= reaction.force[i].derivatives[k];
+                    moment_by_place[(i, k)] -= reaction.moment[i].derivatives[k];
+                }
+            }
+        }
         sums.add_load(&load.applied);
-        let place = &end.pose.position;
-        let position = Vector3::from_fn(|i, _| Own::variable(place[i], i, step.position_gain()));
-        block.fill(0.0);
+        let position = constant_vector(&end.pose.position);
+        block.as_mut_slice().fill(0.0);
         for (k, constraint) in body.constraints.iter().enumerate() {
             let row = 6 + k;
             let held = Held::new(given, constraint, unknowns[row], turn, &position);
@@ -280,26 +284,47 @@ impl BodyTrial {
                 block[(i, row)] = -fraction * force[i] * held.scale;
                 block[(3 + i, row)] = -fraction * moment[i] * held.scale / length;
             }
-            for i in 0..6 {
-                block[(row, i)] = held.value.derivatives[i] * held.scale / held.gain;
+            for i in 0..3 {
+                block[(row, 3 + i)] = held.value.derivatives[i] * held.scale / held.gain;
+            }
+            if let Along::Force(axis) = held.direction {
+                // the value is the position's own
+                block[(row, axis)] = step.position_gain() * held.scale / held.gain;
+                force_by_place[(axis, axis)] += step.position_gain() * (body.mass / held.gain);
             }
         }
         let mut moment = sums.material_moment(turn, body);
+        let mut moment_by_place =
+            Matrix3::from_columns(&[0, 1, 2].map(|k| value.material(&moment_by_place.column(k).into())));
         if moving.is_some() || flange.is_some() {
-            let velocity = Vector3::from_fn(|i, _| Own::variable(end.velocity[i], i, step.velocity_gain()));
-            let inertial = moving.map(|frame| in_moving_frame(frame, body, turn, (&position, &velocity)));
-            let held = flange.as_ref().map(|flange| flange.holds(turn, (&position, &velocity)));
-            for wrench in [inertial, held].into_iter().flatten() {
+            let add = |turn: &StepTurn<Own>, (position, velocity): (Vector3<Own>, Vector3<Own>)| {
+                let inertial = moving.map(|frame| in_moving_frame(frame, body, turn, (&position, &velocity)));
+                let held = flange.as_ref().map(|flange| flange.holds(turn, (&position, &velocity)));
+                [inertial, held].into_iter().flatten()
+            };
+            for wrench in add(turn, (position, constant_vector(&end.velocity))) {
                 sums.force += wrench.force;
                 moment += wrench.moment;
+            }
+            let variable =
+                |v: &Vector3<f64>, gain: f64| Vector3::from_fn(|i, _| Own::variable(v[i], i, gain));
+            let moved = (
+                variable(&end.pose.position, step.position_gain()),
+                variable(&end.velocity, step.velocity_gain()),
+            );
+            for wrench in add(&value.constant(), moved) {
+                force_by_place += by(&wrench.force);
+                moment_by_place += by(&wrench.moment);
             }
         }
         for i in 0..3 {
             let rotation = turn.rate_derivative[i].scale(body.inertia[i]) - moment[i].scale(fraction);
-            for k in 0..6 {
+            for k in 0..3 {
                 let inertia = if i == k { body.mass } else { 0.0 };
-                block[(i, k)] = inertia - fraction * sums.force[i].derivatives[k];
-                block[(3 + i, k)] = rotation.derivatives[k] / length;
+                block[(i, k)] = inertia - fraction * force_by_place[(i, k)];
+                block[(i, 3 + k)] = -fraction * sums.force[i].derivatives[k];
+                block[(3 + i, k)] = -fraction * moment_by_place[(i, k)] / length;
+                block[(3 + i, 3 + k)] = rotation.derivatives[k] / length;
             }
         }
     }
@@ -317,7 +342,7 @@ impl BodyTrial {
     /// The same with derivatives by the rotation, after [`BodyTrial::differentiate`].
     pub fn body_motion(&self) -> Option<BodyMotion<D>> {
         let turn = self.derived.as_ref()?;
-        let RaceMotion { position, axis, velocity, angular_velocity, .. } = self.motion;
+        let RaceMotion { position, axis, velocity, angular_velocity, .. } = self.motion();
         let axes = [axis, as_second(&turn.own_axis(1)), as_second(&turn.own_axis(2))];
         Some(BodyMotion { position, axes, velocity, angular_velocity })
     }
@@ -371,13 +396,13 @@ impl<'a> RaceSeen<'a> {
     }
 
     /// Its motion with derivatives by the rotation, where forces move it; after [`BodyTrial::differentiate`].
-    pub fn moved(&self) -> Option<&'a RaceMotion<D>> {
+    pub fn moved(&self) -> Option<RaceMotion<D>> {
         self.trial.map(BodyTrial::motion)
     }
 
     /// Motion with derivatives by the rotation, all zero where it is prescribed.
     pub fn with_derivatives(&self) -> RaceMotion<D> {
-        self.moved().copied().unwrap_or_else(|| constant_race(self.motion))
+        self.moved().unwrap_or_else(|| constant_race(self.motion))
     }
 }
 
@@ -443,6 +468,11 @@ pub fn make_consistent(
     state.acceleration = force / body.mass;
     state.rate_derivative = moment.component_div(&body.inertia);
     power
+}
+
+/// Derivatives of a vector (rows) by three unknowns.
+fn by(v: &Vector3<Own>) -> Matrix3<f64> {
+    Matrix3::from_fn(|i, k| v[i].derivatives[k])
 }
 
 /// [-] unit vector along a world axis.

@@ -9,7 +9,7 @@ use crate::model::bodies::{Constraint, RigidBody, tilt_component, tilt_direction
 use crate::model::state::BodyState;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::{FrameInput, Wrench};
-use crate::numerics::scalar::{Scalar, constant_vector};
+use crate::numerics::scalar::{Scalar, constant_vector, cross};
 
 /// Load and drive on a body from outside the bearing at the end of a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -80,8 +80,9 @@ impl<S: Scalar> Sums<S> {
 
     /// [N m] total moment in the body's own axes, with the gyroscopic one.
     pub fn material_moment(&self, turn: &StepTurn<S>, body: &RigidBody) -> Vector3<S> {
-        let momentum = Vector3::from_fn(|i, _| turn.rate[i].scale(body.inertia[i]));
-        let mut moment = turn.material(&self.moment) - turn.rate.cross(&momentum);
+        let momentum = |i: usize| turn.rate[i].scale(body.inertia[i]);
+        let momentum = Vector3::new(momentum(0), momentum(1), momentum(2));
+        let mut moment = turn.material(&self.moment) - cross(&turn.rate, &momentum);
         moment[0] = self.drive + moment[0];
         moment
     }

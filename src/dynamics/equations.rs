@@ -1,7 +1,5 @@
 //! The equations of one trial step: residual, Newton matrix and its solution.
 
-use nalgebra::Vector3;
-
 use super::ball::{BallTrial, Surroundings};
 use super::body::{BodyTrial, RaceSeen};
 use super::body_sums::{BodyLoad, BodyScales, BodyStep};
@@ -199,17 +197,11 @@ impl<'a> BearingStep<'a> {
         let Workspace { balls, groups, bodies, cage, .. } = &mut *self.workspace;
         for (body, _) in bodies.iter().filter(|(_, trial)| trial.is_some()) {
             let sum = &mut sums[body.index()];
-            let mut add = |force: &Vector3<f64>, moment: &Vector3<f64>| {
-                sum.force -= force;
-                sum.moment += moment;
-            };
             match body {
-                Body::Race(race) => (0..balls.len()).for_each(|ball| {
-                    let (force, moment) = groups.on_race(ball, race);
-                    add(&force, &moment);
-                }),
+                Body::Race(race) => *sum = groups.on_race(race, balls.len()),
                 Body::Cage => balls.iter().filter_map(|trial| trial.pocket.as_ref()).for_each(|pair| {
-                    add(&pair.force, &pair.other_moment);
+                    sum.force -= pair.force;
+                    sum.moment += pair.other_moment;
                 }),
             }
         }
@@ -367,7 +359,7 @@ impl Workspace {
     fn prepare_bodies(&mut self, model: &Model, start: &State) {
         if self.bodies.len() == start.bodies.len() {
             for ((_, trial), (_, state)) in self.bodies.iter_mut().zip(start.bodies.iter()) {
-                trial.iter_mut().for_each(|trial| trial.end.clone_from(state));
+                trial.iter_mut().for_each(|trial| trial.end.copy_from(state));
             }
         } else {
             let trial = |body: Body, state: &BodyState| {

@@ -4,7 +4,7 @@
 
 use nalgebra::{Vector3, Vector6};
 
-use super::ball_equations::{BallEquations, Six};
+use super::ball_equations::BallEquations;
 use crate::contact::many::{ContactGroup, Touch};
 use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
@@ -12,7 +12,7 @@ use crate::effects::ambient::Ambient;
 use crate::model::bearing::Ball;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::state::BallState;
-use crate::numerics::arrowhead::BLOCK;
+use crate::numerics::arrowhead::{BLOCK, Six};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::motion::Wrench;
@@ -64,15 +64,10 @@ impl BallGroup {
 
     /// Moves its balls to the end of the step: `unknowns` are those of all its balls. Notes which moved, or that `all` count as moved.
     fn move_to(&mut self, unknowns: &[f64], all: bool) {
-        let last = unknowns.len() / BLOCK - 1;
-        let lane = |lane: usize| BLOCK * lane.min(last);
-        let new: Six<Lanes> = std::array::from_fn(|k| Lanes::from_fn(|l| unknowns[lane(l) + k]));
-        self.moved = std::array::from_fn(|l| {
-            let moved = || new.iter().zip(&self.unknowns).any(|(new, old)| new.0[l] != old.0[l]);
-            l <= last && (all || self.moved[l] || moved())
-        });
-        self.unknowns = new;
-        move_lanes(&self.equations, &self.unknowns, &mut self.motion);
+        let balls = unknowns.len() / BLOCK;
+        let Self { equations, unknowns: own, motion, moved, .. } = self;
+        let changed = move_to_lanes(equations, unknowns, own, motion);
+        *moved = std::array::from_fn(|lane| lane < balls && (all || moved[lane] || changed[lane]));
     }
 
     /// Evaluates the contacts of its balls with a race.
@@ -89,13 +84,8 @@ impl BallGroup {
     pub fn balance(&mut self, ambient: &Ambient, touched: Option<&[Wrench<Lanes>; 2]>) {
         self.moved = [false; WIDTH];
         let contacts = [Race::Inner, Race::Outer].map(|race| self.contacts[race].lanes());
-        let mut total = ambient.on_ball(&self.motion);
-        sum_lanes(contacts, &mut total);
-        for more in touched.into_iter().flatten() {
-            total.force += more.force;
-            total.moment += more.moment;
-        }
-        balance_lanes(&self.equations, &self.unknowns, &total, &mut self.balance);
+        let at = (&self.unknowns, &self.motion);
+        balance_lanes(&self.equations, at, (ambient, contacts, touched), &mut self.balance);
     }
 
     /// Motion of its balls.
@@ -198,12 +188,37 @@ impl Groups {
         group.contacts[race].forces(lane)
     }
 
-    /// Force of a race on a ball, and moment on the race.
+    /// Force and moment of so many balls on a race, summed from the first to the last.
+    pub fn on_race(&self, race: Race, balls: usize) -> Wrench {
+        let mut sum = Wrench::default();
+        for (index, group) in self.0.iter().enumerate() {
+            let contact = group.contacts[race].lanes();
+            for lane in 0..WIDTH.min(balls - WIDTH * index) {
+                for i in 0..3 {
+                    sum.force[i] -= contact.force[i].0[lane];
+                    sum.moment[i] += contact.race_moment[i].0[lane];
+                }
+            }
+        }
+        sum
+    }
+
+    /// Approach \[m] and load \[N] of a ball on a race.
     #[inline]
-    pub fn on_race(&self, ball: usize, race: Race) -> (Vector3<f64>, Vector3<f64>) {
+    pub fn pressed(&self, ball: usize, race: Race) -> (f64, f64) {
         let (group, lane) = self.place(ball);
         let contact = group.contacts[race].lanes();
-        (in_lane(&contact.force, lane), in_lane(&contact.race_moment, lane))
+        (contact.geometry.approach.0[lane], contact.load.0[lane])
+    }
+
+    /// Centres of the balls at the end of the step \[m], group by group.
+    pub fn positions(&self) -> impl Iterator<Item = &Vector3<Lanes>> {
+        self.0.iter().map(|group| &group.motion.position)
+    }
+
+    /// Residuals of the balls \[N] and their largest components, group by group.
+    pub fn residuals(&self) -> impl Iterator<Item = (&Six<Lanes>, &Lanes)> {
+        self.0.iter().map(|group| (&group.balance.residual, &group.balance.size))
     }
 
     /// Where a ball touches a race.
@@ -260,35 +275,64 @@ fn begin_lanes(balls: &[BallState], (ball, step): (&Ball, &HhtStep), equations: 
     *equations = BallEquations::of_lanes(|lane| lane_of(balls, lane), ball, step);
 }
 
+/// Moves the balls to unknowns that are given ball by ball; which lanes have other unknowns than before?
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn move_to_lanes(
+    equations: &BallEquations<Lanes>,
+    given: &[f64],
+    unknowns: &mut Six<Lanes>,
+    motion: &mut BallMotion<Lanes>,
+) -> [bool; WIDTH] {
+    let given = given.as_chunks::<BLOCK>().0;
+    let lane = |lane: usize| lane_of(given, lane);
+    let of_lane = [lane(0), lane(1), lane(2), lane(3)];
+    let mut changed = [false; WIDTH];
+    for k in 0..BLOCK {
+        let new = Lanes([of_lane[0][k], of_lane[1][k], of_lane[2][k], of_lane[3][k]]);
+        for (lane, changed) in changed.iter_mut().enumerate() {
+            *changed |= new.0[lane] != unknowns[k].0[lane];
+        }
+        unknowns[k] = new;
+    }
+    *motion = equations.motion(unknowns);
+    changed
+}
+
 /// Moves balls.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn move_lanes(equations: &BallEquations<Lanes>, unknowns: &Six<Lanes>, motion: &mut BallMotion<Lanes>) {
     *motion = equations.motion(unknowns);
 }
 
-/// Adds what two contacts do to balls.
+/// What acts on balls: from outside, by two contacts, and by pockets and neighbours where some touch.
+type Acts<'a> = (&'a Ambient, [&'a BallRaceContact<Lanes>; 2], Option<&'a [Wrench<Lanes>; 2]>);
+
+/// Sums what acts on balls with these unknowns and this motion, and what it leaves of their equations.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn sum_lanes(contacts: [&BallRaceContact<Lanes>; 2], total: &mut Wrench<Lanes>) {
+fn balance_lanes(
+    equations: &BallEquations<Lanes>,
+    (unknowns, motion): (&Six<Lanes>, &BallMotion<Lanes>),
+    (ambient, contacts, touched): Acts<'_>,
+    balance: &mut Balance,
+) {
+    // Component by component where they stay: copies of what was written in other widths would wait for it.
+    let Balance { total, remainder, residual, size } = balance;
+    *total = ambient.on_ball(motion);
     for contact in contacts {
         for i in 0..3 {
             total.force[i] += contact.force[i];
             total.moment[i] += contact.ball_moment[i];
         }
     }
-}
-
-/// What forces leave of the equations of balls.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn balance_lanes(
-    equations: &BallEquations<Lanes>,
-    unknowns: &Six<Lanes>,
-    total: &Wrench<Lanes>,
-    balance: &mut Balance,
-) {
-    let remainder = equations.remainder(unknowns, total);
-    let residual = equations.residual(&remainder);
-    let size = residual.iter().fold(Lanes::constant(0.0), |size, x| size.larger_size(*x));
-    *balance = Balance { total: *total, remainder, residual, size };
+    for more in touched.into_iter().flatten() {
+        for i in 0..3 {
+            total.force[i] += more.force[i];
+            total.moment[i] += more.moment[i];
+        }
+    }
+    *remainder = equations.remainder(unknowns, total);
+    *residual = equations.residual(remainder);
+    *size = residual.iter().fold(Lanes::constant(0.0), |size, x| size.larger_size(*x));
 }
 
 #[inline(always)]

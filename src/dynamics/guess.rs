@@ -1,13 +1,11 @@
 //! First guesses of a step: accelerations and multipliers at its end.
 
-use nalgebra::Vector6;
-
 use super::Workspace;
 use super::equations::BearingStep;
 use crate::model::Model;
 use crate::model::bodies::{Body, Constraint, Race};
 use crate::model::state::{Trend, stack};
-use crate::numerics::arrowhead::BLOCK;
+use crate::numerics::arrowhead::{BLOCK, Six};
 use crate::numerics::orbit_turn::OrbitTurn;
 
 /// [-] change of the accelerations of balls in a step over their size that a guess may go on with. Balls that come to rest have none that
@@ -37,7 +35,9 @@ impl BearingStep<'_> {
             let ahead = offset + (ball.velocity - race.velocity) * self.step.h;
             let turn = OrbitTurn::between(&offset, &ahead);
             for vector in [unknowns, change] {
-                vector.copy_from_slice(turn.stacked(&Vector6::from_row_slice(vector)).as_slice());
+                if let Ok(six) = <&mut Six<f64>>::try_from(vector) {
+                    *six = turn.stacked(six);
+                }
             }
         }
         steady.clone_from(unknowns);

@@ -3,15 +3,17 @@
 //! A ball's block turns with its orbit and changes with its load, and blocks are computed anew one by one: each where the
 //! corrections that it was not good enough for have cost as much as it does.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::{DMatrix, Vector3, Vector6};
 
 use super::Workspace;
 use super::equations::BearingStep;
 use crate::model::bodies::{Body, Race};
 use crate::model::state::{KeptBlock, Wear};
-use crate::numerics::arrowhead::{BLOCK, Block, Eliminated, Member, Offsets};
+use crate::numerics::arrowhead::{BLOCK, Block, Eliminated, Member, Offsets, Six};
+use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::orbit_turn::OrbitTurn;
 use crate::numerics::ring::Link;
+use crate::numerics::scalar::constant_vector;
 use crate::numerics::size::larger;
 
 /// [-] price of one more correction, per ball, over that of a new block (benches/speed.rs): where balls are solved together and all
@@ -129,15 +131,17 @@ impl BearingStep<'_> {
         if kept.balls.len() != balls.len() || (kept.step - self.step.h).abs() > 1e-6 * self.step.h {
             kept.balls.clear();
         }
+        let groups_of_balls = balls.len().div_ceil(WIDTH);
+        kept.blocks.resize_with(groups_of_balls, || Eliminated::none(members.len()));
         for (index, trial) in balls.iter().enumerate().filter(|(_, trial)| trial.renewed) {
             *factorised = false;
-            let Some(block) = Eliminated::new(&trial.block, members) else {
+            if !kept.blocks[index / WIDTH].put(index % WIDTH, &trial.block, members) {
                 kept.balls.clear();
                 return;
-            };
+            }
             let last = kept.balls.get(index).map(|kept| kept.wear).unwrap_or_default();
             let wear = Wear { price: 0.0, new: true, ..last };
-            let new = KeptBlock { block, offset: groups.position(index) - origin, wear };
+            let new = KeptBlock { offset: groups.position(index) - origin, wear };
             match kept.balls.get_mut(index) {
                 Some(kept) => *kept = new,
                 None => kept.balls.push(new),
@@ -170,11 +174,19 @@ impl BearingStep<'_> {
             ..
         } = &mut *self.workspace;
         *factorised = true;
-        let mut border = DMatrix::zeros(rows, rows);
+        let border = reduced;
+        if border.nrows() == rows {
+            border.as_mut_slice().fill(0.0);
+        } else {
+            *border = DMatrix::zeros(rows, rows);
+        }
         for member in members.iter() {
             if let Some(trial) = Body::ALL.get(member.slot).and_then(|body| bodies.get(*body)?.as_ref()) {
-                let rows = trial.residual.len();
-                border.view_mut((member.from, member.from), (rows, rows)).copy_from(&trial.block);
+                let own = trial.residual.len();
+                for (k, column) in trial.block.as_slice().chunks_exact(own).enumerate() {
+                    let from = rows * (member.from + k) + member.from;
+                    border.as_mut_slice()[from..from + own].copy_from_slice(column);
+                }
             }
         }
         if let (Some(cage), Some(guide)) = (cage, guide)
@@ -185,20 +197,19 @@ impl BearingStep<'_> {
             border.view_mut((own, race), size).copy_from(&cage.cage_by_race);
         }
         if neighbours.is_empty() {
-            let turned = |ball: usize, kept: &KeptBlock| {
-                OrbitTurn::between(&kept.offset, &(groups.position(ball) - origin))
-            };
-            let blocks = kept.balls.iter().enumerate().map(|(ball, kept)| (&kept.block, turned(ball, kept)));
+            let turns = kept.balls.chunks(WIDTH).zip(groups.positions());
+            let turns = turns.map(|(kept, positions)| turn_of_lanes(kept, positions, &origin));
+            let blocks = kept.blocks.iter().zip(turns);
             match carries {
-                true => *reduced = arrowhead.reduce(blocks, members, border),
+                true => arrowhead.reduce(blocks, members, border),
                 false => arrowhead.factorise(blocks, members, border),
             }
         } else {
             let blocks: Vec<&Block> = balls.iter().map(|trial| &trial.block).collect();
             let links: Vec<Link> = neighbours.iter().map(|pair| pair.link).collect();
             match carries {
-                true => *reduced = ring.reduce(&blocks, &links, &border, offsets),
-                false => ring.factorise(&blocks, &links, &border, offsets),
+                true => *border = ring.reduce(&blocks, &links, border, offsets),
+                false => ring.factorise(&blocks, &links, border, offsets),
             }
         }
     }
@@ -257,15 +268,25 @@ impl BearingStep<'_> {
         let origin = self.races_origin();
         let Workspace { balls, groups, kept, .. } = &*self.workspace;
         let mut regular = kept.balls.len() == balls.len();
-        for (ball, (kept, x)) in kept.balls.iter().zip(correction.chunks_exact_mut(BLOCK)).enumerate() {
-            if groups.size(ball) <= self.force_tolerance {
-                x.fill(0.0);
+        correction.fill(0.0);
+        let blocks = kept.blocks.iter().zip(kept.balls.chunks(WIDTH));
+        let groups = groups.positions().zip(groups.residuals());
+        let corrections = correction.chunks_mut(BLOCK * WIDTH);
+        for (((block, kept), (positions, (residual, size))), of_group) in blocks.zip(groups).zip(corrections)
+        {
+            let solved = |lane: usize| size.0[lane] <= self.force_tolerance;
+            if (0..kept.len()).all(solved) {
                 continue;
             }
-            let turn = OrbitTurn::between(&kept.offset, &(groups.position(ball) - origin));
-            let solution = kept.block.solve(&turn, &-groups.residual(ball));
-            regular &= solution.iter().all(|v| v.is_finite());
-            x.copy_from_slice(solution.as_slice());
+            let mut x = negative(residual);
+            block.solve(&turn_of_lanes(kept, positions, &origin), &mut x);
+            let chunks = of_group.chunks_exact_mut(BLOCK).enumerate();
+            for (lane, chunk) in chunks.filter(|(lane, _)| !solved(*lane)) {
+                for k in 0..BLOCK {
+                    chunk[k] = x[k].0[lane];
+                    regular &= chunk[k].is_finite();
+                }
+            }
         }
         regular
     }
@@ -291,17 +312,18 @@ impl BearingStep<'_> {
             neighbours,
             arrowhead,
             ring,
-            ball_corrections: x,
+            ball_corrections,
+            group_corrections: x,
             border_correction: y,
             ..
         } = &mut *self.workspace;
         if !neighbours.is_empty() {
-            ring.eliminate(x, y, offsets);
+            ring.eliminate(ball_corrections, y, offsets);
             return true;
         }
         let there = kept.balls.len() == balls.len();
         if there {
-            arrowhead.eliminate(kept.balls.iter().map(|kept| &kept.block), x, y);
+            arrowhead.eliminate(kept.blocks.iter(), x, y);
         }
         there
     }
@@ -311,12 +333,19 @@ impl BearingStep<'_> {
     pub(super) fn substitute_bodies(&mut self, correction: &mut [f64]) -> bool {
         let offsets = self.model.border_offsets();
         let Workspace {
-            kept, neighbours, arrowhead, ring, ball_corrections: x, border_correction: y, ..
+            kept,
+            neighbours,
+            arrowhead,
+            ring,
+            ball_corrections,
+            group_corrections,
+            border_correction: y,
+            ..
         } = &mut *self.workspace;
         let solved = if neighbours.is_empty() {
-            arrowhead.substitute(kept.balls.iter().map(|kept| &kept.block), x, y)
+            arrowhead.substitute(kept.blocks.iter(), group_corrections, y)
         } else {
-            ring.substitute(x, y, offsets)
+            ring.substitute(ball_corrections, y, offsets)
         };
         self.give(correction);
         solved
@@ -325,26 +354,69 @@ impl BearingStep<'_> {
     /// Takes the right-hand sides of balls and bodies.
     fn take_right_sides(&mut self) {
         let rows = self.model.border_size();
-        let Workspace { balls, groups, bodies, members, ball_corrections: x, border_correction: y, .. } =
-            &mut *self.workspace;
-        x.clear();
-        x.extend((0..balls.len()).map(|ball| -groups.residual(ball)));
-        y.resize_vertically_mut(rows, 0.0);
+        let Workspace {
+            balls,
+            groups,
+            bodies,
+            members,
+            neighbours,
+            ball_corrections,
+            group_corrections,
+            border_correction: y,
+            ..
+        } = &mut *self.workspace;
+        group_corrections.clear();
+        ball_corrections.clear();
+        if neighbours.is_empty() {
+            group_corrections.extend(groups.residuals().map(|(residual, _)| negative(residual)));
+        } else {
+            ball_corrections.extend((0..balls.len()).map(|ball| -groups.residual(ball)));
+        }
+        if y.len() != rows {
+            y.resize_vertically_mut(rows, 0.0);
+        }
         for member in members.iter() {
             if let Some(trial) = Body::ALL.get(member.slot).and_then(|body| bodies.get(*body)?.as_ref()) {
-                y.rows_mut(member.from, trial.residual.len()).copy_from(&-&trial.residual);
+                let rows = y.as_mut_slice()[member.from..].iter_mut();
+                rows.zip(&trial.residual).for_each(|(to, residual)| *to = -residual);
             }
         }
     }
 
     /// Writes the corrections of balls, with what they were moved alone, and of bodies.
     fn give(&self, correction: &mut [f64]) {
-        let Workspace { balls, ball_corrections: x, border_correction: y, .. } = &*self.workspace;
-        let (of_balls, border) = correction.split_at_mut(BLOCK * x.len());
-        for ((chunk, x), trial) in of_balls.chunks_exact_mut(BLOCK).zip(x.iter()).zip(balls.iter()) {
-            let x = trial.repaired.map_or(*x, |moved| moved + x);
+        let Workspace {
+            balls, neighbours, ball_corrections, group_corrections, border_correction: y, ..
+        } = &*self.workspace;
+        let (of_balls, border) = correction.split_at_mut(BLOCK * balls.len());
+        for (ball, (chunk, trial)) in of_balls.chunks_exact_mut(BLOCK).zip(balls.iter()).enumerate() {
+            let x = if neighbours.is_empty() {
+                let lanes = &group_corrections[ball / WIDTH];
+                Vector6::from_fn(|k, _| lanes[k].0[ball % WIDTH])
+            } else {
+                ball_corrections[ball]
+            };
+            let x = trial.repaired.map_or(x, |moved| moved + x);
             chunk.copy_from_slice(x.as_slice());
         }
         border.copy_from_slice(y.as_slice());
     }
+}
+
+/// The negative of a residual.
+#[inline(always)]
+fn negative(residual: &Six<Lanes>) -> Six<Lanes> {
+    let mut negative = *residual;
+    for lanes in &mut negative {
+        *lanes = -*lanes;
+    }
+    negative
+}
+
+/// Turns of the balls of a group about the `origin` of their orbits since their blocks were computed. Compiled twice, as contacts are
+/// ([`crate::contact::many`]).
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn turn_of_lanes(kept: &[KeptBlock], positions: &Vector3<Lanes>, origin: &Vector3<f64>) -> OrbitTurn<Lanes> {
+    let offsets = Lanes::vector(|lane| kept[lane.min(kept.len() - 1)].offset);
+    OrbitTurn::between(&offsets, &(positions - constant_vector::<Lanes>(origin)))
 }

@@ -32,7 +32,8 @@ use crate::forces::{BallContacts, BallPair, Contacts};
 use crate::model::bodies::{Bodies, Body, PerRace, Race};
 use crate::model::state::{KeptMatrix, State};
 use crate::model::{Conditions, Model};
-use crate::numerics::arrowhead::{Arrowhead, Member};
+use crate::numerics::arrowhead::{Arrowhead, Member, Six};
+use crate::numerics::lanes::Lanes;
 use crate::numerics::motion::{Pose, Twist};
 use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure};
 use crate::numerics::ring::Ring;
@@ -80,7 +81,7 @@ pub struct Workspace {
     /// Neighbouring balls that may touch in the step.
     neighbours: Vec<NeighbourTrial>,
     arrowhead: Arrowhead,
-    /// What is left of the border of a bearing with a carried race: a part of a larger one.
+    /// The border with what the balls leave in it: of a bearing with a carried race a part of a larger one.
     reduced: DMatrix<f64>,
     /// Is the matrix that of this step's bodies and kept balls?
     factorised: bool,
@@ -89,6 +90,8 @@ pub struct Workspace {
     /// The matrix of a step in which neighbouring balls may touch.
     ring: Ring,
     ball_corrections: Vec<Vector6<f64>>,
+    /// The same of all groups of balls, where neighbouring balls do not touch.
+    group_corrections: Vec<Six<Lanes>>,
     border_correction: DVector<f64>,
     unknowns: Vec<f64>,
     /// Accelerations and multipliers that do not change in the step but for the turn of orbits.

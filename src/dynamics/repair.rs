@@ -66,13 +66,16 @@ impl Groups {
     /// as its depth changes; in short steps the ball's mass leaves little of that.
     fn is_thrown(&self, ball: usize, tolerance: f64, step: &HhtStep, mass: f64) -> bool {
         let size = self.size(ball);
-        let [inner, outer] = Race::BOTH.map(|race| self.pair(ball, race));
-        let deeper = if inner.load > outer.load { inner } else { outer };
+        if size <= tolerance {
+            return false;
+        }
+        let [inner, outer] = Race::BOTH.map(|race| self.pressed(ball, race));
+        let (approach, load) = if inner.1 > outer.1 { inner } else { outer };
         // Without a contact any way is too far: it ends in one.
-        let depth = deeper.approach.max(0.0);
+        let depth = approach.max(0.0);
         let gain = step.position_gain();
-        let slope = if deeper.load > 0.0 { 1.5 * deeper.load / depth } else { 0.0 };
-        size > tolerance && gain * size / (mass + gain * slope) > THROWN * depth
+        let slope = if load > 0.0 { 1.5 * load / depth } else { 0.0 };
+        gain * size / (mass + gain * slope) > THROWN * depth
     }
 }
 

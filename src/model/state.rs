@@ -119,6 +119,13 @@ impl BodyState {
         Twist { velocity: self.velocity, angular_velocity: self.pose.orientation * self.rate }
     }
 
+    /// Becomes a copy of another without taking memory.
+    pub fn copy_from(&mut self, other: &Self) {
+        let mut multipliers = std::mem::take(&mut self.multipliers);
+        multipliers.clone_from(&other.multipliers);
+        *self = Self { multipliers, ..*other };
+    }
+
     /// The motion that contacts depend on.
     pub fn motion(&self) -> RaceMotion<f64> {
         RaceMotion {
@@ -316,13 +323,13 @@ pub struct KeptMatrix {
     pub step: f64,
     /// Blocks of all balls; empty while there is no matrix.
     pub balls: Vec<KeptBlock>,
+    /// The blocks themselves, several in the lanes of one, and their couplings to the bodies that forces move.
+    pub blocks: Vec<Eliminated>,
 }
 
-/// The eliminated block of one ball.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// What is known of the eliminated block of one ball.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KeptBlock {
-    /// The block and its couplings to the bodies that forces move.
-    pub block: Eliminated,
     /// \[m] where the ball was, seen from the outer race: the block turns with the orbit of its ball.
     pub offset: Vector3<f64>,
     /// How good it still is.

@@ -12,14 +12,25 @@
 //!
 //! An eliminated block turns about the x axis with its ball: in a frame that turns along it hardly changes, and serves many
 //! matrices. Border rows have three forces in world axes and three moments in the axes of their member.
+//!
+//! Four blocks at a time are worked with, in the lanes of vectors.
 
-use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix3, Matrix6, SMatrix, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, SMatrix, Vector6};
 use serde::{Deserialize, Serialize};
 
+use super::kept_lu::KeptLu;
+use super::lanes::{Lanes, WIDTH};
 use super::orbit_turn::OrbitTurn;
+use super::scalar::Scalar;
 
 /// Rows and columns of a block.
 pub const BLOCK: usize = 6;
+
+/// Rows of a block.
+pub type Six<S> = [S; BLOCK];
+
+/// A matrix of a block's size, column by column.
+pub type Square<S> = [Six<S>; BLOCK];
 
 /// Members of the border that a block can be coupled to.
 pub const SLOTS: usize = 3;
@@ -62,72 +73,103 @@ impl Member {
     /// Vectors with moments in its own axes, from those in world axes, column by column.
     fn own<const C: usize>(&self, world: &SMatrix<f64, BLOCK, C>) -> SMatrix<f64, BLOCK, C> {
         let mut own = *world;
-        own.fixed_rows_mut::<3>(3).copy_from(&(self.axes * world.fixed_rows::<3>(3)));
+        for k in 0..C {
+            for i in 0..3 {
+                let row = |j: usize| self.axes[(i, j)] * world[(3 + j, k)];
+                own[(3 + i, k)] = row(0) + row(1) + row(2);
+            }
+        }
         own
     }
 
     /// The same the other way round.
     fn world<const C: usize>(&self, own: &SMatrix<f64, BLOCK, C>) -> SMatrix<f64, BLOCK, C> {
         let mut world = *own;
-        world.fixed_rows_mut::<3>(3).copy_from(&self.axes.tr_mul(&own.fixed_rows::<3>(3)));
+        for k in 0..C {
+            for i in 0..3 {
+                let column = |j: usize| self.axes[(j, i)] * own[(3 + j, k)];
+                world[(3 + i, k)] = column(0) + column(1) + column(2);
+            }
+        }
         world
     }
 }
 
-/// A block that is eliminated, rows and columns of its border in world axes at that time.
+/// Up to [`WIDTH`] blocks that are eliminated, each in its lane; rows and columns of the border in world axes at that time. Lanes without
+/// a block are zero.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Eliminated {
     /// `A^-1`: a product costs a quarter of two triangular solves.
-    inverse: Matrix6<f64>,
-    /// Its coupling to each member of the border.
+    inverse: Square<Lanes>,
+    /// Their couplings to each member of the border.
     couplings: Vec<Coupling>,
 }
 
-/// An eliminated block and a member of the border.
+/// Eliminated blocks and a member of the border.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Coupling {
     /// `A^-1 R`.
-    right: Matrix6<f64>,
+    right: Square<Lanes>,
     /// `L`.
-    left: Matrix6<f64>,
+    left: Square<Lanes>,
     /// What is left in rows of this member, columns of each: `-L A^-1 R`, with what the block adds to the member's own.
-    rest: Vec<Matrix6<f64>>,
+    rest: Vec<Square<Lanes>>,
 }
 
+/// Nothing in any lane.
+const NO_BLOCKS: Square<Lanes> = [[Lanes([0.0; WIDTH]); BLOCK]; BLOCK];
+
 impl Eliminated {
-    /// Eliminates a block; none if it is singular.
-    pub fn new(block: &Block, members: &[Member]) -> Option<Self> {
-        let inverse = block.diagonal.lu().try_inverse()?;
-        if !inverse.iter().all(|v| v.is_finite()) {
-            return None;
+    /// No blocks yet, for so many members of the border.
+    pub fn none(members: usize) -> Self {
+        let none = Coupling { right: NO_BLOCKS, left: NO_BLOCKS, rest: vec![NO_BLOCKS; members] };
+        Self { inverse: NO_BLOCKS, couplings: vec![none; members] }
+    }
+
+    /// Eliminates a block and puts it into a lane; false if it is singular.
+    #[must_use]
+    pub fn put(&mut self, lane: usize, block: &Block, members: &[Member]) -> bool {
+        let inverse = block.diagonal.lu().try_inverse();
+        let Some(inverse) = inverse.filter(|inverse| inverse.iter().all(|v| v.is_finite())) else {
+            return false;
+        };
+        put(&mut self.inverse, lane, &inverse);
+        let mut right = [Matrix6::zeros(); SLOTS];
+        for member in members {
+            let own = member.world(&block.right[member.slot].transpose()).transpose();
+            right[member.slot] = times(&inverse, &own);
         }
-        let right =
-            |member: &Member| inverse * member.world(&block.right[member.slot].transpose()).transpose();
-        let coupling = |member: &Member| {
+        for (member, coupling) in members.iter().zip(&mut self.couplings) {
             let left = member.world(&block.left[member.slot]);
-            let rest = |other: &Member| {
-                let mut rest = -(left * right(other));
+            put(&mut coupling.right, lane, &right[member.slot]);
+            put(&mut coupling.left, lane, &left);
+            for (other, lanes) in members.iter().zip(&mut coupling.rest) {
+                let mut rest = -times(&left, &right[other.slot]);
                 if other.slot == member.slot {
                     rest += member.world(&member.world(&block.own[member.slot]).transpose()).transpose();
                 }
-                rest
-            };
-            Coupling { right: right(member), left, rest: members.iter().map(rest).collect() }
-        };
-        Some(Self { inverse, couplings: members.iter().map(coupling).collect() })
+                put(lanes, lane, &rest);
+            }
+        }
+        true
     }
 
-    /// Solves for a right-hand side of the block alone; `turn` is that since it was eliminated.
-    pub fn solve(&self, turn: &OrbitTurn, right: &Vector6<f64>) -> Vector6<f64> {
-        let mut x = *right;
-        solve_one(self, turn, &mut x);
-        x
+    /// Solves in place for right-hand sides of the blocks alone; `turn` is that of each since it was eliminated.
+    pub fn solve(&self, turn: &OrbitTurn<Lanes>, x: &mut Six<Lanes>) {
+        solve_alone(self, turn, x);
     }
 
-    /// Is it coupled to so many members? A check for blocks that come from outside.
+    /// Are its blocks coupled to so many members? A check for blocks that come from outside.
     pub fn fits(&self, members: usize) -> bool {
         let fits = |coupling: &Coupling| coupling.rest.len() == members;
         self.couplings.len() == members && self.couplings.iter().all(fits)
+    }
+}
+
+/// Puts a matrix into a lane.
+fn put(lanes: &mut Square<Lanes>, lane: usize, matrix: &Matrix6<f64>) {
+    for (lanes, number) in lanes.as_flattened_mut().iter_mut().zip(matrix) {
+        lanes.0[lane] = *number;
     }
 }
 
@@ -136,74 +178,75 @@ impl Eliminated {
 pub struct Arrowhead {
     members: Vec<Member>,
     /// Turns of the blocks since they were eliminated.
-    turns: Vec<OrbitTurn>,
-    border: Option<LU<f64, Dyn, Dyn>>,
-    /// What all blocks leave in rows and columns of each two members, in world axes.
-    sums: Vec<Matrix6<f64>>,
-    /// Loads on the members, and what they do, in world axes.
-    worlds: Vec<Vector6<f64>>,
+    turns: Vec<OrbitTurn<Lanes>>,
+    border: KeptLu,
+    /// What all blocks leave in rows and columns of each two members, in world axes, by lane.
+    sums: Vec<Square<Lanes>>,
+    /// Loads on the members, by lane, and what they do, in world axes.
+    worlds: Vec<Six<Lanes>>,
 }
 
 impl Arrowhead {
     /// Adds what the blocks leave to the border's own matrix, and factorises it.
     pub fn factorise<'a>(
         &mut self,
-        blocks: impl Iterator<Item = (&'a Eliminated, OrbitTurn)>,
+        blocks: impl Iterator<Item = (&'a Eliminated, OrbitTurn<Lanes>)>,
         members: &[Member],
-        border: DMatrix<f64>,
+        border: &mut DMatrix<f64>,
     ) {
-        let border = self.reduce(blocks, members, border);
-        self.border = if border.is_empty() { None } else { Some(border.lu()) };
+        self.reduce(blocks, members, border);
+        self.border.factorise(border);
     }
 
     /// Adds what the blocks leave to the border's own matrix: what remains when they are eliminated.
     pub fn reduce<'a>(
         &mut self,
-        blocks: impl Iterator<Item = (&'a Eliminated, OrbitTurn)>,
+        blocks: impl Iterator<Item = (&'a Eliminated, OrbitTurn<Lanes>)>,
         members: &[Member],
-        mut border: DMatrix<f64>,
-    ) -> DMatrix<f64> {
+        border: &mut DMatrix<f64>,
+    ) {
         self.members.clear();
         self.members.extend(members);
         self.turns.clear();
         let count = members.len();
         let sums = &mut self.sums;
         sums.clear();
-        sums.resize(count * count, Matrix6::zeros());
-        for (block, turn) in blocks {
+        sums.resize(count * count, NO_BLOCKS);
+        for (blocks, turn) in blocks {
             self.turns.push(turn);
-            add_one(block, &turn, sums);
+            add_rest(blocks, &turn, sums);
         }
         for (row, a) in members.iter().enumerate() {
             for (column, b) in members.iter().enumerate() {
-                let rest = a.own(&b.own(&sums[count * row + column].transpose()).transpose());
+                let sum = &sums[count * row + column];
+                let sum = Matrix6::from_fn(|i, k| sum_of_lanes(&sum[k][i]));
+                let rest = a.own(&b.own(&sum.transpose()).transpose());
                 let mut view = border.fixed_view_mut::<BLOCK, BLOCK>(a.from, b.from);
                 view += rest;
             }
         }
-        border
     }
 
     /// Solves in place for the right-hand side of the border that the blocks were taken out of; false if its matrix is singular.
-    pub fn solve_border(&self, border: &mut DVector<f64>) -> bool {
-        self.border.as_ref().is_none_or(|lu| lu.solve_mut(border))
+    pub fn solve_border(&mut self, border: &mut DVector<f64>) -> bool {
+        self.border.solve(border.as_mut_slice())
     }
 
     /// Takes the right-hand sides of the blocks out of that of the border.
     pub fn eliminate<'a>(
         &mut self,
         blocks: impl Iterator<Item = &'a Eliminated>,
-        x: &mut [Vector6<f64>],
+        x: &mut [Six<Lanes>],
         border: &mut DVector<f64>,
     ) {
         self.worlds.clear();
-        self.worlds.resize(self.members.len(), Vector6::zeros());
-        for ((block, turn), x) in blocks.zip(&self.turns).zip(&mut *x) {
-            eliminate_one(block, turn, x, &mut self.worlds);
+        self.worlds.resize(self.members.len(), NO_BLOCKS[0]);
+        for ((blocks, turn), x) in blocks.zip(&self.turns).zip(&mut *x) {
+            eliminate(blocks, turn, x, &mut self.worlds);
         }
         for (member, load) in self.members.iter().zip(&self.worlds) {
             let mut rows = border.fixed_rows_mut::<BLOCK>(member.from);
-            rows += member.own(load);
+            rows += member.own(&Vector6::from_fn(|i, _| sum_of_lanes(&load[i])));
         }
     }
 
@@ -211,60 +254,91 @@ impl Arrowhead {
     pub fn substitute<'a>(
         &mut self,
         blocks: impl Iterator<Item = &'a Eliminated>,
-        x: &mut [Vector6<f64>],
+        x: &mut [Six<Lanes>],
         border: &DVector<f64>,
     ) -> bool {
         for (member, world) in self.members.iter().zip(&mut self.worlds) {
-            *world = member.world(&border.fixed_rows::<BLOCK>(member.from).into_owned());
+            let moved = member.world(&border.fixed_rows::<BLOCK>(member.from).into_owned());
+            for i in 0..BLOCK {
+                world[i] = Lanes::constant(moved[i]);
+            }
         }
-        for ((block, turn), x) in blocks.zip(&self.turns).zip(&mut *x) {
-            substitute_one(block, turn, x, &self.worlds);
+        for ((blocks, turn), x) in blocks.zip(&self.turns).zip(&mut *x) {
+            substitute(blocks, turn, x, &self.worlds);
         }
-        x.iter().all(|x| x.iter().all(|v| v.is_finite())) && border.iter().all(|v| v.is_finite())
+        let finite = |lanes: &Lanes| lanes.0.iter().all(|v| v.is_finite());
+        x.as_flattened().iter().all(finite) && border.iter().all(|v| v.is_finite())
     }
 }
 
-/// A matrix times a vector, column by column; inlined, so that it becomes vector instructions where there are some.
+/// Sum over lanes, from the first to the last.
 #[inline(always)]
-fn product(matrix: &Matrix6<f64>, x: &Vector6<f64>) -> Vector6<f64> {
-    let mut sum = Vector6::zeros();
+fn sum_of_lanes(lanes: &Lanes) -> f64 {
+    let Lanes([a, b, c, d]) = lanes;
+    a + b + c + d
+}
+
+/// Product of two matrices, the same on every processor: that of the library is another where multiplications and additions are fused.
+fn times(a: &Matrix6<f64>, b: &Matrix6<f64>) -> Matrix6<f64> {
+    let mut result = Matrix6::zeros();
+    for j in 0..BLOCK {
+        for k in 0..BLOCK {
+            for i in 0..BLOCK {
+                result[(i, j)] += a[(i, k)] * b[(k, j)];
+            }
+        }
+    }
+    result
+}
+
+/// Products of matrices and vectors, column by column.
+#[inline(always)]
+fn product(matrix: &Square<Lanes>, x: &Six<Lanes>) -> Six<Lanes> {
+    let mut sum = NO_BLOCKS[0];
     for k in 0..BLOCK {
         for i in 0..BLOCK {
-            sum[i] += matrix[(i, k)] * x[k];
+            sum[i] += matrix[k][i] * x[k];
         }
     }
     sum
 }
 
-/// Solves for a right-hand side of a block alone. Compiled twice, as contacts are ([`crate::contact::many`]), like the next ones.
+/// Solves for right-hand sides of blocks alone. Compiled twice, as contacts are ([`crate::contact::many`]), like the next ones.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn solve_one(block: &Eliminated, turn: &OrbitTurn, x: &mut Vector6<f64>) {
-    *x = turn.stacked(&product(&block.inverse, &turn.back().stacked(x)));
+fn solve_alone(blocks: &Eliminated, turn: &OrbitTurn<Lanes>, x: &mut Six<Lanes>) {
+    *x = turn.stacked(&product(&blocks.inverse, &turn.back().stacked(x)));
 }
 
-/// Takes the right-hand side of a block out of loads on the members.
+/// Takes the right-hand sides of blocks out of loads on the members.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn eliminate_one(block: &Eliminated, turn: &OrbitTurn, x: &mut Vector6<f64>, loads: &mut [Vector6<f64>]) {
-    *x = product(&block.inverse, &turn.back().stacked(x));
-    for (coupling, load) in block.couplings.iter().zip(loads) {
-        *load -= turn.stacked(&product(&coupling.left, x));
+fn eliminate(blocks: &Eliminated, turn: &OrbitTurn<Lanes>, x: &mut Six<Lanes>, loads: &mut [Six<Lanes>]) {
+    *x = product(&blocks.inverse, &turn.back().stacked(x));
+    for (coupling, load) in blocks.couplings.iter().zip(loads) {
+        let taken = turn.stacked(&product(&coupling.left, x));
+        for i in 0..BLOCK {
+            load[i] -= taken[i];
+        }
     }
 }
 
-/// The solution of a block, from that of the members.
+/// The solutions of blocks, from that of the members.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn substitute_one(block: &Eliminated, turn: &OrbitTurn, x: &mut Vector6<f64>, members: &[Vector6<f64>]) {
-    for (coupling, moved) in block.couplings.iter().zip(members) {
-        *x -= product(&coupling.right, &turn.back().stacked(moved));
+fn substitute(blocks: &Eliminated, turn: &OrbitTurn<Lanes>, x: &mut Six<Lanes>, members: &[Six<Lanes>]) {
+    let mut own = *x;
+    for (coupling, moved) in blocks.couplings.iter().zip(members) {
+        let follows = product(&coupling.right, &turn.back().stacked(moved));
+        for i in 0..BLOCK {
+            own[i] -= follows[i];
+        }
     }
-    *x = turn.stacked(x);
+    *x = turn.stacked(&own);
 }
 
-/// Adds what a block leaves in rows and columns of each two members.
+/// Adds what blocks leave in rows and columns of each two members.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn add_one(block: &Eliminated, turn: &OrbitTurn, sums: &mut [Matrix6<f64>]) {
-    let of_blocks = block.couplings.iter().flat_map(|coupling| &coupling.rest);
+fn add_rest(blocks: &Eliminated, turn: &OrbitTurn<Lanes>, sums: &mut [Square<Lanes>]) {
+    let of_blocks = blocks.couplings.iter().flat_map(|coupling| &coupling.rest);
     for (sum, rest) in sums.iter_mut().zip(of_blocks) {
-        *sum += turn.matrix(rest);
+        turn.add_matrix(rest, sum);
     }
 }

@@ -6,6 +6,7 @@
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use crate::numerics::scalar::{Scalar, SmoothMap, Values};
 use crate::numerics::size::larger;
@@ -14,7 +15,7 @@ use crate::numerics::size::larger;
 pub const WIDTH: usize = 4;
 
 /// Numbers that are computed with together.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[repr(align(32))]
 pub struct Lanes(pub [f64; WIDTH]);
 
@@ -35,7 +36,7 @@ impl Lanes {
     /// Vectors of several lanes as one; `number` gives that of a lane.
     #[inline(always)]
     pub fn vector(number: impl Fn(usize) -> Vector3<f64>) -> Vector3<Self> {
-        let vectors: [Vector3<f64>; WIDTH] = std::array::from_fn(number);
+        let vectors = [number(0), number(1), number(2), number(3)];
         let component = |k: usize| Self([vectors[0][k], vectors[1][k], vectors[2][k], vectors[3][k]]);
         Vector3::new(component(0), component(1), component(2))
     }

@@ -3,6 +3,7 @@
 pub mod arrowhead;
 pub mod elliptic;
 pub mod hht;
+pub mod kept_lu;
 pub mod lanes;
 pub mod motion;
 pub mod newton;

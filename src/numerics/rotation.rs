@@ -7,20 +7,31 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use crate::numerics::scalar::Scalar;
+use crate::numerics::scalar::{Scalar, cross, dot};
 
 /// `c0 = 2 - c.c/8`, the scalar companion of c in the formulas of the reference.
 #[inline(always)]
 fn c0<S: Scalar>(c: &Vector3<S>) -> S {
-    S::constant(2.0) - c.dot(c).scale(0.125)
+    S::constant(2.0) - dot(c, c).scale(0.125)
 }
 
 /// Rotates a vector by a constant rotation.
 pub fn turn<S: Scalar>(q: &UnitQuaternion<f64>, v: &Vector3<S>) -> Vector3<S> {
-    let matrix = q.to_rotation_matrix();
-    Vector3::from_fn(|i, _| {
-        v[0].scale(matrix[(i, 0)]) + v[1].scale(matrix[(i, 1)]) + v[2].scale(matrix[(i, 2)])
-    })
+    turn_by(q.to_rotation_matrix().matrix(), v)
+}
+
+/// Rotates a vector by a constant rotation matrix.
+#[inline(always)]
+pub fn turn_by<S: Scalar>(matrix: &Matrix3<f64>, v: &Vector3<S>) -> Vector3<S> {
+    let row = |i: usize| v[0].scale(matrix[(i, 0)]) + v[1].scale(matrix[(i, 1)]) + v[2].scale(matrix[(i, 2)]);
+    Vector3::new(row(0), row(1), row(2))
+}
+
+/// Rotates a vector by the inverse of a constant rotation matrix.
+#[inline(always)]
+pub fn turn_back_by<S: Scalar>(matrix: &Matrix3<f64>, v: &Vector3<S>) -> Vector3<S> {
+    let row = |i: usize| v[0].scale(matrix[(0, i)]) + v[1].scale(matrix[(1, i)]) + v[2].scale(matrix[(2, i)]);
+    Vector3::new(row(0), row(1), row(2))
 }
 
 /// Rotates a vector by the rotation of `c`.
@@ -31,7 +42,9 @@ pub fn rotate<S: Scalar>(c: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
     let d = S::constant(4.0) - c0;
     let scale = S::one() / d.square();
     let diagonal = c0.square() + c0.scale(8.0) - S::constant(16.0);
-    (v * diagonal + c * c.dot(v).scale(2.0) + c.cross(v) * c0.scale(2.0)) * scale
+    let (along, across, twice) = (dot(c, v).scale(2.0), cross(c, v), c0.scale(2.0));
+    let component = |i: usize| (v[i] * diagonal + c[i] * along + across[i] * twice) * scale;
+    Vector3::new(component(0), component(1), component(2))
 }
 
 /// Conformal vector of the rotation `first` after that of `c`: `R = R(first) R(c)`, of a turn below half a turn.
@@ -85,7 +98,7 @@ pub fn tangent_rate<S: Scalar>(c: &Vector3<S>, rate: &Vector3<S>, v: &Vector3<S>
 #[inline(always)]
 pub fn from_rotation_vector<S: Scalar>(x: &Vector3<S>) -> Vector3<S> {
     // f(s) with s = |x|^2, by its series where the closed form is 0/0.
-    let factor = x.dot(x).map_smooth(|s| {
+    let factor = dot(x, x).map_smooth(|s| {
         if s < 1e-4 {
             return (1.0 + s / 48.0 + s * s / 1920.0, 1.0 / 48.0 + s / 960.0);
         }

@@ -50,6 +50,9 @@ impl StepControl {
 
     /// \[s] present step size.
     pub fn step(&self) -> f64 {
+        if self.notch == 0 {
+            return self.max_step;
+        }
         self.max_step * (f64::from(self.notch) / NOTCHES_PER_OCTAVE).exp2()
     }
 
@@ -69,11 +72,14 @@ impl StepControl {
             self.shrink((-notches).ceil() as i32);
             return false;
         }
-        let factor = SAFETY * error.powf(-INTEGRAL) * self.last_error.powf(PROPORTIONAL);
-        let change = (NOTCHES_PER_OCTAVE * factor.log2()).floor() as i32;
         let ceiling = if self.growth_blocked > 0 { 0 } else { MAX_GROWTH };
         let floor = if error < KEPT_BELOW { 0 } else { -MAX_SHRINKAGE };
-        self.notch = (self.notch + change.clamp(floor, ceiling)).min(0);
+        // The largest step that is not cut stays whatever the powers are.
+        if self.notch < 0 || floor < 0 {
+            let factor = SAFETY * error.powf(-INTEGRAL) * self.last_error.powf(PROPORTIONAL);
+            let change = (NOTCHES_PER_OCTAVE * factor.log2()).floor() as i32;
+            self.notch = (self.notch + change.clamp(floor, ceiling)).min(0);
+        }
         self.growth_blocked = self.growth_blocked.saturating_sub(1);
         self.last_error = error;
         true

@@ -31,6 +31,7 @@ use crate::effects::growth::Warmth;
 use crate::model::bodies::Race;
 use crate::model::state::{KeptMatrix, State};
 use crate::model::{Conditions, Model};
+use crate::numerics::lanes::WIDTH;
 use crate::scene::{Groups, Scene, Schedule};
 pub use error::SimulationError;
 use input_paths::InputPaths;
@@ -224,7 +225,8 @@ impl Simulation {
             && constraints(&snapshot.state) == constraints(&self.state)
             && snapshot.state.control.fits(&self.state.control)
             && [0, self.state.balls.len()].contains(&snapshot.state.matrix.balls.len())
-            && snapshot.state.matrix.balls.iter().all(|kept| kept.block.fits(self.model.moved_bodies()))
+            && snapshot.state.matrix.blocks.len() >= snapshot.state.matrix.balls.len().div_ceil(WIDTH)
+            && snapshot.state.matrix.blocks.iter().all(|block| block.fits(self.model.moved_bodies()))
             && snapshot.state.differences.len() == self.state.differences.len()
             && snapshot.state.differences.iter().all(|of_ball| {
                 Race::BOTH.into_iter().all(|race| of_ball[race].fits(self.model.polynomials(race)))
