@@ -278,7 +278,7 @@ fn sum_of_lanes(lanes: &Lanes) -> f64 {
     a + b + c + d
 }
 
-/// Product of two matrices, the same on every processor: that of the library is another where multiplications and additions are fused.
+/// Product of two matrices, in the order of the library's.
 fn times(a: &Matrix6<f64>, b: &Matrix6<f64>) -> Matrix6<f64> {
     let mut result = Matrix6::zeros();
     for j in 0..BLOCK {

@@ -161,8 +161,10 @@ mod tests {
         // Sizes change from one matrix to the next, and every pivot is somewhere else.
         for size in [1, 2, 6, 7, 13, 18, 12, 3] {
             for seed in 0..5 {
+                // No row is near a sum of others, and sizes of rows differ.
                 let number = |i: usize, k: usize| {
-                    (1.0 + (7 * i + 13 * k + 5 * seed) as f64).sin() * 10f64.powi(i as i32 % 4)
+                    let angle = ((3 * i + 1) * (7 * k + 2) + 5 * seed) as f64;
+                    angle.sin() * 10f64.powi(i as i32 % 4)
                 };
                 let matrix = DMatrix::from_fn(size, size, number);
                 let mut x = DVector::from_fn(size, |i, _| number(i, size));
