@@ -38,6 +38,14 @@ pub(super) struct Stencil<V> {
 /// Weights along phi of the three functions.
 type AlongPhi<V> = [[V; 4]; 3];
 
+/// Weights, and their slopes.
+#[derive(Clone, Copy)]
+struct Weights<V> {
+    t: ([V; 4], [V; 4]),
+    theta: ([V; 4], [V; 4]),
+    phi: (AlongPhi<V>, AlongPhi<V>),
+}
+
 impl<V: Values> Stencil<V> {
     /// At t, theta and phi.
     #[inline(always)]
@@ -61,30 +69,33 @@ impl<V: Values> Stencil<V> {
     /// Values of the stored functions.
     #[inline(always)]
     pub(super) fn values(&self, nodes: &[f64]) -> [V; 3] {
-        let ([by_t, _], [by_theta, _], [by_phi, _]) = self.weights();
-        across(&by_phi, &self.along_phi(nodes, &products(&by_t, &by_theta)))
+        let Weights { t, theta, phi } = self.weights();
+        across(&phi.0, &self.along_phi(nodes, &products(&t.0, &theta.0)))
     }
 
     /// The same with their slopes.
     #[inline(always)]
     fn values_with_slopes(&self, nodes: &[f64]) -> [[V; 3]; 4] {
-        let ([by_t, t_slopes], [by_theta, theta_slopes], [by_phi, phi_slopes]) = self.weights();
-        let along = self.along_phi(nodes, &products(&by_t, &by_theta));
+        let Weights { t, theta, phi } = self.weights();
+        let along = self.along_phi(nodes, &products(&t.0, &theta.0));
         [
-            across(&by_phi, &along),
-            across(&by_phi, &self.along_phi(nodes, &products(&t_slopes, &by_theta))),
-            across(&by_phi, &self.along_phi(nodes, &products(&by_t, &theta_slopes))),
-            across(&phi_slopes, &along),
+            across(&phi.0, &along),
+            across(&phi.0, &self.along_phi(nodes, &products(&t.1, &theta.0))),
+            across(&phi.0, &self.along_phi(nodes, &products(&t.0, &theta.1))),
+            across(&phi.1, &along),
         ]
     }
 
-    /// Weights along t, theta and phi, and their slopes.
+    /// Weights along t, theta and phi.
     #[inline(always)]
-    fn weights(&self) -> ([[V; 4]; 2], [[V; 4]; 2], [AlongPhi<V>; 2]) {
+    fn weights(&self) -> Weights<V> {
         let [u, v, w] = self.within;
         let (even, odd) = (weights(w, 1.0), weights(w, STEEPNESS));
-        let (t, theta) = (weights_of_size(&self.sizes, u), weights(v, 1.0));
-        ([t.0, t.1], [theta.0, theta.1], [[even.0, odd.0, odd.0], [even.1, odd.1, odd.1]])
+        Weights {
+            t: weights_of_size(&self.sizes, u),
+            theta: weights(v, 1.0),
+            phi: ([even.0, odd.0, odd.0], [even.1, odd.1, odd.1]),
+        }
     }
 
     /// Is a contact where the one before it is?
