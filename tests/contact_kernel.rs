@@ -6,7 +6,7 @@ mod laws;
 
 use laws::Laws;
 use nalgebra::Vector3;
-use roulement::contact::creep::Law;
+use roulement::contact::creep::{Creepage, Law, LinearTheory};
 use roulement::contact::many::ContactGroup;
 use roulement::contact::materials::Pair;
 use roulement::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
@@ -351,6 +351,83 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             assert_eq!(contacts.load, Lanes::from_fn(|lane| alone[lane].load), "{name}");
             assert_eq!(contacts.force, Lanes::vector(|lane| alone[lane].force), "{name}");
             assert_eq!(contacts.ball_moment, Lanes::vector(|lane| alone[lane].ball_moment), "{name}");
+        }
+    }
+}
+
+#[test]
+fn invariant_laws_of_four_contacts_have_the_bits_of_one_and_of_derivatives() {
+    let laws = Laws::new();
+    let alone = laws::theory();
+    // From rest to far beyond complete sliding, along and across the axes of the table and between its pieces.
+    let slips = [0.0, 1e-16, -3e-7, 2e-4, -1.7e-3, 0.011, -0.4, 1e60];
+    let spins = [0.0, -1e-13, 0.07, -2.3, 41.0, -900.0, 1e62];
+    let mut creepages = vec![];
+    for (longitudinal, lateral) in slips.into_iter().flat_map(|x| slips.map(|y| (x, y))) {
+        for (place, spin) in spins.into_iter().enumerate() {
+            // Rolling either way, and hardly.
+            for cosine in [1.0, -1.0, 0.3, -1e-3] {
+                let curvature = [0.0, 3e3, 1.5e5][place % 3];
+                creepages.push((
+                    Creepage { longitudinal, lateral, spin, curvature: None },
+                    curvature,
+                    cosine,
+                ));
+            }
+        }
+    }
+    let at = |number: usize| creepages[number % creepages.len()];
+    for law in [Law::Saturated, Law::Table(&laws.table), Law::Frozen(&laws.table, &[0.01, -0.02, 0.005, 0.0])]
+    {
+        for bent in [false, true] {
+            let one = |number: usize| {
+                let (creepage, curvature, cosine) = at(number);
+                let theory = LinearTheory { coupling: cosine * alone.coupling, ..alone };
+                (theory, Creepage { curvature: bent.then_some(curvature), ..creepage })
+            };
+            for first in 0..creepages.len() {
+                let four: [_; WIDTH] = std::array::from_fn(|lane| one(first + 17 * lane));
+                let lanes = |of: &dyn Fn(&(LinearTheory<f64>, Creepage<f64>)) -> f64| {
+                    Lanes::from_fn(|lane| of(&four[lane]))
+                };
+                let theory = LinearTheory {
+                    longitudinal: lanes(&|x| x.0.longitudinal),
+                    lateral: lanes(&|x| x.0.lateral),
+                    coupling: lanes(&|x| x.0.coupling),
+                    spin: lanes(&|x| x.0.spin),
+                    friction_limit: lanes(&|x| x.0.friction_limit),
+                    moment_limit: lanes(&|x| x.0.moment_limit),
+                    mean_semi_axis: lanes(&|x| x.0.mean_semi_axis),
+                    half_width: lanes(&|x| x.0.half_width),
+                };
+                let creepage = Creepage {
+                    longitudinal: lanes(&|x| x.1.longitudinal),
+                    lateral: lanes(&|x| x.1.lateral),
+                    spin: lanes(&|x| x.1.spin),
+                    curvature: bent.then(|| lanes(&|x| x.1.curvature.unwrap())),
+                };
+                let together = theory.forces(law, &creepage);
+                for (lane, (theory, creepage)) in four.iter().enumerate() {
+                    let expected = theory.forces(law, creepage);
+                    let ours = together.zip_with(&together, |lanes, _| lanes.0[lane]);
+                    assert_eq!(ours, expected, "{law:?} {theory:?} {creepage:?}");
+                }
+                let (theory, creepage) = &four[0];
+                let dual = |x: f64| Dual::<1>::variable(x, 0, x);
+                let theory = LinearTheory {
+                    longitudinal: dual(theory.longitudinal),
+                    lateral: dual(theory.lateral),
+                    coupling: dual(theory.coupling),
+                    spin: dual(theory.spin),
+                    friction_limit: dual(theory.friction_limit),
+                    moment_limit: dual(theory.moment_limit),
+                    mean_semi_axis: dual(theory.mean_semi_axis),
+                    half_width: dual(theory.half_width),
+                };
+                let forces = theory.forces(law, &creepage.zip_with(creepage, |x, _| dual(x)));
+                let values = forces.zip_with(&forces, |force, _| force.value);
+                assert_eq!(values, together.zip_with(&together, |lanes, _| lanes.0[0]), "{creepage:?}");
+            }
         }
     }
 }

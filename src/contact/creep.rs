@@ -194,11 +194,14 @@ impl<S: Scalar> LinearTheory<S> {
         let (per_force, per_moment) = self.per_limits();
         // Cosine of the rolling direction, which the coupling carries, over the one below which directions are mixed.
         let uncoupled = (self.spin * per_moment).scale(MIXED_BELOW * table.spin_coupling());
-        let cosine = self.coupling * per_force / (uncoupled + S::constant(ARM_FLOOR));
-        cosine.map_smooth(|c| match c.abs() >= 1.0 {
-            true => (c.signum(), 0.0),
-            false => (0.5 * c * (3.0 - c * c), 1.5 * (1.0 - c * c)),
-        })
+        let (cosine, limit) = (self.coupling * per_force, uncoupled + S::constant(ARM_FLOOR));
+        let forwards = S::one().where_positive(cosine, -S::one());
+        if !limit.any_beyond(1.0, cosine * forwards) {
+            return forwards;
+        }
+        // The polynomial is 1 or -1 where the cosine is.
+        let cosine = (cosine / limit).clamp_to(-1.0, 1.0);
+        cosine.scale(0.5) * (S::constant(3.0) - cosine.square())
     }
 
     /// Linear force over mu Q of the slips `phi b` and `kappa b^2` at the side of the contact.

@@ -21,9 +21,11 @@ mod patch;
 pub mod scaled_law;
 pub mod solution;
 pub mod table;
+mod table_angle;
 mod table_evaluation;
 pub mod table_nodes;
 mod table_pieces;
+mod table_stencil;
 
 pub use patch::{LinearError, Patch};
 

@@ -20,7 +20,6 @@ use super::Patch;
 use super::linear::Scales;
 use super::patch::LinearError;
 use super::table_pieces::{COUNT, weights};
-use crate::numerics::lanes::Lanes;
 
 /// Intervals from rest to sliding, from the x axis to the plane of y and spin, and of half a turn in that plane.
 pub const SHAPE: [usize; 3] = [COUNT, 10, 16];
@@ -103,8 +102,8 @@ fn linear_forces(scales: &Scales, stretch: &Stretch, d: [f64; 3]) -> [f64; 3] {
 /// The table of one contact: one axis ratio, padded so that every stencil lies inside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CreepTable {
-    /// Three stored functions and a zero, in the lanes of one vector.
-    pub(super) nodes: Vec<Lanes>,
+    /// Stored functions by t, theta, number of the function and phi: four nodes along phi are one vector.
+    pub(super) nodes: Vec<f64>,
     /// [-] linear theory's lateral force by spin and spin moment by lateral creepage, all over their limits without coupling.
     pub(super) coupling: [f64; 2],
     pub(super) stretch: Stretch,
@@ -182,21 +181,18 @@ impl CreepTable {
             [x, sign * y, sign * z]
         };
         // The stored theta at the ends lies a little inside; the functions are even there, so that nothing is lost.
-        let mut padded = Vec::with_capacity(PADDED.iter().product());
+        let mut nodes = Vec::with_capacity(3 * PADDED.iter().product::<usize>());
         for i in -1..=n_t + 1 {
             for j in -1..=n_theta + 1 {
-                for k in -1..=n_phi + 1 {
-                    padded.push(match i {
-                        -1 => std::array::from_fn(|c| 2.0 * at(0, j, k)[c] - at(1, j, k)[c]),
-                        i if i > n_t => {
-                            std::array::from_fn(|c| 2.0 * at(n_t, j, k)[c] - at(n_t - 1, j, k)[c])
-                        }
-                        i => at(i, j, k),
-                    });
+                for c in 0..3 {
+                    nodes.extend((-1..=n_phi + 1).map(|k| match i {
+                        -1 => 2.0 * at(0, j, k)[c] - at(1, j, k)[c],
+                        i if i > n_t => 2.0 * at(n_t, j, k)[c] - at(n_t - 1, j, k)[c],
+                        i => at(i, j, k)[c],
+                    }));
                 }
             }
         }
-        let nodes = padded.into_iter().map(|[x, y, z]: [f64; 3]| Lanes([x, y, z, 0.0])).collect();
         Self { nodes, coupling, stretch }
     }
 }

@@ -1,44 +1,49 @@
 //! Evaluation of the table of Kalker's nonlinear theory: values, one or several at a time, and exact derivatives.
 
-use std::f64::consts::{FRAC_PI_2, PI};
-use std::sync::LazyLock;
-
-use super::table::{CreepTable, MIDDLE, PADDED, SHAPE};
-use super::table_pieces::{locate, locate_size, piece, weights};
+use super::table::{CreepTable, MIDDLE};
+use super::table_angle::{acute_angle, angle};
+use super::table_pieces::piece;
+use super::table_stencil::{DENSITY, Stencil, values_with_slopes};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::scalar::{Scalar, SmoothMap, Values, within_limit};
 
-/// [-] sizes |q| below which a contact is at rest, and above which squares are no numbers any more.
+/// [-] sizes |q| below which a contact is at rest, and above which products of three sizes are no numbers any more.
 const REST: f64 = 1e-12;
-const LARGEST: f64 = 1e150;
+const LARGEST: f64 = 1e100;
+/// [-] square of a size that is as good as none, and whose root has an inverse.
+const NOTHING: f64 = 1e-300;
 
 impl CreepTable {
     /// Where `q` lies in the table.
     #[inline(always)]
     fn place<V: Values>(&self, q: [V; 3]) -> Place<V> {
-        let norm = |[x, y, z]: [V; 3]| (x * x + y * y + z * z).sqrt();
-        let (one, minus) = (V::one(), -V::one());
+        let one = V::one();
         // into the quarter that is stored, with responses of size one
-        let sign_x = minus.where_positive(-q[0], one);
-        let sign_yz = minus.where_positive(-q[2], one.where_positive(q[2], minus.where_positive(-q[1], one)));
+        let sign_x = one.with_sign_of(q[0]);
+        let sign_yz = one.with_sign_of(q[2].where_positive(q[2].abs(), q[1]));
         let [response_y, response_z] = self.stretch.response;
-        let scaled = [sign_x * q[0], (sign_yz * q[1]).scale(response_y), (sign_yz * q[2]).scale(response_z)];
-        let size = norm(scaled);
+        let scaled = [q[0].abs(), (sign_yz * q[1]).scale(response_y), (sign_yz * q[2]).scale(response_z)];
+        let [x, y, z] = scaled;
+        let size = (x * x + y * y + z * z).sqrt();
         let [stretch_x, stretch_z] = self.stretch.direction;
-        let (x, y, z) = (scaled[0].scale(stretch_x), scaled[1], scaled[2].scale(stretch_z));
-        let across = (y * y + z * z).sqrt();
-        let length = norm([x, y, z]);
-        // On the x axis every phi is as good, and at rest every direction.
-        let per_across = one / across.where_positive(across, one);
-        let per_length = one / length.where_positive(length, one);
+        let (x, z) = (x.scale(stretch_x), z.scale(stretch_z));
+        let across_square = y * y + z * z + V::constant(NOTHING);
+        let (across, length) = (across_square.sqrt(), (x * x + across_square).sqrt());
+        // Three quotients at the price of one.
+        let saturated = size + V::constant(MIDDLE);
+        let inverse = one / (across * length * saturated);
+        let per_across = inverse * (length * saturated);
+        let per_length = inverse * (across * saturated);
+        // On the x axis every phi is as good.
+        let beside = across - V::constant(1e-149);
         Place {
             signs: [sign_x, sign_yz, sign_yz],
             scaled,
             size,
             length,
-            t: size / (size + V::constant(MIDDLE)),
+            t: size * (inverse * (across * length)),
             theta: [x * per_length, across * per_length],
-            phi: [(y * per_across).where_positive(across, one), z * per_across],
+            phi: [(y * per_across).where_positive(beside, one), z * per_across],
         }
     }
 
@@ -108,17 +113,18 @@ impl CreepTable {
     #[inline(always)]
     pub fn values<V: Values>(&self, q: [V; 3]) -> [V; 3] {
         let place = self.place(q);
-        let stored = V::each(place.coordinates(), |coordinates| {
-            let Lanes([x, y, z, _]) = interpolate(&self.nodes, &Stencil::new(coordinates));
-            [x, y, z]
-        });
+        let stored = Stencil::new(place.coordinates()).values(&self.nodes);
         let [x, y, z] = place.forces(&stored);
         let [x, y] = within_limit(x, y);
         let rest = self.at_rest(q);
         let table = [x, y, z.clamp_to(-1.0, 1.0)];
         // at rest, and where there is no number
-        let (moving, finite) = (place.size - V::constant(REST), V::constant(LARGEST) - place.size);
-        std::array::from_fn(|m| table[m].where_positive(moving, rest[m]).where_positive(finite, rest[m]))
+        let known = (place.size - V::constant(REST)).at_most(V::constant(LARGEST) - place.size);
+        [
+            table[0].where_positive(known, rest[0]),
+            table[1].where_positive(known, rest[1]),
+            table[2].where_positive(known, rest[2]),
+        ]
     }
 
     /// Forces over mu Q, mu Q and M_max at `q`, and their derivatives by q: row by force, column by q.
@@ -129,8 +135,7 @@ impl CreepTable {
             return (self.at_rest(q), [[1.0, 0.0, 0.0], [0.0, 1.0, yz], [0.0, zy, 1.0]]);
         }
         let stencil = Stencil::new(place.coordinates());
-        let [Lanes(value), Lanes(by_t), Lanes(by_theta), Lanes(by_phi)] =
-            interpolate_with_slopes(&self.nodes, &stencil);
+        let [value, by_t, by_theta, by_phi] = values_with_slopes(&stencil, &self.nodes);
 
         // gradient: by t, theta and phi, and these by q
         let Place { signs, scaled, size, length, t, .. } = place;
@@ -140,13 +145,12 @@ impl CreepTable {
         let polar = [-sin_theta, cos_theta * cos_phi, cos_theta * sin_phi];
         let azimuthal = [0.0, -sin_phi, cos_phi];
         let t_slope = (1.0 - t) / (MIDDLE + size);
-        let density = piece(stencil.piece[0]).density;
+        let density = piece(stencil.size_piece()).density;
         let [stretch_x, stretch_z] = self.stretch.direction;
         let by_direction = [stretch_x, 1.0, stretch_z];
         let [response_y, response_z] = self.stretch.response;
         let by_response = [1.0, response_y, response_z];
-        let [x, y, z, _] = value;
-        let [x, y, z] = place.forces(&[x, y, z]);
+        let [x, y, z] = place.forces(&value);
         let mut gradient = [[0.0; 3]; 3];
         for m in 0..3 {
             let along = t_slope * factor[m] * (value[m] + t * by_t[m] * density);
@@ -167,27 +171,6 @@ impl CreepTable {
         let [x, y] = within_limit(x, y);
         ([x, y, z.clamp_to(-1.0, 1.0)], gradient)
     }
-}
-
-/// Angle in [0, pi] of a unit vector, given by cosine and sine: tangents of half, a quarter and an eighth of it, whose arc
-/// is a short series. Libraries have it for single numbers only.
-#[inline(always)]
-fn angle<V: Values>([cos, sin]: [V; 2]) -> V {
-    const SERIES: [f64; 11] = {
-        let mut series = [0.0; 11];
-        let mut k = 0;
-        while k < series.len() {
-            series[k] = if k % 2 == 0 { 8.0 } else { -8.0 } / (2 * k + 1) as f64;
-            k += 1;
-        }
-        series
-    };
-    let one = V::one();
-    let half = sin / (one + cos.where_positive(cos, -cos));
-    let quarter = half / (one + (one + half.square()).sqrt());
-    let eighth = quarter / (one + (one + quarter.square()).sqrt());
-    let acute = eighth * eighth.square().polynomial(&SERIES);
-    acute.where_positive(cos, V::constant(PI) - acute)
 }
 
 /// Where creepages lie in the table.
@@ -211,122 +194,16 @@ impl<V: Values> Place<V> {
     /// t, theta and phi.
     #[inline(always)]
     fn coordinates(&self) -> [V; 3] {
-        [self.t, angle(self.theta), angle(self.phi)]
+        [self.t, acute_angle(self.theta), angle(self.phi)]
     }
 
     /// Forces from the stored functions.
     #[inline(always)]
     fn forces(&self, value: &[V; 3]) -> [V; 3] {
         let [cos_theta, sin_theta] = self.theta;
-        let factor = [cos_theta, sin_theta, sin_theta];
-        std::array::from_fn(|m| self.signs[m] * self.t * factor[m] * value[m])
+        let [x, yz] = [self.signs[0] * self.t * cos_theta, self.signs[1] * self.t * sin_theta];
+        [x * value[0], yz * value[1], yz * value[2]]
     }
-}
-
-/// Pieces per unit of theta and phi.
-const DENSITY: [f64; 2] = [SHAPE[1] as f64 / FRAC_PI_2, SHAPE[2] as f64 / PI];
-
-/// The nodes around a place.
-#[derive(Clone, Copy, Debug)]
-struct Stencil {
-    /// Piece by t, theta and phi, and where in it.
-    piece: [usize; 3],
-    within: [f64; 3],
-}
-
-impl Stencil {
-    /// At t, theta and phi.
-    #[inline(always)]
-    fn new([t, theta, phi]: [f64; 3]) -> Self {
-        let (i, u) = locate_size(t);
-        let (j, v) = locate(theta * DENSITY[0], SHAPE[1]);
-        let (k, w) = locate(phi * DENSITY[1], SHAPE[2]);
-        Self { piece: [i, j, k], within: [u, v, w] }
-    }
-
-    /// The nodes around the place and those between them in memory: one range, so that nothing is left to check within it.
-    #[inline(always)]
-    fn around<'a>(&self, nodes: &'a [Lanes]) -> &'a [Lanes] {
-        let [i, j, k] = self.piece;
-        let first = (i * PADDED[1] + j) * PADDED[2] + k;
-        &nodes[first..first + SPAN]
-    }
-
-    /// Weights along phi of the stored functions, and their slopes.
-    #[inline(always)]
-    fn weights_along_phi(&self) -> ([Lanes; 4], [Lanes; 4]) {
-        // f_y and m_z go like sines and cosines of phi: with this steepness their slopes are exact, and the force is
-        // smooth across the x axis, where all phi meet.
-        static STEEPNESS: LazyLock<f64> = LazyLock::new(|| {
-            let step = PI / SHAPE[2] as f64;
-            step / step.sin()
-        });
-        let w = self.within[2];
-        let (even, odd) = (weights(w, 1.0), weights(w, *STEEPNESS));
-        let each = |even: [f64; 4], odd: [f64; 4]| -> [Lanes; 4] {
-            std::array::from_fn(|c| Lanes([even[c], odd[c], odd[c], 0.0]))
-        };
-        (each(even.0, odd.0), each(even.1, odd.1))
-    }
-}
-
-/// From the first to the last of the nodes around a place.
-const SPAN: usize = (3 * PADDED[1] + 3) * PADDED[2] + 4;
-
-/// The four nodes along phi, at step `a` along t and `b` along theta.
-#[inline(always)]
-fn row(around: &[Lanes], a: usize, b: usize) -> &[Lanes] {
-    let first = (a * PADDED[1] + b) * PADDED[2];
-    &around[first..first + 4]
-}
-
-/// Sum over the nodes along phi.
-#[inline(always)]
-fn line(weights: &[Lanes; 4], nodes: &[Lanes]) -> Lanes {
-    weights[0] * nodes[0] + weights[1] * nodes[1] + weights[2] * nodes[2] + weights[3] * nodes[3]
-}
-
-/// Values of the stored functions.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn interpolate(nodes: &[Lanes], stencil: &Stencil) -> Lanes {
-    let ((wt, _), (wv, _)) =
-        (piece(stencil.piece[0]).weights(stencil.within[0]), weights(stencil.within[1], 1.0));
-    let (ww, _) = stencil.weights_along_phi();
-    let around = stencil.around(nodes);
-    let mut value = Lanes::constant(0.0);
-    for a in 0..4 {
-        let mut plane = Lanes::constant(0.0);
-        for b in 0..4 {
-            plane += line(&ww, row(around, a, b)).scale(wv[b]);
-        }
-        value += plane.scale(wt[a]);
-    }
-    value
-}
-
-/// Values of the stored functions, and their slopes by t, theta and phi over the piece.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn interpolate_with_slopes(nodes: &[Lanes], stencil: &Stencil) -> [Lanes; 4] {
-    let ((wt, dt), (wv, dv)) =
-        (piece(stencil.piece[0]).weights(stencil.within[0]), weights(stencil.within[1], 1.0));
-    let (ww, dw) = stencil.weights_along_phi();
-    let around = stencil.around(nodes);
-    let [mut value, mut by_t, mut by_theta, mut by_phi] = [Lanes::constant(0.0); 4];
-    for a in 0..4 {
-        let [mut plane, mut plane_by_theta, mut plane_by_phi] = [Lanes::constant(0.0); 3];
-        for b in 0..4 {
-            let nodes = row(around, a, b);
-            let along = line(&ww, nodes);
-            plane += along.scale(wv[b]);
-            plane_by_theta += along.scale(dv[b]);
-            plane_by_phi += line(&dw, nodes).scale(wv[b]);
-        }
-        value += plane.scale(wt[a]);
-        by_t += plane.scale(dt[a]);
-        by_theta += plane_by_theta.scale(wt[a]);
-        by_phi += plane_by_phi.scale(wt[a]);
-    }
-    [value, by_t, by_theta, by_phi]
 }
 
 /// `forwards` at a weight of 1, `backwards` at 0.
@@ -355,23 +232,29 @@ fn limit_gradient([x, y, z]: [f64; 3], gradient: &mut [[f64; 3]; 3]) {
 impl SmoothMap<4, 3> for CreepTable {
     #[inline(always)]
     fn values<V: Values>(&self, x: [V; 4]) -> [V; 3] {
-        self.mixed_values(x)
+        V::each_or_together(
+            x,
+            |x| values_of_one(self, x),
+            |x| {
+                let mut forces = [Lanes::constant(0.0); 3];
+                values_together(self, &x, &mut forces);
+                forces
+            },
+        )
     }
     fn with_gradient(&self, x: [f64; 4]) -> ([f64; 3], [[f64; 4]; 3]) {
         self.mixed(x)
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Forces of one contact.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn values_of_one(table: &CreepTable, x: [f64; 4]) -> [f64; 3] {
+    table.mixed_values(x)
+}
 
-    #[test]
-    fn closed_form_angles() {
-        for step in 0..=1000 {
-            let expected = PI * f64::from(step) / 1000.0;
-            let error = angle([expected.cos(), expected.sin().abs()]) - expected;
-            assert!(error.abs() < 1e-15, "{expected}: {error:e}");
-        }
-    }
+/// Forces of several contacts. They go into memory lane by lane: compilers vectorise from the stores backwards.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn values_together(table: &CreepTable, x: &[Lanes; 4], forces: &mut [Lanes; 3]) {
+    *forces = table.mixed_values(*x);
 }

@@ -41,12 +41,6 @@ impl Lanes {
         Vector3::new(component(0), component(1), component(2))
     }
 
-    /// The larger of each number and a bound; the bound where there is no number.
-    #[inline(always)]
-    pub fn at_least(self, bound: f64) -> Self {
-        self.map(|x| if x > bound { x } else { bound })
-    }
-
     /// The larger of each number and the size of another; NaN where one of them is ([`crate::numerics::size::larger`]).
     #[inline(always)]
     pub fn larger_size(self, other: Self) -> Self {
@@ -118,6 +112,10 @@ impl Scalar for Lanes {
         let beyond = |lane: f64, limit: f64| lane.any_beyond(fraction, limit);
         beyond(a, p) | beyond(b, q) | beyond(c, r) | beyond(d, s)
     }
+    #[inline(always)]
+    fn clamp_to(self, low: f64, high: f64) -> Self {
+        self.map(|x| x.clamp_to(low, high))
+    }
 }
 
 impl Values for Lanes {
@@ -142,8 +140,37 @@ impl Values for Lanes {
         results
     }
     #[inline(always)]
+    fn each_or_together<const K: usize, const M: usize>(
+        x: [Self; K],
+        _: impl FnOnce([f64; K]) -> [f64; M],
+        together: impl FnOnce([Lanes; K]) -> [Lanes; M],
+    ) -> [Self; M] {
+        together(x)
+    }
+    const COUNT: usize = WIDTH;
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> f64 {
+        self.0[lane]
+    }
+    #[inline(always)]
     fn all(self, condition: impl Fn(f64) -> bool) -> bool {
         self.0.into_iter().all(condition)
+    }
+    #[inline(always)]
+    fn at_least(self, other: Self) -> Self {
+        self.zip(other, f64::at_least)
+    }
+    #[inline(always)]
+    fn at_most(self, other: Self) -> Self {
+        self.zip(other, f64::at_most)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.map(f64::abs)
+    }
+    #[inline(always)]
+    fn with_sign_of(self, other: Self) -> Self {
+        self.zip(other, f64::copysign)
     }
 }
 

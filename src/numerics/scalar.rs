@@ -5,6 +5,8 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 use nalgebra::Vector3;
 
+use super::lanes::Lanes;
+
 /// Arithmetic of the contact kernel. It has no branches, so that vectors of several numbers can implement it.
 pub trait Scalar:
     Copy
@@ -96,8 +98,34 @@ pub trait Values: Scalar {
         function: impl FnMut([f64; K]) -> [f64; M],
     ) -> [Self; M];
 
+    /// The same, of a function that is also written for several numbers at a time.
+    fn each_or_together<const K: usize, const M: usize>(
+        x: [Self; K],
+        one: impl FnOnce([f64; K]) -> [f64; M],
+        together: impl FnOnce([Lanes; K]) -> [Lanes; M],
+    ) -> [Self; M];
+
+    /// Numbers that are computed with together.
+    const COUNT: usize;
+
+    /// One of them; a number that is alone stands in all places. By reference: a lane picked from a copy would need the whole
+    /// copy in memory.
+    fn lane(&self, lane: usize) -> f64;
+
     /// Does a condition hold for every number?
     fn all(self, condition: impl Fn(f64) -> bool) -> bool;
+
+    /// The larger of two numbers; the other one where this is no number.
+    fn at_least(self, other: Self) -> Self;
+
+    /// The smaller of two numbers; the other one where this is no number.
+    fn at_most(self, other: Self) -> Self;
+
+    /// The size of a number.
+    fn abs(self) -> Self;
+
+    /// The size of this number with the sign of another.
+    fn with_sign_of(self, other: Self) -> Self;
 }
 
 impl Values for f64 {
@@ -109,8 +137,37 @@ impl Values for f64 {
         function(x)
     }
     #[inline(always)]
+    fn each_or_together<const K: usize, const M: usize>(
+        x: [Self; K],
+        one: impl FnOnce([f64; K]) -> [f64; M],
+        _: impl FnOnce([Lanes; K]) -> [Lanes; M],
+    ) -> [Self; M] {
+        one(x)
+    }
+    const COUNT: usize = 1;
+    #[inline(always)]
+    fn lane(&self, _: usize) -> f64 {
+        *self
+    }
+    #[inline(always)]
     fn all(self, condition: impl Fn(f64) -> bool) -> bool {
         condition(self)
+    }
+    #[inline(always)]
+    fn at_least(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn at_most(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn with_sign_of(self, other: Self) -> Self {
+        self.copysign(other)
     }
 }
 
@@ -132,6 +189,10 @@ impl Single for f64 {
 pub fn within_limit<S: Scalar>(x: S, y: S) -> [S; 2] {
     let square = x.square() + y.square();
     let inside = square - S::one();
+    // Seldom beyond, and root and quotient take long.
+    if !square.any_beyond(1.0, S::one()) {
+        return [x, y];
+    }
     // One unit of rounding inside.
     let factor = S::constant(1.0 - f64::EPSILON) / square.where_positive(inside, S::one()).sqrt();
     let factor = factor.where_positive(inside, S::one());
@@ -180,7 +241,11 @@ impl Scalar for f64 {
     }
     #[inline(always)]
     fn any_beyond(self, fraction: f64, limit: Self) -> bool {
-        self.abs() > fraction * limit
+        f64::abs(self) > fraction * limit
+    }
+    #[inline(always)]
+    fn clamp_to(self, low: f64, high: f64) -> Self {
+        self.at_least(low).at_most(high)
     }
 }
 
