@@ -141,7 +141,8 @@ fn zeros_are_a_start_and_the_race_turns_by_itself() {
     zeros.push(("inner.speed".into(), 0.0));
     set(&package, c, &zeros);
     initialise(c);
-    assert_eq!(get(&package, c, "inner.force.x"), 0.0);
+    // Nothing but rounding: balls are in balance in the middle of their grooves.
+    assert!(get(&package, c, "inner.force.x").abs() < 1e-12);
     step(c, 0);
     // The shaft takes the race to its place and up to its speed.
     let (x, speed) = (2e-5, 100.0);

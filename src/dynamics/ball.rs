@@ -204,7 +204,7 @@ impl BallTrial {
             tangent += match races[race].moved() {
                 None => by_ball_alone(&contact, &seed(motion, step, radius), races[race].motion).1,
                 Some(moved) => {
-let pair = by_ball_and_race(&contact, &seed(motion, step, radius), &moved);
+                    let pair = by_ball_and_race(&contact, &seed(motion, step, radius), &moved);
                     self.couple(race.into(), &pair, step, radius)
                 }
             };
