@@ -107,8 +107,14 @@ fn regression_balls_at_the_edge_of_the_load_zone_cost_few_corrections() {
     let (last, expected) = (&history[100], &reference[100]);
     // Both solve to eight digits of the load or to 1e-6 N in every step, whichever is more.
     assert!((last.inner.pose.position - expected.inner.pose.position).norm() < 1e-12);
+    // A ball that leaves the load zone takes along what its last step there left: a speed, at most the tolerance times the step over its mass.
+    let model = repaired.model();
+    let largest = last.balls.iter().map(|ball| ball.inner.load).fold(0.0, f64::max);
+    let time = repaired.time();
+    let drift = 1e-8 * largest * (time / statistics.steps as f64) / model.bearing.ball.mass * time;
     for (ball, other) in last.balls.iter().zip(&expected.balls) {
-        assert!((ball.position - other.position).norm() < 1e-10);
+        let bound = if ball.inner.load > 0.0 { 1e-11 } else { drift };
+        assert!((ball.position - other.position).norm() < bound, "{bound}");
     }
 }
 
