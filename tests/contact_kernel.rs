@@ -387,24 +387,25 @@ fn invariant_laws_of_four_contacts_have_the_bits_of_one_and_of_derivatives() {
             };
             for first in 0..creepages.len() {
                 let four: [_; WIDTH] = std::array::from_fn(|lane| one(first + 17 * lane));
-                let lanes = |of: &dyn Fn(&(LinearTheory<f64>, Creepage<f64>)) -> f64| {
-                    Lanes::from_fn(|lane| of(&four[lane]))
-                };
+                let of_theory =
+                    |part: fn(&LinearTheory<f64>) -> f64| Lanes::from_fn(|lane| part(&four[lane].0));
+                let of_creepage =
+                    |part: fn(&Creepage<f64>) -> f64| Lanes::from_fn(|lane| part(&four[lane].1));
                 let theory = LinearTheory {
-                    longitudinal: lanes(&|x| x.0.longitudinal),
-                    lateral: lanes(&|x| x.0.lateral),
-                    coupling: lanes(&|x| x.0.coupling),
-                    spin: lanes(&|x| x.0.spin),
-                    friction_limit: lanes(&|x| x.0.friction_limit),
-                    moment_limit: lanes(&|x| x.0.moment_limit),
-                    mean_semi_axis: lanes(&|x| x.0.mean_semi_axis),
-                    half_width: lanes(&|x| x.0.half_width),
+                    longitudinal: of_theory(|x| x.longitudinal),
+                    lateral: of_theory(|x| x.lateral),
+                    coupling: of_theory(|x| x.coupling),
+                    spin: of_theory(|x| x.spin),
+                    friction_limit: of_theory(|x| x.friction_limit),
+                    moment_limit: of_theory(|x| x.moment_limit),
+                    mean_semi_axis: of_theory(|x| x.mean_semi_axis),
+                    half_width: of_theory(|x| x.half_width),
                 };
                 let creepage = Creepage {
-                    longitudinal: lanes(&|x| x.1.longitudinal),
-                    lateral: lanes(&|x| x.1.lateral),
-                    spin: lanes(&|x| x.1.spin),
-                    curvature: bent.then(|| lanes(&|x| x.1.curvature.unwrap())),
+                    longitudinal: of_creepage(|x| x.longitudinal),
+                    lateral: of_creepage(|x| x.lateral),
+                    spin: of_creepage(|x| x.spin),
+                    curvature: bent.then(|| of_creepage(|x| x.curvature.unwrap())),
                 };
                 let together = theory.forces(law, &creepage);
                 for (lane, (theory, creepage)) in four.iter().enumerate() {
