@@ -68,7 +68,7 @@ fn case(text: &str) -> (Model, EquilibriumInput) {
     (Model::new(&scene).unwrap(), input)
 }
 
-/// Largest difference: of loads over the largest, of displacements over a millionth of the ball diameter times 1e6.
+/// [-] largest difference: of loads over the largest one, of displacements over the ball diameter, of the cage speed over itself.
 fn difference(model: &Model, a: &Equilibrium, b: &Equilibrium) -> f64 {
     let loads = |e: &Equilibrium| -> Vec<f64> {
         e.balls.iter().flat_map(|ball| [ball.report.inner_load, ball.report.outer_load]).collect()

@@ -423,3 +423,17 @@ fn invariant_the_table_goes_on_to_its_first_and_last_axis_ratio() {
         }
     }
 }
+
+#[test]
+fn invariant_forces_that_are_not_there_leave_no_subnormal_numbers() {
+    // In `scenes/radial.toml` a lateral force that is not there moves balls by some 1e-5 m/N of it. Places are squared, and subnormal squares made a
+    // step take a third longer.
+    let table = CreepTable::new(&patch(0.3)).unwrap();
+    for x in [1e-9, 1e-3, 0.1, 3.0, 50.0] {
+        let [along, lateral, moment] = table.values([x, 0.0, 0.0]);
+        assert!(along > 0.0);
+        for force in [lateral, moment] {
+            assert!(force.abs() < 1e-90 && !(1e-5 * force).powi(2).is_subnormal(), "{x} {force:e}");
+        }
+    }
+}

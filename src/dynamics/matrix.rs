@@ -17,7 +17,7 @@ use crate::numerics::scalar::constant_vector;
 use crate::numerics::size::larger;
 
 /// [-] price of one more correction, per ball, over that of a new block (benches/speed.rs): where balls are solved together and all
-/// are evaluated, and where each is alone.
+/// are evaluated, and where each is alone. With twice that, balls together take 7 % more time in the radial and the cage scene.
 const TOGETHER: f64 = 0.05;
 const ALONE: f64 = 0.2;
 /// Most steps in a row that begin with a new block before an old one is tried again.

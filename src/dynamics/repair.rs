@@ -16,9 +16,9 @@ use crate::model::bodies::Race;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::size::largest;
 
-/// [-] way that a correction alone would take a ball over the depth of its deeper contact, above which it is out of balance. At a third of it
-/// a step of `scenes/radial.toml` with the goal `fast` takes an eighth fewer corrections and as much more time, as balls are brought back that
-/// one correction of all brings back, too; at five times of it, a third more time.
+/// [-] way that a correction alone would take a ball over the depth of its deeper contact, above which it is out of balance. At half of it a
+/// step of `scenes/radial.toml` with the goal `fast` takes a twentieth fewer corrections and a tenth more time, as balls are brought back that one
+/// correction of all brings back, too; at eight times of it, a third more time.
 const THROWN: f64 = 0.12;
 /// [-] share of the balls above which it is the bodies that are not where they will be: where a load turns around, say.
 const MANY: f64 = 0.6;

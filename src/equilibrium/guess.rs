@@ -23,6 +23,7 @@ const USEFUL: f64 = 1e-6;
 /// What a guess may take; a typical one takes 6 to 10 iterations. Its tolerance is below that of the whole search, which then has
 /// nothing left to do: its last step would cost as much as five here.
 const EFFORT: Effort = Effort { tolerance: 1e-12, enough: USEFUL, iterations: 40 };
+
 /// The guess, where one is found: displacements, cage speed, and places of the balls.
 pub fn guess(problem: &Problem<'_>) -> Option<Found<Stays>> {
     if !problem.is_settled_by_thrust() {

@@ -10,8 +10,9 @@ use crate::numerics::scalar::{Scalar, SmoothMap, Values, within_limit};
 /// [-] sizes |q| below which a contact is at rest, and above which products of three sizes are no numbers any more.
 const REST: f64 = 1e-12;
 const LARGEST: f64 = 1e100;
-/// [-] square of a size that is as good as none, and whose root has an inverse.
-const NOTHING: f64 = 1e-300;
+/// [-] square of a size that is as good as none, and whose root has an inverse. A force of that size stays where there is none, moves a ball
+/// by as little, and places are squared: not so small that such squares are subnormal, which processors take many times longer for.
+const NOTHING: f64 = 1e-200;
 
 impl CreepTable {
     /// Where `q` lies in the table.
@@ -34,8 +35,8 @@ impl CreepTable {
         let inverse = one / (across * length * saturated);
         let per_across = inverse * (length * saturated);
         let per_length = inverse * (across * saturated);
-        // On the x axis every phi is as good.
-        let beside = across - V::constant(1e-149);
+        // On the x axis every phi is as good; ten times the root of nothing is beside it.
+        let beside = across - V::constant(1e-99);
         Place {
             signs: [sign_x, sign_yz, sign_yz],
             scaled,

@@ -188,11 +188,11 @@ impl Single for f64 {
 #[inline(always)]
 pub fn within_limit<S: Scalar>(x: S, y: S) -> [S; 2] {
     let square = x.square() + y.square();
-    let inside = square - S::one();
     // Seldom beyond, and root and quotient take long.
     if !square.any_beyond(1.0, S::one()) {
         return [x, y];
     }
+    let inside = square - S::one();
     // One unit of rounding inside.
     let factor = S::constant(1.0 - f64::EPSILON) / square.where_positive(inside, S::one()).sqrt();
     let factor = factor.where_positive(inside, S::one());
