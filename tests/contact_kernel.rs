@@ -14,7 +14,7 @@ use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::model::bodies::Race;
 use roulement::model::{Conditions, Model};
 use roulement::numerics::lanes::{Lanes, WIDTH};
-use roulement::numerics::scalar::{Dual, Scalar, constant_vector};
+use roulement::numerics::scalar::{Dual, Scalar};
 use roulement::scene::Scene;
 
 fn model() -> Model {
@@ -285,6 +285,20 @@ fn an_open_contact_has_neither_force_nor_slope() {
             assert!(row.derivatives.iter().all(|d| *d == 0.0), "{name} {row:?}");
         }
     }
+    // In oil, and with hysteresis against rolling.
+    in_oil(|name, contact, x| {
+        let touching = evaluate_contact(contact, x);
+        let mut x = *x;
+        for i in 0..3 {
+            x[i] -= 1e-4 * touching.geometry.normal[i];
+        }
+        let (ball, race) = motions_of(&x);
+        assert!(contact.is_open(&ball, &race), "{name}");
+        let dual: [Dual<18>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i, 1.0));
+        for row in rows(&evaluate_contact(&ContactModel { hysteresis: 1e-3, ..*contact }, &dual)) {
+            assert!(row.value == 0.0 && row.derivatives.iter().all(|d| *d == 0.0), "{name} {row:?}");
+        }
+    });
 }
 
 #[test]
@@ -310,6 +324,13 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
                     angular_velocity: vector(&x, 6),
                 }
             });
+            let away = [0.0, 300.0, -2.0, 5e-3].map(|spin| {
+                let BallMotion { angular_velocity, .. } = motions[0];
+                BallMotion {
+                    angular_velocity: angular_velocity + Vector3::new(spin, 0.1 * spin, 0.0),
+                    ..motions[3]
+                }
+            });
             let axis = Vector3::new(1.0, x[13], -x[12]).normalize();
             let (position, velocity) = (vector(&x, 9), Vector3::repeat(x[14]));
             let race_motion = RaceMotion {
@@ -330,6 +351,19 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
                     assert_eq!(together.contact(lane), *alone, "{name}");
                 }
             }
+            // Where none of them touches, costly laws are not asked: with the signs of beside one that does.
+            for touching in [None, Some(motions[0])] {
+                let mut balls = away;
+                balls[0] = touching.unwrap_or(away[0]);
+                let mut together = ContactGroup::filled(&alone[0]);
+                together.evaluate(&contact, &race_motion, &BallMotion::of_balls(&balls));
+                let bits = |contact: &_| rows::<f64>(contact).iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+                for (lane, ball) in balls.iter().enumerate() {
+                    let alone = contact.evaluate(ball, &race_motion);
+                    assert_eq!(bits(&together.contact(lane)), bits(&alone), "{name}, {lane}");
+                    assert_eq!(contact.is_open(ball, &race_motion), alone.load == 0.0, "{name}, {lane}");
+                }
+            }
             // One by one.
             let mut together = ContactGroup::filled(&alone[3]);
             (0..WIDTH).for_each(|lane| together.set(lane, &alone[lane]));
@@ -340,13 +374,7 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
                 velocity: Lanes::vector(|lane| motions[lane].velocity),
                 angular_velocity: Lanes::vector(|lane| motions[lane].angular_velocity),
             };
-            let race = RaceMotion {
-                position: constant_vector(&race_motion.position),
-                axis: constant_vector(&race_motion.axis),
-                across: race_motion.across,
-                velocity: constant_vector(&race_motion.velocity),
-                angular_velocity: constant_vector(&race_motion.angular_velocity),
-            };
+            let race = race_motion.constant::<Lanes>();
             let contacts = contact.evaluate(&ball, &race);
             assert_eq!(contacts.load, Lanes::from_fn(|lane| alone[lane].load), "{name}");
             assert_eq!(contacts.force, Lanes::vector(|lane| alone[lane].force), "{name}");

@@ -20,7 +20,7 @@ use nalgebra::{Matrix2, Matrix2x6, Matrix4, Matrix4x6, Matrix6, Matrix6x2, Matri
 
 use crate::contact::creep::Law;
 use crate::contact::normal::Damping;
-use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
+use crate::contact::{BallMotion, ContactModel, RaceMotion};
 pub use crate::effects::reports::Condensed;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::state::{BallState, State};
@@ -71,42 +71,33 @@ struct Linear {
     race_by_rate: Derivatives,
 }
 
-fn fixed(v: &Vector3<f64>) -> Vector3<D> {
-    constant_vector(v)
-}
-
 /// A vector whose components are variables, from this direction on.
-fn variable(v: &Vector3<f64>, first: usize) -> Vector3<D> {
-    Vector3::from_fn(|i, _| D::variable(v[i], first + i, 1.0))
+fn variable<const N: usize>(v: &Vector3<f64>, first: usize) -> Vector3<Dual<N>> {
+    Vector3::from_fn(|i, _| Dual::variable(v[i], first + i, 1.0))
 }
 
-/// A contact with its derivatives by velocity and angular velocity of the ball, and by the angular velocity of the race.
-#[inline(never)]
-fn by_rates(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<f64>) -> BallRaceContact<D> {
-    model.evaluate(
-        &BallMotion {
-            position: fixed(&ball.position),
-            velocity: variable(&ball.velocity, 0),
-            angular_velocity: variable(&ball.angular_velocity, 3),
-        },
-        &RaceMotion {
-            position: fixed(&race.position),
-            axis: fixed(&race.axis),
-            across: race.across,
-            velocity: fixed(&race.velocity),
-            angular_velocity: variable(&race.angular_velocity, 6),
-        },
-    )
+/// The motion of a ball by its velocity and angular velocity.
+fn ball_by_rates<const N: usize>(ball: &BallMotion<f64>) -> BallMotion<Dual<N>> {
+    BallMotion {
+        position: constant_vector(&ball.position),
+        velocity: variable(&ball.velocity, 0),
+        angular_velocity: variable(&ball.angular_velocity, 3),
+    }
 }
 
-/// Force and moment on a ball (rows) by its velocity and angular velocity (columns).
+/// Force and moment on a ball (rows) by its velocity and angular velocity (columns). Compiled twice, as contacts of many balls are
+/// ([`crate::contact::many`]).
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 pub(crate) fn ball_by_rate(
     model: &ContactModel<'_>,
     ball: &BallMotion<f64>,
     race: &RaceMotion<f64>,
 ) -> Matrix6<f64> {
-    let rates = by_rates(model, ball, race);
-    derivatives(&rates.force, &rates.ball_moment).by_ball
+    let contact = model.evaluate(&ball_by_rates::<6>(ball), &race.constant());
+    Matrix6::from_fn(|i, k| match i < 3 {
+        true => contact.force[i].derivatives[k],
+        false => contact.ball_moment[i - 3].derivatives[k],
+    })
 }
 
 impl Linear {
@@ -114,7 +105,7 @@ impl Linear {
     fn new(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<f64>) -> Self {
         // A vector that turns with the race.
         let turning = |v: &Vector3<f64>| {
-            let mut turned = fixed(v);
+            let mut turned: Vector3<D> = constant_vector(v);
             for k in 0..3 {
                 let rate = Vector3::ith(k, 1.0).cross(v);
                 turned.iter_mut().zip(&rate).for_each(|(c, rate)| c.derivatives[6 + k] = *rate);
@@ -125,18 +116,19 @@ impl Linear {
         let places = model.evaluate(
             &BallMotion {
                 position: variable(&ball.position, 0),
-                velocity: fixed(&ball.velocity),
-                angular_velocity: fixed(&ball.angular_velocity),
+                velocity: constant_vector(&ball.velocity),
+                angular_velocity: constant_vector(&ball.angular_velocity),
             },
             &RaceMotion {
-                position: fixed(&race.position),
                 axis: turning(&race.axis),
-                across: race.across,
-                velocity: fixed(&race.velocity),
                 angular_velocity: turning(&race.angular_velocity),
+                ..race.constant()
             },
         );
-        let rates = by_rates(model, ball, race);
+        let rates = model.evaluate(
+            &ball_by_rates(ball),
+            &RaceMotion { angular_velocity: variable(&race.angular_velocity, 6), ..race.constant() },
+        );
         let opposite = |force: &Vector3<D>| -force;
         Self {
             ball_by_place: derivatives(&places.force, &places.ball_moment),

@@ -45,6 +45,12 @@ const ARM_FLOOR: f64 = 1e-10;
 /// rolling speed of half a millimetre a second.
 const MIXED_BELOW: f64 = 0.5;
 
+/// A number that is 0 without a sign: a law that is not asked and one that is asked for nothing are then the same bits.
+#[inline(always)]
+fn unsigned_zero<S: Scalar>(number: S) -> S {
+    number + S::zero()
+}
+
 /// Saturated over linear force at a linear force of `q` times its limit: the cubic of Vermeulen and Johnson (1964).
 #[inline(always)]
 pub fn saturation<S: Scalar>(q: S) -> S {
@@ -110,7 +116,8 @@ impl<S: Scalar> LinearTheory<S> {
             Law::Linear => return self.linear(creepage),
             Law::Regularised(parameters) => self.regularised(parameters, creepage),
             Law::Saturated => self.saturated(creepage),
-            Law::Table(table) | Law::Frozen(table, _) => self.tabulated(table, creepage),
+            Law::Table(_) | Law::Frozen(..) if self.is_idle() => [S::zero(); 3],
+            Law::Table(table) | Law::Frozen(table, _) => self.tabulated(table, creepage).map(unsigned_zero),
             Law::Kalker(kalker) => {
                 return self.polynomials(&PolynomialsFrom { kalker, start: None }, creepage);
             }
@@ -120,12 +127,19 @@ impl<S: Scalar> LinearTheory<S> {
         };
         let forces = match creepage.curvature {
             None => self.dimensional(flat, S::zero()),
+            Some(_) if self.is_idle() => self.dimensional(flat.map(unsigned_zero), S::zero()),
             Some(curvature) => self.bent(flat, creepage, curvature),
         };
         match law {
             Law::Frozen(table, difference) => self.corrected(&forces, self.direction(table), difference),
             _ => forces,
         }
+    }
+
+    /// Does the contact carry nothing, or of several none? Laws that cost much are then not asked.
+    #[inline(always)]
+    fn is_idle(&self) -> bool {
+        !self.friction_limit.any_beyond(0.0, S::one())
     }
 
     /// Forces from force and moment over their limits.
@@ -225,7 +239,8 @@ impl<S: Scalar> LinearTheory<S> {
         let [dx, dy, dz, second] = S::apply(&CurvatureEffect, q);
         let [x, y] = within_limit(x + dx, y + dy);
         let z = (z + dz * self.friction_limit * self.half_width * per_moment).clamp_to(-1.0, 1.0);
-        self.dimensional([x, y, z], second * self.second_moment_scale())
+        let second = second * self.second_moment_scale();
+        self.dimensional([x, y, z].map(unsigned_zero), unsigned_zero(second))
     }
 
     /// Arguments of the nonlinear theory in polynomials; the first factor turns x, y and the second moment back.

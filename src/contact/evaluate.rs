@@ -81,6 +81,16 @@ impl ContactModel<'_> {
         }
     }
 
+    /// Is the ball clear of the race? Nothing acts between them then, nor would a little nearer.
+    pub fn is_open(&self, ball: &BallMotion<f64>, race: &RaceMotion<f64>) -> bool {
+        let offset = ball.position - race.position;
+        let (geometry, _) = match self.surface.is_plain() {
+            true => self.touch::<_, false>(&offset, race),
+            false => self.touch::<_, true>(&offset, race),
+        };
+        geometry.approach < 0.0
+    }
+
     /// Hertz stiffness and normal load by the stiffness of the shape, the depth and its root, the approach rate along the normal,
     /// and how the approach changes: the load does the work along the normal of one that goes with the approach.
     #[inline(always)]

@@ -8,7 +8,7 @@ use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::numerics::lanes::Lanes;
 #[cfg(doc)]
 use crate::numerics::lanes::WIDTH;
-use crate::numerics::scalar::{Scalar, constant_vector};
+use crate::numerics::scalar::Scalar;
 
 /// Where a ball touches a race.
 #[derive(Clone, Copy, Debug)]
@@ -145,7 +145,7 @@ fn roll_lanes(
     contacts: &mut BallRaceContact<Lanes>,
 ) {
     // Assigned in two places: chosen between, both results would have to be in memory first.
-    let race = in_lanes(race);
+    let race = race.constant();
     let (along, oblique) = contact.rolling_along::<_, false, false>(balls, &race);
     if oblique {
         *contacts = contact.rolling_obliquely(balls, &race);
@@ -162,7 +162,7 @@ fn press_lanes(
     balls: &BallMotion<Lanes>,
     contacts: &mut BallRaceContact<Lanes>,
 ) {
-    *contacts = contact.pressed(balls, &in_lanes(race));
+    *contacts = contact.pressed(balls, &race.constant());
 }
 
 /// Contacts with friction on any surface with any damping, alike.
@@ -173,7 +173,7 @@ fn roll_shaped_lanes(
     balls: &BallMotion<Lanes>,
     contacts: &mut BallRaceContact<Lanes>,
 ) {
-    *contacts = contact.rolling_along::<_, false, true>(balls, &in_lanes(race)).0;
+    *contacts = contact.rolling_along::<_, false, true>(balls, &race.constant()).0;
 }
 
 /// Contacts without friction there, alike.
@@ -184,17 +184,5 @@ fn press_shaped_lanes(
     balls: &BallMotion<Lanes>,
     contacts: &mut BallRaceContact<Lanes>,
 ) {
-    *contacts = contact.pressed_on::<_, true>(balls, &in_lanes(race));
-}
-
-/// One race, the same in all lanes.
-#[inline(always)]
-fn in_lanes(race: &RaceMotion<f64>) -> RaceMotion<Lanes> {
-    RaceMotion {
-        position: constant_vector(&race.position),
-        axis: constant_vector(&race.axis),
-        across: race.across,
-        velocity: constant_vector(&race.velocity),
-        angular_velocity: constant_vector(&race.angular_velocity),
-    }
+    *contacts = contact.pressed_on::<_, true>(balls, &race.constant());
 }

@@ -32,7 +32,7 @@ pub mod surface;
 use nalgebra::Vector3;
 
 use crate::contact::surface::Surface;
-use crate::numerics::scalar::{Scalar, Single};
+use crate::numerics::scalar::{Scalar, Single, constant_vector};
 use creep::{CreepForces, Creepage, Law};
 use film::Film;
 use geometry::GrooveContact;
@@ -83,6 +83,20 @@ impl<S: Scalar> RaceMotion<S> {
     pub fn resting(position: Vector3<S>, axis: Vector3<S>, across: Vector3<f64>) -> Self {
         let still = Vector3::from_element(S::zero());
         Self { position, axis, across, velocity: still, angular_velocity: still }
+    }
+}
+
+impl RaceMotion<f64> {
+    /// The same as numbers that could have derivatives, or one for each lane.
+    #[inline(always)]
+    pub fn constant<S: Scalar>(&self) -> RaceMotion<S> {
+        RaceMotion {
+            position: constant_vector(&self.position),
+            axis: constant_vector(&self.axis),
+            across: self.across,
+            velocity: constant_vector(&self.velocity),
+            angular_velocity: constant_vector(&self.angular_velocity),
+        }
     }
 }
 

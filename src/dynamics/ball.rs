@@ -5,7 +5,7 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 use super::ball_equations::BallEquations;
 use super::body::{BodyTrial, RaceSeen};
 use super::cage::CageTrial;
-use super::directions::{D, by_first, constant_race, scale_moments, seed};
+use super::directions::{D, by_first, scale_moments, seed};
 use super::group::BallGroup;
 use super::reaction::{PairTangent, Reaction};
 use crate::contact::pair::PairForces;
@@ -54,6 +54,11 @@ impl<'a> Surroundings<'a> {
     ) -> Self {
         let races = PerRace::new(|race| RaceSeen::new(race, races, moved));
         Self { model, contacts, ambient, differences, races, cage: model.cage.as_ref().zip(cage) }
+    }
+
+    /// Contact of a ball with a race.
+    fn contact(&self, ball: usize, race: Race) -> ContactModel<'_> {
+        self.contacts[race].of_ball(ball, self.differences.get(ball).map(|of_ball| &of_ball[race]))
     }
 
     /// Evaluates all pairs of a group of balls that have moved, the first of them ball `first`, and what they leave of their equations.
@@ -162,19 +167,17 @@ impl BallTrial {
         }
     }
 
-    /// Tangent of the residual of a ball that moves like this, with its couplings to the bodies.
+    /// Tangent of the residual of a ball that moves like this, with its couplings to the bodies. Returns how many contacts with races
+    /// have been evaluated.
     pub fn differentiate(
         &mut self,
         index: usize,
         motion: &BallMotion<f64>,
         around: &Surroundings<'_>,
         step: &HhtStep,
-    ) {
-        let mut tangent = self.contacts_with_tangent(index, motion, around, step);
-        let slot = Body::Cage.index();
-        self.block.right[slot].fill(0.0);
-        self.block.left[slot].fill(0.0);
-        self.block.own[slot].fill(0.0);
+    ) -> u64 {
+        let (mut tangent, evaluated) = self.contacts_with_tangent(index, motion, around, step);
+        self.uncouple(Body::Cage);
         if let (Some((cage, trial)), Some(_)) = (around.cage, &self.pocket) {
             let radius = around.model.bearing.ball.radius;
             if let Some(pair) = by_ball_and_cage((cage, index), &seed(motion, step, radius), trial) {
@@ -185,31 +188,45 @@ impl BallTrial {
             tangent += push.tangent;
         }
         self.block.diagonal = around.tangent_of_residual(tangent, motion, step);
+        evaluated
     }
 
-    /// Derivatives of the contacts with the races.
+    /// Derivatives of the contacts with the races, and how many of these touch.
     fn contacts_with_tangent(
         &mut self,
         index: usize,
         motion: &BallMotion<f64>,
         around: &Surroundings<'_>,
         step: &HhtStep,
-    ) -> Matrix6<f64> {
-        let Surroundings { model, contacts, differences, races, .. } = around;
-        let radius = model.bearing.ball.radius;
-        let mut tangent = Matrix6::zeros();
+    ) -> (Matrix6<f64>, u64) {
+        let radius = around.model.bearing.ball.radius;
+        let (mut tangent, mut touching) = (Matrix6::zeros(), 0);
         self.reactions = [None; SLOTS];
         for race in Race::BOTH {
-            let contact = contacts[race].of_ball(index, differences.get(index).map(|of_ball| &of_ball[race]));
-            tangent += match races[race].moved() {
-                None => by_ball_alone(&contact, &seed(motion, step, radius), races[race].motion).1,
+            let (contact, seen) = (around.contact(index, race), &around.races[race]);
+            if contact.is_open(motion, seen.motion) {
+                self.uncouple(race.into());
+                continue;
+            }
+            touching += 1;
+            tangent += match seen.moved() {
+                None => by_ball_alone(&contact, &seed(motion, step, radius), seen.motion).1,
                 Some(moved) => {
                     let pair = by_ball_and_race(&contact, &seed(motion, step, radius), &moved);
                     self.couple(race.into(), &pair, step, radius)
                 }
             };
         }
-        tangent
+        (tangent, touching)
+    }
+
+    /// Takes the couplings of a body out that the ball does not touch.
+    fn uncouple(&mut self, body: Body) {
+        let slot = body.index();
+        let Block { right, left, own, .. } = &mut self.block;
+        for couplings in [right, left, own] {
+            couplings[slot].fill(0.0);
+        }
     }
 
     /// Takes over the reaction of a pair and its derivatives by the body's unknowns; returns those by the ball's.
@@ -227,6 +244,8 @@ pub struct BallAlone {
     pub residual: Vector6<f64>,
     /// Its derivatives by the ball's own unknowns.
     pub tangent: Matrix6<f64>,
+    /// Races that it touches.
+    pub touching: u64,
 }
 
 impl BallAlone {
@@ -238,15 +257,19 @@ impl BallAlone {
         around: &Surroundings<'_>,
         step: &HhtStep,
     ) -> Self {
-        let Surroundings { model, contacts, ambient, differences, races, cage } = around;
+        let Surroundings { model, ambient, races, cage, .. } = around;
         let unknowns: [f64; BLOCK] = (*unknowns).into();
         let motion = equations.motion(&unknowns);
         let seeded = seed(&motion, step, model.bearing.ball.radius);
-        let mut tangent = Matrix6::zeros();
+        let (mut tangent, mut touching) = (Matrix6::zeros(), 0);
         let mut total = ambient.on_ball(&motion);
         for race in Race::BOTH {
-            let contact = contacts[race].of_ball(index, differences.get(index).map(|of_ball| &of_ball[race]));
-            let (value, by_ball) = by_ball_alone(&contact, &seeded, races[race].motion);
+            let (contact, seen) = (around.contact(index, race), races[race].motion);
+            if contact.is_open(&motion, seen) {
+                continue;
+            }
+            touching += 1;
+            let (value, by_ball) = by_ball_alone(&contact, &seeded, seen);
             total = total.plus(PairForces::from(&value).on_first());
             tangent += by_ball;
         }
@@ -259,7 +282,7 @@ impl BallAlone {
             }
         }
         let residual = equations.residual(&equations.remainder(&unknowns, &total)).into();
-        Self { residual, tangent: around.tangent_of_residual(tangent, &motion, step) }
+        Self { residual, tangent: around.tangent_of_residual(tangent, &motion, step), touching }
     }
 }
 
@@ -295,7 +318,7 @@ fn by_ball_alone(
     ball: &BallMotion<Dual<6>>,
     race: &RaceMotion<f64>,
 ) -> (BallRaceContact<f64>, Matrix6<f64>) {
-    let contact = contact.evaluate(ball, &constant_race(race));
+    let contact = contact.evaluate(ball, &race.constant());
     (contact.values(), by_first(&contact.force, &contact.ball_moment))
 }
 

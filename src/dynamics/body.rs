@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, Vector3};
 
 use super::body_sums::{Along, BodyLoad, BodyStep, Held, Sums, in_moving_frame};
 use super::carried::SeatMotion;
-use super::directions::{D, SECOND_ROTATION, by_first, by_second, constant_race};
+use super::directions::{D, SECOND_ROTATION, by_first, by_second};
 use super::reaction::Reaction;
 use super::step_turn::{Own, StepTurn, as_second};
 use super::support::{Flange, on_race};
@@ -159,7 +159,7 @@ impl BodyTrial {
             },
             (None, None) => {
                 debug_assert!(false, "derivatives of this motion were not computed");
-                constant_race(&self.motion_value())
+                self.motion_value().constant()
             }
         }
     }
@@ -402,7 +402,7 @@ impl<'a> RaceSeen<'a> {
 
     /// Motion with derivatives by the rotation, all zero where it is prescribed.
     pub fn with_derivatives(&self) -> RaceMotion<D> {
-        self.moved().unwrap_or_else(|| constant_race(self.motion))
+        self.moved().unwrap_or_else(|| self.motion.constant())
     }
 }
 

@@ -6,9 +6,9 @@
 
 use nalgebra::{Matrix6, Vector3};
 
-use crate::contact::{BallMotion, RaceMotion};
+use crate::contact::BallMotion;
 use crate::numerics::hht::HhtStep;
-use crate::numerics::scalar::{Dual, Scalar, constant_vector};
+use crate::numerics::scalar::Dual;
 
 /// Directions of differentiation.
 pub const DIRECTIONS: usize = 9;
@@ -29,18 +29,6 @@ pub fn seed<const N: usize>(motion: &BallMotion<f64>, step: &HhtStep, radius: f6
         position: variable(&motion.position, 0, step.position_gain()),
         velocity: variable(&motion.velocity, 0, step.velocity_gain()),
         angular_velocity: variable(&motion.angular_velocity, FIRST_ROTATION, step.velocity_gain() / radius),
-    }
-}
-
-/// A race's motion without derivatives, as numbers that could have some.
-#[inline(always)]
-pub fn constant_race<S: Scalar>(motion: &RaceMotion<f64>) -> RaceMotion<S> {
-    RaceMotion {
-        position: constant_vector(&motion.position),
-        axis: constant_vector(&motion.axis),
-        across: motion.across,
-        velocity: constant_vector(&motion.velocity),
-        angular_velocity: constant_vector(&motion.angular_velocity),
     }
 }
 

@@ -22,8 +22,8 @@ use crate::numerics::size::largest;
 const THROWN: f64 = 0.12;
 /// [-] share of the balls above which it is the bodies that are not where they will be: where a load turns around, say.
 const MANY: f64 = 0.6;
-/// [-] residual over what it was that is left to the correction of all.
-const LEFT: f64 = 1e-3;
+/// [-] residual over what it was that is left to the correction of all. With a tenth of it `fast` takes 3 % more time, with ten times of it 4 to 13 %.
+const LEFT: f64 = 1e-2;
 /// Most iterations of one ball.
 const MOST: u32 = 12;
 
@@ -47,8 +47,9 @@ impl BearingStep<'_> {
             if is_thrown(index, groups) {
                 let equations = BallEquations::new(start, ball, &self.step);
                 let alone = |unknowns: &Vector6<f64>| {
-                    self.contact_tangents += 2;
-                    BallAlone::new(index, &equations, unknowns, &around, &self.step)
+                    let here = BallAlone::new(index, &equations, unknowns, &around, &self.step);
+                    self.contact_tangents += here.touching;
+                    here
                 };
                 let from = groups.unknowns(index);
                 let to = balance(from, tolerance.max(LEFT * groups.size(index)), alone);

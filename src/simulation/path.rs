@@ -30,6 +30,11 @@ impl Cubic {
         ])
     }
 
+    /// Is it 0 at all times?
+    fn is_zero(&self) -> bool {
+        self.0 == [Vector3::zeros(); 4]
+    }
+
     /// Value and rate after `t` \[s].
     fn at(&self, t: f64) -> (Vector3<f64>, Vector3<f64>) {
         let [x0, v0, c2, c3] = self.0;
@@ -131,7 +136,12 @@ impl RacePath {
     pub fn at(&self, time: f64) -> (Pose, Twist) {
         let t = time - self.start_time;
         let (position, velocity) = self.position.at(t);
+        let zero = Vector3::zeros();
         let (orientation, angular_velocity) = match &self.orientation {
+            // A race at rest: the formula below, without its sines.
+            OrientationPath::Turn { start, turn, correction } if *turn == zero && correction.is_zero() => {
+                (*start, zero)
+            }
             OrientationPath::Turn { start, turn, correction } => {
                 let (e, e_rate) = correction.at(t);
                 let turned = UnitQuaternion::new(turn * t);
@@ -213,6 +223,19 @@ mod tests {
         for i in 0..=10 {
             let time = 2.0 + h * f64::from(i) / 10.0;
             assert!(close(&path.at(time), &exact.at(time)) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn closed_form_a_race_at_rest_stays_to_the_bit() {
+        let orientation = UnitQuaternion::new(Vector3::new(0.3, 0.01, -0.02));
+        let pose = Pose { position: Vector3::new(1e-5, 0.0, -2e-6), orientation };
+        let (still, h) = (Twist::default(), 1e-3);
+        let path = RacePath::towards(0.0, (&pose, &still), &pose, &still, &still, h);
+        for path in [&path, &RacePath::steady(0.0, &pose, &still)] {
+            let (there, twist) = path.at(0.7 * h);
+            assert!((there.position, twist) == (pose.position, still), "{there:?} {twist:?}");
+            assert!(there.orientation.angle_to(&orientation) < 1e-15, "{there:?}");
         }
     }
 
