@@ -94,10 +94,7 @@ pub(crate) fn ball_by_rate(
     race: &RaceMotion<f64>,
 ) -> Matrix6<f64> {
     let contact = model.evaluate(&ball_by_rates::<6>(ball), &race.constant());
-    Matrix6::from_fn(|i, k| match i < 3 {
-        true => contact.force[i].derivatives[k],
-        false => contact.ball_moment[i - 3].derivatives[k],
-    })
+    by_ball(&contact.force, &contact.ball_moment)
 }
 
 impl Linear {
@@ -139,10 +136,22 @@ impl Linear {
     }
 }
 
+/// Row i of derivatives of force (0 to 2) and moment (3 to 5).
+#[inline(always)]
+fn row<const N: usize>([force, moment]: [&Vector3<Dual<N>>; 2], i: usize) -> &[f64; N] {
+    if i < 3 { &force[i].derivatives } else { &moment[i - 3].derivatives }
+}
+
+/// Derivatives of force and moment by the ball's motion: the first six directions.
+#[inline(always)]
+fn by_ball<const N: usize>(force: &Vector3<Dual<N>>, moment: &Vector3<Dual<N>>) -> Matrix6<f64> {
+    Matrix6::from_fn(|i, k| row([force, moment], i)[k])
+}
+
 fn derivatives(force: &Vector3<D>, moment: &Vector3<D>) -> Derivatives {
-    let row = |i: usize| if i < 3 { &force[i].derivatives } else { &moment[i - 3].derivatives };
+    let row = |i: usize| row([force, moment], i);
     Derivatives {
-        by_ball: Matrix6::from_fn(|i, k| row(i)[k]),
+        by_ball: by_ball(force, moment),
         by_race: Matrix6::from_fn(|i, k| if k < 3 { -row(i)[k] } else { row(i)[3 + k] }),
     }
 }

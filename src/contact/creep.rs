@@ -136,7 +136,8 @@ impl<S: Scalar> LinearTheory<S> {
         }
     }
 
-    /// Does the contact carry nothing, or of several none? Laws that cost much are then not asked.
+    /// Does the contact carry nothing, or of several none? Laws that cost much are then not asked. It stands in their arms: asked once before
+    /// them, all steps take 2 % more time.
     #[inline(always)]
     fn is_idle(&self) -> bool {
         !self.friction_limit.any_beyond(0.0, S::one())

@@ -6,7 +6,7 @@ use super::ball_equations::BallEquations;
 use super::body::{BodyTrial, RaceSeen};
 use super::cage::CageTrial;
 use super::directions::{D, by_first, scale_moments, seed};
-use super::group::BallGroup;
+use super::group::{BallGroup, Groups};
 use super::reaction::{PairTangent, Reaction};
 use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
@@ -167,16 +167,18 @@ impl BallTrial {
         }
     }
 
-    /// Tangent of the residual of a ball that moves like this, with its couplings to the bodies. Returns how many contacts with races
-    /// have been evaluated.
+    /// Tangent of the residual of a ball of the groups, as it was evaluated last, with its couplings to the bodies. Returns how many
+    /// contacts with races have been evaluated with derivatives.
     pub fn differentiate(
         &mut self,
         index: usize,
-        motion: &BallMotion<f64>,
+        groups: &Groups,
         around: &Surroundings<'_>,
         step: &HhtStep,
     ) -> u64 {
-        let (mut tangent, evaluated) = self.contacts_with_tangent(index, motion, around, step);
+        let motion = &groups.motion(index);
+        let touches = |race: Race| groups.pressed(index, race).0 >= 0.0;
+        let (mut tangent, evaluated) = self.contacts_with_tangent((index, motion, touches), around, step);
         self.uncouple(Body::Cage);
         if let (Some((cage, trial)), Some(_)) = (around.cage, &self.pocket) {
             let radius = around.model.bearing.ball.radius;
@@ -194,8 +196,7 @@ impl BallTrial {
     /// Derivatives of the contacts with the races, and how many of these touch.
     fn contacts_with_tangent(
         &mut self,
-        index: usize,
-        motion: &BallMotion<f64>,
+        (index, motion, touches): (usize, &BallMotion<f64>, impl Fn(Race) -> bool),
         around: &Surroundings<'_>,
         step: &HhtStep,
     ) -> (Matrix6<f64>, u64) {
@@ -203,12 +204,12 @@ impl BallTrial {
         let (mut tangent, mut touching) = (Matrix6::zeros(), 0);
         self.reactions = [None; SLOTS];
         for race in Race::BOTH {
-            let (contact, seen) = (around.contact(index, race), &around.races[race]);
-            if contact.is_open(motion, seen.motion) {
+            if !touches(race) {
                 self.uncouple(race.into());
                 continue;
             }
             touching += 1;
+            let (contact, seen) = (around.contact(index, race), &around.races[race]);
             tangent += match seen.moved() {
                 None => by_ball_alone(&contact, &seed(motion, step, radius), seen.motion).1,
                 Some(moved) => {

@@ -181,8 +181,7 @@ impl<'a> BearingStep<'a> {
         let around = Surroundings::new(self.model, acts, &self.start.differences, bodies);
         let length = self.model.race_length();
         for (index, trial) in workspace.balls.iter_mut().enumerate().filter(|(_, trial)| trial.renewed) {
-            self.contact_tangents +=
-                trial.differentiate(index, &workspace.groups.motion(index), &around, &self.step);
+            self.contact_tangents += trial.differentiate(index, &workspace.groups, &around, &self.step);
             for (slot, body) in workspace.bodies.iter() {
                 if let Some(body) = body {
                     trial.couple_body(slot, body, &self.step, length);

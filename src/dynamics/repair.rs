@@ -22,7 +22,8 @@ use crate::numerics::size::largest;
 const THROWN: f64 = 0.12;
 /// [-] share of the balls above which it is the bodies that are not where they will be: where a load turns around, say.
 const MANY: f64 = 0.6;
-/// [-] residual over what it was that is left to the correction of all. With a tenth of it `fast` takes 3 % more time, with ten times of it 4 to 13 %.
+/// [-] residual over what it was that is left to the correction of all. With a tenth of it the goal `fast` takes 3 % more time on
+/// `scenes/radial.toml`, with ten times of it 4 to 13 %.
 const LEFT: f64 = 1e-2;
 /// Most iterations of one ball.
 const MOST: u32 = 12;
