@@ -120,7 +120,7 @@ pub struct BallTrial {
     pub block: Block,
     /// Is its block of the matrix to be computed anew?
     pub renewed: bool,
-    /// [-] largest component of its residual over the tolerance, before the last correction.
+    /// [-] largest component of its residual over the tolerance, before the last correction in this step; 0 where there was none.
     pub before: f64,
     /// How far it was moved alone before a correction, where it was.
     pub repaired: Option<Vector6<f64>>,

@@ -146,6 +146,14 @@ impl<S: Scalar> BallEquations<S> {
         }
     }
 
+    /// Total force and moment at the end of the step that leave nothing of the equations.
+    #[inline(always)]
+    pub fn total_in_balance(&self, unknowns: &Six<S>) -> Wrench<S> {
+        let Wrench { force, moment } = self.remainder(unknowns, &Wrench::default());
+        let total = |alone: &Vector3<S>| vector(|i| alone[i].scale(1.0 / fraction(&self.step)));
+        Wrench { force: total(&force), moment: total(&moment) }
+    }
+
     /// \[N] residual of what is left: moments over the radius.
     #[inline(always)]
     pub fn residual(&self, remainder: &Wrench<S>) -> Six<S> {

@@ -58,6 +58,8 @@ impl<'a> BearingStep<'a> {
         workspace: &'a mut Workspace,
     ) -> Self {
         workspace.balls.resize_with(start.balls.len(), BallTrial::new);
+        workspace.balls.iter_mut().for_each(|trial| trial.before = 0.0);
+        workspace.settled = false;
         workspace.prepare_bodies(model, start);
         if let Some(cage) = &mut workspace.cage {
             cage.oil = model.oil_around_cage(&boundary.conditions);

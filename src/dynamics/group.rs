@@ -70,6 +70,17 @@ impl BallGroup {
         *moved = std::array::from_fn(|lane| lane < balls && (all || moved[lane] || changed[lane]));
     }
 
+    /// Moves its balls by a last correction that is not evaluated: forces follow as their derivatives say, and leave nothing.
+    fn settle(&mut self, unknowns: &[f64]) {
+        let Self { equations, unknowns: own, motion, balance, .. } = self;
+        let settled = move_to_lanes(equations, unknowns, own, motion);
+        let total = equations.total_in_balance(own);
+        for lane in (0..WIDTH).filter(|lane| settled[*lane]) {
+            put_wrench(&mut balance.total, lane, &wrench_in_lane(&total, lane));
+            put_wrench(&mut balance.remainder, lane, &Wrench::default());
+        }
+    }
+
     /// Evaluates the contacts of its balls with a race.
     pub fn evaluate(&mut self, race: Race, contact: &ContactModel<'_>, seen: &RaceMotion<f64>) {
         self.contacts[race].evaluate(contact, seen, &self.motion);
@@ -142,6 +153,13 @@ impl Groups {
     pub fn move_to(&mut self, unknowns: &[f64], all: bool) {
         for (group, unknowns) in self.0.iter_mut().zip(unknowns.chunks(BLOCK * WIDTH)) {
             group.move_to(unknowns, all);
+        }
+    }
+
+    /// Moves the balls by a last correction that is not evaluated ([`super::last_correction`]).
+    pub fn settle(&mut self, unknowns: &[f64]) {
+        for (group, unknowns) in self.0.iter_mut().zip(unknowns.chunks(BLOCK * WIDTH)) {
+            group.settle(unknowns);
         }
     }
 
@@ -343,6 +361,14 @@ fn in_lane(v: &Vector3<Lanes>, lane: usize) -> Vector3<f64> {
 #[inline(always)]
 fn wrench_in_lane(wrench: &Wrench<Lanes>, lane: usize) -> Wrench {
     Wrench { force: in_lane(&wrench.force, lane), moment: in_lane(&wrench.moment, lane) }
+}
+
+#[inline(always)]
+fn put_wrench(lanes: &mut Wrench<Lanes>, lane: usize, wrench: &Wrench) {
+    for i in 0..3 {
+        lanes.force[i].0[lane] = wrench.force[i];
+        lanes.moment[i].0[lane] = wrench.moment[i];
+    }
 }
 
 #[inline(always)]

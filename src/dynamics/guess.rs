@@ -11,7 +11,7 @@ use crate::numerics::orbit_turn::OrbitTurn;
 /// [-] change of the accelerations of balls in a step over their size that a guess may go on with. Balls that come to rest have none that
 /// stay: the guess would take them through the bend that friction has there (a bearing at a standstill then took a fifth more
 /// corrections, and a fifth more of new blocks).
-const SMALL: f64 = 0.05;
+pub(super) const SMALL: f64 = 0.05;
 
 impl BearingStep<'_> {
     /// First guess: accelerations and multipliers change as they did in the last step, where they have done so smoothly, and stay as they

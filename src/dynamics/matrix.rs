@@ -223,7 +223,8 @@ impl BearingStep<'_> {
     pub(super) fn correct(&mut self, correction: &mut [f64]) -> bool {
         self.prepare_correction();
         if self.balls_are_independent() {
-            self.correct_balls(correction)
+            let tolerance = self.force_tolerance;
+            self.correct_balls(correction, |_, size| size > tolerance)
         } else {
             self.correct_all(correction)
         }
@@ -263,8 +264,9 @@ impl BearingStep<'_> {
         }
     }
 
-    /// Corrections of balls between races of prescribed motion. A ball that is solved already stays where it is.
-    fn correct_balls(&self, correction: &mut [f64]) -> bool {
+    /// Corrections of those balls between races of prescribed motion that are `due`, by their numbers and residuals \[N]; the others stay
+    /// where they are.
+    pub(super) fn correct_balls(&self, correction: &mut [f64], due: impl Fn(usize, f64) -> bool) -> bool {
         let origin = self.races_origin();
         let Workspace { balls, groups, kept, .. } = &*self.workspace;
         let mut regular = kept.balls.len() == balls.len();
@@ -272,16 +274,17 @@ impl BearingStep<'_> {
         let blocks = kept.blocks.iter().zip(kept.balls.chunks(WIDTH));
         let groups = groups.positions().zip(groups.residuals());
         let corrections = correction.chunks_mut(BLOCK * WIDTH);
-        for (((block, kept), (positions, (residual, size))), of_group) in blocks.zip(groups).zip(corrections)
+        for (index, (((block, kept), (positions, (residual, size))), of_group)) in
+            blocks.zip(groups).zip(corrections).enumerate()
         {
-            let solved = |lane: usize| size.0[lane] <= self.force_tolerance;
-            if (0..kept.len()).all(solved) {
+            let due = |lane: usize| due(WIDTH * index + lane, size.0[lane]);
+            if !(0..kept.len()).any(due) {
                 continue;
             }
             let mut x = negative(residual);
             block.solve(&turn_of_lanes(kept, positions, &origin), &mut x);
             let chunks = of_group.chunks_exact_mut(BLOCK).enumerate();
-            for (lane, chunk) in chunks.filter(|(lane, _)| !solved(*lane)) {
+            for (lane, chunk) in chunks.filter(|(lane, _)| due(*lane)) {
                 for k in 0..BLOCK {
                     chunk[k] = x[k].0[lane];
                     regular &= chunk[k].is_finite();

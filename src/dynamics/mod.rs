@@ -12,6 +12,7 @@ mod equations;
 mod failure;
 mod group;
 mod guess;
+mod last_correction;
 mod local_error;
 mod matrix;
 mod neighbours;
@@ -94,6 +95,10 @@ pub struct Workspace {
     group_corrections: Vec<Six<Lanes>>,
     border_correction: DVector<f64>,
     unknowns: Vec<f64>,
+    /// A correction that is not evaluated.
+    last_correction: Vec<f64>,
+    /// Has the step that was solved last ended with it?
+    settled: bool,
     /// Accelerations and multipliers that do not change in the step but for the turn of orbits.
     steady: Vec<f64>,
     /// How they would change if they went on as in the last step.
@@ -108,6 +113,12 @@ impl Workspace {
             Body::Race(race) => Some(self.groups.pair(ball, race)),
             Body::Cage => self.balls[ball].pocket,
         }
+    }
+
+    /// Are its contacts those of the state that the last step led to, to the bit? After a correction that was not evaluated they are those
+    /// before it.
+    pub fn has_contacts_of_state(&self) -> bool {
+        !self.settled
     }
 
     /// All contacts at the end of the step that was accepted last with this workspace.
@@ -193,6 +204,7 @@ pub fn try_step(
             Err(StepFailure::Newton(failure, equations.worst_residual()))
         }
         Ok(()) => {
+            equations.correct_once_more(&mut unknowns);
             let local = equations.local_error();
             let end = StepEnd::new(model, state, boundary, h, equations.workspace);
             let energy = end.energy_error(model, state, boundary, h, equations.workspace);

@@ -11,7 +11,7 @@ use crate::model::Conditions;
 pub(super) struct Point {
     /// Conditions there: inputs that are set later are those of the next step.
     conditions: Conditions,
-    /// Has a step led here whose contacts the workspace holds?
+    /// Has a step led here whose contacts the workspace has?
     stepped: bool,
     /// The outputs, once they were asked for.
     outputs: OnceLock<Outputs>,
@@ -39,6 +39,7 @@ impl Simulation {
 
     /// The state as it is becomes that of the last communication point; `stepped` if the last step with this workspace led to it.
     pub(super) fn reach(&mut self, stepped: bool) {
+        let stepped = stepped && self.workspace.has_contacts_of_state();
         self.point = Point::new(conditions(&self.inputs, &self.state), stepped);
     }
 

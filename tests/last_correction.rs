@@ -1,0 +1,92 @@
+//! Steps of balls between races of prescribed motion: what the last correction, which is not evaluated, leaves, and what it saves.
+#![allow(clippy::unwrap_used)]
+
+#[path = "common/scenes.rs"]
+mod scenes;
+
+use roulement::forces::Contacts;
+use roulement::model::state::BallState;
+use roulement::simulation::Simulation;
+
+/// Fixed steps: the tolerance is too large to matter.
+const EVEN: [(&str, &str); 2] = [("solver.tolerance", "1e-2"), ("solver.energy_error", "0")];
+
+/// \[N] largest difference of the forces that a state has from those of its contacts, evaluated afresh; moments over the radius.
+fn not_evaluated(simulation: &Simulation) -> f64 {
+    let (model, state) = (simulation.model(), simulation.state());
+    let contacts = Contacts::new(model, state, &simulation.conditions());
+    let ambient = model.ambient(&simulation.inputs().effects.frame.motion);
+    let of_ball = |(index, ball): (usize, &BallState)| {
+        let afresh = contacts.on_ball(index, ambient.on_ball(&ball.motion()));
+        let force = (ball.total.force - afresh.force).amax();
+        force.max((ball.total.moment - afresh.moment).amax() / model.bearing.ball.radius)
+    };
+    state.balls.iter().enumerate().map(of_ball).fold(0.0, f64::max)
+}
+
+#[test]
+fn invariant_forces_of_a_step_are_those_of_its_contacts_within_the_tolerance() {
+    let scenes = [
+        ("misalignment", include_str!("../scenes/misalignment.toml")),
+        ("load zone", include_str!("../scenes/cost/load_zone.toml")),
+        ("thrust", include_str!("../scenes/thrust.toml")),
+    ];
+    for (name, text) in scenes {
+        for (law, step) in
+            [("saturated", 1e-5), ("kalker_table", 1e-5), ("saturated", 5e-5), ("kalker_table", 1e-4)]
+        {
+            let (law_text, step_text) = (format!("\"{law}\""), format!("{step:e}"));
+            let mut changes = EVEN.to_vec();
+            changes.extend([
+                ("effects.creep", law_text.as_str()),
+                ("solver.max_step", &step_text),
+                ("solver.initial_step", &step_text),
+                ("inner.drive", "\"pose\""),
+            ]);
+            let mut simulation = Simulation::new(&scenes::scene(text, &changes)).unwrap();
+            let (mut worst, mut small, mut steps) = (0.0f64, 0, 0);
+            while simulation.time() < 8e-3 {
+                simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
+                let tolerance = simulation.state().force_tolerance;
+                simulation.advance(simulation.time() + step).unwrap();
+                let share = not_evaluated(&simulation) / tolerance;
+                worst = worst.max(share);
+                small += u32::from(share < 0.1);
+                steps += 1;
+            }
+            println!(
+                "{name}, {law}, {step:e} s: {worst:.3} of the tolerance at most, below 0.1 in {small} of {steps} steps"
+            );
+            assert!(worst <= 1.0, "{name}, {law}, {step:e} s: {worst}");
+        }
+    }
+}
+
+#[test]
+fn invariant_an_even_step_is_evaluated_once() {
+    for law in ["saturated", "regularised", "kalker_table"] {
+        let law_text = format!("\"{law}\"");
+        let mut changes = EVEN.to_vec();
+        changes.extend([
+            ("effects.creep", law_text.as_str()),
+            ("solver.initial_step", "\"10 us\""),
+            ("inner.drive", "\"pose\""),
+        ]);
+        let scene = scenes::scene(include_str!("../scenes/thrust.toml"), &changes);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let mut to = |end: f64| {
+            while simulation.time() < end - 1e-9 {
+                let next = simulation.time() + 1e-4;
+                simulation.set_inputs(simulation.scripted_inputs(simulation.time()));
+                simulation.advance(next).unwrap();
+            }
+            simulation.state().statistics
+        };
+        let (before, after) = (to(5e-3), to(25e-3));
+        let per_step =
+            (after.contact_values - before.contact_values) as f64 / (after.steps - before.steps) as f64;
+        println!("{law}: {per_step:.2} contacts a step");
+        // Ten balls have twenty contacts; before there was a last correction, steps evaluated 38 to 40.
+        assert!((20.0..21.0).contains(&per_step), "{law}: {per_step}");
+    }
+}
