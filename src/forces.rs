@@ -71,20 +71,17 @@ impl Contacts {
         let races = PerRace::new(|race| state.race(race).motion());
         let cage = model.cage.as_ref().zip(state.cage().map(BodyState::body_motion));
         let oil = model.oil_around_cage(conditions);
-        let of_ball = |(index, ball): (usize, &BallState)| {
-            let motion = ball.motion();
-            BallContacts {
-                raceways: PerRace::new(|race| {
-                    contacts[race]
-                        .of_ball(index, state.difference(index, race))
-                        .evaluate(&motion, &races[race])
-                }),
-                pocket: cage.as_ref().and_then(|(cage, seen)| cage.pocket_contact(index, &motion, seen, oil)),
-            }
+        let balls: Vec<_> = state.balls.iter().map(BallState::motion).collect();
+        let raceways = PerRace::new(|race| {
+            contacts[race].evaluate_balls(&balls, &races[race], |ball| state.difference(ball, race))
+        });
+        let of_ball = |(index, motion): (usize, &BallMotion<f64>)| BallContacts {
+            raceways: PerRace::new(|race| raceways[race][index]),
+            pocket: cage.as_ref().and_then(|(cage, seen)| cage.pocket_contact(index, motion, seen, oil)),
         };
         let lands =
             cage.as_ref().map_or([None; 2], |(cage, seen)| cage.land_contacts(seen, |race| races[race], oil));
-        let balls = state.balls.iter().enumerate().map(of_ball).collect();
+        let balls = balls.iter().enumerate().map(of_ball).collect();
         Self::from_parts(model, balls, touching_balls(model, state), lands)
     }
 

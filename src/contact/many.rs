@@ -5,9 +5,8 @@ use nalgebra::Vector3;
 use super::creep::Law;
 use super::pair::PairForces;
 use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
-use crate::numerics::lanes::Lanes;
-#[cfg(doc)]
-use crate::numerics::lanes::WIDTH;
+use crate::kalker::scaled_law::Difference;
+use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::scalar::Scalar;
 
 /// Where a ball touches a race.
@@ -130,6 +129,30 @@ impl ContactGroup {
     #[inline(always)]
     pub fn forces(&self, lane: usize) -> PairForces {
         self.0.forces_with(|lanes| lanes.0[lane])
+    }
+}
+
+impl ContactModel<'_> {
+    /// Contacts of all balls of a bearing with a race, [`WIDTH`] at a time; `difference` is that of Kalker's polynomials from the table
+    /// of a ball (0 is the first), where they are simulated.
+    pub fn evaluate_balls<'d>(
+        &self,
+        balls: &[BallMotion<f64>],
+        race: &RaceMotion<f64>,
+        difference: impl Fn(usize) -> Option<&'d Difference>,
+    ) -> Vec<BallRaceContact<f64>> {
+        let alone = |ball: usize| self.of_ball(ball, difference(ball)).evaluate(&balls[ball], race);
+        if (0..balls.len()).any(|ball| difference(ball).is_some()) {
+            return (0..balls.len()).map(alone).collect();
+        }
+        let mut contacts = Vec::with_capacity(balls.len());
+        let mut group = None;
+        for (index, balls) in balls.chunks(WIDTH).enumerate() {
+            let group = group.get_or_insert_with(|| ContactGroup::filled(&alone(0)));
+            group.evaluate(&self.of_ball(WIDTH * index, None), race, &BallMotion::of_balls(balls));
+            contacts.extend((0..balls.len()).map(|lane| group.contact(lane)));
+        }
+        contacts
     }
 }
 

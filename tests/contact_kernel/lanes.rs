@@ -69,6 +69,18 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             let mut together = ContactGroup::filled(&alone[3]);
             (0..WIDTH).for_each(|lane| together.set(lane, &alone[lane]));
             assert!((0..WIDTH).all(|lane| together.contact(lane) == alone[lane]), "{name}");
+            // All balls of a bearing, as many as fill no group: each with a difference of its own, or none.
+            let balls = [&motions[..], &away].concat().into_iter().chain([motions[2]]).collect::<Vec<_>>();
+            let of_balls: Vec<_> = (0..balls.len())
+                .map(|ball| Difference { value: [1e-3 * ball as f64; 4], ..Difference::default() })
+                .collect();
+            for simulated in [false, true] {
+                let difference = |ball: usize| simulated.then(|| &of_balls[ball]);
+                let all = contact.evaluate_balls(&balls, &race_motion, difference);
+                let alone =
+                    |(ball, motion)| contact.of_ball(ball, difference(ball)).evaluate(motion, &race_motion);
+                assert_eq!(all, balls.iter().enumerate().map(alone).collect::<Vec<_>>(), "{name}");
+            }
             // With those that every processor has.
             let ball = BallMotion {
                 position: Lanes::vector(|lane| motions[lane].position),

@@ -14,6 +14,7 @@ use roulement::contact::many::ContactGroup;
 use roulement::contact::materials::Pair;
 use roulement::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
+use roulement::kalker::scaled_law::Difference;
 use roulement::model::bodies::Race;
 use roulement::model::{Conditions, Model};
 use roulement::numerics::lanes::{Lanes, WIDTH};

@@ -143,7 +143,7 @@ impl Columns {
 
 /// Where the rows of a table go.
 enum Sink {
-    /// Text, a line at once: a program that is killed leaves whole lines.
+    /// Text, a line at once. A program that is killed leaves whole lines; of a last one, Linux may have written some pages.
     Csv { file: File, line: Vec<u8> },
     /// Columns.
     #[cfg(feature = "parquet")]
