@@ -116,13 +116,13 @@ fn force_assembly(bencher: Bencher) {
     });
 }
 
-/// One accepted step of 1e-5 s with the communication around it, its own matrix and outputs.
+/// One accepted step of 1e-5 s by the scene's script, with a matrix of its own and the communication around it.
 #[divan::bench(args = LAWS.iter().chain(&["kalker"]))]
 fn accepted_step(bencher: Bencher, law: &str) {
     let mut start = simulation(law);
-    start.advance(5e-3).unwrap();
+    start.advance_scripted(5e-3).unwrap();
     bencher.with_inputs(|| start.clone()).bench_local_values(|mut simulation| {
-        simulation.advance(5e-3 + 1e-5).unwrap();
+        simulation.advance_scripted(5e-3 + 1e-5).unwrap();
         simulation.state().statistics.steps
     });
 }
@@ -160,10 +160,10 @@ fn equilibrium_solve(bencher: Bencher) {
 fn ten_milliseconds(bencher: Bencher, drive: &str) {
     let scene = Scene::edited(THRUST, [("inner.drive", format!("\"{drive}\""))]).unwrap();
     let mut start = Simulation::new(&scene).unwrap();
-    start.advance(5e-3).unwrap();
+    start.advance_scripted(5e-3).unwrap();
     bencher.counter(ItemsCount::new(1000u32)).with_inputs(|| start.clone()).bench_local_values(
         |mut simulation| {
-            simulation.advance(15e-3).unwrap();
+            simulation.advance_scripted(15e-3).unwrap();
             simulation.state().statistics.steps
         },
     );
