@@ -165,7 +165,7 @@ impl Outputs {
         let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
         let rolling = RollingOrbit::mean(model, state, contacts, &races, models.inner.surface.ball_radius);
         let frequencies = frequencies(model, &balls, [cage_speed, speeds[0], speeds[1]]);
-        let [inner, outer] = Race::BOTH.map(|race| race_output(state, model, race));
+        let [inner, outer] = Race::BOTH.map(|race| RaceOutput::new(state, model, race));
         Self {
             time: state.time,
             friction_torque: -state.race(Race::Inner).bearing_wrench.moment.dot(&races.inner.axis)
@@ -329,24 +329,27 @@ fn spin_free_frame(race: &BodyState) -> UnitQuaternion<f64> {
     UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default()
 }
 
-fn race_output(state: &State, model: &Model, race: Race) -> RaceOutput {
-    let support = state.supports[race].as_ref();
-    let state = state.race(race);
-    let wrench = support.map_or(state.bearing_wrench, |support| support.wrench);
-    let axis = state.pose.orientation * Vector3::x();
-    let moved = model.bodies[race].as_ref();
-    let spin = moved.and_then(|body| body.constraints.iter().position(|c| matches!(c, Constraint::Spin)));
-    let drive_torque = match spin {
-        Some(index) => state.multipliers[index],
-        None => -wrench.moment.dot(&axis),
-    };
-    RaceOutput {
-        pose: state.pose,
-        twist: state.twist(),
-        wrench,
-        drive_torque,
-        reaction: moved.map_or_else(Wrench::default, |body| reaction(state, body, &axis)),
-        turned: state.turned,
+impl RaceOutput {
+    /// What a race does, from the state alone.
+    pub(super) fn new(state: &State, model: &Model, race: Race) -> Self {
+        let support = state.supports[race].as_ref();
+        let state = state.race(race);
+        let wrench = support.map_or(state.bearing_wrench, |support| support.wrench);
+        let axis = state.pose.orientation * Vector3::x();
+        let moved = model.bodies[race].as_ref();
+        let spin = moved.and_then(|body| body.constraints.iter().position(|c| matches!(c, Constraint::Spin)));
+        let drive_torque = match spin {
+            Some(index) => state.multipliers[index],
+            None => -wrench.moment.dot(&axis),
+        };
+        Self {
+            pose: state.pose,
+            twist: state.twist(),
+            wrench,
+            drive_torque,
+            reaction: moved.map_or_else(Wrench::default, |body| reaction(state, body, &axis)),
+            turned: state.turned,
+        }
     }
 }
 

@@ -2,9 +2,10 @@
 
 use std::sync::OnceLock;
 
-use super::outputs::Outputs;
+use super::outputs::{Outputs, RaceOutput};
 use super::{Simulation, conditions};
 use crate::model::Conditions;
+use crate::model::bodies::Race;
 
 /// What the outputs of a communication point depend on, beside model and state.
 #[derive(Clone, Debug)]
@@ -35,6 +36,14 @@ impl Simulation {
                 false => Outputs::new(model, state, conditions),
             }
         })
+    }
+
+    /// A race at the last communication point. It takes no contacts, as other outputs do.
+    pub fn race_output(&self, race: Race) -> RaceOutput {
+        match self.point.outputs.get() {
+            Some(outputs) => outputs[race],
+            None => RaceOutput::new(&self.state, &self.model, race),
+        }
     }
 
     /// The state as it is becomes that of the last communication point; `stepped` if the last step with this workspace led to it.

@@ -107,10 +107,7 @@ impl Simulated for BearingUnit {
     }
 
     fn value(&self, reference: usize) -> f64 {
-        let row = &self.variables.rows()[reference];
-        let given = self.variables.input_value(row, self.simulation.inputs());
-        given
-            .unwrap_or_else(|| self.variables.value(row, self.simulation.inputs(), self.simulation.outputs()))
+        self.variables.value_of(&self.variables.rows()[reference], &self.simulation)
     }
 
     fn is_finite(&self) -> bool {

@@ -100,7 +100,8 @@ impl Simulated for SystemUnit {
     }
 
     fn is_finite(&self) -> bool {
-        self.values().iter().all(|value| value.is_finite())
+        self.variables.shaft_values(&self.system).all(f64::is_finite)
+            && self.system.bearings().all(|(_, bearing)| bearing.is_finite())
     }
 
     fn follows_time(&self) -> bool {

@@ -16,6 +16,7 @@ use crate::model::bodies::{PerRace, Race};
 use crate::scene::{Drive, Group, Scene};
 use crate::schema::numbers::{FRICTION, Parameter, Range};
 use crate::schema::variable_units::Unit;
+use crate::simulation::Simulation;
 use crate::simulation::inputs::Inputs;
 use crate::simulation::outputs::Outputs;
 use race_rows::RaceVariable;
@@ -213,6 +214,18 @@ impl Variables {
             }
             // A bearing by itself has no others.
             _ => self.input_value(row, inputs).unwrap_or(f64::NAN),
+        }
+    }
+
+    /// Value of a row at the last communication point of a bearing. What races do is read from its state, without all other outputs.
+    pub fn value_of(&self, row: &Variable, simulation: &Simulation) -> f64 {
+        let inputs = simulation.inputs();
+        match (self.input_value(row, inputs), &row.source) {
+            (Some(given), _) => given,
+            (None, Source::Race(race, quantity, component)) => {
+                (quantity.read)(&simulation.race_output(*race), *component)
+            }
+            (None, _) => self.value(row, inputs, simulation.outputs()),
         }
     }
 

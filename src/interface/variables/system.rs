@@ -70,20 +70,22 @@ impl SystemVariables {
     pub fn value(&self, reference: usize, system: &System) -> f64 {
         if let Some((index, own)) = self.part(reference) {
             let variables = &self.bearings[index].variables;
-            let value = |bearing: &Simulation| {
-                variables.value(&variables.rows()[own], bearing.inputs(), bearing.outputs())
-            };
+            let value = |bearing: &Simulation| variables.value_of(&variables.rows()[own], bearing);
             return system.bearings().nth(index).map_or(f64::NAN, |(_, bearing)| value(bearing));
         }
         shaft_source(&self.rows[reference])
             .map_or(f64::NAN, |source| source.value(system.inputs(), system.outputs()))
     }
 
+    /// Values of the rows of the shaft.
+    pub fn shaft_values<'a>(&'a self, system: &'a System) -> impl Iterator<Item = f64> + 'a {
+        let own = self.rows.iter().map_while(shaft_source);
+        own.map(|source| source.value(system.inputs(), system.outputs()))
+    }
+
     /// Values of all rows.
     pub fn values(&self, system: &System) -> Vec<f64> {
-        let own = self.rows.iter().map_while(shaft_source);
-        let mut values: Vec<f64> =
-            own.map(|source| source.value(system.inputs(), system.outputs())).collect();
+        let mut values: Vec<f64> = self.shaft_values(system).collect();
         for (part, (_, bearing)) in self.bearings.iter().zip(system.bearings()) {
             values.extend(part.variables.values(bearing.inputs(), bearing.outputs()));
         }
