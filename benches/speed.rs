@@ -127,6 +127,14 @@ fn accepted_step(bencher: Bencher, law: &str) {
     });
 }
 
+/// All outputs of a communication point, after a step in pose drive.
+#[divan::bench]
+fn outputs(bencher: Bencher) {
+    let mut start = simulation("saturated");
+    start.advance_scripted(5e-3).unwrap();
+    bencher.with_inputs(|| start.clone()).bench_local_refs(|simulation| simulation.outputs().friction_power);
+}
+
 /// A communication step of 100 us through the C interface, of ten own steps; time goes on, from where the balls' starting
 /// bounce has gone.
 #[divan::bench]

@@ -244,6 +244,7 @@ def main():
     scale = (max(loads) / bearing.stiffness[0]) ** (2 / 3)
     print("| program | steps | CPU [s/s] | error |")
     print("|---|---|---:|---:|")
+    ours = []
     for step, goal in [(2.5e-5, None), (1e-5, None), (5e-6, None), (2.5e-6, None), (None, "fast"), (None, "balanced")]:
         result, _ = run_roulement(program, duration, step, goal)
         # Long enough for the clock, without the start, and with few rows to be written.
@@ -252,15 +253,25 @@ def main():
         )
         seconds = (long - short) / 0.3
         print(f"| roulement | {goal or f'{step * 1e6:g} us'} | {seconds:.2f} | {result.error(reference, scale):.1e} |", flush=True)
+        if step:
+            ours.append((math.log(result.error(reference, scale)), math.log(seconds)))
+    errors, times = numpy.array(sorted(ours)).T
     theirs = run_exudyn(bearing, start, duration, "RK44", 1e-7)
     cases = [("RK44", 4e-7, None), ("RK44", 2e-7, None), ("ODE23", None, 1e-4), ("DOPRI5", None, 1e-2), ("DOPRI5", None, 1e-5)]
+    times_longer = []
     for solver, step, tolerance in cases:
         how = f"{solver}, {step * 1e6:g} us" if step else f"{solver}, tolerance {tolerance:g}"
         try:
             result = run_exudyn(bearing, start, duration, solver, step, tolerance)
-            print(f"| Exudyn | {how} | {result.seconds / duration:.0f} | {result.error(theirs, scale):.1e} |", flush=True)
+            seconds, error = result.seconds / duration, result.error(theirs, scale)
+            print(f"| Exudyn | {how} | {seconds:.0f} | {error:.1e} |", flush=True)
+            # Between fixed steps of roulement, on logarithmic axes; beyond them nothing is said.
+            if errors[0] <= math.log(error) <= errors[-1]:
+                same = math.exp(numpy.interp(math.log(error), errors, times))
+                times_longer.append(f"At its error of {error:.1e} {how} of Exudyn takes {seconds / same:.0f} times the CPU time of roulement.")
         except exudyn.SolverError:
             print(f"| Exudyn | {how} | - | its solver gives up |", flush=True)
+    print("", *times_longer, sep="\n")
     apart = theirs.error(reference, scale)
     print(f"\nThe finest runs of both are {apart:.1e} apart: damping and friction follow different laws.")
 
