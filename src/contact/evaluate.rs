@@ -27,6 +27,21 @@ impl ContactModel<'_> {
         }
     }
 
+    /// The same, bit by bit, in less time where the contact does roll obliquely, and in more where it does not: for one that did so when
+    /// it was evaluated last ([`ContactGroup::rolls_obliquely`](super::many::ContactGroup::rolls_obliquely)).
+    #[inline(always)]
+    pub fn evaluate_obliquely<S: Scalar>(
+        &self,
+        ball: &BallMotion<S>,
+        race: &RaceMotion<S>,
+    ) -> BallRaceContact<S> {
+        match self.law {
+            Law::Frictionless => self.pressed_apart(ball, race),
+            _ if self.is_usual() => self.rolling_along::<S, true, false>(ball, race).0,
+            _ => self.rolling_shaped(ball, race),
+        }
+    }
+
     /// [`Self::pressed`] as a function of its own: inlined beside the contact with friction it is more than the compiler takes.
     #[inline(never)]
     fn pressed_apart<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
@@ -255,8 +270,8 @@ impl ContactModel<'_> {
         self.rolling_along::<S, false, true>(ball, race).0
     }
 
-    /// [`Self::rolling`] where rolling across the circumference has a share. Seldom: it computes everything once more, because what
-    /// the usual contact would hand over to it would have to be in memory.
+    /// [`Self::rolling`] where rolling across the circumference turns out to have a share. Seldom: it computes everything once more, because
+    /// what the usual contact would hand over to it would have to be in memory.
     #[cold]
     #[inline(never)]
     pub(super) fn rolling_obliquely<S: Scalar>(
@@ -305,7 +320,11 @@ impl ContactModel<'_> {
         if (MIXED || SHAPED && oblique)
             && let Some(across) = &self.across
         {
-            creep = across.mixed(&creep, &theory, rolling.speed_across / rolling.speed, &rolling.creepage);
+            let sine = rolling.speed_across / rolling.speed;
+            creep = match SHAPED {
+                true => across.mixed_apart(&creep, &theory, sine, &rolling.creepage),
+                false => across.mixed(&creep, &theory, sine, &rolling.creepage),
+            };
         }
 
         let mut wrench = surfaces.wrench(&rolling, load.total, &creep);

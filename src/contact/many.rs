@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::creep::Law;
+use super::oblique::was_oblique;
 use super::pair::PairForces;
 use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
 use crate::kalker::scaled_law::Difference;
@@ -92,6 +93,7 @@ impl ContactGroup {
         let evaluate = match (contact.law, contact.is_usual()) {
             (Law::Frictionless, true) => press_lanes,
             (Law::Frictionless, false) => press_shaped_lanes,
+            (_, true) if was_oblique(self.0.rolling_speed, self.0.rolling_cosine) => roll_obliquely_lanes,
             (_, true) => roll_lanes,
             (_, false) => roll_shaped_lanes,
         };
@@ -123,6 +125,12 @@ impl ContactGroup {
     #[inline]
     pub fn touch(&self, lane: usize) -> Touch {
         self.0.touch_with(|lanes| lanes.0[lane])
+    }
+
+    /// Does the contact in a lane roll obliquely?
+    #[inline]
+    pub fn rolls_obliquely(&self, lane: usize) -> bool {
+        was_oblique(self.0.rolling_speed.0[lane], self.0.rolling_cosine.0[lane])
     }
 
     /// The forces in a lane.
@@ -175,6 +183,17 @@ fn roll_lanes(
     } else {
         *contacts = along;
     }
+}
+
+/// Contacts that most likely roll obliquely, alike.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn roll_obliquely_lanes(
+    contact: &ContactModel<'_>,
+    race: &RaceMotion<f64>,
+    balls: &BallMotion<Lanes>,
+    contacts: &mut BallRaceContact<Lanes>,
+) {
+    *contacts = contact.rolling_along::<_, true, false>(balls, &race.constant()).0;
 }
 
 /// Contacts without friction, alike.

@@ -10,6 +10,7 @@
 //! below which creepages are held finite and a direction has no meaning, counts as along x.
 
 use super::creep::Law;
+use super::kinematics::REGULARISATION_SPEED;
 use super::linear_theory::{CreepForces, Creepage, LinearTheory};
 use crate::kalker::LinearError;
 use crate::kalker::Patch;
@@ -67,6 +68,7 @@ impl Exchanged {
     }
 
     /// Linear theory of the exchanged ellipse by that of the one in hand and the sine of the rolling direction.
+    #[inline(always)]
     fn theory<S: Scalar>(&self, theory: &LinearTheory<S>, sine: S) -> LinearTheory<S> {
         LinearTheory {
             longitudinal: theory.lateral.scale(self.longitudinal),
@@ -79,6 +81,7 @@ impl Exchanged {
     }
 
     /// [-] share of rolling across in the forces by the square of the sine of the rolling direction: smooth.
+    #[inline(always)]
     fn share<S: Scalar>(&self, sine_square: S) -> S {
         let m = self.axis_ratio.sqrt();
         sine_square.map_smooth(|square| {
@@ -104,10 +107,30 @@ pub(super) fn is_oblique<S: Scalar>(speed: S, across: S) -> bool {
     across.any_beyond(0.999 * BEGIN.sqrt(), speed)
 }
 
+/// The same of a contact that was evaluated, by the rolling speed and the cosine of its direction.
+#[inline(always)]
+pub(super) fn was_oblique<S: Scalar>(speed: S, cosine: S) -> bool {
+    let square = speed.square();
+    let across = square * S::one_minus(cosine.square()) - S::constant(REGULARISATION_SPEED.powi(2));
+    across.any_beyond(BEGIN, square)
+}
+
 impl Across<'_> {
+    /// [`Self::mixed`] as a function of its own, where oblique rolling is only one of many things that a contact may do.
+    #[inline(never)]
+    pub fn mixed_apart<S: Scalar>(
+        &self,
+        along: &CreepForces<S>,
+        theory: &LinearTheory<S>,
+        sine: S,
+        creepage: &Creepage<S>,
+    ) -> CreepForces<S> {
+        self.mixed(along, theory, sine, creepage)
+    }
+
     /// Forces of oblique rolling from those of the law along x, by linear theory along x, the sine of the rolling direction and
     /// the creepages. The slip of a bent groove is part of rolling along x alone.
-    #[inline(never)]
+    #[inline(always)]
     pub fn mixed<S: Scalar>(
         &self,
         along: &CreepForces<S>,

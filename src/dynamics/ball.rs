@@ -177,8 +177,7 @@ impl BallTrial {
         step: &HhtStep,
     ) -> u64 {
         let motion = &groups.motion(index);
-        let touches = |race: Race| groups.pressed(index, race).0 >= 0.0;
-        let (mut tangent, evaluated) = self.contacts_with_tangent((index, motion, touches), around, step);
+        let (mut tangent, evaluated) = self.contacts_with_tangent((index, motion), groups, around, step);
         self.uncouple(Body::Cage);
         if let (Some((cage, trial)), Some(_)) = (around.cage, &self.pocket) {
             let radius = around.model.bearing.ball.radius;
@@ -196,7 +195,8 @@ impl BallTrial {
     /// Derivatives of the contacts with the races, and how many of these touch.
     fn contacts_with_tangent(
         &mut self,
-        (index, motion, touches): (usize, &BallMotion<f64>, impl Fn(Race) -> bool),
+        (index, motion): (usize, &BallMotion<f64>),
+        groups: &Groups,
         around: &Surroundings<'_>,
         step: &HhtStep,
     ) -> (Matrix6<f64>, u64) {
@@ -204,16 +204,17 @@ impl BallTrial {
         let (mut tangent, mut touching) = (Matrix6::zeros(), 0);
         self.reactions = [None; SLOTS];
         for race in Race::BOTH {
-            if !touches(race) {
+            if groups.pressed(index, race).0 < 0.0 {
                 self.uncouple(race.into());
                 continue;
             }
             touching += 1;
             let (contact, seen) = (around.contact(index, race), &around.races[race]);
+            let obliquely = groups.rolls_obliquely(index, race);
             tangent += match seen.moved() {
-                None => by_ball_alone(&contact, &seed(motion, step, radius), seen.motion).1,
+                None => by_ball_alone(obliquely, &contact, &seed(motion, step, radius), seen.motion).1,
                 Some(moved) => {
-                    let pair = by_ball_and_race(&contact, &seed(motion, step, radius), &moved);
+                    let pair = by_ball_and_race(obliquely, &contact, &seed(motion, step, radius), &moved);
                     self.couple(race.into(), &pair, step, radius)
                 }
             };
@@ -250,11 +251,11 @@ pub struct BallAlone {
 }
 
 impl BallAlone {
-    /// The ball `index` with these unknowns.
+    /// The ball `index` with these unknowns, and whether it rolls obliquely on each race.
     pub fn new(
         index: usize,
-        equations: &BallEquations,
-        unknowns: &Vector6<f64>,
+        (equations, unknowns): (&BallEquations, &Vector6<f64>),
+        obliquely: &PerRace<bool>,
         around: &Surroundings<'_>,
         step: &HhtStep,
     ) -> Self {
@@ -270,7 +271,7 @@ impl BallAlone {
                 continue;
             }
             touching += 1;
-            let (value, by_ball) = by_ball_alone(&contact, &seeded, seen);
+            let (value, by_ball) = by_ball_alone(obliquely[race], &contact, &seeded, seen);
             total = total.plus(PairForces::from(&value).on_first());
             tangent += by_ball;
         }
@@ -312,9 +313,22 @@ fn by_motion(ambient: &Ambient, ball: &BallMotion<Dual<6>>) -> Matrix6<f64> {
     by_first(&force, &moment)
 }
 
-/// A contact with a race of given motion, and derivatives of force and moment on the ball by the ball's unknowns.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+/// A contact with a race of given motion, and derivatives of force and moment on the ball by the ball's unknowns. Either way leads to
+/// the same; one is the shorter one for a contact that rolls `obliquely`.
 fn by_ball_alone(
+    obliquely: bool,
+    contact: &ContactModel<'_>,
+    ball: &BallMotion<Dual<6>>,
+    race: &RaceMotion<f64>,
+) -> (BallRaceContact<f64>, Matrix6<f64>) {
+    match obliquely {
+        true => by_ball_alone_obliquely(contact, ball, race),
+        false => by_ball_alone_along(contact, ball, race),
+    }
+}
+
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn by_ball_alone_along(
     contact: &ContactModel<'_>,
     ball: &BallMotion<Dual<6>>,
     race: &RaceMotion<f64>,
@@ -323,10 +337,45 @@ fn by_ball_alone(
     (contact.values(), by_first(&contact.force, &contact.ball_moment))
 }
 
-/// Derivatives of a contact with a race that forces move, by the unknowns of both.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn by_ball_and_race(contact: &ContactModel<'_>, ball: &BallMotion<D>, race: &RaceMotion<D>) -> PairTangent {
+fn by_ball_alone_obliquely(
+    contact: &ContactModel<'_>,
+    ball: &BallMotion<Dual<6>>,
+    race: &RaceMotion<f64>,
+) -> (BallRaceContact<f64>, Matrix6<f64>) {
+    let contact = contact.evaluate_obliquely(ball, &race.constant());
+    (contact.values(), by_first(&contact.force, &contact.ball_moment))
+}
+
+/// Derivatives of a contact with a race that forces move, by the unknowns of both, alike.
+fn by_ball_and_race(
+    obliquely: bool,
+    contact: &ContactModel<'_>,
+    ball: &BallMotion<D>,
+    race: &RaceMotion<D>,
+) -> PairTangent {
+    match obliquely {
+        true => by_ball_and_race_obliquely(contact, ball, race),
+        false => by_ball_and_race_along(contact, ball, race),
+    }
+}
+
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn by_ball_and_race_along(
+    contact: &ContactModel<'_>,
+    ball: &BallMotion<D>,
+    race: &RaceMotion<D>,
+) -> PairTangent {
     PairTangent::of(&PairForces::from(&contact.evaluate(ball, race)))
+}
+
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn by_ball_and_race_obliquely(
+    contact: &ContactModel<'_>,
+    ball: &BallMotion<D>,
+    race: &RaceMotion<D>,
+) -> PairTangent {
+    PairTangent::of(&PairForces::from(&contact.evaluate_obliquely(ball, race)))
 }
 
 /// Derivatives of a contact with the cage, by the unknowns of both; none where they do not touch.

@@ -246,6 +246,13 @@ impl Groups {
         group.contacts[race].touch(lane)
     }
 
+    /// Did a ball roll obliquely on a race when it was evaluated last?
+    #[inline]
+    pub fn rolls_obliquely(&self, ball: usize, race: Race) -> bool {
+        let (group, lane) = self.place(ball);
+        group.contacts[race].rolls_obliquely(lane)
+    }
+
     /// Contacts of a ball with the races.
     pub fn contacts(&self, ball: usize) -> PerRace<BallRaceContact<f64>> {
         let (group, lane) = self.place(ball);

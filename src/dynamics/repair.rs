@@ -12,7 +12,7 @@ use super::ball::{BallAlone, Surroundings};
 use super::ball_equations::BallEquations;
 use super::equations::BearingStep;
 use super::group::Groups;
-use crate::model::bodies::Race;
+use crate::model::bodies::{PerRace, Race};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::size::largest;
 
@@ -47,8 +47,10 @@ impl BearingStep<'_> {
         for (index, (trial, start)) in balls.iter_mut().zip(&self.start.balls).enumerate() {
             if is_thrown(index, groups) {
                 let equations = BallEquations::new(start, ball, &self.step);
+                let obliquely = PerRace::new(|race| groups.rolls_obliquely(index, race));
                 let alone = |unknowns: &Vector6<f64>| {
-                    let here = BallAlone::new(index, &equations, unknowns, &around, &self.step);
+                    let here =
+                        BallAlone::new(index, (&equations, unknowns), &obliquely, &around, &self.step);
                     self.contact_tangents += here.touching;
                     here
                 };

@@ -66,23 +66,28 @@ impl CreepTable {
     pub fn mixed_values<V: Values>(&self, [x, y, z, direction]: [V; 4]) -> [V; 3] {
         let settled = direction.all(|direction| direction.abs() == 1.0);
         let forwards = self.rolling([x, y, z], if settled { direction } else { V::one() });
-        if settled { forwards } else { self.mix_in_backwards(forwards, [x, y, z, direction]) }
+        if settled {
+            return forwards;
+        }
+        let backwards = self.rolling([x, y, z], -V::one());
+        let weight = (direction + V::one()).scale(0.5);
+        std::array::from_fn(|m| mix(forwards[m], backwards[m], weight))
     }
 
     /// Forces of rolling along +x (1) or against it (-1).
     #[inline(always)]
     fn rolling<V: Values>(&self, [x, y, z]: [V; 3], sign: V) -> [V; 3] {
-        let [x, y, z] = self.values([sign * x, sign * y, z]);
+        let q = [sign * x, sign * y, z];
+        let [x, y, z] = V::each_or_together(
+            q,
+            |q| values_of_one(self, q),
+            |q| {
+                let mut forces = [Lanes::constant(0.0); 3];
+                values_together(self, &q, &mut forces);
+                forces
+            },
+        );
         [sign * x, sign * y, z]
-    }
-
-    // Seldom, and not worth a second copy of the table's evaluation.
-    #[cold]
-    #[inline(never)]
-    fn mix_in_backwards<V: Values>(&self, forwards: [V; 3], [x, y, z, direction]: [V; 4]) -> [V; 3] {
-        let backwards = self.rolling([x, y, z], -V::one());
-        let weight = (direction + V::one()).scale(0.5);
-        std::array::from_fn(|m| mix(forwards[m], backwards[m], weight))
     }
 
     /// Forces of [`Self::mixed_values`] with their derivatives by all four arguments: row by force.
@@ -233,15 +238,7 @@ fn limit_gradient([x, y, z]: [f64; 3], gradient: &mut [[f64; 3]; 3]) {
 impl SmoothMap<4, 3> for CreepTable {
     #[inline(always)]
     fn values<V: Values>(&self, x: [V; 4]) -> [V; 3] {
-        V::each_or_together(
-            x,
-            |x| values_of_one(self, x),
-            |x| {
-                let mut forces = [Lanes::constant(0.0); 3];
-                values_together(self, &x, &mut forces);
-                forces
-            },
-        )
+        self.mixed_values(x)
     }
     fn with_gradient(&self, x: [f64; 4]) -> ([f64; 3], [[f64; 4]; 3]) {
         self.mixed(x)
@@ -250,12 +247,12 @@ impl SmoothMap<4, 3> for CreepTable {
 
 /// Forces of one contact.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn values_of_one(table: &CreepTable, x: [f64; 4]) -> [f64; 3] {
-    table.mixed_values(x)
+fn values_of_one(table: &CreepTable, q: [f64; 3]) -> [f64; 3] {
+    table.values(q)
 }
 
 /// Forces of several contacts. They go into memory lane by lane: compilers vectorise from the stores backwards.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn values_together(table: &CreepTable, x: &[Lanes; 4], forces: &mut [Lanes; 3]) {
-    *forces = table.mixed_values(*x);
+fn values_together(table: &CreepTable, q: &[Lanes; 3], forces: &mut [Lanes; 3]) {
+    *forces = table.values(*q);
 }
