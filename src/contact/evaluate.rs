@@ -16,6 +16,17 @@ use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::{Difference, ScaledKalker};
 use crate::numerics::scalar::{Scalar, cross, dot};
 
+/// Ways to the forces of a contact ([`ContactModel::evaluate_by`]).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// Rolling along the circumference, on a plain torus with the usual damping.
+    Along,
+    /// Rolling across it mixed in (`MIXED`).
+    Obliquely,
+    /// On any surface with any damping (`SHAPED`).
+    Shaped,
+}
+
 impl ContactModel<'_> {
     /// Evaluates the contact of a ball with the race: the whole chain from motion to forces, written once for values
     /// and for exact derivatives. Without friction only what forces need is computed; [`Self::completed`] adds the rest.
@@ -27,18 +38,26 @@ impl ContactModel<'_> {
         }
     }
 
-    /// The same, bit by bit, in less time where the contact does roll obliquely, and in more where it does not: for one that did so when
-    /// it was evaluated last ([`ContactGroup::rolls_obliquely`](super::many::ContactGroup::rolls_obliquely)).
+    /// The same by the given way, where that is one of [`Self::way`]: as part of a function that is compiled for vectors.
     #[inline(always)]
-    pub fn evaluate_obliquely<S: Scalar>(
+    pub fn evaluate_by<S: Scalar, const MIXED: bool, const SHAPED: bool>(
         &self,
         ball: &BallMotion<S>,
         race: &RaceMotion<S>,
     ) -> BallRaceContact<S> {
-        match self.law {
-            Law::Frictionless => self.pressed_apart(ball, race),
-            _ if self.is_usual() => self.rolling_along::<S, true, false>(ball, race).0,
-            _ => self.rolling_shaped(ball, race),
+        if matches!(self.law, Law::Frictionless) {
+            return self.pressed_apart(ball, race);
+        }
+        self.rolling_by::<S, MIXED, SHAPED>(ball, race)
+    }
+
+    /// The shortest way to its forces. `obliquely`: did it roll so when it was evaluated last
+    /// ([`ContactGroup::rolled_obliquely`](super::many::ContactGroup::rolled_obliquely))? Whatever is said, results are the same, bit by bit.
+    pub fn way(&self, obliquely: bool) -> Way {
+        match self.is_usual() {
+            false => Way::Shaped,
+            true if obliquely => Way::Obliquely,
+            true => Way::Along,
         }
     }
 
@@ -259,8 +278,18 @@ impl ContactModel<'_> {
         if !self.is_usual() {
             return self.rolling_shaped(ball, race);
         }
-        let (contact, oblique) = self.rolling_along::<S, false, false>(ball, race);
-        if oblique { self.rolling_obliquely(ball, race) } else { contact }
+        self.rolling_by::<S, false, false>(ball, race)
+    }
+
+    /// The same by a given way.
+    #[inline(always)]
+    fn rolling_by<S: Scalar, const MIXED: bool, const SHAPED: bool>(
+        &self,
+        ball: &BallMotion<S>,
+        race: &RaceMotion<S>,
+    ) -> BallRaceContact<S> {
+        let (contact, oblique) = self.rolling_along::<S, MIXED, SHAPED>(ball, race);
+        if oblique && !MIXED && !SHAPED { self.rolling_obliquely(ball, race) } else { contact }
     }
 
     /// The same on any surface with any damping, apart, so that the usual contact does not pay for it.

@@ -3,9 +3,8 @@
 use nalgebra::Vector3;
 
 use super::creep::Law;
-use super::oblique::was_oblique;
 use super::pair::PairForces;
-use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
+use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion, Way};
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::scalar::Scalar;
@@ -54,6 +53,13 @@ impl<S: Scalar> BallRaceContact<S> {
     }
 }
 
+impl BallRaceContact<f64> {
+    /// Where ball and race touch.
+    pub fn touch(&self) -> Touch {
+        self.touch_with(|x| *x)
+    }
+}
+
 impl<S: Scalar> From<&BallRaceContact<S>> for PairForces<S> {
     #[inline(always)]
     fn from(contact: &BallRaceContact<S>) -> Self {
@@ -75,12 +81,16 @@ impl BallMotion<Lanes> {
 
 /// Contacts of up to [`WIDTH`] balls with a race, lane by lane.
 #[derive(Clone, Debug)]
-pub struct ContactGroup(BallRaceContact<Lanes>);
+pub struct ContactGroup {
+    contacts: BallRaceContact<Lanes>,
+    /// Did one of them roll obliquely when they were evaluated? It most likely does so again.
+    obliquely: bool,
+}
 
 impl ContactGroup {
     /// All lanes with one contact.
     pub fn filled(contact: &BallRaceContact<f64>) -> Self {
-        Self(contact.zip_with(contact, |x, _| Lanes::constant(x)))
+        Self { contacts: contact.zip_with(contact, |x, _| Lanes::constant(x)), obliquely: false }
     }
 
     /// Evaluates the contacts of [`WIDTH`] balls, to the same bits as [`ContactModel::evaluate`].
@@ -90,20 +100,20 @@ impl ContactGroup {
         race: &RaceMotion<f64>,
         balls: &BallMotion<Lanes>,
     ) {
-        let evaluate = match (contact.law, contact.is_usual()) {
-            (Law::Frictionless, true) => press_lanes,
-            (Law::Frictionless, false) => press_shaped_lanes,
-            (_, true) if was_oblique(self.0.rolling_speed, self.0.rolling_cosine) => roll_obliquely_lanes,
-            (_, true) => roll_lanes,
-            (_, false) => roll_shaped_lanes,
+        let evaluate = match (contact.law, contact.way(self.obliquely)) {
+            (Law::Frictionless, Way::Shaped) => press_lanes::<true>,
+            (Law::Frictionless, _) => press_lanes::<false>,
+            (_, Way::Along) => roll_lanes::<false, false>,
+            (_, Way::Obliquely) => roll_lanes::<true, false>,
+            (_, Way::Shaped) => roll_lanes::<false, true>,
         };
-        evaluate(contact, race, balls, &mut self.0);
+        self.obliquely = evaluate(contact, race, balls, &mut self.contacts);
     }
 
     /// All contacts, lane by lane.
     #[inline(always)]
     pub fn lanes(&self) -> &BallRaceContact<Lanes> {
-        &self.0
+        &self.contacts
     }
 
     /// Puts a contact into its lane; that of the first lane goes into all.
@@ -111,32 +121,32 @@ impl ContactGroup {
         *self = if lane == 0 {
             Self::filled(contact)
         } else {
-            Self(self.0.zip_with(contact, |lanes, x| lanes.with(lane, x)))
+            Self { contacts: self.contacts.zip_with(contact, |lanes, x| lanes.with(lane, x)), ..*self }
         };
     }
 
     /// The contact in a lane.
     #[inline(always)]
     pub fn contact(&self, lane: usize) -> BallRaceContact<f64> {
-        self.0.zip_with(&self.0, |lanes, _| lanes.0[lane])
+        self.contacts.zip_with(&self.contacts, |lanes, _| lanes.0[lane])
     }
 
     /// Where the ball in a lane touches the race.
     #[inline]
     pub fn touch(&self, lane: usize) -> Touch {
-        self.0.touch_with(|lanes| lanes.0[lane])
+        self.contacts.touch_with(|lanes| lanes.0[lane])
     }
 
-    /// Does the contact in a lane roll obliquely?
+    /// Did one of the contacts roll obliquely when they were evaluated?
     #[inline]
-    pub fn rolls_obliquely(&self, lane: usize) -> bool {
-        was_oblique(self.0.rolling_speed.0[lane], self.0.rolling_cosine.0[lane])
+    pub fn rolled_obliquely(&self) -> bool {
+        self.obliquely
     }
 
     /// The forces in a lane.
     #[inline(always)]
     pub fn forces(&self, lane: usize) -> PairForces {
-        self.0.forces_with(|lanes| lanes.0[lane])
+        self.contacts.forces_with(|lanes| lanes.0[lane])
     }
 }
 
@@ -164,67 +174,36 @@ impl ContactModel<'_> {
     }
 }
 
-/// Contacts with friction. Compiled twice, for processors with vectors of four numbers and for those without; the version is
-/// chosen at run time.
+/// Contacts with friction, by the given way; does one of them roll obliquely? Compiled twice, for processors with vectors of four numbers
+/// and for those without; the version is chosen at run time.
 ///
 /// Arguments and result lie in memory lane by lane, because compilers vectorise from the stores backwards.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn roll_lanes(
+fn roll_lanes<const MIXED: bool, const SHAPED: bool>(
     contact: &ContactModel<'_>,
     race: &RaceMotion<f64>,
     balls: &BallMotion<Lanes>,
     contacts: &mut BallRaceContact<Lanes>,
-) {
+) -> bool {
     // Assigned in two places: chosen between, both results would have to be in memory first.
     let race = race.constant();
-    let (along, oblique) = contact.rolling_along::<_, false, false>(balls, &race);
-    if oblique {
+    let (along, oblique) = contact.rolling_along::<_, MIXED, SHAPED>(balls, &race);
+    if oblique && !MIXED && !SHAPED {
         *contacts = contact.rolling_obliquely(balls, &race);
     } else {
         *contacts = along;
     }
-}
-
-/// Contacts that most likely roll obliquely, alike.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn roll_obliquely_lanes(
-    contact: &ContactModel<'_>,
-    race: &RaceMotion<f64>,
-    balls: &BallMotion<Lanes>,
-    contacts: &mut BallRaceContact<Lanes>,
-) {
-    *contacts = contact.rolling_along::<_, true, false>(balls, &race.constant()).0;
+    oblique
 }
 
 /// Contacts without friction, alike.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn press_lanes(
+fn press_lanes<const SHAPED: bool>(
     contact: &ContactModel<'_>,
     race: &RaceMotion<f64>,
     balls: &BallMotion<Lanes>,
     contacts: &mut BallRaceContact<Lanes>,
-) {
-    *contacts = contact.pressed(balls, &race.constant());
-}
-
-/// Contacts with friction on any surface with any damping, alike.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn roll_shaped_lanes(
-    contact: &ContactModel<'_>,
-    race: &RaceMotion<f64>,
-    balls: &BallMotion<Lanes>,
-    contacts: &mut BallRaceContact<Lanes>,
-) {
-    *contacts = contact.rolling_along::<_, false, true>(balls, &race.constant()).0;
-}
-
-/// Contacts without friction there, alike.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn press_shaped_lanes(
-    contact: &ContactModel<'_>,
-    race: &RaceMotion<f64>,
-    balls: &BallMotion<Lanes>,
-    contacts: &mut BallRaceContact<Lanes>,
-) {
-    *contacts = contact.pressed_on::<_, true>(balls, &race.constant());
+) -> bool {
+    *contacts = contact.pressed_on::<_, SHAPED>(balls, &race.constant());
+    false
 }

@@ -34,6 +34,7 @@ use nalgebra::Vector3;
 use crate::contact::surface::Surface;
 use crate::numerics::scalar::{Scalar, Single, constant_vector};
 use creep::{CreepForces, Creepage, Law};
+pub use evaluate::Way;
 use film::Film;
 use geometry::GrooveContact;
 use kinematics::RollingState;

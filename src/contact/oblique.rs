@@ -10,7 +10,6 @@
 //! below which creepages are held finite and a direction has no meaning, counts as along x.
 
 use super::creep::Law;
-use super::kinematics::REGULARISATION_SPEED;
 use super::linear_theory::{CreepForces, Creepage, LinearTheory};
 use crate::kalker::LinearError;
 use crate::kalker::Patch;
@@ -105,14 +104,6 @@ impl Exchanged {
 #[inline(always)]
 pub(super) fn is_oblique<S: Scalar>(speed: S, across: S) -> bool {
     across.any_beyond(0.999 * BEGIN.sqrt(), speed)
-}
-
-/// The same of a contact that was evaluated, by the rolling speed and the cosine of its direction.
-#[inline(always)]
-pub(super) fn was_oblique<S: Scalar>(speed: S, cosine: S) -> bool {
-    let square = speed.square();
-    let across = square * S::one_minus(cosine.square()) - S::constant(REGULARISATION_SPEED.powi(2));
-    across.any_beyond(BEGIN, square)
 }
 
 impl Across<'_> {

@@ -8,6 +8,7 @@ use super::record::record;
 use super::support::supports_of;
 use super::{Boundary, Workspace, body};
 use crate::contact::BallMotion;
+use crate::contact::many::Touch;
 use crate::contact::pair::PairForces;
 use crate::effects::ambient::Ambient;
 use crate::effects::growth::Grown;
@@ -191,7 +192,7 @@ pub fn accept(
     state.powers = end.powers;
     let solved = Solved { workspace, guide: model.cage_guide() };
     if let Some(growth) = &model.growth {
-        let grown = grown(&workspace.contacts(model), state, boundary);
+        let grown = grown(|ball, race| workspace.touch(ball, race), state, boundary);
         let work = state.grown.map_or(0.0, |before| growth.work(&before, &grown));
         state.energies.put_in(work);
         state.energies.unaccounted += work;
@@ -202,14 +203,13 @@ pub fn accept(
 }
 
 /// What rings and balls have grown by, and what these contacts set against it.
-fn grown(contacts: &Contacts, state: &State, boundary: &Boundary) -> Grown {
+fn grown(touch: impl Fn(usize, Race) -> Touch, state: &State, boundary: &Boundary) -> Grown {
     let mut grown = Grown { warmth: boundary.conditions.warmth, ..Grown::default() };
-    for ball in &contacts.balls {
+    for ball in 0..state.balls.len() {
         for race in Race::BOTH {
-            let contact = &ball.raceways[race];
-            let (normal, axis) = (&contact.geometry.normal, &state.race(race).axes[0]);
-            let direction = [normal.dot(&contact.geometry.radial), normal.dot(axis)];
-            grown.pushes[race as usize].add(contact.load, direction);
+            let Touch { load, normal, radial, .. } = touch(ball, race);
+            let direction = [normal.dot(&radial), normal.dot(&state.race(race).axes[0])];
+            grown.pushes[race as usize].add(load, direction);
         }
     }
     grown
@@ -343,7 +343,8 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     state.supports = supports_of(model, |race| Some(state.race(race)), boundary, &mut powers);
     state.powers = powers;
     state.energies.stored = stored_energy(model, state, &contacts);
-    state.grown = model.growth.as_ref().map(|_| grown(&contacts, state, boundary));
+    let touch = |ball: usize, race: Race| contacts.balls[ball].raceways[race].touch();
+    state.grown = model.growth.as_ref().map(|_| grown(touch, state, boundary));
     record(model, state, &contacts, &boundary.conditions, None);
     state.force_tolerance = force_tolerance(&contacts, state.balls.len(), reach(model, state), 0.0);
 }

@@ -9,7 +9,7 @@ use super::directions::{D, by_first, scale_moments, seed};
 use super::group::{BallGroup, Groups};
 use super::reaction::{PairTangent, Reaction};
 use crate::contact::pair::PairForces;
-use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
+use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion, Way};
 use crate::effects::ambient::Ambient;
 use crate::kalker::scaled_law::Difference;
 use crate::model::Model;
@@ -210,7 +210,7 @@ impl BallTrial {
             }
             touching += 1;
             let (contact, seen) = (around.contact(index, race), &around.races[race]);
-            let obliquely = groups.rolls_obliquely(index, race);
+            let obliquely = groups.rolled_obliquely(index, race);
             tangent += match seen.moved() {
                 None => by_ball_alone(obliquely, &contact, &seed(motion, step, radius), seen.motion).1,
                 Some(moved) => {
@@ -251,7 +251,7 @@ pub struct BallAlone {
 }
 
 impl BallAlone {
-    /// The ball `index` with these unknowns, and whether it rolls obliquely on each race.
+    /// The ball `index` with these unknowns; `obliquely`: on which races did it roll so when it was evaluated last?
     pub fn new(
         index: usize,
         (equations, unknowns): (&BallEquations, &Vector6<f64>),
@@ -313,37 +313,30 @@ fn by_motion(ambient: &Ambient, ball: &BallMotion<Dual<6>>) -> Matrix6<f64> {
     by_first(&force, &moment)
 }
 
-/// A contact with a race of given motion, and derivatives of force and moment on the ball by the ball's unknowns. Either way leads to
-/// the same; one is the shorter one for a contact that rolls `obliquely`.
+/// A contact with a race of given motion, and derivatives of force and moment on the ball by the ball's unknowns. `obliquely`: did it roll
+/// so when it was evaluated last?
 fn by_ball_alone(
     obliquely: bool,
     contact: &ContactModel<'_>,
     ball: &BallMotion<Dual<6>>,
     race: &RaceMotion<f64>,
 ) -> (BallRaceContact<f64>, Matrix6<f64>) {
-    match obliquely {
-        true => by_ball_alone_obliquely(contact, ball, race),
-        false => by_ball_alone_along(contact, ball, race),
-    }
+    let differentiate = match contact.way(obliquely) {
+        Way::Along => alone::<false, false>,
+        Way::Obliquely => alone::<true, false>,
+        Way::Shaped => alone::<false, true>,
+    };
+    differentiate(contact, ball, race)
 }
 
+/// The same by a given way. Compiled twice, as contacts are ([`crate::contact::many`]), like the next ones.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn by_ball_alone_along(
+fn alone<const MIXED: bool, const SHAPED: bool>(
     contact: &ContactModel<'_>,
     ball: &BallMotion<Dual<6>>,
     race: &RaceMotion<f64>,
 ) -> (BallRaceContact<f64>, Matrix6<f64>) {
-    let contact = contact.evaluate(ball, &race.constant());
-    (contact.values(), by_first(&contact.force, &contact.ball_moment))
-}
-
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn by_ball_alone_obliquely(
-    contact: &ContactModel<'_>,
-    ball: &BallMotion<Dual<6>>,
-    race: &RaceMotion<f64>,
-) -> (BallRaceContact<f64>, Matrix6<f64>) {
-    let contact = contact.evaluate_obliquely(ball, &race.constant());
+    let contact = contact.evaluate_by::<_, MIXED, SHAPED>(ball, &race.constant());
     (contact.values(), by_first(&contact.force, &contact.ball_moment))
 }
 
@@ -354,28 +347,22 @@ fn by_ball_and_race(
     ball: &BallMotion<D>,
     race: &RaceMotion<D>,
 ) -> PairTangent {
-    match obliquely {
-        true => by_ball_and_race_obliquely(contact, ball, race),
-        false => by_ball_and_race_along(contact, ball, race),
-    }
+    let differentiate = match contact.way(obliquely) {
+        Way::Along => with_race::<false, false>,
+        Way::Obliquely => with_race::<true, false>,
+        Way::Shaped => with_race::<false, true>,
+    };
+    differentiate(contact, ball, race)
 }
 
+/// The same by a given way.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn by_ball_and_race_along(
+fn with_race<const MIXED: bool, const SHAPED: bool>(
     contact: &ContactModel<'_>,
     ball: &BallMotion<D>,
     race: &RaceMotion<D>,
 ) -> PairTangent {
-    PairTangent::of(&PairForces::from(&contact.evaluate(ball, race)))
-}
-
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn by_ball_and_race_obliquely(
-    contact: &ContactModel<'_>,
-    ball: &BallMotion<D>,
-    race: &RaceMotion<D>,
-) -> PairTangent {
-    PairTangent::of(&PairForces::from(&contact.evaluate_obliquely(ball, race)))
+    PairTangent::of(&PairForces::from(&contact.evaluate_by::<_, MIXED, SHAPED>(ball, race)))
 }
 
 /// Derivatives of a contact with the cage, by the unknowns of both; none where they do not touch.

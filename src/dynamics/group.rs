@@ -246,11 +246,10 @@ impl Groups {
         group.contacts[race].touch(lane)
     }
 
-    /// Did a ball roll obliquely on a race when it was evaluated last?
+    /// Did a ball, or one of those next to it, roll obliquely on a race when it was evaluated last?
     #[inline]
-    pub fn rolls_obliquely(&self, ball: usize, race: Race) -> bool {
-        let (group, lane) = self.place(ball);
-        group.contacts[race].rolls_obliquely(lane)
+    pub fn rolled_obliquely(&self, ball: usize, race: Race) -> bool {
+        self.place(ball).0.contacts[race].rolled_obliquely()
     }
 
     /// Contacts of a ball with the races.

@@ -82,13 +82,39 @@ impl Member {
         own
     }
 
-    /// The same the other way round.
+    /// The same row by row.
+    fn own_rows(&self, world: &Matrix6<f64>) -> Matrix6<f64> {
+        let mut own = *world;
+        for i in 0..3 {
+            for k in 0..BLOCK {
+                let column = |j: usize| self.axes[(i, j)] * world[(k, 3 + j)];
+                own[(k, 3 + i)] = column(0) + column(1) + column(2);
+            }
+        }
+        own
+    }
+
+    /// The other way round, column by column.
+    #[inline(always)]
     fn world<const C: usize>(&self, own: &SMatrix<f64, BLOCK, C>) -> SMatrix<f64, BLOCK, C> {
         let mut world = *own;
         for k in 0..C {
             for i in 0..3 {
-                let column = |j: usize| self.axes[(j, i)] * own[(3 + j, k)];
-                world[(3 + i, k)] = column(0) + column(1) + column(2);
+                let row = |j: usize| self.axes[(j, i)] * own[(3 + j, k)];
+                world[(3 + i, k)] = row(0) + row(1) + row(2);
+            }
+        }
+        world
+    }
+
+    /// The same row by row.
+    #[inline(always)]
+    fn world_rows(&self, own: &Matrix6<f64>) -> Matrix6<f64> {
+        let mut world = *own;
+        for i in 0..3 {
+            for k in 0..BLOCK {
+                let column = |j: usize| self.axes[(j, i)] * own[(k, 3 + j)];
+                world[(k, 3 + i)] = column(0) + column(1) + column(2);
             }
         }
         world
@@ -134,23 +160,7 @@ impl Eliminated {
             return false;
         };
         put(&mut self.inverse, lane, &inverse);
-        let mut right = [Matrix6::zeros(); SLOTS];
-        for member in members {
-            let own = member.world(&block.right[member.slot].transpose()).transpose();
-            right[member.slot] = times(&inverse, &own);
-        }
-        for (member, coupling) in members.iter().zip(&mut self.couplings) {
-            let left = member.world(&block.left[member.slot]);
-            put(&mut coupling.right, lane, &right[member.slot]);
-            put(&mut coupling.left, lane, &left);
-            for (other, lanes) in members.iter().zip(&mut coupling.rest) {
-                let mut rest = -times(&left, &right[other.slot]);
-                if other.slot == member.slot {
-                    rest += member.world(&member.world(&block.own[member.slot]).transpose()).transpose();
-                }
-                put(lanes, lane, &rest);
-            }
-        }
+        put_couplings(&mut self.couplings, lane, (block, &inverse), members);
         true
     }
 
@@ -166,7 +176,34 @@ impl Eliminated {
     }
 }
 
+/// Puts the couplings of an eliminated block into a lane. Compiled twice, as contacts are ([`crate::contact::many`]), like others below.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn put_couplings(
+    couplings: &mut [Coupling],
+    lane: usize,
+    (block, inverse): (&Block, &Matrix6<f64>),
+    members: &[Member],
+) {
+    let mut right = [Matrix6::zeros(); SLOTS];
+    for member in members {
+        right[member.slot] = times(inverse, &member.world_rows(&block.right[member.slot]));
+    }
+    for (member, coupling) in members.iter().zip(couplings) {
+        let left = member.world(&block.left[member.slot]);
+        put(&mut coupling.right, lane, &right[member.slot]);
+        put(&mut coupling.left, lane, &left);
+        for (other, lanes) in members.iter().zip(&mut coupling.rest) {
+            let mut rest = -times(&left, &right[other.slot]);
+            if other.slot == member.slot {
+                rest += member.world_rows(&member.world(&block.own[member.slot]));
+            }
+            put(lanes, lane, &rest);
+        }
+    }
+}
+
 /// Puts a matrix into a lane.
+#[inline(always)]
 fn put(lanes: &mut Square<Lanes>, lane: usize, matrix: &Matrix6<f64>) {
     for (lanes, number) in lanes.as_flattened_mut().iter_mut().zip(matrix) {
         lanes.0[lane] = *number;
@@ -220,7 +257,7 @@ impl Arrowhead {
             for (column, b) in members.iter().enumerate() {
                 let sum = &sums[count * row + column];
                 let sum = Matrix6::from_fn(|i, k| sum_of_lanes(&sum[k][i]));
-                let rest = a.own(&b.own(&sum.transpose()).transpose());
+                let rest = a.own(&b.own_rows(&sum));
                 let mut view = border.fixed_view_mut::<BLOCK, BLOCK>(a.from, b.from);
                 view += rest;
             }
@@ -279,6 +316,7 @@ fn sum_of_lanes(lanes: &Lanes) -> f64 {
 }
 
 /// Product of two matrices, in the order of the library's.
+#[inline(always)]
 fn times(a: &Matrix6<f64>, b: &Matrix6<f64>) -> Matrix6<f64> {
     let mut result = Matrix6::zeros();
     for j in 0..BLOCK {
@@ -303,7 +341,7 @@ fn product(matrix: &Square<Lanes>, x: &Six<Lanes>) -> Six<Lanes> {
     sum
 }
 
-/// Solves for right-hand sides of blocks alone. Compiled twice, as contacts are ([`crate::contact::many`]), like the next ones.
+/// Solves for right-hand sides of blocks alone.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn solve_alone(blocks: &Eliminated, turn: &OrbitTurn<Lanes>, x: &mut Six<Lanes>) {
     *x = turn.stacked(&product(&blocks.inverse, &turn.back().stacked(x)));

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use roulement::contact::creep::{Creepage, Law, LinearTheory};
 use roulement::contact::many::ContactGroup;
 use roulement::contact::materials::Pair;
-use roulement::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
+use roulement::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion, Way};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::kalker::scaled_law::Difference;
 use roulement::model::bodies::Race;

@@ -95,6 +95,58 @@ fn invariant_oblique_contacts_beside_straight_ones_have_the_bits_of_one() {
 }
 
 #[test]
+fn invariant_what_a_contact_did_before_does_not_change_its_bits() {
+    for (law, bend) in FRICTION.into_iter().flat_map(|law| [(law, None), (law, Some(100.0))]) {
+        let model = model_of(law);
+        for race in Race::BOTH {
+            let mut contact = model.contact(race, &Conditions::of_friction(0.08));
+            contact.groove_bend = bend;
+            assert_eq!((contact.way(false), contact.way(true)), (Way::Along, Way::Obliquely));
+            let cosine =
+                |turning: f64| as_simulated(&model, race, &oblique_motion(race, turning)).rolling_cosine;
+            let straight = if cosine(-150.0).abs() > cosine(150.0).abs() { -150.0 } else { 150.0 };
+            // All along the circumference; one of four obliquely; all of them, from where it begins; one that is open.
+            let turnings = [
+                [straight; WIDTH],
+                [straight, 0.9 * straight, -3e3, straight],
+                [-2.0 * straight, -2e4, 400.0, 1e3],
+                [straight, -900.0, straight, 1.1 * straight],
+            ];
+            let (_, race_motion) = motions_of(&motion(race));
+            let mut groups =
+                turnings.map(|turnings| turnings.map(|turning| motions_of(&oblique_motion(race, turning)).0));
+            groups[3][1].position.x += if race == Race::Inner { 3e-5 } else { -3e-5 };
+            assert_eq!(contact.evaluate(&groups[3][1], &race_motion).load, 0.0);
+            let mut seen = vec![];
+            for (before, now) in groups.iter().flat_map(|before| groups.each_ref().map(|now| (before, now))) {
+                let mut together = ContactGroup::filled(&contact.evaluate(&before[0], &race_motion));
+                for balls in [before, now, now] {
+                    together.evaluate(&contact, &race_motion, &BallMotion::of_balls(balls));
+                }
+                seen.push(together.rolled_obliquely());
+                for (lane, ball) in now.iter().enumerate() {
+                    let alone = contact.evaluate(ball, &race_motion);
+                    let bits =
+                        |contact: &_| rows::<f64>(contact).iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+                    assert_eq!(together.contact(lane), alone, "{law} {race:?} {lane}");
+                    assert_eq!(bits(&together.contact(lane)), bits(&alone), "{law} {race:?} {lane}");
+                }
+            }
+            assert!(seen.contains(&true) && seen.contains(&false), "{law} {race:?}");
+            // Nor those of its derivatives.
+            for turning in turnings.as_flattened() {
+                let x = oblique_motion(race, *turning);
+                let x: [Dual<18>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i, 1.0));
+                let (ball, race_motion) = motions_of(&x);
+                let usual = contact.evaluate(&ball, &race_motion);
+                assert_eq!(contact.evaluate_by::<_, false, false>(&ball, &race_motion), usual, "{law}");
+                assert_eq!(contact.evaluate_by::<_, true, false>(&ball, &race_motion), usual, "{law}");
+            }
+        }
+    }
+}
+
+#[test]
 fn invariant_oblique_rolling_stays_within_the_limits_and_loses_power() {
     for law in FRICTION.into_iter().filter(|law| *law != "linear") {
         let model = model_of(law);
