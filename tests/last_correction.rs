@@ -92,3 +92,39 @@ fn invariant_an_even_step_is_evaluated_once() {
         assert!((20.0..21.0).contains(&per_step), "{law}: {per_step}");
     }
 }
+
+#[test]
+fn invariant_without_friction_nothing_damps_the_swing_of_balls_along_their_grooves() {
+    // Size [m] and frequency [Hz] of the swing of a ball's axial place in 5 ms from a time on.
+    let swings = |law: &str| {
+        let law_text = format!("\"{law}\"");
+        let mut changes = EVEN.to_vec();
+        changes.extend([
+            ("effects.creep", law_text.as_str()),
+            ("solver.initial_step", "\"10 us\""),
+            ("inner.drive", "\"pose\""),
+        ]);
+        let mut simulation =
+            Simulation::new(&scenes::scene(include_str!("../scenes/thrust.toml"), &changes)).unwrap();
+        [5e-3, 45e-3].map(|from| {
+            simulation.advance_scripted(from).unwrap();
+            let places: Vec<f64> = (1..=500)
+                .map(|step| {
+                    simulation.advance_scripted(from + f64::from(step) * 1e-5).unwrap();
+                    simulation.state().balls[3].position.x
+                })
+                .collect();
+            let mean = places.iter().sum::<f64>() / places.len() as f64;
+            let size = places.iter().map(|x| (x - mean).abs()).fold(0.0, larger);
+            let crossings = places.windows(2).filter(|two| (two[0] < mean) != (two[1] < mean)).count();
+            (size, crossings as f64 / 2.0 / 5e-3)
+        })
+    };
+    let [early, late] = swings("frictionless");
+    println!("without friction: {:.2e} m, later {:.2e} m, {:.0} Hz", early.0, late.0, late.1);
+    assert!(early.0 > 1e-9 && late.0 > 0.7 * early.0 && late.0 < early.0);
+    assert!((late.1 - 4.8e3).abs() < 100.0, "{} Hz", late.1);
+    let [_, damped] = swings("saturated");
+    println!("with it: {:.2e} m", damped.0);
+    assert!(damped.0 < 1e-3 * late.0);
+}
