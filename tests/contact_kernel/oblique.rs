@@ -133,13 +133,12 @@ fn invariant_what_a_contact_did_before_does_not_change_its_bits() {
                 }
             }
             assert!(seen.contains(&true) && seen.contains(&false), "{law} {race:?}");
-            // Nor those of its derivatives.
+            // Nor those of its derivatives, in two directions: with more of them compilers take minutes.
             for turning in turnings.as_flattened() {
                 let x = oblique_motion(race, *turning);
-                let x: [Dual<18>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i, 1.0));
+                let x: [Dual<2>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i % 2, 1.0 + i as f64));
                 let (ball, race_motion) = motions_of(&x);
-                let usual = contact.evaluate(&ball, &race_motion);
-                assert_eq!(contact.evaluate_by::<_, false, false>(&ball, &race_motion), usual, "{law}");
+                let usual = evaluate_contact(&contact, &x);
                 assert_eq!(contact.evaluate_by::<_, true, false>(&ball, &race_motion), usual, "{law}");
             }
         }
