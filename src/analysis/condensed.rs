@@ -72,12 +72,12 @@ struct Linear {
 }
 
 /// A vector whose components are variables, from this direction on.
-fn variable<const N: usize>(v: &Vector3<f64>, first: usize) -> Vector3<Dual<N>> {
-    Vector3::from_fn(|i, _| Dual::variable(v[i], first + i, 1.0))
+fn variable(v: &Vector3<f64>, first: usize) -> Vector3<D> {
+    Vector3::from_fn(|i, _| D::variable(v[i], first + i, 1.0))
 }
 
 /// The motion of a ball by its velocity and angular velocity.
-fn ball_by_rates<const N: usize>(ball: &BallMotion<f64>) -> BallMotion<Dual<N>> {
+fn ball_by_rates(ball: &BallMotion<f64>) -> BallMotion<D> {
     BallMotion {
         position: constant_vector(&ball.position),
         velocity: variable(&ball.velocity, 0),
@@ -85,16 +85,14 @@ fn ball_by_rates<const N: usize>(ball: &BallMotion<f64>) -> BallMotion<Dual<N>> 
     }
 }
 
-/// Force and moment on a ball (rows) by its velocity and angular velocity (columns). Compiled twice, as contacts of many balls are
-/// ([`crate::contact::many`]).
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+/// Force and moment on a ball (rows) by its velocity and angular velocity (columns).
 pub(crate) fn ball_by_rate(
     model: &ContactModel<'_>,
     ball: &BallMotion<f64>,
     race: &RaceMotion<f64>,
 ) -> Matrix6<f64> {
-    let contact = model.evaluate(&ball_by_rates::<6>(ball), &race.constant());
-    by_ball(&contact.force, &contact.ball_moment)
+    let forces = model.forces(&ball_by_rates(ball), &race.constant());
+    by_ball(&forces.force, &forces.moment)
 }
 
 impl Linear {
@@ -110,7 +108,7 @@ impl Linear {
             turned
         };
         // Contacts depend on the relative translation alone: directions 0 to 2 serve ball and race.
-        let places = model.evaluate(
+        let places = model.forces(
             &BallMotion {
                 position: variable(&ball.position, 0),
                 velocity: constant_vector(&ball.velocity),
@@ -122,29 +120,29 @@ impl Linear {
                 ..race.constant()
             },
         );
-        let rates = model.evaluate(
+        let rates = model.forces(
             &ball_by_rates(ball),
             &RaceMotion { angular_velocity: variable(&race.angular_velocity, 6), ..race.constant() },
         );
         let opposite = |force: &Vector3<D>| -force;
         Self {
-            ball_by_place: derivatives(&places.force, &places.ball_moment),
-            ball_by_rate: derivatives(&rates.force, &rates.ball_moment),
-            race_by_place: derivatives(&opposite(&places.force), &places.race_moment),
-            race_by_rate: derivatives(&opposite(&rates.force), &rates.race_moment),
+            ball_by_place: derivatives(&places.force, &places.moment),
+            ball_by_rate: derivatives(&rates.force, &rates.moment),
+            race_by_place: derivatives(&opposite(&places.force), &places.other_moment),
+            race_by_rate: derivatives(&opposite(&rates.force), &rates.other_moment),
         }
     }
 }
 
 /// Row i of derivatives of force (0 to 2) and moment (3 to 5).
 #[inline(always)]
-fn row<const N: usize>([force, moment]: [&Vector3<Dual<N>>; 2], i: usize) -> &[f64; N] {
+fn row([force, moment]: [&Vector3<D>; 2], i: usize) -> &[f64; DIRECTIONS] {
     if i < 3 { &force[i].derivatives } else { &moment[i - 3].derivatives }
 }
 
 /// Derivatives of force and moment by the ball's motion: the first six directions.
 #[inline(always)]
-fn by_ball<const N: usize>(force: &Vector3<Dual<N>>, moment: &Vector3<Dual<N>>) -> Matrix6<f64> {
+fn by_ball(force: &Vector3<D>, moment: &Vector3<D>) -> Matrix6<f64> {
     Matrix6::from_fn(|i, k| row([force, moment], i)[k])
 }
 

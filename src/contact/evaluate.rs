@@ -1,4 +1,16 @@
 //! The contact of a ball with a race: the chain from motion to forces.
+//!
+//! The chain is written once, generic over the numbers, and compiled for two kinds of contact ([`Path`]). The plain one is what most
+//! contacts of most scenes are: a ball that rolls along the circumference of a torus, dry, damped as usual. The general one
+//! takes any contact; both give the same bits where the plain one holds. What runs when, and what it is compiled for:
+//!
+//! | numbers | plain contact | any other |
+//! |---|---|---|
+//! | four balls at a time ([`super::many`]) | plain, with and without vectors | general, with and without vectors |
+//! | derivatives | plain ([`ContactModel::forces_by`]) | general ([`ContactModel::forces`]) |
+//! | one ball ([`ContactModel::evaluate`]) | general | general |
+//!
+//! Each entry costs 0.1 to 0.4 MB of the library and seconds of its build, so that there is one only where steps spend their time.
 
 use std::f64::consts::PI;
 
@@ -10,61 +22,63 @@ use super::geometry::{GrooveContact, Lean};
 use super::kinematics::{self, RollingState, Surfaces};
 use super::normal::{Damping, NormalLoad};
 use super::oblique::is_oblique;
+use super::pair::PairForces;
 use super::shape::ShapeAt;
 use super::{BallMotion, BallRaceContact, ContactModel, HYSTERESIS, RaceMotion};
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::{Difference, ScaledKalker};
 use crate::numerics::scalar::{Scalar, cross, dot};
 
-/// Ways to the forces of a contact ([`ContactModel::evaluate_by`]).
+/// Paths from motion to forces: see the head of this file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum Path {
     /// Rolling along the circumference, on a plain torus with the usual damping.
-    Along,
-    /// Rolling across it mixed in (`MIXED`).
-    Obliquely,
-    /// On any surface with any damping (`SHAPED`).
-    Shaped,
+    Plain,
+    /// Any contact.
+    General,
 }
 
 impl ContactModel<'_> {
     /// Evaluates the contact of a ball with the race: the whole chain from motion to forces, written once for values
     /// and for exact derivatives. Without friction only what forces need is computed; [`Self::completed`] adds the rest.
-    #[inline(always)]
+    #[inline(never)]
     pub fn evaluate<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
         match self.law {
-            Law::Frictionless => self.pressed_apart(ball, race),
-            _ => self.rolling(ball, race),
+            Law::Frictionless => self.pressed::<S, true>(ball, race),
+            _ => self.rolling_any(ball, race),
         }
     }
 
-    /// The same by the given way, where that is one of [`Self::way`]: as part of a function that is compiled for vectors.
-    #[inline(always)]
-    pub fn evaluate_by<S: Scalar, const MIXED: bool, const SHAPED: bool>(
+    /// What an evaluated contact does, for less than the whole of it: with derivatives.
+    #[inline(never)]
+    pub fn forces<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> PairForces<S> {
+        match self.law {
+            Law::Frictionless => PairForces::from(&self.pressed::<S, true>(ball, race)),
+            _ => PairForces::from(&self.rolling::<S, true>(ball, race).0),
+        }
+    }
+
+    /// [`Self::forces`] by the path that is the shorter one ([`Self::path`]).
+    #[inline(never)]
+    pub fn forces_by<S: Scalar>(
         &self,
+        path: Path,
         ball: &BallMotion<S>,
         race: &RaceMotion<S>,
-    ) -> BallRaceContact<S> {
-        if matches!(self.law, Law::Frictionless) {
-            return self.pressed_apart(ball, race);
+    ) -> PairForces<S> {
+        if path == Path::Plain && !matches!(self.law, Law::Frictionless) {
+            let (contact, oblique) = self.rolling::<S, false>(ball, race);
+            if !oblique {
+                return PairForces::from(&contact);
+            }
         }
-        self.rolling_by::<S, MIXED, SHAPED>(ball, race)
+        self.forces(ball, race)
     }
 
-    /// The shortest way to its forces. `obliquely`: did it roll so when it was evaluated last
+    /// The shortest path to its forces. `obliquely`: did it roll so when it was evaluated last
     /// ([`ContactGroup::rolled_obliquely`](super::many::ContactGroup::rolled_obliquely))? Whatever is said, results are the same, bit by bit.
-    pub fn way(&self, obliquely: bool) -> Way {
-        match self.is_usual() {
-            false => Way::Shaped,
-            true if obliquely => Way::Obliquely,
-            true => Way::Along,
-        }
-    }
-
-    /// [`Self::pressed`] as a function of its own: inlined beside the contact with friction it is more than the compiler takes.
-    #[inline(never)]
-    fn pressed_apart<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
-        self.pressed(ball, race)
+    pub fn path(&self, obliquely: bool) -> Path {
+        if self.is_usual() && !obliquely { Path::Plain } else { Path::General }
     }
 
     /// A contact without friction with the ellipse, the creepages and the direction of rolling that no force depends on.
@@ -75,7 +89,7 @@ impl ContactModel<'_> {
         race: &RaceMotion<f64>,
     ) -> BallRaceContact<f64> {
         match self.law {
-            Law::Frictionless => ContactModel { across: None, ..*self }.rolling(ball, race),
+            Law::Frictionless => ContactModel { across: None, ..*self }.rolling_any(ball, race),
             _ => *contact,
         }
     }
@@ -104,12 +118,12 @@ impl ContactModel<'_> {
 
     /// Where the ball touches, and how its approach changes there ([`GrooveContact::new`]).
     #[inline(always)]
-    fn touch<S: Scalar, const SHAPED: bool>(
+    fn touch<S: Scalar, const GENERAL: bool>(
         &self,
         offset: &Vector3<S>,
         race: &RaceMotion<S>,
     ) -> (GrooveContact<S>, Lean<S>) {
-        match SHAPED {
+        match GENERAL {
             true => GrooveContact::new(&self.surface, offset, race),
             false => (GrooveContact::plain(&self.surface, offset, race), Lean::none()),
         }
@@ -128,14 +142,14 @@ impl ContactModel<'_> {
     /// Hertz stiffness and normal load by the stiffness of the shape, the depth and its root, the approach rate along the normal,
     /// and how the approach changes: the load does the work along the normal of one that goes with the approach.
     #[inline(always)]
-    fn normal_load<S: Scalar, const SHAPED: bool>(
+    fn normal_load<S: Scalar, const GENERAL: bool>(
         &self,
         of_shape: S,
         [depth, root]: [S; 2],
         rate: S,
         (lean, turning): (&Lean<S>, impl FnOnce() -> Vector3<S>),
     ) -> (S, NormalLoad<S>) {
-        if SHAPED {
+        if GENERAL {
             let stiffness = self.stiffness_of(of_shape);
             let rate = lean.rate(rate, turning);
             let load = NormalLoad::hertz(stiffness, depth, root, rate, self.damping);
@@ -156,7 +170,7 @@ impl ContactModel<'_> {
     /// Linear theory of a contact, and what a film does in it where there is one: its shape, the curvature of the race [1/m], depth
     /// \[m] and its root, load \[N].
     #[inline(always)]
-    fn theory<S: Scalar, const SHAPED: bool>(
+    fn theory<S: Scalar, const GENERAL: bool>(
         &self,
         shape: &ShapeAt<S>,
         of_race: S,
@@ -165,7 +179,7 @@ impl ContactModel<'_> {
         rolling: &RollingState<S>,
     ) -> (LinearTheory<S>, Option<FilmForces<S>>) {
         let dry = |friction_limit: S| LinearTheory::new(shape, [depth, root], friction_limit, rolling.cosine);
-        let film = if SHAPED { self.film.as_ref() } else { None };
+        let film = if GENERAL { self.film.as_ref() } else { None };
         let Some(film) = film else {
             return (dry(load.scale(self.friction)), None);
         };
@@ -199,33 +213,13 @@ impl ContactModel<'_> {
 
     /// A contact that carries its normal load alone.
     #[inline(always)]
-    pub(super) fn pressed<S: Scalar>(
-        &self,
-        ball: &BallMotion<S>,
-        race: &RaceMotion<S>,
-    ) -> BallRaceContact<S> {
-        if self.is_usual() {
-            self.pressed_on::<S, false>(ball, race)
-        } else {
-            self.pressed_shaped(ball, race)
-        }
-    }
-
-    /// The same on any surface with any damping, apart, so that the usual contact does not pay for it.
-    #[cold]
-    #[inline(never)]
-    fn pressed_shaped<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
-        self.pressed_on::<S, true>(ball, race)
-    }
-
-    #[inline(always)]
-    pub(super) fn pressed_on<S: Scalar, const SHAPED: bool>(
+    pub(super) fn pressed<S: Scalar, const GENERAL: bool>(
         &self,
         ball: &BallMotion<S>,
         race: &RaceMotion<S>,
     ) -> BallRaceContact<S> {
         let offset = ball.position - race.position;
-        let (geometry, lean) = self.touch::<S, SHAPED>(&offset, race);
+        let (geometry, lean) = self.touch::<S, GENERAL>(&offset, race);
         let depth = geometry.approach.positive_part();
         let of_shape = self.shape.stiffness(geometry.circumferential_curvature);
         let (arm, race_arm) = kinematics::arms(geometry.normal, self.surface.ball_radius, &offset);
@@ -238,11 +232,11 @@ impl ContactModel<'_> {
         };
         let turning = || ball.angular_velocity - race.angular_velocity;
         let (stiffness, load) =
-            self.normal_load::<S, SHAPED>(of_shape, [depth, depth.sqrt()], rate, (&lean, turning));
+            self.normal_load::<S, GENERAL>(of_shape, [depth, depth.sqrt()], rate, (&lean, turning));
         let (zero, none) = (S::zero(), Vector3::from_element(S::zero()));
         let force = -geometry.normal.map(|component| component * load.total);
         let mut moments = [none, -cross(&race_arm, &force)];
-        if SHAPED {
+        if GENERAL {
             lean.turn(load.total, &mut moments);
         }
         let [ball_moment, race_moment] = moments;
@@ -268,59 +262,22 @@ impl ContactModel<'_> {
         }
     }
 
-    /// A contact with its creep forces.
-    #[inline(always)]
-    pub(super) fn rolling<S: Scalar>(
-        &self,
-        ball: &BallMotion<S>,
-        race: &RaceMotion<S>,
-    ) -> BallRaceContact<S> {
-        if !self.is_usual() {
-            return self.rolling_shaped(ball, race);
-        }
-        self.rolling_by::<S, false, false>(ball, race)
-    }
-
-    /// The same by a given way.
-    #[inline(always)]
-    fn rolling_by<S: Scalar, const MIXED: bool, const SHAPED: bool>(
-        &self,
-        ball: &BallMotion<S>,
-        race: &RaceMotion<S>,
-    ) -> BallRaceContact<S> {
-        let (contact, oblique) = self.rolling_along::<S, MIXED, SHAPED>(ball, race);
-        if oblique && !MIXED && !SHAPED { self.rolling_obliquely(ball, race) } else { contact }
-    }
-
-    /// The same on any surface with any damping, apart, so that the usual contact does not pay for it.
-    #[cold]
+    /// A contact with its creep forces, as a function of its own.
     #[inline(never)]
-    fn rolling_shaped<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
-        self.rolling_along::<S, false, true>(ball, race).0
+    fn rolling_any<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
+        self.rolling::<S, true>(ball, race).0
     }
 
-    /// [`Self::rolling`] where rolling across the circumference turns out to have a share. Seldom: it computes everything once more, because
-    /// what the usual contact would hand over to it would have to be in memory.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn rolling_obliquely<S: Scalar>(
-        &self,
-        ball: &BallMotion<S>,
-        race: &RaceMotion<S>,
-    ) -> BallRaceContact<S> {
-        self.rolling_along::<S, true, false>(ball, race).0
-    }
-
-    /// A contact with its creep forces along the circumference, or with those across mixed in; and whether those have a share. On any
-    /// surface they are mixed in where they have.
+    /// A contact with its creep forces; and whether it rolls obliquely, so that those across the circumference have a share. They are mixed
+    /// in on the general path alone.
     #[inline(always)]
-    pub(super) fn rolling_along<S: Scalar, const MIXED: bool, const SHAPED: bool>(
+    pub(super) fn rolling<S: Scalar, const GENERAL: bool>(
         &self,
         ball: &BallMotion<S>,
         race: &RaceMotion<S>,
     ) -> (BallRaceContact<S>, bool) {
         let offset = ball.position - race.position;
-        let (geometry, lean) = self.touch::<S, SHAPED>(&offset, race);
+        let (geometry, lean) = self.touch::<S, GENERAL>(&offset, race);
         let surfaces = Surfaces::new(
             ball,
             self.surface.ball_radius,
@@ -337,33 +294,31 @@ impl ContactModel<'_> {
         let rate = surfaces.approach_rate;
         let turning = || ball.angular_velocity - race.angular_velocity;
         let (stiffness, load) =
-            self.normal_load::<S, SHAPED>(shape.stiffness, [depth, root], rate, (&lean, turning));
+            self.normal_load::<S, GENERAL>(shape.stiffness, [depth, root], rate, (&lean, turning));
 
         // creep forces of the ball on the race, in the contact frame: x along the circumference
         let rolling = surfaces.rolling(geometry.circumferential, self.groove_bend);
         let curvature = geometry.circumferential_curvature;
         let (theory, film) =
-            self.theory::<S, SHAPED>(&shape, curvature, [depth, root], load.total, &rolling.state());
+            self.theory::<S, GENERAL>(&shape, curvature, [depth, root], load.total, &rolling.state());
         let oblique = self.across.is_some() && is_oblique(rolling.speed, rolling.speed_across);
         let mut creep = theory.forces(self.law, &rolling.creepage);
-        if (MIXED || SHAPED && oblique)
+        if GENERAL
+            && oblique
             && let Some(across) = &self.across
         {
             let sine = rolling.speed_across / rolling.speed;
-            creep = match SHAPED {
-                true => across.mixed_apart(&creep, &theory, sine, &rolling.creepage),
-                false => across.mixed(&creep, &theory, sine, &rolling.creepage),
-            };
+            creep = across.mixed(&creep, &theory, sine, &rolling.creepage);
         }
 
         let mut wrench = surfaces.wrench(&rolling, load.total, &creep);
-        if SHAPED && self.resists() {
+        if GENERAL && self.resists() {
             let share = S::constant(1.0 / self.surface.ball_radius) / self.curvature_along(curvature);
             let force = film.map_or(S::zero(), |film| film.rolling_force);
             surfaces.resist(&mut wrench, &rolling, (force, share), self.hysteresis_moment(load.total));
         }
         let mut moments = [wrench.ball_moment, wrench.other_moment];
-        if SHAPED {
+        if GENERAL {
             lean.turn(load.total, &mut moments);
         }
         let [ball_moment, race_moment] = moments;

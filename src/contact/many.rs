@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::creep::Law;
 use super::pair::PairForces;
-use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion, Way};
+use super::{BallMotion, BallRaceContact, ContactModel, Path, RaceMotion};
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::scalar::Scalar;
@@ -100,14 +100,18 @@ impl ContactGroup {
         race: &RaceMotion<f64>,
         balls: &BallMotion<Lanes>,
     ) {
-        let evaluate = match (contact.law, contact.way(self.obliquely)) {
-            (Law::Frictionless, Way::Shaped) => press_lanes::<true>,
-            (Law::Frictionless, _) => press_lanes::<false>,
-            (_, Way::Along) => roll_lanes::<false, false>,
-            (_, Way::Obliquely) => roll_lanes::<true, false>,
-            (_, Way::Shaped) => roll_lanes::<false, true>,
+        let path = contact.path(self.obliquely);
+        let evaluate = match (contact.law, path) {
+            (Law::Frictionless, Path::Plain) => press_lanes::<false>,
+            (Law::Frictionless, Path::General) => press_lanes::<true>,
+            (_, Path::Plain) => roll_lanes::<false>,
+            (_, Path::General) => roll_lanes::<true>,
         };
         self.obliquely = evaluate(contact, race, balls, &mut self.contacts);
+        if self.obliquely && path == Path::Plain {
+            // Seldom: what the plain path would hand over would have to be in memory.
+            roll_lanes::<true>(contact, race, balls, &mut self.contacts);
+        }
     }
 
     /// All contacts, lane by lane.
@@ -174,36 +178,30 @@ impl ContactModel<'_> {
     }
 }
 
-/// Contacts with friction, by the given way; does one of them roll obliquely? Compiled twice, for processors with vectors of four numbers
-/// and for those without; the version is chosen at run time.
+/// Contacts with friction, by the plain or the general path; does one of them roll obliquely? Compiled twice, for processors with vectors of
+/// four numbers and for those without; the version is chosen at run time.
 ///
 /// Arguments and result lie in memory lane by lane, because compilers vectorise from the stores backwards.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn roll_lanes<const MIXED: bool, const SHAPED: bool>(
+fn roll_lanes<const GENERAL: bool>(
     contact: &ContactModel<'_>,
     race: &RaceMotion<f64>,
     balls: &BallMotion<Lanes>,
     contacts: &mut BallRaceContact<Lanes>,
 ) -> bool {
-    // Assigned in two places: chosen between, both results would have to be in memory first.
-    let race = race.constant();
-    let (along, oblique) = contact.rolling_along::<_, MIXED, SHAPED>(balls, &race);
-    if oblique && !MIXED && !SHAPED {
-        *contacts = contact.rolling_obliquely(balls, &race);
-    } else {
-        *contacts = along;
-    }
+    let (rolling, oblique) = contact.rolling::<_, GENERAL>(balls, &race.constant());
+    *contacts = rolling;
     oblique
 }
 
 /// Contacts without friction, alike.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn press_lanes<const SHAPED: bool>(
+fn press_lanes<const GENERAL: bool>(
     contact: &ContactModel<'_>,
     race: &RaceMotion<f64>,
     balls: &BallMotion<Lanes>,
     contacts: &mut BallRaceContact<Lanes>,
 ) -> bool {
-    *contacts = contact.pressed_on::<_, SHAPED>(balls, &race.constant());
+    *contacts = contact.pressed::<_, GENERAL>(balls, &race.constant());
     false
 }

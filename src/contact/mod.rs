@@ -34,7 +34,7 @@ use nalgebra::Vector3;
 use crate::contact::surface::Surface;
 use crate::numerics::scalar::{Scalar, Single, constant_vector};
 use creep::{CreepForces, Creepage, Law};
-pub use evaluate::Way;
+pub use evaluate::Path;
 use film::Film;
 use geometry::GrooveContact;
 use kinematics::RollingState;

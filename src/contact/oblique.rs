@@ -107,21 +107,9 @@ pub(super) fn is_oblique<S: Scalar>(speed: S, across: S) -> bool {
 }
 
 impl Across<'_> {
-    /// [`Self::mixed`] as a function of its own, where oblique rolling is only one of many things that a contact may do.
-    #[inline(never)]
-    pub fn mixed_apart<S: Scalar>(
-        &self,
-        along: &CreepForces<S>,
-        theory: &LinearTheory<S>,
-        sine: S,
-        creepage: &Creepage<S>,
-    ) -> CreepForces<S> {
-        self.mixed(along, theory, sine, creepage)
-    }
-
     /// Forces of oblique rolling from those of the law along x, by linear theory along x, the sine of the rolling direction and
-    /// the creepages. The slip of a bent groove is part of rolling along x alone.
-    #[inline(always)]
+    /// the creepages. The slip of a bent groove is part of rolling along x alone. A function of its own, as few contacts roll so.
+    #[inline(never)]
     pub fn mixed<S: Scalar>(
         &self,
         along: &CreepForces<S>,

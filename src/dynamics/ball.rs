@@ -9,7 +9,7 @@ use super::directions::{D, by_first, scale_moments, seed};
 use super::group::{BallGroup, Groups};
 use super::reaction::{PairTangent, Reaction};
 use crate::contact::pair::PairForces;
-use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion, Way};
+use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::effects::ambient::Ambient;
 use crate::kalker::scaled_law::Difference;
 use crate::model::Model;
@@ -20,7 +20,7 @@ use crate::numerics::arrowhead::{BLOCK, Block, SLOTS};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::motion::Wrench;
-use crate::numerics::scalar::Dual;
+use crate::numerics::scalar::values;
 
 /// Everything that a ball may touch in a trial step.
 #[derive(Clone, Copy, Debug)]
@@ -271,8 +271,8 @@ impl BallAlone {
                 continue;
             }
             touching += 1;
-            let (value, by_ball) = by_ball_alone(obliquely[race], &contact, &seeded, seen);
-            total = total.plus(PairForces::from(&value).on_first());
+            let (wrench, by_ball) = by_ball_alone(obliquely[race], &contact, &seeded, seen);
+            total = total.plus(wrench);
             tangent += by_ball;
         }
         if let Some((cage, trial)) = cage
@@ -308,65 +308,34 @@ impl Surroundings<'_> {
 
 /// Derivatives of what acts from outside by the ball's unknowns.
 #[cold]
-fn by_motion(ambient: &Ambient, ball: &BallMotion<Dual<6>>) -> Matrix6<f64> {
+fn by_motion(ambient: &Ambient, ball: &BallMotion<D>) -> Matrix6<f64> {
     let Wrench { force, moment } = ambient.on_ball(ball);
     by_first(&force, &moment)
 }
 
-/// A contact with a race of given motion, and derivatives of force and moment on the ball by the ball's unknowns. `obliquely`: did it roll
-/// so when it was evaluated last?
-fn by_ball_alone(
-    obliquely: bool,
-    contact: &ContactModel<'_>,
-    ball: &BallMotion<Dual<6>>,
-    race: &RaceMotion<f64>,
-) -> (BallRaceContact<f64>, Matrix6<f64>) {
-    let differentiate = match contact.way(obliquely) {
-        Way::Along => alone::<false, false>,
-        Way::Obliquely => alone::<true, false>,
-        Way::Shaped => alone::<false, true>,
-    };
-    differentiate(contact, ball, race)
-}
-
-/// The same by a given way. Compiled twice, as contacts are ([`crate::contact::many`]), like the next ones.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn alone<const MIXED: bool, const SHAPED: bool>(
-    contact: &ContactModel<'_>,
-    ball: &BallMotion<Dual<6>>,
-    race: &RaceMotion<f64>,
-) -> (BallRaceContact<f64>, Matrix6<f64>) {
-    let contact = contact.evaluate_by::<_, MIXED, SHAPED>(ball, &race.constant());
-    (contact.values(), by_first(&contact.force, &contact.ball_moment))
-}
-
-/// Derivatives of a contact with a race that forces move, by the unknowns of both, alike.
+/// Derivatives of a contact with a race that forces move, by the unknowns of both. `obliquely`: did it roll so when it was evaluated last?
 fn by_ball_and_race(
     obliquely: bool,
     contact: &ContactModel<'_>,
     ball: &BallMotion<D>,
     race: &RaceMotion<D>,
 ) -> PairTangent {
-    let differentiate = match contact.way(obliquely) {
-        Way::Along => with_race::<false, false>,
-        Way::Obliquely => with_race::<true, false>,
-        Way::Shaped => with_race::<false, true>,
-    };
-    differentiate(contact, ball, race)
+    PairTangent::of(&contact.forces_by(contact.path(obliquely), ball, race))
 }
 
-/// The same by a given way.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn with_race<const MIXED: bool, const SHAPED: bool>(
+/// What a contact with a race of given motion does to the ball, and its derivatives by the ball's unknowns. Three of the directions stand
+/// still: a kernel of six would be one more to compile.
+fn by_ball_alone(
+    obliquely: bool,
     contact: &ContactModel<'_>,
     ball: &BallMotion<D>,
-    race: &RaceMotion<D>,
-) -> PairTangent {
-    PairTangent::of(&PairForces::from(&contact.evaluate_by::<_, MIXED, SHAPED>(ball, race)))
+    race: &RaceMotion<f64>,
+) -> (Wrench, Matrix6<f64>) {
+    let PairForces { force, moment, .. } = contact.forces_by(contact.path(obliquely), ball, &race.constant());
+    (Wrench { force: values(&force), moment: values(&moment) }, by_first(&force, &moment))
 }
 
 /// Derivatives of a contact with the cage, by the unknowns of both; none where they do not touch.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn by_ball_and_cage(
     (cage, index): (&CageModel, usize),
     ball: &BallMotion<D>,

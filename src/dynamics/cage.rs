@@ -109,9 +109,7 @@ impl CageTrial {
     }
 }
 
-/// Reactions of a land at a position \[m] of the cage, in oil of a viscosity [Pa s] or dry. Compiled twice, as contacts are
-/// ([`crate::contact::many`]).
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+/// Reactions of a land at a position \[m] of the cage, in oil of a viscosity [Pa s] or dry.
 fn by_cage_and_race(
     land: &LandModel,
     cage: &BodyMotion<D>,

@@ -65,7 +65,7 @@ impl NeighbourTrial {
         if with_tangent {
             let radius = 0.5 * contact.diameter;
             (self.link.forward, self.link.backward) = (Matrix6::zeros(), Matrix6::zeros());
-            let seeded = seed::<DIRECTIONS>(&motions[0], step, radius);
+            let seeded = seed(&motions[0], step, radius);
             if let Some(pair) = contact.evaluate(&seeded, &seed_second(&motions[1], step, radius), damping) {
                 let reaction = -pair.force;
                 let fraction = -(1.0 - step.alpha_f);

@@ -11,6 +11,7 @@ use super::effect::{Effect, Info};
 use super::keys::keys;
 use crate::contact::normal::Damping;
 use crate::schema::numbers::{DISSIPATION, Number, Place, Range};
+use crate::schema::reader::{self, ReadError};
 use crate::schema::units::{DissipationFactor, Time, Velocity};
 
 const RESTITUTION: Range = Range::closed(0.01, 1.0, "");
@@ -113,16 +114,16 @@ struct RetardationSection {
 impl<'de> Deserialize<'de> for Given {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let value = toml::Value::deserialize(deserializer)?;
-        let wrong = |why: toml::de::Error| D::Error::custom(why.message());
+        let wrong = |why: ReadError| D::Error::custom(why.message());
         match &value {
             toml::Value::Table(table) if table.contains_key("retardation_time") => {
-                let section = RetardationSection::deserialize(value).map_err(wrong)?;
+                let section = reader::read::<RetardationSection>(value).map_err(wrong)?;
                 Ok(Self::Retardation(section.retardation_time))
             }
             toml::Value::Table(_) => {
-                RestitutionSection::deserialize(value).map(Self::Restitution).map_err(wrong)
+                reader::read(value).map(Self::Restitution).map_err(wrong)
             }
-            _ => DissipationFactor::deserialize(value).map(Self::Factor).map_err(wrong),
+            _ => reader::read(value).map(Self::Factor).map_err(wrong),
         }
     }
 }

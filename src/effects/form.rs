@@ -11,6 +11,7 @@ use super::estimate::{Estimate, Verdict, digits, percent};
 use super::keys::Keys;
 use crate::contact::form::{Form, Wave};
 use crate::schema::SceneError;
+use crate::schema::reader;
 use crate::schema::numbers::Range;
 use crate::schema::units::{Angle, Length, Quantity};
 
@@ -89,8 +90,8 @@ impl<'de> Deserialize<'de> for Shape {
         match value {
             toml::Value::Array(waves) => {
                 let wave = |value: toml::Value| {
-                    let wave =
-                        WaveSection::deserialize(value).map_err(|why| D::Error::custom(why.message()))?;
+                    let wave: WaveSection =
+                        reader::read(value).map_err(|why| D::Error::custom(why.message()))?;
                     Ok(Wave {
                         order: wave.order as usize,
                         amplitude: wave.amplitude.0,
@@ -120,7 +121,7 @@ impl<'de> Deserialize<'de> for Shape {
 }
 
 fn length<E: Error>(value: toml::Value) -> Result<f64, E> {
-    Length::deserialize(value).map(Quantity::si).map_err(|why| E::custom(why.message()))
+    Length::DIMENSION.read(value).map_err(E::custom)
 }
 
 impl Shape {

@@ -108,7 +108,6 @@ pub fn arc_radius(contact: &ContactModel<'_>) -> f64 {
 }
 
 /// Balance of a ball (0 is the first) between the races of its contacts.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 pub fn balance(
     model: &Model,
     contacts: &PerRace<ContactModel<'_>>,
@@ -133,7 +132,6 @@ struct OwnBalance {
 }
 
 /// The same for less: what settling a ball needs.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn balance_alone(
     model: &Model,
     contacts: &PerRace<ContactModel<'_>>,
@@ -152,7 +150,6 @@ fn balance_alone(
 }
 
 /// The same without derivatives.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 pub fn balance_value(
     model: &Model,
     contacts: &PerRace<ContactModel<'_>>,

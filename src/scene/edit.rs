@@ -47,10 +47,8 @@ impl Scene {
         text: &str,
         changes: impl IntoIterator<Item = (K, V)>,
     ) -> Result<String, SceneError> {
-        let mut table: Table = toml::from_str(text).map_err(|why| {
-            let spot = why.span().map(|span| span.start);
-            explain::with_place(explain::format_error(text, &why), text, spot, None)
-        })?;
+        let mut table =
+            explain::table(text).map_err(|(why, spot)| explain::with_place(why, text, spot, None))?;
         for (key, value) in changes {
             let (key, value) = (key.as_ref(), value.as_ref());
             change(&mut table, key, value).map_err(|why| SceneError::Change { key: key.to_string(), why })?;

@@ -129,8 +129,7 @@ impl Scene {
 
     /// Reads a scene whose schedules name no files.
     fn read_whole(text: &str, folder: &Path) -> Result<Self, (SceneError, Option<usize>)> {
-        let mut scene: Self = toml::from_str(text)
-            .map_err(|why| (explain::format_error(text, &why), why.span().map(|span| span.start)))?;
+        let mut scene: Self = explain::read(text)?;
         scene.source = text.to_string();
         scene.effects.creep.regularised = std::mem::take(&mut scene.regularised);
         scene.effects.cage.section = scene.cage.take();
@@ -157,8 +156,7 @@ impl Scene {
         if files.is_empty() {
             return Ok(());
         }
-        let mut table: toml::Table =
-            toml::from_str(&self.source).map_err(|why| explain::format_error(&self.source, &why))?;
+        let mut table = explain::table(&self.source).map_err(|(why, _)| why)?;
         for (race, profile) in files {
             let shape = table.get_mut("form").and_then(|form| form.get_mut(race)?.get_mut("profile"));
             if let Some(shape) = shape {

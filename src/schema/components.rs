@@ -49,16 +49,14 @@ impl<Q> From<[f64; 3]> for Components<Q> {
     }
 }
 
-impl<'de, Q: Quantity + for<'a> Deserialize<'a>> Deserialize<'de> for Components<Q> {
+impl<'de, Q: Quantity> Deserialize<'de> for Components<Q> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         const THREE: &str = "a vector is a list of three components, such as [0, 0, 1]";
         let toml::Value::Array(values) = toml::Value::deserialize(deserializer)? else {
             return Err(Error::custom(THREE));
         };
         let [x, y, z]: [toml::Value; 3] = values.try_into().map_err(|_| Error::custom(THREE))?;
-        let read = |value: toml::Value| {
-            schedule::deserialize::<Q, _>(value).map_err(|why| Error::custom(why.message()))
-        };
+        let read = |value: toml::Value| schedule::of_value(value, &Q::DIMENSION).map_err(Error::custom);
         Ok(Self([read(x)?, read(y)?, read(z)?], PhantomData))
     }
 }

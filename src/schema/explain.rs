@@ -1,10 +1,11 @@
 //! What is wrong with a scene's text, in plain words: key, line, what was meant perhaps, and what to write.
 
-use std::ops::Range;
-
+use serde::de::DeserializeOwned;
+use toml::Table;
 use toml::de::{DeTable, DeValue};
 
 use super::error::SceneError;
+use super::reader;
 
 /// What to write for keys that are needed: the end of the key, and a hint.
 const HINTS: [(&str, &str); 13] = [
@@ -49,19 +50,33 @@ const KINDS: [(&str, &str); 9] = [
     ("sequence", "a list"),
 ];
 
-/// A refusal by the reader of the text, in words of the scene.
-pub fn format_error(text: &str, error: &toml::de::Error) -> SceneError {
-    let key = error.span().and_then(|span| key_at(text, &span));
-    let Some(key) = key else {
-        let at = error.span().map_or(String::new(), |span| format!(" at {:?}", line_text(text, span.start)));
-        let why = match error.message().split_once(", expected ") {
+/// A table of a text.
+///
+/// # Errors
+/// If it is no TOML; with the spot \[bytes].
+pub fn table(text: &str) -> Result<Table, (SceneError, Option<usize>)> {
+    toml::from_str(text).map_err(|why: toml::de::Error| {
+        let spot = why.span().map(|span| span.start);
+        let at = spot.map_or(String::new(), |spot| format!(" at {:?}", line_text(text, spot)));
+        let why = match why.message().split_once(", expected ") {
             Some((why, "nothing")) => why.to_string(),
             Some((why, wanted)) => format!("{why}; there should be {wanted}"),
-            None => error.message().to_string(),
+            None => why.message().to_string(),
         };
-        return SceneError::Format(format!("not TOML{at}: {why}"));
-    };
-    SceneError::Format(in_words(&key, error.message()))
+        (SceneError::Format(format!("not TOML{at}: {why}")), spot)
+    })
+}
+
+/// Reads the sections of a text.
+///
+/// # Errors
+/// In words of the scene, with the spot \[bytes].
+pub fn read<T: DeserializeOwned>(text: &str) -> Result<T, (SceneError, Option<usize>)> {
+    reader::read(table(text)?).map_err(|why| {
+        let key = why.key();
+        let spot = if key.is_empty() { Some(0) } else { start_of(text, &key) };
+        (SceneError::Format(in_words(&key, why.message())), spot)
+    })
 }
 
 /// Adds the place of an error to it: the line of its key, or of the spot where the text cannot be read, and its file.
@@ -85,45 +100,6 @@ fn line_text(text: &str, at: usize) -> &str {
     let at = (0..=at.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0);
     let begin = text[..at].rfind('\n').map_or(0, |line| line + 1);
     text[begin..].lines().next().unwrap_or_default().trim()
-}
-
-/// Key with its sections that a part of the text stands for; empty for the scene as a whole, none if it is no TOML.
-fn key_at(text: &str, span: &Range<usize>) -> Option<String> {
-    let table = DeTable::parse(text).ok()?;
-    let mut path = Vec::new();
-    descend(table.get_ref(), span, &mut path);
-    Some(path.join("."))
-}
-
-/// Adds the names on the way to the innermost key whose name or value has the part of the text in it.
-fn descend(table: &DeTable<'_>, span: &Range<usize>, path: &mut Vec<String>) -> bool {
-    let within = |outer: &Range<usize>| outer.start <= span.start && span.end <= outer.end;
-    for (key, value) in table {
-        path.push(key.get_ref().to_string());
-        if let DeValue::Table(inner) = value.get_ref()
-            && descend(inner, span, path)
-        {
-            return true;
-        }
-        if let DeValue::Array(entries) = value.get_ref() {
-            for (place, entry) in entries.iter().enumerate() {
-                if let DeValue::Table(inner) = entry.get_ref() {
-                    path.pop();
-                    path.push(format!("{}[{place}]", key.get_ref()));
-                    if descend(inner, span, path) {
-                        return true;
-                    }
-                    path.pop();
-                    path.push(key.get_ref().to_string());
-                }
-            }
-        }
-        if within(&key.span()) || within(&value.span()) {
-            return true;
-        }
-        path.pop();
-    }
-    false
 }
 
 /// Where the key stands, or what there is of its sections.

@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, Dyn, OMatrix, U3, U6};
 use serde::{Deserialize, Serialize};
 
 use super::error::SceneError;
+use super::reader;
 
 /// \[m] how far a station may be from where it is asked for.
 const SAME: f64 = 1e-6;
@@ -109,7 +110,7 @@ impl Matrices {
                     .map_err(|source| SceneError::Read { path: file.clone(), source })?;
                 serde_json::from_str(&text).map_err(|why| wrong(&format!("{file}: "), why.to_string()))
             }
-            table => table.clone().try_into().map_err(|why: toml::de::Error| wrong("", why.message().into())),
+            table => reader::read(table.clone()).map_err(|why| wrong("", why.to_string())),
         }
     }
 }

@@ -9,6 +9,7 @@ mod inputs;
 mod machine;
 mod matrices;
 pub mod numbers;
+pub mod reader;
 pub mod schedule;
 mod sections;
 mod shaft;

@@ -233,7 +233,7 @@ pub struct Tilt {
     pub rotation: Option<Schedule>,
 }
 
-pub(super) fn some_schedule<'de, Q: Quantity + for<'a> Deserialize<'a>, D: serde::Deserializer<'de>>(
+pub(super) fn some_schedule<'de, Q: Quantity, D: serde::Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<Schedule>, D::Error> {
     schedule::deserialize::<Q, D>(deserializer).map(Some)

@@ -158,7 +158,7 @@ pub struct Preload {
     pub displacement: Option<Length>,
 }
 
-fn some<'de, Q: Quantity + for<'a> Deserialize<'a>, D: serde::Deserializer<'de>>(
+fn some<'de, Q: Quantity, D: serde::Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<Schedule>, D::Error> {
     schedule::deserialize::<Q, D>(deserializer).map(Some)

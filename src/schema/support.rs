@@ -6,6 +6,7 @@ use nalgebra::{Matrix6, Vector6};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 
+use super::reader;
 use super::units::{
     Inertia, Mass, Quantity, RotationalDamping, RotationalStiffness, TranslationalDamping,
     TranslationalStiffness,
@@ -47,21 +48,21 @@ impl<T, R> Default for DirectionMatrix<T, R> {
 /// An entry in SI: of a force by a translation, of a moment by a rotation, or of a coupling of both.
 fn entry<T, R, E: Error>(value: toml::Value, row: usize, column: usize) -> Result<f64, E>
 where
-    T: Quantity + for<'a> Deserialize<'a>,
-    R: Quantity + for<'a> Deserialize<'a>,
+    T: Quantity,
+    R: Quantity,
 {
     let read = match (row < 3, column < 3) {
-        (true, true) => T::deserialize(value).map(Quantity::si),
-        (false, false) => R::deserialize(value).map(Quantity::si),
-        _ => f64::deserialize(value),
+        (true, true) => T::DIMENSION.read(value),
+        (false, false) => R::DIMENSION.read(value),
+        _ => reader::read(value).map_err(|why| why.message().to_string()),
     };
-    read.map_err(|why| E::custom(why.message()))
+    read.map_err(E::custom)
 }
 
 impl<'de, T, R> Deserialize<'de> for DirectionMatrix<T, R>
 where
-    T: Quantity + for<'a> Deserialize<'a>,
-    R: Quantity + for<'a> Deserialize<'a>,
+    T: Quantity,
+    R: Quantity,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         const SIX: &str = "six numbers along and about x, y, z, or six rows of six";

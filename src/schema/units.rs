@@ -8,7 +8,7 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 
-use super::spelling;
+use super::{reader, spelling};
 
 /// Longest accepted text; anything longer is not a number with a unit.
 const MAX_TEXT: usize = 48;
@@ -60,6 +60,14 @@ impl Dimension {
             };
         }
         self.unit(written).map(|unit| unit.si(number)).or_else(|why| refuse(&why))
+    }
+
+    /// A number in SI, or text with a unit.
+    ///
+    /// # Errors
+    /// One sentence.
+    pub fn read(&'static self, value: toml::Value) -> Result<f64, String> {
+        reader::read_with(Written(self), value).map_err(|why| why.message().to_string())
     }
 
     /// A unit of it as it is written, such as `mm`.

@@ -72,9 +72,8 @@ impl WrittenBearing {
                 return Err(inside(SceneError::conflict("bearing", why)));
             }
         };
-        let mut table: Table = toml::from_str(&text)
-            .map_err(|why| explain::format_error(&text, &why))
-            .map_err(|why| explain::with_place(why, &text, None, file.as_deref()))
+        let mut table = explain::table(&text)
+            .map_err(|(why, _)| explain::with_place(why, &text, None, file.as_deref()))
             .map_err(inside)?;
         merge(&mut table, set);
         if mounting.housing.is_some() {

@@ -145,10 +145,7 @@ impl SystemScene {
         folder: &Path,
         place: impl Fn(SceneError, Option<usize>) -> SceneError,
     ) -> Result<Self, SceneError> {
-        let written: Written = toml::from_str(text).map_err(|why| {
-            let spot = why.span().map(|span| span.start);
-            place(explain::format_error(text, &why), spot)
-        })?;
+        let written: Written = explain::read(text).map_err(|(why, spot)| place(why, spot))?;
         let placed = |error| place(error, None);
         check::check(&written).map_err(placed)?;
         let Written { title, mut shaft, mut housing, bearing, load, gravity, solver } = written;

@@ -17,7 +17,7 @@ use toml::{Table, Value};
 
 use super::{Schedule, Sine};
 use crate::schema::numbers::Range;
-use crate::schema::units::{Angle, Frequency, Quantity, Ratio, Time, Unit};
+use crate::schema::units::{Angle, Dimension, Frequency, Quantity, Ratio, Time, Unit};
 
 /// \[s] times in schedules.
 const TIME: Range = Range::closed(-1e6, 1e6, "s");
@@ -65,23 +65,20 @@ pub fn is_block(table: &Table) -> bool {
 /// # Errors
 /// Those of the deserializer; also an empty table, times that do not grow, and building blocks with keys or numbers that are
 /// not allowed.
-pub fn deserialize<'de, Q: Quantity + for<'a> Deserialize<'a>, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Schedule, D::Error> {
-    schedule::<Q>(Value::deserialize(deserializer)?).map_err(D::Error::custom)
+pub fn deserialize<'de, Q: Quantity, D: Deserializer<'de>>(deserializer: D) -> Result<Schedule, D::Error> {
+    of_value(Value::deserialize(deserializer)?, &Q::DIMENSION).map_err(D::Error::custom)
 }
 
-fn schedule<Q: Quantity + for<'a> Deserialize<'a>>(value: Value) -> Result<Schedule, String> {
+/// The same of a value.
+///
+/// # Errors
+/// One sentence.
+pub fn of_value(value: Value, of: &'static Dimension) -> Result<Schedule, String> {
     match value {
-        Value::Array(rows) => points(rows, quantity::<Q>).map(Schedule::Table),
-        Value::Table(table) => block::<Q>(table),
-        value => quantity::<Q>(value).map(Schedule::Constant),
+        Value::Array(rows) => points(rows, |value| of.read(value)).map(Schedule::Table),
+        Value::Table(table) => block(table, of),
+        value => of.read(value).map(Schedule::Constant),
     }
-}
-
-/// A quantity in SI; errors in one sentence, without the parser's marks.
-fn quantity<Q: Quantity + for<'a> Deserialize<'a>>(value: Value) -> Result<f64, String> {
-    Q::deserialize(value).map(Quantity::si).map_err(|why| why.message().to_string())
 }
 
 /// Points of a table whose values are read in some way.
@@ -94,7 +91,7 @@ fn points(rows: Vec<Value>, read: impl Fn(Value) -> Result<f64, String>) -> Resu
         let (Some(value), Some(time), true) = (row.pop(), row.pop(), row.is_empty()) else {
             return Err(PAIRS.to_string());
         };
-        let time = allowed("time", quantity::<Time>(time)?, TIME)?;
+        let time = allowed("time", Time::DIMENSION.read(time)?, TIME)?;
         if points.last().is_some_and(|&(last, _)| last >= time) {
             return Err(format!("table times must grow, but {time} s does not"));
         }
@@ -116,18 +113,14 @@ struct Keys {
 
 impl Keys {
     /// A value of a key, if it is given.
-    fn get<Q: Quantity + for<'a> Deserialize<'a>>(&mut self, key: &str) -> Result<Option<f64>, String> {
+    fn get(&mut self, key: &str, of: &'static Dimension) -> Result<Option<f64>, String> {
         let Some(value) = self.table.remove(key) else { return Ok(None) };
-        quantity::<Q>(value).map(Some).map_err(|why| format!("{key}: {why}"))
+        of.read(value).map(Some).map_err(|why| format!("{key}: {why}"))
     }
 
     /// A number of a key with its range, if it is given.
-    fn number<Q: Quantity + for<'a> Deserialize<'a>>(
-        &mut self,
-        key: &str,
-        range: Range,
-    ) -> Result<Option<f64>, String> {
-        self.get::<Q>(key)?.map(|value| allowed(key, value, range)).transpose()
+    fn number<Q: Quantity>(&mut self, key: &str, range: Range) -> Result<Option<f64>, String> {
+        self.get(key, &Q::DIMENSION)?.map(|value| allowed(key, value, range)).transpose()
     }
 
     /// What a key has that must be given.
@@ -136,7 +129,7 @@ impl Keys {
     }
 
     /// Two values of a key.
-    fn pair<Q: Quantity + for<'a> Deserialize<'a>>(&mut self, key: &str) -> Result<[f64; 2], String> {
+    fn pair(&mut self, key: &str, of: &'static Dimension) -> Result<[f64; 2], String> {
         let values = match self.table.remove(key) {
             Some(Value::Array(values)) => <[Value; 2]>::try_from(values).ok(),
             _ => None,
@@ -144,13 +137,13 @@ impl Keys {
         let [before, after] = values.ok_or_else(|| {
             format!("{key} is a list of two values, before and after, such as {key} = [0, 1]")
         })?;
-        let read = |value| quantity::<Q>(value).map_err(|why| format!("{key}: {why}"));
+        let read = |value| of.read(value).map_err(|why| format!("{key}: {why}"));
         Ok([read(before)?, read(after)?])
     }
 }
 
 /// Reads a building block.
-fn block<Q: Quantity + for<'a> Deserialize<'a>>(table: Table) -> Result<Schedule, String> {
+fn block(table: Table, of: &'static Dimension) -> Result<Schedule, String> {
     let kind = KINDS.iter().find(|kind| kind.marks.iter().any(|mark| table.contains_key(*mark)));
     let kind = kind.ok_or_else(|| BLOCKS.to_string())?;
     if let Some(key) = table.keys().find(|key| !kind.keys.contains(&key.as_str())) {
@@ -159,7 +152,7 @@ fn block<Q: Quantity + for<'a> Deserialize<'a>>(table: Table) -> Result<Schedule
     let mut keys = Keys { name: kind.name, table };
     match kind.marks[0] {
         "ramp" => {
-            let [before, after] = keys.pair::<Q>("ramp")?;
+            let [before, after] = keys.pair("ramp", of)?;
             let from = keys.number::<Time>("from", TIME)?.unwrap_or(0.0);
             let to = keys.number::<Time>("to", TIME)?;
             let to = keys.needed("to", to)?;
@@ -167,7 +160,7 @@ fn block<Q: Quantity + for<'a> Deserialize<'a>>(table: Table) -> Result<Schedule
             Ok(Schedule::Table(vec![(from, before), (to, after)]))
         }
         "step" => {
-            let [before, after] = keys.pair::<Q>("step")?;
+            let [before, after] = keys.pair("step", of)?;
             let at = keys.number::<Time>("at", TIME)?;
             let at = keys.needed("at", at)?;
             let rise = keys.number::<Time>("rise", RISE)?.unwrap_or(DEFAULT_RISE);
@@ -177,23 +170,23 @@ fn block<Q: Quantity + for<'a> Deserialize<'a>>(table: Table) -> Result<Schedule
             Ok(Schedule::Table(vec![(at, before), (at + rise, after)]))
         }
         "amplitude" => {
-            let amplitude = keys.get::<Q>("amplitude")?;
+            let amplitude = keys.get("amplitude", of)?;
             let frequency = keys.number::<Frequency>("frequency", FREQUENCY)?;
             Ok(Schedule::Sine(Sine {
-                mean: keys.get::<Q>("mean")?.unwrap_or(0.0),
+                mean: keys.get("mean", of)?.unwrap_or(0.0),
                 amplitude: keys.needed("amplitude", amplitude)?,
                 frequency: keys.needed("frequency", frequency)?,
                 phase: keys.number::<Angle>("phase", PHASE)?.unwrap_or(0.0),
                 begin: keys.number::<Time>("begin", TIME)?,
             }))
         }
-        "table" => table_with_unit::<Q>(&mut keys),
+        "table" => table_with_unit(&mut keys, of),
         "sum" => {
             let Some(Value::Array(values)) = keys.table.remove("sum") else {
                 return Err("sum is a list of values over time".to_string());
             };
             let read = |(place, value): (usize, Value)| {
-                schedule::<Q>(value).map_err(|why| format!("sum[{place}]: {why}"))
+                of_value(value, of).map_err(|why| format!("sum[{place}]: {why}"))
             };
             let parts = values.into_iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
             sum(parts)
@@ -203,19 +196,19 @@ fn block<Q: Quantity + for<'a> Deserialize<'a>>(table: Table) -> Result<Schedule
 }
 
 /// A table with one unit for all values, a factor and an offset.
-fn table_with_unit<Q: Quantity + for<'a> Deserialize<'a>>(keys: &mut Keys) -> Result<Schedule, String> {
+fn table_with_unit(keys: &mut Keys, of: &'static Dimension) -> Result<Schedule, String> {
     let scale = keys.number::<Ratio>("scale", SCALE)?.unwrap_or(1.0);
-    let offset = keys.get::<Q>("offset")?.unwrap_or(0.0);
+    let offset = keys.get("offset", of)?.unwrap_or(0.0);
     let source = keys.table.remove("source").and_then(|source| source.as_str().map(str::to_string));
-    let of = |why: String| source.as_ref().map_or(why.clone(), |source| format!("{source}: {why}"));
+    let from = |why: String| source.as_ref().map_or(why.clone(), |source| format!("{source}: {why}"));
     let Some(Value::Array(rows)) = keys.table.remove("table") else {
         return Err(PAIRS.to_string());
     };
     let mut points = match keys.table.remove("unit") {
-        None => points(rows, quantity::<Q>),
+        None => points(rows, |value| of.read(value)),
         Some(Value::String(written)) => {
-            let unit: Unit = Q::DIMENSION.unit(written.trim()).map_err(|why| {
-                of(format!("unit = \"{written}\" is not that of {}: {why}", Q::DIMENSION.name))
+            let unit: Unit = of.unit(written.trim()).map_err(|why| {
+                from(format!("unit = \"{written}\" is not that of {}: {why}", of.name))
             })?;
             points(rows, |value| match value {
                 Value::Float(number) => Ok(unit.si(number)),
@@ -225,7 +218,7 @@ fn table_with_unit<Q: Quantity + for<'a> Deserialize<'a>>(keys: &mut Keys) -> Re
         }
         Some(unit) => Err(format!("unit = {unit} is no text, such as unit = \"kN\"")),
     }
-    .map_err(of)?;
+    .map_err(from)?;
     points.iter_mut().for_each(|(_, value)| *value = scale * *value + offset);
     Ok(Schedule::Table(points))
 }

@@ -4,7 +4,7 @@ mod blocks;
 pub mod files;
 mod sine;
 
-pub use blocks::{deserialize, is_block};
+pub use blocks::{deserialize, is_block, of_value};
 pub use sine::Sine;
 
 /// A value over time.

@@ -1,0 +1,249 @@
+//! Reads sections from TOML: one reader for all of them, over the tree that the text was parsed to.
+//!
+//! It is a deserializer of serde of our own because that of `toml` is compiled for each section four times, 1 MB in all, and tells where an
+//! error is by bytes of the text alone: this one names the key.
+
+use serde::de::value::StringDeserializer;
+use serde::de::{
+    DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error, IntoDeserializer, MapAccess, SeqAccess,
+    Unexpected, VariantAccess, Visitor,
+};
+use serde::forward_to_deserialize_any;
+use toml::{Value, map};
+
+/// Why a value cannot be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadError {
+    /// Names of the sections on the way to the value, the innermost first.
+    inside_out: Vec<String>,
+    message: String,
+}
+
+impl ReadError {
+    /// What is wrong, as serde says it.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// Key of the value with its sections, as `load.x.force` or `defect[0].length`; empty for the whole.
+    pub fn key(&self) -> String {
+        let mut key = String::new();
+        for name in self.inside_out.iter().rev() {
+            if !key.is_empty() && !name.starts_with('[') {
+                key.push('.');
+            }
+            key.push_str(name);
+        }
+        key
+    }
+
+    fn inside(mut self, name: String) -> Self {
+        self.inside_out.push(name);
+        self
+    }
+}
+
+impl std::fmt::Display for ReadError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let key = self.key();
+        if key.is_empty() { f.write_str(&self.message) } else { write!(f, "{key}: {}", self.message) }
+    }
+}
+
+impl std::error::Error for ReadError {}
+
+impl Error for ReadError {
+    fn custom<T: std::fmt::Display>(message: T) -> Self {
+        Self { inside_out: vec![], message: message.to_string() }
+    }
+}
+
+/// Reads a section from its table, or any value.
+///
+/// # Errors
+/// With the key.
+pub fn read<T: DeserializeOwned>(value: impl Into<Value>) -> Result<T, ReadError> {
+    T::deserialize(Reader(value.into()))
+}
+
+/// Reads a value as a visitor wants it.
+///
+/// # Errors
+/// With the key.
+pub fn read_with<'de, V: Visitor<'de>>(visitor: V, value: Value) -> Result<V::Value, ReadError> {
+    Reader(value).deserialize_any(visitor)
+}
+
+/// A value to be read.
+struct Reader(Value);
+
+/// What a value is, for messages.
+fn kind(value: &Value) -> Unexpected<'_> {
+    match value {
+        Value::String(text) => Unexpected::Str(text),
+        Value::Integer(number) => Unexpected::Signed(*number),
+        Value::Float(number) => Unexpected::Float(*number),
+        Value::Boolean(is) => Unexpected::Bool(*is),
+        Value::Datetime(_) => Unexpected::Other("a date"),
+        Value::Array(_) => Unexpected::Seq,
+        Value::Table(_) => Unexpected::Map,
+    }
+}
+
+impl<'de> Deserializer<'de> for Reader {
+    type Error = ReadError;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
+        match self.0 {
+            Value::String(text) => visitor.visit_string(text),
+            Value::Integer(number) => visitor.visit_i64(number),
+            Value::Float(number) => visitor.visit_f64(number),
+            Value::Boolean(is) => visitor.visit_bool(is),
+            Value::Datetime(_) => Err(ReadError::invalid_type(kind(&self.0), &visitor)),
+            Value::Array(entries) => {
+                let length = entries.len();
+                let mut entries = Entries { rest: entries.into_iter(), read: 0 };
+                let read = visitor.visit_seq(&mut entries)?;
+                match entries.rest.len() {
+                    0 => Ok(read),
+                    left => {
+                        let wanted = format!("an array of length {}", length - left);
+                        Err(ReadError::invalid_length(length, &wanted.as_str()))
+                    }
+                }
+            }
+            Value::Table(table) => visitor.visit_map(Keys { rest: table.into_iter(), next: None }),
+        }
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, ReadError> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, ReadError> {
+        match self.0 {
+            Value::String(name) => visitor.visit_enum(Choice { name, content: None }),
+            Value::Table(table) if table.len() == 1 => match table.into_iter().next() {
+                Some((name, content)) => visitor.visit_enum(Choice { name, content: Some(content) }),
+                None => Err(ReadError::invalid_type(Unexpected::Map, &visitor)),
+            },
+            other => Err(ReadError::invalid_type(kind(&other), &"string or table")),
+        }
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
+        tuple_struct map struct identifier ignored_any
+    }
+}
+
+/// Entries of a list.
+struct Entries {
+    rest: std::vec::IntoIter<Value>,
+    read: usize,
+}
+
+impl<'de> SeqAccess<'de> for &mut Entries {
+    type Error = ReadError;
+
+    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, ReadError> {
+        let Some(value) = self.rest.next() else { return Ok(None) };
+        let (is_section, place) = (value.is_table(), self.read);
+        self.read += 1;
+        match seed.deserialize(Reader(value)) {
+            Ok(read) => Ok(Some(read)),
+            // Numbers of a list are told by the list's key.
+            Err(why) => Err(if is_section { why.inside(format!("[{place}]")) } else { why }),
+        }
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.rest.len())
+    }
+}
+
+/// Keys of a section.
+struct Keys {
+    rest: map::IntoIter<String, Value>,
+    next: Option<(String, Value)>,
+}
+
+impl<'de> MapAccess<'de> for Keys {
+    type Error = ReadError;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, ReadError> {
+        self.next = self.rest.next();
+        let Some((key, _)) = &self.next else { return Ok(None) };
+        let name: StringDeserializer<ReadError> = key.clone().into_deserializer();
+        seed.deserialize(name).map(Some).map_err(|why| why.inside(key.clone()))
+    }
+
+    fn next_value_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<T::Value, ReadError> {
+        let Some((key, value)) = self.next.take() else {
+            return Err(ReadError::custom("a value was asked for before its key"));
+        };
+        seed.deserialize(Reader(value)).map_err(|why| why.inside(key))
+    }
+}
+
+/// One of several: its name, and what it has.
+struct Choice {
+    name: String,
+    content: Option<Value>,
+}
+
+impl<'de> EnumAccess<'de> for Choice {
+    type Error = ReadError;
+    type Variant = Content;
+
+    fn variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<(T::Value, Content), ReadError> {
+        let name: StringDeserializer<ReadError> = self.name.into_deserializer();
+        Ok((seed.deserialize(name)?, Content(self.content)))
+    }
+}
+
+/// What a choice has beside its name.
+struct Content(Option<Value>);
+
+impl Content {
+    fn value(self) -> Result<Reader, ReadError> {
+        self.0.map(Reader).ok_or_else(|| ReadError::custom("it needs a table"))
+    }
+}
+
+impl<'de> VariantAccess<'de> for Content {
+    type Error = ReadError;
+
+    fn unit_variant(self) -> Result<(), ReadError> {
+        self.0.map_or(Ok(()), |value| Err(ReadError::invalid_type(kind(&value), &"its name alone")))
+    }
+
+    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, ReadError> {
+        seed.deserialize(self.value()?)
+    }
+
+    fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, ReadError> {
+        self.value()?.deserialize_any(visitor)
+    }
+
+    fn struct_variant<V: Visitor<'de>>(
+        self,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, ReadError> {
+        self.value()?.deserialize_any(visitor)
+    }
+}
