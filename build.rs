@@ -6,6 +6,5 @@ fn main() {
     // Windows it sees to that itself (src/fmi/v2/stay.rs).
     if std::env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "linux") {
         println!("cargo::rustc-link-arg-cdylib=-Wl,-z,nodelete");
-        println!("cargo::rustc-link-arg-cdylib=-Wl,--icf=all");
     }
 }

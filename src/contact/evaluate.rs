@@ -7,7 +7,7 @@
 //! | numbers | plain contact | any other |
 //! |---|---|---|
 //! | four balls at a time ([`super::many`]) | plain, with and without vectors | general, with and without vectors |
-//! | derivatives | plain ([`ContactModel::forces_by`]) | general ([`ContactModel::forces`]) |
+//! | derivatives by ball and race, or by the ball alone | plain, nine or six directions ([`ContactModel::plain_forces`]) | general, nine ([`ContactModel::forces`]) |
 //! | one ball ([`ContactModel::evaluate`]) | general | general |
 //!
 //! Each entry costs 0.1 to 0.4 MB of the library and seconds of its build, so that there is one only where steps spend their time.
@@ -58,27 +58,25 @@ impl ContactModel<'_> {
         }
     }
 
-    /// [`Self::forces`] by the path that is the shorter one ([`Self::path`]).
+    /// The same by the plain path, where [`Self::path`] says so; none where the contact turns out to need the general one.
     #[inline(never)]
-    pub fn forces_by<S: Scalar>(
+    pub fn plain_forces<S: Scalar>(
         &self,
-        path: Path,
         ball: &BallMotion<S>,
         race: &RaceMotion<S>,
-    ) -> PairForces<S> {
-        if path == Path::Plain && !matches!(self.law, Law::Frictionless) {
-            let (contact, oblique) = self.rolling::<S, false>(ball, race);
-            if !oblique {
-                return PairForces::from(&contact);
-            }
+    ) -> Option<PairForces<S>> {
+        if matches!(self.law, Law::Frictionless) {
+            return None;
         }
-        self.forces(ball, race)
+        let (contact, oblique) = self.rolling::<S, false>(ball, race);
+        (!oblique).then(|| PairForces::from(&contact))
     }
 
     /// The shortest path to its forces. `obliquely`: did it roll so when it was evaluated last
     /// ([`ContactGroup::rolled_obliquely`](super::many::ContactGroup::rolled_obliquely))? Whatever is said, results are the same, bit by bit.
     pub fn path(&self, obliquely: bool) -> Path {
-        if self.is_usual() && !obliquely { Path::Plain } else { Path::General }
+        let plain = self.is_usual() && !obliquely;
+        if plain { Path::Plain } else { Path::General }
     }
 
     /// A contact without friction with the ellipse, the creepages and the direction of rolling that no force depends on.

@@ -9,7 +9,7 @@ use super::directions::{D, by_first, scale_moments, seed};
 use super::group::{BallGroup, Groups};
 use super::reaction::{PairTangent, Reaction};
 use crate::contact::pair::PairForces;
-use crate::contact::{BallMotion, ContactModel, RaceMotion};
+use crate::contact::{BallMotion, ContactModel, Path, RaceMotion};
 use crate::effects::ambient::Ambient;
 use crate::kalker::scaled_law::Difference;
 use crate::model::Model;
@@ -20,7 +20,7 @@ use crate::numerics::arrowhead::{BLOCK, Block, SLOTS};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::motion::Wrench;
-use crate::numerics::scalar::values;
+use crate::numerics::scalar::{Dual, values};
 
 /// Everything that a ball may touch in a trial step.
 #[derive(Clone, Copy, Debug)]
@@ -212,7 +212,7 @@ impl BallTrial {
             let (contact, seen) = (around.contact(index, race), &around.races[race]);
             let obliquely = groups.rolled_obliquely(index, race);
             tangent += match seen.moved() {
-                None => by_ball_alone(obliquely, &contact, &seed(motion, step, radius), seen.motion).1,
+                None => by_ball_alone(obliquely, &contact, (motion, step, radius), seen.motion).1,
                 Some(moved) => {
                     let pair = by_ball_and_race(obliquely, &contact, &seed(motion, step, radius), &moved);
                     self.couple(race.into(), &pair, step, radius)
@@ -262,7 +262,7 @@ impl BallAlone {
         let Surroundings { model, ambient, races, cage, .. } = around;
         let unknowns: [f64; BLOCK] = (*unknowns).into();
         let motion = equations.motion(&unknowns);
-        let seeded = seed(&motion, step, model.bearing.ball.radius);
+        let radius = model.bearing.ball.radius;
         let (mut tangent, mut touching) = (Matrix6::zeros(), 0);
         let mut total = ambient.on_ball(&motion);
         for race in Race::BOTH {
@@ -271,7 +271,7 @@ impl BallAlone {
                 continue;
             }
             touching += 1;
-            let (wrench, by_ball) = by_ball_alone(obliquely[race], &contact, &seeded, seen);
+            let (wrench, by_ball) = by_ball_alone(obliquely[race], &contact, (&motion, step, radius), seen);
             total = total.plus(wrench);
             tangent += by_ball;
         }
@@ -279,6 +279,7 @@ impl BallAlone {
             && let Some(pocket) = cage.pocket_contact(index, &motion, &trial.value, trial.oil)
         {
             total = total.plus(pocket.on_first());
+            let seeded: BallMotion<D> = seed(&motion, step, radius);
             if let Some(forces) = cage.pocket_contact(index, &seeded, &trial.value.constant(), trial.oil) {
                 tangent += by_first(&forces.force, &forces.moment);
             }
@@ -308,7 +309,7 @@ impl Surroundings<'_> {
 
 /// Derivatives of what acts from outside by the ball's unknowns.
 #[cold]
-fn by_motion(ambient: &Ambient, ball: &BallMotion<D>) -> Matrix6<f64> {
+fn by_motion(ambient: &Ambient, ball: &BallMotion<Dual<6>>) -> Matrix6<f64> {
     let Wrench { force, moment } = ambient.on_ball(ball);
     by_first(&force, &moment)
 }
@@ -320,19 +321,33 @@ fn by_ball_and_race(
     ball: &BallMotion<D>,
     race: &RaceMotion<D>,
 ) -> PairTangent {
-    PairTangent::of(&contact.forces_by(contact.path(obliquely), ball, race))
+    let plain = match contact.path(obliquely) {
+        Path::Plain => contact.plain_forces(ball, race),
+        Path::General => None,
+    };
+    PairTangent::of(&plain.unwrap_or_else(|| contact.forces(ball, race)))
 }
 
-/// What a contact with a race of given motion does to the ball, and its derivatives by the ball's unknowns. Three of the directions stand
-/// still: a kernel of six would be one more to compile.
+/// What a contact with a race of given motion does to the ball, and its derivatives by the ball's unknowns, alike. Six directions are less
+/// than nine; only the plain path is compiled for them.
 fn by_ball_alone(
     obliquely: bool,
     contact: &ContactModel<'_>,
-    ball: &BallMotion<D>,
+    (motion, step, radius): (&BallMotion<f64>, &HhtStep, f64),
     race: &RaceMotion<f64>,
 ) -> (Wrench, Matrix6<f64>) {
-    let PairForces { force, moment, .. } = contact.forces_by(contact.path(obliquely), ball, &race.constant());
-    (Wrench { force: values(&force), moment: values(&moment) }, by_first(&force, &moment))
+    fn split<const N: usize>(forces: &PairForces<Dual<N>>) -> (Wrench, Matrix6<f64>) {
+        let PairForces { force, moment, .. } = forces;
+        (Wrench { force: values(force), moment: values(moment) }, by_first(force, moment))
+    }
+    let plain = match contact.path(obliquely) {
+        Path::Plain => contact.plain_forces(&seed::<6>(motion, step, radius), &race.constant()),
+        Path::General => None,
+    };
+    match plain {
+        Some(forces) => split(&forces),
+        None => split(&contact.forces::<D>(&seed(motion, step, radius), &race.constant())),
+    }
 }
 
 /// Derivatives of a contact with the cage, by the unknowns of both; none where they do not touch.

@@ -21,9 +21,9 @@ pub const SECOND_ROTATION: usize = 6;
 pub type D = Dual<DIRECTIONS>;
 
 /// A ball's motion as a function of its own unknowns: the first body of a pair.
-pub fn seed(motion: &BallMotion<f64>, step: &HhtStep, radius: f64) -> BallMotion<D> {
+pub fn seed<const N: usize>(motion: &BallMotion<f64>, step: &HhtStep, radius: f64) -> BallMotion<Dual<N>> {
     let variable = |v: &Vector3<f64>, first: usize, gain: f64| {
-        Vector3::from_fn(|i, _| D::variable(v[i], first + i, gain))
+        Vector3::from_fn(|i, _| Dual::variable(v[i], first + i, gain))
     };
     BallMotion {
         position: variable(&motion.position, 0, step.position_gain()),
@@ -34,7 +34,7 @@ pub fn seed(motion: &BallMotion<f64>, step: &HhtStep, radius: f64) -> BallMotion
 
 /// Derivatives of force (rows 0 to 2) and moment (rows 3 to 5) by the first body's unknowns.
 #[inline(always)]
-pub fn by_first(force: &Vector3<D>, moment: &Vector3<D>) -> Matrix6<f64> {
+pub fn by_first<const N: usize>(force: &Vector3<Dual<N>>, moment: &Vector3<Dual<N>>) -> Matrix6<f64> {
     Matrix6::from_fn(|i, k| {
         let row = if i < 3 { &force[i] } else { &moment[i - 3] };
         row.derivatives[k]

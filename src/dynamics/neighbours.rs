@@ -7,7 +7,7 @@ use nalgebra::{Matrix6, Vector3};
 
 use super::Workspace;
 use super::ball::{BallTrial, Push};
-use super::directions::{D, DIRECTIONS, SECOND_ROTATION, by_first, by_second, scale_moments, seed};
+use super::directions::{D, SECOND_ROTATION, by_first, by_second, scale_moments, seed};
 use super::equations::BearingStep;
 use crate::contact::BallMotion;
 use crate::contact::ball_ball::BallBallModel;

@@ -120,9 +120,7 @@ impl<'de> Deserialize<'de> for Given {
                 let section = reader::read::<RetardationSection>(value).map_err(wrong)?;
                 Ok(Self::Retardation(section.retardation_time))
             }
-            toml::Value::Table(_) => {
-                reader::read(value).map(Self::Restitution).map_err(wrong)
-            }
+            toml::Value::Table(_) => reader::read(value).map(Self::Restitution).map_err(wrong),
             _ => reader::read(value).map(Self::Factor).map_err(wrong),
         }
     }

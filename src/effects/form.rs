@@ -11,8 +11,8 @@ use super::estimate::{Estimate, Verdict, digits, percent};
 use super::keys::Keys;
 use crate::contact::form::{Form, Wave};
 use crate::schema::SceneError;
-use crate::schema::reader;
 use crate::schema::numbers::Range;
+use crate::schema::reader;
 use crate::schema::units::{Angle, Length, Quantity};
 
 /// Amplitudes and heights: beyond, a race is no torus with small waves.

@@ -193,8 +193,8 @@ fn balance_at<S: Single>(
     ];
     let offset = position - shared.position;
     let here = PerRace::new(|race| contacts[race].of_ball(index, None));
-    let (inner, inner_lean) = GrooveContact::new(&here.inner.surface, &offset, &inner_race);
-    let (outer, outer_lean) = GrooveContact::new(&here.outer.surface, &position, &outer_race);
+    let (inner, inner_lean) = GrooveContact::apart(&here.inner.surface, &offset, &inner_race);
+    let (outer, outer_lean) = GrooveContact::apart(&here.outer.surface, &position, &outer_race);
     let stiffness_of = |model: &ContactModel<'_>, contact: &GrooveContact<S>| {
         model.stiffness_of(model.shape.stiffness(contact.circumferential_curvature))
     };

@@ -80,7 +80,7 @@ impl CageModel {
 
     /// Forces between a ball (first, 0 is the first) and the cage, in oil of a viscosity [Pa s] or dry; `None` where they neither
     /// touch nor have oil between them.
-    #[inline(always)]
+    #[inline(never)]
     pub fn pocket_contact<S: Single>(
         &self,
         index: usize,

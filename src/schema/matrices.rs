@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use nalgebra::{DMatrix, Dyn, OMatrix, U3, U6};
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::error::SceneError;
 use super::reader;
@@ -49,13 +50,23 @@ pub struct MatrixStation {
 }
 
 /// Where a station is.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 #[serde(untagged)]
 pub enum StationPlace {
     /// On the axis of the shaft.
     Along(f64),
     /// Anywhere.
     At([f64; 3]),
+}
+
+impl<'de> Deserialize<'de> for StationPlace {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let read = match toml::Value::deserialize(deserializer)? {
+            place @ toml::Value::Array(_) => reader::read(place).map(Self::At),
+            place => reader::read(place).map(Self::Along),
+        };
+        read.map_err(|why| Error::custom(why.message()))
+    }
 }
 
 impl StationPlace {
@@ -108,7 +119,9 @@ impl Matrices {
                 let file = path.display().to_string();
                 let text = std::fs::read_to_string(&path)
                     .map_err(|source| SceneError::Read { path: file.clone(), source })?;
-                serde_json::from_str(&text).map_err(|why| wrong(&format!("{file}: "), why.to_string()))
+                let wrong = |why: &dyn std::fmt::Display| wrong(&format!("{file}: "), why.to_string());
+                let table: toml::Value = serde_json::from_str(&text).map_err(|why| wrong(&why))?;
+                reader::read(table).map_err(|why| wrong(&why))
             }
             table => reader::read(table.clone()).map_err(|why| wrong("", why.to_string())),
         }

@@ -207,9 +207,9 @@ fn table_with_unit(keys: &mut Keys, of: &'static Dimension) -> Result<Schedule, 
     let mut points = match keys.table.remove("unit") {
         None => points(rows, |value| of.read(value)),
         Some(Value::String(written)) => {
-            let unit: Unit = of.unit(written.trim()).map_err(|why| {
-                from(format!("unit = \"{written}\" is not that of {}: {why}", of.name))
-            })?;
+            let unit: Unit = of
+                .unit(written.trim())
+                .map_err(|why| from(format!("unit = \"{written}\" is not that of {}: {why}", of.name)))?;
             points(rows, |value| match value {
                 Value::Float(number) => Ok(unit.si(number)),
                 Value::Integer(number) => Ok(unit.si(number as f64)),
