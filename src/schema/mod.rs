@@ -12,7 +12,6 @@ pub mod numbers;
 pub mod schedule;
 mod sections;
 mod shaft;
-mod spelling;
 mod support;
 pub mod units;
 pub mod variable_units;
