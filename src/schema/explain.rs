@@ -179,7 +179,7 @@ fn meant(unknown: &str, known: &[&str]) -> String {
 }
 
 /// Letters to put in, take out, replace, or swap with their neighbour (Damerau 1964) to make one word of another.
-fn edits(from: &str, to: &str) -> usize {
+pub(super) fn edits(from: &str, to: &str) -> usize {
     let (from, to): (Vec<char>, Vec<char>) = (from.chars().collect(), to.chars().collect());
     let mut rows: Vec<Vec<usize>> = vec![(0..=to.len()).collect()];
     for i in 1..=from.len() {

@@ -13,7 +13,6 @@ pub mod reader;
 pub mod schedule;
 mod sections;
 mod shaft;
-mod spelling;
 mod support;
 pub mod units;
 pub mod variable_units;

@@ -26,8 +26,8 @@ const VALUES: [(&str, &str); 5] = [
 ];
 /// Keys of such types.
 pub const UNION_KEYS: [&str; 3] = ["effects.damping", "form.inner", "form.outer"];
-/// Dimensions: type, SI unit, example; as `src/schema/units.rs` has them.
-const UNITS: &str = include_str!("../../src/schema/units.rs");
+/// Dimensions: type, SI unit, example; as `src/schema/units/mod.rs` has them.
+const UNITS: &str = include_str!("../../src/schema/units/mod.rs");
 /// What a section needs beside a key that is tried.
 pub const NEEDS: [(&str, &[(&str, &str)]); 8] = [
     ("film", &[("film.viscosity", "0.02")]),

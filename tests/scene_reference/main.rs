@@ -6,6 +6,7 @@
 mod keys;
 mod page;
 mod sources;
+mod units;
 #[path = "../common/whole.rs"]
 mod whole;
 

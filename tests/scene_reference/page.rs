@@ -5,10 +5,11 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use crate::keys::{Key, Reference, UNION_KEYS, meaning};
+use crate::units;
 
 const HEAD: &str = "# Scene reference\n\n\
     Every key of a scene file, from the structs that read it (`cargo test --test scene_reference` compares; `scripts/tables` writes). \
-    Numbers are SI, or texts with a unit. A key that is left out has its default; an unknown key is refused. \
+    Numbers are SI, or texts with a unit ([Units](#units)). A key that is left out has its default; an unknown key is refused. \
     A value over time may be a table or a building block: [Load cases](load-cases.md). \
     `roulement scene --keys` prints this page, `roulement scene --keys film` what is about a word.\n";
 
@@ -24,7 +25,7 @@ pub fn page(reference: &Reference) -> String {
             let _ = writeln!(page, "| `{name}` | {meaning} | {} | {default} |", values.replace('|', "\\|"));
         }
     }
-    page
+    page + &units::section()
 }
 
 /// An object of a schema that has no other keys than its own.

@@ -21,6 +21,9 @@ pub struct Options {
     /// Print a JSON schema: editors complete and check scenes by it.
     #[arg(long)]
     schema: bool,
+    /// Print the units that numbers of a scene may have: of every dimension, and every known unit with its size in SI.
+    #[arg(long)]
+    units: bool,
 }
 
 /// Prints.
@@ -28,6 +31,9 @@ pub struct Options {
 /// # Errors
 /// If no key has the word in its name, or nothing can be printed.
 pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    if options.units {
+        return Ok(say(units())?);
+    }
     match &options.keys {
         None => Ok(say(SCHEMA)?),
         Some(word) if word.is_empty() => Ok(say(REFERENCE)?),
@@ -39,6 +45,12 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
             text => Ok(say(&text)?),
         },
     }
+}
+
+/// The tables of units.
+fn units() -> &'static str {
+    let (_, tables) = REFERENCE.split_once("<!-- begin units -->\n").unwrap_or_default();
+    tables.split_once("<!-- end -->").unwrap_or_default().0
 }
 
 /// Sections with a word in their names, and keys with it in others.

@@ -1,18 +1,24 @@
 //! Numbers with units in scene files: a plain number in SI, or text such as `"9.525 mm"` or `"6000 rpm"`.
 //!
-//! Conversion and dimension check are done exactly by `fend-core`; this module only names the SI unit that each
-//! field wants, and turns the answer into an `f64`. `spelling` has the ways in which units are written.
+//! `grammar` says how they are written, `known` has the units in one table, `product` their sizes as exact fractions; this
+//! module has the dimensions of a scene with their SI units, and turns a text into an `f64`.
 
 use std::fmt;
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 
-use super::{reader, spelling};
+mod grammar;
+pub mod known;
+mod product;
 
-/// Longest accepted text; anything longer is not a number with a unit.
-const MAX_TEXT: usize = 48;
-/// [-] largest decimal exponent accepted, so that an exact calculator is not asked for a million digits.
+use super::reader;
+use grammar::Problem;
+
+/// Exponents of m, kg, s, K and rad.
+pub type Exponents = [i8; 5];
+
+/// [-] largest decimal exponent accepted: no number of a scene is larger.
 const MAX_EXPONENT: i32 = 99;
 
 /// What a number measures, for conversions and messages.
@@ -22,6 +28,8 @@ pub struct Dimension {
     pub name: &'static str,
     /// SI unit.
     pub unit: &'static str,
+    /// Exponents of that unit.
+    pub exponents: Exponents,
     /// Two texts that a scene may have.
     pub examples: [&'static str; 2],
 }
@@ -29,7 +37,7 @@ pub struct Dimension {
 impl Dimension {
     /// What to write.
     fn wanted(&self) -> String {
-        let Self { name, unit, examples: [first, second] } = self;
+        let Self { name, unit, examples: [first, second], .. } = self;
         format!("{name} is a number in {unit} or text with a unit, such as \"{first}\" or \"{second}\"")
     }
 
@@ -39,10 +47,10 @@ impl Dimension {
     /// A sentence naming the text, what is wrong with it, and what was expected.
     pub fn parse(&self, text: &str) -> Result<f64, String> {
         let refuse = |why: &str| Err(format!("\"{text}\" is not {}: {why}; {}", self.name, self.wanted()));
-        if text.len() > MAX_TEXT {
+        if text.len() > grammar::MAX_TEXT {
             return refuse("it is too long");
         }
-        let (number, written) = match spelling::split(text) {
+        let (number, written) = match grammar::split(text) {
             Ok(parts) => parts,
             Err(why) => return refuse(why),
         };
@@ -51,13 +59,6 @@ impl Dimension {
         }
         if written.is_empty() {
             return refuse("the unit is missing (a bare number in SI is written without quotes)");
-        }
-        if self.unit == Celsius::DIMENSION.unit {
-            return match written {
-                "degC" | "\u{b0}C" | "C" => Ok(number),
-                "K" => Ok(number - 273.15),
-                _ => refuse(&format!("{written} is no unit of it: write degC or K")),
-            };
         }
         self.unit(written).map(|unit| unit.si(number)).or_else(|why| refuse(&why))
     }
@@ -75,62 +76,86 @@ impl Dimension {
     /// # Errors
     /// Why it is none.
     pub(crate) fn unit(&self, written: &str) -> Result<Unit, String> {
-        let unknown = || format!("{written} is not known as a unit");
         if self.unit == Ratio::DIMENSION.unit && written == self.unit {
             return Ok(Unit::Times(1.0));
         }
-        let mut unit = spelling::plain(written).ok_or_else(unknown)?;
+        if self.unit == Celsius::DIMENSION.unit {
+            return match written {
+                "degC" | "\u{b0}C" | "C" | "Cel" => Ok(Unit::Times(1.0)),
+                "K" => Ok(Unit::Kelvin),
+                "degF" | "\u{b0}F" => Ok(Unit::Fahrenheit),
+                _ => Err(format!("{written} is no unit of it: write degC or K, or degF")),
+            };
+        }
+        let mut product = grammar::unit(written).map_err(|problem| self.in_words(problem, written))?;
+        let [.., angle] = &mut product.exponents;
         if self.unit == AngularVelocity::DIMENSION.unit {
-            match spelling::of_angular_velocity(&unit) {
-                Some(angular) => unit = angular,
-                None => {
-                    return Err(format!(
-                        "{written} does not say through which angle: write rpm, rad/s or deg/s"
-                    ));
-                }
+            // Catalogues write revolutions per minute as 1/min.
+            if product.exponents == [0, 0, -1, 0, 0] && (product.numerator, product.divisor) == (1, 60) {
+                (product.exponents[4], product.turns) = (1, 1);
             }
+            if product.exponents[4] != 1 {
+                return Err(format!(
+                    "{written} does not say through which angle: write rpm, rad/s or deg/s"
+                ));
+            }
+        } else if self.unit == Frequency::DIMENSION.unit {
+            // A revolution is a period; another angle is none.
+            if product.turns != *angle {
+                return Err(format!("{written} counts angles, no periods: write Hz or rpm"));
+            }
+            (*angle, product.turns) = (0, 0);
         }
-        if self.unit == Frequency::DIMENSION.unit {
-            match spelling::of_angular_velocity(&unit).as_deref() {
-                Some("rpm") => unit = "1/(60 s)".to_string(),
-                Some(_) => return Err(format!("{written} counts angles, no periods: write Hz or rpm")),
-                None => {}
-            }
+        let [lengths @ .., angle] = product.exponents;
+        let [wanted @ .., wanted_angle] = self.exponents.map(i32::from);
+        // An angle may be left out, as the radian is 1 in SI.
+        if lengths != wanted || (angle != wanted_angle && angle != 0) {
+            return Err(format!("{written} measures something else"));
         }
-        let question = format!("(1 {}) to 20 sf to {}", spelling::calculable(&unit), self.unit);
-        let answer = match fend_core::evaluate(&question, &mut fend_core::Context::new()) {
-            Ok(answer) => answer.get_main_result().trim_start_matches("approx. ").to_string(),
-            Err(why) if why.contains("incompatible") => {
-                return Err(format!("{written} measures something else"));
+        let factor = product.factor();
+        let divisor = 1.0 / factor;
+        // A power of ten that divides exactly is divided by: 9.525 mm is then the f64 nearest to 0.009525.
+        let divides = factor < 1.0 && divisor.fract() == 0.0;
+        Ok(if divides { Unit::Over(divisor) } else { Unit::Times(factor) })
+    }
+
+    /// Why a text is no unit.
+    fn in_words(&self, problem: Problem<'_>, written: &str) -> String {
+        match problem {
+            Problem::Form => format!("{written} is not known as a unit"),
+            Problem::Power => {
+                format!("{written} is not known as a unit: powers are whole numbers from -4 to 4")
             }
-            Err(_) => return Err(unknown()),
-        };
-        // The calculator answers "factor unit", exactly for all units but those with pi.
-        let factor = answer.split_whitespace().next().and_then(|word| word.parse::<f64>().ok());
-        match factor {
-            // A power of ten that divides exactly is divided by: 9.525 mm is then the f64 nearest to 0.009525.
-            Some(factor) if factor < 1.0 && (1.0 / factor).fract() == 0.0 => Ok(Unit::Over(1.0 / factor)),
-            Some(factor) => Ok(Unit::Times(factor)),
-            None => Err(unknown()),
+            Problem::Name(name) => {
+                let meant = known::nearest(name, &self.examples);
+                let meant = meant.map_or(String::new(), |meant| format!(" (did you mean {meant}?)"));
+                format!("{name} is not known as a unit{meant}")
+            }
         }
     }
 }
 
-/// A unit by its factor to SI.
+/// A unit by what makes SI of its numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Unit {
     /// SI is so many times the number.
     Times(f64),
     /// SI is the number over this.
     Over(f64),
+    /// A temperature \[K] from its absolute zero; in degC it is so much less.
+    Kelvin,
+    /// A temperature \[degF]; 32 is 0 degC.
+    Fahrenheit,
 }
 
 impl Unit {
-    /// A number of this unit in SI.
+    /// A number of this unit in SI, a temperature in degC.
     pub(crate) fn si(self, number: f64) -> f64 {
         match self {
             Self::Times(factor) => number * factor,
             Self::Over(divisor) => number / divisor,
+            Self::Kelvin => number - 273.15,
+            Self::Fahrenheit => (number - 32.0) * 5.0 / 9.0,
         }
     }
 }
@@ -142,7 +167,7 @@ impl Visitor<'_> for Written {
     type Value = f64;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Dimension { name, unit, examples: [first, second] } = self.0;
+        let Dimension { name, unit, examples: [first, second], .. } = self.0;
         write!(f, "{name}, a number in {unit} or text with a unit such as \"{first}\" or \"{second}\"")
     }
 
@@ -165,13 +190,17 @@ impl Visitor<'_> for Written {
 
 /// Defines one newtype per physical dimension, `f64` in the SI unit, deserialised from number or text.
 macro_rules! quantities {
-    ($($(#[$doc:meta])* $name:ident = $unit:literal, $called:literal, $examples:expr;)*) => {$(
+    ($($(#[$doc:meta])* $name:ident = $unit:literal, $exponents:expr, $called:literal, $examples:expr;)*) => {
+        /// Every dimension of a scene.
+        pub const DIMENSIONS: &[Dimension] = &[$($name::DIMENSION),*];
+    $(
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
         pub struct $name(pub f64);
 
         impl Quantity for $name {
-            const DIMENSION: Dimension = Dimension { name: $called, unit: $unit, examples: $examples };
+            const DIMENSION: Dimension =
+                Dimension { name: $called, unit: $unit, exponents: $exponents, examples: $examples };
             fn si(self) -> f64 {
                 self.0
             }
@@ -195,59 +224,59 @@ pub trait Quantity: Copy {
 
 quantities! {
     /// [-]
-    Ratio = "1", "a number without unit", ["0.08", "0.1"];
+    Ratio = "1", [0, 0, 0, 0, 0], "a number without unit", ["8 %", "800 ppm"];
     /// \[m]
-    Length = "m", "a length", ["9.525 mm", "10 um"];
+    Length = "m", [1, 0, 0, 0, 0], "a length", ["9.525 mm", "10 um"];
     /// \[rad]
-    Angle = "rad", "an angle", ["25 deg", "0.5 mrad"];
+    Angle = "rad", [0, 0, 0, 0, 1], "an angle", ["25 deg", "0.5 mrad"];
     /// \[Pa]
-    Pressure = "Pa", "a pressure", ["206 GPa", "1500 MPa"];
+    Pressure = "Pa", [-1, 1, -2, 0, 0], "a pressure", ["206 GPa", "1500 MPa"];
     /// [kg/m3]
-    Density = "kg/m^3", "a density", ["7800 kg/m^3", "7.8 g/cm^3"];
+    Density = "kg/m^3", [-3, 1, 0, 0, 0], "a density", ["7800 kg/m^3", "7.8 g/cm^3"];
     /// \[kg]
-    Mass = "kg", "a mass", ["0.2 kg", "200 g"];
+    Mass = "kg", [0, 1, 0, 0, 0], "a mass", ["0.2 kg", "200 g"];
     /// [kg m2]
-    Inertia = "kg m^2", "a moment of inertia", ["6e-5 kg m^2", "60 kg mm^2"];
+    Inertia = "kg m^2", [2, 1, 0, 0, 0], "a moment of inertia", ["6e-5 kg m^2", "60 kg mm^2"];
     /// [kg m] mass times its distance from an axis.
-    Unbalance = "kg m", "an unbalance", ["20 g mm", "1e-5 kg m"];
+    Unbalance = "kg m", [1, 1, 0, 0, 0], "an unbalance", ["20 g mm", "1e-5 kg m"];
     /// \[s]
-    Time = "s", "a time", ["50 ms", "100 us"];
+    Time = "s", [0, 0, 1, 0, 0], "a time", ["50 ms", "100 us"];
     /// \[N]
-    Force = "N", "a force", ["1500 N", "1.5 kN"];
+    Force = "N", [1, 1, -2, 0, 0], "a force", ["1500 N", "1.5 kN"];
     /// [N m]
-    Moment = "N m", "a moment", ["2 N m", "500 N mm"];
+    Moment = "N m", [2, 1, -2, 0, 0], "a moment", ["2 N m", "500 N mm"];
     /// [rad/s]
-    AngularVelocity = "rad/s", "an angular velocity", ["6000 rpm", "36000 deg/s"];
+    AngularVelocity = "rad/s", [0, 0, -1, 0, 1], "an angular velocity", ["6000 rpm", "36000 deg/s"];
     /// \[Hz]
-    Frequency = "Hz", "a frequency", ["50 Hz", "2.3 kHz"];
+    Frequency = "Hz", [0, 0, -1, 0, 0], "a frequency", ["50 Hz", "2.3 kHz"];
     /// [rad/s2]
-    AngularAcceleration = "rad/s^2", "an angular acceleration", ["10 rad/s^2", "0.5 krad/s^2"];
+    AngularAcceleration = "rad/s^2", [0, 0, -2, 0, 1], "an angular acceleration", ["10 rad/s^2", "500 deg/s^2"];
     /// [Pa s]
-    Viscosity = "Pa s", "a viscosity", ["18 uPa s", "20 mPa s"];
+    Viscosity = "Pa s", [-1, 1, -1, 0, 0], "a viscosity", ["18 uPa s", "20 mPa s"];
     /// [N/m]
-    TranslationalStiffness = "N/m", "a stiffness", ["1e8 N/m", "100 N/um"];
+    TranslationalStiffness = "N/m", [0, 1, -2, 0, 0], "a stiffness", ["1e8 N/m", "100 N/um"];
     /// [N m/rad]
-    RotationalStiffness = "N m/rad", "a stiffness against rotation", ["5e4 N m/rad", "50 kN m/rad"];
+    RotationalStiffness = "N m/rad", [2, 1, -2, 0, -1], "a stiffness against rotation", ["5e4 N m/rad", "50 kN m/rad"];
     /// [N s/m]
-    TranslationalDamping = "N s/m", "a damping", ["500 N s/m", "0.5 N s/mm"];
+    TranslationalDamping = "N s/m", [0, 1, -1, 0, 0], "a damping", ["500 N s/m", "0.5 N s/mm"];
     /// [N m s/rad]
-    RotationalDamping = "N m s/rad", "a damping against rotation", ["0.5 N m s/rad", "500 N mm s/rad"];
+    RotationalDamping = "N m s/rad", [2, 1, -1, 0, -1], "a damping against rotation", ["0.5 N m s/rad", "500 N mm s/rad"];
     /// [m/s]
-    Velocity = "m/s", "a velocity", ["2 m/s", "500 mm/s"];
+    Velocity = "m/s", [1, 0, -1, 0, 0], "a velocity", ["2 m/s", "500 mm/s"];
     /// [m/s2]
-    Acceleration = "m/s^2", "an acceleration", ["9.81 m/s^2", "9810 mm/s^2"];
+    Acceleration = "m/s^2", [1, 0, -2, 0, 0], "an acceleration", ["9.81 m/s^2", "9810 mm/s^2"];
     /// [m2/s]
-    KinematicViscosity = "m^2/s", "a kinematic viscosity", ["68 mm^2/s", "6.8e-5 m^2/s"];
+    KinematicViscosity = "m^2/s", [2, 0, -1, 0, 0], "a kinematic viscosity", ["68 mm^2/s", "6.8e-5 m^2/s"];
     /// [s/m]
-    DissipationFactor = "s/m", "a dissipation factor", ["0.02 s/m", "20 s/km"];
+    DissipationFactor = "s/m", [-1, 0, 1, 0, 0], "a dissipation factor", ["0.02 s/m", "20 s/km"];
     /// \[K] difference of two temperatures.
-    TemperatureRise = "K", "a difference of temperatures", ["40 K", "500 mK"];
+    TemperatureRise = "K", [0, 0, 0, 1, 0], "a difference of temperatures", ["40 K", "500 mK"];
     /// \[degC] temperature, with a zero that depends on the unit: nothing but viscosities follows it.
-    Celsius = "degC", "a temperature", ["70 degC", "343.15 K"];
+    Celsius = "degC", [0, 0, 0, 1, 0], "a temperature", ["70 degC", "343.15 K"];
     /// [1/Pa]
-    PressureViscosity = "1/Pa", "a growth of viscosity with pressure", ["22 1/GPa", "2.2e-8 1/Pa"];
+    PressureViscosity = "1/Pa", [1, -1, 2, 0, 0], "a growth of viscosity with pressure", ["22 1/GPa", "2.2e-8 1/Pa"];
     /// [1/K]
-    ThermalExpansion = "1/K", "a coefficient of thermal expansion", ["12e-6 1/K", "0.012 1/kK"];
+    ThermalExpansion = "1/K", [0, 0, 0, -1, 0], "a coefficient of thermal expansion", ["12e-6 1/K", "0.012 1/kK"];
 }
 
 #[cfg(test)]
@@ -360,7 +389,7 @@ mod tests {
             (length("2 m^^3"), "2 m^^3", "not known"),
             (length("2 m^66"), "2 m^66", "not known"),
             (length("2 (m"), "2 (m", "not known"),
-            (length("2 to mm"), "2 to mm", "something else"),
+            (length("2 to mm"), "2 to mm", "to is not known"),
         ] {
             let message = message.unwrap_err();
             let example = if message.contains("force") { "1.5 kN" } else { "9.525 mm" };

@@ -1,0 +1,26 @@
+//! Texts with units: the table of known units, spellings that were read before, random texts, and scenes.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../common/random.rs"]
+mod numbers;
+mod random;
+mod recorded;
+mod table;
+
+use roulement::scene::units::{self, Dimension, Quantity};
+
+/// A dimension by the name of its type.
+fn dimension(name: &str) -> Dimension {
+    macro_rules! named {
+        ($($of:ident)*) => {
+            match name {
+                $(stringify!($of) => units::$of::DIMENSION,)*
+                _ => panic!("{name}"),
+            }
+        };
+    }
+    named!(Ratio Length Angle Pressure Density Mass Inertia Unbalance Time Force Moment AngularVelocity Frequency
+        AngularAcceleration Viscosity TranslationalStiffness RotationalStiffness TranslationalDamping RotationalDamping
+        Velocity Acceleration KinematicViscosity DissipationFactor TemperatureRise Celsius PressureViscosity
+        ThermalExpansion)
+}
