@@ -1,10 +1,46 @@
-//! Link flags of the shared library.
+//! Link flags of the shared library, and the number of its build.
 
-fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
+use std::env;
+use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::io;
+use std::path::Path;
+
+/// What else a library depends on than its sources.
+const SETTINGS: [&str; 6] =
+    ["TARGET", "PROFILE", "OPT_LEVEL", "DEBUG", "CARGO_CFG_FEATURE", "CARGO_CFG_TARGET_FEATURE"];
+
+/// Names and bytes of all files in a folder, or of one file.
+fn hash(path: &Path, hasher: &mut DefaultHasher) -> io::Result<()> {
+    if path.is_dir() {
+        let mut entries: Vec<_> = fs::read_dir(path)?.collect::<Result<_, _>>()?;
+        entries.sort_by_key(fs::DirEntry::file_name);
+        return entries.iter().try_for_each(|entry| hash(&entry.path(), hasher));
+    }
+    path.file_name().hash(hasher);
+    fs::read(path)?.hash(hasher);
+    Ok(())
+}
+
+fn main() -> io::Result<()> {
+    let mut hasher = DefaultHasher::new();
+    // A crate alone has no lock file.
+    for source in ["build.rs", "Cargo.toml", "Cargo.lock", "src"]
+        .map(Path::new)
+        .into_iter()
+        .filter(|path| path.exists())
+    {
+        println!("cargo::rerun-if-changed={}", source.display());
+        hash(source, &mut hasher)?;
+    }
+    SETTINGS.map(|name| env::var(name).ok()).hash(&mut hasher);
+    // Programs find the library that was built together with them by it (src/fmi/build.rs).
+    println!("cargo::rustc-env=ROULEMENT_BUILD={:016x}", hasher.finish());
+
     // Importers may unload the library between two instances, and the first with it (Ecos does). It stays loaded; on
     // Windows it sees to that itself (src/fmi/v2/stay.rs).
-    if std::env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "linux") {
+    if env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "linux") {
         println!("cargo::rustc-link-arg-cdylib=-Wl,-z,nodelete");
     }
+    Ok(())
 }

@@ -1,14 +1,17 @@
 """Builds the wheel: maturin's backend, with the shared library of FMI packages put beside the Python files.
 
-The library is that which cargo makes on its way to the extension, stripped; or the one that ROULEMENT_LIBRARY names, or several of
-them for packages of several platforms, separated as in PATH.
+The library is that which cargo builds together with the program, as the program packs it; or the one that ROULEMENT_LIBRARY names, or
+several of them for packages of several platforms, separated as in PATH.
 """
 
 import os
+import platform
 import shlex
 import shutil
 import subprocess
 import sys
+import tempfile
+import zipfile
 from pathlib import Path
 
 import maturin
@@ -20,7 +23,7 @@ from maturin import (  # noqa: F401
     prepare_metadata_for_build_wheel,
 )
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).resolve().parent
 NAME = {"win32": "roulement.dll", "darwin": "libroulement.dylib"}.get(sys.platform, "libroulement.so")
 
 
@@ -30,27 +33,35 @@ def _profile():
     return arguments[arguments.index("--profile") + 1] if "--profile" in arguments else "release"
 
 
-def _built():
-    """The library, as a part of the same build as the extension."""
+def _packed():
+    """Bytes of the library as packages carry it. It is built as for the program, so that the extension is linked from the same build."""
     profile = _profile()
-    command = ["cargo", "build", "--locked", "--profile", profile, "--manifest-path", HERE / "Cargo.toml", "--features", "pyo3/extension-module"]
-    subprocess.run(list(map(str, command)), check=True)
-    target = Path(os.environ.get("CARGO_TARGET_DIR", HERE.parent / "target"))
-    return target / {"dev": "debug"}.get(profile, profile) / "deps" / NAME
+    target = HERE.parent / os.environ.get("CARGO_TARGET_DIR", "target")
+    # Maturin's cargo, which runs in another folder, takes the same.
+    os.environ["CARGO_TARGET_DIR"] = str(target)
+    subprocess.run(["cargo", "build", "--locked", "--profile", profile], cwd=HERE.parent, check=True)
+    program = target / {"dev": "debug"}.get(profile, profile) / "roulement"
+    with tempfile.TemporaryDirectory() as scratch:
+        scene, package = Path(scratch, "scene.toml"), Path(scratch, "package.fmu")
+        for command in (["bearing", "6205", "-o", scene], ["fmu", scene, "-o", package]):
+            subprocess.run([program, *command], check=True, stdout=subprocess.DEVNULL)
+        with zipfile.ZipFile(package) as archive:
+            (library,) = (name for name in archive.namelist() if name.startswith("binaries/"))
+            return archive.read(library)
 
 
 def put_library():
-    """Copies the library, or libraries, to where `roulement.package` finds them."""
+    """Puts the library, or libraries, where `roulement.package` finds them."""
     folder = HERE / "python" / "roulement" / "library"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     named = os.environ.get("ROULEMENT_LIBRARY")
-    for library in map(Path, named.split(os.pathsep)) if named else [_built()]:
-        place = Path(shutil.copy(library, folder))
-        strip = shutil.which("strip")
-        if not named and strip:
-            # Debug data are five sixths of it.
-            subprocess.run([strip, "-x" if sys.platform == "darwin" else "--strip-unneeded", str(place)], check=True)
+    if named:
+        for library in named.split(os.pathsep):
+            shutil.copy(library, folder)
+    elif platform.machine() in ("x86_64", "AMD64"):
+        # Packages know no other machine.
+        (folder / NAME).write_bytes(_packed())
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):

@@ -58,3 +58,10 @@ def test_consistency_effects_and_model_description(thrust, tmp_path):
     (tmp_path / "scene.toml").write_text(thrust.source)
     assert roulement.effects(thrust) == json.loads(program("effects", tmp_path / "scene.toml", "--json").stdout)
     assert thrust.describe("scene") == program("describe", tmp_path / "scene.toml").stdout
+
+
+def test_consistency_package_has_the_library_of_the_program(thrust, tmp_path):
+    (tmp_path / "scene.toml").write_text(thrust.source)
+    program("fmu", tmp_path / "scene.toml", "-o", tmp_path / "program.fmu", "--name", "thrust")
+    ours = roulement.package(thrust, tmp_path / "python.fmu", name="thrust")
+    assert ours.read_bytes() == (tmp_path / "program.fmu").read_bytes()

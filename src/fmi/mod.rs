@@ -10,11 +10,13 @@
 //! handles.rs      instances and states held by importers
 //! log.rs          messages to the importer
 //! outcome.rs      outcome of a call
+//! build.rs        which build a library is of
 //! v2/             FMI 2.0: its C functions, its types, what it allows when
 //! ```
 //!
 //! Only the folder of a version knows C types and pointers.
 
+mod build;
 mod directional;
 mod handles;
 mod instance;
@@ -28,6 +30,7 @@ mod unit;
 #[allow(non_snake_case)]
 pub mod v2;
 
+pub use build::BUILD;
 pub use instance::Instance;
 pub use log::{Log, Sink};
 pub use outcome::{Outcome, Status};

@@ -1,11 +1,15 @@
 //! Packs a scene as an FMU: model description, shared library, scene and documentation in one zip file.
 
+mod beside;
 mod library;
+mod paths;
+mod strip;
 
 use std::fs;
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
+pub use beside::{library_beside, library_beside_executable};
 use library::{Platform, platform};
 use thiserror::Error;
 use zip::ZipWriter;
@@ -49,6 +53,11 @@ pub enum PackageError {
         "the shared library {0} is missing: build it with `cargo build --release`, or name it with --library"
     )]
     NoLibrary(String),
+    /// There are shared libraries, but none that was built together with the program.
+    #[error(
+        "the shared library {0} is of another build than this program: build both with `cargo build --release`, or name one with --library"
+    )]
+    OtherBuild(String),
     /// A library of no platform that packages know.
     #[error(
         "the shared library {0} ends neither in .so nor in .dll nor in .dylib: its platform is not known"
@@ -71,7 +80,7 @@ pub enum PackageError {
     Twice(&'static str),
 }
 
-/// A library and its platform, after a look at its header.
+/// A library as packages carry it, and its platform, after a look at its header.
 ///
 /// # Errors
 /// If it cannot be read, its ending is of no platform, or it is not what its ending says.
@@ -86,6 +95,8 @@ fn read_library(path: &Path) -> Result<(Platform, Vec<u8>), PackageError> {
         wanted: platform.wanted(),
     };
     platform.check(&library).map_err(refused)?;
+    let mut library = strip::stripped(library);
+    paths::hide(&mut library);
     Ok((platform, library))
 }
 
@@ -93,17 +104,6 @@ fn read_library(path: &Path) -> Result<(Platform, Vec<u8>), PackageError> {
 fn file_error(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> PackageError {
     let path = path.display().to_string();
     move |source| PackageError::File { what, path, source }
-}
-
-/// Path of the shared library that was built together with this executable.
-///
-/// # Errors
-/// If it is not there.
-pub fn library_beside_executable() -> Result<PathBuf, PackageError> {
-    let name = format!("{}roulement{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    let executable = std::env::current_exe()?;
-    let path = executable.with_file_name(name);
-    if path.is_file() { Ok(path) } else { Err(PackageError::NoLibrary(path.display().to_string())) }
 }
 
 /// Name of a package that is given none: that of its file.
@@ -193,6 +193,12 @@ fn write(
     let bytes = zip.finish()?.into_inner();
 
     let partial = output.with_extension("fmu.part");
-    fs::write(&partial, bytes).map_err(file_error("cannot write", &partial))?;
-    fs::rename(&partial, output).map_err(file_error("cannot write", output))
+    let written = fs::write(&partial, bytes).map_err(file_error("cannot write", &partial));
+    let written =
+        written.and_then(|()| fs::rename(&partial, output).map_err(file_error("cannot write", output)));
+    if written.is_err() {
+        // The error is told already; where nothing was written, there is nothing to remove.
+        let _ = fs::remove_file(&partial);
+    }
+    written
 }

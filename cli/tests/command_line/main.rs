@@ -8,6 +8,7 @@ mod contacts;
 mod cost;
 mod effects;
 mod field;
+mod packages;
 mod refusals;
 mod report;
 mod runs;

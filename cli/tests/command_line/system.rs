@@ -82,7 +82,7 @@ fn message(output: Output) -> String {
 }
 
 /// A file of a zip file.
-fn unzipped(file: &str, name: &str) -> Vec<u8> {
+pub fn unzipped(file: &str, name: &str) -> Vec<u8> {
     let mut bytes = vec![];
     ZipArchive::new(File::open(file).unwrap())
         .unwrap()

@@ -3,7 +3,6 @@
 import json
 import os
 import shutil
-import sys
 from pathlib import Path
 
 from . import _native
@@ -73,22 +72,21 @@ def effects(scene):
 
 def find_libraries():
     """The shared libraries of packages: those of the environment variable ROULEMENT_LIBRARY (separated as in PATH), those of this package,
-    or that beside the program `roulement`."""
+    or that which was built together with the program `roulement`. Raises OSError if it is not there or of another build."""
     named = os.environ.get("ROULEMENT_LIBRARY")
     if named:
         return [Path(library) for library in named.split(os.pathsep)]
-    names = {"linux": "libroulement.so", "win32": "roulement.dll", "darwin": "libroulement.dylib"}
-    own = [Path(__file__).parent / "library" / name for name in names.values()]
+    own = [Path(__file__).parent / "library" / name for name in ("libroulement.so", "roulement.dll", "libroulement.dylib")]
+    found = [library for library in own if library.is_file()]
     program = os.environ.get("ROULEMENT_BIN") or shutil.which("roulement")
-    beside = [Path(program).with_name(names[sys.platform])] if program and sys.platform in names else []
-    for places in (own, beside):
-        found = [library for library in places if library.is_file()]
-        if found:
-            return found
-    raise FileNotFoundError(
-        "the shared library of packages is not there, as this package was built without it: build it by `cargo build --release`, then name "
-        "it by `library=` or by the environment variable ROULEMENT_LIBRARY"
-    )
+    if not found and program:
+        found = [_native.library_beside(Path(program).resolve())]
+    if not found:
+        raise FileNotFoundError(
+            "the shared library of packages is not there, as this package was built without it: build it by `cargo build --release`, then "
+            "name it by `library=` or by the environment variable ROULEMENT_LIBRARY"
+        )
+    return found
 
 
 def package(scene, path, library=None, name=None):

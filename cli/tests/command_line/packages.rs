@@ -1,0 +1,133 @@
+//! Packages with the library that cargo built together with the program.
+
+use std::fs;
+use std::path::PathBuf;
+
+use roulement::fmi::BUILD;
+use roulement_cli::package::{PackageError, library_beside};
+
+use super::*;
+
+const LIBRARY: &str = if cfg!(windows) {
+    "roulement.dll"
+} else if cfg!(target_os = "macos") {
+    "libroulement.dylib"
+} else {
+    "libroulement.so"
+};
+
+/// Packs the thrust case with the library that the program finds.
+fn packed(scratch: &Scratch, name: &str) -> Vec<u8> {
+    let package = scratch.path(name);
+    let output = roulement(&["fmu", &scene("thrust"), "-o", &package, "--name", "thrust"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    fs::read(package).unwrap()
+}
+
+/// The library in a package of this machine.
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn library(scratch: &Scratch, name: &str) -> Vec<u8> {
+    packed(scratch, name);
+    system::unzipped(&scratch.path(name), "binaries/linux64/thrust.so")
+}
+
+#[test]
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn the_packed_library_has_no_symbols_and_no_folders_of_the_machine() {
+    let scratch = Scratch::new("packed");
+    let library = library(&scratch, "a.fmu");
+    let sections = object::File::parse(library.as_slice()).unwrap();
+    for name in [".symtab", ".debug_info", ".debug_str"] {
+        assert!(object::Object::section_by_name(&sections, name).is_none(), "{name}");
+    }
+
+    let program = PathBuf::from(env!("CARGO_BIN_EXE_roulement"));
+    let variable = |name| std::env::var_os(name).map(PathBuf::from);
+    let folders = [
+        variable("HOME"),
+        variable("CARGO_HOME"),
+        variable("RUSTUP_HOME"),
+        Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_path_buf),
+        program.parent().map(Path::to_path_buf),
+        Some("registry/src".into()),
+    ];
+    let folders: Vec<String> =
+        folders.into_iter().flatten().map(|folder| folder.display().to_string()).collect();
+    let found = |library: &[u8], folder: &str| memchr::memmem::find(library, folder.as_bytes()).is_some();
+    for folder in folders.iter().filter(|folder| folder.len() > 1) {
+        assert!(!found(&library, folder), "{folder}");
+    }
+    // They were there to be found.
+    let whole = fs::read(library_beside(&program).unwrap()).unwrap();
+    assert!(found(&whole, "registry/src") && library.len() < whole.len());
+}
+
+#[test]
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn readers_of_libraries_have_no_complaint() {
+    let scratch = Scratch::new("readelf");
+    fs::write(scratch.path("a.so"), library(&scratch, "a.fmu")).unwrap();
+    let Ok(output) = Command::new("readelf").args(["--all", "--wide", &scratch.path("a.so")]).output() else {
+        println!("readelf is not installed");
+        return;
+    };
+    assert!(output.status.success());
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+}
+
+#[test]
+fn invariant_the_same_scene_and_library_give_the_same_bytes() {
+    let scratch = Scratch::new("same");
+    assert!(packed(&scratch, "a.fmu") == packed(&scratch, "b.fmu"));
+}
+
+#[test]
+fn the_library_of_the_same_build_is_found() {
+    let scratch = Scratch::new("beside");
+    fs::create_dir(scratch.path("deps")).unwrap();
+    let (program, beside, deps) =
+        (scratch.path("roulement"), scratch.path(LIBRARY), scratch.path(&format!("deps/{LIBRARY}")));
+    let found = || library_beside(Path::new(&program)).map(|path| path.display().to_string());
+    let ours = format!("library\0{BUILD}\0");
+    assert!(matches!(found(), Err(PackageError::NoLibrary(path)) if path == beside));
+    // As after an earlier build of everything.
+    fs::write(&beside, "library\0roulement build of yesterday\0").unwrap();
+    assert!(matches!(found(), Err(PackageError::OtherBuild(path)) if path == beside));
+    // And one of the program alone.
+    fs::write(&deps, &ours).unwrap();
+    assert_eq!(found().unwrap(), deps);
+    // A folder in which nothing is built.
+    fs::write(&beside, &ours).unwrap();
+    fs::remove_file(&deps).unwrap();
+    assert_eq!(found().unwrap(), beside);
+}
+
+#[test]
+fn a_package_that_cannot_take_its_place_leaves_nothing() {
+    let scratch = Scratch::new("in-the-way");
+    let package = scratch.path("x.fmu");
+    fs::create_dir_all(Path::new(&package).join("in the way")).unwrap();
+    let output = roulement(&["fmu", &scene("thrust"), "-o", &package]);
+    assert!(!output.status.success());
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write"));
+    assert!(!Path::new(&scratch.path("x.fmu.part")).exists());
+}
+
+#[test]
+#[cfg(unix)]
+fn a_full_disk_leaves_nothing() {
+    let scratch = Scratch::new("full");
+    let package = scratch.path("x.fmu");
+    fs::write(&package, "an earlier package").unwrap();
+    // No file may have more than some kilobytes, which is an error instead of a signal.
+    let output = Command::new("sh")
+        .args(["-c", "trap '' XFSZ; ulimit -f 8; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_roulement")])
+        .args(["fmu", &scene("thrust"), "-o", &package])
+        .output()
+        .unwrap();
+    assert!(!output.status.success());
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(message.contains("cannot write") && message.contains("x.fmu.part"), "{message}");
+    assert!(!Path::new(&scratch.path("x.fmu.part")).exists());
+    assert_eq!(fs::read_to_string(&package).unwrap(), "an earlier package");
+}
