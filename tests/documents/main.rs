@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod columns;
+mod contributing;
 mod counts;
 mod dependencies;
 #[path = "../common/scenes.rs"]
