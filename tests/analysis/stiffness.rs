@@ -260,7 +260,7 @@ fn closed_form_damping_of_one_ball_between_two_contacts() {
     assert_eq!(outputs.balls.iter().filter(|ball| ball.inner.load > 0.0).count(), 1);
     let stiffness = Race::BOTH.map(|race| {
         let contact = simulation.model().contact(race, &Conditions::of_friction(0.0));
-        let contact = contact.evaluate(&state.balls[0].motion(), &state.race(race).motion());
+        let contact = contact.evaluated(&state.balls[0].motion(), &state.race(race).motion());
         1.5 * contact.load / contact.geometry.approach
     });
     let sum = stiffness[0] + stiffness[1];

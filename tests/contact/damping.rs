@@ -32,9 +32,9 @@ fn drop(model: &Model, contact: &ContactModel<'_>, speed: f64, mass: f64) -> f64
             velocity: Vector3::new(0.0, rate, 0.0),
             angular_velocity: Vector3::zeros(),
         };
-        contact.evaluate(&ball, &race).force.y / mass
+        contact.evaluated(&ball, &race).force.y / mass
     };
-    let stiffness = contact.evaluate(
+    let stiffness = contact.evaluated(
         &BallMotion {
             position: Vector3::new(raceway.groove_offset, touching + 1e-6, 0.0),
             ..BallMotion::at_rest()
@@ -142,7 +142,7 @@ fn independent_data_viscoelastic_restitution() {
             ..BallMotion::at_rest()
         };
         let race = roulement::contact::RaceMotion::resting(Vector3::zeros(), Vector3::x(), Vector3::y());
-        let own = contact.evaluate(&ball, &race).stiffness;
+        let own = contact.evaluated(&ball, &race).stiffness;
         let ours = drop(&model, &contact, speed, mass * own / stiffness);
         assert!((ours - restitution).abs() < 1e-4, "{row:?}: {ours}");
     }

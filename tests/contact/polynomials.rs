@@ -42,7 +42,7 @@ fn forces(simulation: &Simulation, ball: usize, race: Race) -> [[f64; 3]; 2] {
         model.contact(race, &Conditions::of_friction(0.08)).of_ball(ball, state.difference(ball, race));
     let direct = roulement::contact::ContactModel { law: Law::Kalker(kalker), ..frozen };
     [frozen, direct].map(|contact| {
-        let contact = contact.evaluate(&state.balls[ball].motion(), &state.race(race).motion());
+        let contact = contact.evaluated(&state.balls[ball].motion(), &state.race(race).motion());
         let limit = 0.08 * contact.load;
         [contact.creep.longitudinal / limit, contact.creep.lateral / limit, contact.creep.spin_moment / limit]
     })
@@ -114,7 +114,7 @@ fn invariant_the_wrench_on_a_race_is_the_sum_of_the_reported_contact_forces() {
         let motion = state.race(race).motion();
         let mut sum = -outputs[race].wrench.force;
         for (j, ball) in state.balls.iter().enumerate() {
-            let forces = contact.of_ball(j, state.difference(j, race)).evaluate(&ball.motion(), &motion);
+            let forces = contact.of_ball(j, state.difference(j, race)).evaluated(&ball.motion(), &motion);
             let reported = &outputs.balls[j][race];
             let creep = forces.creep.longitudinal.hypot(forces.creep.lateral);
             let shown = reported.force_longitudinal.hypot(reported.force_lateral);

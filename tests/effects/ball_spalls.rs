@@ -197,7 +197,7 @@ impl Places {
         let axis = start * Vector3::x();
         let orientation = vec![UnitQuaternion::new(turned) * UnitQuaternion::new(axis * rolled) * start];
         let contact = self.model.contact(self.race, &Conditions::of_friction(0.0)).facing(Some(&orientation));
-        contact.of_ball(BALL, None).evaluate(ball, race)
+        contact.of_ball(BALL, None).evaluated(ball, race)
     }
 }
 
@@ -304,7 +304,7 @@ fn invariant_lanes_are_single_balls_to_the_bit() {
             let seen = simulation.state().race(race).motion();
             let motions: Vec<_> = simulation.state().balls.iter().map(BallState::motion).collect();
             let alone: Vec<_> =
-                (0..9).map(|ball| contact.of_ball(ball, None).evaluate(&motions[ball], &seen)).collect();
+                (0..9).map(|ball| contact.of_ball(ball, None).evaluated(&motions[ball], &seen)).collect();
             assert!(race == Race::Inner || alone[BALL].load < 0.9 * alone[BALL + 2].load);
             for first in [0, 4, 8] {
                 let mut together = ContactGroup::filled(&alone[0]);

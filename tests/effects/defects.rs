@@ -50,7 +50,7 @@ fn independent_data_drop_over_a_spall_is_that_of_boundary_elements() {
             let load_at = |deep: f64| {
                 let radius = bottom - model.bearing.ball.radius + deep;
                 let position = Vector3::new(0.0, angle.cos(), angle.sin()) * radius;
-                contact.evaluate(&BallMotion { position, ..BallMotion::at_rest() }, &race).load
+                contact.evaluated(&BallMotion { position, ..BallMotion::at_rest() }, &race).load
             };
             let (mut low, mut high) = (0.0, 5e-5);
             for _ in 0..60 {
@@ -219,7 +219,7 @@ fn invariant_lanes_are_single_balls_to_the_bit_and_derivatives_are_differences()
             }
         };
         let motions: Vec<_> = (0..24).map(|i| at(0.1 + 0.008 * f64::from(i))).collect();
-        let alone: Vec<_> = motions.iter().map(|motion| contact.evaluate(motion, &seen)).collect();
+        let alone: Vec<_> = motions.iter().map(|motion| contact.evaluated(motion, &seen)).collect();
         assert!(alone.iter().filter(|contact| contact.load > 0.0).count() > 12);
         for (some, alone) in motions.chunks(4).zip(alone.chunks(4)) {
             let mut together = ContactGroup::filled(&alone[0]);
@@ -283,8 +283,10 @@ fn invariant_forces_over_a_spall_are_the_slopes_of_the_energy() {
             for side in [0.0, 5e-6, -5e-6] {
                 let position = turn * (first.position + Vector3::new(side, out, 0.0));
                 let at = |offset: Vector3<f64>| {
-                    contact
-                        .evaluate(&BallMotion { position: position + offset, ..BallMotion::at_rest() }, &seen)
+                    contact.evaluated(
+                        &BallMotion { position: position + offset, ..BallMotion::at_rest() },
+                        &seen,
+                    )
                 };
                 let here = at(Vector3::zeros());
                 for k in 0..3 {

@@ -235,7 +235,7 @@ fn invariant_lanes_are_single_balls_to_the_bit_and_derivatives_are_differences()
         for first in [0, 4, 8] {
             let some = &motions[first..(first + 4).min(motions.len())];
             let alone: Vec<_> = (0..some.len())
-                .map(|lane| contact.of_ball(first + lane, None).evaluate(&some[lane], &seen))
+                .map(|lane| contact.of_ball(first + lane, None).evaluated(&some[lane], &seen))
                 .collect();
             let mut together = ContactGroup::filled(&alone[0]);
             together.evaluate(&contact.of_ball(first, None), &seen, &BallMotion::of_balls(some));

@@ -478,10 +478,10 @@ fn regression_warm_contacts_of_four_balls_at_a_time_are_those_of_one_to_the_bit(
         assert!(contacts[race].stiffening != 1.0);
         let motion = simulation.state().race(race).motion();
         let balls: [_; WIDTH] = std::array::from_fn(|lane| simulation.state().balls[3 * lane].motion());
-        let mut group = ContactGroup::filled(&contacts[race].evaluate(&balls[0], &motion));
+        let mut group = ContactGroup::filled(&contacts[race].evaluated(&balls[0], &motion));
         group.evaluate(&contacts[race], &motion, &BallMotion::of_balls(&balls));
         for (lane, ball) in balls.iter().enumerate() {
-            assert_eq!(group.contact(lane), contacts[race].evaluate(ball, &motion));
+            assert_eq!(group.contact(lane), contacts[race].evaluated(ball, &motion));
         }
     }
 }

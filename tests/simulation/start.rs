@@ -24,7 +24,7 @@ fn unbalanced(simulation: &Simulation, index: usize) -> (Vector3<f64>, f64) {
     let (model, state) = (simulation.model(), simulation.state());
     let ball = &state.balls[index];
     let contacts = Race::BOTH.map(|race| {
-        model.contact(race, &simulation.conditions()).evaluate(&ball.motion(), &state.race(race).motion())
+        model.contact(race, &simulation.conditions()).evaluated(&ball.motion(), &state.race(race).motion())
     });
     let orbit = Vector3::x() * simulation.outputs().balls[index].orbital_speed;
     let gyroscopic = orbit.cross(&ball.angular_velocity) * model.bearing.ball.inertia;
@@ -43,7 +43,7 @@ fn closed_form_accelerations_and_multipliers_are_consistent_at_the_start() {
             let races = Race::BOTH.map(|race| state.race(race).motion());
             let [inner, outer] = Race::BOTH.map(|race| {
                 let contact = model.contact(race, &simulation.conditions());
-                contact.evaluate(&ball.motion(), &races[race as usize])
+                contact.evaluated(&ball.motion(), &races[race as usize])
             });
             let force = inner.force + outer.force;
             assert!((ball.acceleration * model.bearing.ball.mass - force).norm() < 1e-9 * inner.load);

@@ -100,7 +100,7 @@ fn static_loads(simulation: &Simulation, index: usize, fraction: f64, swing: boo
     // Transverse to rolling, which is along the circumference.
     let transverse = |contact: &GrooveContact<f64>| contact.circumferential.cross(&contact.normal);
     let friction = [0, 1].map(|race: usize| {
-        let contact = contacts[race].evaluate(&ball.motion(), &races[race]);
+        let contact = contacts[race].evaluated(&ball.motion(), &races[race]);
         let tangential = contact.force + contact.geometry.normal * contact.load;
         fraction * tangential.dot(&transverse(&contact.geometry))
     });

@@ -63,7 +63,7 @@ impl Balls<'_> {
     fn contacts(&self, time: f64, ball: &BallMotion<f64>) -> [BallRaceContact<f64>; 2] {
         let conditions = Conditions::of_friction(self.scene.friction.ball_race.at(0.0));
         let races = [(Race::Inner, self.inner(time)), (Race::Outer, Self::outer())];
-        races.map(|(race, motion)| self.model.contact(race, &conditions).evaluate(ball, &motion))
+        races.map(|(race, motion)| self.model.contact(race, &conditions).evaluated(ball, &motion))
     }
 
     /// Sample of a state, as the study compares them. The energy is not integrated.

@@ -41,7 +41,7 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
                 velocity,
                 angular_velocity: vector(&x, 15),
             };
-            let alone = motions.each_ref().map(|m| contact.evaluate(m, &race_motion));
+            let alone = motions.each_ref().map(|m| contact.evaluated(m, &race_motion));
             assert!(alone[0].load > 50.0 && alone[3].load == 0.0);
 
             // With the vectors that this processor has.
@@ -58,9 +58,8 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
                 balls[0] = touching.unwrap_or(away[0]);
                 let mut together = ContactGroup::filled(&alone[0]);
                 together.evaluate(&contact, &race_motion, &BallMotion::of_balls(&balls));
-                let bits = |contact: &_| rows::<f64>(contact).iter().map(|x| x.to_bits()).collect::<Vec<_>>();
                 for (lane, ball) in balls.iter().enumerate() {
-                    let alone = contact.evaluate(ball, &race_motion);
+                    let alone = contact.evaluated(ball, &race_motion);
                     assert_eq!(bits(&together.contact(lane)), bits(&alone), "{name}, {lane}");
                     assert_eq!(contact.is_open(ball, &race_motion), alone.load == 0.0, "{name}, {lane}");
                 }
@@ -78,7 +77,7 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
                 let difference = |ball: usize| simulated.then(|| &of_balls[ball]);
                 let all = contact.evaluate_balls(&balls, &race_motion, difference);
                 let alone =
-                    |(ball, motion)| contact.of_ball(ball, difference(ball)).evaluate(motion, &race_motion);
+                    |(ball, motion)| contact.of_ball(ball, difference(ball)).evaluated(motion, &race_motion);
                 assert_eq!(all, balls.iter().enumerate().map(alone).collect::<Vec<_>>(), "{name}");
             }
             // With those that every processor has.

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use roulement::contact::creep::{Creepage, Law, LinearTheory};
 use roulement::contact::many::ContactGroup;
 use roulement::contact::materials::Pair;
+use roulement::contact::pair::PairForces;
 use roulement::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion, Way};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::kalker::scaled_law::Difference;
@@ -66,20 +67,35 @@ fn all(laws: &Laws) -> Vec<(&'static str, Law<'_>, Option<f64>)> {
         .collect()
 }
 
-fn evaluate<S: Scalar>(
-    model: &Model,
-    (law, bend): (Law<'_>, Option<f64>),
-    race: Race,
-    x: &[S; 18],
-) -> BallRaceContact<S> {
+/// A contact of a model by this law.
+fn by_law<'a>(model: &'a Model, (law, bend): (Law<'a>, Option<f64>), race: Race) -> ContactModel<'a> {
     let mut contact = model.contact(race, &Conditions::of_friction(0.08));
     (contact.law, contact.groove_bend) = (law, bend);
-    evaluate_contact(&contact, x)
+    contact
 }
 
-fn evaluate_contact<S: Scalar>(contact: &ContactModel<'_>, x: &[S; 18]) -> BallRaceContact<S> {
+fn evaluated(contact: &ContactModel<'_>, x: &[f64; 18]) -> BallRaceContact<f64> {
     let (ball, race) = motions_of(x);
-    contact.evaluate(&ball, &race)
+    contact.evaluated(&ball, &race)
+}
+
+/// Approach and rows of a contact with their derivatives by all numbers: nine directions at a time, as steps take them.
+fn differentiated(contact: &ContactModel<'_>, x: &[f64; 18]) -> (Dual<18>, Vec<Dual<18>>) {
+    const HALF: usize = 9;
+    let [first, second] = [0, HALF].map(|begin| {
+        let x: [Dual<HALF>; 18] = std::array::from_fn(|i| match i.checked_sub(begin) {
+            Some(direction) if direction < HALF => Dual::variable(x[i], direction, 1.0),
+            _ => Dual::constant(x[i]),
+        });
+        let (ball, race) = motions_of(&x);
+        let forces = contact.differentiated(&ball, &race);
+        [vec![forces.approach], rows(&forces)].concat()
+    });
+    let mut all = first.iter().zip(&second).map(|(first, second)| Dual {
+        value: first.value,
+        derivatives: std::array::from_fn(|i| [first, second][i / HALF].derivatives[i % HALF]),
+    });
+    (all.next().unwrap(), all.collect())
 }
 
 /// Motions of ball and race of the 18 numbers.
@@ -98,12 +114,22 @@ fn motions_of<S: Scalar>(x: &[S; 18]) -> (BallMotion<S>, RaceMotion<S>) {
     (ball, race)
 }
 
-fn rows<S: Scalar>(contact: &BallRaceContact<S>) -> Vec<S> {
-    let mut rows = vec![contact.load, contact.friction_power, contact.damping_power];
-    for vector in [&contact.force, &contact.ball_moment, &contact.race_moment] {
+fn rows<S: Scalar>(forces: &PairForces<S>) -> Vec<S> {
+    let mut rows = vec![forces.load, forces.friction_power, forces.damping_power];
+    for vector in [&forces.force, &forces.moment, &forces.other_moment] {
         rows.extend(vector.iter().copied());
     }
     rows
+}
+
+/// [`rows`] at given numbers.
+fn values(contact: &ContactModel<'_>, x: &[f64; 18]) -> Vec<f64> {
+    rows(&PairForces::from(&evaluated(contact, x)))
+}
+
+/// Bits of the rows: two zeros of unlike sign differ.
+fn bits(contact: &BallRaceContact<f64>) -> Vec<u64> {
+    rows(&PairForces::from(contact)).into_iter().map(f64::to_bits).collect()
 }
 
 #[test]
@@ -120,8 +146,8 @@ fn invariant_exact_tangents_agree_with_differences_to_1e_6() {
     for (name, law, bend) in all(&laws) {
         for race in Race::BOTH {
             let x = motion(race);
-            let dual: [Dual<18>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i, 1.0));
-            let exact = rows(&evaluate(&model, (law, bend), race, &dual));
+            let contact = by_law(&model, (law, bend), race);
+            let (_, exact) = differentiated(&contact, &x);
             assert!(exact[0].value > 50.0, "the contact must be loaded: {} N", exact[0].value);
             // `kalker` is itself the end of an iteration, known to some 1e-11: larger steps, larger rounding.
             let (wider, rounding, relative) =
@@ -131,7 +157,7 @@ fn invariant_exact_tangents_agree_with_differences_to_1e_6() {
                 let at = |sign: f64| {
                     let mut moved = x;
                     moved[i] += sign * step(i);
-                    rows(&evaluate(&model, (law, bend), race, &moved))
+                    values(&contact, &moved)
                 };
                 let (p1, m1, p2, m2) = (at(1.0), at(-1.0), at(2.0), at(-2.0));
                 // Fourth-order central differences.
@@ -157,9 +183,9 @@ fn invariant_action_is_reaction_and_power_is_lost() {
     let model = model();
     let laws = Laws::new();
     for (_, law, bend) in all(&laws) {
-        let contact = evaluate(&model, (law, bend), Race::Inner, &motion(Race::Inner));
-        // Force and moments of ball and race balance about the race origin.
         let x = motion(Race::Inner);
+        let contact = evaluated(&by_law(&model, (law, bend), Race::Inner), &x);
+        // Force and moments of ball and race balance about the race origin.
         let offset = Vector3::new(x[0] - x[9], x[1] - x[10], x[2] - x[11]);
         let balance = contact.ball_moment + offset.cross(&contact.force) + contact.race_moment;
         assert!(balance.norm() < 1e-12 * contact.race_moment.norm().max(1.0));
@@ -175,10 +201,9 @@ fn an_open_contact_has_neither_force_nor_slope() {
     x[2] *= 0.999;
     let laws = Laws::new();
     for (name, law, bend) in all(&laws) {
-        let dual: [Dual<18>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i, 1.0));
-        let contact = evaluate(&model, (law, bend), Race::Outer, &dual);
-        assert!(contact.geometry.approach.value < 0.0);
-        for row in rows(&contact) {
+        let (approach, rows) = differentiated(&by_law(&model, (law, bend), Race::Outer), &x);
+        assert!(approach.value < 0.0);
+        for row in rows {
             assert_eq!(row.value, 0.0);
             assert!(row.derivatives.iter().all(|d| *d == 0.0), "{name} {row:?}");
         }
@@ -214,9 +239,9 @@ fn invariant_friction_that_is_off_is_not_computed_and_forces_are_the_same() {
             contact.damping = damping.into();
             // Linear theory without stiffness computes everything, and has no force either.
             contact.law = Law::Saturated;
-            let all = contact.evaluate(&ball, &seen);
+            let all = contact.evaluated(&ball, &seen);
             contact.law = Law::Frictionless;
-            let pressed = contact.evaluate(&ball, &seen);
+            let pressed = contact.evaluated(&ball, &seen);
             assert!(all.load > 0.0);
             assert_eq!(
                 (all.load, all.force, all.damping_power),

@@ -22,9 +22,8 @@ fn oblique_motion(race: Race, turning: f64) -> [f64; 18] {
 }
 
 /// A contact of a model as it is, at the 18 numbers of [`motion`].
-fn as_simulated<S: Scalar>(model: &Model, race: Race, x: &[S; 18]) -> BallRaceContact<S> {
-    let contact = model.contact(race, &Conditions::of_friction(0.08));
-    evaluate_contact(&contact, x)
+fn as_simulated(model: &Model, race: Race, x: &[f64; 18]) -> BallRaceContact<f64> {
+    evaluated(&model.contact(race, &Conditions::of_friction(0.08)), x)
 }
 
 #[test]
@@ -36,15 +35,15 @@ fn invariant_oblique_rolling_has_exact_tangents() {
         for race in Race::BOTH {
             for turning in [-3e3, -900.0, -250.0, 150.0, 400.0, 1500.0, 2e4] {
                 let x = oblique_motion(race, turning);
-                let dual: [Dual<18>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i, 1.0));
-                let exact = rows(&as_simulated(&model, race, &dual));
+                let contact = model.contact(race, &Conditions::of_friction(0.08));
+                let (_, exact) = differentiated(&contact, &x);
                 seen.push(as_simulated(&model, race, &x).rolling_cosine.abs());
                 for i in 3..9 {
                     let step = if i < 6 { 1e-5 } else { 1e-3 };
                     let at = |sign: f64| {
                         let mut moved = x;
                         moved[i] += sign * step;
-                        rows(&as_simulated(&model, race, &moved))
+                        values(&contact, &moved)
                     };
                     let (plus, minus) = (at(1.0), at(-1.0));
                     for (k, row) in exact.iter().enumerate() {
@@ -78,7 +77,7 @@ fn invariant_oblique_contacts_beside_straight_ones_have_the_bits_of_one() {
             let x = [straight, 300.0, -5e3, 0.9 * straight].map(|turning| oblique_motion(race, turning));
             let motions = x.each_ref().map(|x| motions_of(x).0);
             let (_, race_motion) = motions_of(&x[0]);
-            let alone = motions.each_ref().map(|ball| contact.evaluate(ball, &race_motion));
+            let alone = motions.each_ref().map(|ball| contact.evaluated(ball, &race_motion));
             assert!(alone[2].rolling_cosine.abs() < 0.9 && alone[0].rolling_cosine.abs() > 0.995);
             let mut together = ContactGroup::filled(&alone[0]);
             together.evaluate(&contact, &race_motion, &BallMotion::of_balls(&motions));
@@ -88,8 +87,8 @@ fn invariant_oblique_contacts_beside_straight_ones_have_the_bits_of_one() {
             // Rolling along the circumference knows nothing of rolling across it.
             let mut straight = contact;
             straight.across = None;
-            assert_eq!(straight.evaluate(&motions[0], &race_motion), alone[0], "{law}");
-            assert_ne!(straight.evaluate(&motions[2], &race_motion).creep, alone[2].creep, "{law}");
+            assert_eq!(straight.evaluated(&motions[0], &race_motion), alone[0], "{law}");
+            assert_ne!(straight.evaluated(&motions[2], &race_motion).creep, alone[2].creep, "{law}");
         }
     }
 }
@@ -116,18 +115,16 @@ fn invariant_what_a_contact_did_before_does_not_change_its_bits() {
             let mut groups =
                 turnings.map(|turnings| turnings.map(|turning| motions_of(&oblique_motion(race, turning)).0));
             groups[3][1].position.x += if race == Race::Inner { 3e-5 } else { -3e-5 };
-            assert_eq!(contact.evaluate(&groups[3][1], &race_motion).load, 0.0);
+            assert_eq!(contact.evaluated(&groups[3][1], &race_motion).load, 0.0);
             let mut seen = vec![];
             for (before, now) in groups.iter().flat_map(|before| groups.each_ref().map(|now| (before, now))) {
-                let mut together = ContactGroup::filled(&contact.evaluate(&before[0], &race_motion));
+                let mut together = ContactGroup::filled(&contact.evaluated(&before[0], &race_motion));
                 for balls in [before, now, now] {
                     together.evaluate(&contact, &race_motion, &BallMotion::of_balls(balls));
                 }
                 seen.push(together.rolled_obliquely());
                 for (lane, ball) in now.iter().enumerate() {
-                    let alone = contact.evaluate(ball, &race_motion);
-                    let bits =
-                        |contact: &_| rows::<f64>(contact).iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+                    let alone = contact.evaluated(ball, &race_motion);
                     assert_eq!(together.contact(lane), alone, "{law} {race:?} {lane}");
                     assert_eq!(bits(&together.contact(lane)), bits(&alone), "{law} {race:?} {lane}");
                 }
@@ -138,7 +135,7 @@ fn invariant_what_a_contact_did_before_does_not_change_its_bits() {
                 let x = oblique_motion(race, *turning);
                 let x: [Dual<2>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i % 2, 1.0 + i as f64));
                 let (ball, race_motion) = motions_of(&x);
-                let usual = evaluate_contact(&contact, &x);
+                let usual = contact.evaluate(&ball, &race_motion);
                 assert_eq!(contact.evaluate_by::<_, true, false>(&ball, &race_motion), usual, "{law}");
             }
         }

@@ -34,8 +34,7 @@ fn in_oil(mut check: impl FnMut(&str, &ContactModel<'_>, &[f64; 18])) {
 #[test]
 fn invariant_films_have_exact_tangents() {
     in_oil(|name, contact, x| {
-        let dual: [Dual<18>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i, 1.0));
-        let exact = rows(&evaluate_contact(contact, &dual));
+        let (_, exact) = differentiated(contact, x);
         assert!(exact[0].value > 50.0);
         for i in [0, 1, 3, 4, 5, 6, 7, 8, 15] {
             // Slow contacts change within smaller differences of their speeds.
@@ -48,7 +47,7 @@ fn invariant_films_have_exact_tangents() {
             let at = |sign: f64| {
                 let mut moved = *x;
                 moved[i] += sign * step;
-                rows(&evaluate_contact(contact, &moved))
+                values(contact, &moved)
             };
             let (p1, m1, p2, m2) = (at(1.0), at(-1.0), at(2.0), at(-2.0));
             let (relative, rounding) =
@@ -73,7 +72,7 @@ fn invariant_films_have_exact_tangents() {
 #[test]
 fn invariant_films_act_and_react_and_lose_power() {
     in_oil(|name, contact, x| {
-        let forces = evaluate_contact(contact, x);
+        let forces = evaluated(contact, x);
         let offset = Vector3::new(x[0] - x[9], x[1] - x[10], x[2] - x[11]);
         let balance = forces.ball_moment + offset.cross(&forces.force) + forces.race_moment;
         assert!(balance.norm() < 1e-12 * forces.race_moment.norm().max(1.0), "{name}");
@@ -98,7 +97,7 @@ fn invariant_films_act_and_react_and_lose_power() {
         );
         // Four at a time have the same bits, beside one that touches nothing.
         let away = BallMotion { position: ball.position - forces.geometry.normal * 1e-4, ..ball };
-        let open = contact.evaluate(&away, &race);
+        let open = contact.evaluated(&away, &race);
         assert!(open.load == 0.0 && open.force == Vector3::zeros(), "{name}: {open:?}");
         let mut together = ContactGroup::filled(&forces);
         together.evaluate(contact, &race, &BallMotion::of_balls(&[ball, away, ball]));
@@ -109,16 +108,15 @@ fn invariant_films_act_and_react_and_lose_power() {
 #[test]
 fn an_open_contact_in_oil_has_neither_force_nor_slope() {
     in_oil(|name, contact, x| {
-        let touching = evaluate_contact(contact, x);
+        let touching = evaluated(contact, x);
         let mut x = *x;
         for i in 0..3 {
             x[i] -= 1e-4 * touching.geometry.normal[i];
         }
         let (ball, race) = motions_of(&x);
         assert!(contact.is_open(&ball, &race), "{name}");
-        let dual: [Dual<18>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i, 1.0));
         // With hysteresis against rolling as well.
-        for row in rows(&evaluate_contact(&ContactModel { hysteresis: 1e-3, ..*contact }, &dual)) {
+        for row in differentiated(&ContactModel { hysteresis: 1e-3, ..*contact }, &x).1 {
             assert!(row.value == 0.0 && row.derivatives.iter().all(|d| *d == 0.0), "{name} {row:?}");
         }
     });
