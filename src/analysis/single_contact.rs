@@ -132,7 +132,7 @@ fn is_slender(patch: &Patch) -> bool {
 
 impl RollingContact {
     /// Mean errors of force over mu N and spin moment over mu N c that the table of the nonlinear theory is expected to have at
-    /// this contact: of oblique rolling, which it is not made for (`tests/kalker_table.rs`). None along an axis, and for
+    /// this contact: of oblique rolling, which it is not made for (`tests/kalker/table.rs`). None along an axis, and for
     /// other laws.
     pub fn expected_error(&self, law: Law) -> Option<[f64; 2]> {
         let (sin, cos) = self.rolling_angle.sin_cos();

@@ -4,6 +4,7 @@ pub mod ball_ball;
 pub mod ball_spall;
 pub mod body;
 pub mod cage_film;
+mod compiled;
 pub mod creep;
 mod evaluate;
 pub mod film;

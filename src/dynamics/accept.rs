@@ -32,7 +32,7 @@ const FORCE_TOLERANCE: f64 = 1e-6;
 const RELATIVE_TOLERANCE: f64 = 1e-9;
 const MOST_RELATIVE_TOLERANCE: f64 = 1e-8;
 /// [-] residual over the force that makes up for the error of a step: what Newton's method leaves must not show beside that error, nor add up
-/// in steps so small that they have next to none (cli/tests/cost_reference.rs).
+/// in steps so small that they have next to none (cli/tests/studies/cost_reference.rs).
 const SHARE_OF_ERROR: f64 = 1e-3;
 /// [-] units of round-off that positions put into forces through the stiffest contact: 1100 m from the origin Newton's
 /// method still reached one unit in every step (tests/hard_cases/extremes.rs); the rest is margin.

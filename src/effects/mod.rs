@@ -10,14 +10,14 @@
 //! 1. Write `src/effects/NAME.rs`: its keys of `[effects]` by the macro `keys!` (a section of many keys is one key whose type
 //!    is a struct: `[effects.NAME]` in a scene; one that stands by itself, `[NAME]`, is a field of `Scene` that moves into
 //!    `Settings` where a scene is read), and `impl Effect for Settings`.
-//! 2. `INFO` says what it adds, which states it has, where it is from and what it costs; its `example` must start (`tests/effects.rs`).
+//! 2. `INFO` says what it adds, which states it has, where it is from and what it costs; its `example` must start (`tests/effects/list.rs`).
 //! 3. `NUMBERS` has a row per number: the range stands there alone, and makes it an FMI parameter if a package offers it.
 //! 4. `agree` refuses keys that do not go together. What it has to know of the rest of the scene is in [`Setup`].
 //! 5. `inputs` are what a master sets while it is on; their values join [`EffectInputs`]. `rows` and `ball_rows` are its outputs, empty while it is off; what they read joins [`Reports`].
 //! 6. Add `pub mod NAME;` and the word `NAME` to the list below. Validation, variables, parameters and the page of a
 //!    package come from that list. Value references follow its order: add at the end.
 //! 7. The physics hangs on at most one hook: `Model` takes from `scene.effects.NAME` what a step reads, as an `Option`.
-//! 8. `matters` says from an [`Estimate`] how much it would change, or changes, with `ESTIMATE` in words; `tests/estimates.rs` compares
+//! 8. `matters` says from an [`Estimate`] how much it would change, or changes, with `ESTIMATE` in words; `tests/effects/estimates.rs` compares
 //!    that with what switching it on does. `switch` is for effects that `effects.auto` can switch on.
 //! 9. Everything that moves the balls must be in the equilibrium too, or a run starts with a bounce.
 

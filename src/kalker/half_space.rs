@@ -370,7 +370,7 @@ pub struct Refined {
 }
 
 /// [-] change from grid to grid beyond which a finer one is taken. Errors against independent data are a third of it in the mean
-/// (`tests/kalker_half_space.rs`).
+/// (`tests/kalker/half_space.rs`).
 pub const LARGEST_CHANGE: f64 = 0.02;
 /// Cells of the first grid and of the finest: each is compared with the next.
 const COARSEST: usize = 8;

@@ -4,6 +4,7 @@
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::path::PathBuf;
 use std::ptr;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use roulement::fmi::v2::{CallbackFunctions, Status};
 use roulement::interface::model_description::{render, render_system};
@@ -144,7 +145,10 @@ impl Package {
     }
 
     fn of(name: &str, source: &str, guid: String, rows: Vec<Variable>) -> Self {
-        let folder = std::env::temp_dir().join(format!("roulement-{name}-{}", std::process::id()));
+        // A folder of its own, whatever other threads of this process do.
+        static PACKAGES: AtomicU32 = AtomicU32::new(0);
+        let number = PACKAGES.fetch_add(1, Ordering::Relaxed);
+        let folder = std::env::temp_dir().join(format!("roulement-{name}-{}-{number}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         std::fs::write(folder.join("scene.toml"), source).unwrap();
         let callbacks = CallbackFunctions {

@@ -89,7 +89,7 @@ fn bounded_dissipative_and_odd() {
             let terms = [0, 1, 2].map(|i| list[i] * creepage[i]);
             let size = terms.iter().map(|term| term.abs()).sum::<f64>();
             let floor = 1e-9 * (creepage[0].abs() + creepage[1].abs()) + 1e-15 * creepage[2].abs();
-            // The two fitted laws belong to one patch, not to these random coefficients: tests/creep_laws.rs has their power.
+            // The two fitted laws belong to one patch, not to these random coefficients: tests/contact/creep_laws.rs has their power.
             let fitted = matches!(name, "regularised" | "kalker_table");
             let power = if fitted { 0.0 } else { terms.iter().sum::<f64>() };
             driven = driven.max(-power / (floor + 1e-12 * size).max(f64::MIN_POSITIVE));

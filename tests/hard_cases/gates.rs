@@ -393,7 +393,7 @@ fn residual(end: &Simulation, before: &State) -> f64 {
         // Polynomials are those that the step was solved with.
         let [inner, outer] = Race::BOTH.map(|race| {
             let contact = contacts[race].of_ball(index, state.difference(index, race));
-            contact.evaluate(&now.motion(), &races[race as usize])
+            contact.evaluated(&now.motion(), &races[race as usize])
         });
         let outside = ambient.on_ball(&now.motion());
         let mut force = outside.force + inner.force + outer.force;

@@ -6,7 +6,7 @@ mod hard;
 mod housing;
 mod motion;
 mod reference;
-#[path = "../scene_reference/sources.rs"]
+#[path = "../scene/reference/sources.rs"]
 #[allow(dead_code)]
 mod sources;
 mod statics;

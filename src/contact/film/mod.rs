@@ -6,7 +6,7 @@
 //!
 //! Loads, speeds and slips are those of the moment: no state, and exact derivatives. Of the ellipse, its size is that of the moment,
 //! its shape that at the free contact angle: between the shapes at 0 and 40 degrees rolling resistance changes by 2.2 %, friction by
-//! 0.3 % (6206, tests/film.rs).
+//! 0.3 % (6206, tests/contact/film.rs).
 
 pub mod rolling;
 pub mod thickness;

@@ -1,0 +1,237 @@
+//! README and documents as their readers use them: every command of the program runs, every part of a scene is read.
+//! What it works on are small copies of the project's files, so that this takes seconds.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use roulement::scene::Scene;
+use roulement::scene::system::SystemScene;
+use roulement_cli::system::Description;
+use toml::{Table, Value};
+
+use crate::common::{self, Scratch};
+
+/// Commands that take minutes: their arguments are read, they do not run.
+const LONG: [&str; 1] = ["cost"];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// README and documents: name and text.
+fn documents() -> Vec<(String, String)> {
+    let read = |path: PathBuf| {
+        (path.file_name().unwrap().to_string_lossy().into_owned(), fs::read_to_string(path).unwrap())
+    };
+    let pages = fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let mut all: Vec<_> =
+        pages.filter(|path| path.extension().is_some_and(|of| of == "md")).map(read).collect();
+    all.push(read(root().join("README.md")));
+    all.sort();
+    all
+}
+
+/// Blocks of a language in a document.
+fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
+    let begin = format!("```{language}\n");
+    let mut rest = text;
+    let mut found = vec![];
+    while let Some((_, after)) = rest.split_once(&begin) {
+        let (block, behind) = after.split_once("```").unwrap();
+        found.push(block);
+        rest = behind;
+    }
+    found
+}
+
+/// Words of a command as a shell has them, without its comment.
+fn words(line: &str) -> Vec<String> {
+    let mut words = vec![];
+    let (mut word, mut quote, mut begun) = (String::new(), None, false);
+    for letter in line.chars() {
+        match (quote, letter) {
+            (None, '#') if !begun => break,
+            (None, '"' | '\'') => (quote, begun) = (Some(letter), true),
+            (Some(end), letter) if letter == end => quote = None,
+            (None, ' ') => {
+                if begun {
+                    words.push(std::mem::take(&mut word));
+                }
+                begun = false;
+            }
+            (_, letter) => {
+                word.push(letter);
+                begun = true;
+            }
+        }
+    }
+    if begun {
+        words.push(word);
+    }
+    words
+}
+
+/// A folder with what commands of the documents work on.
+fn workplace(name: &str) -> Scratch {
+    let scratch = Scratch::new(name);
+    let write = |name: &str, text: &str| {
+        let path = scratch.path(name);
+        fs::create_dir_all(Path::new(&path).parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    };
+    for scene in ["thrust", "radial", "cage", "misalignment"] {
+        let text = fs::read_to_string(common::scene(scene)).unwrap();
+        write(&format!("scenes/{scene}.toml"), &text);
+        for copy in ["scene.toml", "SCENE.toml", "thrust.toml"].into_iter().filter(|_| scene == "thrust") {
+            write(copy, &text);
+        }
+    }
+    let shaft = fs::read_to_string(root().join("scenes/shafts/pinion.toml")).unwrap();
+    write("scenes/shafts/pinion.toml", &shaft);
+    let coupled = fs::read_to_string(root().join("examples/coupling/bearing.toml")).unwrap();
+    write("examples/coupling/bearing.toml", &coupled);
+    fs::create_dir(scratch.path("build")).unwrap();
+    write(
+        "system.toml",
+        "name = \"one\"\nstep = 1e-5\nstop = 1\n[components.bearing]\nscene = \"thrust.toml\"\n",
+    );
+    write("cases.csv", "friction.ball_race,load.duration\n0.05,0.001\n0.1,0.001\n");
+    let packaging = fs::read_to_string(root().join("docs/packaging.md")).unwrap();
+    let system = blocks(&packaging, "toml").into_iter().find(|block| block.contains("[shaft]")).unwrap();
+    write("gear.toml", system);
+    let contacts = fs::read_to_string(root().join("tests/data/contact/random.csv")).unwrap();
+    let few: Vec<&str> = contacts.lines().take(3).collect();
+    for name in ["CASES.csv", "tests/data/contact/random.csv"] {
+        write(name, &(few.join("\n") + "\n"));
+    }
+    // Results that a document begins with.
+    let short = common::edited("thrust", &[("load.duration", "\"1 ms\"")]);
+    for results in ["results", "other-results"] {
+        assert!(scratch.run(&short, results, &[]).status.success());
+    }
+    let cases = scratch.path("cases.csv");
+    let sweep = ["sweep", &cases, "--scene", &scratch.path("scene.toml"), "-o", &scratch.path("sweep")];
+    assert!(common::roulement(&sweep).status.success());
+    write("scene.toml", &fs::read_to_string(common::scene("thrust")).unwrap());
+    scratch
+}
+
+#[test]
+fn every_command_of_the_documents_runs() {
+    let program = Path::new(env!("CARGO_BIN_EXE_roulement"));
+    let mut ran = 0;
+    for (document, text) in documents() {
+        let scratch = workplace(&format!("documents-{document}"));
+        for line in blocks(&text, "sh").into_iter().flat_map(str::lines) {
+            let words = words(line);
+            let Some((first, arguments)) = words.split_first() else { continue };
+            if !["roulement", "target/release/roulement"].contains(&first.as_str()) {
+                continue;
+            }
+            let long = LONG.contains(&arguments[0].as_str());
+            let output = Command::new(program)
+                .args(arguments)
+                .args(long.then_some("--help"))
+                .current_dir(scratch.path(""))
+                .env("XDG_CACHE_HOME", scratch.path("cache"))
+                .output()
+                .unwrap();
+            let error = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{document}: {line}\n{error}");
+            ran += 1;
+        }
+    }
+    assert!(ran > 15, "{ran}");
+}
+
+/// Puts a table into another.
+fn merge(into: &mut Table, from: Table) {
+    for (key, value) in from {
+        match (into.get_mut(&key), value) {
+            (Some(Value::Table(old)), Value::Table(new)) => merge(old, new),
+            (_, value) => drop(into.insert(key, value)),
+        }
+    }
+}
+
+#[test]
+fn every_part_of_a_scene_in_the_documents_is_read() {
+    let thrust = fs::read_to_string(common::scene("thrust")).unwrap();
+    let mut read = 0;
+    let scratch = Scratch::new("documents-scenes");
+    let measured = root().join("scenes/effects/measured_shock.csv");
+    fs::copy(measured, scratch.path("measured_shock.csv")).unwrap();
+    for (document, text) in documents() {
+        for block in blocks(&text, "toml") {
+            // A block of several ways to write the same has them in paragraphs.
+            let parts: Vec<&str> = match block.parse::<Table>() {
+                Ok(_) => vec![block],
+                Err(_) => block.split("\n\n").collect(),
+            };
+            for part in parts {
+                let table: Table = part.parse().unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
+                if ["grid", "case", "latin_hypercube"].iter().any(|key| table.contains_key(*key)) {
+                    sweep(&document, part);
+                    read += 1;
+                    continue;
+                }
+                if table.contains_key("components") {
+                    Description::read(part).unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
+                    read += 1;
+                    continue;
+                }
+                if SystemScene::is_system(part) {
+                    SystemScene::parse(part, None, &root())
+                        .unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
+                    read += 1;
+                    continue;
+                }
+                // A housing is added to the shaft that is shipped, bearings take the place of those with their names.
+                if table.get("housing").is_some_and(Value::is_array) {
+                    let pinion = fs::read_to_string(root().join("scenes/shafts/pinion.toml")).unwrap();
+                    let mut system: Table = pinion.parse().unwrap();
+                    for (key, value) in table {
+                        match system.get_mut(&key).and_then(Value::as_array_mut) {
+                            Some(there) => {
+                                let new = value.as_array().unwrap();
+                                there.retain(|old| new.iter().all(|new| new["name"] != old["name"]));
+                                there.extend(new.iter().cloned());
+                            }
+                            None => drop(system.insert(key, value)),
+                        }
+                    }
+                    SystemScene::parse(&system.to_string(), None, &root())
+                        .unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
+                    read += 1;
+                    continue;
+                }
+                // With a bearing it is a whole scene, without one it is added to another.
+                let whole = table.contains_key("bearing");
+                let mut scene: Table = if whole { Table::new() } else { thrust.parse().unwrap() };
+                for key in ["solver", "effects"] {
+                    // Words in place of a section, and settings that exclude each other.
+                    if table.contains_key(key) {
+                        scene.remove(key);
+                    }
+                }
+                merge(&mut scene, table);
+                fs::write(scratch.path("scene.toml"), scene.to_string()).unwrap();
+                if let Err(why) = Scene::load(Path::new(&scratch.path("scene.toml"))) {
+                    panic!("{document}: {part}\n{why}");
+                }
+                read += 1;
+            }
+        }
+    }
+    assert!(read > 6, "{read}");
+}
+
+/// A sweep of a few short cases of a document.
+fn sweep(document: &str, cases: &str) {
+    let scratch = workplace(&format!("documents-sweep-{document}"));
+    let few = cases.replace("cases = 50", "cases = 2").replace("\"20 ms\"", "\"1 ms\"");
+    fs::write(scratch.path("cases.toml"), few).unwrap();
+    let output = common::roulement(&["sweep", &scratch.path("cases.toml"), "-o", &scratch.path("out")]);
+    assert!(output.status.success(), "{document}: {}", String::from_utf8_lossy(&output.stderr));
+}

@@ -1,0 +1,13 @@
+//! Studies that the program makes, and runs for which it measures energy and errors.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../common/mod.rs"]
+mod common;
+mod cost;
+mod cost_reference;
+mod error;
+mod law_comparison;
+mod law_switch;
+#[path = "../../../tests/common/random.rs"]
+mod random;
+mod random_scenes;

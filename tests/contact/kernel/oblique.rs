@@ -1,0 +1,158 @@
+//! Oblique rolling.
+
+use super::*;
+
+/// Laws of a scene that have friction.
+const FRICTION: [&str; 5] = ["linear", "regularised", "saturated", "kalker", "kalker_table"];
+
+fn model_of(law: &str) -> Model {
+    let creep = format!("\"{law}\"");
+    let changes = [("effects.creep", &*creep), ("friction.ball_race", "2.0")];
+    Model::new(&Scene::edited(include_str!("../../../scenes/thrust.toml"), changes).unwrap()).unwrap()
+}
+
+/// Numbers of [`motion`] with the ball turning about the circumference as well: it rolls obliquely, and slides.
+fn oblique_motion(race: Race, turning: f64) -> [f64; 18] {
+    let mut x = motion(race);
+    let radius = x[1].hypot(x[2]);
+    let around = [-x[2] / radius, x[1] / radius];
+    x[7] += turning * around[0];
+    x[8] += turning * around[1];
+    x
+}
+
+/// A contact of a model as it is, at the 18 numbers of [`motion`].
+fn as_simulated(model: &Model, race: Race, x: &[f64; 18]) -> BallRaceContact<f64> {
+    evaluated(&model.contact(race, &Conditions::of_friction(0.08)), x)
+}
+
+#[test]
+fn invariant_oblique_rolling_has_exact_tangents() {
+    // From hardly oblique to nearly across, both ways; through where the share of rolling across begins and is full.
+    let mut seen = vec![];
+    for law in FRICTION {
+        let model = model_of(law);
+        for race in Race::BOTH {
+            for turning in [-3e3, -900.0, -250.0, 150.0, 400.0, 1500.0, 2e4] {
+                let x = oblique_motion(race, turning);
+                let contact = model.contact(race, &Conditions::of_friction(0.08));
+                let (_, exact) = differentiated(&contact, &x);
+                seen.push(as_simulated(&model, race, &x).rolling_cosine.abs());
+                for i in 3..9 {
+                    let step = if i < 6 { 1e-5 } else { 1e-3 };
+                    let at = |sign: f64| {
+                        let mut moved = x;
+                        moved[i] += sign * step;
+                        values(&contact, &moved)
+                    };
+                    let (plus, minus) = (at(1.0), at(-1.0));
+                    for (k, row) in exact.iter().enumerate() {
+                        let difference = (plus[k] - minus[k]) / (2.0 * step);
+                        let largest = (3..9).fold(0.0f64, |most, i| most.max(row.derivatives[i].abs()));
+                        let floor = 1e2 * f64::EPSILON * row.value.abs().max(exact[0].value) / step;
+                        let error = (difference - row.derivatives[i]).abs();
+                        assert!(
+                            error < 1e-4 * largest + floor,
+                            "{law} {race:?} {turning} row {k} by {i}: {difference} {}",
+                            row.derivatives[i]
+                        );
+                    }
+                }
+            }
+        }
+    }
+    seen.sort_by(f64::total_cmp);
+    assert!(seen[0] < 0.3 && seen[seen.len() - 1] > 0.99, "{seen:?}");
+}
+
+#[test]
+fn invariant_oblique_contacts_beside_straight_ones_have_the_bits_of_one() {
+    for law in FRICTION {
+        let model = model_of(law);
+        for race in Race::BOTH {
+            let contact = model.contact(race, &Conditions::of_friction(0.08));
+            let cosine =
+                |turning: f64| as_simulated(&model, race, &oblique_motion(race, turning)).rolling_cosine;
+            let straight = if cosine(-150.0).abs() > cosine(150.0).abs() { -150.0 } else { 150.0 };
+            let x = [straight, 300.0, -5e3, 0.9 * straight].map(|turning| oblique_motion(race, turning));
+            let motions = x.each_ref().map(|x| motions_of(x).0);
+            let (_, race_motion) = motions_of(&x[0]);
+            let alone = motions.each_ref().map(|ball| contact.evaluated(ball, &race_motion));
+            assert!(alone[2].rolling_cosine.abs() < 0.9 && alone[0].rolling_cosine.abs() > 0.995);
+            let mut together = ContactGroup::filled(&alone[0]);
+            together.evaluate(&contact, &race_motion, &BallMotion::of_balls(&motions));
+            for (lane, alone) in alone.iter().enumerate() {
+                assert_eq!(together.contact(lane), *alone, "{law} {race:?} {lane}");
+            }
+            // Rolling along the circumference knows nothing of rolling across it.
+            let mut straight = contact;
+            straight.across = None;
+            assert_eq!(straight.evaluated(&motions[0], &race_motion), alone[0], "{law}");
+            assert_ne!(straight.evaluated(&motions[2], &race_motion).creep, alone[2].creep, "{law}");
+        }
+    }
+}
+
+#[test]
+fn invariant_what_a_contact_did_before_does_not_change_its_bits() {
+    for (law, bend) in FRICTION.into_iter().flat_map(|law| [(law, None), (law, Some(100.0))]) {
+        let model = model_of(law);
+        for race in Race::BOTH {
+            let mut contact = model.contact(race, &Conditions::of_friction(0.08));
+            contact.groove_bend = bend;
+            assert_eq!((contact.way(false), contact.way(true)), (Way::Along, Way::Obliquely));
+            let cosine =
+                |turning: f64| as_simulated(&model, race, &oblique_motion(race, turning)).rolling_cosine;
+            let straight = if cosine(-150.0).abs() > cosine(150.0).abs() { -150.0 } else { 150.0 };
+            // All along the circumference; one of four obliquely; all of them, from where it begins; one that is open.
+            let turnings = [
+                [straight; WIDTH],
+                [straight, 0.9 * straight, -3e3, straight],
+                [-2.0 * straight, -2e4, 400.0, 1e3],
+                [straight, -900.0, straight, 1.1 * straight],
+            ];
+            let (_, race_motion) = motions_of(&motion(race));
+            let mut groups =
+                turnings.map(|turnings| turnings.map(|turning| motions_of(&oblique_motion(race, turning)).0));
+            groups[3][1].position.x += if race == Race::Inner { 3e-5 } else { -3e-5 };
+            assert_eq!(contact.evaluated(&groups[3][1], &race_motion).load, 0.0);
+            let mut seen = vec![];
+            for (before, now) in groups.iter().flat_map(|before| groups.each_ref().map(|now| (before, now))) {
+                let mut together = ContactGroup::filled(&contact.evaluated(&before[0], &race_motion));
+                for balls in [before, now, now] {
+                    together.evaluate(&contact, &race_motion, &BallMotion::of_balls(balls));
+                }
+                seen.push(together.rolled_obliquely());
+                for (lane, ball) in now.iter().enumerate() {
+                    let alone = contact.evaluated(ball, &race_motion);
+                    assert_eq!(together.contact(lane), alone, "{law} {race:?} {lane}");
+                    assert_eq!(bits(&together.contact(lane)), bits(&alone), "{law} {race:?} {lane}");
+                }
+            }
+            assert!(seen.contains(&true) && seen.contains(&false), "{law} {race:?}");
+            // Nor those of its derivatives, in two directions: with more of them compilers take minutes.
+            for turning in turnings.as_flattened() {
+                let x = oblique_motion(race, *turning);
+                let x: [Dual<2>; 18] = std::array::from_fn(|i| Dual::variable(x[i], i % 2, 1.0 + i as f64));
+                let (ball, race_motion) = motions_of(&x);
+                let usual = contact.evaluate(&ball, &race_motion);
+                assert_eq!(contact.evaluate_by::<_, true, false>(&ball, &race_motion), usual, "{law}");
+            }
+        }
+    }
+}
+
+#[test]
+fn invariant_oblique_rolling_stays_within_the_limits_and_loses_power() {
+    for law in FRICTION.into_iter().filter(|law| *law != "linear") {
+        let model = model_of(law);
+        for race in Race::BOTH {
+            for turning in [-1e5, -3e3, -500.0, 100.0, 250.0, 1e3, 1e4] {
+                let contact = as_simulated(&model, race, &oblique_motion(race, turning));
+                let force = contact.creep.longitudinal.hypot(contact.creep.lateral);
+                assert!(force <= 0.08 * contact.load * (1.0 + 1e-12), "{law} {race:?} {turning}");
+                assert!(contact.friction_power > 0.0, "{law} {race:?} {turning}");
+            }
+        }
+    }
+}

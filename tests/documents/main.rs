@@ -1,0 +1,13 @@
+//! Documents and the project itself.
+#![allow(clippy::unwrap_used)]
+
+mod columns;
+mod contributing;
+mod counts;
+mod dependencies;
+#[path = "../common/scenes.rs"]
+mod scenes;
+#[path = "../common/tables.rs"]
+mod tables;
+#[path = "../common/whole.rs"]
+mod whole;

@@ -1,0 +1,96 @@
+//! `effects.auto`: effects that a scene asks to be found out.
+
+use roulement::Simulation;
+use roulement::analysis::auto;
+use roulement::scene::Scene;
+
+use crate::scenes::scene;
+
+const THRUST: &str = include_str!("../../scenes/thrust.toml");
+const RADIAL: &str = include_str!("../../scenes/radial.toml");
+
+/// Changes of a scene.
+type Changes<'a> = &'a [(&'a str, &'a str)];
+
+/// Which effects are found out in a scene with these changes, and its text.
+fn found_out(text: &str, changes: Changes) -> (Scene, Vec<String>) {
+    let asked = scene(text, changes);
+    assert!(asked.effects.auto.on);
+    let (resolved, notes) = auto::resolve(asked.clone()).unwrap();
+    assert!(!resolved.effects.auto.on);
+    // The text says the same, so that a package has it.
+    let again = Scene::parse(&resolved.source).unwrap();
+    let settings =
+        |scene: &Scene| scene.effects.each().iter().map(|effect| effect.setting()).collect::<Vec<_>>();
+    assert_eq!(settings(&again), settings(&resolved));
+    // Simulations do it by themselves.
+    assert_eq!(settings(Simulation::new(&asked).unwrap().scene()), settings(&resolved));
+    // Once: nothing is left to be done.
+    assert_eq!(auto::resolve(resolved.clone()).unwrap().1, Vec::<String>::new());
+    (resolved, notes)
+}
+
+#[test]
+fn effects_that_matter_are_switched_on_where_the_data_are_there() {
+    let table: Changes = &[("effects", "{ auto = true, creep = \"saturated\" }")];
+    // Under a radial load all friction is the slip of grooves.
+    let (radial, notes) = found_out(RADIAL, table);
+    assert!(radial.effects.groove_slip.on);
+    assert!(notes.iter().any(|note| note.starts_with("auto: effects.heathcote_slip = true: ")), "{notes:?}");
+    // Under thrust it is next to nothing, and nothing is switched.
+    let (thrust, notes) = found_out(THRUST, table);
+    assert!(
+        !thrust.effects.groove_slip.on
+            && thrust.effects.each().iter().filter(|e| e.setting().is_some()).count() == 1
+    );
+    assert!(
+        notes[0] == "auto: no effect is switched"
+            && notes[1]
+                .ends_with("at hand: waviness, growth by temperature, support, film, rolling resistance"),
+        "{notes:?}"
+    );
+    // The word alone: the default creep law, without the groove slip that comes with it.
+    let (thrust, notes) = found_out(THRUST, &[("effects", "\"auto\"")]);
+    assert!(
+        !thrust.effects.groove_slip.on && thrust.effects.creep.law == roulement::scene::CreepLaw::KalkerTable
+    );
+    assert!(notes.iter().any(|note| note.starts_with("auto: effects.heathcote_slip = false: ")), "{notes:?}");
+    // What the scene says stays.
+    let given = "{ auto = true, creep = \"saturated\", heathcote_slip = false }";
+    assert!(!found_out(RADIAL, &[("effects", given)]).0.effects.groove_slip.on);
+    // Another threshold.
+    let strict = "{ auto = true, auto_threshold = 1e-4, creep = \"saturated\" }";
+    assert!(found_out(THRUST, &[("effects", strict)]).0.effects.groove_slip.on);
+    // Rotation where the seat is known.
+    let seated = [
+        ("effects", "{ auto = true, auto_threshold = 0.01, creep = \"saturated\" }"),
+        ("growth.shaft.diameter", "\"30 mm\""),
+        ("growth.inner", "20"),
+        ("load.inner_speed", "\"20000 rpm\""),
+        ("load.x.force", "800"),
+    ];
+    let (fast, notes) = found_out(THRUST, &seated);
+    assert!(fast.effects.growth.section.as_ref().is_some_and(|section| section.rotation), "{notes:?}");
+    // Ellipses that are cut are reported.
+    let cut = [
+        ("inner.shoulder_height", "[1.5e-3, 1.5e-3]"),
+        ("load.x.force", "\"4 kN\""),
+        ("effects", "{ auto = true, creep = \"saturated\" }"),
+    ];
+    assert!(found_out(THRUST, &cut).0.effects.shoulder.on);
+}
+
+#[test]
+fn a_word_that_is_not_auto_is_refused() {
+    let refused = |effects: &str| {
+        let changes = [("effects", effects)];
+        Scene::edited(THRUST, changes).unwrap_err().to_string()
+    };
+    let message = refused("\"automatic\"");
+    for part in ["effects = \"automatic\" is not known", "allowed are auto"] {
+        assert!(message.contains(part), "{message}");
+    }
+    let message = refused("{ auto_threshold = 2 }");
+    assert!(message.contains("effects.auto_threshold = 2") && message.contains("(0, 1]"), "{message}");
+    assert!(refused("7").contains("effects wants a table of effects or \"auto\""), "{}", refused("7"));
+}

@@ -1,0 +1,215 @@
+//! Runs in oil: dry at no lubrication, energy, the loss of oil, what is refused, and when balls skid.
+
+use roulement::interface::variables::Variables;
+use roulement::scene::Scene;
+use roulement::simulation::Simulation;
+use roulement::simulation::outputs::Outputs;
+
+use crate::tables::{compare, count, row};
+
+const THRUST: &str = include_str!("../../scenes/thrust.toml");
+const CAGE: &str = include_str!("../../scenes/cage.toml");
+const LOSS: &str = include_str!("../../scenes/effects/loss_of_lubrication.toml");
+
+fn scene(text: &str, changes: &[(&str, &str)]) -> Scene {
+    Scene::edited(text, changes.iter().copied()).unwrap_or_else(|why| panic!("{why}"))
+}
+
+fn run(scene: &Scene, end: f64) -> Simulation {
+    let mut simulation = Simulation::new(scene).unwrap();
+    simulation.advance_scripted(end).unwrap_or_else(|why| panic!("{why}"));
+    simulation
+}
+
+const OIL: [(&str, &str); 2] = [("film.iso_vg", "68.0"), ("film.temperature", "70.0")];
+
+#[test]
+fn identity_no_lubrication_is_the_dry_bearing_to_the_bit() {
+    for text in [THRUST, CAGE] {
+        let mut oiled = OIL.to_vec();
+        oiled.push(("film.lubrication", "0.0"));
+        if text == CAGE {
+            oiled.push(("film.cage", "true"));
+        }
+        let (dry, none) = (run(&scene(text, &[]), 5e-3), run(&scene(text, &oiled), 5e-3));
+        let (dry, none) = (dry.state(), none.state());
+        assert_eq!(
+            (&dry.balls, &dry.energies, &dry.statistics),
+            (&none.balls, &none.energies, &none.statistics)
+        );
+        assert_eq!(dry.bodies, none.bodies);
+    }
+}
+
+#[test]
+fn identity_an_importer_that_sets_lubrication_does_what_the_script_does() {
+    let table = "[[0, 1], [0.002, 1], [0.0021, 0.2]]";
+    let mut changes = OIL.to_vec();
+    changes.push(("film.lubrication", table));
+    let scripted = run(&scene(THRUST, &changes), 4e-3);
+    changes.pop();
+    let mut set = Simulation::new(&scene(THRUST, &changes)).unwrap();
+    let degree = |time: f64| (1.0 - 0.8 * (time - 0.002) / 1e-4).clamp(0.2, 1.0);
+    for point in 0..2000 {
+        let (begin, end) = (2e-6 * f64::from(point), 2e-6 * f64::from(point + 1));
+        let mut inputs = set.scripted_inputs(begin);
+        inputs.effects.lubrication = degree(end);
+        set.set_inputs(inputs);
+        set.advance(end).unwrap();
+    }
+    let (a, b) = (scripted.outputs(), set.outputs());
+    assert!(
+        (a.friction_power / b.friction_power - 1.0).abs() < 1e-3,
+        "{} {}",
+        a.friction_power,
+        b.friction_power
+    );
+    // Out of range it is refused with its name.
+    let variables = Variables::new(set.scene());
+    let inputs = set.scripted_inputs(0.0);
+    let mut values = variables.values(&inputs, set.outputs());
+    let place = variables.rows().iter().position(|row| row.name == "lubrication").unwrap();
+    values[place] = 1.5;
+    let why = variables.inputs(&values, &vec![0.0; values.len()], &inputs).unwrap_err().to_string();
+    assert!(why.contains("lubrication = 1.5") && why.contains("[0, 1]"), "{why}");
+}
+
+#[test]
+fn invariant_energy_closes_in_oil_and_while_it_is_lost() {
+    let mut changes = OIL.to_vec();
+    changes.push(("film.lubrication", "[[0, 1], [0.003, 1], [0.006, 0]]"));
+    for (text, cage) in [(THRUST, "false"), (CAGE, "true")] {
+        let mut changes = changes.clone();
+        if text == CAGE {
+            changes.push(("film.cage", cage));
+        }
+        let scene = scene(text, &changes);
+        let start = Simulation::new(&scene).unwrap().outputs().stored_energy;
+        let end = run(&scene, 0.01);
+        let Outputs { work, stiffened, dissipated, stored_energy, .. } = end.outputs();
+        let open = work + stiffened - dissipated - (stored_energy - start);
+        assert!(open.abs() < 2e-3 * dissipated, "{open} of {dissipated}");
+    }
+}
+
+#[test]
+fn loss_of_lubrication_takes_the_clearance() {
+    // A coarser look at the scene: shorter by a factor of three, warming faster by as much.
+    let changes = [
+        ("load.duration", "0.05"),
+        ("film.lubrication", "[[0.0, 1.0], [0.005, 1.0], [0.02, 0.0]]"),
+        ("effects.heat_balance.faster", "1200.0"),
+    ];
+    let scene = scene(LOSS, &changes);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let mut at = |time: f64| {
+        simulation.advance_scripted(time).unwrap();
+        simulation.outputs().clone()
+    };
+    let [oiled, dry, end] = [0.004, 0.022, 0.05].map(&mut at);
+    let clearance = |o: &Outputs| o.growth.unwrap().clearance;
+    let rolling =
+        |o: &Outputs| o.contact_power(|ball| ball.inner.film.rolling_power + ball.outer.film.rolling_power);
+    assert!(clearance(&oiled) > 5e-6 && clearance(&end) < 0.0, "{} {}", clearance(&oiled), clearance(&end));
+    assert!(rolling(&oiled) > 20.0 && rolling(&dry) == 0.0, "{}", rolling(&oiled));
+    // Groove slip and spin take over what the oil carried.
+    let groove = |o: &Outputs| o.contact_power(|ball| ball.inner.groove_power + ball.outer.groove_power);
+    assert!(groove(&dry) > 2.0 * groove(&oiled), "{} {}", groove(&dry), groove(&oiled));
+    let rises = end.warm.unwrap().rises;
+    assert!(rises[0] > rises[1] + 5.0 && rises[2] > rises[1], "{rises:?}");
+}
+
+#[test]
+fn what_does_not_go_together_is_refused() {
+    let why =
+        |changes: &[(&str, &str)]| Scene::edited(THRUST, changes.iter().copied()).unwrap_err().to_string();
+    for (changes, part) in [
+        (vec![("film", "{}")], "iso_vg"),
+        (vec![("film.iso_vg", "68.0")], "temperature"),
+        (vec![("film.iso_vg", "68.0"), ("film.viscosity", "0.02")], "not both"),
+        (vec![("film.viscosity", "0.02"), ("film.temperature", "70.0")], "without a temperature"),
+        (vec![("film.iso_vg", "68.0"), ("film.cold_temperature", "70.0")], "[growth]"),
+        (vec![("film.viscosity", "0.02"), ("effects.creep", "\"linear\"")], "effects.creep"),
+        (vec![("film.viscosity", "0.02"), ("effects.creep", "\"frictionless\"")], "effects.creep"),
+        (vec![("film.viscosity", "0.02"), ("film.cage", "true")], "cage"),
+        (vec![("film.viscosity", "0.02"), ("film.lubrication", "1.1")], "film.lubrication"),
+        (vec![("film.viscosity", "0.02"), ("film.bore", "0.05"), ("film.outside", "0.04")], "film.outside"),
+        (vec![("film.viscosity", "0.02"), ("film.roughness", "0.0")], "[0.000000001, 0.0001] m"),
+        (vec![("film.viscosity", "\"20 mm\"")], "mm measures something else"),
+        (vec![("film.viscosity", "0.02"), ("film.supply", "\"jet\"")], "flooded, bath, oil_air"),
+        (vec![("interface.inputs.lubrication", "\"master\"")], "[film]"),
+    ] {
+        let why = why(&changes);
+        assert!(why.contains(part), "{changes:?}: {why}");
+    }
+}
+
+/// \[N mm] friction torque of a 6206 under 1500 N at 6000 rpm, in an oil or dry, at a settled time.
+fn torque(oil: &str) -> f64 {
+    let text = format!(
+        "[bearing]\nballs = 9\nball_diameter = \"9.525 mm\"\npitch_diameter = \"46 mm\"\ninner_conformity = 0.52\n\
+         outer_conformity = 0.53\ndiametral_clearance = \"10 um\"\n[friction]\nball_race = 0.1\n{oil}\
+         [load]\ninner_speed = \"6000 rpm\"\ny = {{ force = 1500.0 }}\nx = {{ displacement = 0.0 }}\n\
+         z = {{ displacement = 0.0 }}\nry = {{ rotation = 0.0 }}\nrz = {{ rotation = 0.0 }}\n"
+    );
+    let scene = Scene::parse(&text).unwrap_or_else(|why| panic!("{why}"));
+    let mut simulation = run(&scene, 0.02);
+    // Ball passages are 2.2 ms: over five of them.
+    let (mut sum, steps) = (0.0, 220);
+    for step in 1..=steps {
+        simulation.advance_scripted(0.02 + 5e-5 * f64::from(step)).unwrap();
+        sum += simulation.outputs().friction_power;
+    }
+    1e3 * sum / f64::from(steps) / (6000.0 * std::f64::consts::PI / 30.0)
+}
+
+#[test]
+fn regression_torque_dry_and_in_oils() {
+    let oils = ["", "46", "68", "100"];
+    let rows: Vec<_> = oils
+        .into_iter()
+        .map(|grade| match grade {
+            "" => row("dry", vec![count(torque(""), 1)], ""),
+            _ => {
+                let oil = format!("[film]\niso_vg = {grade}\ntemperature = \"70 degC\"\n");
+                row(format!("ISO VG {grade}"), vec![count(torque(&oil), 1)], "")
+            }
+        })
+        .collect();
+    compare("docs/oil.md", "grades", "oil at 70 degC | torque \\[N mm]", &rows);
+}
+
+/// A 7206 with 25 degrees under thrust \[N] at a speed [rpm], dry or in ISO VG 32 at 70 degC: slip of its balls after 40 ms.
+fn ball_slip(thrust: f64, speed: f64, oil: bool) -> f64 {
+    let film = if oil { "[film]\niso_vg = 32\ntemperature = \"70 degC\"\n" } else { "" };
+    let text = format!(
+        "[bearing]\nballs = 13\nball_diameter = \"9.525 mm\"\npitch_diameter = \"46 mm\"\ninner_conformity = 0.52\n\
+         outer_conformity = 0.53\ncontact_angle = \"25 deg\"\n[friction]\nball_race = 0.12\n{film}\
+         [effects]\nambient = {{ density = 10, viscosity = \"18 uPa s\" }}\n\
+         [inner]\ndrive = \"wrench\"\nmass = 1.0\ninertia = [6e-4, 5e-4, 5e-4]\n[load]\ninner_speed = \"{speed} rpm\"\n\
+         x = {{ force = {thrust} }}\ny = {{ displacement = 0.0 }}\nz = {{ displacement = 0.0 }}\n\
+         ry = {{ rotation = 0.0 }}\nrz = {{ rotation = 0.0 }}\n[solver]\naccuracy = \"balanced\"\n"
+    );
+    let scene = Scene::parse(&text).unwrap_or_else(|why| panic!("{why}"));
+    run(&scene, 0.04).outputs().ball_slip
+}
+
+#[test]
+fn regression_map_of_skidding() {
+    let speeds = [5000.0, 10_000.0, 15_000.0, 20_000.0];
+    let rows: Vec<_> = [20.0, 50.0, 100.0, 200.0, 500.0]
+        .into_iter()
+        .map(|thrust| {
+            let slips = speeds.map(|speed| 100.0 * ball_slip(thrust, speed, true));
+            row(
+                format!("{thrust}"),
+                slips.map(|slip| count((10.0 * slip).round() / 10.0 + 0.0, 1)).into(),
+                " %",
+            )
+        })
+        .collect();
+    compare("docs/oil.md", "skid", "thrust \\[N] | slip at 5000 / 10,000 / 15,000 / 20,000 rpm", &rows);
+    // Dry, the lightest load and the highest speed still roll: the film is what lets balls skid.
+    let (dry, oiled) = (ball_slip(20.0, 20_000.0, false), ball_slip(20.0, 20_000.0, true));
+    assert!(dry.abs() < 0.02 && oiled > 5.0 * dry.abs(), "{dry} {oiled}");
+}

@@ -1,0 +1,14 @@
+//! The quasi-static solution.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../common/equilibria.rs"]
+mod equilibria;
+mod guess;
+#[path = "../common/mechanics.rs"]
+mod mechanics;
+#[path = "../common/reference.rs"]
+mod reference;
+mod reference_cases;
+#[path = "../common/scenes.rs"]
+mod scenes;
+mod thrust_bearing;

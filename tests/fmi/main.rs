@@ -1,0 +1,22 @@
+//! Packages through the C interface.
+#![allow(clippy::unwrap_used, unsafe_code)]
+#![allow(clippy::undocumented_unsafe_blocks)] // every pointer in here lives through its call
+
+mod calls;
+mod damage;
+mod film;
+#[path = "../fmi2_abi/mod.rs"]
+mod fmi2_abi;
+mod growth;
+mod housing;
+mod orientations;
+mod outer;
+mod outputs;
+mod parameters;
+#[path = "../common/random.rs"]
+mod random;
+mod reload;
+#[path = "../common/scenes.rs"]
+mod scenes;
+mod scripts;
+mod system;

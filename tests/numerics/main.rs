@@ -1,0 +1,7 @@
+//! Numerical methods.
+#![allow(clippy::unwrap_used)]
+
+mod arrowhead;
+mod integrator;
+#[path = "../common/random.rs"]
+mod random;

@@ -1,0 +1,12 @@
+//! The scene file.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../fmi2_abi/mod.rs"]
+mod fmi2_abi;
+mod hostile;
+mod hostile_files;
+#[path = "../common/random.rs"]
+mod random;
+mod reference;
+#[path = "../common/whole.rs"]
+mod whole;

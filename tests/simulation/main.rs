@@ -1,0 +1,27 @@
+//! The running bearing.
+#![allow(clippy::unwrap_used)]
+
+mod closed_forms;
+#[path = "../common/evidence.rs"]
+mod evidence;
+mod hinge;
+mod invariance;
+mod load_cases;
+#[path = "../common/mechanics.rs"]
+mod mechanics;
+mod outer_wrench;
+mod outputs;
+mod published_torque;
+#[path = "../common/random.rs"]
+mod random;
+#[path = "../common/reference.rs"]
+mod reference;
+mod runs;
+#[path = "../common/scenes.rs"]
+mod scenes;
+mod schedule;
+mod scripts;
+mod start;
+#[path = "../common/statics.rs"]
+mod statics;
+mod steady_state;
