@@ -2,7 +2,7 @@
 //! [`ContactModel::evaluate`] from another crate compiles the whole chain from motion to forces once more.
 
 use super::pair::PairForces;
-use super::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
+use super::{BallMotion, BallRaceContact, ContactModel, Path, RaceMotion};
 use crate::numerics::scalar::Dual;
 
 /// A number with as many derivatives as a step takes of a contact with a race that moves.
@@ -15,9 +15,13 @@ impl ContactModel<'_> {
         self.evaluate(ball, race)
     }
 
-    /// What the contact does, with derivatives in nine directions.
+    /// [`Self::plain_forces`] or [`Self::forces`] with derivatives in nine directions, by a path, as steps take them.
     #[inline(never)]
-    pub fn differentiated(&self, ball: &BallMotion<D>, race: &RaceMotion<D>) -> PairForces<D> {
-        PairForces::from(&self.evaluate(ball, race))
+    pub fn differentiated(&self, path: Path, ball: &BallMotion<D>, race: &RaceMotion<D>) -> PairForces<D> {
+        let plain = match path {
+            Path::Plain => self.plain_forces(ball, race),
+            Path::General => None,
+        };
+        plain.unwrap_or_else(|| self.forces(ball, race))
     }
 }

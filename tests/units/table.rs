@@ -202,9 +202,13 @@ fn invariant_every_name_stands_for_one_unit() {
 #[test]
 fn closed_form_temperatures_with_their_zeros() {
     let celsius = dimension("Celsius");
-    for (text, expected) in
-        [("32 degF", 0.0), ("212 \u{b0}F", 100.0), ("-40 degF", -40.0), ("70 \u{b0}C", 70.0), ("70 Cel", 70.0)]
-    {
+    for (text, expected) in [
+        ("32 degF", 0.0),
+        ("212 \u{b0}F", 100.0),
+        ("-40 degF", -40.0),
+        ("70 \u{b0}C", 70.0),
+        ("70 Cel", 70.0),
+    ] {
         assert_eq!(celsius.parse(text), Ok(expected), "{text}");
     }
     // Of a difference there is no zero: K and degC are one.
@@ -223,7 +227,8 @@ fn every_dimension_has_its_exponents_and_reads_its_unit_and_examples() {
     // A dimension refuses the units of all others, but for angles that may be left out and for zeros of temperatures.
     let without_angle = |[exponents @ .., _]: Exponents| exponents;
     for one in DIMENSIONS {
-        for other in DIMENSIONS.iter().filter(|other| without_angle(other.exponents) != without_angle(one.exponents))
+        for other in
+            DIMENSIONS.iter().filter(|other| without_angle(other.exponents) != without_angle(one.exponents))
         {
             assert!(one.parse(&format!("1 {}", other.unit)).is_err(), "{one:?} {other:?}");
         }

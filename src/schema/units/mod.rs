@@ -95,9 +95,7 @@ impl Dimension {
                 (product.exponents[4], product.turns) = (1, 1);
             }
             if product.exponents[4] != 1 {
-                return Err(format!(
-                    "{written} does not say through which angle: write rpm, rad/s or deg/s"
-                ));
+                return Err(format!("{written} does not say through which angle: write rpm, rad/s or deg/s"));
             }
         } else if self.unit == Frequency::DIMENSION.unit {
             // A revolution is a period; another angle is none.

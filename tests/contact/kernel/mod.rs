@@ -9,7 +9,7 @@ use roulement::contact::creep::{Creepage, Law, LinearTheory};
 use roulement::contact::many::ContactGroup;
 use roulement::contact::materials::Pair;
 use roulement::contact::pair::PairForces;
-use roulement::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion, Way};
+use roulement::contact::{BallMotion, BallRaceContact, ContactModel, Path, RaceMotion};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::kalker::scaled_law::Difference;
 use roulement::model::bodies::Race;
@@ -88,7 +88,7 @@ fn differentiated(contact: &ContactModel<'_>, x: &[f64; 18]) -> (Dual<18>, Vec<D
             _ => Dual::constant(x[i]),
         });
         let (ball, race) = motions_of(&x);
-        let forces = contact.differentiated(&ball, &race);
+        let forces = contact.differentiated(contact.path(false), &ball, &race);
         [vec![forces.approach], rows(&forces)].concat()
     });
     let mut all = first.iter().zip(&second).map(|(first, second)| Dual {

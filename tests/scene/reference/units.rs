@@ -22,8 +22,12 @@ pub fn section() -> String {
     for known in &KNOWN {
         let prefixes = if known.prefixes { "yes" } else { "" };
         let (symbols, words) = (known.symbols.join(", "), known.words.join(", "));
-        let _ =
-            writeln!(text, "| {symbols} | {words} | {:?} {} | {prefixes} |", known.size(), si(known.exponents));
+        let _ = writeln!(
+            text,
+            "| {symbols} | {words} | {:?} {} | {prefixes} |",
+            known.size(),
+            si(known.exponents)
+        );
     }
     let prefixes: Vec<String> =
         PREFIXES.iter().map(|(symbol, word, power)| format!("{symbol} ({word}, 1e{power})")).collect();
