@@ -14,9 +14,70 @@ const RECORDED: &str = include_str!("../data/units/recorded.csv");
 
 /// Pieces of texts: some are right, some were read by a calculator, some belong nowhere.
 const PIECES: [&str; 64] = [
-    "mm", "N", "kN", "m", "s", "min", "rad", "rpm", "deg", "kg", "g", "Pa", "GPa", "in", "lbf", "K", "degC", "rev", "Hz", "Nm", "cSt", "%",
-    " ", " ", " ", " ", "  ", "\u{a0}", "/", "/", "/", "*", ".", "\u{b7}", "-", "^", "^-", "**", "(", ")", "2", "3", "-1", "1", "1/", "4", "5",
-    "\u{b2}", "\u{207b}\u{b9}", "\u{2212}", "e", "e5", "E-3", "k5", "per", "to", "dozen", "half", "pi", "!", "@", "\u{b0}", "\u{b5}m", "\u{3bc}",
+    "mm",
+    "N",
+    "kN",
+    "m",
+    "s",
+    "min",
+    "rad",
+    "rpm",
+    "deg",
+    "kg",
+    "g",
+    "Pa",
+    "GPa",
+    "in",
+    "lbf",
+    "K",
+    "degC",
+    "rev",
+    "Hz",
+    "Nm",
+    "cSt",
+    "%",
+    " ",
+    " ",
+    " ",
+    " ",
+    "  ",
+    "\u{a0}",
+    "/",
+    "/",
+    "/",
+    "*",
+    ".",
+    "\u{b7}",
+    "-",
+    "^",
+    "^-",
+    "**",
+    "(",
+    ")",
+    "2",
+    "3",
+    "-1",
+    "1",
+    "1/",
+    "4",
+    "5",
+    "\u{b2}",
+    "\u{207b}\u{b9}",
+    "\u{2212}",
+    "e",
+    "e5",
+    "E-3",
+    "k5",
+    "per",
+    "to",
+    "dozen",
+    "half",
+    "pi",
+    "!",
+    "@",
+    "\u{b0}",
+    "\u{b5}m",
+    "\u{3bc}",
 ];
 
 /// Exponents of m, kg, s, K, rad and turns, and the factor.
@@ -30,9 +91,23 @@ struct Other {
 impl Other {
     fn new() -> Self {
         let mut names = HashMap::new();
-        let prefixes = [("", "", 1.0), ("k", "kilo", 1e3), ("M", "mega", 1e6), ("G", "giga", 1e9), ("m", "milli", 1e-3),
-            ("u", "micro", 1e-6), ("\u{b5}", "micro", 1e-6), ("\u{3bc}", "micro", 1e-6), ("n", "nano", 1e-9), ("c", "centi", 1e-2),
-            ("d", "deci", 0.1), ("da", "deca", 10.0), ("h", "hecto", 100.0), ("T", "tera", 1e12), ("p", "pico", 1e-12)];
+        let prefixes = [
+            ("", "", 1.0),
+            ("k", "kilo", 1e3),
+            ("M", "mega", 1e6),
+            ("G", "giga", 1e9),
+            ("m", "milli", 1e-3),
+            ("u", "micro", 1e-6),
+            ("\u{b5}", "micro", 1e-6),
+            ("\u{3bc}", "micro", 1e-6),
+            ("n", "nano", 1e-9),
+            ("c", "centi", 1e-2),
+            ("d", "deci", 0.1),
+            ("da", "deca", 10.0),
+            ("h", "hecto", 100.0),
+            ("T", "tera", 1e12),
+            ("p", "pico", 1e-12),
+        ];
         for (known, (_, _, factor, _)) in KNOWN.iter().zip(FACTORS) {
             let [m, kg, s, kelvin, rad] = known.exponents.map(i32::from);
             let exponents = [m, kg, s, kelvin, rad, i32::from(known.turns)];
@@ -46,7 +121,8 @@ impl Other {
     }
 
     fn name(&self, name: &str) -> Option<Read> {
-        let is_word = |name: &str| KNOWN.iter().any(|known| known.words.iter().any(|word| name.ends_with(word)));
+        let is_word =
+            |name: &str| KNOWN.iter().any(|known| known.words.iter().any(|word| name.ends_with(word)));
         let small = name.to_ascii_lowercase();
         self.names.get(name).or_else(|| self.names.get(&small).filter(|_| is_word(&small))).copied()
     }
@@ -64,8 +140,18 @@ impl Other {
             let is_sign = match sign {
                 '*' => before != Some('*') && next != Some('*'),
                 '/' | '.' | '\u{b7}' | '\u{22c5}' | '\u{d7}' => true,
-                '-' => begins && next != Some('(') && before.is_some_and(|c| !c.is_whitespace() && !"^*/".contains(c)),
-                _ => sign.is_whitespace() && begins && !text[..signs[at].0].trim_end().ends_with(['/', '*', '.', '\u{b7}', '\u{22c5}', '\u{d7}']),
+                '-' => {
+                    begins
+                        && next != Some('(')
+                        && before.is_some_and(|c| !c.is_whitespace() && !"^*/".contains(c))
+                }
+                _ => {
+                    sign.is_whitespace()
+                        && begins
+                        && !text[..signs[at].0]
+                            .trim_end()
+                            .ends_with(['/', '^', '*', '.', '\u{b7}', '\u{22c5}', '\u{d7}'])
+                }
             };
             if depth < 0 {
                 return None;
@@ -98,10 +184,13 @@ impl Other {
         }
         // The power as it may be written, the longest first.
         for power in [-4, -3, -2, -1, 1, 2, 3, 4i32] {
-            let raised = ["\u{b9}", "\u{b2}", "\u{b3}", "\u{2074}"][power.unsigned_abs() as usize - 1].to_string();
+            let raised =
+                ["\u{b9}", "\u{b2}", "\u{b3}", "\u{2074}"][power.unsigned_abs() as usize - 1].to_string();
             let digits = [power.unsigned_abs().to_string(), raised];
             let minuses: &[&str] = if power < 0 { &["-", "\u{2212}", "\u{207b}"] } else { &[""] };
-            for number in digits.iter().flat_map(|digit| minuses.iter().map(move |minus| format!("{minus}{digit}"))) {
+            for number in
+                digits.iter().flat_map(|digit| minuses.iter().map(move |minus| format!("{minus}{digit}")))
+            {
                 let bracketed = format!("({number})");
                 let signed = [&number, &bracketed].into_iter().find_map(|number| {
                     let before = text.strip_suffix(number.as_str())?.trim_end();
@@ -144,7 +233,9 @@ impl Other {
         let ([m, kg, s, kelvin, mut angle, mut turns], mut factor) = self.product(unit)?;
         let turn = std::f64::consts::TAU;
         match dimension.unit {
-            "rad/s" if (m, kg, s, kelvin, angle) == (0, 0, -1, 0, 0) && (60.0 * factor - 1.0).abs() < 1e-14 => {
+            "rad/s"
+                if (m, kg, s, kelvin, angle) == (0, 0, -1, 0, 0) && (60.0 * factor - 1.0).abs() < 1e-14 =>
+            {
                 (angle, turns, factor) = (1, 1, factor * turn);
             }
             "rad/s" if angle != 1 => return None,

@@ -13,6 +13,8 @@ const PI: f64 = std::f64::consts::PI;
 
 /// Units with a name for each, the dimension that has them, and the factor to SI: as it follows from definitions, and as NIST SP 811
 /// (2008), appendix B, prints it in seven digits, or UCUM for those that are exact there.
+// The printed digits are data, near constants as they are.
+#[allow(clippy::approx_constant)]
 pub const FACTORS: [(&str, &str, f64, f64); 52] = [
     ("m", "Length", 1.0, 1.0),
     ("micron", "Length", 1e-6, 1e-6),
@@ -202,9 +204,13 @@ fn invariant_every_name_stands_for_one_unit() {
 #[test]
 fn closed_form_temperatures_with_their_zeros() {
     let celsius = dimension("Celsius");
-    for (text, expected) in
-        [("32 degF", 0.0), ("212 \u{b0}F", 100.0), ("-40 degF", -40.0), ("70 \u{b0}C", 70.0), ("70 Cel", 70.0)]
-    {
+    for (text, expected) in [
+        ("32 degF", 0.0),
+        ("212 \u{b0}F", 100.0),
+        ("-40 degF", -40.0),
+        ("70 \u{b0}C", 70.0),
+        ("70 Cel", 70.0),
+    ] {
         assert_eq!(celsius.parse(text), Ok(expected), "{text}");
     }
     // Of a difference there is no zero: K and degC are one.
@@ -223,7 +229,8 @@ fn every_dimension_has_its_exponents_and_reads_its_unit_and_examples() {
     // A dimension refuses the units of all others, but for angles that may be left out and for zeros of temperatures.
     let without_angle = |[exponents @ .., _]: Exponents| exponents;
     for one in DIMENSIONS {
-        for other in DIMENSIONS.iter().filter(|other| without_angle(other.exponents) != without_angle(one.exponents))
+        for other in
+            DIMENSIONS.iter().filter(|other| without_angle(other.exponents) != without_angle(one.exponents))
         {
             assert!(one.parse(&format!("1 {}", other.unit)).is_err(), "{one:?} {other:?}");
         }

@@ -161,7 +161,9 @@ pub fn find(name: &str) -> Option<(&'static Known, i32)> {
     }
     PREFIXES.iter().find_map(|(symbol, word, power)| {
         let mut prefixed = KNOWN.iter().filter(|known| known.prefixes);
-        let of_symbol = name.strip_prefix(symbol).and_then(|rest| prefixed.clone().find(|known| known.symbols.contains(&rest)));
+        let of_symbol = name
+            .strip_prefix(symbol)
+            .and_then(|rest| prefixed.clone().find(|known| known.symbols.contains(&rest)));
         let of_word = || {
             let (head, rest) = name.split_at_checked(word.len())?;
             head.eq_ignore_ascii_case(word).then(|| prefixed.find(|known| known.has_word(rest)))?
@@ -175,8 +177,7 @@ pub fn find(name: &str) -> Option<(&'static Known, i32)> {
 pub fn nearest(unknown: &str, usual: &[&str]) -> Option<String> {
     let length = unknown.chars().count();
     let most = length / 3;
-    let is_usual =
-        |name: &str| usual.iter().any(|text| text.split([' ', '/', '^']).any(|word| word == name));
+    let is_usual = |name: &str| usual.iter().any(|text| text.split([' ', '/', '^']).any(|word| word == name));
     let mut best: Option<((usize, bool, usize), String)> = None;
     let mut consider = |prefix: &str, name: &str| {
         if (prefix.chars().count() + name.chars().count()).abs_diff(length) > most {

@@ -86,9 +86,7 @@ impl Dimension {
                 (product.exponents[4], product.turns) = (1, 1);
             }
             if product.exponents[4] != 1 {
-                return Err(format!(
-                    "{written} does not say through which angle: write rpm, rad/s or deg/s"
-                ));
+                return Err(format!("{written} does not say through which angle: write rpm, rad/s or deg/s"));
             }
         } else if self.unit == Frequency::DIMENSION.unit {
             // A revolution is a period; another angle is none.
@@ -104,6 +102,9 @@ impl Dimension {
             return Err(format!("{written} measures something else"));
         }
         let factor = product.factor();
+        if !factor.is_normal() {
+            return Err(self.in_words(Problem::Form, written));
+        }
         let divisor = 1.0 / factor;
         // A power of ten that divides exactly is divided by: 9.525 mm is then the f64 nearest to 0.009525.
         let divides = factor < 1.0 && divisor.fract() == 0.0;
@@ -124,6 +125,11 @@ impl Dimension {
             }
         }
     }
+}
+
+/// The number that a text begins with and the unit behind it, which may be none; nothing where there is no number.
+pub fn split(text: &str) -> Option<(f64, &str)> {
+    grammar::split(text).ok()
 }
 
 /// A unit by what makes SI of its numbers.

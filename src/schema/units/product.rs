@@ -35,7 +35,11 @@ impl Product {
             pi: i32::from(known.pi),
         };
         let power = 10u128.checked_pow(ten.unsigned_abs())?;
-        unit.times(if ten < 0 { Self { divisor: power, ..Self::ONE } } else { Self { numerator: power, ..Self::ONE } })
+        unit.times(if ten < 0 {
+            Self { divisor: power, ..Self::ONE }
+        } else {
+            Self { numerator: power, ..Self::ONE }
+        })
     }
 
     /// The product with another; none where a number of it has more than 38 digits.
