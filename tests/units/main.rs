@@ -5,6 +5,7 @@
 mod numbers;
 mod random;
 mod recorded;
+mod scenes;
 mod table;
 
 use roulement::scene::units::{self, Dimension, Quantity};

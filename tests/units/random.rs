@@ -150,7 +150,7 @@ impl Other {
                         && begins
                         && !text[..signs[at].0]
                             .trim_end()
-                            .ends_with(['/', '*', '.', '\u{b7}', '\u{22c5}', '\u{d7}'])
+                            .ends_with(['/', '^', '*', '.', '\u{b7}', '\u{22c5}', '\u{d7}'])
                 }
             };
             if depth < 0 {

@@ -13,6 +13,8 @@ const PI: f64 = std::f64::consts::PI;
 
 /// Units with a name for each, the dimension that has them, and the factor to SI: as it follows from definitions, and as NIST SP 811
 /// (2008), appendix B, prints it in seven digits, or UCUM for those that are exact there.
+// The printed digits are data, near constants as they are.
+#[allow(clippy::approx_constant)]
 pub const FACTORS: [(&str, &str, f64, f64); 52] = [
     ("m", "Length", 1.0, 1.0),
     ("micron", "Length", 1e-6, 1e-6),

@@ -1,6 +1,7 @@
 //! Cases from ranges of keys.
 
 use roulement::scene::schedule::is_block;
+use roulement::scene::units::split;
 use toml::{Table, Value};
 
 use super::cases::{Setting, leaves};
@@ -76,10 +77,7 @@ fn number_with_unit(value: &Value) -> Option<(f64, Option<String>)> {
         Value::Integer(number) => Some((*number as f64, None)),
         Value::Float(number) => Some((*number, None)),
         Value::String(text) => {
-            let text = text.trim();
-            let end = text.find(|c: char| !c.is_ascii_digit() && !"+-.eE_".contains(c)).unwrap_or(text.len());
-            let unit = text[end..].trim();
-            let number: f64 = text[..end].trim().replace('_', "").parse().ok()?;
+            let (number, unit) = split(text)?;
             Some((number, (!unit.is_empty()).then(|| unit.to_string())))
         }
         _ => None,

@@ -35,3 +35,13 @@ fn the_schema_is_json_and_knows_words_and_units() {
     let drives = schema["properties"]["inner"]["properties"]["drive"]["enum"].as_array().unwrap();
     assert!(drives.contains(&"wrench".into()) && drives.contains(&"pose".into()), "{drives:?}");
 }
+
+#[test]
+fn units_are_printed_by_dimension_and_with_their_sizes() {
+    let units = printed(&["scene", "--units"]);
+    for part in ["| a length | m | m, in, ft,", "`9.525 mm`", "| lbf |  | 4.4482216152605 N |", "micro, 1e-6"]
+    {
+        assert!(units.contains(part), "{part}: {units}");
+    }
+    assert!(!units.contains("<!--") && !units.contains("`bearing`"), "{units}");
+}

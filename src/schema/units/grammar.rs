@@ -219,4 +219,61 @@ mod tests {
             assert_eq!(split(text), Err(NO_NUMBER), "{text}");
         }
     }
+
+    #[test]
+    fn closed_form_products_quotients_and_powers() {
+        let metre = |power: i32| unit("m").unwrap().power(power).unwrap();
+        let over = |a: &str, b: &str| unit(a).unwrap().times(unit(b).unwrap().reciprocal()).unwrap();
+        for (text, expected) in [
+            ("m^2", metre(2)),
+            ("m2", metre(2)),
+            ("m\u{b2}", metre(2)),
+            ("m**2", metre(2)),
+            ("m ^ 2", metre(2)),
+            ("m^(2)", metre(2)),
+            ("m-4", metre(-4)),
+            ("m\u{207b}\u{2074}", metre(-4)),
+            ("m\u{2212}1", metre(-1)),
+            ("1/m", metre(-1)),
+            ("/ m", metre(-1)),
+            ("(m m)/m", metre(1)),
+            ("m/(m m)", metre(-1)),
+            ("m/m/m", metre(-1)),
+            ("m/m*m", metre(1)),
+            ("m/m m", metre(1)),
+            ("(m^2)^-2", metre(-4)),
+            ("in-lb", over("in", "1/lb")),
+            ("min", over("s", "s/min")),
+            ("mm-2", unit("mm^-2").unwrap()),
+        ] {
+            assert_eq!(unit(text), Ok(expected), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_of_this_form_is_refused() {
+        for text in [
+            "", "1", "/", "1/", "m/", "*m", "m*", "m..m", "m//m", "m*/m", "(m", "m)", "()", "(m))", "m^",
+            "m^-", "m^(2", "m(m)", "m2m", "2 m", "m 2", "m -1", "m- m", "in.", "m^+2", "1 m", "11/m", "m^m",
+            "m+m", "m,m", "m m^^2",
+        ] {
+            assert_eq!(unit(text), Err(Problem::Form), "{text}");
+        }
+        for text in ["m0", "m^5", "m22", "m^-9", "m\u{b2}\u{b2}", "m\u{2070}"] {
+            assert_eq!(unit(text), Err(Problem::Power), "{text}");
+        }
+        for (text, name) in [
+            ("e N", "e"),
+            ("N per s", "per"),
+            ("dozen N", "dozen"),
+            ("N MM", "MM"),
+            ("kkg", "kkg"),
+            ("mmin", "mmin"),
+        ] {
+            assert_eq!(unit(text), Err(Problem::Name(name)), "{text}");
+        }
+        // Brackets in brackets end with the text, and sizes with 38 digits.
+        assert_eq!(unit(&"(".repeat(100_000)), Err(Problem::Form));
+        assert_eq!(unit("((((km^4)^4)^4)^4)"), Err(Problem::Form));
+    }
 }

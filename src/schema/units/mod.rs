@@ -111,6 +111,9 @@ impl Dimension {
             return Err(format!("{written} measures something else"));
         }
         let factor = product.factor();
+        if !factor.is_normal() {
+            return Err(self.in_words(Problem::Form, written));
+        }
         let divisor = 1.0 / factor;
         // A power of ten that divides exactly is divided by: 9.525 mm is then the f64 nearest to 0.009525.
         let divides = factor < 1.0 && divisor.fract() == 0.0;
@@ -131,6 +134,11 @@ impl Dimension {
             }
         }
     }
+}
+
+/// The number that a text begins with and the unit behind it, which may be none; nothing where there is no number.
+pub fn split(text: &str) -> Option<(f64, &str)> {
+    grammar::split(text).ok()
 }
 
 /// A unit by what makes SI of its numbers.

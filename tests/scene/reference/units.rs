@@ -20,14 +20,10 @@ pub fn section() -> String {
     }
     text += "\n| unit | in words | size | with prefixes |\n|---|---|---|---|\n";
     for known in &KNOWN {
+        let size = format!("{:?} {}", known.size(), si(known.exponents));
         let prefixes = if known.prefixes { "yes" } else { "" };
         let (symbols, words) = (known.symbols.join(", "), known.words.join(", "));
-        let _ = writeln!(
-            text,
-            "| {symbols} | {words} | {:?} {} | {prefixes} |",
-            known.size(),
-            si(known.exponents)
-        );
+        let _ = writeln!(text, "| {symbols} | {words} | {} | {prefixes} |", size.trim_end());
     }
     let prefixes: Vec<String> =
         PREFIXES.iter().map(|(symbol, word, power)| format!("{symbol} ({word}, 1e{power})")).collect();
@@ -40,7 +36,7 @@ fn shown(known: &Known) -> impl Iterator<Item = &'static str> {
     if known.symbols.is_empty() { known.words } else { known.symbols }.iter().copied()
 }
 
-/// The SI unit with some exponents: that of a dimension, or powers.
+/// The SI unit with some exponents: that of a dimension, or powers; none of a number without unit.
 fn si(exponents: Exponents) -> String {
     let dimension = DIMENSIONS.iter().find(|dimension| dimension.exponents == exponents);
     let powers = || {
@@ -48,5 +44,8 @@ fn si(exponents: Exponents) -> String {
         let powers = names.filter(|(_, power)| *power != 0).map(|(name, power)| format!("{name}^{power}"));
         powers.collect::<Vec<_>>().join(" ")
     };
-    dimension.map_or_else(powers, |dimension| dimension.unit.to_string())
+    match dimension {
+        Some(dimension) if exponents != [0; 5] => dimension.unit.to_string(),
+        _ => powers(),
+    }
 }
