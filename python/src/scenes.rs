@@ -11,7 +11,7 @@ use roulement::interface::model_description::render;
 use roulement::scene::system::SystemScene;
 use roulement::{Model, scene};
 use roulement_cli::cost::{Choice, report, study_of};
-use roulement_cli::package::{self, write_fmu, write_system_fmu};
+use roulement_cli::package::{library_beside as built_with, write_fmu, write_system_fmu};
 use roulement_cli::report::json;
 
 use crate::failures::{file, runtime, scene as refused, value};
@@ -102,7 +102,7 @@ impl Scene {
 /// The shared library beside the program, which was built together with this package.
 #[pyfunction]
 pub fn library_beside(program: PathBuf) -> PyResult<PathBuf> {
-    package::library_beside(&program).map_err(file)
+    built_with(&program).map_err(file)
 }
 
 /// Writes the FMU of a scene.
