@@ -321,11 +321,7 @@ fn by_ball_and_race(
     ball: &BallMotion<D>,
     race: &RaceMotion<D>,
 ) -> PairTangent {
-    let plain = match contact.path(obliquely) {
-        Path::Plain => contact.plain_forces(ball, race),
-        Path::General => None,
-    };
-    PairTangent::of(&plain.unwrap_or_else(|| contact.forces(ball, race)))
+    PairTangent::of(&contact.differentiated(contact.path(obliquely), ball, race))
 }
 
 /// What a contact with a race of given motion does to the ball, and its derivatives by the ball's unknowns, alike. Six directions are less

@@ -8,5 +8,6 @@ mod hostile_files;
 #[path = "../common/random.rs"]
 mod random;
 mod reference;
+mod units;
 #[path = "../common/whole.rs"]
 mod whole;

@@ -1,8 +1,5 @@
 //! Texts with units: the table of known units, spellings that were read before, random texts, and scenes.
-#![allow(clippy::unwrap_used)]
 
-#[path = "../common/random.rs"]
-mod numbers;
 mod random;
 mod recorded;
 mod scenes;

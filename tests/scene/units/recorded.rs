@@ -1,9 +1,9 @@
 //! Spellings that were read by an exact calculator before, to the bit.
 
-use crate::dimension;
+use super::dimension;
 
 /// Unit, and the factor or divisor to SI, by dimension (`tests/data/units`).
-const RECORDED: &str = include_str!("../data/units/recorded.csv");
+const RECORDED: &str = include_str!("../../data/units/recorded.csv");
 
 /// Numbers whose decimals no f64 has, and one that every f64 has.
 const NUMBERS: [f64; 4] = [1.0, 9.525, 0.3, 1234.567];

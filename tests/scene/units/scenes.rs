@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use roulement::scene::Scene;
 
-const THRUST: &str = include_str!("../../scenes/thrust.toml");
+const THRUST: &str = include_str!("../../../scenes/thrust.toml");
 
 /// A bearing of a test rig (ER-10K), in inches.
 const ER10K: &str = r#"

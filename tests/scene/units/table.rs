@@ -3,7 +3,7 @@
 use roulement::scene::units::known::{KNOWN, PREFIXES, find};
 use roulement::scene::units::{DIMENSIONS, Exponents};
 
-use crate::dimension;
+use super::dimension;
 
 /// Inch \[m], pound \[kg], standard gravity \[m/s2]: exact by definition (NIST SP 811, appendix B).
 const INCH: f64 = 0.0254;

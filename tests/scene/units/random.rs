@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 use roulement::scene::units::known::KNOWN;
 use roulement::scene::units::{DIMENSIONS, Dimension};
 
-use crate::dimension;
-use crate::numbers::Random;
-use crate::table::FACTORS;
+use super::dimension;
+use super::table::FACTORS;
+use crate::random::Random;
 
-const RECORDED: &str = include_str!("../data/units/recorded.csv");
+const RECORDED: &str = include_str!("../../data/units/recorded.csv");
 
 /// Pieces of texts: some are right, some were read by a calculator, some belong nowhere.
 const PIECES: [&str; 64] = [
