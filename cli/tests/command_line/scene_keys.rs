@@ -39,7 +39,8 @@ fn the_schema_is_json_and_knows_words_and_units() {
 #[test]
 fn units_are_printed_by_dimension_and_with_their_sizes() {
     let units = printed(&["scene", "--units"]);
-    for part in ["| a length | m | m, in, ft,", "`9.525 mm`", "| lbf |  | 4.4482216152605 N |", "micro, 1e-6"]
+    for part in
+        ["| a length | m | m, micron, in, ft,", "`9.525 mm`", "| lbf |  | 4.4482216152605 N |", "micro, 1e-6"]
     {
         assert!(units.contains(part), "{part}: {units}");
     }

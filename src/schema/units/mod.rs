@@ -99,7 +99,7 @@ impl Dimension {
             }
         } else if self.unit == Frequency::DIMENSION.unit {
             // A revolution is a period; another angle is none.
-            if product.turns != *angle {
+            if product.turns != *angle || !(0..=1).contains(angle) {
                 return Err(format!("{written} counts angles, no periods: write Hz or rpm"));
             }
             (*angle, product.turns) = (0, 0);
@@ -346,7 +346,7 @@ mod tests {
         for text in ["6000 rpm", "6000 1/min", "6000 /min"] {
             assert!((parse::<Frequency>(text).unwrap() / 100.0 - 1.0).abs() < 1e-15, "{text}");
         }
-        for text in ["314 rad/s", "18000 deg/s"] {
+        for text in ["314 rad/s", "18000 deg/s", "2 rev^2/s"] {
             let message = parse::<Frequency>(text).unwrap_err();
             assert!(message.contains("write Hz or rpm") && message.contains(text), "{message}");
         }

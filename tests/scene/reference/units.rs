@@ -31,9 +31,9 @@ pub fn section() -> String {
     text
 }
 
-/// Symbols of a unit; words, where it has none.
+/// Symbols of a unit; its first word, where it has none.
 fn shown(known: &Known) -> impl Iterator<Item = &'static str> {
-    if known.symbols.is_empty() { known.words } else { known.symbols }.iter().copied()
+    if known.symbols.is_empty() { &known.words[..1] } else { known.symbols }.iter().copied()
 }
 
 /// The SI unit with some exponents: that of a dimension, or powers; none of a number without unit.

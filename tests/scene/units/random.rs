@@ -239,7 +239,7 @@ impl Other {
                 (angle, turns, factor) = (1, 1, factor * turn);
             }
             "rad/s" if angle != 1 => return None,
-            "Hz" if angle != turns => return None,
+            "Hz" if angle != turns || !(0..=1).contains(&angle) => return None,
             "Hz" => (angle, factor) = (0, factor / turn.powi(turns)),
             _ => {}
         }
