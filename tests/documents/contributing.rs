@@ -5,11 +5,17 @@ use std::path::{Path, PathBuf};
 
 use crate::tables::{Row, compare, row};
 
-/// What a folder of tests has in it, by name.
+/// Files of Rust in a folder, and the folders of such in it, by name.
 fn inside(folder: &Path) -> Vec<PathBuf> {
     let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "rs") || head(path).is_some());
     paths.sort();
     paths
+}
+
+/// The file that names the others of a folder.
+fn head(folder: &Path) -> Option<PathBuf> {
+    ["main.rs", "mod.rs"].map(|name| folder.join(name)).into_iter().find(|file| file.exists())
 }
 
 /// A file of tests as the list names it, and the first paragraph that it says of itself.
@@ -22,16 +28,27 @@ fn entry(name: &Path, file: &Path) -> Row {
     row(format!("`{}` | {}", name.display(), purpose.trim_end_matches('.')), vec![], "")
 }
 
+/// The files of a folder. One that nobody names is not compiled, and nobody would miss its tests.
+fn named(folder: &Path) -> Vec<PathBuf> {
+    let head = head(folder).unwrap();
+    let text = fs::read_to_string(&head).unwrap();
+    let mut files = inside(folder);
+    files.retain(|file| *file != head);
+    for file in &files {
+        let name = file.file_stem().unwrap().to_str().unwrap();
+        assert!(text.lines().any(|line| line == format!("mod {name};")), "{} has no {name}", head.display());
+    }
+    files
+}
+
 /// A room: its program, then the files in it that have tests.
 fn room(folder: &Path) -> Vec<Row> {
     let mut rows = vec![entry(folder, &folder.join("main.rs"))];
-    for path in inside(folder) {
-        let part = path.join("mod.rs");
-        if part.exists() {
-            rows.push(entry(&path, &part));
-        } else if !path.ends_with("main.rs")
-            && fs::read_to_string(&path).is_ok_and(|text| text.contains("#[test]"))
-        {
+    for path in named(folder) {
+        if let Some(head) = head(&path) {
+            named(&path);
+            rows.push(entry(&path, &head));
+        } else if fs::read_to_string(&path).unwrap().contains("#[test]") {
             rows.push(entry(&path, &path));
         }
     }
@@ -45,7 +62,7 @@ fn contributing_lists_all_files_of_tests() {
         for path in inside(&Path::new(env!("CARGO_MANIFEST_DIR")).join(tests)) {
             if path.join("main.rs").exists() {
                 rows.extend(room(&path));
-            } else if path.extension().is_some_and(|ending| ending == "rs") {
+            } else if path.is_file() {
                 rows.push(entry(&path, &path));
             }
         }
