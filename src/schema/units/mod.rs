@@ -87,6 +87,13 @@ impl Dimension {
                 _ => Err(format!("{written} is no unit of it: write degC or K, or degF")),
             };
         }
+        if self.unit == TemperatureRise::DIMENSION.unit
+            && ["degC", "\u{b0}C", "Cel", "degF", "\u{b0}F"].contains(&written)
+        {
+            return Err(format!(
+                "{written} is that of a temperature, with a zero of its own; a difference is written in K"
+            ));
+        }
         let mut product = grammar::unit(written).map_err(|problem| self.in_words(problem, written))?;
         let [.., angle] = &mut product.exponents;
         if self.unit == AngularVelocity::DIMENSION.unit {

@@ -383,12 +383,14 @@ fn range(key: &str) -> Option<String> {
     }
     let needs = NEEDS.iter().filter(|(section, _)| key.starts_with(section)).flat_map(|(_, needs)| *needs);
     let needs: Vec<(&str, &str)> = needs.copied().filter(|(needed, _)| *needed != key).collect();
-    ["1e300", "-1e300", "[1e300, 1e300, 1e300]", "1000000000"].into_iter().find_map(|value| {
-        let changes = needs.iter().copied().chain([(key, value)]);
-        let why = Scene::edited(THRUST, changes).err()?.to_string();
-        let (about, allowed) = why.split_once("allowed is ")?;
-        about.contains(key).then(|| allowed.trim_end_matches('.').to_string())
-    })
+    ["1e300", "-1e300", "[1e300, 1e300]", "[1e300, 1e300, 1e300]", "1000000000"].into_iter().find_map(
+        |value| {
+            let changes = needs.iter().copied().chain([(key, value)]);
+            let why = Scene::edited(THRUST, changes).err()?.to_string();
+            let (about, allowed) = why.split_once("allowed is ")?;
+            about.contains(key).then(|| allowed.trim_end_matches('.').to_string())
+        },
+    )
 }
 
 pub fn reference() -> Reference {

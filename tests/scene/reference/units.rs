@@ -14,8 +14,11 @@ go from left to right. Nothing else is computed: `\"1.5 e3 N\"` is refused. `1/m
 pub fn section() -> String {
     let mut text = format!("\n## Units\n\n<!-- begin units -->\n{HEAD}");
     text += "\n| what is measured | SI unit | units of its own | examples |\n|---|---|---|---|\n";
-    for Dimension { name, unit, exponents, examples: [first, second] } in DIMENSIONS {
-        let own: Vec<&str> = KNOWN.iter().filter(|of| of.exponents == *exponents).flat_map(shown).collect();
+    for dimension in DIMENSIONS {
+        let Dimension { name, unit, exponents, examples: [first, second] } = dimension;
+        let reads = |symbol: &&str| dimension.parse(&format!("1 {symbol}")).is_ok();
+        let own: Vec<&str> =
+            KNOWN.iter().filter(|of| of.exponents == *exponents).flat_map(shown).filter(reads).collect();
         let _ = writeln!(text, "| {name} | {unit} | {} | `{first}`, `{second}` |", own.join(", "));
     }
     text += "\n| unit | in words | size | with prefixes |\n|---|---|---|---|\n";

@@ -230,6 +230,9 @@ impl Other {
                 _ => None,
             };
         }
+        if dimension.unit == "K" && ["degC", "\u{b0}C", "Cel", "degF", "\u{b0}F"].contains(&unit) {
+            return None;
+        }
         let ([m, kg, s, kelvin, mut angle, mut turns], mut factor) = self.product(unit)?;
         let turn = std::f64::consts::TAU;
         match dimension.unit {

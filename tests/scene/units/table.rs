@@ -42,8 +42,9 @@ pub const FACTORS: [(&str, &str, f64, f64); 52] = [
     ("Hz", "Frequency", 1.0, 1.0),
     ("rpm", "AngularVelocity", 2.0 * PI / 60.0, 1.047_198e-1),
     ("K", "TemperatureRise", 1.0, 1.0),
-    ("degC", "TemperatureRise", 1.0, 1.0),
-    ("degF", "TemperatureRise", 1.0 / 1.8, 5.555_556e-1),
+    // A difference alone is not written in these: a temperature may be meant.
+    ("degC", "Expansion", 1.0, 1.0),
+    ("degF", "Expansion", 1.0 / 1.8, 5.555_556e-1),
     ("N", "Force", 1.0, 1.0),
     ("dyn", "Force", 1e-5, 1e-5),
     ("gf", "Force", 1e-3 * GRAVITY, 9.806_65e-3),
@@ -72,7 +73,7 @@ pub const FACTORS: [(&str, &str, f64, f64); 52] = [
 ];
 
 /// Products of them that catalogues write: text, dimension, and the value in SI.
-const TRADE: [(&str, &str, f64); 37] = [
+const TRADE: [(&str, &str, f64); 36] = [
     ("0.3125 in", "Length", 0.3125 * INCH),
     ("0.4 thou", "Length", 0.4e-3 * INCH),
     ("2 lbf in", "Moment", 2.0 * POUND * GRAVITY * INCH),
@@ -109,7 +110,6 @@ const TRADE: [(&str, &str, f64); 37] = [
     ("12 um/(m K)", "ThermalExpansion", 12e-6),
     ("12 ppm/\u{b0}C", "ThermalExpansion", 12e-6),
     ("6.7e-6 in/(in degF)", "ThermalExpansion", 6.7e-6 * 1.8),
-    ("90 degF", "TemperatureRise", 50.0),
 ];
 
 /// Rounding of a few products.
@@ -124,9 +124,10 @@ fn closed_form_and_published_number_every_known_unit() {
         for name in known.names() {
             let (text, dimension) = match of {
                 "Volume" => (format!("1 kg/{name}"), dimension("Density")),
+                "Expansion" => (format!("1 1/{name}"), dimension("ThermalExpansion")),
                 _ => (format!("1 {name}"), dimension(of)),
             };
-            let factor = if of == "Volume" { 1.0 / factor } else { factor };
+            let factor = if matches!(of, "Volume" | "Expansion") { 1.0 / factor } else { factor };
             let read = dimension.parse(&text).unwrap_or_else(|why| panic!("{why}"));
             assert!((read / factor - 1.0).abs() < ROUNDING, "{text}: {read} and {factor}");
         }
@@ -213,9 +214,12 @@ fn closed_form_temperatures_with_their_zeros() {
     ] {
         assert_eq!(celsius.parse(text), Ok(expected), "{text}");
     }
-    // Of a difference there is no zero: K and degC are one.
+    // A difference has no zero: with that of a temperature something else may be meant.
     let rise = dimension("TemperatureRise");
-    assert_eq!([rise.parse("40 degC"), rise.parse("40 K")], [Ok(40.0), Ok(40.0)]);
+    assert_eq!(rise.parse("40 K"), Ok(40.0));
+    for text in ["40 degC", "40 \u{b0}C", "40 Cel", "90 degF"] {
+        assert!(rise.parse(text).unwrap_err().contains("is written in K"), "{text}");
+    }
 }
 
 #[test]
