@@ -91,7 +91,7 @@ pub(crate) fn ball_by_rate(
     ball: &BallMotion<f64>,
     race: &RaceMotion<f64>,
 ) -> Matrix6<f64> {
-    let forces = model.forces(&ball_by_rates(ball), &race.constant());
+    let forces = model.differentiated(model.path(false), &ball_by_rates(ball), &race.constant());
     by_ball(&forces.force, &forces.moment)
 }
 
@@ -108,7 +108,8 @@ impl Linear {
             turned
         };
         // Contacts depend on the relative translation alone: directions 0 to 2 serve ball and race.
-        let places = model.forces(
+        let places = model.differentiated(
+            model.path(false),
             &BallMotion {
                 position: variable(&ball.position, 0),
                 velocity: constant_vector(&ball.velocity),
@@ -120,7 +121,8 @@ impl Linear {
                 ..race.constant()
             },
         );
-        let rates = model.forces(
+        let rates = model.differentiated(
+            model.path(false),
             &ball_by_rates(ball),
             &RaceMotion { angular_velocity: variable(&race.angular_velocity, 6), ..race.constant() },
         );

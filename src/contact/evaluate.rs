@@ -2,13 +2,13 @@
 //!
 //! The chain is written once, generic over the numbers, and compiled for two kinds of contact ([`Path`]). The plain one is what most
 //! contacts of most scenes are: a ball that rolls along the circumference of a torus, dry, damped as usual. The general one
-//! takes any contact; both give the same bits where the plain one holds. What runs when, and what it is compiled for:
+//! takes any contact; both give the same numbers where the plain one holds, but for signs of zeros. What runs when, and what it is compiled for:
 //!
 //! | numbers | plain contact | any other |
 //! |---|---|---|
 //! | four balls at a time ([`super::many`]) | plain, with and without vectors | general, with and without vectors |
 //! | derivatives by ball and race, or by the ball alone | plain, nine or six directions ([`ContactModel::plain_forces`]) | general, nine ([`ContactModel::forces`]) |
-//! | one ball ([`ContactModel::evaluate`]) | general | general |
+//! | one ball ([`ContactModel::evaluate`]) | plain | general |
 //!
 //! Each entry costs 0.1 to 0.4 MB of the library and seconds of its build, so that there is one only where steps spend their time.
 
@@ -43,10 +43,16 @@ impl ContactModel<'_> {
     /// and for exact derivatives. Without friction only what forces need is computed; [`Self::completed`] adds the rest.
     #[inline(never)]
     pub fn evaluate<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> BallRaceContact<S> {
-        match self.law {
-            Law::Frictionless => self.pressed::<S, true>(ball, race),
-            _ => self.rolling_any(ball, race),
+        if matches!(self.law, Law::Frictionless) {
+            return self.pressed::<S, true>(ball, race);
         }
+        if self.path(false) == Path::Plain {
+            let (contact, oblique) = self.rolling::<S, false>(ball, race);
+            if !oblique {
+                return contact;
+            }
+        }
+        self.rolling_any(ball, race)
     }
 
     /// What an evaluated contact does, for less than the whole of it: with derivatives.
