@@ -163,7 +163,12 @@ fn closed_form_prefixes_stand_before_those_that_take_them() {
         ("p", "pico", 1e-12),
     ];
     assert_eq!(powers.len(), PREFIXES.len());
-    for (known, (_, of, factor, _)) in KNOWN.iter().zip(FACTORS).filter(|(_, (_, of, ..))| *of != "Volume") {
+    for (known, (_, of, factor, _)) in KNOWN.iter().zip(FACTORS) {
+        let of = match of {
+            "Volume" => continue,
+            "Expansion" => "TemperatureRise",
+            of => of,
+        };
         for (symbol, word, power) in powers {
             let symbols = known.symbols.iter().map(|name| format!("{symbol}{name}"));
             let words = known.words.iter().map(|name| format!("{word}{name}"));
