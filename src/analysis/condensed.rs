@@ -72,12 +72,12 @@ struct Linear {
 }
 
 /// A vector whose components are variables, from this direction on.
-fn variable(v: &Vector3<f64>, first: usize) -> Vector3<D> {
-    Vector3::from_fn(|i, _| D::variable(v[i], first + i, 1.0))
+fn variable<const N: usize>(v: &Vector3<f64>, first: usize) -> Vector3<Dual<N>> {
+    Vector3::from_fn(|i, _| Dual::variable(v[i], first + i, 1.0))
 }
 
 /// The motion of a ball by its velocity and angular velocity.
-fn ball_by_rates(ball: &BallMotion<f64>) -> BallMotion<D> {
+fn ball_by_rates<const N: usize>(ball: &BallMotion<f64>) -> BallMotion<Dual<N>> {
     BallMotion {
         position: constant_vector(&ball.position),
         velocity: variable(&ball.velocity, 0),
@@ -91,8 +91,8 @@ pub(crate) fn ball_by_rate(
     ball: &BallMotion<f64>,
     race: &RaceMotion<f64>,
 ) -> Matrix6<f64> {
-    let forces = model.differentiated(model.path(false), &ball_by_rates(ball), &race.constant());
-    by_ball(&forces.force, &forces.moment)
+    let on_ball = model.on_ball(model.path(false), &ball_by_rates(ball), race);
+    by_ball(&on_ball.force, &on_ball.moment)
 }
 
 impl Linear {
@@ -138,13 +138,13 @@ impl Linear {
 
 /// Row i of derivatives of force (0 to 2) and moment (3 to 5).
 #[inline(always)]
-fn row([force, moment]: [&Vector3<D>; 2], i: usize) -> &[f64; DIRECTIONS] {
+fn row<const N: usize>([force, moment]: [&Vector3<Dual<N>>; 2], i: usize) -> &[f64; N] {
     if i < 3 { &force[i].derivatives } else { &moment[i - 3].derivatives }
 }
 
 /// Derivatives of force and moment by the ball's motion: the first six directions.
 #[inline(always)]
-fn by_ball(force: &Vector3<D>, moment: &Vector3<D>) -> Matrix6<f64> {
+fn by_ball<const N: usize>(force: &Vector3<Dual<N>>, moment: &Vector3<Dual<N>>) -> Matrix6<f64> {
     Matrix6::from_fn(|i, k| row([force, moment], i)[k])
 }
 

@@ -1,12 +1,16 @@
 //! Contacts with the numbers that this library computes with, in functions that are compiled here: whoever calls
 //! [`ContactModel::evaluate`] from another crate compiles the whole chain from motion to forces once more.
 
+use super::creep::Law;
 use super::pair::PairForces;
 use super::{BallMotion, BallRaceContact, ContactModel, Path, RaceMotion};
+use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::Dual;
 
 /// A number with as many derivatives as a step takes of a contact with a race that moves.
 type D = Dual<9>;
+/// A number with derivatives by the ball's own motion alone.
+type Own = Dual<6>;
 
 impl ContactModel<'_> {
     /// [`Self::evaluate`] without derivatives.
@@ -24,4 +28,37 @@ impl ContactModel<'_> {
         };
         plain.unwrap_or_else(|| self.forces(ball, race))
     }
+
+    /// Force and moment on the ball beside a race of given motion, with derivatives in the six directions of the ball's own, by a path. The
+    /// general one is not compiled for six: it takes nine, three of which stand still.
+    pub fn on_ball(&self, path: Path, ball: &BallMotion<Own>, race: &RaceMotion<f64>) -> Wrench<Own> {
+        let plain = match path {
+            Path::Plain => plain_on_ball(self, ball, race),
+            Path::General => None,
+        };
+        plain.unwrap_or_else(|| {
+            let ball = BallMotion {
+                position: ball.position.map(Dual::resized),
+                velocity: ball.velocity.map(Dual::resized),
+                angular_velocity: ball.angular_velocity.map(Dual::resized),
+            };
+            let forces: PairForces<D> = self.forces(&ball, &race.constant());
+            Wrench { force: forces.force.map(Dual::resized), moment: forces.moment.map(Dual::resized) }
+        })
+    }
+}
+
+/// That by the plain path, where it holds. Compiled twice, as contacts of many balls are ([`super::many`]): the start of an instance spends
+/// half of its time here.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn plain_on_ball(
+    contact: &ContactModel<'_>,
+    ball: &BallMotion<Own>,
+    race: &RaceMotion<f64>,
+) -> Option<Wrench<Own>> {
+    if matches!(contact.law, Law::Frictionless) {
+        return None;
+    }
+    let (contact, oblique) = contact.rolling::<Own, false>(ball, &race.constant());
+    (!oblique).then_some(Wrench { force: contact.force, moment: contact.ball_moment })
 }

@@ -7,7 +7,8 @@
 //! | numbers | plain contact | any other |
 //! |---|---|---|
 //! | four balls at a time ([`super::many`]) | plain, with and without vectors | general, with and without vectors |
-//! | derivatives by ball and race, or by the ball alone | plain, nine or six directions ([`ContactModel::plain_forces`]) | general, nine ([`ContactModel::forces`]) |
+//! | derivatives by ball and race ([`ContactModel::differentiated`]) | plain, nine directions | general, nine directions |
+//! | derivatives by the ball alone ([`ContactModel::on_ball`]) | plain, six directions, with and without vectors | as by both |
 //! | one ball ([`ContactModel::evaluate`]) | plain | general |
 //!
 //! Each entry costs 0.1 to 0.4 MB of the library and seconds of its build, so that there is one only where steps spend their time.

@@ -102,8 +102,9 @@ impl<S: Scalar> GrooveContact<S> {
         Self::on(surface, offset, race, None)
     }
 
-    /// Drops the ball into the spalls of the race, and into its own.
-    #[inline(always)]
+    /// Drops the ball into the spalls of the race, and into its own. A function of its own, as few scenes have some.
+    #[cold]
+    #[inline(never)]
     fn drop_into(
         &mut self,
         surface: &Surface<'_>,

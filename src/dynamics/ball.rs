@@ -9,7 +9,7 @@ use super::directions::{D, by_first, scale_moments, seed};
 use super::group::{BallGroup, Groups};
 use super::reaction::{PairTangent, Reaction};
 use crate::contact::pair::PairForces;
-use crate::contact::{BallMotion, ContactModel, Path, RaceMotion};
+use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::effects::ambient::Ambient;
 use crate::kalker::scaled_law::Difference;
 use crate::model::Model;
@@ -212,7 +212,7 @@ impl BallTrial {
             let (contact, seen) = (around.contact(index, race), &around.races[race]);
             let obliquely = groups.rolled_obliquely(index, race);
             tangent += match seen.moved() {
-                None => by_ball_alone(obliquely, &contact, (motion, step, radius), seen.motion).1,
+                None => by_ball_alone(obliquely, &contact, &seed(motion, step, radius), seen.motion).1,
                 Some(moved) => {
                     let pair = by_ball_and_race(obliquely, &contact, &seed(motion, step, radius), &moved);
                     self.couple(race.into(), &pair, step, radius)
@@ -271,7 +271,8 @@ impl BallAlone {
                 continue;
             }
             touching += 1;
-            let (wrench, by_ball) = by_ball_alone(obliquely[race], &contact, (&motion, step, radius), seen);
+            let (wrench, by_ball) =
+                by_ball_alone(obliquely[race], &contact, &seed(&motion, step, radius), seen);
             total = total.plus(wrench);
             tangent += by_ball;
         }
@@ -324,26 +325,15 @@ fn by_ball_and_race(
     PairTangent::of(&contact.differentiated(contact.path(obliquely), ball, race))
 }
 
-/// What a contact with a race of given motion does to the ball, and its derivatives by the ball's unknowns, alike. Six directions are less
-/// than nine; only the plain path is compiled for them.
+/// What a contact with a race of given motion does to the ball, and its derivatives by the ball's unknowns, alike.
 fn by_ball_alone(
     obliquely: bool,
     contact: &ContactModel<'_>,
-    (motion, step, radius): (&BallMotion<f64>, &HhtStep, f64),
+    ball: &BallMotion<Dual<6>>,
     race: &RaceMotion<f64>,
 ) -> (Wrench, Matrix6<f64>) {
-    fn split<const N: usize>(forces: &PairForces<Dual<N>>) -> (Wrench, Matrix6<f64>) {
-        let PairForces { force, moment, .. } = forces;
-        (Wrench { force: values(force), moment: values(moment) }, by_first(force, moment))
-    }
-    let plain = match contact.path(obliquely) {
-        Path::Plain => contact.plain_forces(&seed::<6>(motion, step, radius), &race.constant()),
-        Path::General => None,
-    };
-    match plain {
-        Some(forces) => split(&forces),
-        None => split(&contact.forces::<D>(&seed(motion, step, radius), &race.constant())),
-    }
+    let Wrench { force, moment } = contact.on_ball(contact.path(obliquely), ball, race);
+    (Wrench { force: values(&force), moment: values(&moment) }, by_first(&force, &moment))
 }
 
 /// Derivatives of a contact with the cage, by the unknowns of both; none where they do not touch.

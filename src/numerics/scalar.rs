@@ -266,6 +266,12 @@ impl<const N: usize> Dual<N> {
         Self { value, derivatives }
     }
 
+    /// The same in other directions: the first of them are kept, and there is none in more.
+    pub fn resized<const M: usize>(self) -> Dual<M> {
+        let derivatives = std::array::from_fn(|k| self.derivatives.get(k).copied().unwrap_or(0.0));
+        Dual { value: self.value, derivatives }
+    }
+
     /// Chain rule: a function's value and its slope at this number.
     #[inline(always)]
     fn chain(self, value: f64, slope: f64) -> Self {
