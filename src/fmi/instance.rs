@@ -11,6 +11,7 @@ use crate::interface::variables::{Causality, Kind, Source, Variable};
 use crate::scene::system::SystemScene;
 use crate::scene::{Giver, Scene};
 use crate::schema::numbers::Variability;
+use crate::schema::regular;
 
 /// A slave.
 pub struct Instance {
@@ -58,7 +59,7 @@ impl Instance {
     pub fn new(guid: &str, location: &str, log: Log) -> Outcome<Self> {
         let path = resources::path(location)?.join(resources::SCENE_FILE);
         let failed = |why: String| (Status::Error, why);
-        let text = std::fs::read_to_string(&path).unwrap_or_default();
+        let text = regular::text(&path).unwrap_or_default();
         let instance = if SystemScene::is_system(&text) {
             Self::of_system(&SystemScene::load(&path).map_err(|why| failed(why.to_string()))?, log)?
         } else {

@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use roulement::analysis::single_contact::{ContactError, Law, RollingContact, RollingForces, ScaledContact};
 use roulement::kalker::half_space::LARGEST_CHANGE;
 use roulement::scene::CreepLaw;
+use roulement::schema::regular;
 use roulement_cli::exact::answer;
 use roulement_cli::exact::cache::Cache;
 
@@ -86,8 +87,8 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         .into());
     }
     let cannot_read = |why: csv::Error| format!("{}: {why}", options.cases.display());
-    let mut table =
-        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(&options.cases).map_err(cannot_read)?;
+    let text = regular::text(&options.cases).map_err(|why| cannot_read(why.into()))?;
+    let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let cases = table.deserialize::<RollingContact>().map(|case| case.map_err(cannot_read));
     let mut answers = csv::Writer::from_writer(std::io::stdout().lock());
     if options.exact {

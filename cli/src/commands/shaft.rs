@@ -11,6 +11,7 @@ use std::time::Instant;
 use cpu_time::ThreadTime;
 use roulement::analysis::estimate;
 use roulement::scene::system::SystemScene;
+use roulement::schema::regular;
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::Rows;
 use roulement::simulation::system::{System, SystemOutputs};
@@ -27,7 +28,7 @@ use super::{say, tell};
 
 /// Is this the file of a shaft with bearings? One that cannot be read is not.
 pub fn is_system(path: &Path) -> bool {
-    fs::read_to_string(path).is_ok_and(|text| SystemScene::is_system(&text))
+    regular::text(path).is_ok_and(|text| SystemScene::is_system(&text))
 }
 
 /// What is gathered of a bearing while its shaft runs.

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use roulement::analysis::estimate::Verdicts;
 use roulement::scene::Scene;
+use roulement::schema::regular;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::Outputs;
 use serde_json::{Value, json};
@@ -108,7 +109,7 @@ fn spectrum(spectrum: &Spectrum) -> Value {
 /// If there is none, or it is of another form.
 pub fn read(directory: &Path) -> Result<Value, String> {
     let path = directory.join(FILE);
-    let text = std::fs::read_to_string(&path).map_err(|why| {
+    let text = regular::text(&path).map_err(|why| {
         format!(
             "cannot read {}: {why}; results of `roulement run SCENE -o {}` have it",
             path.display(),
