@@ -1,6 +1,7 @@
 //! The study of what accuracy costs: its errors have the orders they must have, and its goals keep what they promise.
 
 use std::sync::OnceLock;
+use std::sync::atomic::AtomicBool;
 
 use indicatif::ProgressBar;
 use roulement::scene::{Accuracy, CreepLaw, Scene};
@@ -151,7 +152,8 @@ fn invariant_polynomials_come_closer_to_the_table_with_their_degree() {
 fn invariant_the_cage_of_the_misalignment_scene_is_measured() {
     let mut scene = Scene::parse(SCENES[5].1).unwrap();
     scene.load.duration.0 = 8e-3;
-    let fixed = |scene: &Scene, step| record(&Setting::fixed_step(scene, step)).unwrap();
+    let fixed =
+        |scene: &Scene, step| record(&Setting::fixed_step(scene, step), &AtomicBool::default()).unwrap();
     let caged = fixed(&scene, 1e-5);
     let error = |norm| {
         let errors = errors(&caged, &fixed(&scene, 2e-5), Comparison::WindowMeans, 2e-3);
@@ -195,7 +197,7 @@ fn invariant_results_do_not_depend_on_threads_and_only_levers_that_were_asked_fo
     scene.load.duration.0 = 1e-3;
     let only = vec![Lever::StepCap, Lever::Level];
     let run = |threads| {
-        let choice = Choice { only: only.clone(), threads };
+        let choice = Choice { only: only.clone(), threads, ..Choice::default() };
         study_of("threads", &scene, &choice, &ProgressBar::hidden()).unwrap()
     };
     let (one, many) = (run(1), run(3));
@@ -209,7 +211,7 @@ fn invariant_results_do_not_depend_on_threads_and_only_levers_that_were_asked_fo
     }
     assert_eq!(one.error_bars, many.error_bars);
     // Without levers that change the model there is no reference for them, and the advice is of steps alone.
-    let choice = Choice { only: vec![Lever::StepCap], threads: 2 };
+    let choice = Choice { only: vec![Lever::StepCap], threads: 2, ..Choice::default() };
     let steps = study_of("steps", &scene, &choice, &ProgressBar::hidden()).unwrap();
     assert_eq!(steps.error_bar(ReferenceKind::Model).worst(), None);
     assert!(steps.advice[0].contains("take saturated with max_step = "), "{:?}", steps.advice);

@@ -16,9 +16,7 @@ use toml::{Table, Value};
 
 use super::{Scene, SceneError};
 use crate::schema::units::{Acceleration, Force, Moment, Time};
-use crate::schema::{
-    Components, HousingSection, Matrices, Mounting, ShaftSection, Solver, explain, regular,
-};
+use crate::schema::{Components, HousingSection, Matrices, Mounting, ShaftSection, Solver, explain, regular};
 
 /// A shaft with its bearings, as described by a file.
 #[derive(Clone, Debug)]
