@@ -143,6 +143,14 @@ impl Instance {
             return error(format!("the stop time {stop} s is not after the start time {start} s"));
         }
         if self.unit.follows_time() && start != self.unit.time() {
+            let written = self.unit.duration();
+            if !(0.0..=written).contains(&start) {
+                let why = format!(
+                    "the start time {start} s is outside the scene's scripts, which are written for 0 to load.duration = {written} s: \
+                     tables keep their first or last value there"
+                );
+                self.log.write(Status::Warning, &why);
+            }
             // Where the script puts it at that time; inputs that were set already stay as set.
             self.unit.start_at(start, &self.state.values)?;
             self.state.applied.clone_from(&self.state.values);
