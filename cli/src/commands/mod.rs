@@ -192,7 +192,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Report(options) => report::run(&options)?,
         Command::System(options) => system::run(&options)?,
         Command::Field(options) => return field::run(&options),
-        Command::Contact(options) => contact::run(&options)?,
+        Command::Contact(options) => return contact::run(&options),
         Command::Identify(options) => identify::run(&options)?,
         Command::Cost(options) => return cost::run(options),
         Command::Describe { scene } => {

@@ -1,7 +1,7 @@
 //! The study of what accuracy costs: its errors have the orders they must have, and its goals keep what they promise.
 
 use std::sync::OnceLock;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use indicatif::ProgressBar;
 use roulement::scene::{Accuracy, CreepLaw, Scene};
@@ -10,7 +10,7 @@ use roulement_cli::cost::levers::{
 };
 use roulement_cli::cost::norms::{Comparison, Norm, errors};
 use roulement_cli::cost::record::record;
-use roulement_cli::cost::{Choice, Measured, SCENES, SceneStudy, study, study_of};
+use roulement_cli::cost::{Choice, Measured, SCENES, SceneStudy, StudyError, study, study_of};
 use strum::VariantArray;
 
 /// The misalignment scene without its cage, which makes it smooth, and with its tilt in 2.4 ms instead of 16.
@@ -299,4 +299,29 @@ fn regression_goals_keep_their_wrench_error_on_all_smooth_scenes() {
         }
     }
     assert!(smooth >= 3, "{smooth}");
+}
+
+#[test]
+fn an_interrupted_study_keeps_the_runs_that_it_has() {
+    let scene = Scene::parse(SCENES[0].1).unwrap();
+    let scene = Scene::edited(&scene.source, [("load.duration", "\"2 ms\"")]).unwrap();
+    let choice = Choice { only: vec![Lever::StepCap], threads: 1, ..Choice::default() };
+    let bar = ProgressBar::hidden();
+    // Once the references are there.
+    let study = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !bar.message().contains("step cap") {
+                std::thread::sleep(std::time::Duration::from_millis(1));
+            }
+            choice.interrupted.store(true, Ordering::Relaxed);
+        });
+        study_of("begun", &scene, &choice, &bar).unwrap()
+    });
+    let is_left_out = |why: &String| why == "interrupted";
+    let left_out = study.points.iter().filter(|point| point.result.as_ref().is_err_and(is_left_out)).count();
+    assert!(left_out > 0, "{:?}", study.points);
+    assert!(study.error_bar(ReferenceKind::Numerical).worst().is_some());
+    // Of a study that is interrupted before that nothing can be told.
+    let none = study_of("none", &scene, &choice, &bar);
+    assert!(matches!(none, Err(StudyError::Interrupted)));
 }
