@@ -1,5 +1,6 @@
 //! What is gathered of a run row by row, whoever plays it: means, spectrum, energy, limits, and what its error is told from.
 
+use roulement::model::bodies::Race;
 use roulement::simulation::Simulation;
 
 use crate::error::{Estimate, Lengths, Run, Sample};
@@ -80,6 +81,20 @@ impl Seen {
     /// Figures of the summary of a run that ended so.
     pub fn figures(&self, simulation: &Simulation) -> Figures {
         Figures::of(simulation, self.means.as_ref(), &self.limits, &self.energy)
+    }
+
+    /// What whoever reads results of this run should know, a sentence each: its summary and its notes say the same.
+    pub fn warnings(&self, simulation: &Simulation) -> Vec<String> {
+        let pressure = simulation.scene().pressure_note(self.limits.peak_pressure);
+        let pressure = pressure.map(|note| note.trim_start_matches("warning: ").to_string());
+        let of_race = |race: Race| {
+            let share = self.limits.over_shoulders[race as usize];
+            (share > 0.0).then(|| {
+                format!("up to {:.2} % of a load is beyond the {} shoulders", 100.0 * share, race.name())
+            })
+        };
+        let shoulders = Race::BOTH.into_iter().filter_map(of_race);
+        pressure.into_iter().chain(shoulders).chain(self.energy.warning(simulation)).collect()
     }
 
     /// What is kept for comparison with other runs, with the CPU time \[s] of this one; its rows move there.

@@ -131,7 +131,7 @@ impl Sweep {
         self.check(case)?;
         let Ok(name) = &self.sweep.names[case] else { return Ok(()) };
         let row = from_text(row).map_err(value)?;
-        self.sweep.store.put(name, &row).map_err(failed)
+        self.sweep.store.put(name, &row, None).map_err(failed)
     }
 
     /// Writes the summary of all cases; how many are done, have failed, and were not run.

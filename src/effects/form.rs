@@ -10,10 +10,9 @@ use super::effect::{Effect, Info, Setup};
 use super::estimate::{Estimate, Verdict, digits, percent};
 use super::keys::Keys;
 use crate::contact::form::{Form, Wave};
-use crate::schema::SceneError;
 use crate::schema::numbers::Range;
-use crate::schema::reader;
 use crate::schema::units::{Angle, Length, Quantity};
+use crate::schema::{SceneError, reader, regular};
 
 /// Amplitudes and heights: beyond, a race is no torus with small waves.
 const HEIGHT: Range = Range::closed(-1e-3, 1e-3, "m");
@@ -172,11 +171,10 @@ impl FormSection {
         for (race, shape) in [("inner", &mut self.inner), ("outer", &mut self.outer)] {
             if let Some(Shape::File(path)) = shape {
                 let path = folder.join(&*path);
-                let text = std::fs::read_to_string(&path)
-                    .map_err(|source| SceneError::Read { path: path.display().to_string(), source })?;
-                let points = profile(&text).map_err(|why| {
-                    SceneError::conflict(format!("form.{race}.profile"), format!("{}: {why}", path.display()))
-                })?;
+                let key = format!("form.{race}.profile");
+                let text = regular::named(&path, &key)?;
+                let points = profile(&text)
+                    .map_err(|why| SceneError::conflict(key, format!("{}: {why}", path.display())))?;
                 let rows = points.iter().map(|row| toml::Value::from(row.to_vec())).collect();
                 read.push((race, toml::Value::Array(rows)));
                 *shape = Some(Shape::Points(points));

@@ -11,6 +11,7 @@ use crate::interface::variables::{Causality, Kind, Source, Variable};
 use crate::scene::system::SystemScene;
 use crate::scene::{Giver, Scene};
 use crate::schema::numbers::Variability;
+use crate::schema::regular;
 
 /// A slave.
 pub struct Instance {
@@ -58,7 +59,7 @@ impl Instance {
     pub fn new(guid: &str, location: &str, log: Log) -> Outcome<Self> {
         let path = resources::path(location)?.join(resources::SCENE_FILE);
         let failed = |why: String| (Status::Error, why);
-        let text = std::fs::read_to_string(&path).unwrap_or_default();
+        let text = regular::text(&path).unwrap_or_default();
         let instance = if SystemScene::is_system(&text) {
             Self::of_system(&SystemScene::load(&path).map_err(|why| failed(why.to_string()))?, log)?
         } else {
@@ -142,6 +143,14 @@ impl Instance {
             return error(format!("the stop time {stop} s is not after the start time {start} s"));
         }
         if self.unit.follows_time() && start != self.unit.time() {
+            let written = self.unit.duration();
+            if !(0.0..=written).contains(&start) {
+                let why = format!(
+                    "the start time {start} s is outside the scene's scripts, which are written for 0 to load.duration = {written} s: \
+                     tables keep their first or last value there"
+                );
+                self.log.write(Status::Warning, &why);
+            }
             // Where the script puts it at that time; inputs that were set already stay as set.
             self.unit.start_at(start, &self.state.values)?;
             self.state.applied.clone_from(&self.state.values);

@@ -28,7 +28,7 @@ pub use crate::schema::{
     Orientation, RaceLoad, RaceSection, RotatingSection, SceneError, Schedule, Sine, Solver, Start, Tilt,
     Translation, schedule, units,
 };
-use crate::schema::{Follows, explain};
+use crate::schema::{Follows, explain, regular};
 pub use scales::Scales;
 
 /// A bearing, its load and its simulation, as described by a scene file.
@@ -206,8 +206,7 @@ impl Scene {
     /// # Errors
     /// See [`SceneError`].
     pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| SceneError::Read { path: path.display().to_string(), source })?;
+        let text = regular::scene(path)?;
         Self::parse_of(&text, Some(&path.display().to_string()), path.parent().unwrap_or(Path::new("")))
     }
 }

@@ -7,7 +7,7 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::error::SceneError;
-use super::reader;
+use super::{reader, regular};
 
 /// \[m] how far a station may be from where it is asked for.
 const SAME: f64 = 1e-6;
@@ -117,8 +117,7 @@ impl Matrices {
             toml::Value::String(name) => {
                 let path = folder.join(name);
                 let file = path.display().to_string();
-                let text = std::fs::read_to_string(&path)
-                    .map_err(|source| SceneError::Read { path: file.clone(), source })?;
+                let text = regular::named(&path, key)?;
                 let wrong = |why: &dyn std::fmt::Display| wrong(&format!("{file}: "), why.to_string());
                 let table: toml::Value = serde_json::from_str(&text).map_err(|why| wrong(&why))?;
                 reader::read(table).map_err(|why| wrong(&why))

@@ -10,6 +10,7 @@ mod machine;
 mod matrices;
 pub mod numbers;
 pub mod reader;
+pub mod regular;
 pub mod schedule;
 mod sections;
 mod shaft;

@@ -53,6 +53,16 @@ impl std::fmt::Display for Range {
     }
 }
 
+/// A number in the four digits that a message has of what was computed, never as a power of ten but where it is very small or large.
+pub fn four(value: &f64) -> String {
+    let rounded = format!("{value:.3e}").parse().unwrap_or(*value);
+    if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) {
+        rounded.to_string()
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
 /// Young's moduli.
 pub const YOUNGS_MODULUS: Range = Range::closed(1e6, 1e13, "Pa");
 /// Poisson's ratios.

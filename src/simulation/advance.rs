@@ -9,6 +9,7 @@ use super::outputs::Outputs;
 use super::script::{Script, script_motion};
 use super::{Simulation, conditions, step_limits};
 use crate::dynamics::{Boundary, StepFailure, Workspace, advance_perturbed, failure_site, try_step};
+use crate::effects::film::Films;
 use crate::model::bodies::Race;
 use crate::model::state::State;
 use crate::scene::{Drive, Groups, Level};
@@ -214,6 +215,8 @@ impl Simulation {
         let outputs = Outputs::new(&self.model, &self.state, &self.conditions());
         let site = failure_site(&self.model, &self.state, boundary, worst, &self.workspace);
         let ball = &outputs.balls[site.ball - 1];
+        let conditions = self.conditions();
+        let stiff = |films: &Films| films.stiff_oil(conditions.lubrication, &conditions.warmth);
         SimulationError::StepTooSmall {
             time: self.state.time,
             min_step: self.model.solver.min_step.0,
@@ -221,6 +224,7 @@ impl Simulation {
             site,
             inner_load: ball.inner.load,
             outer_load: ball.outer.load,
+            oil: self.model.films.as_ref().and_then(stiff).map(|said| format!("; {said}")),
         }
     }
 }

@@ -7,6 +7,7 @@ use crate::dynamics::FailureSite;
 use crate::equilibrium::{EquilibriumError, MAX_APPROACH};
 use crate::kalker::nonlinear::KalkerError;
 use crate::model::bearing::BeyondShoulder;
+use crate::schema::numbers::four;
 
 /// Why a simulation could not start or go on.
 #[derive(Debug, Error)]
@@ -35,8 +36,8 @@ pub enum SimulationError {
     },
     /// The step size fell below its minimum.
     #[error(
-        "at {time} s the step fell below solver.min_step = {min_step} s: {cause}, worst at {site} \
-         (inner load {inner_load:.4e} N, outer load {outer_load:.4e} N)"
+        "at {} s the step fell below solver.min_step = {} s: {cause}, worst at {site} (inner load {} N, outer load {} N){}",
+        four(.time), four(.min_step), four(.inner_load), four(.outer_load), .oil.as_deref().unwrap_or_default()
     )]
     StepTooSmall {
         /// \[s] time reached.
@@ -51,11 +52,14 @@ pub enum SimulationError {
         inner_load: f64,
         /// \[N] its load on the outer race.
         outer_load: f64,
+        /// What is to be said of the oil, where it hardly flows.
+        oil: Option<String>,
     },
     /// A contact is deeper than Hertz's theory reaches.
     #[error(
-        "at {time} s ball {ball} is pressed into the {race} race by {approach:.3e} m: more than {MAX_APPROACH} of its \
-         diameter, far beyond elastic Hertzian contact; the load is too large or the imposed motion is"
+        "at {} s ball {ball} is pressed into the {race} race by {approach:.3e} m: more than {MAX_APPROACH} of its \
+         diameter, far beyond elastic Hertzian contact; the load is too large or the imposed motion is",
+        four(.time)
     )]
     Overload {
         /// \[s] time.
@@ -69,8 +73,9 @@ pub enum SimulationError {
     },
     /// A contact lies where no groove is.
     #[error(
-        "at {time} s ball {ball} touches the {race} race on the side where it has no groove, {approach:.3e} m deep: the \
-         race has come past its balls; the load, the clearance or the motion is too large, or a cage is missing"
+        "at {} s ball {ball} touches the {race} race on the side where it has no groove, {approach:.3e} m deep: the \
+         race has come past its balls; the load, the clearance or the motion is too large, or a cage is missing",
+        four(.time)
     )]
     LeftGroove {
         /// \[s] time.
@@ -83,7 +88,7 @@ pub enum SimulationError {
         approach: f64,
     },
     /// A contact lies beyond the shoulder of its race.
-    #[error("at {time} s {contact}")]
+    #[error("at {} s {contact}", four(.time))]
     BeyondShoulder {
         /// \[s] time.
         time: f64,
@@ -92,8 +97,9 @@ pub enum SimulationError {
     },
     /// Two balls are pressed together more deeply than Hertz's theory reaches.
     #[error(
-        "at {time} s balls {ball} and {next} are pressed together by {approach:.3e} m: more than {MAX_APPROACH} of their \
-         diameter, far beyond elastic Hertzian contact"
+        "at {} s balls {ball} and {next} are pressed together by {approach:.3e} m: more than {MAX_APPROACH} of their \
+         diameter, far beyond elastic Hertzian contact",
+        four(.time)
     )]
     BallsPressed {
         /// \[s] time.
@@ -120,9 +126,10 @@ pub enum SimulationError {
     },
     /// A contact under the law `linear` creeps beyond what that law describes.
     #[error(
-        "at {time} s the law linear has left its range at ball {ball} on the {race} race: its creep force {force:.3} N is above \
+        "at {} s the law linear has left its range at ball {ball} on the {race} race: its creep force {force:.3} N is above \
          the friction limit mu Q = {limit:.3} N, as it has no sliding; creep or spin is too large for effects.creep = \
-         \"linear\": take saturated, or a law of Kalker's nonlinear theory"
+         \"linear\": take saturated, or a law of Kalker's nonlinear theory",
+        four(.time)
     )]
     BeyondLinear {
         /// \[s] time.
@@ -137,7 +144,7 @@ pub enum SimulationError {
         limit: f64,
     },
     /// A row or communication point of quasi-static equilibria has none.
-    #[error("at {time} s: {why}")]
+    #[error("at {} s: {why}", four(.time))]
     NoEquilibrium {
         /// \[s] time.
         time: f64,
@@ -145,10 +152,10 @@ pub enum SimulationError {
         why: Box<SimulationError>,
     },
     /// The Newton matrix of a step whose sensitivities were asked for is singular.
-    #[error("at {0} s the Newton matrix is singular")]
+    #[error("at {} s the Newton matrix is singular", four(.0))]
     Singular(f64),
     /// So late that a step no longer changes the time.
-    #[error("at {time} s a step of {step} s is lost in rounding: begin nearer to time 0")]
+    #[error("at {} s a step of {} s is lost in rounding: begin nearer to time 0", four(.time), four(.step))]
     LostInRounding {
         /// \[s] time reached.
         time: f64,

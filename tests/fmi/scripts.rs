@@ -369,3 +369,17 @@ fn a_package_runs_with_the_effects_that_were_found_out() {
     assert!(get(c, &package, "power.groove") > 0.0);
     unsafe { fmi2FreeInstance(c) };
 }
+
+#[test]
+fn regression_a_start_outside_the_scripts_is_told() {
+    let (plays, plain) = (scripted("wrench", &TABLES), scripted("wrench", &[]));
+    let duration = Scene::parse(&plays).unwrap().load.duration.0;
+    for (text, begin, told) in
+        [(&plays, 0.5 * duration, 0), (&plays, 1000.0, 1), (&plays, -1.0, 1), (&plain, 1000.0, 0)]
+    {
+        let (package, messages) = package("outside", text);
+        let c = start(&package, begin, None);
+        assert_eq!(count(messages, Status::Warning, "is outside the scene's scripts"), told, "{begin}");
+        unsafe { fmi2FreeInstance(c) };
+    }
+}

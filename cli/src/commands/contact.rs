@@ -2,6 +2,8 @@
 
 use std::error::Error;
 use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
@@ -9,9 +11,11 @@ use indicatif::{ProgressBar, ProgressStyle};
 use roulement::analysis::single_contact::{ContactError, Law, RollingContact, RollingForces, ScaledContact};
 use roulement::kalker::half_space::LARGEST_CHANGE;
 use roulement::scene::CreepLaw;
+use roulement::schema::regular;
 use roulement_cli::exact::answer;
 use roulement_cli::exact::cache::Cache;
 
+use super::run::{INTERRUPTED, heeded_interrupt};
 use super::tell;
 
 /// Options of `roulement contact`.
@@ -71,11 +75,11 @@ impl Options {
     }
 }
 
-/// Evaluates the contacts and prints their forces.
+/// Evaluates the contacts and prints their forces; at Ctrl-C those that are there.
 ///
 /// # Errors
 /// If a case cannot be read or evaluated.
-pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     if options.exact && options.law != LawChoice::KalkerTable {
         let name =
             options.law.to_possible_value().map_or(String::new(), |value| value.get_name().to_string());
@@ -86,20 +90,29 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         .into());
     }
     let cannot_read = |why: csv::Error| format!("{}: {why}", options.cases.display());
-    let mut table =
-        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(&options.cases).map_err(cannot_read)?;
+    let text = regular::text(&options.cases).map_err(|why| cannot_read(why.into()))?;
+    let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let cases = table.deserialize::<RollingContact>().map(|case| case.map_err(cannot_read));
     let mut answers = csv::Writer::from_writer(std::io::stdout().lock());
+    let interrupted = heeded_interrupt()?;
+    let ended = || {
+        let ended = interrupted.load(Ordering::Relaxed);
+        tell(ended.then(|| "interrupted: the contacts that were evaluated are printed".to_string()));
+        if ended { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS }
+    };
     if options.exact {
-        for forces in exact(&cases.collect::<Result<Vec<_>, _>>()?, options.no_cache)? {
+        for forces in exact(&cases.collect::<Result<Vec<_>, _>>()?, options.no_cache, &interrupted)? {
             answers.serialize(forces)?;
         }
         answers.flush()?;
-        return Ok(());
+        return Ok(ended());
     }
     let law = options.law();
     let mut rough: Option<([f64; 2], u32)> = None;
     for case in cases {
+        if interrupted.load(Ordering::Relaxed) {
+            break;
+        }
         let case = case?;
         answers.serialize(case.evaluate(law)?)?;
         if let Some(error) = case.expected_error(law) {
@@ -114,11 +127,15 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
              to be wrong by {force} of mu N (moment {moment} of mu N c) in the mean; --exact computes them to 0.003"
         )
     }));
-    Ok(())
+    Ok(ended())
 }
 
 /// Forces of contacts by the half-space solver, from the cache where it has them.
-fn exact(cases: &[RollingContact], no_cache: bool) -> Result<Vec<RollingForces>, Box<dyn Error>> {
+fn exact(
+    cases: &[RollingContact],
+    no_cache: bool,
+    interrupted: &AtomicBool,
+) -> Result<Vec<RollingForces>, Box<dyn Error>> {
     // Whatever is out of range is told before anything is computed.
     let contacts = cases.iter().map(RollingContact::scaled).collect::<Result<Vec<ScaledContact>, _>>()?;
     let (mut cache, note) =
@@ -126,11 +143,12 @@ fn exact(cases: &[RollingContact], no_cache: bool) -> Result<Vec<RollingForces>,
     tell(note);
     let begin = Instant::now();
     let progress = progress_bar();
-    let found = answer(&contacts, &mut cache, &progress);
+    let found = answer(&contacts, &mut cache, interrupted, &progress);
     progress.finish_and_clear();
     let mut forces = Vec::with_capacity(cases.len());
     let (mut rough, mut largest) = (0, 0.0f64);
     for (case, answer) in cases.iter().zip(&found.answers) {
+        let Some(answer) = answer else { continue };
         let answer = answer.as_ref().map_err(|why| ContactError::Reference(case.id.clone(), *why))?;
         forces.push(case.with_forces(&answer.forces));
         if answer.change > LARGEST_CHANGE {

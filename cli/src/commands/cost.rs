@@ -3,15 +3,19 @@
 use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use roulement::scene::Scene;
 use roulement_cli::cost::levers::Lever;
-use roulement_cli::cost::{Choice, SCENES, SceneStudy, report, study_of};
+use roulement_cli::cost::{Choice, SCENES, SceneStudy, StudyError, report, study_of};
 
-use super::say;
+use super::run::{INTERRUPTED, heeded_interrupt};
+use super::{say, tell};
 
 /// Options of `roulement cost`.
 #[derive(Args)]
@@ -30,13 +34,15 @@ pub struct Options {
     threads: Option<u16>,
 }
 
-/// Studies one scene file, or the standard scenes if there is none, into a directory.
+/// Studies one scene file, or the standard scenes if there is none, into a directory. What is there at Ctrl-C is kept.
 ///
 /// # Errors
 /// If a scene has no reference, or files cannot be written.
-pub fn run(options: Options) -> Result<(), Box<dyn Error>> {
+pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     let Options { scene, output: directory, only, threads } = options;
-    let choice = Choice { only, threads: threads.map_or(Choice::default().threads, usize::from) };
+    let interrupted = heeded_interrupt()?;
+    let threads = threads.map_or(Choice::default().threads, usize::from);
+    let choice = Choice { only, threads, interrupted: Arc::clone(&interrupted) };
     let scenes: Vec<(String, Scene)> = match &scene {
         Some(path) => {
             let name = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
@@ -57,17 +63,36 @@ pub fn run(options: Options) -> Result<(), Box<dyn Error>> {
     bar.enable_steady_tick(Duration::from_millis(200));
     let mut studies: Vec<SceneStudy> = Vec::with_capacity(scenes.len());
     for (name, scene) in &scenes {
-        studies.push(study_of(name, scene, &choice, &bar).map_err(|why| format!("{name}: {why}"))?);
+        match study_of(name, scene, &choice, &bar) {
+            Ok(study) => studies.push(study),
+            // It has no reference yet: nothing can be told of it.
+            Err(StudyError::Interrupted) => break,
+            Err(why) => return Err(format!("{name}: {why}").into()),
+        }
         // What is done is kept if a later scene fails.
         report::write(&studies, &directory)?;
+        if interrupted.load(Ordering::Relaxed) {
+            break;
+        }
     }
     bar.finish_and_clear();
-    for path in report::write(&studies, &directory)? {
-        say(&format!("{}\n", path.display()))?;
+    if !studies.is_empty() {
+        for path in report::write(&studies, &directory)? {
+            say(&format!("{}\n", path.display()))?;
+        }
     }
     for study in &studies {
         say(&format!("{}: {}\n", study.name, study.settled.join(" ")))?;
         say(&format!("{}: {}\n", study.name, study.advice.join(" ")))?;
     }
-    Ok(())
+    if interrupted.load(Ordering::Relaxed) {
+        let what = if studies.is_empty() {
+            "before any reference was there"
+        } else {
+            "runs that are missing say so"
+        };
+        tell([format!("interrupted: {what}")]);
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    Ok(ExitCode::SUCCESS)
 }

@@ -2,14 +2,18 @@
 
 use std::error::Error;
 use std::path::PathBuf;
+use std::process::ExitCode;
 use std::str::FromStr;
+use std::sync::atomic::Ordering;
 
 use clap::Args;
 use roulement::analysis::stick_slip::{Field, field};
 use roulement::model::bodies::Race;
 use roulement::scene::units::{Quantity, Time};
 use roulement::simulation::Simulation;
+use roulement::simulation::play::Rows;
 
+use super::run::{INTERRUPTED, heeded_interrupt};
 use super::{load, tell};
 
 /// Options of `roulement field`.
@@ -64,11 +68,12 @@ impl FromStr for Moment {
     }
 }
 
-/// Simulates a scene up to each of the times and writes the fields of the contacts there.
+/// Simulates a scene up to each of the times, by its rows as `roulement run` does, and writes the fields of the contacts there. Those
+/// that are there at Ctrl-C are kept.
 ///
 /// # Errors
 /// If the simulation cannot start or go on, a ball is not there, or the table cannot be written.
-pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let scene = load(&options.scene)?;
     if let Some(contact) = options.contacts.iter().find(|contact| contact.ball > scene.bearing.balls) {
         return Err(format!(
@@ -88,9 +93,17 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let header = "time [s],ball [1],race,x [m],y [m],area [m2],pressure [Pa],traction.x [Pa],traction.y [Pa],slip.x [m/s],\
                   slip.y [m/s],sticks [1]";
     table.write_record(header.split(',')).map_err(cannot_write)?;
+    let interrupted = heeded_interrupt()?;
+    let interval = scene.load.output_interval.0;
     for time in times {
-        if time > simulation.time() {
-            simulation.advance_scripted(time)?;
+        let now = simulation.time();
+        for row in (Rows { interval, duration: time }).times().filter(|row| *row > now) {
+            if interrupted.load(Ordering::Relaxed) {
+                table.flush().map_err(|why| cannot_write(why.into()))?;
+                tell([format!("interrupted at {:.3} ms", simulation.time() * 1e3)]);
+                return Ok(ExitCode::from(INTERRUPTED));
+            }
+            simulation.advance_scripted(row)?;
         }
         for Contact { ball, race } in &options.contacts {
             let (model, state, conditions) =
@@ -106,8 +119,8 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
             tell([format!("{what}: {:.1} % sticks, ellipse {a:.1} x {b:.1} um", 100.0 * field.stick)]);
         }
     }
-    table.flush().map_err(|why| format!("{}: {why}", options.output.display()))?;
-    Ok(())
+    table.flush().map_err(|why| cannot_write(why.into()))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 fn write(

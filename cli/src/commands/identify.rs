@@ -11,6 +11,7 @@ use roulement::contact::shape::ContactShape;
 use roulement::kalker::Patch;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::model::bearing::Bearing;
+use roulement::schema::regular;
 
 use super::say;
 
@@ -116,7 +117,7 @@ fn write_parameters(
 fn write_scene(scene: Option<&Path>, output: &Path, section: &str) -> Result<(), Box<dyn Error>> {
     let mut text = String::new();
     if let Some(path) = scene {
-        text = fs::read_to_string(path)?;
+        text = regular::text(path)?;
         if text.lines().any(|line| line.trim_start().starts_with("[regularised")) {
             return Err(
                 format!("{} has a [regularised] section already: remove it first", path.display()).into()

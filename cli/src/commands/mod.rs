@@ -191,10 +191,10 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Effects(options) => effects::run(&options)?,
         Command::Report(options) => report::run(&options)?,
         Command::System(options) => system::run(&options)?,
-        Command::Field(options) => field::run(&options)?,
-        Command::Contact(options) => contact::run(&options)?,
+        Command::Field(options) => return field::run(&options),
+        Command::Contact(options) => return contact::run(&options),
         Command::Identify(options) => identify::run(&options)?,
-        Command::Cost(options) => cost::run(options)?,
+        Command::Cost(options) => return cost::run(options),
         Command::Describe { scene } => {
             let name = name_of(&scene);
             let description = match system(&scene)? {

@@ -17,9 +17,9 @@ use roulement_cli::page::record;
 use roulement_cli::report::figures::{Figures, Shown};
 use roulement_cli::report::json;
 use roulement_cli::report::plots::{title, write_plots};
-use roulement_cli::report::results::{Choice, ResultsWriter, Window, is_parquet};
+use roulement_cli::report::results::{Choice, Columns, ResultsWriter, Window, is_parquet};
 use roulement_cli::report::spectrum;
-use signal_hook::consts::SIGINT;
+use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
 use super::effects::announce;
@@ -27,7 +27,7 @@ use super::player::{End, Played, Player, put};
 use super::summary::summary;
 use super::{load, say, shaft, system, tell};
 
-/// Exit code of a program that Ctrl-C ended: 128 and the number of the signal.
+/// Exit code of a program that Ctrl-C or SIGTERM ended: 128 and the number of Ctrl-C.
 pub const INTERRUPTED: u8 = 130;
 /// Exit code of a run whose results are there and whose error goal is not met.
 const GOAL_NOT_MET: u8 = 3;
@@ -61,7 +61,7 @@ pub struct Options {
     rounds: u32,
 }
 
-/// Simulates a scene into a directory. What has been simulated until an error or Ctrl-C is kept, with its summary and plots.
+/// Simulates a scene into a directory. What has been simulated until an error, Ctrl-C or SIGTERM is kept, with its summary and plots.
 ///
 /// # Errors
 /// If the simulation cannot start or go on, or files cannot be written.
@@ -92,14 +92,16 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     simulate(&Player::new(heeded_interrupt()?), &scene, &output, error.is_some(), rounds)
 }
 
-/// Set by Ctrl-C; a second one does not wait for the row.
+/// Set by Ctrl-C, and by SIGTERM, which queues of computing centres send; a second one does not wait for the row.
 ///
 /// # Errors
-/// If the system has no such signal.
+/// If the system has no such signals.
 pub fn heeded_interrupt() -> std::io::Result<Arc<AtomicBool>> {
     let interrupted = Arc::new(AtomicBool::new(false));
-    flag::register_conditional_shutdown(SIGINT, INTERRUPTED.into(), Arc::clone(&interrupted))?;
-    flag::register(SIGINT, Arc::clone(&interrupted))?;
+    for signal in [SIGINT, SIGTERM] {
+        flag::register_conditional_shutdown(signal, INTERRUPTED.into(), Arc::clone(&interrupted))?;
+        flag::register(signal, Arc::clone(&interrupted))?;
+    }
     Ok(interrupted)
 }
 
@@ -120,9 +122,11 @@ pub fn simulate(
     if place.said != Said::Nothing {
         announce(simulation.scene(), &verdicts);
     }
+    // Before anything of a former run goes.
+    drop(Columns::new(scene, &place.choice)?);
     if place.files {
-        fs::create_dir_all(&place.output)
-            .map_err(|why| format!("cannot make {}: {why}", place.output.display()))?;
+        record::begin(&place.output)
+            .map_err(|why| format!("cannot begin in {}: {why}", place.output.display()))?;
     }
     let table = ResultsWriter::create(&place.results(), scene, &place.choice)?;
     if wants_error || scene.solver.goal.is_some() {

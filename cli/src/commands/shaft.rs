@@ -2,6 +2,7 @@
 
 use std::error::Error;
 use std::fs;
+use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -11,12 +12,14 @@ use std::time::Instant;
 use cpu_time::ThreadTime;
 use roulement::analysis::estimate;
 use roulement::scene::system::SystemScene;
+use roulement::schema::regular;
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::Rows;
 use roulement::simulation::system::{System, SystemOutputs};
+use roulement_cli::page::record;
 use roulement_cli::report::figures::Shown;
 use roulement_cli::report::json;
-use roulement_cli::report::results::{Choice, ResultsWriter, is_parquet};
+use roulement_cli::report::results::{Choice, Columns, ResultsWriter, is_parquet};
 use roulement_cli::report::shaft::{self, ShaftTable};
 use roulement_cli::report::thinned::Thinned;
 use roulement_cli::watch::Watch;
@@ -27,7 +30,7 @@ use super::{say, tell};
 
 /// Is this the file of a shaft with bearings? One that cannot be read is not.
 pub fn is_system(path: &Path) -> bool {
-    fs::read_to_string(path).is_ok_and(|text| SystemScene::is_system(&text))
+    regular::text(path).is_ok_and(|text| SystemScene::is_system(&text))
 }
 
 /// What is gathered of a bearing while its shaft runs.
@@ -57,10 +60,17 @@ pub fn run(
         .into());
     }
     let mut system = System::new(scene)?;
+    // Before anything of a former run goes.
+    for (_, bearing) in system.bearings() {
+        drop(Columns::new(bearing.scene(), choice)?);
+    }
+    let begun = |directory: &Path, begun: io::Result<()>| {
+        begun.map_err(|why| format!("cannot begin in {}: {why}", directory.display()))
+    };
+    begun(output, record::begin_shaft(output))?;
     let gathered = |(name, bearing): (&str, &roulement::Simulation)| -> Result<Gathered, Box<dyn Error>> {
         let directory = output.join(name);
-        fs::create_dir_all(&directory)
-            .map_err(|why| format!("cannot make {}: {why}", directory.display()))?;
+        begun(&directory, record::begin(&directory))?;
         Ok(Gathered {
             table: ResultsWriter::create(&directory.join("results.csv"), bearing.scene(), choice)?,
             plotted: Thinned::default(),

@@ -22,6 +22,9 @@ use super::player::Player;
 use super::run::{INTERRUPTED, Place, Said, heeded_interrupt, simulate};
 use super::{say, shaft, tell};
 
+/// Exit code of a sweep whose summary is there, but not a result of every case.
+const INCOMPLETE: u8 = 4;
+
 /// Options of `roulement sweep`.
 #[derive(Args)]
 pub struct Options {
@@ -68,7 +71,8 @@ impl Format {
     }
 }
 
-/// Runs all cases that are not done yet into a directory. What is done is kept if it is interrupted.
+/// Runs all cases that are not done yet into a directory. What is done is kept if it is interrupted. Exit code 4 says that a case has
+/// failed or was not run.
 ///
 /// # Errors
 /// If the cases or the scene cannot be read, no case can be run, or files cannot be written.
@@ -87,6 +91,10 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     let wanted = Wanted { columns, tables: tables.map(Format::ending) };
     let sweep = Sweep::new(cases, base, wanted, &output)?;
     let missing = sweep.missing();
+    let damaged = missing.iter().filter(|case| sweep.is_damaged(**case)).count();
+    tell(
+        (damaged > 0).then(|| format!("{damaged} of the finished cases were damaged or changed: run again")),
+    );
     let interrupted = heeded_interrupt()?;
     let bar = ProgressBar::new(missing.len() as u64);
     if let Ok(style) = ProgressStyle::with_template(
@@ -111,9 +119,16 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     for case in runs {
         keep_run(&sweep, case, &interrupted)?;
     }
+    // In the end, where it is seen.
+    if let Some((case, warning)) = &counts.first_warning {
+        say(&format!("WARNINGS         in {} cases, as in case {case}: {warning}\n", counts.warned))?;
+    }
     if interrupted.load(Ordering::Relaxed) {
         tell(["interrupted; the same command goes on".to_string()]);
         return Ok(ExitCode::from(INTERRUPTED));
+    }
+    if counts.failed + counts.not_run > 0 {
+        return Ok(ExitCode::from(INCOMPLETE));
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -18,8 +18,11 @@ mod settling;
 pub mod table;
 
 use std::num::NonZero;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use indicatif::ProgressBar;
+use thiserror::Error;
 
 use levers::{CreepModel, Level, Lever, ReferenceKind, Setting};
 use norms::{Comparison, Errors, Norm, errors};
@@ -148,6 +151,17 @@ impl SceneStudy {
     }
 }
 
+/// Why there is no study, or no run of a setting.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    /// It cannot start or go on.
+    #[error(transparent)]
+    Run(#[from] SimulationError),
+    /// It was ended from outside.
+    #[error("interrupted")]
+    Interrupted,
+}
+
 /// What of a study is run, and how.
 #[derive(Clone, Debug)]
 pub struct Choice {
@@ -155,12 +169,15 @@ pub struct Choice {
     pub only: Vec<Lever>,
     /// [-] threads.
     pub threads: usize,
+    /// Set from outside to end with what there is then.
+    pub interrupted: Arc<AtomicBool>,
 }
 
 impl Default for Choice {
     /// All levers, on all cores.
     fn default() -> Self {
-        Self { only: vec![], threads: std::thread::available_parallelism().map_or(1, NonZero::get) }
+        let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
+        Self { only: vec![], threads, interrupted: Arc::default() }
     }
 }
 
@@ -174,20 +191,21 @@ impl Choice {
 ///
 /// # Errors
 /// See [`study_of`].
-pub fn study(name: &str, scene: &Scene, progress: &ProgressBar) -> Result<SceneStudy, SimulationError> {
+pub fn study(name: &str, scene: &Scene, progress: &ProgressBar) -> Result<SceneStudy, StudyError> {
     study_of(name, scene, &Choice::default(), progress)
 }
 
 /// Studies a scene; the bar shows what is running.
 ///
 /// # Errors
-/// If a reference cannot be run: there is nothing to compare with then. Settings that fail are part of the result.
+/// If a reference cannot be run, or was interrupted: there is nothing to compare with then. Settings that fail or are interrupted are
+/// part of the result.
 pub fn study_of(
     name: &str,
     scene: &Scene,
     choice: &Choice,
     progress: &ProgressBar,
-) -> Result<SceneStudy, SimulationError> {
+) -> Result<SceneStudy, StudyError> {
     let duration = scene.load.duration.0;
     let window_start = WINDOW_START * duration;
     let [fine, coarse] = levers::reference_steps(scene);
@@ -217,16 +235,16 @@ pub fn study_of(
         .collect();
     progress.set_length(jobs.iter().map(Job::weight).sum());
     progress.reset();
-    let mut results = pool::run_all(&jobs, choice.threads, progress);
+    let mut results = pool::run_all(&jobs, choice.threads, &choice.interrupted, progress);
     let failed = |(job, result): (&Job<'_>, &pool::Outcome)| job.needed && matches!(result, Some(Err(_)));
     if let Some(index) = jobs.iter().zip(&results).position(failed)
         && let Some(Err(why)) = results.swap_remove(index)
     {
         return Err(why);
     }
-    // Every job was begun, as none that is needed has failed.
-    let mut results = results.into_iter().flatten();
-    let mut finished = || results.next().unwrap_or(Err(SimulationError::Singular(0.0)));
+    // As none that is needed has failed, a job was not begun only where the study was interrupted.
+    let mut results = results.into_iter();
+    let mut finished = || results.next().flatten().unwrap_or(Err(StudyError::Interrupted));
 
     let (finest, second) = (finished()?, finished()?);
     let divergence = errors(&second, &finest, Comparison::Pointwise, window_start).worst().unwrap_or(0.0);
@@ -264,7 +282,7 @@ pub fn study_of(
         .collect();
     let advice = advice::advise(&points, &settings, scene, |setting, kind| {
         progress.set_message(format!("{name}: to be sure of the advice, {}", setting.label));
-        let run = record(setting).ok()?;
+        let run = record(setting, &choice.interrupted).ok()?;
         Some((compare(&run, &reference(kind).run), run.cost.cpu / duration))
     });
     let runs = [("reference", Some(&tiny)), ("richest model", rich.as_ref())];

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use indicatif::ProgressBar;
 use roulement::scene::CreepLaw;
-use roulement::simulation::SimulationError;
 
+use super::StudyError;
 use super::levers::{Level, Setting};
 use super::record::{Record, record};
 
@@ -43,20 +43,25 @@ impl Job<'_> {
 }
 
 /// What came of a job; none if it was not begun.
-pub type Outcome = Option<Result<Record, SimulationError>>;
+pub type Outcome = Option<Result<Record, StudyError>>;
 
-/// Runs all jobs on some threads. A job that was not begun, because a needed one failed, has no result.
-pub fn run_all(jobs: &[Job<'_>], threads: usize, progress: &ProgressBar) -> Vec<Outcome> {
+/// Runs all jobs on some threads. A job that was not begun, because a needed one failed or all were interrupted, has no result.
+pub fn run_all(
+    jobs: &[Job<'_>],
+    threads: usize,
+    interrupted: &AtomicBool,
+    progress: &ProgressBar,
+) -> Vec<Outcome> {
     let mut order: Vec<usize> = (0..jobs.len()).collect();
     order.sort_by_key(|&job| (!jobs[job].needed, u64::MAX - jobs[job].weight()));
     let (next, over) = (AtomicUsize::new(0), AtomicBool::new(false));
     let results = Mutex::new(jobs.iter().map(|_| None).collect::<Vec<_>>());
     let work = || {
-        while !over.load(Ordering::Relaxed) {
+        while !over.load(Ordering::Relaxed) && !interrupted.load(Ordering::Relaxed) {
             let Some(&index) = order.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
             let job = &jobs[index];
             progress.set_message(job.what.clone());
-            let result = record(job.setting);
+            let result = record(job.setting, interrupted);
             progress.inc(job.weight());
             if job.needed && result.is_err() {
                 over.store(true, Ordering::Relaxed);

@@ -1,22 +1,23 @@
 //! One run of one setting: its samples and its cost.
 
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::WINDOW_START;
 use super::levers::{Inputs, Level, Setting};
 use super::meter::{Cost, Meter};
+use super::{StudyError, WINDOW_START};
 use crate::report::means::{Blocks, Means};
 use crate::report::quantities::Parts;
 use roulement::model::bodies::Race;
 use roulement::model::state::Statistics;
 use roulement::numerics::motion::{Pose, Twist};
 use roulement::scene::Drive;
+use roulement::simulation::Simulation;
 use roulement::simulation::inputs;
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::{Rows, play_with};
-use roulement::simulation::{Simulation, SimulationError};
 
 /// \[s] CPU time after which a run is not repeated any more, and the largest number of runs.
 const ENOUGH_TIME: f64 = 0.4;
@@ -98,13 +99,13 @@ pub struct Record {
 /// Runs a setting, repeatedly if it is short.
 ///
 /// # Errors
-/// See [`SimulationError`].
-pub fn record(setting: &Setting) -> Result<Record, SimulationError> {
+/// If the run cannot start or go on, or was interrupted.
+pub fn record(setting: &Setting, interrupted: &AtomicBool) -> Result<Record, StudyError> {
     let start = Simulation::new(&setting.scene)?;
-    let mut best = run(setting, start.clone())?;
+    let mut best = run(setting, start.clone(), interrupted)?;
     let (mut total, mut runs) = (best.cost.cpu, 1);
     while total < ENOUGH_TIME && runs < MOST_RUNS {
-        let again = run(setting, start.clone())?.cost;
+        let again = run(setting, start.clone(), interrupted)?.cost;
         total += again.cpu;
         runs += 1;
         if again.cpu < best.cost.cpu {
@@ -114,7 +115,11 @@ pub fn record(setting: &Setting) -> Result<Record, SimulationError> {
     Ok(best)
 }
 
-fn run(setting: &Setting, mut simulation: Simulation) -> Result<Record, SimulationError> {
+fn run(
+    setting: &Setting,
+    mut simulation: Simulation,
+    interrupted: &AtomicBool,
+) -> Result<Record, StudyError> {
     let rows = Rows { interval: setting.communication, duration: setting.scene.load.duration.0 };
     let pitch_radius = 0.5 * simulation.model().bearing.pitch_diameter;
     let mut samples = Vec::with_capacity(rows.count() as usize + 1);
@@ -131,11 +136,14 @@ fn run(setting: &Setting, mut simulation: Simulation) -> Result<Record, Simulati
         }
     };
     let meter = Meter::start();
-    let _: ControlFlow<()> = play_with(&mut simulation, rows, advance, |simulation| {
+    let flow = play_with(&mut simulation, rows, advance, |simulation| {
         samples.push(Sample::new(simulation.outputs(), pitch_radius));
         blocks.push(simulation.outputs());
-        ControlFlow::Continue(())
+        if interrupted.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
+    if flow.is_break() {
+        return Err(StudyError::Interrupted);
+    }
     let cost = meter.stop();
     let means = blocks.means_from(WINDOW_START);
     Ok(Record { samples, cost, work: simulation.state().statistics, level: setting.level, means })

@@ -6,7 +6,7 @@
 pub mod cache;
 
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
@@ -21,8 +21,8 @@ const SAVE: Duration = Duration::from_secs(10);
 
 /// Answers to contacts.
 pub struct Answers {
-    /// One for each contact.
-    pub answers: Vec<Result<Refined, HalfSpaceError>>,
+    /// One for each contact; none where it was interrupted before.
+    pub answers: Vec<Option<Result<Refined, HalfSpaceError>>>,
     /// How many were computed; equal contacts are computed once.
     pub computed: usize,
     /// Why what was computed could not be saved.
@@ -31,7 +31,12 @@ pub struct Answers {
 
 /// Answers contacts from a cache, and computes on all cores what is not there. What a contact gives does not depend on the
 /// others, nor on the cache.
-pub fn answer(contacts: &[ScaledContact], cache: &mut Cache, progress: &ProgressBar) -> Answers {
+pub fn answer(
+    contacts: &[ScaledContact],
+    cache: &mut Cache,
+    interrupted: &AtomicBool,
+    progress: &ProgressBar,
+) -> Answers {
     let kept: Vec<Option<Refined>> = contacts.iter().map(|contact| cache.get(contact)).collect();
     let mut missing: Vec<&ScaledContact> = vec![];
     let mut place = HashMap::new();
@@ -42,30 +47,31 @@ pub fn answer(contacts: &[ScaledContact], cache: &mut Cache, progress: &Progress
         });
     }
     progress.set_length(missing.len() as u64);
-    let (results, unsaved) = compute(&missing, cache, progress);
+    let (results, unsaved) = compute(&missing, cache, interrupted, progress);
     let found = |(contact, kept): (&ScaledContact, Option<Refined>)| match kept {
-        Some(answer) => Ok(answer),
+        Some(answer) => Some(Ok(answer)),
         None => results[place[&key(contact)]],
     };
     let answers = contacts.iter().zip(kept).map(found).collect();
-    Answers { answers, computed: missing.len(), unsaved }
+    Answers { answers, computed: results.iter().flatten().count(), unsaved }
 }
 
 /// Computes contacts on all cores, and keeps their answers. Says why they could not be saved, if so.
 fn compute(
     contacts: &[&ScaledContact],
     cache: &mut Cache,
+    interrupted: &AtomicBool,
     progress: &ProgressBar,
-) -> (Vec<Result<Refined, HalfSpaceError>>, Option<String>) {
+) -> (Vec<Option<Result<Refined, HalfSpaceError>>>, Option<String>) {
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(contacts.len());
     let next = AtomicUsize::new(0);
     let (sender, receiver) = mpsc::channel();
-    let mut results = Vec::with_capacity(contacts.len());
+    let mut results = vec![None; contacts.len()];
     std::thread::scope(|scope| {
         for _ in 0..threads {
             let (sender, next) = (sender.clone(), &next);
             scope.spawn(move || {
-                loop {
+                while !interrupted.load(Ordering::Relaxed) {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let Some(contact) = contacts.get(index) else { break };
                     if sender.send((index, contact.exact())).is_err() {
@@ -80,7 +86,7 @@ fn compute(
             if let Ok(answer) = &result {
                 cache.put(contacts[index], answer);
             }
-            results.push((index, result));
+            results[index] = Some(result);
             progress.inc(1);
             if saved.elapsed() > SAVE {
                 // Told at the end, if it fails there too.
@@ -89,6 +95,5 @@ fn compute(
             }
         }
     });
-    results.sort_by_key(|(index, _)| *index);
-    (results.into_iter().map(|(_, result)| result).collect(), cache.save().err())
+    (results, cache.save().err())
 }

@@ -1,11 +1,11 @@
 //! Where cargo leaves the library that it builds together with a program.
 
 use std::env;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use memchr::memmem;
 use roulement::fmi::BUILD;
+use roulement::schema::regular::{self, LARGEST_BINARY};
 
 use super::{PackageError, file_error};
 
@@ -28,7 +28,7 @@ pub fn library_beside(program: &Path) -> Result<PathBuf, PackageError> {
     let there = [program.with_file_name("deps").join(&name), beside.clone()];
     let there: Vec<&PathBuf> = there.iter().filter(|path| path.is_file()).collect();
     for &path in &there {
-        let library = fs::read(path).map_err(file_error("cannot read", path))?;
+        let library = regular::bytes(path, LARGEST_BINARY).map_err(file_error("cannot read", path))?;
         if memmem::find(&library, BUILD.as_bytes()).is_some() {
             return Ok(path.clone());
         }

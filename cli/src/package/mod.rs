@@ -20,6 +20,7 @@ use roulement::interface::documentation;
 use roulement::interface::model_description::{ModelDescription, identifier, render, render_system};
 use roulement::scene::Scene;
 use roulement::scene::system::SystemScene;
+use roulement::schema::regular::{self, LARGEST_BINARY};
 use roulement::simulation::system::{System, SystemError};
 use roulement::simulation::{Simulation, SimulationError};
 
@@ -87,7 +88,7 @@ pub enum PackageError {
 fn read_library(path: &Path) -> Result<(Platform, Vec<u8>), PackageError> {
     let name = || path.display().to_string();
     let platform = platform(path).ok_or_else(|| PackageError::Platform(name()))?;
-    let library = fs::read(path).map_err(file_error("cannot read", path))?;
+    let library = regular::bytes(path, LARGEST_BINARY).map_err(file_error("cannot read", path))?;
     let refused = |found| PackageError::Library {
         path: name(),
         folder: platform.folder,

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use roulement::analysis::stick_slip::{Field, FieldCause};
 use roulement::model::bodies::Race;
+use roulement::schema::regular;
 use roulement::simulation::Simulation;
 use serde_json::{Value, json};
 
@@ -89,8 +90,8 @@ const READ: [(&str, &str); 9] = [
 pub fn read(path: &Path) -> Result<Vec<Value>, String> {
     let wrong =
         |why: &dyn std::fmt::Display| format!("{} is no table of roulement field: {why}", path.display());
-    let mut table =
-        csv::Reader::from_path(path).map_err(|why| format!("cannot read {}: {why}", path.display()))?;
+    let table = regular::open(path).map_err(|why| format!("cannot read {}: {why}", path.display()))?;
+    let mut table = csv::Reader::from_reader(table);
     let head: Vec<String> = table.headers().map_err(|why| wrong(&why))?.iter().map(str::to_string).collect();
     let wanted = READ.iter().map(|(name, unit)| format!("{name} [{unit}]"));
     let at = wanted

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use roulement::analysis::estimate::Verdicts;
 use roulement::scene::Scene;
+use roulement::schema::regular;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::Outputs;
 use serde_json::{Value, json};
@@ -13,10 +14,24 @@ use super::{bearing, fields, history};
 use crate::report::figures::Shown;
 use crate::report::json;
 use crate::report::spectrum::Spectrum;
+use crate::sweep::store::aside;
 use crate::watch::Seen;
 
 /// Name of its file.
 pub const FILE: &str = "run.json";
+/// What runs write beside the record, those of shafts too. Tables of a new run take the place of former ones by themselves.
+const BESIDE: [&str; 10] = [
+    "summary.txt",
+    "means.csv",
+    "spectrum.csv",
+    "spectrum.svg",
+    "contacts.svg",
+    "bearing.svg",
+    "balls.svg",
+    "results.csv.round",
+    "shaft.csv",
+    "shaft.svg",
+];
 /// Form of the record: another number where its parts mean something else.
 pub const FORM: u64 = 1;
 
@@ -75,12 +90,51 @@ impl Run<'_> {
         })
     }
 
-    /// Writes it.
+    /// Writes it: the run is finished then.
     ///
     /// # Errors
     /// If the file cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
-        std::fs::write(path, format!("{}\n", self.to_json()))
+        put(path, &self.to_json())
+    }
+}
+
+/// Puts a record in the place of another at once, so that it is whole whenever the program is killed.
+fn put(path: &Path, record: &Value) -> io::Result<()> {
+    let part = aside(path);
+    std::fs::write(&part, format!("{record}\n")).and_then(|()| std::fs::rename(&part, path))
+}
+
+/// Gives a directory, which is made if missing, to a new run before its first row. Until [`Run::write`] its record says that the run is
+/// unfinished, and nothing of a former run is there that could be taken for a part of this one.
+///
+/// # Errors
+/// If files cannot be written or removed.
+pub fn begin(directory: &Path) -> io::Result<()> {
+    std::fs::create_dir_all(directory)?;
+    put(&directory.join(FILE), &json!({ "form": FORM, "unfinished": true }))?;
+    clear(directory)
+}
+
+/// The same for a directory of a shaft, which has no record of its own: those of its bearings have.
+///
+/// # Errors
+/// As [`begin`].
+pub fn begin_shaft(directory: &Path) -> io::Result<()> {
+    std::fs::create_dir_all(directory)?;
+    remove(&directory.join(FILE))?;
+    clear(directory)
+}
+
+fn clear(directory: &Path) -> io::Result<()> {
+    BESIDE.iter().try_for_each(|name| remove(&directory.join(name)))
+}
+
+/// Removes a file, if it is there. What is no file, such as a link, was not written by a run.
+fn remove(path: &Path) -> io::Result<()> {
+    match path.symlink_metadata() {
+        Ok(found) if found.is_file() => std::fs::remove_file(path),
+        _ => Ok(()),
     }
 }
 
@@ -105,10 +159,10 @@ fn spectrum(spectrum: &Spectrum) -> Value {
 /// Reads the record of a directory of results, with the fields of its contacts.
 ///
 /// # Errors
-/// If there is none, or it is of another form.
+/// If there is none, it is of another form, or its run is unfinished.
 pub fn read(directory: &Path) -> Result<Value, String> {
     let path = directory.join(FILE);
-    let text = std::fs::read_to_string(&path).map_err(|why| {
+    let text = regular::text(&path).map_err(|why| {
         format!(
             "cannot read {}: {why}; results of `roulement run SCENE -o {}` have it",
             path.display(),
@@ -117,6 +171,12 @@ pub fn read(directory: &Path) -> Result<Value, String> {
     })?;
     let mut record: Value = serde_json::from_str(&text)
         .map_err(|why| format!("{} is no record of a run: {why}", path.display()))?;
+    if record["unfinished"] == true {
+        return Err(format!(
+            "the run in {} is unfinished: it is still going on, or was killed before it could write its summary; run the scene again",
+            directory.display()
+        ));
+    }
     match record["form"].as_u64() {
         Some(FORM) => {
             if record["fields"].is_null() {

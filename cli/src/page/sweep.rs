@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use roulement::schema::regular;
 use serde_json::{Value, json};
 
 use super::grid::Grid;
@@ -21,7 +22,7 @@ pub const FILE: &str = "summary.csv";
 pub fn read(directory: &Path) -> Result<Value, String> {
     let path = directory.join(FILE);
     let cannot = |why: csv::Error| format!("cannot read {}: {why}", path.display());
-    let mut summary = csv::Reader::from_path(&path).map_err(cannot)?;
+    let mut summary = csv::Reader::from_reader(regular::open(&path).map_err(|why| cannot(why.into()))?);
     let columns: Vec<Column> = summary.headers().map_err(cannot)?.iter().map(Column::from_header).collect();
     let records = summary.records().collect::<Result<Vec<_>, _>>().map_err(cannot)?;
     let mut numbers = Grid::new(records.len());
@@ -88,5 +89,5 @@ fn tables(directory: &Path, names: &[String], records: &[csv::StringRecord]) -> 
 
 /// [-] columns of a table.
 fn columns_of(path: &Path) -> Option<usize> {
-    csv::Reader::from_path(path).ok()?.headers().ok().map(csv::StringRecord::len)
+    csv::Reader::from_reader(regular::open(path).ok()?).headers().ok().map(csv::StringRecord::len)
 }

@@ -1,8 +1,9 @@
 //! The table of a run for the page: all columns, of so many rows as there is room for.
 
-use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
+
+use roulement::schema::regular;
 
 use super::grid::Grid;
 use crate::report::cells::Column;
@@ -37,7 +38,7 @@ pub struct Read {
 /// If it cannot be read, or a chosen column is not there.
 pub fn read(path: &Path, choice: &Choice) -> Result<Read, String> {
     let cannot = |why: &dyn std::fmt::Display| format!("cannot read {}: {why}", path.display());
-    let open = || File::open(path).map(BufReader::new).map_err(|why| cannot(&why));
+    let open = || regular::open(path).map(BufReader::new).map_err(|why| cannot(&why));
     let mut table = csv::Reader::from_reader(open()?);
     let columns: Vec<Column> =
         table.headers().map_err(|why| cannot(&why))?.iter().map(Column::from_header).collect();

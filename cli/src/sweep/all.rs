@@ -61,10 +61,20 @@ impl Sweep {
         Ok(Self { cases, base, wanted, store, names, numeric })
     }
 
-    /// Cases that are not done yet, in their order.
+    /// Cases that are not done yet, or whose files are damaged, in their order.
     pub fn missing(&self) -> Vec<usize> {
-        let is_missing = |case: &usize| self.names[*case].as_ref().is_ok_and(|name| !self.store.has(name));
-        (0..self.names.len()).filter(is_missing).collect()
+        let is_missing = |case: usize| self.names[case].as_ref().is_ok_and(|name| !self.has(name));
+        let missing = on_threads(self.names.len(), threads(), is_missing);
+        (0..self.names.len()).filter(|case| missing[*case]).collect()
+    }
+
+    /// Was a case done, and its files damaged or changed since?
+    pub fn is_damaged(&self, case: usize) -> bool {
+        self.names[case].as_ref().is_ok_and(|name| self.store.has_file(name) && !self.has(name))
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.store.has(name, self.wanted.tables.as_deref())
     }
 
     /// Runs a case, if it is not done yet, and keeps its row; false if it was interrupted.
@@ -73,7 +83,7 @@ impl Sweep {
     /// If files cannot be written.
     pub fn run_case(&self, case: usize, interrupted: &AtomicBool) -> Result<bool, SweepError> {
         let Ok(name) = &self.names[case] else { return Ok(true) };
-        if self.store.has(name) {
+        if self.has(name) {
             return Ok(true);
         }
         let text = self.cases.text_of(&self.base, case)?;
@@ -90,7 +100,7 @@ impl Sweep {
             }
         }
         match row? {
-            Some(row) => self.store.put(name, &row).map(|()| true),
+            Some(row) => self.store.put(name, &row, table.as_deref().filter(|_| is_whole)).map(|()| true),
             None => Ok(false),
         }
     }

@@ -30,6 +30,9 @@ pub struct Wanted {
     pub tables: Option<String>,
 }
 
+/// Column of what a plain run would have warned of.
+pub const WARNINGS: &str = "warnings";
+
 /// A row of the summary.
 pub type Row = Vec<(Column, Cell)>;
 
@@ -206,7 +209,8 @@ pub(super) fn summary(
     gathered: &Gathered,
     goal: Option<&'static str>,
 ) -> Row {
-    let mut row = vec![];
+    let warnings = seen.warnings(simulation).join("; ");
+    let mut row = vec![(Column::text(WARNINGS), Cell::Text(warnings))];
     if let Some(means) = &seen.means {
         row.push((Column::text("settled"), Cell::Text(settled(means).to_string())));
         let needed = means.needed().filter(|_| means.unsettled().next().is_some());

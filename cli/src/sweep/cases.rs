@@ -30,6 +30,7 @@ use std::path::{Path, PathBuf};
 
 use roulement::scene::schedule::{files, is_block};
 use roulement::scene::system::SystemScene;
+use roulement::schema::regular;
 use roulement::{Scene, SceneError};
 use toml::{Table, Value};
 
@@ -96,7 +97,7 @@ impl Cases {
     /// If the file cannot be read, or is no table of cases; with what is wrong.
     pub fn load(path: &Path) -> Result<Self, SweepError> {
         let failed = |why: String| SweepError::Cases { file: path.display().to_string(), why };
-        let text = std::fs::read_to_string(path).map_err(|why| failed(why.to_string()))?;
+        let text = regular::text(path).map_err(|why| failed(why.to_string()))?;
         let mut cases = if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
             Self::from_toml(&text).map_err(failed)?
         } else {
@@ -279,7 +280,7 @@ pub fn scene_of(text: &str) -> Result<CaseScene, SceneError> {
 /// # Errors
 /// If the scene is refused.
 pub fn base_of(path: &Path) -> Result<(String, Vec<String>), SceneError> {
-    if std::fs::read_to_string(path).is_ok_and(|text| SystemScene::is_system(&text)) {
+    if regular::text(path).is_ok_and(|text| SystemScene::is_system(&text)) {
         return SystemScene::load(path).map(|scene| (scene.source.clone(), scene.notes()));
     }
     Scene::load(path).map(|scene| (scene.source.clone(), scene.notes()))

@@ -1,10 +1,12 @@
 //! Rows of finished cases on the disk. The name of a file is a hash of all that the row follows from, so that a sweep that is
 //! started again, with more cases or other ones, runs only what is not there. Files are written aside and then renamed: a file
-//! of that name is whole.
+//! of that name was whole. Checksums at its end tell whether it still is: what was damaged or changed since is not there.
 
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use roulement::schema::regular;
 use sha2::{Digest, Sha256};
 
 use super::SweepError;
@@ -12,9 +14,13 @@ use super::case::{Row, Wanted};
 use crate::report::cells::{Cell, Column};
 
 /// Form of the rows: another number where their columns mean something else.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 /// [-] bytes of the hash in a name: two of 1e9 cases agree by chance with 1e-21.
 const BYTES: usize = 16;
+
+/// What stands before the checksum of a whole table, and before that of all lines above it, which is the last.
+const OF_TABLE: &str = "# sha256 of the table ";
+const OF_LINES: &str = "# sha256 of these lines ";
 
 /// Directory of whole runs beside the summary.
 pub const RUNS: &str = "runs";
@@ -42,16 +48,41 @@ impl Store {
         let tables = wanted.tables.as_deref().unwrap_or_default();
         let wanted = format!("{}\0{tables}", wanted.columns.join(","));
         let hash = Sha256::digest(format!("{SCHEMA}\0{program}\0{wanted}\0{scene}"));
-        hash[..BYTES].iter().map(|byte| format!("{byte:02x}")).collect()
+        hex(&hash[..BYTES])
     }
 
     fn path(&self, name: &str) -> PathBuf {
         self.directory.join("cases").join(format!("{name}.csv"))
     }
 
-    /// Is a case done?
-    pub fn has(&self, name: &str) -> bool {
+    /// Is a case done, and all that is kept of it as it was written? Its whole table is in a file of this ending, if one is wanted.
+    pub fn has(&self, name: &str, tables: Option<&str>) -> bool {
+        let Some(lines) = self.lines(name) else { return false };
+        match (lines.rsplit_once(OF_TABLE), tables) {
+            (Some((_, sum)), Some(ending)) => {
+                sum_of_file(&self.table_path(name, ending)).is_ok_and(|found| found == sum.trim_end())
+            }
+            // A case that has failed has no table.
+            _ => true,
+        }
+    }
+
+    /// Is there a file of a case, whatever is in it?
+    pub fn has_file(&self, name: &str) -> bool {
         self.path(name).is_file()
+    }
+
+    /// What is written of a case above its checksum; none if it is not there or not as it was written.
+    fn lines(&self, name: &str) -> Option<String> {
+        let mut text = regular::text(&self.path(name)).ok()?;
+        let (lines, sum) = text.strip_suffix('\n')?.rsplit_once(OF_LINES)?;
+        let end = (sum == hex(&Sha256::digest(lines))).then_some(lines.len())?;
+        text.truncate(end);
+        Some(text)
+    }
+
+    fn table_path(&self, name: &str, ending: &str) -> PathBuf {
+        self.directory.join("tables").join(format!("{name}.{ending}"))
     }
 
     /// File of the whole table of a case.
@@ -61,7 +92,7 @@ impl Store {
     pub fn table(&self, name: &str, ending: &str) -> Result<PathBuf, SweepError> {
         let tables = self.directory.join("tables");
         fs::create_dir_all(&tables).map_err(|why| SweepError::file("make", &tables, &why))?;
-        Ok(tables.join(format!("{name}.{ending}")))
+        Ok(self.table_path(name, ending))
     }
 
     /// Directory of the whole run of a case.
@@ -74,30 +105,44 @@ impl Store {
         Ok(runs.join(name))
     }
 
-    /// Keeps the row of a case.
+    /// Keeps the row of a case, and the checksum of its whole table, if it has one.
     ///
     /// # Errors
-    /// If the file cannot be written.
-    pub fn put(&self, name: &str, row: &Row) -> Result<(), SweepError> {
+    /// If the file cannot be written, or the table not be read.
+    pub fn put(&self, name: &str, row: &Row, table: Option<&Path>) -> Result<(), SweepError> {
         let path = self.path(name);
         let failed = |why: &std::io::Error| SweepError::file("write", &path, why);
-        let text = to_text(row).map_err(|why| failed(&why))?;
+        let mut text = to_text(row).map_err(|why| failed(&why))?;
+        if let Some(table) = table {
+            let sum = sum_of_file(table).map_err(|why| SweepError::file("read", table, &why))?;
+            text += &format!("{OF_TABLE}{sum}\n");
+        }
+        text += &format!("{OF_LINES}{}\n", hex(&Sha256::digest(&text)));
         let aside = aside(&path);
         fs::write(&aside, text).and_then(|()| fs::rename(&aside, &path)).map_err(|why| failed(&why))
     }
 
-    /// The row of a case; none if it is not done.
-    ///
-    /// # Errors
-    /// If the file cannot be read.
-    pub fn get(&self, name: &str) -> Result<Option<Row>, SweepError> {
-        let path = self.path(name);
-        if !path.is_file() {
-            return Ok(None);
+    /// The row of a case; none if it is not done, or its file not as it was written.
+    pub fn get(&self, name: &str) -> Option<Row> {
+        from_text(&self.lines(name)?).ok()
+    }
+}
+
+/// Bytes in hexadecimal digits.
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Checksum of a file of any size.
+fn sum_of_file(path: &Path) -> std::io::Result<String> {
+    let mut file = regular::open(path)?;
+    let mut hash = Sha256::new();
+    let mut part = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut part)? {
+            0 => return Ok(hex(&hash.finalize())),
+            count => hash.update(&part[..count]),
         }
-        let text = fs::read_to_string(&path);
-        let row = text.and_then(|text| from_text(&text).map_err(Into::into));
-        row.map(Some).map_err(|why| SweepError::file("read", &path, &why))
     }
 }
 

@@ -6,14 +6,14 @@ use std::path::Path;
 
 use super::SweepError;
 use super::all::Sweep;
-use super::case::{Row, failed};
+use super::case::{Row, WARNINGS, failed};
 use super::store::aside;
 use crate::report::cells::{Cell, Column};
 #[cfg(feature = "parquet")]
 use crate::report::parquet::ParquetWriter;
 
 /// How many cases ended how.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// With a result.
     pub done: usize,
@@ -21,14 +21,15 @@ pub struct Counts {
     pub failed: usize,
     /// Not yet.
     pub not_run: usize,
+    /// With a result and warnings.
+    pub warned: usize,
+    /// The first of these, counted from 1, and what it warns of.
+    pub first_warning: Option<(usize, String)>,
 }
 
 impl Sweep {
     /// Row of a case with its number and its keys before what came of it.
-    ///
-    /// # Errors
-    /// If a file cannot be read.
-    pub fn row(&self, case: usize) -> Result<Row, SweepError> {
+    fn row(&self, case: usize) -> Row {
         let mut row: Row = vec![(Column::number("case", ""), Cell::Number((case + 1) as f64))];
         for (place, key) in self.cases.keys.iter().enumerate() {
             let shown =
@@ -50,12 +51,12 @@ impl Sweep {
                         (Column::text("reason"), Cell::Empty),
                     ]
                 };
-                (name.as_str(), self.store.get(name)?.unwrap_or_else(not_run))
+                (name.as_str(), self.store.get(name).unwrap_or_else(not_run))
             }
         };
         row.push((Column::text("file"), Cell::Text(name.to_string())));
         row.extend(own);
-        Ok(row)
+        row
     }
 
     fn cell(&self, place: usize, shown: &str) -> Cell {
@@ -68,14 +69,14 @@ impl Sweep {
     /// Writes `summary.csv` and, where the program can, `summary.parquet`.
     ///
     /// # Errors
-    /// If files cannot be read or written.
+    /// If files cannot be written.
     pub fn write_summary(&self, directory: &Path) -> Result<Counts, SweepError> {
         let cases = self.names.len();
         // Cases of other settings have other columns: all that there are, each behind those that it was first seen behind.
         let mut table = Columns::default();
         let mut counts = Counts::default();
         for case in 0..cases {
-            let row = self.row(case)?;
+            let row = self.row(case);
             match row
                 .iter()
                 .find(|(column, _)| column.name == "status")
@@ -85,6 +86,14 @@ impl Sweep {
                 Some("done") => counts.done += 1,
                 Some("failed") => counts.failed += 1,
                 _ => counts.not_run += 1,
+            }
+            let warns = |(column, cell): &(Column, Cell)| {
+                let said = column.name.rsplit('.').next() == Some(WARNINGS) && column.unit.is_none();
+                Some(cell.to_text()).filter(|text| said && !text.is_empty())
+            };
+            if let Some(warning) = row.iter().find_map(warns) {
+                counts.warned += 1;
+                counts.first_warning.get_or_insert((case + 1, warning));
             }
             table.see(&row);
         }
@@ -104,7 +113,7 @@ impl Sweep {
         #[cfg(feature = "parquet")]
         let mut parquet = ParquetWriter::create(&part, table.columns.clone()).map_err(not_written)?;
         for case in 0..cases {
-            let cells = table.fill(self.row(case)?);
+            let cells = table.fill(self.row(case));
             csv.write_record(cells.iter().map(Cell::to_text)).map_err(|why| failed(why.into()))?;
             #[cfg(feature = "parquet")]
             parquet.push(cells.into_iter()).map_err(not_written)?;

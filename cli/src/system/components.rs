@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use roulement::analysis::auto;
 use roulement::scene::Scene;
+use roulement::schema::regular::{self, LARGEST_BINARY};
 
 use super::description::{Named, Source};
 use super::interface::Interface;
@@ -62,7 +63,7 @@ pub fn prepare(
         let bytes = match source {
             Source::Fmu(path) => {
                 let path = beside.join(path);
-                let bytes = fs::read(&path)
+                let bytes = regular::bytes(&path, LARGEST_BINARY)
                     .map_err(|why| failed(format!("cannot read {}: {why}", path.display())))?;
                 fs::write(&package, &bytes).map_err(file_error("write", &package))?;
                 bytes
@@ -75,7 +76,7 @@ pub fn prepare(
                     libraries.push(library_beside_executable().map_err(|why| failed(why.to_string()))?);
                 }
                 write_fmu(&scene, name, &libraries, &package).map_err(|why| failed(why.to_string()))?;
-                fs::read(&package).map_err(file_error("read", &package))?
+                regular::bytes(&package, LARGEST_BINARY).map_err(file_error("read", &package))?
             }
         };
         let interface = Interface::of_package(&bytes).map_err(failed)?;

@@ -20,6 +20,7 @@ mod start;
 
 use std::path::{Path, PathBuf};
 
+use roulement::schema::regular;
 use thiserror::Error;
 
 pub use description::Description;
@@ -97,7 +98,7 @@ pub struct Written {
 /// See [`SystemError`]. Where the description is wrong, nothing but packages of its scenes has been written.
 pub fn write(file: &Path, folder: &Path, libraries: &[PathBuf]) -> Result<Written, SystemError> {
     let refused = |why| SystemError::Description { file: file.display().to_string(), why };
-    let text = std::fs::read_to_string(file).map_err(file_error("read", file))?;
+    let text = regular::text(file).map_err(file_error("read", file))?;
     let description = Description::read(&text).map_err(refused)?;
     let osp = folder.join(format!("{}-osp", description.name));
     std::fs::create_dir_all(&osp).map_err(file_error("make the folder", &osp))?;

@@ -10,6 +10,7 @@ use std::path::Path;
 
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
+use roulement::schema::regular::{self, LARGEST_BINARY};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
@@ -44,7 +45,7 @@ pub fn write(system: &System, packages: &Path, file: &Path) -> Result<(), System
         let package = packages.join(name);
         // Packages are deflated already.
         zip.start_file(format!("resources/{name}"), stored)?;
-        zip.write_all(&fs::read(&package).map_err(file_error("read", &package))?)?;
+        zip.write_all(&regular::bytes(&package, LARGEST_BINARY).map_err(file_error("read", &package))?)?;
     }
     let partial = file.with_extension("ssp.part");
     fs::write(&partial, zip.finish()?.into_inner()).map_err(file_error("write", &partial))?;

@@ -102,3 +102,27 @@ fn cost_writes_table_plots_and_report() {
         assert!(report.contains(part) && page.contains(part), "{part}");
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_study_keeps_what_it_has() {
+    let scratch = Scratch::new("cost-interrupted");
+    let study = |duration: &str, seconds: f64| {
+        let text = edited("cost/thrust", &[("load.duration", duration)]).source;
+        std::fs::write(scratch.path("study.toml"), text).unwrap();
+        let child = Command::new(env!("CARGO_BIN_EXE_roulement"))
+            .args(["cost", &scratch.path("study.toml"), "-o", &scratch.path("out"), "--threads", "1"])
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_secs_f64(seconds));
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let said = study("\"1000 s\"", 1.0);
+    assert!(said.contains("interrupted: before any reference was there"), "{said}");
+    assert!(!Path::new(&scratch.path("out/cost.csv")).exists());
+}

@@ -63,3 +63,34 @@ fn what_is_no_contact_of_the_bearing_is_refused() {
         assert!(!output.status.success() && said.contains(part), "{said}");
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_field_keeps_the_times_that_were_reached() {
+    let scratch = Scratch::new("field-interrupted");
+    let text = edited("thrust", &[("load.duration", "\"1000 s\"")]).source;
+    std::fs::write(scratch.path("long.toml"), text).unwrap();
+    for name in ["-INT", "-TERM"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_roulement"))
+            .args(["field", &scratch.path("long.toml"), "--contacts", "1.inner", "--times", "0.1 ms,900 s"])
+            .args(["--cells", "8", "-o", &scratch.path("field.csv")])
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        // It says when it has the first time.
+        let mut said = std::io::BufReader::new(child.stderr.take().unwrap());
+        let mut line = String::new();
+        while !line.contains("0.100000 ms, ball 1") {
+            line.clear();
+            assert!(std::io::BufRead::read_line(&mut said, &mut line).unwrap() > 0, "it ended");
+        }
+        assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(130));
+        line.clear();
+        std::io::BufRead::read_line(&mut said, &mut line).unwrap();
+        assert!(line.starts_with("interrupted at "), "{line}");
+        let times = column(&scratch.read("field.csv"), "time [s]");
+        assert!(times.len() > 16 && times.iter().all(|time| *time == 1e-4), "{times:?}");
+        std::fs::remove_file(scratch.path("field.csv")).unwrap();
+    }
+}

@@ -158,3 +158,109 @@ fn only_libraries_of_the_platform_are_packed() {
     assert!(message.contains("two libraries for linux64"), "{message}");
     assert_eq!(pack(&[&library]), "");
 }
+
+/// What the program says of input that it must refuse at once: one that waits is ended, and fails the test.
+#[cfg(unix)]
+fn refusal(arguments: &[&str]) -> String {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_roulement"))
+        .args(arguments)
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begin = std::time::Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if begin.elapsed().as_secs() > 20 {
+            child.kill().unwrap();
+            panic!("{arguments:?} waits");
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let output = child.wait_with_output().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {message}");
+    message
+}
+
+#[cfg(unix)]
+#[test]
+fn regression_only_regular_files_are_read_and_no_huge_ones() {
+    let scratch = Scratch::new("regular");
+    let (pipe, huge) = (scratch.path("pipe"), scratch.path("huge"));
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    // Takes no room on the disk.
+    std::fs::File::create(&huge).unwrap().set_len(501_000_000).unwrap();
+    let file = |name: &str, text: &str| {
+        std::fs::write(scratch.path(name), text).unwrap();
+        scratch.path(name)
+    };
+    let text = std::fs::read_to_string(scene("thrust")).unwrap();
+    let shaft = std::fs::read_to_string(scene("shafts/pinion")).unwrap();
+    let catalogue = shaft.lines().find(|line| line.starts_with("catalogue = ")).unwrap();
+    for (path, why) in [
+        (pipe.as_str(), "it is a pipe or a device, not a regular file"),
+        ("/dev/zero", "it is a pipe or a device, not a regular file"),
+        (&scratch.path(""), "it is a folder, not a regular file"),
+        (&huge, "it is larger than 500 MB, the limit of such a file"),
+    ] {
+        let cases = file("cases.csv", "friction.ball_race\n0.05\n");
+        let measured = text.replace(
+            "x = { force = \"1500 N\" }",
+            &format!("x = {{ force = {{ file = \"{path}\", time = \"t [s]\", value = \"F [N]\" }} }}"),
+        );
+        let profile = text.clone() + &format!("\n[form]\ninner = {{ profile = \"{path}\" }}\n");
+        let included = shaft.replacen(catalogue, &format!("scene = \"{path}\""), 1);
+        let rigid = ["mass = ", "polar_inertia = ", "transverse_inertia = "];
+        let bare = shaft.lines().filter(|line| !rigid.iter().any(|key| line.starts_with(key)));
+        let matrices = bare.collect::<Vec<_>>().join("\n");
+        let matrices = matrices.replacen("[shaft]", &format!("[shaft]\nmatrices = \"{path}\""), 1);
+        let (measured, profile) = (file("measured.toml", &measured), file("profile.toml", &profile));
+        let (included, matrices) = (file("included.toml", &included), file("matrices.toml", &matrices));
+        for (arguments, key) in [
+            (&["run", path][..], ""),
+            (&["equilibrium", path], ""),
+            (&["describe", path], ""),
+            (&["fmu", path, "-o", "x.fmu"], ""),
+            (&["cost", path], ""),
+            (&["system", path, "-o", &scratch.path("system")], ""),
+            (&["contact", path], ""),
+            (&["sweep", path, "--scene", &scene("thrust")], ""),
+            (&["sweep", &cases, "--scene", path], ""),
+            (&["run", &measured], "load.x.force"),
+            (&["run", &profile], "form.inner.profile"),
+            (&["run", &included], "bearing.scene"),
+            (&["run", &matrices], "shaft.matrices"),
+        ] {
+            let message = refusal(arguments);
+            for part in [why, path, key] {
+                assert!(message.contains(part), "{arguments:?}: {message}\nshould say {part}");
+            }
+        }
+    }
+}
+
+#[test]
+fn regression_oil_that_hardly_flows_is_named_where_no_step_can_be_made() {
+    let scratch = Scratch::new("thick-oil");
+    let oil = [
+        ("effects.damping", "\"0.02 s/m\""),
+        ("film", "{ iso_vg = 5000, temperature = \"-20 degC\" }"),
+        ("effects.creep", "\"kalker_table\""),
+    ];
+    let output = scratch.run(&edited("radial", &oil), "out", &[]);
+    assert!(!output.status.success());
+    let message = String::from_utf8(output.stderr).unwrap();
+    let error = message.lines().find(|line| line.starts_with("error: ")).unwrap();
+    println!("{error}");
+    // Walther's law with the slope of the grade: tests/effects has the viscosity.
+    for part in
+        ["the oil is too thick: ISO VG 5000 at -20 degC has 17860 Pa s", "film.temperature", "at 0 s "]
+    {
+        assert!(error.contains(part), "{error}\nshould say {part}");
+    }
+    // No number of the message has more than four digits: it is what a run came to, and no input.
+    for number in error.split(|c: char| !c.is_ascii_digit() && c != '.') {
+        let digits = number.trim_matches('.').trim_start_matches(['0', '.']).replace('.', "");
+        assert!(digits.trim_end_matches('0').len() <= 4, "{number} in {error}");
+    }
+}

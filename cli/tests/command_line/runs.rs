@@ -180,7 +180,7 @@ fn columns_and_window_choose_what_is_written() {
     assert!(!run(&["--window", "2:1"]).status.success());
 }
 
-/// A run that takes long, once some of its rows are in its table.
+/// A run that takes long, once some of its rows are in its table, as yet without any of another run.
 #[cfg(unix)]
 fn long_run(scratch: &Scratch) -> std::process::Child {
     let text =
@@ -230,9 +230,16 @@ fn whole_rows(table: &str) -> usize {
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_the_row_and_gives_summary_and_plots() {
+    for name in ["-INT", "-TERM"] {
+        ends_with_what_it_has(name);
+    }
+}
+
+#[cfg(unix)]
+fn ends_with_what_it_has(name: &str) {
     let scratch = Scratch::new("interrupt");
     let child = long_run(&scratch);
-    signal(&child, "-INT");
+    signal(&child, name);
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(whole_rows(&table_of(&scratch)) >= 50);
@@ -242,6 +249,83 @@ fn an_interrupt_ends_the_row_and_gives_summary_and_plots() {
         assert!(std::fs::read_to_string(scratch.path(&format!("out/{name}"))).unwrap().len() > 100, "{name}");
     }
     assert!(String::from_utf8(output.stderr).unwrap().contains("interrupted at"));
+}
+
+/// A folder has the files of one run, whatever ended it: what a former run left is gone before the first row.
+#[cfg(unix)]
+#[test]
+fn regression_a_killed_run_is_not_taken_for_the_one_before_it() {
+    let scratch = Scratch::new("owned");
+    let page = scratch.path("page.html");
+    let report = |of: &str| roulement(&["report", &scratch.path(of), "-o", &page]);
+    let short = edited("thrust", &[("load.duration", "\"5 ms\"")]);
+    let whole = scratch.run(&short, "out", &[]);
+    assert!(whole.status.success(), "{}", String::from_utf8_lossy(&whole.stderr));
+    let made = |of: &str| -> Vec<String> {
+        let files = std::fs::read_dir(scratch.path(of)).unwrap();
+        let mut names: Vec<String> =
+            files.map(|file| file.unwrap().file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    };
+    assert!(made("out").len() >= 7 && report("out").status.success(), "{:?}", made("out"));
+    let mine = scratch.path("out/notes.txt");
+    std::fs::write(&mine, "mine").unwrap();
+    std::fs::remove_file(scratch.path("out/results.csv")).unwrap();
+
+    let mut child = long_run(&scratch);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert_eq!(made("out"), ["notes.txt", "results.csv", "run.json"]);
+    let refused = report("out");
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(!refused.status.success() && message.contains("is unfinished"), "{message}");
+
+    // The next run has the folder again; one that is refused leaves it as it is.
+    assert!(scratch.run(&short, "out", &[]).status.success());
+    let before = made("out");
+    assert!(!scratch.run(&short, "out", &["--columns", "inner.farce.x"]).status.success());
+    assert!(made("out") == before && report("out").status.success());
+    let record = scratch.read("out/run.json");
+    assert!(record.contains("\"ended_early\":null") && !record.contains("unfinished"));
+}
+
+#[cfg(unix)]
+#[test]
+fn regression_a_shaft_that_is_killed_is_not_taken_for_the_one_before_it() {
+    let scratch = Scratch::new("owned-shaft");
+    let text = std::fs::read_to_string(scene("shafts/pinion")).unwrap();
+    let run = |duration: &str| {
+        std::fs::write(scratch.path("shaft.toml"), text.replace("\"20 ms\"", duration)).unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_roulement"));
+        command.args(["run", &scratch.path("shaft.toml"), "-o", &scratch.path("out")]);
+        command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().unwrap()
+    };
+    let table =
+        || std::fs::read_to_string(scratch.path("out/shaft.csv")).map_or(0, |text| text.lines().count());
+    let report = || roulement(&["report", &scratch.path("out/left"), "-o", &scratch.path("page.html")]);
+    assert!(run("\"0.5 ms\"").wait_with_output().unwrap().status.success() && report().status.success());
+    std::fs::remove_file(scratch.path("out/shaft.csv")).unwrap();
+    let there = |name: &str| Path::new(&scratch.path(&format!("out/{name}"))).exists();
+    for name in ["-KILL", "-TERM"] {
+        let child = run("\"1000 s\"");
+        let begin = std::time::Instant::now();
+        while table() < 8 {
+            assert!(begin.elapsed().as_secs() < 120, "no rows come");
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+        signal(&child, name);
+        let output = child.wait_with_output().unwrap();
+        let ended = name == "-TERM";
+        assert_eq!(output.status.code(), ended.then_some(130));
+        for file in ["summary.txt", "shaft.svg", "left/summary.txt", "right/means.csv", "right/bearing.svg"] {
+            assert_eq!(there(file), ended, "{name}: {file}");
+        }
+        assert_eq!(report().status.success(), ended, "{name}");
+        if !ended {
+            std::fs::remove_file(scratch.path("out/shaft.csv")).unwrap();
+        }
+    }
 }
 
 #[cfg(unix)]

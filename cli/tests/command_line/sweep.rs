@@ -28,6 +28,12 @@ pub fn good(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
+/// What a sweep says that has no result of every case.
+fn incomplete(output: &Output) -> String {
+    assert_eq!(output.status.code(), Some(4), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
 pub fn numbers(texts: &[String]) -> Vec<f64> {
     texts.iter().map(|text| text.parse().unwrap()).collect()
 }
@@ -146,7 +152,7 @@ fn a_failed_case_is_a_row_with_its_reason() {
     let text = "friction.ball_race,solver.min_step,solver.initial_step,solver.tolerance,load.duration\n\
                 -1,,,,1 ms\n,9 us,10 us,1e-12,1 ms\n0.05,,,,1 ms\n";
     std::fs::write(scratch.path("cases.csv"), text).unwrap();
-    let said = good(&sweep(&scratch, "cases.csv", "out", &[]));
+    let said = incomplete(&sweep(&scratch, "cases.csv", "out", &[]));
     assert!(said.contains("1 done, 2 failed, 0 not run"), "{said}");
     let summary = columns(&scratch.read("out/summary.csv"));
     assert_eq!(summary["status"], ["failed", "failed", "done"]);
@@ -158,7 +164,7 @@ fn a_failed_case_is_a_row_with_its_reason() {
     );
     assert!(summary["reason"][2].is_empty() && summary["time [s]"][0].is_empty());
     // It is not tried again.
-    let said = good(&sweep(&scratch, "cases.csv", "out", &[]));
+    let said = incomplete(&sweep(&scratch, "cases.csv", "out", &[]));
     assert!(said.contains("3 of them were there already"), "{said}");
 }
 
@@ -199,13 +205,13 @@ fn finished(scratch: &Scratch, to: &str) -> HashMap<String, std::time::SystemTim
 #[test]
 fn an_interrupted_sweep_goes_on_where_it_was() {
     let scratch = Scratch::new("sweep-interrupted");
-    for (signal, to) in [("-INT", "interrupted"), ("-KILL", "killed")] {
+    for (signal, to) in [("-INT", "interrupted"), ("-TERM", "ended"), ("-KILL", "killed")] {
         let mut child = begun(&scratch, to);
         Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
         let code = child.wait().unwrap().code();
         let kept = finished(&scratch, to);
         assert!((3..24).contains(&kept.len()), "{}", kept.len());
-        if signal == "-INT" {
+        if signal != "-KILL" {
             assert_eq!(code, Some(130));
             let summary = columns(&scratch.read(&format!("{to}/summary.csv")));
             let count = |status: &str| summary["status"].iter().filter(|s| *s == status).count();
@@ -520,4 +526,82 @@ fn invariant_a_run_reads_a_measured_file_beside_its_scene() {
     for part in ["file.toml", "load.y.force", "m.csv, line 3", "t [ms] = 0 comes after 0: times must grow"] {
         assert!(message.contains(part), "{message}\nshould say {part}");
     }
+}
+
+/// Whatever happens to what is kept of a case, it is found out and the case is run again, to the same bits.
+#[test]
+fn regression_a_damaged_case_is_run_again() {
+    let scratch = Scratch::new("sweep-damaged");
+    std::fs::write(scratch.path("cases.csv"), "friction.ball_race,load.duration\n0.05,1 ms\n0.06,1 ms\n")
+        .unwrap();
+    let run = || sweep(&scratch, "cases.csv", "out", &["--tables", "csv", "--threads", "2"]);
+    good(&run());
+    let summary = scratch.read("out/summary.csv");
+    let file = columns(&summary)["file"][1].clone();
+    let (case, table) = (format!("out/cases/{file}.csv"), format!("out/tables/{file}.csv"));
+    // Another digit: the last of a number in its last row.
+    let altered = |text: &[u8]| -> Vec<u8> {
+        let mut text = text.to_vec();
+        let at = text.iter().position(|byte| *byte == b'\n').unwrap();
+        let digit = at + text[at..].iter().position(u8::is_ascii_digit).unwrap();
+        text[digit] = if text[digit] == b'1' { b'2' } else { b'1' };
+        text
+    };
+    let shorter = |text: &[u8]| text[..text.len() / 2].to_vec();
+    let empty = |_: &[u8]| vec![];
+    let no_text = |_: &[u8]| vec![0xff, 0xfe, 0x00];
+    let damages: [(&str, &dyn Fn(&[u8]) -> Vec<u8>); 4] =
+        [("digit", &altered), ("shorter", &shorter), ("empty", &empty), ("no text", &no_text)];
+    for (of, (what, damage)) in
+        [&case, &table].into_iter().flat_map(|of| damages.iter().map(move |d| (of, d)))
+    {
+        let whole = std::fs::read(scratch.path(of)).unwrap();
+        std::fs::write(scratch.path(of), damage(&whole)).unwrap();
+        let output = run();
+        let said = good(&output);
+        assert!(said.contains("2 done, 0 failed, 0 not run; 1 of them were there"), "{what}: {said}");
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(told.contains("1 of the finished cases were damaged or changed"), "{what}: {told}");
+        assert_eq!(std::fs::read(scratch.path(of)).unwrap(), whole, "{what}");
+        assert_eq!(scratch.read("out/summary.csv"), summary, "{what}");
+    }
+    std::fs::remove_file(scratch.path(&table)).unwrap();
+    assert!(good(&run()).contains("1 of them were there"));
+    let output = run();
+    assert!(good(&output).contains("2 of them were there"));
+    assert!(!String::from_utf8_lossy(&output.stderr).contains("damaged"));
+}
+
+/// A row of the summary has what a run of the case warns of.
+#[test]
+fn regression_a_sweep_has_the_warnings_of_its_runs() {
+    let scratch = Scratch::new("sweep-warnings");
+    good(&roulement(&["bearing", "6206", "-o", &scratch.path("6206.toml")]));
+    let cases = "scene = \"6206.toml\"\n[set]\nload.duration = \"3 ms\"\nload.y.force = \"4 kN\"\n\
+                 solver.accuracy = \"fast\"\n[grid]\n\
+                 load.rz.rotation = { from = \"0 mrad\", to = \"30 mrad\", steps = 3 }\n";
+    std::fs::write(scratch.path("cases.toml"), cases).unwrap();
+    let output =
+        roulement(&["sweep", &scratch.path("cases.toml"), "-o", &scratch.path("out"), "--runs", "3"]);
+    let said = good(&output);
+    let summary = columns(&scratch.read("out/summary.csv"));
+    println!("{:?}", summary["warnings"]);
+    assert_eq!(summary["status"], ["done", "done", "done"]);
+    assert!(summary["warnings"][0].is_empty(), "{:?}", summary["warnings"]);
+    let warning = &summary["warnings"][2];
+    let pressure: f64 = summary["peak_pressure.largest [Pa]"][2].parse().unwrap();
+    let largest = format!("the largest contact pressure is {:.0} MPa", pressure * 1e-6);
+    assert!(pressure > 5e9 && warning.contains(&largest), "{pressure} {warning}");
+    for race in ["inner", "outer"] {
+        let share: f64 = summary[&format!("over_{race}_shoulders.largest [1]")][2].parse().unwrap();
+        let said = format!("up to {:.2} % of a load is beyond the {race} shoulders", 100.0 * share);
+        assert_eq!(share > 0.0, warning.contains(&said), "{share} {warning}");
+    }
+    assert!(warning.contains("% of a load is beyond the"), "{warning}");
+    let warned = summary["warnings"].iter().filter(|text| !text.is_empty()).count();
+    let last = said.lines().last().unwrap();
+    assert!(last.starts_with(&format!("WARNINGS         in {warned} cases, as in case ")), "{said}");
+    // The kept run of the case says the same.
+    let kept = scratch.read(&format!("out/runs/{}/summary.txt", summary["file"][2]));
+    assert!(kept.contains("over shoulders "), "{kept}");
 }

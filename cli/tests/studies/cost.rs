@@ -1,6 +1,7 @@
 //! The study of what accuracy costs: its errors have the orders they must have, and its goals keep what they promise.
 
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use indicatif::ProgressBar;
 use roulement::scene::{Accuracy, CreepLaw, Scene};
@@ -9,7 +10,7 @@ use roulement_cli::cost::levers::{
 };
 use roulement_cli::cost::norms::{Comparison, Norm, errors};
 use roulement_cli::cost::record::record;
-use roulement_cli::cost::{Choice, Measured, SCENES, SceneStudy, study, study_of};
+use roulement_cli::cost::{Choice, Measured, SCENES, SceneStudy, StudyError, study, study_of};
 use strum::VariantArray;
 
 /// The misalignment scene without its cage, which makes it smooth, and with its tilt in 2.4 ms instead of 16.
@@ -151,7 +152,8 @@ fn invariant_polynomials_come_closer_to_the_table_with_their_degree() {
 fn invariant_the_cage_of_the_misalignment_scene_is_measured() {
     let mut scene = Scene::parse(SCENES[5].1).unwrap();
     scene.load.duration.0 = 8e-3;
-    let fixed = |scene: &Scene, step| record(&Setting::fixed_step(scene, step)).unwrap();
+    let fixed =
+        |scene: &Scene, step| record(&Setting::fixed_step(scene, step), &AtomicBool::default()).unwrap();
     let caged = fixed(&scene, 1e-5);
     let error = |norm| {
         let errors = errors(&caged, &fixed(&scene, 2e-5), Comparison::WindowMeans, 2e-3);
@@ -195,7 +197,7 @@ fn invariant_results_do_not_depend_on_threads_and_only_levers_that_were_asked_fo
     scene.load.duration.0 = 1e-3;
     let only = vec![Lever::StepCap, Lever::Level];
     let run = |threads| {
-        let choice = Choice { only: only.clone(), threads };
+        let choice = Choice { only: only.clone(), threads, ..Choice::default() };
         study_of("threads", &scene, &choice, &ProgressBar::hidden()).unwrap()
     };
     let (one, many) = (run(1), run(3));
@@ -209,7 +211,7 @@ fn invariant_results_do_not_depend_on_threads_and_only_levers_that_were_asked_fo
     }
     assert_eq!(one.error_bars, many.error_bars);
     // Without levers that change the model there is no reference for them, and the advice is of steps alone.
-    let choice = Choice { only: vec![Lever::StepCap], threads: 2 };
+    let choice = Choice { only: vec![Lever::StepCap], threads: 2, ..Choice::default() };
     let steps = study_of("steps", &scene, &choice, &ProgressBar::hidden()).unwrap();
     assert_eq!(steps.error_bar(ReferenceKind::Model).worst(), None);
     assert!(steps.advice[0].contains("take saturated with max_step = "), "{:?}", steps.advice);
@@ -297,4 +299,29 @@ fn regression_goals_keep_their_wrench_error_on_all_smooth_scenes() {
         }
     }
     assert!(smooth >= 3, "{smooth}");
+}
+
+#[test]
+fn an_interrupted_study_keeps_the_runs_that_it_has() {
+    let scene = Scene::parse(SCENES[0].1).unwrap();
+    let scene = Scene::edited(&scene.source, [("load.duration", "\"2 ms\"")]).unwrap();
+    let choice = Choice { only: vec![Lever::StepCap], threads: 1, ..Choice::default() };
+    let bar = ProgressBar::hidden();
+    // Once the references are there.
+    let study = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !bar.message().contains("step cap") {
+                std::thread::sleep(std::time::Duration::from_millis(1));
+            }
+            choice.interrupted.store(true, Ordering::Relaxed);
+        });
+        study_of("begun", &scene, &choice, &bar).unwrap()
+    });
+    let is_left_out = |why: &String| why == "interrupted";
+    let left_out = study.points.iter().filter(|point| point.result.as_ref().is_err_and(is_left_out)).count();
+    assert!(left_out > 0, "{:?}", study.points);
+    assert!(study.error_bar(ReferenceKind::Numerical).worst().is_some());
+    // Of a study that is interrupted before that nothing can be told.
+    let none = study_of("none", &scene, &choice, &bar);
+    assert!(matches!(none, Err(StudyError::Interrupted)));
 }

@@ -1,6 +1,8 @@
 //! The reference of the accuracy study against an integrator that shares nothing with ours but the contact kernel:
 //! DOP853, explicit, of order 8 (crate `ode_solvers`), at a tolerance of 1e-11.
 
+use std::sync::atomic::AtomicBool;
+
 use nalgebra::{UnitQuaternion, Vector3};
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{DVector as Unknowns, Dop853, System};
@@ -196,8 +198,10 @@ fn compare(scene: &Scene) -> [[f64; 2]; COMPARED.len()] {
     // Within a communication step we follow a cubic that meets the script at its ends: steps so short that it does not
     // matter.
     let communication = scene.load.output_interval.0 / 8.0;
-    let runs = reference_steps(scene)
-        .map(|step| record(&Setting { communication, ..Setting::fixed_step(scene, step) }).unwrap());
+    let runs = reference_steps(scene).map(|step| {
+        record(&Setting { communication, ..Setting::fixed_step(scene, step) }, &AtomicBool::default())
+            .unwrap()
+    });
     let truth = independent(scene, &runs[0]);
     let window = 0.25 * scene.load.duration.0;
     let found = runs.each_ref().map(|run| errors(run, &truth, Comparison::Pointwise, window));

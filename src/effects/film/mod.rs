@@ -14,7 +14,7 @@ use super::keys::Keys;
 use super::per_ball::ball_row;
 use super::reports::{BallOutput, ContactOutput, FilmOutput, Reports};
 use crate::contact::film::{Film, Loading, Lubricant, RacewayFilm, Supply};
-use crate::schema::numbers::Number;
+use crate::schema::numbers::{Number, four};
 use crate::schema::schedule::Schedule;
 use crate::schema::variable_units::{METRE, ONE, PASCAL_SECOND, Unit, WATT};
 use crate::schema::{Group, SceneError};
@@ -68,6 +68,21 @@ impl Films {
         (lubrication > 0.0).then(|| {
             let supply = self.supply(race, lubrication, warmth);
             Film::new(&self.races[race], supply, dry_friction)
+        })
+    }
+
+    /// What is to be said of an oil that is thicker than the model is meant for, and that steps may not be solved with; nothing of others.
+    pub fn stiff_oil(&self, lubrication: f64, warmth: &Warmth) -> Option<String> {
+        let viscosity = [0, 1].map(|race| self.supply(race, lubrication, warmth).viscosity);
+        let [inner, outer] = viscosity;
+        let (viscosity, limit) = (inner.max(outer), section::VISCOSITY.high);
+        (lubrication > 0.0 && viscosity > limit).then(|| {
+            format!(
+                "the oil is too thick: {} has {} Pa s, and above {limit} Pa s oil hardly flows; is film.temperature that of the \
+                 contacts?",
+                self.oil.name(self.temperature),
+                four(&viscosity)
+            )
         })
     }
 

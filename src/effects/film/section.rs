@@ -120,7 +120,7 @@ pub const LUBRICATION: Range = Range::closed(0.0, 1.0, "");
 const GRADE: Range = Range::closed(2.0, 5000.0, "mm2/s");
 /// From where oils are solid to where they burn.
 const TEMPERATURE: Range = Range::closed(-60.0, 400.0, "degC");
-const VISCOSITY: Range = Range::closed(1e-4, 100.0, "Pa.s");
+pub(super) const VISCOSITY: Range = Range::closed(1e-4, 100.0, "Pa.s");
 
 type Option64 = fn(&mut Section) -> Option<&mut f64>;
 

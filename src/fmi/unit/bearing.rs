@@ -122,6 +122,10 @@ impl Simulated for BearingUnit {
         follows_time(self.simulation.scene())
     }
 
+    fn duration(&self) -> f64 {
+        self.simulation.scene().load.duration.0
+    }
+
     fn start_at(&mut self, time: f64, values: &[f64]) -> Outcome {
         let scene = self.scene_with(values)?;
         self.simulation = Simulation::starting_at(&scene, time).map_err(|why| refused(&why))?;

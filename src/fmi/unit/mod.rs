@@ -71,6 +71,9 @@ pub trait Simulated {
     /// Does anything change by itself with time?
     fn follows_time(&self) -> bool;
 
+    /// \[s] time that the scene's scripts are written for, from 0.
+    fn duration(&self) -> f64;
+
     /// Starts again with the parameters among these values at a time \[s], under what the scripts say then.
     ///
     /// # Errors

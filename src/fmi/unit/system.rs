@@ -108,6 +108,10 @@ impl Simulated for SystemUnit {
         self.system.follows_time()
     }
 
+    fn duration(&self) -> f64 {
+        self.system.scene().load.duration.0
+    }
+
     fn start_at(&mut self, time: f64, _values: &[f64]) -> Outcome {
         self.system = System::starting_at(self.system.scene(), time).map_err(|why| refused(&why))?;
         Ok(())

@@ -9,7 +9,7 @@ use toml::{Table, Value};
 use super::{MountedScene, SystemLoad};
 use crate::catalogue::Request;
 use crate::scene::{Scene, SceneError};
-use crate::schema::{Mounting, MountingDirection, explain};
+use crate::schema::{Mounting, MountingDirection, explain, regular};
 
 /// A bearing as it is written.
 #[derive(Deserialize)]
@@ -55,9 +55,7 @@ impl WrittenBearing {
             (Some(Value::Table(keys)), None) => (keys.to_string(), given.folder.clone(), None),
             (Some(Value::String(file)), None) => {
                 let path = given.folder.join(&file);
-                let text = std::fs::read_to_string(&path)
-                    .map_err(|source| SceneError::Read { path: path.display().to_string(), source })
-                    .map_err(inside)?;
+                let text = regular::named(&path, "bearing.scene").map_err(inside)?;
                 (text, path.parent().unwrap_or(Path::new("")).to_path_buf(), Some(file))
             }
             (None, Some(designation)) => {

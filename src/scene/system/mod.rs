@@ -16,7 +16,7 @@ use toml::{Table, Value};
 
 use super::{Scene, SceneError};
 use crate::schema::units::{Acceleration, Force, Moment, Time};
-use crate::schema::{Components, HousingSection, Matrices, Mounting, ShaftSection, Solver, explain};
+use crate::schema::{Components, HousingSection, Matrices, Mounting, ShaftSection, Solver, explain, regular};
 
 /// A shaft with its bearings, as described by a file.
 #[derive(Clone, Debug)]
@@ -111,8 +111,7 @@ impl SystemScene {
     /// # Errors
     /// See [`SceneError`].
     pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| SceneError::Read { path: path.display().to_string(), source })?;
+        let text = regular::scene(path)?;
         Self::parse(&text, Some(&path.display().to_string()), path.parent().unwrap_or(Path::new("")))
     }
 

@@ -6,6 +6,7 @@ use std::path::Path;
 use toml::{Table, Value};
 
 use crate::schema::SceneError;
+use crate::schema::regular;
 use crate::schema::units::{Quantity, Time, Unit};
 
 /// Keys of a file.
@@ -62,8 +63,7 @@ fn read(block: &Table, folder: &Path) -> Result<Table, String> {
     };
     let (name, time, value) = (text_of("file")?, text_of("time")?, text_of("value")?);
     let path = folder.join(name);
-    let text =
-        std::fs::read_to_string(&path).map_err(|why| format!("cannot read {}: {why}", path.display()))?;
+    let text = regular::text(&path).map_err(|why| format!("cannot read {}: {why}", path.display()))?;
     let (rows, unit) = columns(&text, time, value).map_err(|why| format!("{}, {why}", path.display()))?;
     let mut table = Table::new();
     table.insert("table".into(), Value::Array(rows));

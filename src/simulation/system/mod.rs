@@ -19,6 +19,7 @@ use crate::dynamics::system::{Joint, SystemWorkspace};
 use crate::model::structure::{Carrier, StructureState};
 use crate::numerics::step_control::StepControl;
 use crate::scene::system::SystemScene;
+use crate::schema::numbers::four;
 use inputs::ShaftPaths;
 pub use inputs::{Played, ShaftInputs, drive_is_scripted};
 pub use outputs::{HousingOutputs, PointOutput, SystemOutputs};
@@ -64,8 +65,9 @@ pub enum SystemError {
     },
     /// A bearing is tilted further than linear structures are valid for.
     #[error(
-        "at {time} s the {race} race of bearing \"{name}\" is tilted by {tilt:.3} rad: more than {limit} rad, the most that the linear \
-         equations of a shaft or a housing hold for"
+        "at {} s the {race} race of bearing \"{name}\" is tilted by {tilt:.3} rad: more than {limit} rad, the most that the linear \
+         equations of a shaft or a housing hold for",
+        four(.time)
     )]
     Tilted {
         /// \[s] time.
@@ -80,7 +82,7 @@ pub enum SystemError {
         limit: f64,
     },
     /// So late that a step no longer changes the time.
-    #[error("at {time} s a step of {step} s is lost in rounding: begin nearer to time 0")]
+    #[error("at {} s a step of {} s is lost in rounding: begin nearer to time 0", four(.time), four(.step))]
     LostInRounding {
         /// \[s] time reached.
         time: f64,
