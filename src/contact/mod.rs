@@ -13,7 +13,7 @@ pub mod geometry;
 pub mod heathcote;
 pub mod hertz;
 pub mod identification;
-mod kinematics;
+pub(crate) mod kinematics;
 pub mod land;
 pub mod linear_theory;
 pub mod many;

@@ -37,11 +37,11 @@ fn damping_unit(force: bool, translation: bool) -> (Unit, f64) {
     }
 }
 
-/// One row per component of a matrix: what the load does, and names of translation and rotation.
+/// One row per component of a matrix: what the load does, names of translation and rotation, and what is to be known of it.
 fn components(
     name: &str,
     unit_of: UnitOf,
-    [does, translation, rotation]: [&str; 3],
+    [does, translation, rotation, note]: [&str; 4],
     matrix: fn(&Condensed) -> &Matrix6<f64>,
 ) -> Vec<Row> {
     let of = |i: usize, k: usize| {
@@ -54,7 +54,7 @@ fn components(
             unit,
             nominal,
             description: format!(
-                "external {load} {row} that {does} the inner race by its {by} {column} relative to the outer race"
+                "external {load} {row} that {does} the inner race by its {by} {column} relative to the outer race{note}"
             ),
             get: Getter::new(move |reports| reports.condensed.map_or(0.0, |c| matrix(c)[(i, k)])),
         }
@@ -80,9 +80,11 @@ impl Effect for Settings {
         if !self.on {
             return vec![];
         }
-        let mut rows =
-            components("stiffness", stiffness_unit, ["holds", "translation", "rotation"], |c| &c.stiffness);
-        let words = ["moves", "velocity", "angular velocity"];
+        let words = ["holds", "translation", "rotation", ""];
+        let mut rows = components("stiffness", stiffness_unit, words, |c| &c.stiffness);
+        // Creep forces are linear in slip over rolling speed: their damping grows as one over that speed.
+        let note = "; grows as the bearing slows down, and at rest is that of the creep law's 1e-3 m/s, no property of the bearing";
+        let words = ["moves", "velocity", "angular velocity", note];
         rows.extend(components("damping", damping_unit, words, |c| &c.damping));
         rows
     }

@@ -75,10 +75,12 @@ pub struct Outputs {
     pub frequencies: Frequencies,
     /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
     pub cage_speed: f64,
-    /// [-] 1 - cage speed over the orbital speed of balls that roll without slip at their contact angles on both races, their
-    /// mean weighted by load; 0 where that is 0.
+    /// [rad/s] orbital speed of balls that roll without slip at their contact angles on both races, their mean weighted by load.
+    pub rolling_speed: f64,
+    /// [-] 1 - cage speed over the rolling speed, in [-2, 3]. Its divisor is never less than half of the cage speed, and below 1e-3 m/s
+    /// at the pitch radius slip fades to 0: nothing rolls there.
     pub cage_slip: f64,
-    /// [-] the same of the balls' own orbital speeds, weighted alike.
+    /// [-] the same of the balls' own orbital speeds, weighted by load.
     pub ball_slip: f64,
     /// \[W] power lost to friction in all contacts.
     pub friction_power: f64,
@@ -184,6 +186,7 @@ impl Outputs {
             growth: model.growth.as_ref().map(|growth| growth.output(&conditions.warmth)),
             frequencies,
             cage_speed,
+            rolling_speed: rolling.rolling,
             cage_slip: rolling.slip_of(cage_speed),
             ball_slip: rolling.slip_of(rolling.orbit),
             friction_power: totals.friction_power,

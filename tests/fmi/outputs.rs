@@ -146,3 +146,24 @@ fn invariant_a_parameter_of_the_next_step_leaves_values_and_their_slopes() {
     assert!(outputs(&package, twin)[power] < outputs(&package, c)[power]);
     unsafe { [c, twin].iter().for_each(|c| fmi2FreeInstance(*c)) };
 }
+
+#[test]
+fn invariant_a_bearing_that_stops_and_turns_back_has_numbers_in_all_outputs() {
+    let text = include_str!("../data/rest/stop_and_reverse.toml");
+    let reports = [("effects.stiffness_outputs", "true"), ("effects.frequency_outputs", "true")];
+    let package = Package::new("stops", &Scene::edited(text, reports).unwrap().source);
+    let c = package.start();
+    let slips = ["cage.slip", "balls.slip"].map(|name| package.reference(name));
+    let speed = package.reference("cage.speed");
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for point in 0..600 {
+        assert_eq!(unsafe { fmi2DoStep(c, f64::from(point) * 2e-4, 2e-4, 0) }, Status::Ok);
+        // What is no number is an error of the call.
+        assert!(outputs(&package, c).iter().all(|value| value.is_finite()), "{point}");
+        // Running has up to 8e-4.
+        slips.iter().for_each(|slip| assert!(real(c, *slip).abs() < 1e-2, "{point}: {}", real(c, *slip)));
+        (least, most) = (least.min(real(c, speed)), most.max(real(c, speed)));
+    }
+    assert!(most > 12.0 && least < -12.0, "{least} {most}");
+    unsafe { fmi2FreeInstance(c) };
+}

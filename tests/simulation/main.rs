@@ -21,6 +21,7 @@ mod runs;
 mod scenes;
 mod schedule;
 mod scripts;
+mod standstill;
 mod start;
 #[path = "../common/statics.rs"]
 mod statics;

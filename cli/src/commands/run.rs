@@ -310,7 +310,7 @@ impl Place {
         text: &str,
     ) -> Result<Vec<PathBuf>, Box<dyn Error>> {
         let (scene, directory) = (played.simulation.scene(), &self.output);
-        let mut plots = write_plots(scene, played.simulation.model(), &played.plotted, directory)?;
+        let mut plots = write_plots(scene, &played.plotted, directory)?;
         if let Some(means) = &played.seen.means {
             write(&directory.join("means.csv"), |path| means.write(path))?;
         }

@@ -55,6 +55,8 @@ pub struct Lengths {
 /// [-] of a force, a moment, a displacement over the ball diameter or a power: where all of a kind are smaller, nobody asks how
 /// exact they are.
 const NOTHING: f64 = 1e-6;
+/// [m/s] the same of a speed at the pitch radius: a bearing that stands creeps by far less.
+const STANDS: f64 = 1e-6;
 /// [-] part of the friction power by which the powers of a cage are measured at least.
 const PART: f64 = 0.1;
 
@@ -70,7 +72,8 @@ pub fn sizes(samples: &[Sample], lengths: Lengths) -> [f64; COUNT] {
     };
     let load = mean_square(&|sample| sample.largest_load).sqrt();
     let force = vector(Size::Force).max(vector(Size::Moment) / lengths.pitch_radius).max(load);
-    let speed = (0..COUNT).filter(|&i| QUANTITIES[i].size == Size::Speed).map(own).fold(0.0, f64::max);
+    let speed = (0..COUNT).filter(|&i| QUANTITIES[i].size == Size::Speed).map(own);
+    let speed = speed.fold(STANDS / lengths.pitch_radius, f64::max);
     let of_name = |name: &str| QUANTITIES.iter().position(|quantity| quantity.name == name).map_or(0.0, own);
     let friction = of_name("friction power");
     let of = |(i, quantity): (usize, &Quantity)| match quantity.size {

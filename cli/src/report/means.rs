@@ -13,7 +13,7 @@ use std::path::Path;
 use roulement::simulation::outputs::Outputs;
 
 use super::interval;
-use super::quantities::{COUNT, Parts, QUANTITIES, Size, values};
+use super::quantities::{COUNT, Parts, QUANTITIES, Size, values, weights};
 
 /// [-] blocks of a run; even.
 const MOST_BLOCKS: usize = 128;
@@ -41,15 +41,25 @@ struct Block {
     rows: u64,
     /// \[s] times of the first and the last row.
     span: [f64; 2],
+    /// Of weights, and of values times these.
+    weights: [f64; COUNT],
     sums: [f64; COUNT],
     largest: [f64; 3],
 }
 
 impl Block {
+    /// A row of values that count for so much.
+    fn of_row(time: f64, values: [f64; COUNT], weights: [f64; COUNT], largest: [f64; 3]) -> Self {
+        let sums = std::array::from_fn(|i| values[i] * weights[i]);
+        Self { rows: 1, span: [time; 2], weights, sums, largest }
+    }
+
     fn join(&mut self, later: &Self) {
         self.rows += later.rows;
         self.span[1] = later.span[1];
-        self.sums.iter_mut().zip(&later.sums).for_each(|(sum, other)| *sum += other);
+        for (sums, others) in [(&mut self.weights, &later.weights), (&mut self.sums, &later.sums)] {
+            sums.iter_mut().zip(others).for_each(|(sum, other)| *sum += other);
+        }
         self.largest.iter_mut().zip(&later.largest).for_each(|(one, other)| *one = one.max(*other));
     }
 }
@@ -126,13 +136,8 @@ impl Blocks {
 
     /// Adds a row.
     pub fn push(&mut self, outputs: &Outputs) {
-        let row = Block {
-            rows: 1,
-            span: [outputs.time; 2],
-            sums: values(outputs),
-            largest: LARGEST.map(|get| get(outputs)),
-        };
-        self.add(row);
+        let largest = LARGEST.map(|get| get(outputs));
+        self.add(Block::of_row(outputs.time, values(outputs), weights(outputs), largest));
     }
 
     fn add(&mut self, row: Block) {
@@ -176,7 +181,7 @@ impl Blocks {
         let window = &self.blocks[first.min(self.blocks.len().checked_sub(1)?)..];
         let mut all = window[0].clone();
         window[1..].iter().for_each(|block| all.join(block));
-        let mean = |i: usize| all.sums[i] / all.rows as f64;
+        let mean = |i: usize| mean_of(all.sums[i], all.weights[i]);
         let largest_of = |size: Size| {
             let of = (0..COUNT).filter(|&i| QUANTITIES[i].size == size);
             of.map(|i| mean(i).abs()).fold(0.0, f64::max)
@@ -204,12 +209,19 @@ impl Blocks {
     }
 }
 
+/// A mean by its sums of values times weights, and of weights; it lies between the values, however small these are. 0 where nothing
+/// counts, as of the slip of a bearing that stands.
+fn mean_of(sum: f64, weight: f64) -> f64 {
+    if weight > 0.0 { sum / weight } else { 0.0 }
+}
+
 /// Means of a quantity in groups of so many of the window's blocks, `n` of them; the oldest blocks are left out where they do
 /// not divide.
 fn groups(window: &[Block], quantity: usize, each: usize, n: usize) -> Vec<f64> {
     let mean = |blocks: &[Block]| {
-        let rows: u64 = blocks.iter().map(|block| block.rows).sum();
-        blocks.iter().map(|block| block.sums[quantity]).sum::<f64>() / rows as f64
+        let sum =
+            |of: fn(&Block) -> &[f64; COUNT]| blocks.iter().map(|block| of(block)[quantity]).sum::<f64>();
+        mean_of(sum(|block| &block.sums), sum(|block| &block.weights))
     };
     window[window.len() - n * each..].chunks_exact(each).map(mean).collect()
 }
@@ -356,9 +368,7 @@ mod tests {
         let mut blocks = Blocks::new(Parts { cage: true, moving_outer: true }, 1.0);
         for row in 0..=rows {
             let time = duration * f64::from(row) / f64::from(rows);
-            let block =
-                Block { rows: 1, span: [time; 2], sums: [value(time); COUNT], largest: [value(time); 3] };
-            blocks.add(block);
+            blocks.add(Block::of_row(time, [value(time); COUNT], [1.0; COUNT], [value(time); 3]));
         }
         assert!(blocks.blocks.len() <= MOST_BLOCKS);
         blocks.means().unwrap_or_else(|| panic!("there are rows"))
@@ -406,6 +416,35 @@ mod tests {
         assert!((needed / 4.97 - 1.0).abs() < 0.15, "{needed}");
         assert!(trend(&run(2000, 1.1 * needed, decay)).settled);
         assert!(!trend(&run(2000, 0.8 * needed, decay)).settled);
+    }
+
+    #[test]
+    fn closed_form_a_mean_of_slip_is_by_the_speed_that_rolls() {
+        // A speed of rolling 10 cos(t) that swings, and a body that stays behind by a tenth of it and 1e-3.
+        let mut blocks = Blocks::new(Parts { cage: true, moving_outer: true }, 1.0);
+        let (mut slips, mut rolls) = (0.0, 0.0);
+        for row in 0..4000 {
+            let time = f64::from(row) * 1e-2;
+            let rolling = 10.0 * time.cos();
+            let behind = 0.1 * rolling.abs() + 1e-3;
+            blocks.add(Block::of_row(
+                time,
+                [behind / rolling.abs(); COUNT],
+                [rolling.abs(); COUNT],
+                [0.0; 3],
+            ));
+            if blocks.rows > Blocks::window_begins(4000) {
+                (slips, rolls) = (slips + behind, rolls + rolling.abs());
+            }
+        }
+        let mean = blocks.means().unwrap().means[0].mean;
+        assert!((mean - slips / rolls).abs() < 1e-12, "{mean} {}", slips / rolls);
+        // Nothing rolls.
+        let mut still = Blocks::new(Parts { cage: true, moving_outer: true }, 1.0);
+        (0..50)
+            .for_each(|row| still.add(Block::of_row(f64::from(row), [0.0; COUNT], [0.0; COUNT], [0.0; 3])));
+        let still = still.means().unwrap();
+        assert!(still.means.iter().all(|mean| mean.mean == 0.0) && still.unsettled().count() == 0);
     }
 
     #[test]

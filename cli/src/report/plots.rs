@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use plotters::prelude::*;
-use roulement::model::Model;
 use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement::simulation::outputs::{BallOutput, ContactOutput, Outputs};
@@ -55,16 +54,11 @@ pub fn title(scene: &Scene) -> &str {
 ///
 /// # Errors
 /// If a file cannot be written.
-pub fn write_plots(
-    scene: &Scene,
-    model: &Model,
-    history: &[Outputs],
-    directory: &Path,
-) -> Result<Vec<PathBuf>, PlotError> {
+pub fn write_plots(scene: &Scene, history: &[Outputs], directory: &Path) -> Result<Vec<PathBuf>, PlotError> {
     let title = title(scene);
     let figures = [
         ("contacts.svg", format!("{title}: contacts of ball 1, and of all balls"), contact_panels(history)),
-        ("bearing.svg", title.to_string(), bearing_panels(model, Race::loaded(scene), history)),
+        ("bearing.svg", title.to_string(), bearing_panels(Race::loaded(scene), history)),
     ];
     let mut paths = vec![];
     for (name, title, panels) in figures {
@@ -105,20 +99,13 @@ fn contact_panels(history: &[Outputs]) -> Vec<Panel> {
     ]
 }
 
-fn bearing_panels(model: &Model, race: Race, history: &[Outputs]) -> Vec<Panel> {
+fn bearing_panels(race: Race, history: &[Outputs]) -> Vec<Panel> {
     let curve = |name: &str, get: &dyn Fn(&Outputs) -> f64| Curve {
         name: name.into(),
         points: history.iter().map(|o| (o.time * 1e3, get(o))).collect(),
         band: vec![],
     };
     let panel = |y_label, least, curves| Panel { x_label: "time [ms]", y_label, curves, least };
-    let epicyclic = |o: &Outputs| {
-        if o.cage_slip == 1.0 {
-            model.bearing.epicyclic_speed(0.0, 0.0, 0.0)
-        } else {
-            o.cage_speed / (1.0 - o.cage_slip)
-        }
-    };
     let [position, force, moment] = match race {
         Race::Inner => [
             "inner race position [um]",
@@ -158,7 +145,7 @@ fn bearing_panels(model: &Model, race: Race, history: &[Outputs]) -> Vec<Panel> 
         panel(
             "cage speed [rad/s]",
             0.01,
-            vec![curve("simulated", &|o| o.cage_speed), curve("epicyclic", &epicyclic)],
+            vec![curve("simulated", &|o| o.cage_speed), curve("epicyclic", &|o| o.rolling_speed)],
         ),
         panel("friction torque [N mm]", 0.01, vec![curve("inner race", &|o| o.friction_torque * 1e3)]),
         panel("friction power [W]", 0.001, vec![curve("all contacts", &|o| o.friction_power)]),

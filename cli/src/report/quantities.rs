@@ -32,6 +32,7 @@ pub struct Quantity {
     pub size: Size,
     shown: fn(Parts) -> bool,
     get: fn(&Outputs) -> f64,
+    weight: fn(&Outputs) -> f64,
 }
 
 /// Parts of a bearing that some quantities are of.
@@ -66,15 +67,20 @@ impl Quantity {
 }
 
 const fn quantity(name: &'static str, unit: &'static str, size: Size, get: fn(&Outputs) -> f64) -> Quantity {
-    Quantity { name, unit, size, shown: |_| true, get }
+    Quantity { name, unit, size, shown: |_| true, get, weight: |_| 1.0 }
+}
+
+/// A slip: its mean is the mean speed of slip over the mean speed of rolling.
+const fn slip(name: &'static str, get: fn(&Outputs) -> f64) -> Quantity {
+    Quantity { weight: |o| o.rolling_speed.abs(), ..quantity(name, "1", Size::One, get) }
 }
 
 const fn of_cage(name: &'static str, get: fn(&Outputs) -> f64) -> Quantity {
-    Quantity { name, unit: "W", size: Size::Own, shown: |parts| parts.cage, get }
+    Quantity { shown: |parts| parts.cage, ..quantity(name, "W", Size::Own, get) }
 }
 
 const fn of_moving_outer(name: &'static str, get: fn(&Outputs) -> f64) -> Quantity {
-    Quantity { name, unit: "m", size: Size::Position, shown: |parts| parts.moving_outer, get }
+    Quantity { shown: |parts| parts.moving_outer, ..quantity(name, "m", Size::Position, get) }
 }
 
 /// [rad/s] spin of a race about its own axis.
@@ -109,8 +115,8 @@ pub static QUANTITIES: [Quantity; COUNT] = [
     quantity("inner race speed", "rad/s", Size::Speed, |o| spin(&o.inner)),
     quantity("outer race speed", "rad/s", Size::Speed, |o| spin(&o.outer)),
     quantity("cage speed", "rad/s", Size::Speed, |o| o.cage_speed),
-    quantity("cage slip", "1", Size::One, |o| o.cage_slip),
-    quantity("ball slip", "1", Size::One, |o| o.ball_slip),
+    slip("cage slip", |o| o.cage_slip),
+    slip("ball slip", |o| o.ball_slip),
     quantity("friction power", "W", Size::Own, |o| o.friction_power),
     quantity("friction torque", "N.m", Size::Own, |o| o.friction_torque),
     quantity("inner power per ball", "W", Size::Own, |o| of_balls(o, |ball| ball.inner.power)),
@@ -122,4 +128,9 @@ pub static QUANTITIES: [Quantity; COUNT] = [
 /// All of them at a row.
 pub fn values(outputs: &Outputs) -> [f64; COUNT] {
     std::array::from_fn(|i| (QUANTITIES[i].get)(outputs))
+}
+
+/// What a row counts for in the means of all of them.
+pub fn weights(outputs: &Outputs) -> [f64; COUNT] {
+    std::array::from_fn(|i| (QUANTITIES[i].weight)(outputs))
 }

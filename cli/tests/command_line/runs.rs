@@ -1,5 +1,7 @@
 //! `roulement run` and `equilibrium`: what they write and print, also when they are interrupted.
 
+use roulement::scene::Scene;
+
 use super::*;
 
 #[test]
@@ -489,4 +491,74 @@ fn pictures_leave_out_what_is_nothing_and_show_all_balls_where_they_differ() {
     // Of balls without friction nothing is lost.
     let balls = picture("thrust", &[("effects.creep", "\"frictionless\"")], "balls.svg");
     assert!(balls.contains("load [N]") && !balls.contains("friction power [W]"));
+}
+
+/// A bearing that stops, turns back or swings, with another script of its speed where one is given.
+fn resting(text: &str, speed: Option<&str>) -> Scene {
+    Scene::edited(text, speed.map(|speed| ("load.inner_speed", speed))).unwrap()
+}
+
+/// A column of a table.
+fn column(table: &str, name: &str) -> Vec<f64> {
+    let at = table.lines().next().unwrap().split(',').position(|head| head == name).unwrap();
+    table.lines().skip(1).map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()
+}
+
+#[test]
+fn closed_form_mean_slip_is_the_speed_of_slip_over_the_speed_of_rolling() {
+    let stop = include_str!("../../../tests/data/rest/stop_and_reverse.toml");
+    let swing = include_str!("../../../tests/data/rest/oscillating.toml");
+    for (text, speed) in
+        [(stop, None), (swing, None), (stop, Some("0")), (stop, Some("[[0, \"300 rpm\"], [0.02, 0]]"))]
+    {
+        let scratch = Scratch::new("rest");
+        let output = scratch.run(&resting(text, speed), "out", &["--json"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let figure =
+            |name: &str| json["figures"][name].as_f64().unwrap_or_else(|| panic!("{speed:?} {name}"));
+        assert!(json["figures"].as_object().unwrap().values().all(Value::is_number), "{}", json["figures"]);
+        let table = scratch.read("out/results.csv");
+        let speeds = column(&table, "cage.speed [rad/s]");
+        let begin = json["means"]["window"][0].as_f64().unwrap();
+        let times = column(&table, "time [s]");
+        for (name, of) in [("cage slip", "cage.slip [1]"), ("ball slip", "balls.slip [1]")] {
+            // By rows: slip is behind/rolling, and rolling is the cage's speed but for its own slip.
+            let (cage, slips) = (column(&table, "cage.slip [1]"), column(&table, of));
+            let (mut behind, mut rolled) = (0.0, 0.0);
+            for i in (0..times.len()).filter(|i| times[*i] >= begin - 1e-9) {
+                let rolling = speeds[i].abs() / (1.0 - cage[i]);
+                (behind, rolled) = (behind + slips[i] * rolling, rolled + rolling);
+            }
+            let expected = behind / rolled;
+            // Below 1e-3 m/s the row's slip is not the quotient that gives the speed of rolling, within a thousandth of it.
+            assert!(
+                (figure(name) - expected).abs() < 2e-3 * expected.abs() + 1e-9,
+                "{name} {expected} {}",
+                figure(name)
+            );
+            assert!(figure(name).abs() < 2e-3, "{name} {}", figure(name));
+        }
+        for mean in scratch.read("out/means.csv").lines().skip(1) {
+            assert!(!mean.contains("NaN") && !mean.contains("inf"), "{mean}");
+        }
+        let text = String::from_utf8(scratch.run(&resting(text, speed), "out", &[]).stdout).unwrap();
+        let line = text.lines().find(|line| line.contains("% below epicyclic")).unwrap();
+        assert!(line.split_whitespace().all(|word| word.len() < 12), "{line}");
+    }
+}
+
+#[test]
+fn a_bearing_that_stands_has_no_error_of_its_creep() {
+    // What creeps by nanometres a second has no exact speed, and nobody asks for it.
+    let stop = include_str!("../../../tests/data/rest/stop_and_reverse.toml");
+    for speed in ["0", "[[0, \"300 rpm\"], [0.02, 0]]"] {
+        let scratch = Scratch::new("stands");
+        let output = scratch.run(&resting(stop, Some(speed)), "out", &["--error", "1e-3"]);
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(
+            output.status.success() && !text.contains("CHAOTIC") && !text.contains("inf"),
+            "{speed}: {text}"
+        );
+    }
 }

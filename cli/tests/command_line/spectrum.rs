@@ -1,5 +1,7 @@
 //! The spectrum of a run: `spectrum.csv`, `spectrum.svg` and what the summary says of it.
 
+use roulement::scene::Scene;
+
 use super::*;
 
 /// Columns of a spectrum by their names.
@@ -83,6 +85,12 @@ fn closed_form_a_spall_strikes_at_bpfo_and_waves_as_many_as_balls_at_bpfi() {
     for (force, line) in [("force.x", "; BPFI "), ("force.z", " x BPFO ")] {
         assert!(peaks.iter().any(|peak| peak.contains(force) && peak.contains(line)), "{summary}");
     }
+    // A name is of a line that the peak is on, within the distance of two lines.
+    for peak in &peaks {
+        let by = peak.split(' ').find(|word| word.starts_with(['+', '-']) && word.len() > 1);
+        let by: f64 = by.map_or(0.0, |by| by.parse().unwrap());
+        assert!(by.abs() <= spacing, "{summary}");
+    }
     let picture = scratch.read("out/spectrum.svg");
     for part in ["FTF", "BPFO", "BPFI", "BSF", "order", "force [N]", "moment [N m]"] {
         assert!(picture.contains(part), "{part}");
@@ -115,4 +123,21 @@ fn a_spectrum_is_there_where_frequencies_are_asked_for_and_says_what_it_cannot_t
     let ramp = ("load.inner_speed", "[[0, 500], [0.02, 1000]]");
     let (text, _) = run(&[wanted, ramp, ("load.duration", "\"20 ms\"")]);
     assert!(text.contains("SMEARED"), "{text}");
+}
+
+#[test]
+fn closed_form_a_healthy_race_that_was_struck_rings_at_its_own_frequency() {
+    let scratch = Scratch::new("rings");
+    let text = include_str!("../../../tests/data/rest/ringing_race.toml");
+    let struck = Scene::edited(text, [("load.duration", "\"400 ms\"")]).unwrap();
+    let output = scratch.run(&struck, "out", &["--columns", "inner.force.y"]);
+    let summary = String::from_utf8(output.stdout).unwrap();
+    let peaks: Vec<&str> = summary.lines().filter(|line| line.starts_with("peak ")).collect();
+    // The root of stiffness over mass is 691 Hz; the race swings so far that its contacts are softer by a few percent.
+    let ring = peaks.iter().find(|peak| peak.contains("force.y")).unwrap_or_else(|| panic!("{summary}"));
+    assert!(ring.ends_with("; own frequency of the race, 691 Hz"), "{summary}");
+    // Nothing is damaged, and the force has none of the lines of damage.
+    for peak in peaks.iter().filter(|peak| peak.contains("force")) {
+        assert!(!["BPFO", "BPFI", "BSF"].iter().any(|name| peak.contains(name)), "{summary}");
+    }
 }

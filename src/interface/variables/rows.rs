@@ -92,7 +92,8 @@ impl Variables {
         let speed =
             "spin of the cage about its own axis where there is a cage, else mean orbital speed of the balls";
         output("cage.speed", units::RADIAN_PER_SECOND, 100.0, speed, |o| o.cage_speed);
-        let slip = "1 - cage speed over the orbital speed of balls that roll without slip on both races";
+        let slip = "1 - cage speed over the orbital speed of balls that roll without slip on both races, which counts as no less than half \
+                    of the cage speed; fades to 0 below 1e-3 m/s at the pitch radius";
         output("cage.slip", units::ONE, 1e-2, slip, |o| o.cage_slip);
         let power = "power lost to friction in all contacts";
         output("friction_power", units::WATT, 1.0, power, |o| o.friction_power);
@@ -129,8 +130,8 @@ impl Variables {
         output("energy.stored", units::JOULE, 1.0, "kinetic and elastic energy", |o| o.stored_energy);
         output("energy.work", units::JOULE, 1.0, "work put in since the start", |o| o.work);
         output("energy.dissipated", units::JOULE, 1.0, "energy lost since the start", |o| o.dissipated);
-        let slip =
-            "1 - mean orbital speed of the loaded balls over that of rolling without slip on both races";
+        let slip = "1 - mean orbital speed of the loaded balls over that of rolling without slip on both races, which counts as no less \
+                    than half of the former; fades to 0 below 1e-3 m/s at the pitch radius";
         output("balls.slip", units::ONE, 1e-2, slip, |o| o.ball_slip);
         let mut count = |name: &str, description: &str, get: FromOutputs| {
             self.rows.push(Variable {

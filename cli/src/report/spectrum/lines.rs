@@ -4,8 +4,10 @@ use super::welch::{Amplitudes, peak};
 
 /// [-] multiples of a frequency that are looked for, and marked.
 pub const MULTIPLES: u32 = 3;
-/// [-] highest multiple of a frequency of damage that a peak is recognised as: blows have many.
-const HIGHEST: u32 = 60;
+/// [-] highest multiple of a frequency that a peak is recognised as: further up lines stand so close that a peak is near one anyway.
+const HIGHEST: u32 = 10;
+/// [-] how far a race rings from its own frequency at rest: contacts stiffen with load.
+const RINGS: f64 = 0.03;
 
 /// A frequency of a bearing: its name and \[Hz].
 pub type Named = (&'static str, f64);
@@ -47,23 +49,24 @@ pub fn largest<const N: usize>(
     peaks
 }
 
-/// The line that a frequency \[Hz] is on, or else the nearest of those that are looked for: `2 x BPFI - shaft`, and \[Hz] it; none where
-/// all of them are 0.
+/// The line that a frequency \[Hz] is on, `2 x BPFI - shaft`, and \[Hz] it; none where it is on none of those that are looked for.
 ///
 /// `named` is FTF, BPFO, BPFI, BSF and the turns of the shaft. A place of the inner race comes round with the shaft and one of a ball with
 /// the cage: multiples of BPFI and BSF have lines at these distances on either side. On a line is what is within `spacing` \[Hz] of it;
 /// of several that is the lowest multiple, and lines in the middle come before those beside them.
-pub fn nearest(named: &[Named; 5], frequency: f64, spacing: f64) -> Option<(String, f64)> {
+pub fn line_of(named: &[Named; 5], frequency: f64, spacing: f64) -> Option<(String, f64)> {
     let [cage, bpfo, bpfi, bsf, shaft] = *named;
     let mut lines: Vec<(bool, u32, String, f64)> = vec![];
     for ((name, base), beside) in
         [(cage, None), (shaft, None), (bpfo, None), (bpfi, Some(shaft)), (bsf, Some(cage))]
     {
+        // What turns less than once in the window has no lines.
+        if base < spacing {
+            continue;
+        }
         // Where multiples stand closer than this, any frequency is on one.
-        let most =
-            if beside.is_none() && name != bpfo.0 || base < 8.0 * spacing { MULTIPLES } else { HIGHEST };
-        let around = (frequency / base).round().clamp(1.0, f64::from(most)) as u32;
-        for multiple in 1..=around {
+        let most = if base < 8.0 * spacing { MULTIPLES } else { HIGHEST };
+        for multiple in 1..=most {
             let text = if multiple == 1 { name.to_string() } else { format!("{multiple} x {name}") };
             let line = f64::from(multiple) * base;
             for (sign, by) in [(" + ", 1.0), (" - ", -1.0)] {
@@ -71,16 +74,18 @@ pub fn nearest(named: &[Named; 5], frequency: f64, spacing: f64) -> Option<(Stri
                     lines.push((true, multiple, format!("{text}{sign}{other}"), line + by * distance));
                 }
             }
-            if base > 0.0 {
-                lines.push((false, multiple, text, line));
-            }
+            lines.push((false, multiple, text, line));
         }
     }
-    let far = |line: f64| (line - frequency).abs();
-    let on = lines.iter().filter(|line| far(line.3) <= spacing).min_by_key(|line| (line.0, line.1));
-    let first = lines.iter().filter(|line| !line.0 && line.1 <= MULTIPLES);
-    let near = first.min_by(|one, other| far(one.3).total_cmp(&far(other.3)));
-    on.or(near).map(|(_, _, text, line)| (text.clone(), *line))
+    let on = lines.into_iter().filter(|line| (line.3 - frequency).abs() <= spacing);
+    on.min_by_key(|line| (line.0, line.1)).map(|(_, _, text, line)| (text, line))
+}
+
+/// The own frequency \[Hz] of a race that a peak is near; none where it is near none of them.
+pub fn ring_of(own: &[f64], frequency: f64, spacing: f64) -> Option<f64> {
+    let far = |one: &f64| (one - frequency).abs();
+    let near = own.iter().copied().filter(|one| far(one) <= (RINGS * one).max(spacing));
+    near.min_by(|one, other| far(one).total_cmp(&far(other)))
 }
 
 #[cfg(test)]
@@ -102,7 +107,8 @@ mod tests {
         assert_eq!(seen, [(0, 4.0, 20.0), (1, 3.0, 40.0), (0, 1.0, 60.0)]);
         assert_eq!(largest(&spectrum, 0..2, 2.0, 2, 0.0).len(), 2);
         let named = [("FTF", 20.0), ("BPFO", 177.0), ("BPFI", 264.0), ("BSF", 115.0), ("shaft", 49.0)];
-        let on = |frequency, spacing| nearest(&named, frequency, spacing).map(|(name, _)| name).unwrap();
+        let name = |frequency, spacing| line_of(&named, frequency, spacing).map(|(name, _)| name);
+        let on = |frequency, spacing| name(frequency, spacing).unwrap();
         for (frequency, name) in [
             (20.5, "FTF"),
             (48.0, "shaft"),
@@ -111,13 +117,27 @@ mod tests {
             (2.0 * 264.0 + 49.0, "2 x BPFI + shaft"),
             (264.0 - 49.5, "BPFI - shaft"),
             (6.0 * 115.0 - 20.0, "6 x BSF - FTF"),
-            // On none of them.
-            (362.0, "2 x BPFO"),
+            (10.0 * 177.0, "10 x BPFO"),
+            (7.0 * 49.0, "7 x shaft"),
         ] {
             assert_eq!(on(frequency, 1.0), name, "{frequency}");
         }
+        // On none of them: 8 Hz from the next, and far up.
+        for frequency in [362.0, 3.0 * 264.0 + 197.0, 11.0 * 177.0, 40.0 * 115.0] {
+            assert_eq!(name(frequency, 1.0), None, "{frequency}");
+        }
         // Lines that stand too close to be told apart have their first multiples alone.
-        assert_eq!(on(8.0 * 177.0, 30.0), "3 x BPFI");
-        assert_eq!(nearest(&named.map(|(name, _)| (name, 0.0)), 175.0, 1.0), None);
+        assert_eq!(name(8.0 * 177.0, 30.0), None);
+        assert_eq!(on(3.0 * 177.0, 30.0), "2 x BPFI");
+        for still in [0.0, 1e-12] {
+            assert_eq!(line_of(&named.map(|(name, _)| (name, still)), 0.5, 1.0), None);
+        }
+        // A race rings near its own frequencies.
+        let own = [412.0, 691.0];
+        assert_eq!(
+            [683.4, 418.0, 540.0].map(|peak| ring_of(&own, peak, 1.0)),
+            [Some(691.0), Some(412.0), None]
+        );
+        assert_eq!(ring_of(&[], 683.4, 4.0), None);
     }
 }

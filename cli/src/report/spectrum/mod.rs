@@ -12,6 +12,7 @@ mod words;
 use std::io;
 use std::path::Path;
 
+use roulement::analysis::natural_frequency;
 use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
@@ -34,6 +35,8 @@ pub const SIGNALS: [(&str, &str); COUNT] = [
 ];
 /// [-] difference of times of rows, over their interval, that is rounding.
 const ROUNDING: f64 = 1e-6;
+/// [-] speed of a race over that of the other one below which it stands.
+const STANDS: f64 = 1e-6;
 
 /// Does a scene ask for it?
 pub fn is_wanted(scene: &Scene) -> bool {
@@ -51,6 +54,7 @@ pub struct Recorder {
     /// \[s] first and last time of the window.
     window: [f64; 2],
     speeds: Speeds,
+    own: Vec<f64>,
 }
 
 /// Sums over rows.
@@ -82,6 +86,8 @@ pub struct Spectrum {
     pub shaft_change: f64,
     /// Mean frequencies of cage and damage.
     pub marked: [Named; 4],
+    /// \[Hz] own frequencies of the race under the script's loads in the middle of the window, where it has some.
+    pub own: Vec<f64>,
 }
 
 /// \[Hz] turns of a race about its own axis.
@@ -110,6 +116,11 @@ impl Recorder {
                 least: [f64::INFINITY; 2],
                 most: [f64::NEG_INFINITY; 2],
             },
+            own: natural_frequency::of_race(
+                simulation.model(),
+                scene,
+                simulation.time() + 0.5 * (skipped + count) as f64 * rows.interval,
+            ),
         })
     }
 
@@ -140,13 +151,13 @@ impl Recorder {
 
     /// The spectrum; none of a run that ended before a few rows of its second half.
     pub fn finish(self) -> Option<Spectrum> {
-        let Self { race, interval, window, welch, speeds, .. } = self;
+        let Self { race, interval, window, welch, speeds, own, .. } = self;
         let amplitudes = welch.finish()?;
         let mean = |sum: f64| sum / speeds.rows;
         // The shaft is the race that the load moves, or the other one where that stands.
         let turns = speeds.turns.map(|sum| mean(sum).abs());
         let own = race as usize;
-        let shaft = if turns[own] > 0.0 { own } else { 1 - own };
+        let shaft = if turns[own] > STANDS * turns[1 - own] { own } else { 1 - own };
         let [ftf, bpfo, bpfi, bsf] = speeds.frequencies.map(mean);
         Some(Spectrum {
             race,
@@ -156,6 +167,7 @@ impl Recorder {
             shaft: turns[shaft],
             shaft_change: speeds.most[shaft] - speeds.least[shaft],
             marked: [("FTF", ftf), ("BPFO", bpfo), ("BPFI", bpfi), ("BSF", bsf)],
+            own,
         })
     }
 }
@@ -180,9 +192,9 @@ impl Spectrum {
         1.0 / (self.amplitudes.rows as f64 * self.interval)
     }
 
-    /// [-] order of a frequency \[Hz]; none where no race turns.
+    /// [-] order of a frequency \[Hz]; none where no race turns once while a line is taken.
     pub fn order(&self, frequency: f64) -> Option<f64> {
-        (self.shaft > 0.0).then(|| frequency / self.shaft)
+        (self.shaft >= self.spacing()).then(|| frequency / self.shaft)
     }
 
     /// Writes it as a table.

@@ -50,7 +50,11 @@ fn curve(spectrum: &Spectrum, signal: usize, end: f64, scale: f64) -> Vec<(f64, 
 fn panel(spectrum: &Spectrum, first: usize, label: &str, area: &Area<'_>) -> Drawn {
     let highest = 0.5 / spectrum.interval;
     let fastest = spectrum.marked.iter().map(|line| line.1).fold(spectrum.shaft, f64::max);
-    let end = if fastest > 0.0 { highest.min(AIR * f64::from(MULTIPLES) * fastest) } else { highest };
+    let end = if fastest > spectrum.spacing() {
+        highest.min(AIR * f64::from(MULTIPLES) * fastest)
+    } else {
+        highest
+    };
     let (scale, x_label) = match spectrum.order(1.0) {
         Some(order) => (order, "order: frequency over turns of the shaft"),
         None => (1.0, "frequency [Hz]"),

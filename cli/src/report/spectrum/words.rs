@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::lines::{MULTIPLES, Peak, largest, nearest};
+use super::lines::{MULTIPLES, Peak, largest, line_of, ring_of};
 use super::welch::MOST;
 use super::{SIGNALS, Spectrum};
 
@@ -12,6 +12,8 @@ const MOMENTS: usize = 2;
 const SHARE: f64 = 0.1;
 /// [-] turns of the cage that a window should have: lines of cage and races then stand apart.
 const CAGE_TURNS: f64 = 4.0;
+/// [-] turns of the cage over a window below which it stands: no duration would have enough of them.
+const STANDS: f64 = 1e-3;
 /// [-] lines in the last tenth over the largest: what goes on beyond them folds back as large.
 const FOLDING: f64 = 0.1;
 /// [-] rows in a period of the fastest line that is looked for.
@@ -68,7 +70,7 @@ impl Spectrum {
         if length * cage < CAGE_TURNS {
             let more = if self.amplitudes.rows < MOST {
                 let wanted = 2e3 * CAGE_TURNS / cage;
-                if wanted.is_finite() {
+                if length * cage > STANDS {
                     format!("load.duration = \"{wanted:.0} ms\" has {CAGE_TURNS}")
                 } else {
                     "the cage stands".into()
@@ -101,7 +103,7 @@ impl Spectrum {
         Ok(())
     }
 
-    /// A peak and the line next to it.
+    /// A peak and the line that it is on, or the own frequency of the race that it is near.
     fn name(&self, f: &mut Formatter<'_>, peak: &Peak) -> fmt::Result {
         let (signal, unit) = SIGNALS[peak.signal];
         write!(f, "peak             {signal} {:.4} {unit} at {:.2} Hz", peak.amplitude, peak.frequency)?;
@@ -110,10 +112,14 @@ impl Spectrum {
         }
         let shaft = ("shaft", self.shaft);
         let [cage, outer, inner, ball] = self.marked;
-        match nearest(&[cage, outer, inner, ball, shaft], peak.frequency, self.spacing()) {
-            Some((name, line)) => writeln!(f, "; {name} {:+.2} Hz", peak.frequency - line),
-            None => writeln!(f),
+        if let Some((name, line)) =
+            line_of(&[cage, outer, inner, ball, shaft], peak.frequency, self.spacing())
+        {
+            write!(f, "; {name} {:+.2} Hz", peak.frequency - line)?;
+        } else if let Some(own) = ring_of(&self.own, peak.frequency, self.spacing()) {
+            write!(f, "; own frequency of the race, {own:.0} Hz")?;
         }
+        writeln!(f)
     }
 }
 
@@ -134,17 +140,23 @@ mod tests {
             amplitudes: Amplitudes { at, rows, segments: 1 },
             shaft: 50.0,
             shaft_change: 0.0,
+            own: vec![310.0],
             marked: [("FTF", cage), ("BPFO", 9.0 * cage), ("BPFI", 14.0 * cage), ("BSF", 6.0 * cage)],
         }
     }
 
     #[test]
     fn words_name_peaks_and_what_the_lines_cannot_tell() {
-        let fine = spectrum(5000, 1e-4, 22.0).to_string();
+        let mut fine = spectrum(5000, 1e-4, 22.0);
+        fine.amplitudes.at[152][1] = 2.0;
+        fine.amplitudes.at[270][2] = 1.0;
+        let fine = fine.to_string();
         for part in [
             "2.000 Hz a line, up to 5000 Hz",
             "FTF 22.00",
             "peak             force.x 3.0000 N at 200.00 Hz, order 4.000; BPFO +2.00 Hz",
+            "force.y 2.0000 N at 304.00 Hz, order 6.080; own frequency of the race, 310 Hz\n",
+            "force.z 1.0000 N at 540.00 Hz, order 10.800\n",
             "moment.y 0.2500 N.m",
         ] {
             assert!(fine.contains(part), "{fine}\nshould have {part}");
@@ -162,10 +174,13 @@ mod tests {
         let mut blows = spectrum(5000, 1e-4, 22.0);
         blows.amplitudes.at[2400][1] = 0.4;
         assert_eq!(warns(&blows.to_string()), [false, false, false, true]);
-        let still = Spectrum { shaft: 0.0, ..spectrum(5000, 1e-4, 0.0) }.to_string();
-        assert!(
-            still.contains("the cage stands") && !still.contains("order") && !still.contains("NaN"),
-            "{still}"
-        );
+        // What swings about rest has hardly any mean speed.
+        for speed in [0.0, 1e-9] {
+            let still = Spectrum { shaft: speed, ..spectrum(5000, 1e-4, speed) }.to_string();
+            assert!(
+                still.contains("the cage stands") && !still.contains("order") && !still.contains("NaN"),
+                "{still}"
+            );
+        }
     }
 }
