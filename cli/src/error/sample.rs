@@ -57,6 +57,9 @@ pub struct Lengths {
 const NOTHING: f64 = 1e-6;
 /// [m/s] the same of a speed at the pitch radius: a bearing that stands creeps by far less.
 const STANDS: f64 = 1e-6;
+/// [m/s] speed at the pitch radius at which a torque that is nothing has a power that is nothing, at least: the speed below which creepages
+/// are held finite.
+const RESTS: f64 = 1e-3;
 /// [-] part of the friction power by which the powers of a cage are measured at least.
 const PART: f64 = 0.1;
 
@@ -74,6 +77,7 @@ pub fn sizes(samples: &[Sample], lengths: Lengths) -> [f64; COUNT] {
     let force = vector(Size::Force).max(vector(Size::Moment) / lengths.pitch_radius).max(load);
     let speed = (0..COUNT).filter(|&i| QUANTITIES[i].size == Size::Speed).map(own);
     let speed = speed.fold(STANDS / lengths.pitch_radius, f64::max);
+    let rests = RESTS / lengths.pitch_radius;
     let of_name = |name: &str| QUANTITIES.iter().position(|quantity| quantity.name == name).map_or(0.0, own);
     let friction = of_name("friction power");
     let of = |(i, quantity): (usize, &Quantity)| match quantity.size {
@@ -84,7 +88,7 @@ pub fn sizes(samples: &[Sample], lengths: Lengths) -> [f64; COUNT] {
         Size::One => 1.0,
         Size::Own => {
             let torque = NOTHING * force * lengths.pitch_radius;
-            let nothing = if quantity.unit == "W" { torque * speed } else { torque };
+            let nothing = if quantity.unit == "W" { torque * speed.max(rests) } else { torque };
             own(i).max(nothing).max(if quantity.is_of_cage() { PART * friction } else { 0.0 })
         }
     };

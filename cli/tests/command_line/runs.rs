@@ -556,9 +556,7 @@ fn a_bearing_that_stands_has_no_error_of_its_creep() {
         let scratch = Scratch::new("stands");
         let output = scratch.run(&resting(stop, Some(speed)), "out", &["--error", "1e-3"]);
         let text = String::from_utf8_lossy(&output.stdout);
-        assert!(
-            output.status.success() && !text.contains("CHAOTIC") && !text.contains("inf"),
-            "{speed}: {text}"
-        );
+        let errs = ["CHAOTIC          cage speed", " inf", "NaN"].iter().any(|word| text.contains(word));
+        assert!(output.status.success() && !errs, "{speed}: {text}");
     }
 }

@@ -156,8 +156,8 @@ impl Recorder {
         let mean = |sum: f64| sum / speeds.rows;
         // The shaft is the race that the load moves, or the other one where that stands.
         let turns = speeds.turns.map(|sum| mean(sum).abs());
-        let moved = race as usize;
-        let shaft = if turns[moved] > STANDS * turns[1 - moved] { moved } else { 1 - moved };
+        let loaded = race as usize;
+        let shaft = if turns[loaded] > STANDS * turns[1 - loaded] { loaded } else { 1 - loaded };
         let [ftf, bpfo, bpfi, bsf] = speeds.frequencies.map(mean);
         Some(Spectrum {
             race,

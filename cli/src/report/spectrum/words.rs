@@ -147,14 +147,14 @@ mod tests {
 
     #[test]
     fn words_name_peaks_and_what_the_lines_cannot_tell() {
-        let mut fine = spectrum(5000, 1e-4, 22.0);
+        let mut fine = spectrum(5000, 1e-4, 22.2);
         fine.amplitudes.at[152][1] = 2.0;
         fine.amplitudes.at[270][2] = 1.0;
         let fine = fine.to_string();
         for part in [
             "2.000 Hz a line, up to 5000 Hz",
-            "FTF 22.00",
-            "peak             force.x 3.0000 N at 200.00 Hz, order 4.000; BPFO +2.00 Hz",
+            "FTF 22.20",
+            "peak             force.x 3.0000 N at 200.00 Hz, order 4.000; BPFO +0.20 Hz",
             "force.y 2.0000 N at 304.00 Hz, order 6.080; own frequency of the race, 310 Hz\n",
             "force.z 1.0000 N at 540.00 Hz, order 10.800\n",
             "moment.y 0.2500 N.m",
