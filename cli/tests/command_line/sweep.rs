@@ -550,7 +550,8 @@ fn regression_a_damaged_case_is_run_again() {
     let shorter = |text: &[u8]| text[..text.len() / 2].to_vec();
     let empty = |_: &[u8]| vec![];
     let no_text = |_: &[u8]| vec![0xff, 0xfe, 0x00];
-    let damages: [(&str, &dyn Fn(&[u8]) -> Vec<u8>); 4] =
+    type Damage<'a> = &'a dyn Fn(&[u8]) -> Vec<u8>;
+    let damages: [(&str, Damage<'_>); 4] =
         [("digit", &altered), ("shorter", &shorter), ("empty", &empty), ("no text", &no_text)];
     for (of, (what, damage)) in
         [&case, &table].into_iter().flat_map(|of| damages.iter().map(move |d| (of, d)))
