@@ -31,14 +31,18 @@ pub fn open(path: &Path) -> Result<File> {
 /// # Errors
 /// As [`open`], and if the file is larger.
 pub fn bytes(path: &Path, limit: u64) -> Result<Vec<u8>> {
+    let too_large = || {
+        let why = format!("it is larger than {} MB, the limit of such a file", limit / 1_000_000);
+        Error::new(ErrorKind::FileTooLarge, why)
+    };
+    let file = open(path)?;
+    if file.metadata()?.len() > limit {
+        return Err(too_large());
+    }
     let mut bytes = vec![];
     // Sizes of files in /proc are not told before.
-    open(path)?.take(limit + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > limit {
-        let why = format!("it is larger than {} MB, the limit of such a file", limit / 1_000_000);
-        return Err(Error::new(ErrorKind::FileTooLarge, why));
-    }
-    Ok(bytes)
+    file.take(limit + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > limit { Err(too_large()) } else { Ok(bytes) }
 }
 
 /// Reads a text.

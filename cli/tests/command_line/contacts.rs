@@ -183,3 +183,30 @@ fn exact_contacts_need_no_cache() {
     let unwanted = told(&["--no-cache"]);
     assert!(!unwanted.contains("kept") && unwanted.contains("2 of them computed"), "{unwanted}");
 }
+
+#[cfg(unix)]
+#[test]
+fn interrupted_contacts_are_printed_as_far_as_they_came() {
+    let scratch = Scratch::new("contacts-interrupted");
+    let (head, row) = CONTACTS.split_once('\n').unwrap();
+    let row = row.lines().next().unwrap().split_once(',').unwrap().1;
+    // By a solver that takes a while for each.
+    let rows: String = (0..20_000).map(|i| format!("{i},{row}\n")).collect();
+    std::fs::write(scratch.path("cases.csv"), format!("{head}\n{rows}")).unwrap();
+    let answers = std::fs::File::create(scratch.path("answers.csv")).unwrap();
+    let child = Command::new(env!("CARGO_BIN_EXE_roulement"))
+        .args(["contact", "--law", "reference", &scratch.path("cases.csv")])
+        .stdout(answers)
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_secs(5));
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{told}");
+    assert!(told.contains("interrupted"), "{told}");
+    let text = scratch.read("answers.csv");
+    assert!(text.ends_with('\n') && text.lines().count() > 1, "{text}");
+    assert!(text.lines().all(|line| line.split(',').count() == 6), "{text}");
+}

@@ -223,7 +223,7 @@ fn regression_only_regular_files_are_read_and_no_huge_ones() {
             (&["fmu", path, "-o", "x.fmu"], ""),
             (&["cost", path], ""),
             (&["system", path, "-o", &scratch.path("system")], ""),
-            (&["contact", path], ""),
+            (&["contact", "--law", "saturated", path], ""),
             (&["sweep", path, "--scene", &scene("thrust")], ""),
             (&["sweep", &cases, "--scene", path], ""),
             (&["run", &measured], "load.x.force"),

@@ -102,3 +102,24 @@ fn consistency_cases_of_a_shaft_are_runs_of_its_changed_file() {
         assert!(!output.status.success() && parts.iter().all(|part| said.contains(part)), "{said}");
     }
 }
+
+/// Feet close together hardly hold a housing against tilting: no bearing is blamed for that.
+#[test]
+fn regression_a_soft_housing_is_named_and_no_groove() {
+    let scratch = Scratch::new("soft-housing");
+    let mut text = shipped().replace("1260.5]", "20000]");
+    for (wide, near) in [("80 mm\", \"-90", "1.6 mm\", \"-1.8"), ("80 mm\", \"90", "1.6 mm\", \"1.8")] {
+        assert!(text.contains(wide));
+        text = text.replace(wide, near);
+    }
+    for stiffness in ["[\"60 N/um\", \"60 N/um\", \"120 N/um\"]", "[\"3 N/um\", \"3 N/um\", \"3 N/um\"]"] {
+        let soft = text.replace("[\"60 N/um\", \"60 N/um\", \"120 N/um\"]", stiffness);
+        std::fs::write(scratch.path("shaft.toml"), soft).unwrap();
+        let output = roulement(&["run", &scratch.path("shaft.toml"), "-o", &scratch.path("out")]);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        println!("{message}");
+        assert!(!output.status.success());
+        assert!(message.contains("housing \"case\" gives way"), "{message}");
+        assert!(!message.contains("groove") && !message.contains("shoulder"), "{message}");
+    }
+}

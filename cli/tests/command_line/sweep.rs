@@ -394,7 +394,7 @@ fn consistency_a_kept_run_is_that_of_its_scene_and_stands_on_the_page() {
                 0.05,,,,1 ms\n,9 us,10 us,1e-12,1 ms\n-1,,,,1 ms\n";
     std::fs::write(scratch.path("cases.csv"), text).unwrap();
     let output = sweep(&scratch, "cases.csv", "out", &["--runs", "1,2,3"]);
-    let said = good(&output);
+    let said = incomplete(&output);
     let summary = columns(&scratch.read("out/summary.csv"));
     let file = &summary["file"];
     assert!(said.contains("run 1 ") && said.contains(&format!("runs/{}", file[0])), "{said}");
@@ -416,7 +416,7 @@ fn consistency_a_kept_run_is_that_of_its_scene_and_stands_on_the_page() {
     let record = scratch.path(&format!("out/runs/{}/run.json", file[0]));
     let written = || std::fs::metadata(&record).unwrap().modified().unwrap();
     let before = written();
-    good(&sweep(&scratch, "cases.csv", "out", &["--runs", "1"]));
+    incomplete(&sweep(&scratch, "cases.csv", "out", &["--runs", "1"]));
     assert_eq!(written(), before);
     let kept = std::fs::read_dir(scratch.path("out/runs")).unwrap();
     let kept: Vec<String> = kept.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
@@ -550,7 +550,8 @@ fn regression_a_damaged_case_is_run_again() {
     let shorter = |text: &[u8]| text[..text.len() / 2].to_vec();
     let empty = |_: &[u8]| vec![];
     let no_text = |_: &[u8]| vec![0xff, 0xfe, 0x00];
-    let damages: [(&str, &dyn Fn(&[u8]) -> Vec<u8>); 4] =
+    type Damage<'a> = &'a dyn Fn(&[u8]) -> Vec<u8>;
+    let damages: [(&str, Damage<'_>); 4] =
         [("digit", &altered), ("shorter", &shorter), ("empty", &empty), ("no text", &no_text)];
     for (of, (what, damage)) in
         [&case, &table].into_iter().flat_map(|of| damages.iter().map(move |d| (of, d)))

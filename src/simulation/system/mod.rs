@@ -55,6 +55,19 @@ pub enum SystemError {
         /// \[N] largest unbalanced force.
         residual: f64,
     },
+    /// A housing is too soft.
+    #[error(
+        "no equilibrium is found: housing \"{housing}\" gives way, and the seat of bearing \"{bearing}\" is tilted by {tilt:.3} rad; what \
+         holds the housing is too soft for the loads"
+    )]
+    GivesWay {
+        /// The housing.
+        housing: String,
+        /// The bearing.
+        bearing: String,
+        /// \[rad] tilt of its seat where the search ended.
+        tilt: f64,
+    },
     /// A step end that is not a time after the present one.
     #[error("cannot advance from {from} s to {to} s")]
     Backwards {

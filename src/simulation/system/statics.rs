@@ -22,6 +22,8 @@ const ROUNDED: f64 = 1e-6;
 const NEAR: f64 = 1e-4;
 /// [-] longest step over the smallest ball diameter.
 const LONGEST_STEP: f64 = 0.01;
+/// \[rad] tilt of a seat that no housing is meant to have: ball bearings take less than a half of it.
+const FAR: f64 = 0.01;
 /// Most steps.
 const MAX_ITERATIONS: u32 = 400;
 
@@ -78,7 +80,8 @@ impl Statics<'_> {
             if shift > 1e12 {
                 let residual = size(&here);
                 // What a bearing says is the reason, where it is one.
-                return Err(refused.unwrap_or(SystemError::NoEquilibrium { iterations, residual }));
+                let said = refused.unwrap_or(SystemError::NoEquilibrium { iterations, residual });
+                return Err(self.given_way(states).unwrap_or(said));
             }
             let mut matrix = here.stiffness.clone();
             for (i, scale) in scales.iter().enumerate() {
@@ -111,7 +114,26 @@ impl Statics<'_> {
                 }
             }
         }
-        Err(SystemError::NoEquilibrium { iterations: MAX_ITERATIONS, residual: size(&here) })
+        let said = SystemError::NoEquilibrium { iterations: MAX_ITERATIONS, residual: size(&here) };
+        Err(self.given_way(states).unwrap_or(said))
+    }
+
+    /// Is it a housing that lets a bearing tilt further than any takes? What the bearing says of its grooves is not the cause then.
+    fn given_way(&self, states: &[StructureState]) -> Option<SystemError> {
+        let tilted = |joint: &Joint| {
+            let trial = StructureTrial::new(&states[joint.structure]);
+            let seat = trial.seat(&self.carriers[joint.structure].structure, &joint.seat);
+            let axis = seat.pose().orientation * Vector3::x();
+            (joint.structure, joint.bearing, axis.y.hypot(axis.z))
+        };
+        // The first structure is the shaft.
+        let seats = self.joints.iter().filter(|joint| joint.structure > 0).map(tilted);
+        let (structure, bearing, tilt) = seats.max_by(|a, b| a.2.total_cmp(&b.2))?;
+        (tilt > FAR).then(|| SystemError::GivesWay {
+            housing: self.scene.housings[structure - 1].name.clone(),
+            bearing: self.scene.bearings[bearing].name.clone(),
+            tilt,
+        })
     }
 
     /// First coordinate of each structure, and their number.
