@@ -132,6 +132,10 @@ pub fn run(
         system.bearings().next().map(|(_, bearing)| bearing.state().statistics).unwrap_or_default();
     let seconds = wall.as_secs_f64();
     text += &format!(
+    let creeping = shaft::creeping(&system);
+    if let Some(creeping) = &creeping {
+        text += &format!("WARNING          {creeping}\n");
+    }
         "steps            {} accepted, {} rejected by error, {} by Newton; {:.2} Newton iterations a step\n\
          wall time        {seconds:.3} s, {:.2} s per simulated second\n",
         statistics.steps,
@@ -148,6 +152,7 @@ pub fn run(
     } else {
         text += &format!(
             "\nresults          {}\nplot             {}\n",
+        tell(creeping.map(|creeping| format!("warning: {creeping}")));
             output.join("shaft.csv").display(),
             plot.display()
         );
