@@ -277,12 +277,16 @@ pub struct Equilibrium {
     /// Rating life under these loads, where it is asked for.
     pub life: Option<LifeOutput>,
     /// Balls.
+    /// [N/m] negative stiffness of the free directions, angles times the size of the race, where the balance is unstable and no stable
+    /// one was found beside it: the smallest blow ends it.
+    pub unstable: Option<f64>,
     pub balls: Vec<BallEquilibrium>,
 }
 
 /// Solves a quasi-static problem.
 ///
-/// Newton's method from a guess; where that leads nowhere, as [`solve_without_guess`].
+/// Newton's method from a guess; where that leads nowhere, as [`solve_without_guess`]. From an unstable balance it goes on to a stable
+/// one beside it, if there is one; if not, [`Equilibrium::unstable`] says so.
 ///
 /// # Errors
 /// See [`EquilibriumError`]; an unconverged result is never returned.
@@ -306,21 +310,21 @@ pub fn solve_without_guess(model: &Model, input: &EquilibriumInput) -> Result<Eq
 fn from_guess(problem: &Problem<'_>) -> Option<Equilibrium> {
     let guess = guess::guess(problem)?;
     let found = problem.search(guess.unknowns, Some(&guess.trial.places), Progress::Residual).ok()?;
-    problem.check(problem.finish(&found)).ok()
+    problem.check(problem.finish(&problem.off_the_top(found))).ok()
 }
 
 fn from_centre(problem: &Problem<'_>) -> Result<Equilibrium, EquilibriumError> {
     let Problem { model, input, .. } = *problem;
     let downhill = |start| problem.search(start, None, Progress::Work);
     let mut failure = match problem.search(problem.centred(), None, Progress::Residual) {
-        Ok(found) => return problem.check(problem.finish(&found)),
+        Ok(found) => return problem.check(problem.finish(&problem.off_the_top(found))),
         Err(why) => why,
     };
     let further: [&dyn Fn() -> Result<Found, EquilibriumError>; 3] =
         [&|| downhill(problem.centred()), &|| through_speeds(model, input), &|| downhill(problem.pushed())];
     for attempt in further {
         match attempt() {
-            Ok(found) => return problem.check(problem.finish(&found)),
+            Ok(found) => return problem.check(problem.finish(&problem.off_the_top(found))),
             Err(why) if !failure.is_physical() => failure = why,
             Err(_) => {}
         }

@@ -97,6 +97,15 @@ impl BallReport {
 }
 
 impl Equilibrium {
+    /// A warning where the balance is unstable.
+    pub fn warning(&self) -> Option<String> {
+        let (stiffness, race) = (self.unstable?, self.race.name());
+        Some(format!(
+            "warning: this equilibrium is unstable: the {race} race is pushed on where it moves off ({stiffness:.2e} N/m), and no \
+             stable one was found beside it"
+        ))
+    }
+
     /// \[Pa] largest contact pressure.
     pub fn peak_pressure(&self, model: &Model) -> f64 {
         let radius = model.bearing.ball.radius;
@@ -137,6 +146,7 @@ impl Equilibrium {
                 format!("external load on the {} race; the bearing's force on it is the opposite", self.race.name()),
             "load": { "Fx": fx, "Fy": fy, "Fz": fz, "My": my, "Mz": mz },
             "stiffness": stiffness,
+            "unstable": self.unstable,
             "cage_speed": self.cage_speed,
             "residual": self.residual,
             "iterations": self.iterations,
@@ -222,6 +232,9 @@ impl fmt::Display for Equilibrium {
         }
         writeln!(f, "\nball  azimuth [deg]  load inner, outer [N]   contact angle inner, outer [deg]")?;
         for (j, ball) in self.balls.iter().enumerate() {
+        if let Some(warning) = self.warning() {
+            writeln!(f, "              {}", warning.trim_start_matches("warning: "))?;
+        }
             let b = &ball.report;
             writeln!(
                 f,

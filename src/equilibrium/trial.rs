@@ -382,5 +382,6 @@ pub fn finish(
         growth: model.growth.as_ref().map(|growth| growth.output(&input.surroundings().warmth)),
         life,
         balls,
+        unstable: None,
     }
 }
