@@ -182,6 +182,7 @@ impl Equilibrium {
                 "modified": life.modified,
                 "equivalent_load": life.equivalent_load,
                 "static_safety": life.static_safety,
+                "load_rests_on": life.load_rests_on.name(),
             });
             report.insert("life".into(), rated);
         }
@@ -223,18 +224,19 @@ impl fmt::Display for Equilibrium {
             if let Some(modified) = life.modified {
                 write!(f, ", modified {modified:.5e}")?;
             }
-            writeln!(f, "; P {load:.2} N, static safety {safety:.3}\n")?;
+            writeln!(f, "; P {load:.2} N, static safety {safety:.3}")?;
+            writeln!(f, "              {}\n", life.load_rests_on.words())?;
         }
         writeln!(f, "stiffness     external load Fx, Fy, Fz [N], My, Mz [N m] by x, y, z [m], ry, rz [rad]")?;
         for row in self.stiffness.row_iter() {
             let row: Vec<String> = row.iter().map(|value| format!("{value:12.4e}")).collect();
             writeln!(f, "              {}", row.join(" "))?;
         }
-        writeln!(f, "\nball  azimuth [deg]  load inner, outer [N]   contact angle inner, outer [deg]")?;
-        for (j, ball) in self.balls.iter().enumerate() {
         if let Some(warning) = self.warning() {
             writeln!(f, "              {}", warning.trim_start_matches("warning: "))?;
         }
+        writeln!(f, "\nball  azimuth [deg]  load inner, outer [N]   contact angle inner, outer [deg]")?;
+        for (j, ball) in self.balls.iter().enumerate() {
             let b = &ball.report;
             writeln!(
                 f,

@@ -121,6 +121,10 @@ pub fn run(
             Place { output: output.join(name), files: true, choice: choice.clone(), said: Said::Nothing };
         let verdicts = estimate::verdicts(bearing.scene(), bearing.model());
         place.leave(&played, &verdicts, None, "")?;
+        if said != Said::Nothing {
+            let warning = bearing.outputs().life.and_then(|life| life.warning());
+            tell(warning.map(|warning| format!("bearing {name}: {warning}")));
+        }
         let shown = Shown { figures: played.figures(), bars: None };
         values.insert(name.to_string(), json::summary(bearing, &played.seen, &shown));
         let figure = |name: &str| shown.figures.get(name);
@@ -128,14 +132,14 @@ pub fn run(
         means.push(settled.map(|_| [figure("friction power"), figure("friction torque")]));
     }
     let mut text = shaft::summary(&system, &means);
-    let statistics =
-        system.bearings().next().map(|(_, bearing)| bearing.state().statistics).unwrap_or_default();
-    let seconds = wall.as_secs_f64();
-    text += &format!(
     let creeping = shaft::creeping(&system);
     if let Some(creeping) = &creeping {
         text += &format!("WARNING          {creeping}\n");
     }
+    let statistics =
+        system.bearings().next().map(|(_, bearing)| bearing.state().statistics).unwrap_or_default();
+    let seconds = wall.as_secs_f64();
+    text += &format!(
         "steps            {} accepted, {} rejected by error, {} by Newton; {:.2} Newton iterations a step\n\
          wall time        {seconds:.3} s, {:.2} s per simulated second\n",
         statistics.steps,
@@ -148,11 +152,11 @@ pub fn run(
     fs::write(&summary, &text).map_err(|why| format!("cannot write {}: {why}", summary.display()))?;
     let plot = shaft::write_plot(scene, &shaft_rows.finish(), output)?;
     if said == Said::Json {
+        tell(creeping.map(|creeping| format!("warning: {creeping}")));
         text = format!("{:#}\n", serde_json::Value::Object(values));
     } else {
         text += &format!(
             "\nresults          {}\nplot             {}\n",
-        tell(creeping.map(|creeping| format!("warning: {creeping}")));
             output.join("shaft.csv").display(),
             plot.display()
         );
