@@ -9,7 +9,7 @@ use crate::numerics::scalar::{Scalar, cross, dot};
 
 /// [m/s] rolling speed below which creepages are held finite: `V -> sqrt(V^2 + v^2)`. Forces stay linear in the slip
 /// speed at rest; at 1 m/s it changes creepages by 5e-7.
-pub(crate) const REGULARISATION_SPEED: f64 = 1e-3;
+pub const REGULARISATION_SPEED: f64 = 1e-3;
 
 /// Ball and other body where they touch, in world axes.
 #[derive(Clone, Copy, Debug)]

@@ -38,6 +38,7 @@ use creep::{CreepForces, Creepage, Law};
 pub use evaluate::Path;
 use film::Film;
 use geometry::GrooveContact;
+pub use kinematics::REGULARISATION_SPEED;
 use kinematics::RollingState;
 use normal::Damping;
 use oblique::Across;

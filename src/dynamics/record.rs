@@ -2,6 +2,7 @@
 
 use crate::effects::heat::ByContact;
 use crate::effects::heat_balance::Heating;
+use crate::effects::rating::Turning;
 use crate::forces::{BallPair, Pairs};
 use crate::model::bodies::{Body, Race};
 use crate::model::state::State;
@@ -12,10 +13,11 @@ pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, conditions: 
     let (balls, spins) = (state.balls.len(), Race::BOTH.map(|race| state.race(race).rate.x));
     if let (Some(rating), Some(sums)) = (&model.rating, &mut state.rating) {
         let loads = (0..balls).map(|ball| loads_of(pairs, ball));
-        let rates = rating.rates(loads, spins[0] - spins[1]);
+        let turning = Turning { force: radial_force(pairs, balls), spins, load_speed: 0.0 };
+        let now = rating.at(loads, turning);
         match h {
-            Some(h) => sums.add(rates, h),
-            None => sums.begin(rates),
+            Some(h) => sums.add(now, h),
+            None => sums.begin(now),
         }
     }
     if let (Some(balance), Some(warm), Some(h)) = (&model.heat_balance, &mut state.warm, h) {
@@ -41,6 +43,19 @@ pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, conditions: 
             None => heat.begin(powers, state.time),
         }
     }
+}
+
+/// \[N] y and z component of the force of the inner race on all balls.
+fn radial_force(pairs: &impl Pairs, balls: usize) -> [f64; 2] {
+    let mut force = [0.0; 2];
+    for ball in 0..balls {
+        pairs.of_ball(ball, |body, pair| {
+            if body == Body::Race(Race::Inner) {
+                force = [force[0] + pair.force.y, force[1] + pair.force.z];
+            }
+        });
+    }
+    force
 }
 
 /// \[N] loads of a ball on the inner and the outer race.

@@ -4,6 +4,7 @@ use nalgebra::{Matrix6, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::heat_balance::Warm;
+use super::rating::LoadRests;
 use crate::numerics::motion::{Pose, Twist, Wrench};
 
 /// All of it, as the outputs of a state have it; an effect that is off reports nothing.
@@ -228,6 +229,21 @@ pub struct LifeOutput {
     pub equivalent_load: f64,
     /// [-] static safety: load of a ball that would leave a mark over the largest load on the inner race; at most [`super::rating::SAFEST`].
     pub static_safety: f64,
+    /// The race that the load stands still on, by the scene or as it was found.
+    pub load_rests_on: LoadRests,
+    /// What was found, where the scene says otherwise.
+    pub contradiction: Option<LoadRests>,
+}
+
+impl LifeOutput {
+    /// A warning where the scene names another race than the one that the load stands still on.
+    pub fn warning(&self) -> Option<String> {
+        let (given, found) = (self.load_rests_on.name(), self.contradiction?.words());
+        Some(format!(
+            "warning: rating.load_rests_on = \"{given}\", but {found}, by the speeds of the load's direction and of both races: \
+             the life is that of the key; leave it out"
+        ))
+    }
 }
 
 /// A support at one instant.

@@ -61,6 +61,8 @@ pub struct EquilibriumInput {
     pub inner_speed: f64,
     /// [rad/s] spin of the outer race.
     pub outer_speed: f64,
+    /// [rad/s] speed at which the radial load turns about x, which the rating life depends on.
+    pub load_speed: f64,
     /// Pose of the other race in the bearing frame, without its turn about its own axis; an outer race rests at the origin.
     pub resting: Pose,
     /// \[rad] how far each race has turned about its own axis.
@@ -125,6 +127,7 @@ impl EquilibriumInput {
             }),
             inner_speed: scene.load.inner_speed.at(time),
             outer_speed: scene.load.outer_speed.at(time),
+            load_speed: load_speed(race, scene, time),
             resting: Pose { position, orientation },
             turned: PerRace::default(),
             gyroscopic,
@@ -136,6 +139,14 @@ impl EquilibriumInput {
             flange: None,
         }
     }
+}
+
+/// [rad/s] speed at which the radial load of a scene turns about x at a time \[s].
+fn load_speed(race: Race, scene: &Scene, time: f64) -> f64 {
+    // Short against a turn, long against the last digit of an angle.
+    const SOON: f64 = 1e-6;
+    let [[_, y0, z0, ..], [_, y1, z1, ..]] = [time, time + SOON].map(|time| race.load_at(scene, time));
+    (y0 * z1 - z0 * y1).atan2(y0 * y1 + z0 * z1) / SOON
 }
 
 /// Why there is no solution.
@@ -266,6 +277,9 @@ pub struct Equilibrium {
     pub load: [f64; 5],
     /// Derivative of the external load by the displacement, cage speed following.
     pub stiffness: SMatrix<f64, 5, 5>,
+    /// [N/m] negative stiffness of the free directions, angles times the size of the race, where the balance is unstable and no stable
+    /// one was found beside it: the smallest blow ends it.
+    pub unstable: Option<f64>,
     /// [rad/s] cage speed.
     pub cage_speed: f64,
     /// [-] largest residual over the size of the forces.
@@ -282,7 +296,8 @@ pub struct Equilibrium {
 
 /// Solves a quasi-static problem.
 ///
-/// Newton's method from a guess; where that leads nowhere, as [`solve_without_guess`].
+/// Newton's method from a guess; where that leads nowhere, as [`solve_without_guess`]. From an unstable balance it goes on to a stable
+/// one beside it, if there is one; if not, [`Equilibrium::unstable`] says so.
 ///
 /// # Errors
 /// See [`EquilibriumError`]; an unconverged result is never returned.
@@ -306,21 +321,21 @@ pub fn solve_without_guess(model: &Model, input: &EquilibriumInput) -> Result<Eq
 fn from_guess(problem: &Problem<'_>) -> Option<Equilibrium> {
     let guess = guess::guess(problem)?;
     let found = problem.search(guess.unknowns, Some(&guess.trial.places), Progress::Residual).ok()?;
-    problem.check(problem.finish(&found)).ok()
+    problem.check(problem.finish(&problem.off_the_top(found))).ok()
 }
 
 fn from_centre(problem: &Problem<'_>) -> Result<Equilibrium, EquilibriumError> {
     let Problem { model, input, .. } = *problem;
     let downhill = |start| problem.search(start, None, Progress::Work);
     let mut failure = match problem.search(problem.centred(), None, Progress::Residual) {
-        Ok(found) => return problem.check(problem.finish(&found)),
+        Ok(found) => return problem.check(problem.finish(&problem.off_the_top(found))),
         Err(why) => why,
     };
     let further: [&dyn Fn() -> Result<Found, EquilibriumError>; 3] =
         [&|| downhill(problem.centred()), &|| through_speeds(model, input), &|| downhill(problem.pushed())];
     for attempt in further {
         match attempt() {
-            Ok(found) => return problem.check(problem.finish(&found)),
+            Ok(found) => return problem.check(problem.finish(&problem.off_the_top(found))),
             Err(why) if !failure.is_physical() => failure = why,
             Err(_) => {}
         }

@@ -1,5 +1,7 @@
 //! A quasi-static problem as equations: unknowns, residual, and the search for its root.
 
+use nalgebra::{SMatrix, SymmetricEigen};
+
 use super::ball::{BallBalance, N_SHARED, Place, SHARED};
 use super::trial::{D, SharedMatrix, SharedVector, Trial, evaluate, finish, outside_of_race};
 use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
@@ -18,6 +20,11 @@ const NEAR: f64 = 1e-4;
 const SETTLING_THRUST: f64 = 0.05;
 /// Iterations on the displacements; a typical solve takes 5 to 15.
 const MAX_ITERATIONS: u32 = 400;
+/// [-] stiffness over the largest one of the free directions below which it is rounding.
+const NO_STIFFNESS: f64 = 1e-10;
+/// [-] first way off an unstable balance over the ball diameter, and how often it is doubled: to a hundredth, far beyond any play.
+const WAY_OFF: f64 = 1e-4;
+const WAYS_OFF: i32 = 8;
 /// Names of the five directions.
 const DIRECTION_NAMES: [&str; 5] = ["x", "y", "z", "ry", "rz"];
 
@@ -330,9 +337,57 @@ impl<'a> Problem<'a> {
         step.iter().all(|c| c.is_finite()).then_some(step)
     }
 
+    /// [N/m] negative stiffness of an unstable balance, and the way \[-] along which it gives in; none where a balance is stable. That
+    /// is of the symmetric part, angles times the size of the race.
+    fn gives_in(&self, found: &Found) -> Option<(f64, SharedVector)> {
+        let stiffness = self.stiffness(&found.trial);
+        let free = |i: usize| matches!(self.input.conditions[i], Prescribed::Load(_));
+        let largest = (0..5).filter(|i| free(*i)).map(|i| stiffness[(i, i)].abs()).fold(0.0, f64::max);
+        let symmetric = SMatrix::<f64, 5, 5>::from_fn(|i, k| match (free(i) && free(k), i == k) {
+            (true, _) => 0.5 * (stiffness[(i, k)] + stiffness[(k, i)]),
+            // What is held does not give in.
+            (false, true) => largest,
+            (false, false) => 0.0,
+        });
+        let SymmetricEigen { eigenvalues, eigenvectors } = symmetric.symmetric_eigen();
+        let least = eigenvalues.imin();
+        let way = eigenvectors.column(least);
+        // Its sign says nothing: that of the largest component is made positive.
+        let sign = way[way.iamax()].signum();
+        let along = |i: usize| if i < 5 { sign * way[i] / self.size(i) } else { 0.0 };
+        (eigenvalues[least] < -NO_STIFFNESS * largest)
+            .then(|| (eigenvalues[least], SharedVector::from_fn(|i, _| along(i))))
+    }
+
+    /// [N/m] external load by displacement, cage speed and what acts from outside following; angles times the size of the race.
+    fn stiffness(&self, trial: &Trial) -> SMatrix<f64, 5, 5> {
+        let t = &trial.tangent;
+        let by = |i: usize, k: usize| t[(i, k)] - trial.outside[i].derivatives[SHARED + k];
+        SMatrix::from_fn(|i, k| {
+            let follow = if t[(5, 5)] == 0.0 { 0.0 } else { by(i, 5) * t[(5, k)] / t[(5, 5)] };
+            (by(i, k) - follow) / (self.size(i) * self.size(k))
+        })
+    }
+
+    /// A stable balance beside an unstable one, such as a race that stands on the top of one ball: searched from further and further
+    /// along the way on which that gives in, to both sides. The same where it is stable, or where none is found.
+    pub fn off_the_top(&self, found: Found) -> Found {
+        let Some((_, way)) = self.gives_in(&found) else { return found };
+        let mut ways = (0..WAYS_OFF).flat_map(|double| [1.0, -1.0].map(|side| side * 2f64.powi(double)));
+        let stable = ways.find_map(|times| {
+            let start = found.unknowns + way * (times * WAY_OFF * self.diameter);
+            let beside = self.search(start, Some(&found.trial.places), Progress::Residual).ok()?;
+            let holds = self.gives_in(&beside).is_none() && self.check(self.finish(&beside)).is_ok();
+            holds.then_some(beside)
+        });
+        stable.unwrap_or(found)
+    }
+
     /// The solution as it is reported.
     pub fn finish(&self, found: &Found) -> Equilibrium {
-        finish(self.model, self.input, &found.unknowns, &found.trial, found.residual, found.iterations)
+        let Found { unknowns, trial, residual, iterations, .. } = found;
+        let unstable = self.gives_in(found).map(|(stiffness, _)| stiffness);
+        Equilibrium { unstable, ..finish(self.model, self.input, unknowns, trial, *residual, *iterations) }
     }
 
     /// Refuses contacts that Hertz's theory does not reach, or that lie where no groove is.

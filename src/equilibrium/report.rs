@@ -97,6 +97,15 @@ impl BallReport {
 }
 
 impl Equilibrium {
+    /// A warning where the balance is unstable.
+    pub fn warning(&self) -> Option<String> {
+        let (stiffness, race) = (self.unstable?, self.race.name());
+        Some(format!(
+            "warning: this equilibrium is unstable: the {race} race is pushed on where it moves off ({stiffness:.2e} N/m), and no \
+             stable one was found beside it"
+        ))
+    }
+
     /// \[Pa] largest contact pressure.
     pub fn peak_pressure(&self, model: &Model) -> f64 {
         let radius = model.bearing.ball.radius;
@@ -137,6 +146,7 @@ impl Equilibrium {
                 format!("external load on the {} race; the bearing's force on it is the opposite", self.race.name()),
             "load": { "Fx": fx, "Fy": fy, "Fz": fz, "My": my, "Mz": mz },
             "stiffness": stiffness,
+            "unstable": self.unstable,
             "cage_speed": self.cage_speed,
             "residual": self.residual,
             "iterations": self.iterations,
@@ -172,6 +182,7 @@ impl Equilibrium {
                 "modified": life.modified,
                 "equivalent_load": life.equivalent_load,
                 "static_safety": life.static_safety,
+                "load_rests_on": life.load_rests_on.name(),
             });
             report.insert("life".into(), rated);
         }
@@ -213,12 +224,16 @@ impl fmt::Display for Equilibrium {
             if let Some(modified) = life.modified {
                 write!(f, ", modified {modified:.5e}")?;
             }
-            writeln!(f, "; P {load:.2} N, static safety {safety:.3}\n")?;
+            writeln!(f, "; P {load:.2} N, static safety {safety:.3}")?;
+            writeln!(f, "              {}\n", life.load_rests_on.words())?;
         }
         writeln!(f, "stiffness     external load Fx, Fy, Fz [N], My, Mz [N m] by x, y, z [m], ry, rz [rad]")?;
         for row in self.stiffness.row_iter() {
             let row: Vec<String> = row.iter().map(|value| format!("{value:12.4e}")).collect();
             writeln!(f, "              {}", row.join(" "))?;
+        }
+        if let Some(warning) = self.warning() {
+            writeln!(f, "              {}", warning.trim_start_matches("warning: "))?;
         }
         writeln!(f, "\nball  azimuth [deg]  load inner, outer [N]   contact angle inner, outer [deg]")?;
         for (j, ball) in self.balls.iter().enumerate() {

@@ -8,6 +8,7 @@ use super::ball::{
 };
 use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
 use crate::effects::moving_frame::MovingFrame;
+use crate::effects::rating::Turning;
 use crate::effects::support::{Relative, Support};
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
@@ -362,7 +363,12 @@ pub fn finish(
         .collect();
     let life = model.rating.as_ref().map(|rating| {
         let loads = trial.balances.iter().map(|ball| [ball.inner_load.value, ball.outer_load.value]);
-        rating.life(&rating.rates(loads, input.inner_speed - input.outer_speed))
+        let turning = Turning {
+            force: [trial.load[1], trial.load[2]],
+            spins: [input.inner_speed, input.outer_speed],
+            load_speed: input.load_speed,
+        };
+        rating.life(&rating.at(loads, turning).rates)
     });
     // With the cage speed following: eliminate the last unknown.
     let t = &trial.tangent;
@@ -376,6 +382,7 @@ pub fn finish(
         displacement: std::array::from_fn(|i| unknowns[i]),
         load: std::array::from_fn(|i| trial.load[i]),
         stiffness,
+        unstable: None,
         cage_speed,
         residual,
         iterations,

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 #![allow(clippy::undocumented_unsafe_blocks)] // every pointer in here lives through its call
 
-use roulement::effects::rating::Sums;
+use roulement::effects::rating::{Sums, Turning};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::fmi::v2::Status;
 use roulement::model::bodies::Race;
@@ -66,7 +66,7 @@ fn identity_life_over_rows_is_that_of_the_loads_of_all_rows() {
         let outputs = simulation.outputs();
         let loads = outputs.balls.iter().map(|ball| [ball.inner.load, ball.outer.load]);
         let [inner, outer] = Race::BOTH.map(|race| simulation.state().race(race).rate.x);
-        rating.rates(loads, inner - outer)
+        rating.at(loads, Turning { spins: [inner, outer], ..Turning::default() })
     };
     let mut sums = Sums::default();
     sums.begin(rates(&simulation));
@@ -77,7 +77,7 @@ fn identity_life_over_rows_is_that_of_the_loads_of_all_rows() {
         close(life, expected, 1e-9 * expected, "life");
     }
     // The load has grown: its last value alone would give less.
-    assert!(rating.life(&rates(&simulation)).reference < 0.7 * rating.after(&sums).reference);
+    assert!(rating.life(&rates(&simulation).rates).reference < 0.7 * rating.after(&sums).reference);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use roulement::Model;
 use roulement::effects::rating::standard::{self, Geometry};
-use roulement::effects::rating::{LONGEST, SAFEST};
+use roulement::effects::rating::{LONGEST, LoadRests, SAFEST, Turning};
 use roulement::effects::reports::LifeOutput;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::interface::variables::Variables;
@@ -125,9 +125,9 @@ fn independent_data_life_from_the_loads_of_all_balls() {
         let loads: Vec<[f64; 2]> = list("Qi").into_iter().zip(list("Qo")).map(|(i, o)| [i, o]).collect();
         let model = Model::new(&scene(&row, "")).unwrap();
         let rating = model.rating.unwrap();
-        let rates = rating.rates(loads.into_iter(), 0.0);
-        close(rates.powers[0].cbrt(), get("Q_ei_N"), 1e-10, &id);
-        close(rates.powers[1].powf(0.3), get("Q_ee_N"), 1e-10, &id);
+        let rates = rating.at(loads.into_iter(), Turning::default()).rates;
+        close(rates.powers[0][0].cbrt(), get("Q_ei_N"), 1e-10, &id);
+        close(rates.powers[1][1].powf(0.3), get("Q_ee_N"), 1e-10, &id);
         let life = rating.life(&rates);
         close(life.reference, get("L10r_consistent"), 1e-10, &id);
         close(life.equivalent_load, get("P_ref_consistent_N"), 1e-10, &id);
@@ -222,7 +222,10 @@ fn closed_form_life_of_a_load_that_changes_is_that_of_its_means() {
     // Half of the revolutions under twice the load: wear adds up.
     let row = rows(CASES).into_iter().find(|row| row("id") == "L06").unwrap();
     let rating = Model::new(&scene(&row, "")).unwrap().rating.unwrap();
-    let rates = |load: f64, speed: f64| rating.rates(std::iter::repeat_n([load; 2], 13), speed);
+    let rates = |load: f64, speed: f64| {
+        let turning = Turning { spins: [speed, 0.0], ..Turning::default() };
+        rating.at(std::iter::repeat_n([load; 2], 13), turning)
+    };
     let mut sums = roulement::effects::rating::Sums::default();
     sums.begin(rates(100.0, 50.0));
     sums.add(rates(100.0, 50.0), 2.0);
@@ -234,9 +237,14 @@ fn closed_form_life_of_a_load_that_changes_is_that_of_its_means() {
     let mean = |power: f64| (0.5 * (100f64.powf(power) + 200f64.powf(power))).powf(1.0 / power);
     let expected = standard::reference_life(rating.ball_ratings, [mean(3.0), mean(10.0 / 3.0)]);
     close(rating.after(&sums).reference, expected, 1e-12, "life");
-    close(rating.after(&sums).static_safety, rating.life(&rates(900.0, 0.0)).static_safety, 1e-12, "safety");
+    close(
+        rating.after(&sums).static_safety,
+        rating.life(&rates(900.0, 0.0).rates).static_safety,
+        1e-12,
+        "safety",
+    );
     // Nothing is infinite.
-    let none = rating.life(&rates(0.0, 0.0));
+    let none = rating.life(&rates(0.0, 0.0).rates);
     assert_eq!((none.reference, none.static_safety), (LONGEST, SAFEST));
 }
 
@@ -281,4 +289,138 @@ fn keys_of_the_rating_say_what_life_is() {
     let steep = include_str!("../../scenes/thrust.toml").replace("25 deg", "60 deg") + "\n[rating]\n";
     let message = Scene::parse(&steep).unwrap_err().to_string();
     assert!(message.contains("rating") && message.contains("0.7854"), "{message}");
+}
+
+/// A radial load of 8 kN that stands still, on an outer race that turns.
+const OUTER_TURNS: &str = r#"
+[bearing]
+balls = 9
+ball_diameter = "7.94 mm"
+pitch_diameter = "39.04 mm"
+diametral_clearance = "12 um"
+[[defect]]
+on = "outer"
+length = "0.18 mm"
+width = "0.18 mm"
+depth = "0.28 mm"
+[rating]
+[effects]
+creep = "saturated"
+damping = "0.02 s/m"
+[inner]
+drive = "wrench"
+mass = "2 kg"
+inertia = ["1e-3 kg m2", "1e-3 kg m2", "1e-3 kg m2"]
+[load]
+outer_speed = "1797 rpm"
+y = { force = 8000 }
+x = { displacement = 0 }
+ry = { rotation = 0 }
+rz = { rotation = 0 }
+duration = "20 ms"
+output_interval = "100 us"
+"#;
+
+/// Changes of that scene, and the race that its load then stands still on.
+const TURNS: [(&[(&str, &str)], LoadRests); 6] = [
+    (&[], LoadRests::Inner),
+    (&[("load.outer_speed", "\"-1797 rpm\"")], LoadRests::Inner),
+    (&[("load.outer_speed", "0"), ("load.inner_speed", "\"1797 rpm\"")], LoadRests::Outer),
+    // An unbalance goes with the shaft.
+    (
+        &[
+            ("load.outer_speed", "0"),
+            ("load.inner_speed", "\"1797 rpm\""),
+            ("load.y.force", "0"),
+            ("load.rotating", "[{ force = 8000 }]"),
+        ],
+        LoadRests::Inner,
+    ),
+    // One that goes with an outer race.
+    (
+        &[("load.y.force", "0"), ("load.rotating", "[{ force = 8000, speed = \"1797 rpm\" }]")],
+        LoadRests::Outer,
+    ),
+    (&[("load.outer_speed", "\"-900 rpm\""), ("load.inner_speed", "\"900 rpm\"")], LoadRests::Neither),
+];
+
+/// That scene as it is changed, with a key of the rating.
+fn turning(changes: &[(&str, &str)], key: &str) -> Scene {
+    let text = OUTER_TURNS.replace("[rating]\n", &format!("[rating]\n{key}\n"));
+    Scene::edited(&text, changes.iter().copied()).unwrap()
+}
+
+#[test]
+fn closed_form_a_race_that_the_load_stands_still_on_counts_with_the_larger_power() {
+    for (changes, rests) in TURNS {
+        let scene = turning(changes, "");
+        let model = Model::new(&scene).unwrap();
+        let input = EquilibriumInput::from_scene(&scene, Gyroscopic::OuterRaceControl);
+        let solution = equilibrium::solve(&model, &input).unwrap();
+        let life = solution.life.unwrap();
+        assert_eq!((life.load_rests_on, life.warning()), (rests, None), "{changes:?}");
+        let mean = |race: LoadRests, load: fn(&equilibrium::BallReport) -> f64| {
+            let power = if rests == race { 10.0 / 3.0 } else { 3.0 };
+            let loads = solution.balls.iter().map(|ball| load(&ball.report).powf(power));
+            (loads.sum::<f64>() / solution.balls.len() as f64).powf(1.0 / power)
+        };
+        let loads =
+            [mean(LoadRests::Inner, |ball| ball.inner_load), mean(LoadRests::Outer, |ball| ball.outer_load)];
+        let expected = standard::reference_life(model.rating.unwrap().ball_ratings, loads);
+        close(life.reference, expected, 1e-12, "life");
+        // Four digits that were worked out beside the program.
+        match rests {
+            LoadRests::Inner => close(life.reference, 4.624, 2e-4, "on the inner race"),
+            LoadRests::Outer => close(life.reference, 5.095, 2e-4, "on the outer race"),
+            LoadRests::Neither => assert!(life.reference > 5.095, "{life:?}"),
+        }
+    }
+}
+
+#[test]
+fn invariant_a_key_that_is_right_changes_no_bit_and_one_that_is_wrong_is_warned_of() {
+    for (changes, rests) in TURNS {
+        let run = |key: &str| {
+            let mut simulation = Simulation::new(&turning(changes, key)).unwrap();
+            // A radian and a half.
+            simulation.advance_scripted(8e-3).unwrap();
+            simulation.outputs().life.unwrap()
+        };
+        let found = run("");
+        assert_eq!((found.load_rests_on, found.warning()), (rests, None), "{changes:?}");
+        for key in ["inner", "outer", "neither"] {
+            let given = run(&format!("load_rests_on = \"{key}\""));
+            if key == rests.name() {
+                assert_eq!(given, found);
+            } else {
+                let warning = given.warning().unwrap();
+                assert!(warning.contains(rests.words()) && warning.contains(key), "{warning}");
+                assert!((given.reference / found.reference - 1.0).abs() > 0.005, "{given:?} {found:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn closed_form_a_weight_with_an_unbalance_goes_by_the_squares_of_both() {
+    // W + U exp(i w t): its speed, weighted by its square, is U^2/(W^2 + U^2) of the shaft's.
+    let rating = Model::new(&turning(&[], "")).unwrap().rating.unwrap();
+    for (unbalance, rests) in [
+        (0.0, LoadRests::Outer),
+        (0.55, LoadRests::Outer),
+        (0.6, LoadRests::Neither),
+        (1.7, LoadRests::Neither),
+        (1.8, LoadRests::Inner),
+    ] {
+        let at = |turned: f64| {
+            let force = [1.0 + unbalance * turned.cos(), unbalance * turned.sin()];
+            let turning = Turning { force, spins: [100.0, 0.0], load_speed: 0.0 };
+            rating.at(std::iter::repeat_n([1.0; 2], 9), turning)
+        };
+        let mut sums = roulement::effects::rating::Sums::default();
+        sums.begin(at(0.0));
+        // Five turns in steps of a degree.
+        (1..=1800).for_each(|step| sums.add(at(f64::from(step).to_radians()), 1f64.to_radians() / 100.0));
+        assert_eq!(rating.after(&sums).load_rests_on, rests, "{unbalance}");
+    }
 }

@@ -1,7 +1,7 @@
 //! Quasi-static equilibrium against independent data (tests/data/bearing/README.md) and invariants.
 
 use nalgebra::{Rotation2, UnitQuaternion, Vector2};
-use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
+use roulement::equilibrium::{self, Equilibrium, EquilibriumInput, Gyroscopic, Prescribed};
 use roulement::model::Model;
 use roulement::scene::Scene;
 use serde_json::Value;
@@ -274,5 +274,61 @@ fn closed_form_balance_of_a_ball_that_both_races_keep_from_turning() {
         let imbalance = (loads[1] - loads[0]) / (loads[0] + loads[1]);
         assert!(imbalance > 0.05 && carried * imbalance > 1e-3 * loads[0], "{imbalance} {carried} {loads:?}");
         assert!(sum.norm() < 1e-3 * carried, "{friction}: {sum}, {carried} N of friction");
+    }
+}
+
+/// A radial bearing with 12 um of play under a load \[N] at an azimuth \[rad]; ball 1 is at azimuth 0.
+fn under_light_load(load: f64, azimuth: f64) -> Equilibrium {
+    let geometry = "balls = 9\nball_diameter = \"7.94 mm\"\npitch_diameter = \"39.04 mm\"\ndiametral_clearance = \"12 um\"";
+    let (y, z) = (load * azimuth.cos(), load * azimuth.sin());
+    let load = format!(
+        "x = {{ displacement = 0.0 }}\ny = {{ force = {y:e} }}\nz = {{ force = {z:e} }}\nry = {{ rotation = 0.0 }}\n\
+         rz = {{ rotation = 0.0 }}"
+    );
+    solve(&bearing_text(geometry, &load), Gyroscopic::None)
+}
+
+#[test]
+fn closed_form_a_race_with_play_does_not_balance_on_one_ball() {
+    // On top of one ball it would roll off to either side; the next ball stops it where the play of both is used up.
+    let (play, half) = (6e-6, std::f64::consts::PI / 9.0);
+    for azimuth in [0.0, half, 2.0 * half] {
+        let solution = under_light_load(1e-3, azimuth);
+        assert_eq!((solution.unstable, solution.warning()), (None, None), "{azimuth}");
+        let stiffness = solution.stiffness.fixed_view::<2, 2>(1, 1).into_owned();
+        let least = (0.5 * (stiffness + stiffness.transpose())).symmetric_eigenvalues().min();
+        assert!(least > 0.0, "{azimuth}: {stiffness}");
+        // Of so light a load rounding of the balls' places leaves more than the tolerance of 1e-11; more than a hundred times of it is
+        // no answer.
+        assert!(solution.residual < 1e-9, "{azimuth}: {}", solution.residual);
+        assert_eq!(solution.balls.iter().filter(|ball| ball.report.inner_load > 0.0).count(), 2, "{azimuth}");
+        let [_, y, z, ..] = solution.displacement;
+        // A load of 1 mN presses a ball in by some nanometres.
+        assert!((y.hypot(z) / (play / half.cos()) - 1.0).abs() < 2e-3, "{azimuth}: {y} {z}");
+        let beside = (z.atan2(y) - azimuth).abs();
+        let expected = if azimuth == half { 0.0 } else { half };
+        assert!((beside - expected).abs() < 2e-3, "{azimuth}: {y} {z}");
+    }
+    // Between two balls both carry the same.
+    for ball in &under_light_load(1e-3, half).balls[..2] {
+        assert!(
+            (ball.report.inner_load / (0.5e-3 / half.cos()) - 1.0).abs() < 1e-3,
+            "{}",
+            ball.report.inner_load
+        );
+    }
+    // 1 kN on a ball presses it in until its neighbours help.
+    let heavy = under_light_load(1e3, 0.0);
+    assert!(heavy.unstable.is_none() && heavy.displacement[2].abs() < 1e-15, "{:?}", heavy.displacement);
+}
+
+#[test]
+fn an_unstable_balance_is_said_to_be_one() {
+    let mut solution = under_light_load(1e3, 0.0);
+    assert!(solution.to_json()["unstable"].is_null() && !solution.to_string().contains("unstable"));
+    solution.unstable = Some(-0.05);
+    assert_eq!(solution.to_json()["unstable"], -0.05);
+    for text in [solution.to_string(), solution.warning().unwrap()] {
+        assert!(text.contains("this equilibrium is unstable") && text.contains("-5.00e-2 N/m"), "{text}");
     }
 }

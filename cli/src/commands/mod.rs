@@ -173,6 +173,8 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
                 say(&solution.to_string())?;
             }
             tell(scene.pressure_note(solution.peak_pressure(&model)));
+            tell(solution.warning());
+            tell(solution.life.and_then(|life| life.warning()));
             if model.supports.iter().any(Option::is_some) {
                 tell([SUPPORTS_LEFT_OUT.to_string()]);
             }

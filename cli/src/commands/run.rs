@@ -293,6 +293,7 @@ impl Place {
             }
         };
         tell(scene.pressure_note(played.seen.limits.peak_pressure));
+        tell(played.simulation.outputs().life.and_then(|life| life.warning()));
         let said = say(&listed);
         // Why a run has ended early is said even where nobody reads the summary.
         if matches!(played.end, End::Reached) {

@@ -131,6 +131,10 @@ pub fn run(
             Place { output: output.join(name), files: true, choice: choice.clone(), said: Said::Nothing };
         let verdicts = estimate::verdicts(bearing.scene(), bearing.model());
         place.leave(&played, &verdicts, None, "")?;
+        if said != Said::Nothing {
+            let warning = bearing.outputs().life.and_then(|life| life.warning());
+            tell(warning.map(|warning| format!("bearing {name}: {warning}")));
+        }
         let shown = Shown { figures: played.figures(), bars: None };
         values.insert(name.to_string(), json::summary(bearing, &played.seen, &shown));
         let figure = |name: &str| shown.figures.get(name);
@@ -138,6 +142,10 @@ pub fn run(
         means.push(settled.map(|_| [figure("friction power"), figure("friction torque")]));
     }
     let mut text = shaft::summary(&system, &means);
+    let creeping = shaft::creeping(&system);
+    if let Some(creeping) = &creeping {
+        text += &format!("WARNING          {creeping}\n");
+    }
     let statistics =
         system.bearings().next().map(|(_, bearing)| bearing.state().statistics).unwrap_or_default();
     let seconds = wall.as_secs_f64();
@@ -154,6 +162,7 @@ pub fn run(
     fs::write(&summary, &text).map_err(|why| format!("cannot write {}: {why}", summary.display()))?;
     let plot = shaft::write_plot(scene, &shaft_rows.finish(), output)?;
     if said == Said::Json {
+        tell(creeping.map(|creeping| format!("warning: {creeping}")));
         text = format!("{:#}\n", serde_json::Value::Object(values));
     } else {
         text += &format!(

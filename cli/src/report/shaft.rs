@@ -6,6 +6,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
+use roulement::contact::REGULARISATION_SPEED;
 use roulement::scene::system::SystemScene;
 use roulement::simulation::system::{HousingOutputs, PointOutput, System, SystemOutputs};
 
@@ -198,6 +199,26 @@ fn of_housings(scene: &SystemScene, rows: &[SystemOutputs]) -> Vec<Panel> {
         over_time("housing, tilt about y [urad]", |point| point.tilt.y * 1e6),
         over_time("housing, tilt about z [urad]", |point| point.tilt.z * 1e6),
     ]
+}
+
+/// What to say of a shaft that creeps under a torque which its friction holds; nothing of one that moves or is driven by a speed.
+pub fn creeping(system: &System) -> Option<String> {
+    let (spin, torque) = (&system.outputs().spin, system.outputs().torque);
+    system.scene().shaft.torque.as_ref()?;
+    let held: f64 = system.bearings().map(|(_, bearing)| bearing.outputs().friction_torque).sum();
+    // A ball's centre goes half as fast as the shaft's surface, and rolls as fast on both races.
+    let rolling = system.bearings().map(|(_, bearing)| 0.25 * bearing.model().bearing.pitch_diameter);
+    let rolling = spin.speed.abs() * rolling.fold(0.0, f64::max);
+    // One that starts is as slow, but what drives it makes it faster.
+    let rests = (torque.abs() - held).abs() < 0.5 * torque.abs();
+    (rests && rolling < REGULARISATION_SPEED).then(|| {
+        format!(
+            "the shaft creeps at {:.3e} rad/s under {torque:.3e} N m, which friction holds: its balls roll at {rolling:.1e} m/s, \
+             below v0 = {REGULARISATION_SPEED:e} m/s, where creep laws are viscous (docs/creep-laws.md); a real shaft stands \
+             still here",
+            spin.speed
+        )
+    })
 }
 
 /// What a shaft's run came to, in words: of the shaft, and of its bearings a line each.

@@ -123,3 +123,61 @@ fn regression_a_soft_housing_is_named_and_no_groove() {
         assert!(!message.contains("groove") && !message.contains("shoulder"), "{message}");
     }
 }
+
+/// A shaft on two bearings under a torque that is to be given.
+const DRIVEN: &str = r#"
+[shaft]
+torque = "0.005 N m"
+start_speed = 0
+mass = "2 kg"
+polar_inertia = "1e-3 kg m^2"
+transverse_inertia = "4e-3 kg m^2"
+[[shaft.load]]
+name = "weight"
+position = "0 mm"
+force = [0, 2000, 0]
+moment = [0, 0, 0]
+[[bearing]]
+name = "left"
+catalogue = "6206"
+mounting = { position = "-50 mm", preload = { force = "500 N" } }
+[[bearing]]
+name = "right"
+catalogue = "6206"
+mounting = { position = "50 mm", direction = "-x", preload = { force = "500 N" } }
+[load]
+duration = "10 ms"
+output_interval = "500 us"
+"#;
+
+#[test]
+fn limit_a_shaft_that_creeps_below_breakaway_is_said_to() {
+    let scratch = Scratch::new("shaft-creeps");
+    let with = |torque: &str, options: &[&str]| {
+        let text = DRIVEN.replace("torque = \"0.005 N m\"\nstart_speed = 0", torque);
+        assert!(text == DRIVEN || !torque.contains("0.005"));
+        std::fs::write(scratch.path("shaft.toml"), text).unwrap();
+        let (file, to) = (scratch.path("shaft.toml"), scratch.path("out"));
+        let output = roulement(&[&["run", &file, "-o", &to], options].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        [output.stdout, output.stderr].map(|said| String::from_utf8(said).unwrap())
+    };
+    let below = "torque = \"0.005 N m\"\nstart_speed = 0";
+    let [said, _] = with(below, &[]);
+    for part in [
+        "WARNING          the shaft creeps at 1.",
+        "e-3 rad/s under 5.000e-3 N m",
+        "below v0 = 1e-3 m/s",
+        "stands still",
+    ] {
+        assert!(said.contains(part), "{said}\nshould have {part}");
+    }
+    assert!(scratch.read("out/summary.txt").contains("the shaft creeps"));
+    let [_, said] = with(below, &["--json"]);
+    assert!(said.contains("warning: the shaft creeps at 1."), "{said}");
+    // Above breakaway it starts; one that is turned this slowly is not creeping.
+    for torque in ["torque = \"0.5 N m\"\nstart_speed = 0", "speed = 1.3e-3"] {
+        let said = with(torque, &[]).concat();
+        assert!(!said.contains("the shaft creeps"), "{torque}: {said}");
+    }
+}

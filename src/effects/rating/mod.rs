@@ -2,6 +2,9 @@
 //!
 //! In a run the powers of the loads are means over the revolutions of the races against each other: what a revolution costs does
 //! not depend on how long it takes, and a bearing at rest does not age.
+//!
+//! A race that the load stands still on wears in one place, and its loads count with a larger power than those of a race that the load
+//! goes around. Which one that is comes from how the load and both races turn.
 
 pub mod standard;
 
@@ -33,8 +36,8 @@ pub struct Section {
     pub contamination: Option<f64>,
     /// [-] share of bearings that reach the modified life, 0.9 to 0.99.
     pub reliability: f64,
-    /// The race that the load stands still on.
-    pub load_rests_on: LoadRests,
+    /// The race that the load stands still on; found from how load and races turn if not given.
+    pub load_rests_on: Option<LoadRests>,
 }
 
 impl Default for Section {
@@ -46,19 +49,58 @@ impl Default for Section {
             viscosity: None,
             contamination: None,
             reliability: 0.9,
-            load_rests_on: LoadRests::Outer,
+            load_rests_on: None,
         }
     }
 }
 
 /// The race that the load stands still on; the other one turns against it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LoadRests {
     /// The inner race.
     Inner,
     /// The outer race.
+    #[default]
     Outer,
+    /// Neither: both turn against it.
+    Neither,
+}
+
+impl LoadRests {
+    /// From the share \[-] of the turn of the races against each other in which the load goes with the inner race.
+    fn of_share(share: f64) -> Self {
+        if share.abs() <= STANDING {
+            Self::Outer
+        } else if (share - 1.0).abs() <= STANDING {
+            Self::Inner
+        } else {
+            Self::Neither
+        }
+    }
+
+    /// Its word in scenes and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Inner => "inner",
+            Self::Outer => "outer",
+            Self::Neither => "neither",
+        }
+    }
+
+    /// In a sentence.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Inner => "the load stands still on the inner race",
+            Self::Outer => "the load stands still on the outer race",
+            Self::Neither => "the load stands still on neither race",
+        }
+    }
+
+    /// Does it on this race (0 is the inner one)?
+    fn is_on(self, race: usize) -> bool {
+        matches!((self, race), (Self::Inner, 0) | (Self::Outer, 1))
+    }
 }
 
 /// The effect as a scene has it: there is a section, or there is none.
@@ -83,13 +125,45 @@ pub const LONGEST: f64 = 1e12;
 /// [-] largest static safety that is reported.
 pub const SAFEST: f64 = 1e6;
 
+/// [-] powers p of the loads on a race that the load goes around, and on one that it stands still on.
+const EXPONENTS: [f64; 2] = [3.0, 10.0 / 3.0];
+/// [-] speed of the load against a race over that of the other race below which it stands still there: a load that shakes, such as a
+/// weight with an unbalance of half its size, stands.
+const STANDING: f64 = 0.25;
+/// [-] radial load over the sum of ball loads below which it points nowhere: all balls carry the same, whatever their power.
+const POINTS: f64 = 0.01;
+/// \[rad] turn of the races against each other from which on the turn of the load is that of the run, and not of its first shakes.
+const TOLD: f64 = 1.0;
+
+/// How the radial load and both races turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Turning {
+    /// \[N] y and z component of the load on the bearing.
+    pub force: [f64; 2],
+    /// [rad/s] spins of the inner and the outer race.
+    pub spins: [f64; 2],
+    /// [rad/s] speed of the load's direction, as far as it is known from one instant.
+    pub load_speed: f64,
+}
+
+impl Turning {
+    /// [rad/s] speed of the races against each other.
+    fn relative(&self) -> f64 {
+        self.spins[0] - self.spins[1]
+    }
+}
+
 /// What the loads of a step, or of all steps, come to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Rates {
     /// [rad/s] speed of the races against each other.
     pub speed: f64,
-    /// [N^p] means over the balls of powers of their loads on the inner and the outer race.
-    pub powers: [f64; 2],
+    /// [N^p] means over the balls of powers of their loads on the inner and the outer race: with p of a race that the load goes
+    /// around, and of one that it stands still on.
+    pub powers: [[f64; 2]; 2],
+    /// [-] share of the turn of the races against each other in which the load goes with the inner race; none where nothing turns or
+    /// the load points nowhere.
+    pub with_inner: Option<f64>,
     /// \[N] largest load of a ball on the inner race.
     pub largest: f64,
 }
@@ -102,45 +176,76 @@ pub struct Sums {
     /// \[rad] turn of the races against each other.
     turn: f64,
     /// [N^p rad] powers of loads over that turn.
-    powers: [f64; 2],
+    powers: [[f64; 2]; 2],
+    /// [N2 rad] turn of the load from the outer race, and of the inner race from the outer one, weighted by the square of the load.
+    turns: [f64; 2],
     /// \[N] largest load of a ball on the inner race so far.
     largest: f64,
     /// Those of the last step.
     now: Rates,
+    /// How load and races turned there; none where the load points nowhere.
+    turning: Option<Turning>,
 }
 
 impl Sums {
     /// Takes what holds now without a step.
-    pub fn begin(&mut self, now: Rates) {
-        self.now = now;
-        self.largest = self.largest.max(now.largest);
+    pub fn begin(&mut self, now: Instant) {
+        self.now = now.rates;
+        self.turning = now.turning;
+        self.largest = self.largest.max(now.rates.largest);
     }
 
     /// Adds a step of `h` \[s] by the trapezoidal rule.
-    pub fn add(&mut self, now: Rates, h: f64) {
-        let before = self.now;
+    pub fn add(&mut self, now: Instant, h: f64) {
+        let (before, rates) = (self.now, now.rates);
         self.duration += h;
-        self.turn += 0.5 * h * (before.speed + now.speed);
-        for (race, sum) in self.powers.iter_mut().enumerate() {
-            *sum += 0.5 * h * (before.speed * before.powers[race] + now.speed * now.powers[race]);
+        self.turn += 0.5 * h * (before.speed + rates.speed);
+        for (race, sums) in self.powers.iter_mut().enumerate() {
+            for (power, sum) in sums.iter_mut().enumerate() {
+                *sum += 0.5
+                    * h
+                    * (before.speed * before.powers[race][power] + rates.speed * rates.powers[race][power]);
+            }
+        }
+        if let (Some(before), Some(now)) = (self.turning, now.turning) {
+            let ([y0, z0], [y1, z1]) = (before.force, now.force);
+            let weight = y0.hypot(z0) * y1.hypot(z1);
+            let [inner, outer] = [0, 1].map(|race| 0.5 * h * (before.spins[race] + now.spins[race]));
+            // A race that swings goes to and fro: what counts is whether the load follows.
+            let way = weight * (inner - outer).signum();
+            let load = (y0 * z1 - z0 * y1).atan2(y0 * y1 + z0 * z1);
+            self.turns[0] += way * (load - outer);
+            self.turns[1] += way * (inner - outer);
         }
         self.begin(now);
     }
 
     /// Adds a step of `h` \[s] that ends where other sums have begun.
     pub fn add_until(&mut self, end: &Self, h: f64) {
-        self.add(end.now, h);
+        self.add(Instant { rates: end.now, turning: end.turning }, h);
     }
 
     /// Means over the revolutions; of a bearing that has not turned, what holds now.
     fn means(&self) -> Rates {
         if self.turn > 0.0 {
-            let powers = self.powers.map(|sum| sum / self.turn);
-            Rates { speed: self.turn / self.duration, powers, largest: self.largest }
+            let powers = self.powers.map(|of_race| of_race.map(|sum| sum / self.turn));
+            let [load, races] = self.turns;
+            let told = self.turn >= TOLD && races > 0.0;
+            let with_inner = if told { Some(load / races) } else { self.now.with_inner };
+            Rates { speed: self.turn / self.duration, powers, with_inner, largest: self.largest }
         } else {
             Rates { largest: self.largest, ..self.now }
         }
     }
+}
+
+/// What the loads come to at an instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Instant {
+    /// Powers of loads, and speed.
+    pub rates: Rates,
+    /// How load and races turn; none where the load points nowhere.
+    turning: Option<Turning>,
 }
 
 /// Ratings of a bearing and its lubrication.
@@ -156,8 +261,8 @@ pub struct Rating {
     pub ball_ratings: [f64; 2],
     /// \[N] load of a ball on the inner race at which it leaves a mark.
     static_ball_load: f64,
-    /// [-] powers of loads on both races.
-    exponents: [f64; 2],
+    /// The race that the load stands still on, as the scene has it.
+    load_rests_on: Option<LoadRests>,
     /// [m2/s], [-] viscosity and contamination.
     lubrication: Option<(f64, f64)>,
     /// [-] factor of reliability.
@@ -189,10 +294,7 @@ impl Settings {
                 .unwrap_or_else(|| standard::fatigue_load_limit(static_load_rating, geometry.pitch_diameter)),
             ball_ratings: geometry.ball_ratings(dynamic),
             static_ball_load: own * (static_load_rating / own_rating),
-            exponents: match section.load_rests_on {
-                LoadRests::Inner => [10.0 / 3.0, 3.0],
-                LoadRests::Outer => [3.0, 10.0 / 3.0],
-            },
+            load_rests_on: section.load_rests_on,
             lubrication: section.viscosity.map(|viscosity| viscosity.0).zip(section.contamination),
             reliability: standard::reliability_factor(section.reliability),
             pitch_diameter: geometry.pitch_diameter,
@@ -201,21 +303,29 @@ impl Settings {
 }
 
 impl Rating {
-    /// What loads \[N] of all balls on both races come to at a speed [rad/s] of the races against each other.
-    pub fn rates(&self, loads: impl Iterator<Item = [f64; 2]>, speed: f64) -> Rates {
-        let (mut rates, mut count) = (Rates { speed: speed.abs(), ..Rates::default() }, 0.0);
+    /// What loads \[N] of all balls on both races come to while load and races turn so.
+    pub fn at(&self, loads: impl Iterator<Item = [f64; 2]>, turning: Turning) -> Instant {
+        let relative = turning.relative();
+        let (mut rates, mut count, mut sum) = (Rates { speed: relative.abs(), ..Rates::default() }, 0.0, 0.0);
         for of_ball in loads {
             for race in 0..2 {
                 // Balls without load are many, and a power of 0 is 0.
                 if of_ball[race] > 0.0 {
-                    rates.powers[race] += of_ball[race].powf(self.exponents[race]);
+                    for (power, exponent) in rates.powers[race].iter_mut().zip(EXPONENTS) {
+                        *power += of_ball[race].powf(exponent);
+                    }
                 }
             }
             rates.largest = rates.largest.max(of_ball[0]);
+            sum += of_ball[0];
             count += 1.0;
         }
-        rates.powers = rates.powers.map(|sum| sum / count);
-        rates
+        rates.powers = rates.powers.map(|of_race| of_race.map(|sum| sum / count));
+        let turning = (turning.force[0].hypot(turning.force[1]) > POINTS * sum).then_some(turning);
+        rates.with_inner = turning
+            .filter(|_| relative != 0.0)
+            .map(|turning| (turning.load_speed - turning.spins[1]) / relative);
+        Instant { rates, turning }
     }
 
     /// Life under what a run has seen.
@@ -225,7 +335,12 @@ impl Rating {
 
     /// Life under loads that stay.
     pub fn life(&self, rates: &Rates) -> LifeOutput {
-        let loads = [0, 1].map(|race: usize| rates.powers[race].powf(1.0 / self.exponents[race]));
+        let found = rates.with_inner.map(LoadRests::of_share);
+        let load_rests_on = self.load_rests_on.or(found).unwrap_or_default();
+        let loads = [0, 1].map(|race| {
+            let power = usize::from(load_rests_on.is_on(race));
+            rates.powers[race][power].powf(1.0 / EXPONENTS[power])
+        });
         let reference = standard::reference_life(self.ball_ratings, loads).min(LONGEST);
         let equivalent_load = self.dynamic_load_rating / reference.cbrt();
         let modified = self.lubrication.map(|(viscosity, contamination)| {
@@ -235,7 +350,8 @@ impl Rating {
             (self.reliability * factor * reference).min(LONGEST)
         });
         let static_safety = (self.static_ball_load / rates.largest).min(SAFEST);
-        LifeOutput { reference, modified, equivalent_load, static_safety }
+        let contradiction = found.filter(|found| *found != load_rests_on);
+        LifeOutput { reference, modified, equivalent_load, static_safety, load_rests_on, contradiction }
     }
 }
 
