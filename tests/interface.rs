@@ -1,11 +1,15 @@
 //! What a package tells its importers: names, dependencies, variables, parameters, its page.
 #![allow(clippy::unwrap_used)]
 
+use std::collections::BTreeSet;
+
 use roulement::interface::documentation::page;
-use roulement::interface::model_description::{identifier, render};
+use roulement::interface::model_description::{identifier, render, render_system};
 use roulement::interface::variables::{Causality, Variables};
 use roulement::scene::Scene;
+use roulement::scene::system::SystemScene;
 use roulement::simulation::Simulation;
+use roulement::simulation::system::System;
 
 #[path = "common/scenes.rs"]
 mod scenes;
@@ -50,16 +54,67 @@ fn names_are_those_that_were_asked_for_and_identifiers_are_those_of_c() {
 }
 
 #[test]
-fn regression_after_a_step_no_output_depends_on_an_input() {
-    let simulation = Simulation::new(&Scene::parse(THRUST).unwrap()).unwrap();
-    let xml = render(&simulation, "thrust").unwrap().xml;
-    let (outputs, initial) = xml.split_once("<InitialUnknowns>").unwrap();
-    let outputs = outputs.split_once("<Outputs>").unwrap().1;
-    let unknowns = elements(outputs, "Unknown");
-    assert!(unknowns.len() > 30 && unknowns.iter().all(|unknown| unknown.contains("dependencies=\"\"")));
-    // At the start they do, but for what is counted from there.
-    let dependent = elements(initial, "Unknown").iter().filter(|u| !u.contains("dependencies=\"\"")).count();
-    assert_eq!(dependent, unknowns.len() - 3);
+fn dependencies_are_those_that_the_scene_asks_for() {
+    // No dependencies at a communication point; the inputs of the step, written out; all at the start, without lists.
+    let counts = |changes: &[(&str, &str)]| {
+        let xml = render(&Simulation::new(&scene(THRUST, changes)).unwrap(), "thrust").unwrap().xml;
+        let (outputs, initial) = xml.split_once("<InitialUnknowns>").unwrap();
+        let outputs = elements(outputs.split_once("<Outputs>").unwrap().1, "Unknown");
+        let initial = elements(initial, "Unknown");
+        assert!(outputs.len() > 30 && initial.len() == outputs.len());
+        let empty =
+            |list: &[&str]| list.iter().filter(|unknown| unknown.contains("dependencies=\"\"")).count();
+        let unlisted =
+            |list: &[&str]| list.iter().filter(|unknown| !unknown.contains("dependencies")).count();
+        let of = |list: &[&str]| [empty(list), unlisted(list), list.len()];
+        (of(&outputs), of(&initial))
+    };
+    let (point, start) = counts(&[]);
+    let ([_, _, all], counted) = (point, 3);
+    assert_eq!((point, start), ([all, 0, all], [counted, all - counted, all]));
+    assert_eq!(counts(&[("interface.dependencies", "\"point\"")]), (point, start));
+    assert_eq!(counts(&[("interface.dependencies", "\"step\"")]), ([0, 0, all], start));
+}
+
+/// Values of an attribute, in the order of the text, within the element of a name.
+fn attributes<'a>(xml: &'a str, within: &str, attribute: &str) -> Vec<&'a str> {
+    let inner = xml.split_once(&format!("<{within}>")).unwrap().1;
+    let inner = inner.split_once(&format!("</{within}>")).unwrap().0;
+    let start = format!(" {attribute}=\"");
+    inner.split(&start).skip(1).map(|rest| rest.split('"').next().unwrap()).collect()
+}
+
+#[test]
+fn units_and_types_are_defined_where_a_variable_has_them() {
+    const SHAFT: &str = include_str!("../scenes/shafts/pinion.toml");
+    let system = SystemScene::parse(SHAFT, None, "".as_ref()).unwrap();
+    let mut texts = vec![render_system(&System::new(&system).unwrap(), "shaft").unwrap().xml];
+    for text in [THRUST, CAGE, include_str!("../scenes/effects/stiffness.toml")] {
+        texts.push(render(&Simulation::new(&Scene::parse(text).unwrap()).unwrap(), "bearing").unwrap().xml);
+    }
+    for xml in texts {
+        let set = |within: &str, attribute: &str| -> BTreeSet<&str> {
+            attributes(&xml, within, attribute).into_iter().collect()
+        };
+        let types = attributes(&xml, "TypeDefinitions", "name");
+        assert_eq!(types, attributes(&xml, "TypeDefinitions", "quantity"));
+        assert_eq!(types.iter().copied().collect::<BTreeSet<_>>(), set("ModelVariables", "declaredType"));
+        // Names of units, and of those that they are shown in.
+        let units: BTreeSet<_> =
+            set("ModelVariables", "unit").union(&set("ModelVariables", "displayUnit")).copied().collect();
+        assert_eq!(set("UnitDefinitions", "name"), units);
+        let names = attributes(&xml, "UnitDefinitions", "name");
+        assert_eq!(names.len(), units.len(), "{names:?}");
+    }
+}
+
+#[test]
+fn regression_a_model_description_says_nothing_twice() {
+    // 173.6 kB with a list of all knowns for each output at the start, with all units, and with what the standard takes anyway.
+    let misalignment = include_str!("../scenes/misalignment.toml");
+    let xml =
+        render(&Simulation::new(&Scene::parse(misalignment).unwrap()).unwrap(), "misalignment").unwrap().xml;
+    assert!(xml.len() < 125_000, "{}", xml.len());
 }
 
 #[test]
@@ -251,6 +306,16 @@ fn the_page_says_how_orientations_are_written() {
         assert!(page(&scene(THRUST, &[("interface.orientation", &form)])).contains(wanted), "{form}");
     }
     assert!(page(&Scene::parse(THRUST).unwrap()).contains("inner.rotation_rate.y"));
+}
+
+#[test]
+fn the_page_says_what_dependencies_are_about() {
+    for (meaning, wanted) in
+        [("point", "none follows an input before the next step"), ("step", "these derivatives")]
+    {
+        let meaning = format!("\"{meaning}\"");
+        assert!(page(&scene(THRUST, &[("interface.dependencies", &meaning)])).contains(wanted), "{meaning}");
+    }
 }
 
 #[test]

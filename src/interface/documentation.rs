@@ -2,7 +2,7 @@
 
 use crate::effects::AnyEffect;
 use crate::interface::variables::{Causality, Source, SystemVariables, Variable, Variables};
-use crate::scene::{Drive, Orientation, Scene};
+use crate::scene::{Dependencies, Drive, Orientation, Scene};
 use crate::schema::numbers::Variability;
 use crate::simulation::system::System;
 
@@ -137,6 +137,15 @@ pub fn page(scene: &Scene) -> String {
             format!("{start} ({} to {}), {when}", range.low, range.high)
         },
     );
+    let dependencies = match scene.interface.dependencies {
+        Dependencies::Point => {
+            "The dependencies of outputs in modelDescription.xml are those at a communication point, where none follows an \
+             input before the next step."
+        }
+        Dependencies::Step => {
+            "The dependencies of outputs in modelDescription.xml are where these derivatives can be other than zero."
+        }
+    };
     let effects: String = scene.effects.each().into_iter().map(effect).collect();
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
@@ -154,7 +163,7 @@ pub fn page(scene: &Scene) -> String {
          speeds move linearly to the given values within the step, and so do temperatures. Steps may vary; they are divided internally by error \
          control. A step that cannot be finished ends with fmi2Discard at the last time reached. The FMU state holds \
          everything: a replay gives the same bits. fmi2GetDirectionalDerivative gives the derivatives of all real outputs \
-         by all inputs over the last step.</p>\n\
+         by all inputs over the last step. {dependencies}</p>\n\
          <p>What the scene gives as a table over time is played here too, exactly in every internal step, unless \
          <code>interface.inputs</code> of the scene leaves it to the master: applied loads (<code>loads</code>), the \
          speed of a race under a wrench (<code>speeds</code>), poses, twists and speed in pose drive (<code>tilts</code>), \

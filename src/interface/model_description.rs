@@ -7,8 +7,8 @@ use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
 
 use crate::analysis::condensed::Condensed;
-use crate::interface::variables::{Causality, Kind, Source, SystemVariables, Variable, Variables};
-use crate::scene::Drive;
+use crate::interface::variables::{Causality, InputKind, Kind, Source, SystemVariables, Variable, Variables};
+use crate::scene::{Dependencies, Drive};
 use crate::schema::numbers::Variability;
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::Simulation;
@@ -55,6 +55,7 @@ pub fn render(simulation: &Simulation, name: &str) -> std::io::Result<ModelDescr
         name,
         guid: &guid,
         directional_derivatives: true,
+        dependencies: scene.interface.dependencies,
         stop: scene.load.duration.0,
         step: recommended_step(simulation),
     };
@@ -77,6 +78,7 @@ pub fn render_system(system: &System, name: &str) -> std::io::Result<ModelDescri
         name,
         guid: &guid,
         directional_derivatives: false,
+        dependencies: Dependencies::Point,
         stop: scene.load.duration.0,
         step: steps.fold(scene.load.output_interval.0, f64::min),
     };
@@ -91,6 +93,8 @@ struct About<'a> {
     guid: &'a str,
     /// Are derivatives of outputs by inputs offered?
     directional_derivatives: bool,
+    /// What the dependencies of its outputs are about.
+    dependencies: Dependencies,
     /// \[s] end of the default experiment.
     stop: f64,
     /// \[s] recommended communication step.
@@ -131,8 +135,9 @@ fn document(about: &About<'_>, rows: &[Variable], starts: &[f64]) -> std::io::Re
         ])
         .write_inner_content(|xml| {
             co_simulation(xml, about)?;
-            unit_definitions(xml)?;
-            type_definitions(xml)?;
+            let units = used_units(rows);
+            unit_definitions(xml, &units)?;
+            type_definitions(xml, &units)?;
             xml.create_element("LogCategories").write_inner_content(|xml| {
                 for (name, description) in LOG_CATEGORIES {
                     let attributes = [("name", name), ("description", description)];
@@ -147,7 +152,7 @@ fn document(about: &About<'_>, rows: &[Variable], starts: &[f64]) -> std::io::Re
                 }
                 Ok(())
             })?;
-            model_structure(xml, rows)
+            model_structure(xml, rows, about.dependencies)
         })?;
     let mut text = String::from_utf8(xml.into_inner()).map_err(std::io::Error::other)?;
     text.push('\n');
@@ -170,12 +175,19 @@ fn co_simulation(xml: &mut Xml, about: &About<'_>) -> std::io::Result<()> {
     Ok(())
 }
 
-fn unit_definitions(xml: &mut Xml) -> std::io::Result<()> {
+/// The units that variables have, in the order of the table of units. Counts are given without one.
+fn used_units(rows: &[Variable]) -> Vec<Unit> {
+    let used = |unit: &Unit| rows.iter().any(|row| row.kind == Kind::Real && row.unit == *unit);
+    units::ALL.into_iter().filter(used).collect()
+}
+
+fn unit_definitions(xml: &mut Xml, used: &[Unit]) -> std::io::Result<()> {
     xml.create_element("UnitDefinitions").write_inner_content(|xml| {
-        for (index, unit) in units::ALL.iter().enumerate() {
+        for (index, unit) in used.iter().enumerate() {
             // Quantities may share a unit and differ in how it is displayed.
-            if units::ALL[..index].iter().all(|before| before.name != unit.name) {
-                unit_definition(xml, unit)?;
+            if used[..index].iter().all(|before| before.name != unit.name) {
+                let displayed = used.iter().filter(|other| other.name == unit.name).filter_map(|u| u.display);
+                unit_definition(xml, unit, displayed)?;
             }
         }
         Ok(())
@@ -183,7 +195,11 @@ fn unit_definitions(xml: &mut Xml) -> std::io::Result<()> {
     Ok(())
 }
 
-fn unit_definition(xml: &mut Xml, unit: &Unit) -> std::io::Result<()> {
+fn unit_definition(
+    xml: &mut Xml,
+    unit: &Unit,
+    displayed: impl Iterator<Item = (&'static str, f64)>,
+) -> std::io::Result<()> {
     xml.create_element("Unit").with_attribute(("name", unit.name)).write_inner_content(|xml| {
         let mut base = xml.create_element("BaseUnit");
         for (name, exponent) in ["kg", "m", "s", "rad", "K"].into_iter().zip(unit.exponents) {
@@ -192,9 +208,7 @@ fn unit_definition(xml: &mut Xml, unit: &Unit) -> std::io::Result<()> {
             }
         }
         base.write_empty()?;
-        for (name, factor) in
-            units::ALL.iter().filter(|other| other.name == unit.name).filter_map(|u| u.display)
-        {
+        for (name, factor) in displayed {
             let factor = factor.to_string();
             let attributes = [("name", name), ("factor", factor.as_str())];
             xml.create_element("DisplayUnit").with_attributes(attributes).write_empty()?;
@@ -204,9 +218,9 @@ fn unit_definition(xml: &mut Xml, unit: &Unit) -> std::io::Result<()> {
     Ok(())
 }
 
-fn type_definitions(xml: &mut Xml) -> std::io::Result<()> {
+fn type_definitions(xml: &mut Xml, used: &[Unit]) -> std::io::Result<()> {
     xml.create_element("TypeDefinitions").write_inner_content(|xml| {
-        for unit in units::ALL {
+        for unit in used {
             let element = xml.create_element("SimpleType").with_attribute(("name", unit.quantity));
             element.write_inner_content(|xml| {
                 let attributes = [("quantity", unit.quantity), ("unit", unit.name)];
@@ -279,21 +293,23 @@ fn round_down(x: f64) -> f64 {
 
 fn scalar_variable(xml: &mut Xml, reference: usize, row: &Variable, start: f64) -> std::io::Result<()> {
     let reference = reference.to_string();
+    // What the standard takes where nothing is written is left out: continuous, and calculated for outputs.
     let (causality, variability, initial) = match (row.causality, row.kind) {
-        (Causality::Input, _) => ("input", "continuous", None),
-        (Causality::Output, _) => ("output", "continuous", Some("calculated")),
-        (Causality::Local, _) => ("local", "discrete", Some("calculated")),
-        (Causality::Parameter, _) => ("parameter", variability(row), Some("exact")),
+        (Causality::Input, _) => ("input", None, None),
+        (Causality::Output, _) => ("output", None, None),
+        (Causality::Local, _) => ("local", Some("discrete"), Some("calculated")),
+        (Causality::Parameter, _) => ("parameter", Some(variability(row)), Some("exact")),
     };
     let mut element = xml.create_element("ScalarVariable").with_attributes([
         ("name", row.name.as_str()),
         ("valueReference", reference.as_str()),
         ("description", row.description.as_str()),
         ("causality", causality),
-        ("variability", variability),
     ]);
-    if let Some(initial) = initial {
-        element = element.with_attribute(("initial", initial));
+    for (name, value) in [("variability", variability), ("initial", initial)] {
+        if let Some(value) = value {
+            element = element.with_attribute((name, value));
+        }
     }
     element.write_inner_content(|xml| {
         let mut attributes = vec![];
@@ -328,46 +344,73 @@ fn variability(row: &Variable) -> &'static str {
     }
 }
 
-/// Outputs are those of the last communication point: after a step none depends on an input as it is then. At the start
-/// they depend on all inputs, as the bearing is one mechanism, and on the parameters, except those of the time
-/// integration; what is counted from the start depends on nothing.
-fn model_structure(xml: &mut Xml, rows: &[Variable]) -> std::io::Result<()> {
-    // Indices count from 1.
-    let indices = |wanted: &dyn Fn(&Variable) -> bool| {
-        let rows = rows.iter().enumerate();
-        rows.filter(|(_, row)| wanted(row)).map(|(index, _)| index + 1).collect::<Vec<_>>()
-    };
-    let list = |indices: &[usize]| indices.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-    let outputs = indices(&|row| row.causality == Causality::Output);
-    let known = list(&indices(&|row| match row.causality {
-        Causality::Input => true,
-        Causality::Parameter => !row.name.starts_with("solver."),
-        Causality::Output | Causality::Local => false,
-    }));
-    let from_start = |index: usize| {
-        // Also of a bearing or a shaft, whose name comes first.
-        ["energy.work", "energy.dissipated", "energy.to_bearings", "inner.turned", "outer.turned"].iter().any(
-            |name| {
-                let before = rows[index - 1].name.strip_suffix(name);
-                before.is_some_and(|before| before.is_empty() || before.ends_with('.'))
-            },
-        )
-    };
+/// Dependencies of the outputs (`docs/decisions/dependencies.md`). At a communication point none depends on an input as it is
+/// set there: outputs are those of the last step. In a step, and at the start, they depend on all inputs, as the bearing is one
+/// mechanism, at the start on all parameters, too; exceptions are few.
+fn model_structure(xml: &mut Xml, rows: &[Variable], dependencies: Dependencies) -> std::io::Result<()> {
+    let outputs = || rows.iter().enumerate().filter(|(_, row)| row.causality == Causality::Output);
     xml.create_element("ModelStructure").write_inner_content(|xml| {
-        for name in ["Outputs", "InitialUnknowns"] {
-            xml.create_element(name).write_inner_content(|xml| {
-                for index in &outputs {
-                    let none = name == "Outputs" || from_start(*index);
-                    let dependencies = if none { "" } else { known.as_str() };
-                    let attributes =
-                        [("index", index.to_string()), ("dependencies", dependencies.to_string())];
-                    let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
-                    xml.create_element("Unknown").with_attributes(attributes).write_empty()?;
-                }
-                Ok(())
-            })?;
-        }
+        xml.create_element("Outputs").write_inner_content(|xml| {
+            for (index, row) in outputs() {
+                // Written out, although no list would mean all: importers for which the lists are sparsity (PyFMI, OMSimulator)
+                // take an output without a list as one without dependencies.
+                let known = match dependencies {
+                    Dependencies::Point => vec![],
+                    Dependencies::Step => inputs_of_step(rows, row),
+                };
+                unknown(xml, index, Some(&known))?;
+            }
+            Ok(())
+        })?;
+        xml.create_element("InitialUnknowns").write_inner_content(|xml| {
+            for (index, row) in outputs() {
+                unknown(xml, index, is_counted_from_start(row).then_some(&[]))?;
+            }
+            Ok(())
+        })?;
         Ok(())
     })?;
     Ok(())
+}
+
+/// One unknown with what it depends on, where that is not everything; both by their places among the variables.
+fn unknown(xml: &mut Xml, index: usize, known: Option<&[usize]>) -> std::io::Result<()> {
+    // Indices count from 1.
+    let number = |index: &usize| (index + 1).to_string();
+    let mut element = xml.create_element("Unknown").with_attribute(("index", number(&index).as_str()));
+    if let Some(known) = known {
+        let list = known.iter().map(number).collect::<Vec<_>>().join(" ");
+        element = element.with_attribute(("dependencies", list.as_str()));
+    }
+    element.write_empty()?;
+    Ok(())
+}
+
+/// Places of the inputs that an output at the end of a step can depend on. The turn of a race about its own axis follows from
+/// its prescribed speed and, where its axis is moved from outside, from how that tilts.
+fn inputs_of_step(rows: &[Variable], output: &Variable) -> Vec<usize> {
+    let turned = match output.source {
+        Source::Race(race, ..) if output.name.ends_with(".turned") => Some(race),
+        _ => None,
+    };
+    let reaches = |input: &Variable| match (turned, &input.source) {
+        (None, _) => true,
+        (Some(race), Source::Race(of, ..)) if *of == race => {
+            matches!(input.input_kind(), Some(InputKind::Angle | InputKind::AngularVelocity))
+        }
+        (Some(_), _) => false,
+    };
+    let inputs = rows.iter().enumerate().filter(|(_, row)| row.causality == Causality::Input);
+    inputs.filter(|(_, input)| reaches(input)).map(|(index, _)| index).collect()
+}
+
+/// Is an output 0 at the start, whatever the inputs are?
+fn is_counted_from_start(row: &Variable) -> bool {
+    // Also of a bearing or a shaft, whose name comes first.
+    ["energy.work", "energy.dissipated", "energy.to_bearings", "inner.turned", "outer.turned"].iter().any(
+        |name| {
+            let before = row.name.strip_suffix(name);
+            before.is_some_and(|before| before.is_empty() || before.ends_with('.'))
+        },
+    )
 }

@@ -23,10 +23,10 @@ use crate::effects::form::FormSection;
 pub use crate::effects::moving_frame::FrameMotion;
 use crate::effects::{film, growth, rating};
 pub use crate::schema::{
-    Accuracy, BearingSection, Components, Condition, Direction, Drive, ErrorGoal, ErrorOf, Friction,
-    GearSection, Giver, Group, Groups, InputGivers, Interface, Level, Load, Machine, Material, Misalignment,
-    Orientation, RaceLoad, RaceSection, RotatingSection, SceneError, Schedule, Sine, Solver, Start, Tilt,
-    Translation, schedule, units,
+    Accuracy, BearingSection, Components, Condition, Dependencies, Direction, Drive, ErrorGoal, ErrorOf,
+    Friction, GearSection, Giver, Group, Groups, InputGivers, Interface, Level, Load, Machine, Material,
+    Misalignment, Orientation, RaceLoad, RaceSection, RotatingSection, SceneError, Schedule, Sine, Solver,
+    Start, Tilt, Translation, schedule, units,
 };
 use crate::schema::{Follows, explain, regular};
 pub use scales::Scales;

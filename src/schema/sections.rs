@@ -379,12 +379,27 @@ pub enum Orientation {
     Cardan,
 }
 
+/// What the FMU's lists of dependencies are about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Dependencies {
+    /// Outputs at a communication point by the inputs set at that point: none, as outputs wait for the next step. For
+    /// masters that look for algebraic loops.
+    #[default]
+    Point,
+    /// Outputs at the end of a step by the inputs that it was given: where `fmi2GetDirectionalDerivative` can be other than
+    /// zero. For masters that take the lists as sparsity.
+    Step,
+}
+
 /// Interface of the FMU.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Interface {
     /// How orientations are written.
     pub orientation: Orientation,
+    /// What the lists of dependencies are about; those of a shaft with its bearings are always about the communication point.
+    pub dependencies: Dependencies,
     /// Who gives each group of inputs: the scene's script or the master.
     pub inputs: InputGivers,
 }

@@ -4,6 +4,7 @@
 
 mod calls;
 mod damage;
+mod dependencies;
 mod film;
 #[path = "../fmi2_abi/mod.rs"]
 mod fmi2_abi;

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT, Slave, build, pose_drive, roulement
+from conftest import ROOT, Slave, build, oriented, pose_drive, roulement
 from fmpy import read_model_description, simulate_fmu
 from fmpy.validation import validate_fmu
 
@@ -253,10 +253,21 @@ def test_cardan_angles(thrust_text, tmp_path):
     slave.close()
 
 
-def test_no_output_depends_on_an_input_after_a_step(packages, slave):
+def lists(unknowns):
+    """What FMPy reads of lists of dependencies: names by output; None where the output depends on everything."""
+    named = lambda known: None if known is None else {variable.name for variable in known}
+    return {unknown.variable.name: named(unknown.dependencies) for unknown in unknowns}
+
+
+def test_no_output_depends_on_an_input_at_a_communication_point(packages, slave):
     description = read_model_description(packages["wrench"])
-    assert description.outputs and all(unknown.dependencies == [] for unknown in description.outputs)
-    assert any(unknown.dependencies for unknown in description.initialUnknowns)
+    outputs = [v.name for v in description.modelVariables if v.causality == "output"]
+    assert lists(description.outputs) == dict.fromkeys(outputs, set())
+    start = lists(description.initialUnknowns)
+    assert list(start) == outputs
+    assert {name: known for name, known in start.items() if known is not None} == dict.fromkeys(
+        ["inner.turned", "energy.work", "energy.dissipated"], set()
+    )
     bearing = slave().start()
     bearing.fmu.doStep(0.0, STEP)
     before = list(bearing.outputs())
@@ -264,6 +275,38 @@ def test_no_output_depends_on_an_input_after_a_step(packages, slave):
         if variable.causality == "input":
             bearing.fmu.setReal([variable.valueReference], [0.9 * float(variable.start) + 0.01])
             assert list(bearing.outputs()) == before, variable.name
+
+
+@pytest.mark.parametrize("drive", ["wrench", "pose"])
+def test_dependencies_of_a_step_are_the_sparsity_of_its_derivatives(thrust_text, tmp_path, drive):
+    """What a master does that takes the lists as sparsity: it asks for listed derivatives alone,
+    and has the whole matrix."""
+    text = pose_drive(thrust_text, "shaft") if drive == "pose" else oriented(thrust_text, "shaft")
+    package = build(text + 'dependencies = "step"\n', tmp_path, "step")
+    assert validate_fmu(str(package)) == []
+    bearing = Slave(package, tmp_path / "unzipped").start()
+    inputs = [v.name for v in bearing.description.modelVariables if v.causality == "input"]
+    for name in inputs:
+        if name.startswith("inner.applied_force"):
+            bearing.set(**{name.replace(".", "__"): bearing.get(name)[0] + 20.0})
+    for k in range(5):
+        bearing.fmu.doStep(k * STEP, STEP)
+    known = lists(bearing.description.outputs)
+    outputs = list(known)
+    derivatives = lambda unknowns, names: bearing.fmu.getDirectionalDerivative(
+        [bearing.references[u] for u in unknowns], [bearing.references[n] for n in names], [1.0] * len(names)
+    )
+    full = np.array([derivatives(outputs, [name]) for name in inputs]).T
+    sparse = np.zeros_like(full)
+    for row, output in enumerate(outputs):
+        for column, name in enumerate(inputs):
+            if name in known[output]:
+                (sparse[row, column],) = derivatives([output], [name])
+    bearing.close()
+    assert np.array_equal(sparse, full)
+    turned = {"wrench": ["speed"], "pose": ["rotation.y", "rotation.z", "rotation_rate.y", "rotation_rate.z", "speed"]}
+    assert known["inner.turned"] == {f"inner.{name}" for name in turned[drive]}
+    assert all(known[output] == set(inputs) for output in outputs if output != "inner.turned")
 
 
 def test_a_package_is_named_after_its_file_or_as_asked(thrust_text, tmp_path):

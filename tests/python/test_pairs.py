@@ -36,7 +36,9 @@ def systems(tmp_path_factory, thrust_text):
     directory = tmp_path_factory.mktemp("pairs")
     text = pose_drive(thrust_text, "shaft")
     front = build(text, directory, "front_bearing")
-    rear = build(text.replace("ball_race = 0.08", "ball_race = 0.06"), directory, "rear_bearing")
+    # The other one lists its dependencies over a step: no master of these is led astray by that.
+    rear = text.replace("ball_race = 0.08", "ball_race = 0.06") + 'dependencies = "step"\n'
+    rear = build(rear, directory, "rear_bearing")
     start = {v.name: float(v.start) for v in read_model_description(front).modelVariables if v.causality == "input"}
     numbers = f'{start["inner.position.x"]!r}, {THRUST!r}, {start["inner.speed"]!r}'
     script = (HERE / "shaft.py").read_text()
