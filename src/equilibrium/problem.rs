@@ -349,6 +349,9 @@ impl<'a> Problem<'a> {
             (false, true) => largest,
             (false, false) => 0.0,
         });
+        if !symmetric.iter().all(|c| c.is_finite()) {
+            return None;
+        }
         let SymmetricEigen { eigenvalues, eigenvectors } = symmetric.symmetric_eigen();
         let least = eigenvalues.imin();
         let way = eigenvectors.column(least);

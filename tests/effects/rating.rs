@@ -422,5 +422,13 @@ fn closed_form_a_weight_with_an_unbalance_goes_by_the_squares_of_both() {
         // Five turns in steps of a degree.
         (1..=1800).for_each(|step| sums.add(at(f64::from(step).to_radians()), 1f64.to_radians() / 100.0));
         assert_eq!(rating.after(&sums).load_rests_on, rests, "{unbalance}");
+        // While both races rest the load may go where it will.
+        let resting = |turned: f64| {
+            let force = [turned.cos(), turned.sin()];
+            rating.at(std::iter::repeat_n([1.0; 2], 9), Turning { force, ..Turning::default() })
+        };
+        sums.begin(resting(0.0));
+        (1..=180).for_each(|step| sums.add(resting(0.5 * f64::from(step)), 1.0));
+        assert_eq!(rating.after(&sums).load_rests_on, rests, "{unbalance}");
     }
 }
