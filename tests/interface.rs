@@ -53,27 +53,40 @@ fn names_are_those_that_were_asked_for_and_identifiers_are_those_of_c() {
     assert!(xml.contains("modelName=\"front bearing\"") && xml.contains("modelIdentifier=\"front_bearing\""));
 }
 
+/// How many outputs depend on nothing, how many have no list, and how many there are: after a step and at the start.
+fn dependencies(xml: &str) -> [[usize; 3]; 2] {
+    let (outputs, initial) = xml.split_once("<InitialUnknowns>").unwrap();
+    [outputs.split_once("<Outputs>").unwrap().1, initial].map(|lists| {
+        let unknowns = elements(lists, "Unknown");
+        let count = |wanted: fn(&str) -> bool| unknowns.iter().filter(|unknown| wanted(unknown)).count();
+        let empty = count(|unknown| unknown.contains("dependencies=\"\""));
+        [empty, count(|unknown| !unknown.contains("dependencies")), unknowns.len()]
+    })
+}
+
 #[test]
 fn dependencies_are_those_that_the_scene_asks_for() {
-    // No dependencies at a communication point; the inputs of the step, written out; all at the start, without lists.
-    let counts = |changes: &[(&str, &str)]| {
-        let xml = render(&Simulation::new(&scene(THRUST, changes)).unwrap(), "thrust").unwrap().xml;
-        let (outputs, initial) = xml.split_once("<InitialUnknowns>").unwrap();
-        let outputs = elements(outputs.split_once("<Outputs>").unwrap().1, "Unknown");
-        let initial = elements(initial, "Unknown");
-        assert!(outputs.len() > 30 && initial.len() == outputs.len());
-        let empty =
-            |list: &[&str]| list.iter().filter(|unknown| unknown.contains("dependencies=\"\"")).count();
-        let unlisted =
-            |list: &[&str]| list.iter().filter(|unknown| !unknown.contains("dependencies")).count();
-        let of = |list: &[&str]| [empty(list), unlisted(list), list.len()];
-        (of(&outputs), of(&initial))
+    // None at a communication point; the inputs of the step, written out; at the start everything, without lists, but for
+    // turn, work and loss.
+    let of = |changes: &[(&str, &str)]| {
+        dependencies(&render(&Simulation::new(&scene(THRUST, changes)).unwrap(), "thrust").unwrap().xml)
     };
-    let (point, start) = counts(&[]);
-    let ([_, _, all], counted) = (point, 3);
-    assert_eq!((point, start), ([all, 0, all], [counted, all - counted, all]));
-    assert_eq!(counts(&[("interface.dependencies", "\"point\"")]), (point, start));
-    assert_eq!(counts(&[("interface.dependencies", "\"step\"")]), ([0, 0, all], start));
+    let [point, start] = of(&[]);
+    let all = names(&Scene::parse(THRUST).unwrap(), Causality::Output).len();
+    assert_eq!([point, start], [[all, 0, all], [3, all - 3, all]]);
+    assert_eq!(of(&[("interface.dependencies", "\"point\"")]), [point, start]);
+    assert_eq!(of(&[("interface.dependencies", "\"step\"")]), [[0, 0, all], start]);
+    // A shaft counts work, loss and what it gave away, each of its two bearings work, loss and the turn of its inner race.
+    let [point, start] = dependencies(&shaft());
+    let all = point[2];
+    assert_eq!([point, start], [[all, 0, all], [9, all - 9, all]]);
+}
+
+/// The model description of a shaft on two bearings.
+fn shaft() -> String {
+    let text = include_str!("../scenes/shafts/pinion.toml");
+    let system = SystemScene::parse(text, None, "".as_ref()).unwrap();
+    render_system(&System::new(&system).unwrap(), "shaft").unwrap().xml
 }
 
 /// Values of an attribute, in the order of the text, within the element of a name.
@@ -86,9 +99,7 @@ fn attributes<'a>(xml: &'a str, within: &str, attribute: &str) -> Vec<&'a str> {
 
 #[test]
 fn units_and_types_are_defined_where_a_variable_has_them() {
-    const SHAFT: &str = include_str!("../scenes/shafts/pinion.toml");
-    let system = SystemScene::parse(SHAFT, None, "".as_ref()).unwrap();
-    let mut texts = vec![render_system(&System::new(&system).unwrap(), "shaft").unwrap().xml];
+    let mut texts = vec![shaft()];
     for text in [THRUST, CAGE, include_str!("../scenes/effects/stiffness.toml")] {
         texts.push(render(&Simulation::new(&Scene::parse(text).unwrap()).unwrap(), "bearing").unwrap().xml);
     }
