@@ -57,7 +57,7 @@ fn a_cage_that_steps_cannot_follow() {
     refuses(
         "blow on a cage of 0.2 g, steps held at 10 us",
         &why,
-        &["at 0.000", "worst at the cage, at its contact with ball"],
+        &["at 7e-5 s", "worst at the cage, at its contact with ball"],
     );
 }
 
