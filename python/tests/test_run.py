@@ -105,7 +105,8 @@ def test_data_sets_of_xarray(thrust):
 
 def test_other_threads_go_on_during_a_run(thrust):
     """The interpreter is free: another thread goes on as if there were no run."""
-    scene, counted = thrust.with_({"load.duration": "30 ms"}), [0]
+    # Long enough for a hundred turns of the other thread on a fast machine, too.
+    scene, counted = thrust.with_({"load.duration": "300 ms"}), [0]
     begin = time.monotonic()
     runner = threading.Thread(target=roulement.run, args=(scene,))
     runner.start()

@@ -29,7 +29,8 @@ def cases(count, duration):
 def test_consistency_files_are_those_of_the_command_line(tmp_path):
     path, scene = tmp_path / "cases.csv", ROOT / "scenes" / "thrust.toml"
     path.write_text(cases(4, "1 ms") + "-1,1 ms\n")
-    program("sweep", path, "--scene", scene, "-o", tmp_path / "program", "--columns", "inner.position.x")
+    ended = program("sweep", path, "--scene", scene, "-o", tmp_path / "program", "--columns", "inner.position.x", check=False)
+    assert ended.returncode == 4, "a case has failed"
     table = sweep.run(path, scene, tmp_path / "python", columns="inner.position.x", workers=2)
     assert (tmp_path / "program" / "summary.csv").read_bytes() == (tmp_path / "python" / "summary.csv").read_bytes()
     assert len(table) == 5 and list(table["status"]) == ["done"] * 4 + ["failed"]
