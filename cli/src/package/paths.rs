@@ -87,13 +87,13 @@ mod tests {
     #[test]
     fn folders_are_overwritten_up_to_the_crate() {
         for (folder, kept) in [
-            ("/home/me/.cargo/registry/src/index.crates.io-1949cf8c/", "nalgebra-0.35.0/src/base/matrix.rs"),
+            ("/home/me/.cargo/registry/src/index-1949cf8c/", "nalgebra-0.35.0/src/base/matrix.rs"),
             ("/home/me/.cargo/git/checkouts/nalgebra-1f2e/0a1b2c/", "src/base/matrix.rs"),
             ("/home/me/.rustup/toolchains/1.95/lib/rustlib/src/rust/library/", "core/src/slice/mod.rs"),
             // Nothing is known of these folders but that the file is in them.
             ("/home/me/src/bearing/vendor/nalgebra/src/base/", "matrix.rs"),
             ("/srv/target/release/build/serde-1f2e/out/", "private.rs"),
-            ("C:\\Users\\me\\.cargo\\registry\\src\\index.crates.io-1949cf8c\\", "toml-1.0.0\\src\\lib.rs"),
+            ("C:\\Users\\me\\.cargo\\registry\\src\\index-1949cf8c\\", "toml-1.0.0\\src\\lib.rs"),
             ("D:\\a\\b\\", "lib.rs"),
             ("/a/", "lib.rs"),
         ] {
@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn a_folder_that_is_known_is_overwritten_anywhere() {
-        let folder = "/home/me/.cargo/registry/src/index.crates.io-1949cf8c/";
+        let folder = "/home/me/.cargo/registry/src/index-1949cf8c/";
         let text =
             hidden(&format!("\0{folder}a-1/src/a.rs\0a message{folder}b-2/src/b.rs\0{folder}c-3/c.css"));
         assert!(!text.contains("home") && text.contains("a message"), "{text}");
