@@ -2,7 +2,7 @@
 //!
 //! The chain is written once, generic over the numbers, and compiled for two kinds of contact ([`Path`]). The plain one is what most
 //! contacts of most scenes are: a ball that rolls along the circumference of a torus, dry, damped as usual. The general one
-//! takes any contact; both give the same numbers where the plain one holds, but for signs of zeros. What runs when, and what it is compiled for:
+//! takes any contact; both give the same bits where the plain one holds. What runs when, and what it is compiled for:
 //!
 //! | numbers | plain contact | any other |
 //! |---|---|---|

@@ -78,14 +78,15 @@ impl<S: Scalar> GrooveContact<S> {
     /// Contact of a ball whose centre is at `offset` \[m] from the centre of a race; and how its approach changes there.
     #[inline(always)]
     pub fn new(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> (Self, Lean<S>) {
-        let shift = surface.form.map_or_else(Shift::none, |form| form.under(offset, race));
-        let mut contact = Self::on(surface, offset, race, Some(&shift));
+        // None and not one of 0 where there is no form: the bits are then those of a plain torus, down to signs of zeros.
+        let shift = surface.form.map(|form| form.under(offset, race));
+        let mut contact = Self::on(surface, offset, race, shift.as_ref());
         let mut lean = Lean::none();
         if let Some(larger) = surface.of_balls(|size| size.larger) {
             contact.approach += larger;
         }
         if surface.has_spalls() {
-            lean = contact.drop_into(surface, offset, race, &shift);
+            lean = contact.drop_into(surface, offset, race, &shift.unwrap_or_else(Shift::none));
         }
         (contact, lean)
     }
