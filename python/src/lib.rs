@@ -24,7 +24,7 @@ mod _native {
     #[pymodule_export]
     use crate::runs::{run, write_parquet};
     #[pymodule_export]
-    use crate::scenes::{Scene, cost, library_beside, package, package_shaft};
+    use crate::scenes::{Scene, cost, library_beside, package};
     #[pymodule_export]
     use crate::simulations::{Simulation, State};
     #[pymodule_export]

@@ -7,14 +7,15 @@ use std::time::{Duration, Instant};
 use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
-use roulement::simulation::Simulation;
+use roulement::scene::machine::MachineScene;
+use roulement::simulation::machine::Machine;
 use roulement::simulation::play::{Rows, play};
 use roulement_cli::error::{Compared, Refined, Run, refine};
 use roulement_cli::report::cells::{Cell, Column};
-use roulement_cli::report::figures::{Figures, Shown};
+use roulement_cli::report::figures::Shown;
 use roulement_cli::report::json;
 use roulement_cli::report::parquet::ParquetWriter;
-use roulement_cli::report::results::{Choice, Columns, Window};
+use roulement_cli::report::results::{Choice, MachineColumns, Window};
 use roulement_cli::watch::{Seen, Watch};
 
 use crate::arrays::{bytes, numbers};
@@ -26,7 +27,7 @@ const OFTEN: Duration = Duration::from_millis(100);
 
 /// A run that came to its end.
 struct Done {
-    simulation: Simulation,
+    machine: Machine,
     seen: Seen,
     names: Vec<(String, String)>,
     table: Vec<f64>,
@@ -34,7 +35,7 @@ struct Done {
 
 impl Compared for Done {
     fn comparable(&mut self) -> Run {
-        self.seen.take_comparable(&self.simulation, 0.0)
+        self.seen.take_comparable(&self.machine, 0.0)
     }
 }
 
@@ -53,14 +54,16 @@ pub fn run<'py>(
     let choice = Choice { columns, window: Window { from: window.0, to: window.1 } };
     let (mut done, summary) = py.detach(|| {
         let scene = scene.resolved()?;
-        let played = |scene: &roulement::Scene, _: bool| played(scene, &choice, progress.as_ref());
+        let played = |scene: &MachineScene, _: bool| played(scene, &choice, progress.as_ref());
         let Refined { mut run, rounds } = refine(&scene, played)?;
-        if let Some(means) = rounds.as_ref().and_then(|(rounds, _)| rounds.means()) {
-            run.seen.means = Some(means);
+        if let Some((rounds, _)) = &rounds {
+            run.seen.set_means(rounds.means());
         }
-        let figures = run.seen.figures(&run.simulation);
-        let bars: Option<Figures> = rounds.as_ref().and_then(|(rounds, _)| rounds.bars());
-        let mut summary = json::summary(&run.simulation, &run.seen, &Shown { figures, bars });
+        let bars = rounds.as_ref().and_then(|(rounds, _)| rounds.bars()).unwrap_or_default();
+        let mut bars = bars.into_iter();
+        let figures = run.seen.figures(&run.machine).into_iter();
+        let shown: Vec<_> = figures.map(|figures| Shown { figures, bars: bars.next() }).collect();
+        let mut summary = json::of_machine(&run.machine, &run.seen, &shown);
         summary["error_goal"] = rounds.map(|(_, goal)| goal).into();
         Ok::<_, PyErr>((run, summary.to_string()))
     })?;
@@ -68,17 +71,17 @@ pub fn run<'py>(
     Ok((done.names, table, summary))
 }
 
-fn played(scene: &roulement::Scene, choice: &Choice, progress: Option<&Py<PyAny>>) -> PyResult<Done> {
-    let mut simulation = Simulation::new(scene).map_err(runtime)?;
-    let columns = Columns::new(simulation.scene(), choice).map_err(value)?;
-    let rows = Rows::of(&simulation);
-    let mut watch = Watch::of(&simulation);
+fn played(scene: &MachineScene, choice: &Choice, progress: Option<&Py<PyAny>>) -> PyResult<Done> {
+    let mut machine = Machine::new(scene).map_err(runtime)?;
+    let columns = MachineColumns::new(&machine, choice).map_err(value)?;
+    let rows = Rows::of_scene(scene);
+    let mut watch = Watch::of(&machine);
     let mut table = vec![];
     let mut told = Instant::now();
-    let flow = play(&mut simulation, rows, |simulation| {
-        watch.push(simulation);
-        table.extend(columns.row(simulation.inputs(), simulation.outputs()).into_iter().flatten());
-        let is_last = simulation.time() >= rows.duration;
+    let flow = play(&mut machine, rows, |machine| {
+        watch.push(machine);
+        table.extend(columns.row(machine).into_iter().flatten());
+        let is_last = machine.time() >= rows.duration;
         if told.elapsed() < OFTEN && !(is_last && progress.is_some()) {
             return ControlFlow::Continue(());
         }
@@ -86,7 +89,7 @@ fn played(scene: &roulement::Scene, choice: &Choice, progress: Option<&Py<PyAny>
         let told = Python::attach(|py| {
             py.check_signals()?;
             if let Some(progress) = progress {
-                progress.call1(py, (simulation.time(), rows.duration))?;
+                progress.call1(py, (machine.time(), rows.duration))?;
             }
             Ok(())
         });
@@ -96,12 +99,12 @@ fn played(scene: &roulement::Scene, choice: &Choice, progress: Option<&Py<PyAny>
         }
     });
     match flow {
-        Err(why) => return Err(runtime(format!("at {:e} s: {why}", simulation.time()))),
+        Err(why) => return Err(runtime(format!("at {:e} s: {why}", machine.time()))),
         Ok(ControlFlow::Break(why)) => return Err(why),
         Ok(ControlFlow::Continue(())) => {}
     }
-    let names = columns.names().map(|(name, unit)| (name.to_string(), unit.to_string())).collect();
-    Ok(Done { simulation, seen: watch.finish(), names, table })
+    let names = columns.names().map(|(name, unit)| (name, unit.to_string())).collect();
+    Ok(Done { machine, seen: watch.finish(), names, table })
 }
 
 /// Writes a table of float64 as Parquet.

@@ -7,23 +7,30 @@ use indicatif::ProgressBar;
 use pyo3::prelude::*;
 use roulement::analysis::{auto, estimate};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
-use roulement::interface::model_description::render;
-use roulement::scene::system::SystemScene;
+use roulement::interface::model_description::{render, render_system};
+use roulement::scene::machine::MachineScene;
+use roulement::simulation::machine::Machine;
 use roulement::{Model, scene};
 use roulement_cli::cost::{Choice, report, study_of};
 use roulement_cli::package::{library_beside as built_with, write_fmu, write_system_fmu};
 use roulement_cli::report::json;
+use serde_json::{Map, Value};
 
 use crate::failures::{file, runtime, scene as refused, value};
 
-/// A scene, immutable.
+/// A scene of a bearing, or of a shaft with its bearings; immutable.
 #[pyclass(frozen)]
-pub struct Scene(pub Arc<scene::Scene>);
+pub struct Scene(pub Arc<MachineScene>);
 
 impl Scene {
     /// With its effects found out where it asks for that.
-    pub fn resolved(&self) -> PyResult<scene::Scene> {
-        auto::resolve((*self.0).clone()).map(|(scene, _)| scene).map_err(runtime)
+    pub fn resolved(&self) -> PyResult<MachineScene> {
+        match &*self.0 {
+            MachineScene::Bearing(scene) => {
+                auto::resolve((**scene).clone()).map(|(scene, _)| scene.into()).map_err(runtime)
+            }
+            shaft @ MachineScene::Shaft(_) => Ok(shaft.clone()),
+        }
     }
 }
 
@@ -31,26 +38,34 @@ impl Scene {
 impl Scene {
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        py.detach(|| scene::Scene::load(&path)).map(|scene| Self(Arc::new(scene))).map_err(refused)
+        py.detach(|| MachineScene::load(&path)).map(|scene| Self(Arc::new(scene))).map_err(refused)
     }
 
     #[staticmethod]
     fn parse(text: &str) -> PyResult<Self> {
-        scene::Scene::parse(text).map(|scene| Self(Arc::new(scene))).map_err(refused)
+        MachineScene::parse(text).map(|scene| Self(Arc::new(scene))).map_err(refused)
     }
 
     fn edited(&self, changes: Vec<(String, String)>) -> PyResult<Self> {
-        scene::Scene::edited(&self.0.source, changes).map(|scene| Self(Arc::new(scene))).map_err(refused)
+        let text = scene::Scene::edited_text(self.0.source(), changes);
+        let scene = text.and_then(|text| MachineScene::edited(&text));
+        scene.map(|scene| Self(Arc::new(scene))).map_err(refused)
+    }
+
+    /// Names of its bearings; that of a bearing alone is empty.
+    #[getter]
+    fn bearings(&self) -> Vec<String> {
+        self.0.bearings().into_iter().map(|(name, _)| name.to_string()).collect()
     }
 
     #[getter]
     fn source(&self) -> &str {
-        &self.0.source
+        self.0.source()
     }
 
     #[getter]
     fn title(&self) -> &str {
-        &self.0.title
+        self.0.title()
     }
 
     fn notes(&self) -> Vec<String> {
@@ -70,7 +85,9 @@ impl Scene {
             }
         };
         py.detach(|| {
-            let scene = self.resolved()?;
+            let MachineScene::Bearing(scene) = self.resolved()? else {
+                return Err(value("an equilibrium of a shaft is not there yet"));
+            };
             let model = Model::new(&scene).map_err(runtime)?;
             let input = EquilibriumInput::from_scene(&scene, gyroscopic);
             let solution = equilibrium::solve(&model, &input).map_err(runtime)?;
@@ -83,18 +100,36 @@ impl Scene {
     /// Effects as JSON.
     fn effects(&self, py: Python<'_>) -> PyResult<String> {
         py.detach(|| {
-            let scene = self.resolved()?;
-            let verdicts =
-                estimate::verdicts(&scene, &Model::new(&scene).map_err(runtime)?).map_err(runtime)?;
-            json::effects(&scene, &verdicts).map(|report| report.to_string()).map_err(runtime)
+            let scene = match self.resolved()? {
+                MachineScene::Bearing(scene) => {
+                    let model = Model::new(&scene).map_err(runtime)?;
+                    let verdicts = estimate::verdicts(&scene, &model).map_err(runtime)?;
+                    return json::effects(&scene, &verdicts)
+                        .map(|report| report.to_string())
+                        .map_err(runtime);
+                }
+                scene @ MachineScene::Shaft(_) => scene,
+            };
+            let machine = Machine::new(&scene).map_err(runtime)?;
+            let of = |(name, bearing): (&str, &roulement::Simulation)| {
+                let input = bearing.equilibrium_input();
+                let verdicts = estimate::verdicts_under(bearing.scene(), bearing.model(), &input);
+                let report = json::effects(bearing.scene(), &verdicts.map_err(runtime)?).map_err(runtime)?;
+                Ok::<_, PyErr>((name.to_string(), report))
+            };
+            let reports = machine.bearings().map(of).collect::<PyResult<Map<_, _>>>()?;
+            Ok(Value::Object(reports).to_string())
         })
     }
 
     /// Model description of its package.
     fn describe(&self, py: Python<'_>, name: &str) -> PyResult<String> {
         py.detach(|| {
-            let simulation = roulement::Simulation::new(&self.0).map_err(runtime)?;
-            render(&simulation, name).map(|description| description.xml).map_err(runtime)
+            let description = match Machine::new(&self.0).map_err(runtime)? {
+                Machine::Bearing(bearing) => render(&bearing, name),
+                Machine::Shaft(system) => render_system(&system, name),
+            };
+            description.map(|description| description.xml).map_err(runtime)
         })
     }
 }
@@ -114,21 +149,12 @@ pub fn package(
     libraries: Vec<PathBuf>,
     name: &str,
 ) -> PyResult<()> {
-    py.detach(|| write_fmu(&scene.resolved()?, name, &libraries, &path).map_err(file))
-}
-
-/// Writes the FMU of a shaft with its bearings from its file.
-#[pyfunction]
-pub fn package_shaft(
-    py: Python<'_>,
-    file_of_shaft: PathBuf,
-    path: PathBuf,
-    libraries: Vec<PathBuf>,
-    name: &str,
-) -> PyResult<()> {
     py.detach(|| {
-        let scene = SystemScene::load(&file_of_shaft).map_err(refused)?;
-        write_system_fmu(&scene, name, &libraries, &path).map_err(file)
+        match scene.resolved()? {
+            MachineScene::Bearing(scene) => write_fmu(&scene, name, &libraries, &path),
+            MachineScene::Shaft(scene) => write_system_fmu(&scene, name, &libraries, &path),
+        }
+        .map_err(file)
     })
 }
 

@@ -8,7 +8,9 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use roulement::fmi::{FmuState, Instance, Log, Outcome, Status};
-use roulement::interface::variables::{Causality, Kind};
+use roulement::interface::variables::{Causality, Kind, SystemVariables, Variable, Variables};
+use roulement::scene::machine::MachineScene;
+use roulement::simulation::system::System;
 
 use crate::arrays::{numbers, write};
 use crate::failures::{runtime, value};
@@ -21,7 +23,7 @@ type Messages = Arc<Mutex<Vec<String>>>;
 pub struct Simulation {
     instance: Mutex<Instance>,
     messages: Messages,
-    scene: Arc<roulement::Scene>,
+    scene: Arc<MachineScene>,
 }
 
 /// A point that a simulation was at.
@@ -69,7 +71,7 @@ impl Simulation {
         let messages = Messages::default();
         let log = log_to(&messages);
         let instance = py.detach(|| {
-            let mut instance = done(Instance::of_scene((*scene.0).clone(), log))?;
+            let mut instance = done(Instance::of_machine((*scene.0).clone(), log))?;
             done(instance.setup_experiment(start, None))?;
             instance.enter_initialization();
             for (reference, value) in values {
@@ -85,8 +87,8 @@ impl Simulation {
     /// Name, unit, causality and description of every variable of a scene's package, by reference.
     #[staticmethod]
     fn variables(scene: &Scene) -> PyResult<Vec<(String, &'static str, &'static str, String)>> {
-        let table = roulement::interface::variables::Variables::new(&scene.resolved()?);
-        let row = |row: &roulement::interface::variables::Variable| {
+        let scene = scene.resolved()?;
+        let row = |row: &Variable| {
             let causality = match row.causality {
                 Causality::Input => "input",
                 Causality::Output => "output",
@@ -95,7 +97,13 @@ impl Simulation {
             };
             (row.name.clone(), row.unit.name, causality, row.description.clone())
         };
-        Ok(table.rows().iter().map(row).collect())
+        Ok(match &scene {
+            MachineScene::Bearing(scene) => Variables::new(scene).rows().iter().map(row).collect(),
+            MachineScene::Shaft(scene) => {
+                let system = System::new(scene).map_err(runtime)?;
+                SystemVariables::new(&system).rows().iter().map(row).collect()
+            }
+        })
     }
 
     fn get(&self, py: Python<'_>, references: Vec<u32>, array: PyBuffer<f64>) -> PyResult<()> {

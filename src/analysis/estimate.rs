@@ -39,6 +39,15 @@ pub fn verdicts(scene: &Scene, model: &Model) -> Verdicts {
     Ok(scene.effects.verdicts(&of(scene, model)?))
 }
 
+/// The same of a bearing whose races are where others have put them: in an equilibrium that is given.
+///
+/// # Errors
+/// See [`EstimateError`].
+pub fn verdicts_under(scene: &Scene, model: &Model, input: &EquilibriumInput) -> Verdicts {
+    let problem = |gyroscopic| EquilibriumInput { gyroscopic, ..input.clone() };
+    Ok(scene.effects.verdicts(&under(scene, model, problem)?))
+}
+
 /// What they look at.
 ///
 /// # Errors
@@ -72,10 +81,20 @@ fn at(scene: &Scene, model: &Model, time: f64) -> Result<Estimate, EstimateError
         let [inner_speed, outer_speed] = speeds;
         EquilibriumInput { inner_speed, outer_speed, ..EquilibriumInput::at(scene, gyroscopic, time) }
     };
+    under(scene, model, problem)
+}
+
+/// What they look at, in an equilibrium that depends on how gyroscopic moments are carried.
+fn under(
+    scene: &Scene,
+    model: &Model,
+    problem: impl Fn(Gyroscopic) -> EquilibriumInput,
+) -> Result<Estimate, EstimateError> {
     // Where friction at the outer race cannot hold the balls, that at both does what it can.
     let input = problem(Gyroscopic::OuterRaceControl);
     let solution = equilibrium::solve(model, &input)
         .or_else(|_| equilibrium::solve(model, &problem(Gyroscopic::Friction)))?;
+    let speeds = [input.inner_speed, input.outer_speed];
     let loads = || solution.balls.iter().map(|ball| ball.report.inner_load).filter(|load| *load > 0.0);
     let most = solution.balls.iter().max_by(|a, b| a.report.inner_load.total_cmp(&b.report.inner_load));
     let most = most.filter(|ball| ball.report.inner_load > 0.0).ok_or(EstimateError::Unloaded)?;

@@ -8,6 +8,7 @@ use super::unit::{BearingUnit, SystemUnit, Unit};
 use crate::analysis::auto;
 use crate::interface::model_description;
 use crate::interface::variables::{Causality, Kind, Source, Variable};
+use crate::scene::machine::MachineScene;
 use crate::scene::system::SystemScene;
 use crate::scene::{Giver, Scene};
 use crate::schema::numbers::Variability;
@@ -84,6 +85,17 @@ impl Instance {
         found_out.iter().for_each(|note| log.write(Status::Ok, note));
         let unit = Unit::Bearing(Box::new(BearingUnit::new(&scene)?));
         Ok(Self::of_unit(unit, &scene.source, log))
+    }
+
+    /// A slave of whatever a scene describes, without a package.
+    ///
+    /// # Errors
+    /// If it cannot be started.
+    pub fn of_machine(scene: MachineScene, log: Log) -> Outcome<Self> {
+        match scene {
+            MachineScene::Bearing(scene) => Self::of_scene(*scene, log),
+            MachineScene::Shaft(scene) => Self::of_system(&scene, log),
+        }
     }
 
     /// A slave of a shaft with its bearings, without a package.

@@ -5,6 +5,7 @@ pub mod elliptic;
 pub mod hht;
 pub mod kept_lu;
 pub mod lanes;
+pub mod modes;
 pub mod motion;
 pub mod newton;
 pub mod orbit_turn;

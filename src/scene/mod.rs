@@ -4,6 +4,7 @@
 //! out of range are errors that name the key, the value and the allowed range.
 
 mod edit;
+pub mod machine;
 mod notes;
 mod numbers;
 mod scales;

@@ -6,6 +6,7 @@ mod error;
 mod input_paths;
 pub mod inputs;
 mod limits;
+pub mod machine;
 mod orientation;
 pub mod outputs;
 mod path;

@@ -3,6 +3,27 @@
 use std::ops::ControlFlow;
 
 use super::{Simulation, SimulationError};
+use crate::scene::machine::MachineScene;
+
+/// What plays its own script.
+pub trait Scripted {
+    /// Why it could not go on.
+    type Error;
+
+    /// Runs its own steps to exactly `end` \[s] by its script.
+    ///
+    /// # Errors
+    /// If a step cannot be finished; it is then where the last one ended.
+    fn advance_scripted(&mut self, end: f64) -> Result<(), Self::Error>;
+}
+
+impl Scripted for Simulation {
+    type Error = SimulationError;
+
+    fn advance_scripted(&mut self, end: f64) -> Result<(), SimulationError> {
+        Self::advance_scripted(self, end)
+    }
+}
 
 /// Rows of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +39,11 @@ impl Rows {
     pub fn of(simulation: &Simulation) -> Self {
         let load = &simulation.scene().load;
         Self { interval: load.output_interval.0, duration: load.duration.0 }
+    }
+
+    /// Those that a scene asks for.
+    pub fn of_scene(scene: &MachineScene) -> Self {
+        Self { interval: scene.output_interval(), duration: scene.duration() }
     }
 
     /// [-] number of rows after that of the start.
@@ -36,32 +62,32 @@ impl Rows {
 ///
 /// # Errors
 /// See [`play_with`].
-pub fn play<B>(
-    simulation: &mut Simulation,
+pub fn play<S: Scripted, B>(
+    machine: &mut S,
     rows: Rows,
-    row: impl FnMut(&Simulation) -> ControlFlow<B>,
-) -> Result<ControlFlow<B>, SimulationError> {
-    play_with(simulation, rows, Simulation::advance_scripted, row)
+    row: impl FnMut(&S) -> ControlFlow<B>,
+) -> Result<ControlFlow<B>, S::Error> {
+    play_with(machine, rows, S::advance_scripted, row)
 }
 
-/// Plays a simulation: `advance` takes it to the time \[s] of the next row, `row` sees it at every row, that of the start
-/// included, and may end the play.
+/// Plays a machine: `advance` takes it to the time \[s] of the next row, `row` sees it at every row, that of the start included, and
+/// may end the play.
 ///
 /// # Errors
 /// That of an `advance` which could not go on; `row` has then seen where it came to.
-pub fn play_with<B>(
-    simulation: &mut Simulation,
+pub fn play_with<S, E, B>(
+    machine: &mut S,
     rows: Rows,
-    mut advance: impl FnMut(&mut Simulation, f64) -> Result<(), SimulationError>,
-    mut row: impl FnMut(&Simulation) -> ControlFlow<B>,
-) -> Result<ControlFlow<B>, SimulationError> {
-    let mut flow = row(simulation);
+    mut advance: impl FnMut(&mut S, f64) -> Result<(), E>,
+    mut row: impl FnMut(&S) -> ControlFlow<B>,
+) -> Result<ControlFlow<B>, E> {
+    let mut flow = row(machine);
     for end in rows.times() {
         if flow.is_break() {
             break;
         }
-        let advanced = advance(simulation, end);
-        flow = row(simulation);
+        let advanced = advance(machine, end);
+        flow = row(machine);
         advanced?;
     }
     Ok(flow)

@@ -6,7 +6,7 @@ use super::error::SimulationError;
 use super::inputs::Inputs;
 use super::orientation::{own_spin, pose_of, spin_free, tilt_of, turn_of};
 use super::start_state::{apply, base_inputs, place_fixed, state};
-use super::supported;
+use super::{Simulation, supported};
 use crate::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::Model;
 use crate::model::bodies::{PerRace, Race};
@@ -76,6 +76,13 @@ pub fn held_load(
     let (problem, _) = problem_of(scene, inputs, time);
     let solution = equilibrium::solve(model, &problem)?;
     Ok((solution.load, solution.stiffness))
+}
+
+impl Simulation {
+    /// The equilibrium of the bearing under its present inputs: races with given motion where they are, a race under a wrench under it.
+    pub fn equilibrium_input(&self) -> EquilibriumInput {
+        problem_of(&self.scene, &mut self.inputs.clone(), self.state.time).0
+    }
 }
 
 /// The equilibrium for given inputs, and where the bearing frame is \[m].

@@ -11,6 +11,7 @@ use std::time::Duration;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use roulement::scene::Scene;
+use roulement::scene::machine::MachineScene;
 use roulement_cli::cost::levers::Lever;
 use roulement_cli::cost::{Choice, SCENES, SceneStudy, StudyError, report, study_of};
 
@@ -43,14 +44,14 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     let interrupted = heeded_interrupt()?;
     let threads = threads.map_or(Choice::default().threads, usize::from);
     let choice = Choice { only, threads, interrupted: Arc::clone(&interrupted) };
-    let scenes: Vec<(String, Scene)> = match &scene {
+    let scenes: Vec<(String, MachineScene)> = match &scene {
         Some(path) => {
             let name = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
             vec![(name, super::load(path)?)]
         }
         None => SCENES
             .iter()
-            .map(|(name, text)| Ok((name.to_string(), Scene::parse(text)?)))
+            .map(|(name, text)| Ok((name.to_string(), Scene::parse(text)?.into())))
             .collect::<Result<_, Box<dyn Error>>>()?,
     };
     fs::create_dir_all(&directory).map_err(|why| format!("cannot make {}: {why}", directory.display()))?;

@@ -9,9 +9,10 @@ use std::sync::atomic::Ordering;
 use clap::Args;
 use roulement::analysis::stick_slip::{Field, field};
 use roulement::model::bodies::Race;
+use roulement::scene::machine::MachineScene;
 use roulement::scene::units::{Quantity, Time};
-use roulement::simulation::Simulation;
-use roulement::simulation::play::Rows;
+use roulement::simulation::machine::Machine;
+use roulement::simulation::play::{Rows, Scripted};
 
 use super::run::{INTERRUPTED, heeded_interrupt};
 use super::{load, tell};
@@ -21,6 +22,9 @@ use super::{load, tell};
 pub struct Options {
     /// Scene file.
     scene: PathBuf,
+    /// The bearing, by its name, of a shaft with several.
+    #[arg(long)]
+    bearing: Option<String>,
     /// Contacts, such as `1.inner,4.outer`: ball, counted from 1, and race.
     #[arg(long, value_delimiter = ',', required = true)]
     contacts: Vec<Contact>,
@@ -57,7 +61,7 @@ impl FromStr for Contact {
 
 /// \[s] a time, a number or a text with a unit.
 #[derive(Clone, Copy, Debug)]
-struct Moment(f64);
+pub struct Moment(pub f64);
 
 impl FromStr for Moment {
     type Err = String;
@@ -75,36 +79,35 @@ impl FromStr for Moment {
 /// If the simulation cannot start or go on, a ball is not there, or the table cannot be written.
 pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let scene = load(&options.scene)?;
-    if let Some(contact) = options.contacts.iter().find(|contact| contact.ball > scene.bearing.balls) {
-        return Err(format!(
-            "--contacts: ball {} is not there: allowed is [1, {}]",
-            contact.ball, scene.bearing.balls
-        )
-        .into());
+    let index = bearing(&scene, options.bearing.as_deref())?;
+    let balls = scene.bearings()[index].1.bearing.balls;
+    if let Some(contact) = options.contacts.iter().find(|contact| contact.ball > balls) {
+        return Err(format!("--contacts: ball {} is not there: allowed is [1, {balls}]", contact.ball).into());
     }
     let mut times: Vec<f64> = options.times.iter().map(|moment| moment.0).collect();
     if times.is_empty() {
-        times.push(scene.load.duration.0);
+        times.push(scene.duration());
     }
     times.sort_by(f64::total_cmp);
-    let mut simulation = Simulation::new(&scene)?;
+    let mut machine = Machine::new(&scene)?;
     let cannot_write = |why: csv::Error| format!("{}: {why}", options.output.display());
     let mut table = csv::Writer::from_path(&options.output).map_err(cannot_write)?;
     let header = "time [s],ball [1],race,x [m],y [m],area [m2],pressure [Pa],traction.x [Pa],traction.y [Pa],slip.x [m/s],\
                   slip.y [m/s],sticks [1]";
     table.write_record(header.split(',')).map_err(cannot_write)?;
     let interrupted = heeded_interrupt()?;
-    let interval = scene.load.output_interval.0;
+    let interval = scene.output_interval();
     for time in times {
-        let now = simulation.time();
+        let now = machine.time();
         for row in (Rows { interval, duration: time }).times().filter(|row| *row > now) {
             if interrupted.load(Ordering::Relaxed) {
                 table.flush().map_err(|why| cannot_write(why.into()))?;
-                tell([format!("interrupted at {:.3} ms", simulation.time() * 1e3)]);
+                tell([format!("interrupted at {:.3} ms", machine.time() * 1e3)]);
                 return Ok(ExitCode::from(INTERRUPTED));
             }
-            simulation.advance_scripted(row)?;
+            machine.advance_scripted(row)?;
         }
+        let Some((_, simulation)) = machine.bearings().nth(index) else { continue };
         for Contact { ball, race } in &options.contacts {
             let (model, state, conditions) =
                 (simulation.model(), simulation.state(), simulation.conditions());
@@ -121,6 +124,22 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     }
     table.flush().map_err(|why| cannot_write(why.into()))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The index of the bearing that is meant.
+fn bearing(scene: &MachineScene, name: Option<&str>) -> Result<usize, String> {
+    let bearings = scene.bearings();
+    let names = bearings.iter().map(|(name, _)| *name).collect::<Vec<_>>();
+    match name {
+        None if names.len() == 1 => Ok(0),
+        None => Err(format!("--bearing: say which one of {}", names.join(", "))),
+        Some(name) => names.iter().position(|known| *known == name && !known.is_empty()).ok_or_else(|| {
+            match scene.shaft() {
+                Some(_) => format!("--bearing: there is no bearing {name}, but {}", names.join(", ")),
+                None => "--bearing is for a shaft with several".to_string(),
+            }
+        }),
+    }
 }
 
 fn write(

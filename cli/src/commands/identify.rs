@@ -11,6 +11,7 @@ use roulement::contact::shape::ContactShape;
 use roulement::kalker::Patch;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::model::bearing::Bearing;
+use roulement::scene::machine::MachineScene;
 use roulement::schema::regular;
 
 use super::say;
@@ -50,7 +51,10 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut section = String::new();
     match &options.scene {
         Some(path) => {
-            let scene = super::load(path)?;
+            let MachineScene::Bearing(scene) = super::load(path)? else {
+                let path = path.display();
+                return Err(format!("{path} is of a shaft: name the scene of one of its bearings").into());
+            };
             let bearing = Bearing::new(&scene);
             for (race, raceway) in [("inner", &bearing.inner), ("outer", &bearing.outer)] {
                 let materials = &bearing.materials;

@@ -4,13 +4,14 @@ mod bearing;
 mod contact;
 mod cost;
 mod effects;
+mod equilibrium;
 mod field;
 mod identify;
+mod place;
 mod player;
 mod report;
 mod run;
 mod scene;
-mod shaft;
 mod summary;
 mod sweep;
 mod system;
@@ -20,13 +21,10 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{Parser, Subcommand};
 use roulement::analysis::auto;
-use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::interface::model_description::{render, render_system};
-use roulement::model::Model;
-use roulement::scene::Scene;
-use roulement::scene::system::SystemScene;
+use roulement::scene::machine::MachineScene;
 use roulement::simulation::Simulation;
 use roulement::simulation::system::System;
 use roulement_cli::package::{library_beside_executable, name_of, write_fmu, write_system_fmu};
@@ -43,17 +41,8 @@ struct Arguments {
 enum Command {
     /// Simulate a scene: result table, plots, summary.
     Run(run::Options),
-    /// Solve the quasi-static equilibrium of a scene at time 0.
-    Equilibrium {
-        /// Scene file.
-        scene: PathBuf,
-        /// Print JSON instead of text.
-        #[arg(long)]
-        json: bool,
-        /// How the gyroscopic moment of the balls is carried.
-        #[arg(long, value_enum, default_value = "outer-race-control")]
-        gyroscopic: GyroscopicChoice,
-    },
+    /// Solve the quasi-static equilibrium of a scene; of a shaft also its natural frequencies and critical speeds.
+    Equilibrium(equilibrium::Options),
     /// Simulate many cases of a scene on all cores: a table of keys and values, or ranges; resumable.
     Sweep(sweep::Options),
     /// Print what may stand in a scene file: every key, or a JSON schema for editors.
@@ -95,47 +84,18 @@ enum Command {
     },
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum GyroscopicChoice {
-    /// By friction at the outer race alone, whatever it takes (Jones).
-    OuterRaceControl,
-    /// Ignored.
-    None,
-    /// By friction at both races, at most the friction limit.
-    Friction,
-}
-
-impl From<GyroscopicChoice> for Gyroscopic {
-    fn from(choice: GyroscopicChoice) -> Self {
-        match choice {
-            GyroscopicChoice::OuterRaceControl => Self::OuterRaceControl,
-            GyroscopicChoice::None => Self::None,
-            GyroscopicChoice::Friction => Self::Friction,
-        }
-    }
-}
-
-/// What an equilibrium says of races on supports.
-const SUPPORTS_LEFT_OUT: &str = "note: displacements are those of one race against the other; flexible supports give way beside them, \
-                                 as a run shows from its start";
-
 /// Reads a scene and finds out its effects where it asks for that; what its reader should know goes to standard error.
-fn load(path: &Path) -> Result<Scene, Box<dyn Error>> {
-    let scene = Scene::load(path)?;
+fn load(path: &Path) -> Result<MachineScene, Box<dyn Error>> {
+    let scene = MachineScene::load(path)?;
     tell(scene.notes());
-    let (scene, found_out) = auto::resolve(scene)?;
-    tell(found_out);
-    Ok(scene)
-}
-
-/// Reads the file of a system; none where the file is not that of one.
-fn system(path: &Path) -> Result<Option<SystemScene>, Box<dyn Error>> {
-    if !shaft::is_system(path) {
-        return Ok(None);
+    match scene {
+        MachineScene::Bearing(scene) => {
+            let (scene, found_out) = auto::resolve(*scene)?;
+            tell(found_out);
+            Ok(scene.into())
+        }
+        scene @ MachineScene::Shaft(_) => Ok(scene),
     }
-    let scene = SystemScene::load(path)?;
-    tell(scene.notes());
-    Ok(Some(scene))
 }
 
 /// Notes and warnings.
@@ -162,29 +122,13 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
     match Arguments::parse().command {
         Command::Run(options) => return run::run(options),
         Command::Sweep(options) => return sweep::run(options),
-        Command::Equilibrium { scene, json, gyroscopic } => {
-            let scene = load(&scene)?;
-            let input = EquilibriumInput::from_scene(&scene, gyroscopic.into());
-            let model = Model::new(&scene)?;
-            let solution = equilibrium::solve(&model, &input)?;
-            if json {
-                say(&format!("{:#}\n", solution.to_json()))?;
-            } else {
-                say(&solution.to_string())?;
-            }
-            tell(scene.pressure_note(solution.peak_pressure(&model)));
-            tell(solution.warning());
-            tell(solution.life.and_then(|life| life.warning()));
-            if model.supports.iter().any(Option::is_some) {
-                tell([SUPPORTS_LEFT_OUT.to_string()]);
-            }
-        }
+        Command::Equilibrium(options) => equilibrium::run(&options)?,
         Command::Fmu { scene, output, library, name } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
             let name = name.unwrap_or_else(|| name_of(&output));
-            match system(&scene)? {
-                Some(system) => write_system_fmu(&system, &name, &libraries, &output)?,
-                None => write_fmu(&load(&scene)?, &name, &libraries, &output)?,
+            match load(&scene)? {
+                MachineScene::Shaft(scene) => write_system_fmu(&scene, &name, &libraries, &output)?,
+                MachineScene::Bearing(scene) => write_fmu(&scene, &name, &libraries, &output)?,
             }
             say(&format!("{}\n", output.display()))?;
         }
@@ -199,9 +143,9 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Cost(options) => return cost::run(options),
         Command::Describe { scene } => {
             let name = name_of(&scene);
-            let description = match system(&scene)? {
-                Some(system) => render_system(&System::new(&system)?, &name)?,
-                None => render(&Simulation::new(&load(&scene)?)?, &name)?,
+            let description = match load(&scene)? {
+                MachineScene::Shaft(scene) => render_system(&System::new(&scene)?, &name)?,
+                MachineScene::Bearing(scene) => render(&Simulation::new(&scene)?, &name)?,
             };
             say(&description.xml)?;
         }

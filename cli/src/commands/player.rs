@@ -1,28 +1,30 @@
-//! Plays a scene from start to end for `roulement run`: progress, result table, and what its summary and plots need.
+//! Plays a machine from start to end for `roulement run`: progress, result tables, and what its summary and plots need.
 
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use cpu_time::ThreadTime;
 use indicatif::{ProgressBar, ProgressStyle};
-use roulement::simulation::Simulation;
+use roulement::simulation::machine::Machine;
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::{Rows, play};
+use roulement::simulation::system::SystemOutputs;
 use roulement_cli::error::Run;
-use roulement_cli::report::figures::Figures;
-use roulement_cli::report::results::{ResultsError, ResultsWriter};
+use roulement_cli::report::results::ResultsError;
+use roulement_cli::report::tables::Tables;
 use roulement_cli::report::thinned::Thinned;
 use roulement_cli::watch::{Seen, Watch};
 
 /// A run that has ended.
 pub struct Played {
-    /// The bearing at the end.
-    pub simulation: Simulation,
-    /// Rows for the plots.
-    pub plotted: Vec<Outputs>,
+    /// The machine at the end.
+    pub machine: Machine,
+    /// Rows of every bearing for the plots.
+    pub plotted: Vec<Vec<Outputs>>,
+    /// Rows of the shaft for the plots.
+    pub plotted_shaft: Vec<SystemOutputs>,
     /// What was gathered of its rows.
     pub seen: Seen,
     /// Time that it took.
@@ -34,6 +36,7 @@ pub struct Played {
 }
 
 /// How a run ended.
+#[derive(Clone)]
 pub enum End {
     /// At its time.
     Reached,
@@ -43,15 +46,21 @@ pub enum End {
     Failed(String),
 }
 
-impl Played {
-    /// Figures of its summary.
-    pub fn figures(&self) -> Figures {
-        self.seen.figures(&self.simulation)
+impl End {
+    /// Why it ended before its time.
+    pub fn early(&self) -> Option<String> {
+        match self {
+            Self::Reached => None,
+            Self::Interrupted => Some("interrupted".to_string()),
+            Self::Failed(why) => Some(why.clone()),
+        }
     }
+}
 
+impl Played {
     /// What is kept for comparison with other runs; its rows move there.
     pub fn take_comparable(&mut self) -> Run {
-        self.seen.take_comparable(&self.simulation, self.cpu)
+        self.seen.take_comparable(&self.machine, self.cpu)
     }
 }
 
@@ -75,32 +84,38 @@ impl Player {
         Self { interrupted, words: String::new() }
     }
 
-    /// Plays a simulation, with its rows into a table if there is one; `words` of this run follow those that progress
-    /// begins with.
+    /// Plays a machine, with its rows into tables if there are some; `words` of this run follow those that progress begins with.
     ///
     /// # Errors
-    /// If the table cannot be written. A run that fails on its way is no error here.
+    /// If a table cannot be written. A run that fails on its way is no error here.
     pub fn play(
         &self,
-        mut simulation: Simulation,
-        mut table: Option<ResultsWriter>,
+        mut machine: Machine,
+        rows: Rows,
+        mut tables: Option<Tables>,
         words: &str,
     ) -> Result<Played, ResultsError> {
-        let rows = Rows::of(&simulation);
         let progress = progress_bar(rows.count(), &format!("{}{words}", self.words));
         let begin = Instant::now();
         let cpu = ThreadTime::now();
-        let mut plotted = Thinned::default();
-        let mut watch = Watch::of(&simulation);
-        let played = play(&mut simulation, rows, |simulation| {
-            let outputs = simulation.outputs();
-            if let Some(Err(why)) = table.as_mut().map(|table| table.write(simulation.inputs(), outputs)) {
+        let mut plotted: Vec<Thinned<Outputs>> = machine.bearings().map(|_| Thinned::default()).collect();
+        let mut plotted_shaft = Thinned::default();
+        let mut watch = Watch::of(&machine);
+        let mut seen = 0;
+        let played = play(&mut machine, rows, |machine| {
+            if let Some(Err(why)) = tables.as_mut().map(|tables| tables.write(machine)) {
                 return ControlFlow::Break(Stop::Results(why));
             }
-            progress.set_message(format!("{:.3} of {:.3} ms", outputs.time * 1e3, rows.duration * 1e3));
-            progress.set_position(plotted.seen());
-            watch.push(simulation);
-            plotted.push(outputs.clone());
+            progress.set_message(format!("{:.3} of {:.3} ms", machine.time() * 1e3, rows.duration * 1e3));
+            progress.set_position(seen);
+            seen += 1;
+            watch.push(machine);
+            for ((_, bearing), plotted) in machine.bearings().zip(&mut plotted) {
+                plotted.push(bearing.outputs().clone());
+            }
+            if let Some(system) = machine.shaft() {
+                plotted_shaft.push(system.outputs().clone());
+            }
             if self.interrupted.load(Ordering::Relaxed) {
                 ControlFlow::Break(Stop::Interrupted)
             } else {
@@ -116,24 +131,17 @@ impl Player {
             Ok(ControlFlow::Continue(())) => End::Reached,
             Err(why) => End::Failed(why.to_string()),
         };
-        if let Some(table) = table {
-            table.finish()?;
+        if let Some(tables) = tables {
+            tables.finish()?;
         }
-        Ok(Played { simulation, plotted: plotted.finish(), seen: watch.finish(), wall, cpu, end })
+        let plotted = plotted.into_iter().map(Thinned::finish).collect();
+        let plotted_shaft = plotted_shaft.finish();
+        Ok(Played { machine, plotted, plotted_shaft, seen: watch.finish(), wall, cpu, end })
     }
 }
 
-/// Moves a finished table to its place.
-///
-/// # Errors
-/// If the file cannot be moved.
-pub fn put(from: &Path, to: &Path) -> Result<(), String> {
-    std::fs::rename(from, to)
-        .map_err(|why| format!("cannot move {} to {}: {why}", from.display(), to.display()))
-}
-
 /// A bar with simulated time and an estimate of what is left.
-pub(super) fn progress_bar(points: u64, words: &str) -> ProgressBar {
+fn progress_bar(points: u64, words: &str) -> ProgressBar {
     let bar = ProgressBar::new(points);
     let template =
         format!("{words}simulated {{msg}} [{{bar:40}}] {{percent}} %, {{elapsed}} elapsed, {{eta}} left");

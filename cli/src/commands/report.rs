@@ -46,7 +46,7 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         if is_sweep(directory) {
             sweeps.push(of_sweep(directory, options)?);
         } else {
-            runs.push(of_run(directory, options)?);
+            runs.extend(of_machine(directory, options)?);
         }
     }
     for path in &options.field {
@@ -94,7 +94,7 @@ fn of_sweep(directory: &Path, options: &Options) -> Result<Value, Box<dyn Error>
     for (case, file) in sweep::files(&sweep) {
         let kept = directory.join(RUNS).join(&file);
         if kept.is_dir() {
-            let mut run = of_run(&kept, options)?;
+            let mut run = of_machine(&kept, options)?.remove(0);
             run["name"] = format!("case {case}").into();
             runs.insert(file, run);
         }
@@ -103,18 +103,31 @@ fn of_sweep(directory: &Path, options: &Options) -> Result<Value, Box<dyn Error>
     Ok(sweep)
 }
 
-/// Record and table of a run.
+/// A run of a bearing; or that of a shaft, then of every bearing on it.
+fn of_machine(directory: &Path, options: &Options) -> Result<Vec<Value>, Box<dyn Error>> {
+    let run = of_run(directory, options)?;
+    let bearings = record::bearings(&run).unwrap_or_default();
+    let mut runs = vec![run];
+    for name in bearings {
+        runs.push(of_run(&directory.join(name), options)?);
+    }
+    Ok(runs)
+}
+
+/// Record and table of a bearing or a shaft.
 fn of_run(directory: &Path, options: &Options) -> Result<Value, Box<dyn Error>> {
     let mut record = record::read(directory)?;
     record["name"] = name_of(directory).into();
-    let path = directory.join("results.csv");
+    let is_shaft = record::bearings(&record).is_some();
+    let path = directory.join(if is_shaft { "shaft.csv" } else { "results.csv" });
     if !path.is_file() {
         tell([format!("{} is not there: the page has what the record holds", path.display())]);
         record["tables"] = json!([]);
         return Ok(record);
     }
-    let choice =
-        table::Choice { columns: options.columns.clone(), rows: options.rows.map(|rows| rows as usize) };
+    // Columns that are chosen are those of bearings.
+    let columns = if is_shaft { vec![] } else { options.columns.clone() };
+    let choice = table::Choice { columns, rows: options.rows.map(|rows| rows as usize) };
     let read = table::read(&path, &choice)?;
     // What the table has at the same times is not written twice.
     if let [grid] = read.grids.as_slice()

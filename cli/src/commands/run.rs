@@ -1,31 +1,27 @@
 //! `roulement run`: simulation with progress, results, plots and summary; with `--error`, as often as its error asks for.
 
 use std::error::Error;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use roulement::analysis::estimate::{self, Verdicts};
-use roulement::scene::units::Time;
-use roulement::scene::{ErrorGoal, ErrorOf, Scene, Solver};
-use roulement::simulation::Simulation;
-use roulement_cli::error::{Judgement, MOST_ROUNDS, Rounds, TWIN};
-use roulement_cli::page::record;
-use roulement_cli::report::figures::{Figures, Shown};
-use roulement_cli::report::json;
-use roulement_cli::report::plots::{title, write_plots};
-use roulement_cli::report::results::{Choice, Columns, ResultsWriter, Window, is_parquet};
-use roulement_cli::report::spectrum;
+use roulement::analysis::estimate::Verdicts;
+use roulement::scene::machine::MachineScene;
+use roulement::scene::{ErrorGoal, ErrorOf};
+use roulement::simulation::machine::Machine;
+use roulement::simulation::play::Rows;
+use roulement_cli::error::{Judgement, MOST_ROUNDS, Rounds, finer, twin_of_coarser};
+use roulement_cli::report::results::{Choice, Window};
+use roulement_cli::report::tables::Tables;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-use super::effects::announce;
-use super::player::{End, Played, Player, put};
-use super::summary::summary;
-use super::{load, say, shaft, system, tell};
+use super::effects::{announce, verdicts};
+use super::place::{Place, Said};
+use super::player::{End, Played, Player};
+use super::{load, tell};
 
 /// Exit code of a program that Ctrl-C or SIGTERM ended: 128 and the number of Ctrl-C.
 pub const INTERRUPTED: u8 = 130;
@@ -67,29 +63,22 @@ pub struct Options {
 /// If the simulation cannot start or go on, or files cannot be written.
 pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     let Options { scene, output, json, columns, window, error, means_only, rounds } = options;
-    if let Some(system) = system(&scene)? {
-        if error.is_some() {
-            return Err("--error is for the scene of one bearing: run a shaft again with a smaller solver.max_step and compare".into());
-        }
-        let choice = Choice { columns, window: window.unwrap_or_default() };
-        let said = if json { Said::Json } else { Said::Text };
-        return shaft::run(&heeded_interrupt()?, "", &system, &output, &choice, said);
-    }
     let mut scene = load(&scene)?;
     if let Some(Some(error)) = error {
-        scene.solver.goal = Some(ErrorGoal { error, of: ErrorOf::All });
+        scene.change(|scene| scene.solver.goal = Some(ErrorGoal { error, of: ErrorOf::All }));
         scene.check()?;
     }
-    if let (Some(goal), true) = (&mut scene.solver.goal, means_only) {
-        goal.of = ErrorOf::Means;
+    if means_only {
+        scene.change(|scene| {
+            scene.solver.goal.iter_mut().for_each(|goal| goal.of = ErrorOf::Means);
+        });
     }
-    let output = Place {
-        files: !is_parquet(&output),
+    let place = Place {
         output,
         choice: Choice { columns, window: window.unwrap_or_default() },
         said: if json { Said::Json } else { Said::Text },
     };
-    simulate(&Player::new(heeded_interrupt()?), &scene, &output, error.is_some(), rounds)
+    simulate(&Player::new(heeded_interrupt()?), &scene, &place, error.is_some(), rounds)
 }
 
 /// Set by Ctrl-C, and by SIGTERM, which queues of computing centres send; a second one does not wait for the row.
@@ -112,40 +101,37 @@ pub fn heeded_interrupt() -> std::io::Result<Arc<AtomicBool>> {
 /// As [`run`].
 pub fn simulate(
     player: &Player,
-    scene: &Scene,
+    scene: &MachineScene,
     place: &Place,
     wants_error: bool,
     rounds: u32,
 ) -> Result<ExitCode, Box<dyn Error>> {
-    let simulation = Simulation::new(scene)?;
-    let verdicts = estimate::verdicts(simulation.scene(), simulation.model());
+    let machine = Machine::new(scene)?;
+    let verdicts = verdicts(&machine);
     if place.said != Said::Nothing {
-        announce(simulation.scene(), &verdicts);
+        for ((name, bearing), verdicts) in machine.bearings().zip(&verdicts) {
+            announce(name, bearing.scene(), verdicts);
+        }
     }
-    // Before anything of a former run goes.
-    drop(Columns::new(scene, &place.choice)?);
-    if place.files {
-        record::begin(&place.output)
-            .map_err(|why| format!("cannot begin in {}: {why}", place.output.display()))?;
+    place.begin(scene)?;
+    let tables = place.tables(scene, false)?;
+    if wants_error || scene.solver().goal.is_some() {
+        return measured(player, scene, (machine, tables), place, &verdicts, rounds);
     }
-    let table = ResultsWriter::create(&place.results(), scene, &place.choice)?;
-    if wants_error || scene.solver.goal.is_some() {
-        return measured(player, simulation, table, place, &verdicts, rounds);
-    }
-    let played = player.play(simulation, Some(table), "")?;
+    let played = player.play(machine, Rows::of_scene(scene), Some(tables), "")?;
     place.leave(&played, &verdicts, None, "")?;
-    ended(played)
+    ended(&played)
 }
 
 /// What the program says at the end of a run that was not compared with another.
-fn ended(played: Played) -> Result<ExitCode, Box<dyn Error>> {
-    match played.end {
+fn ended(played: &Played) -> Result<ExitCode, Box<dyn Error>> {
+    match &played.end {
         End::Reached => Ok(ExitCode::SUCCESS),
         End::Interrupted => {
-            tell([format!("interrupted at {:.3} ms", played.simulation.time() * 1e3)]);
+            tell([format!("interrupted at {:.3} ms", played.machine.time() * 1e3)]);
             Ok(ExitCode::from(INTERRUPTED))
         }
-        End::Failed(why) => Err(why.into()),
+        End::Failed(why) => Err(why.clone().into()),
     }
 }
 
@@ -153,48 +139,40 @@ fn ended(played: Played) -> Result<ExitCode, Box<dyn Error>> {
 /// the finest run that came to its end.
 fn measured(
     player: &Player,
-    simulation: Simulation,
-    table: ResultsWriter,
+    scene: &MachineScene,
+    (machine, tables): (Machine, Tables),
     place: &Place,
-    verdicts: &Verdicts,
+    verdicts: &[Verdicts],
     most: u32,
 ) -> Result<ExitCode, Box<dyn Error>> {
-    let scene = simulation.scene().clone();
-    let with = |solver: Solver| {
-        let mut scene = scene.clone();
-        scene.solver = solver;
-        scene
-    };
-    let mut rounds = Rounds::new(scene.solver.goal, most);
-    let mut played = player.play(simulation, Some(table), "round 1: ")?;
+    let times = Rows::of_scene(scene);
+    let mut rounds = Rounds::new(scene.solver().goal, most);
+    let mut played = player.play(machine, times, Some(tables), "round 1: ")?;
     if !matches!(played.end, End::Reached) {
         place.leave(&played, verdicts, None, "")?;
-        return ended(played);
+        return ended(&played);
     }
     rounds.push(played.take_comparable());
     let (judgement, end) = loop {
         let judgement = rounds.judge();
+        let words = format!("round {}: ", rounds.count() + 1);
         let next = match judgement {
             Judgement::Refine => {
-                let finer = with(scene.solver.refined(rounds.refinements()));
-                let simulation = Simulation::new(&finer)?;
-                let table = ResultsWriter::create(&place.results_of_round(), &finer, &place.choice)?;
-                let words = format!("round {}: ", rounds.count() + 1);
-                let mut next = player.play(simulation, Some(table), &words)?;
+                let finer = finer(scene, rounds.refinements());
+                let tables = place.tables(&finer, true)?;
+                let mut next = player.play(Machine::new(&finer)?, times, Some(tables), &words)?;
                 if matches!(next.end, End::Reached) {
-                    put(&place.results_of_round(), &place.results())?;
+                    place.put_round(scene)?;
                     rounds.push(next.take_comparable());
                     played = next;
                     continue;
                 }
-                // Rows of a run that is not whole.
-                let _ = fs::remove_file(place.results_of_round());
+                place.drop_round(scene);
                 next
             }
             Judgement::Twin => {
-                let Some(coarser) = rounds.coarser() else { break (judgement, End::Reached) };
-                let twin = Simulation::new(&with(changed(coarser.solver)))?;
-                let mut next = player.play(twin, None, &format!("round {}: ", rounds.count() + 1))?;
+                let twin = Machine::new(&twin_of_coarser(scene, rounds.refinements()))?;
+                let mut next = player.play(twin, times, None, &words)?;
                 if matches!(next.end, End::Reached) {
                     rounds.push_twin(&next.take_comparable());
                     continue;
@@ -205,7 +183,7 @@ fn measured(
         };
         break (judgement, next.end);
     };
-    played.seen.means = rounds.means();
+    played.seen.set_means(rounds.means());
     place.leave(&played, verdicts, rounds.bars(), &rounds.report())?;
     let round = rounds.count() + 1;
     match (end, judgement) {
@@ -219,129 +197,4 @@ fn measured(
         (End::Reached, Judgement::TooShort | Judgement::TooMany) => Ok(ExitCode::from(GOAL_NOT_MET)),
         (End::Reached, _) => Ok(ExitCode::SUCCESS),
     }
-}
-
-/// Settings whose steps differ by next to nothing.
-fn changed(solver: Solver) -> Solver {
-    let [max_step, initial_step] =
-        [solver.max_step, solver.initial_step].map(|step| Time(step.0 * (1.0 + TWIN)));
-    Solver { max_step, initial_step, ..solver }
-}
-
-/// How a run's summary is said.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Said {
-    /// In words.
-    Text,
-    /// As JSON.
-    Json,
-    /// It stands in the files alone.
-    Nothing,
-}
-
-/// Where the results of a run go.
-pub struct Place {
-    /// Directory, or the file of the table.
-    pub output: PathBuf,
-    /// Is it a directory, and has all files?
-    pub files: bool,
-    /// What the table has.
-    pub choice: Choice,
-    /// How the summary is said.
-    pub said: Said,
-}
-
-impl Place {
-    fn results(&self) -> PathBuf {
-        if self.files { self.output.join("results.csv") } else { self.output.clone() }
-    }
-
-    /// The table of a round until it is whole.
-    fn results_of_round(&self) -> PathBuf {
-        if self.files {
-            self.output.join("results.csv.round")
-        } else {
-            self.output.with_extension("round.parquet")
-        }
-    }
-
-    /// Leaves plots, means and summary of a run, and says the summary. Error bars and a report of errors are those of runs that
-    /// were compared.
-    pub(super) fn leave(
-        &self,
-        played: &Played,
-        verdicts: &Verdicts,
-        bars: Option<Figures>,
-        errors: &str,
-    ) -> Result<(), Box<dyn Error>> {
-        let scene = played.simulation.scene();
-        let shown = Shown { figures: played.figures(), bars };
-        let text = summary(played, &shown, verdicts) + errors;
-        let mut plots = vec![];
-        if self.files {
-            plots = self.write_files(played, verdicts, &shown, &text)?;
-        }
-        let listed = match self.said {
-            Said::Nothing => return Ok(()),
-            Said::Json => format!("{:#}\n", json::summary(&played.simulation, &played.seen, &shown)),
-            Said::Text => {
-                let mut listed = format!("{text}\nresults          {}\n", self.results().display());
-                for plot in plots {
-                    listed += &format!("plot             {}\n", plot.display());
-                }
-                listed
-            }
-        };
-        tell(scene.pressure_note(played.seen.limits.peak_pressure));
-        tell(played.simulation.outputs().life.and_then(|life| life.warning()));
-        let said = say(&listed);
-        // Why a run has ended early is said even where nobody reads the summary.
-        if matches!(played.end, End::Reached) {
-            said?;
-        }
-        Ok(())
-    }
-
-    /// Writes all files beside the table; gives those of the plots.
-    fn write_files(
-        &self,
-        played: &Played,
-        verdicts: &Verdicts,
-        shown: &Shown,
-        text: &str,
-    ) -> Result<Vec<PathBuf>, Box<dyn Error>> {
-        let (scene, directory) = (played.simulation.scene(), &self.output);
-        let mut plots = write_plots(scene, &played.plotted, directory)?;
-        if let Some(means) = &played.seen.means {
-            write(&directory.join("means.csv"), |path| means.write(path))?;
-        }
-        if let Some(spectrum) = &played.seen.spectrum {
-            write(&directory.join("spectrum.csv"), |path| spectrum.write(path))?;
-            let picture = directory.join("spectrum.svg");
-            spectrum::picture::write(spectrum, title(scene), &picture)?;
-            plots.push(picture);
-        }
-        write(&directory.join("summary.txt"), |path| fs::write(path, text))?;
-        let record = record::Run {
-            simulation: &played.simulation,
-            rows: &played.plotted,
-            seen: &played.seen,
-            shown,
-            verdicts,
-            summary: text,
-            took: [played.wall.as_secs_f64(), played.cpu],
-            ended_early: match &played.end {
-                End::Reached => None,
-                End::Interrupted => Some("interrupted".to_string()),
-                End::Failed(why) => Some(why.clone()),
-            },
-        };
-        write(&directory.join(record::FILE), |path| record.write(path))?;
-        Ok(plots)
-    }
-}
-
-/// Writes a file, with its name in the error.
-fn write(path: &Path, write: impl FnOnce(&Path) -> std::io::Result<()>) -> Result<(), String> {
-    write(path).map_err(|why| format!("cannot write {}: {why}", path.display()))
 }

@@ -1,25 +1,82 @@
-//! Summary that `roulement run` prints at the end.
+//! Summaries that `roulement run` leaves and prints at the end: of a bearing, and of a shaft with its bearings.
 
 use std::fmt::Write;
 
 use roulement::analysis::estimate::Verdicts;
 use roulement::model::bodies::Race;
 use roulement::scene::Scene;
+use roulement::simulation::Simulation;
+use roulement::simulation::system::System;
 use roulement_cli::report::figures::Shown;
 use roulement_cli::report::limits::Limits;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
+use roulement_cli::report::shaft;
 use roulement_cli::report::spectrum::is_wanted;
-use roulement_cli::watch::Seen;
+use roulement_cli::watch::{BearingSeen, ShaftSeen};
 
 use super::effects::idle_in;
 use super::player::Played;
 
-/// Summary of a run, with error bars where figures have them.
-pub fn summary(run: &Played, shown: &Shown, verdicts: &Verdicts) -> String {
+/// Summary of a bearing in a run, with error bars where figures have them.
+pub fn of_bearing(
+    run: &Played,
+    own: (&Simulation, &BearingSeen),
+    shown: &Shown,
+    verdicts: &Verdicts,
+) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
-    let _ = write_summary(&mut text, run, shown, verdicts);
+    let _ = write_bearing(&mut text, run, own, shown, verdicts);
     text
+}
+
+/// Summary of a shaft with its bearings, with error bars where their figures have them.
+pub fn of_shaft(
+    run: &Played,
+    (system, seen): (&System, &ShaftSeen),
+    shown: &Shown,
+    bearings: &[Shown],
+) -> String {
+    let mut text = shaft::summary(system, shown, bearings);
+    // Writing to a string cannot fail.
+    let _ = write_shaft(&mut text, run, (system, seen), shown);
+    text
+}
+
+fn write_shaft(
+    out: &mut String,
+    run: &Played,
+    (system, seen): (&System, &ShaftSeen),
+    shown: &Shown,
+) -> std::fmt::Result {
+    let bearings = system.bearings().zip(&run.seen.bearings);
+    let bearings = bearings.map(|((name, _), seen)| (Some(name), seen.means.as_ref()));
+    write_settled_of_all(out, bearings.chain([(None, seen.means.as_ref())]))?;
+    for warning in run.seen.warnings(&run.machine) {
+        writeln!(out, "WARNING          {warning}")?;
+    }
+    if shown.bars.is_none() {
+        writeln!(out, "error            not measured: --error runs it again with half the steps")?;
+    }
+    if let Some((_, bearing)) = system.bearings().next() {
+        let s = &bearing.state().statistics;
+        writeln!(
+            out,
+            "steps            {} accepted, {} rejected by error, {} by Newton; {:.2} Newton iterations a step",
+            s.steps,
+            s.rejected_error,
+            s.rejected_newton,
+            s.newton.iterations as f64 / s.steps.max(1) as f64
+        )?;
+    }
+    write_wall(out, run, system.time())
+}
+
+/// What it took, for so much simulated time \[s].
+fn write_wall(out: &mut String, run: &Played, simulated: f64) -> std::fmt::Result {
+    let seconds = run.wall.as_secs_f64();
+    let rate = seconds / simulated.max(f64::MIN_POSITIVE);
+    writeln!(out, "wall time        {seconds:.3} s, {rate:.2} s per simulated second")
 }
 
 /// Means over the window.
@@ -66,23 +123,36 @@ const BLOWS: &str = "\n                 balls without a cage or the cage strike 
 
 /// Whether the means have settled.
 fn write_settled(out: &mut String, means: &Means) -> std::fmt::Result {
-    if !means.can_tell() {
+    write_settled_of_all(out, [(None, Some(means))].into_iter())
+}
+
+/// Whether the means of several bearings and of the shaft that carries them have settled; names stand before what has not.
+fn write_settled_of_all<'a>(
+    out: &mut String,
+    all: impl Iterator<Item = (Option<&'a str>, Option<&'a Means>)>,
+) -> std::fmt::Result {
+    let all: Vec<_> = all.filter_map(|(name, means)| Some((name, means?))).collect();
+    if all.iter().any(|(_, means)| !means.can_tell()) {
         return writeln!(out, "settled?         too few rows to tell: lower load.output_interval");
     }
-    if means.unsettled().next().is_none() {
+    if all.iter().all(|(_, means)| means.unsettled().next().is_none()) {
         return writeln!(
             out,
             "settled          all means: no drift beyond noise or {NEGLIGIBLE} of their size"
         );
     }
-    for (mean, trend) in means.unsettled() {
-        writeln!(
-            out,
-            "NOT SETTLED      {}: {:.5e} {}, drifts by {:.2e}, noise {:.1e}",
-            mean.name, mean.mean, mean.unit, trend.drift, trend.noise
-        )?;
+    for (name, means) in &all {
+        let name = name.map_or(String::new(), |name| format!("{name}: "));
+        for (mean, trend) in means.unsettled() {
+            writeln!(
+                out,
+                "NOT SETTLED      {name}{}: {:.5e} {}, drifts by {:.2e}, noise {:.1e}",
+                mean.name, mean.mean, mean.unit, trend.drift, trend.noise
+            )?;
+        }
     }
-    match means.needed() {
+    let needed = all.iter().try_fold(0.0, |longest, (_, means)| Some(f64::max(longest, means.needed()?)));
+    match needed {
         Some(needed) => {
             writeln!(out, "                 load.duration of about {:.4} s would settle them", needed)
         }
@@ -107,9 +177,14 @@ fn write_limits(out: &mut String, limits: &Limits, shown: &Shown) -> std::fmt::R
     Ok(())
 }
 
-fn write_summary(out: &mut String, run: &Played, shown: &Shown, verdicts: &Verdicts) -> std::fmt::Result {
-    let Played { simulation, seen, wall, .. } = run;
-    let Seen { means, spectrum, energy, limits, estimate, .. } = seen;
+fn write_bearing(
+    out: &mut String,
+    run: &Played,
+    (simulation, seen): (&Simulation, &BearingSeen),
+    shown: &Shown,
+    verdicts: &Verdicts,
+) -> std::fmt::Result {
+    let BearingSeen { means, spectrum, energy, limits, estimate, .. } = seen;
     let now = simulation.outputs();
     let text = |name: &str, factor, digits| shown.text(name, factor, digits);
     let range = |[least, most]: [&str; 2]| format!("{} to {}", text(least, 1.0, 3), text(most, 1.0, 3));
@@ -169,7 +244,9 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown, verdicts: &Verdi
     if let Some(warning) = energy.warning(simulation) {
         writeln!(out, "WARNING          {warning}")?;
     }
-    if let (None, Some([histories, means])) = (&shown.bars, estimate.errors(simulation)) {
+    // Of a bearing on a shaft it says nothing: its local errors are not those of the shaft.
+    let estimated = run.machine.shaft().is_none().then(|| estimate.errors(simulation)).flatten();
+    if let (None, Some([histories, means])) = (&shown.bars, estimated) {
         writeln!(
             out,
             "error, estimate  histories {histories:.0e}, means {means:.0e} of their size, within a factor of ten or so, and no \
@@ -202,7 +279,5 @@ fn write_summary(out: &mut String, run: &Played, shown: &Shown, verdicts: &Verdi
             s.polynomials, s.polynomial_failures
         )?;
     }
-    let seconds = wall.as_secs_f64();
-    let simulated = now.time - energy.begin();
-    writeln!(out, "wall time        {seconds:.3} s, {:.2} s per simulated second", seconds / simulated)
+    write_wall(out, run, now.time - energy.begin())
 }

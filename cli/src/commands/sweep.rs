@@ -10,17 +10,19 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use roulement::scene::machine::MachineScene;
 use roulement_cli::error::MOST_ROUNDS;
 use roulement_cli::page::record;
 use roulement_cli::report::results::Choice;
 use roulement_cli::sweep::all::{Sweep, threads as cores};
 use roulement_cli::sweep::case::Wanted;
-use roulement_cli::sweep::cases::{CaseScene, Cases, base_of, scene_of};
+use roulement_cli::sweep::cases::{Cases, base_of};
 use roulement_cli::sweep::store::aside;
 
+use super::place::{Place, Said};
 use super::player::Player;
-use super::run::{INTERRUPTED, Place, Said, heeded_interrupt, simulate};
-use super::{say, shaft, tell};
+use super::run::{INTERRUPTED, heeded_interrupt, simulate};
+use super::{say, tell};
 
 /// Exit code of a sweep whose summary is there, but not a result of every case.
 const INCOMPLETE: u8 = 4;
@@ -145,29 +147,19 @@ fn keep_run(sweep: &Sweep, case: usize, interrupted: &Arc<AtomicBool>) -> Result
     let kept = sweep.store.run(name)?;
     if !kept.is_dir() {
         let part = aside(&kept);
-        let scene = scene_of(&sweep.cases.text_of(&sweep.base, case - 1)?);
         let words = format!("case {case}: ");
-        let (ended, made) = match scene {
-            Ok(CaseScene::Bearing(scene)) => {
-                let place = Place {
-                    output: part.clone(),
-                    files: true,
-                    choice: Choice::default(),
-                    said: Said::Nothing,
-                };
+        let ended = match MachineScene::edited(&sweep.cases.text_of(&sweep.base, case - 1)?) {
+            Ok(scene) => {
+                let place = Place { output: part.clone(), choice: Choice::default(), said: Said::Nothing };
                 let player = Player { interrupted: Arc::clone(interrupted), words };
-                (simulate(&player, &scene, &place, false, MOST_ROUNDS).map(drop), record::FILE)
+                simulate(&player, &scene, &place, false, MOST_ROUNDS).map(drop)
             }
-            Ok(CaseScene::System(scene)) => {
-                let run = shaft::run(interrupted, &words, &scene, &part, &Choice::default(), Said::Nothing);
-                (run.map(drop), "shaft.svg")
-            }
-            Err(why) => (Err(why.into()), record::FILE),
+            Err(why) => Err(why.into()),
         };
         if let Err(why) = ended {
             tell([format!("case {case}: {why}")]);
         }
-        if interrupted.load(Ordering::Relaxed) || !part.join(made).is_file() {
+        if interrupted.load(Ordering::Relaxed) || !part.join(record::FILE).is_file() {
             // It may not have been begun.
             let _ = fs::remove_dir_all(part);
             return Ok(());

@@ -60,7 +60,7 @@ fn combinations<'a>(points: &'a [Point], own: CreepModel, norm: Norm) -> Vec<Com
 pub fn advise(
     points: &[Point],
     settings: &[Setting],
-    scene: &roulement::scene::Scene,
+    scene: &roulement::scene::machine::MachineScene,
     run: impl Fn(&Setting, ReferenceKind) -> Option<(Errors, f64)>,
 ) -> Vec<String> {
     let own = CreepModel::of(scene);

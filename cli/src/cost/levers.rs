@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 use strum::{IntoStaticStr, VariantArray};
 
+use roulement::scene::machine::MachineScene;
 use roulement::scene::units::Time;
 use roulement::scene::{Accuracy, CreepLaw, Drive, Scales, Scene};
 
@@ -97,7 +98,7 @@ pub struct Setting {
     /// Value of the lever, as shown.
     pub label: String,
     /// Scene as changed by the lever.
-    pub scene: Scene,
+    pub scene: MachineScene,
     /// Quasi-static or dynamic.
     pub level: Level,
     /// \[s] communication step.
@@ -108,29 +109,31 @@ pub struct Setting {
 
 impl Setting {
     /// A scene as it is, with inputs that add no error of their own.
-    pub fn plain(lever: Lever, label: impl Into<String>, scene: Scene) -> Self {
-        let communication = scene.load.output_interval.0;
+    pub fn plain(lever: Lever, label: impl Into<String>, scene: MachineScene) -> Self {
+        let communication = scene.output_interval();
         let (level, inputs) = (Level::Dynamic, Inputs::Ahead);
         Self { lever, label: label.into(), scene, level, communication, inputs }
     }
 
     /// The scene at a fixed step \[s]: error control is opened so far that only Newton's method could ask for less.
-    pub fn fixed_step(scene: &Scene, step: f64) -> Self {
-        let mut scene = scene.clone();
-        let solver = &mut scene.solver;
-        (solver.initial_step, solver.max_step) = (Time(step), Time(step));
-        solver.min_step = Time(solver.min_step.0.min(step));
-        solver.tolerance = OPEN_TOLERANCE;
+    pub fn fixed_step(scene: &MachineScene, step: f64) -> Self {
+        let scene = scene.with(|scene| {
+            let solver = &mut scene.solver;
+            (solver.initial_step, solver.max_step) = (Time(step), Time(step));
+            solver.min_step = Time(solver.min_step.0.min(step));
+            solver.tolerance = OPEN_TOLERANCE;
+        });
         Self::plain(Lever::FixedStep, seconds(step), scene)
     }
 
     /// The scene with another creep model.
-    pub fn creep(scene: &Scene, model: CreepModel) -> Self {
-        let mut scene = scene.clone();
-        let effects = &mut scene.effects;
-        effects.creep.law = model.law;
-        effects.creep.kalker_degree = model.degree.unwrap_or(effects.creep.kalker_degree);
-        effects.groove_slip.on = model.heathcote_slip;
+    pub fn creep(scene: &MachineScene, model: CreepModel) -> Self {
+        let scene = scene.with(|scene| {
+            let effects = &mut scene.effects;
+            effects.creep.law = model.law;
+            effects.creep.kalker_degree = model.degree.unwrap_or(effects.creep.kalker_degree);
+            effects.groove_slip.on = model.heathcote_slip;
+        });
         Self::plain(Lever::CreepLaw, model.name(), scene)
     }
 }
@@ -152,8 +155,9 @@ impl CreepModel {
     /// (`docs/rolling-contact.md`).
     pub const RICHEST: Self = Self { law: CreepLaw::KalkerTable, degree: None, heathcote_slip: true };
 
-    /// Creep model of a scene.
-    pub fn of(scene: &Scene) -> Self {
+    /// Creep model of a scene; of several bearings, that of the first.
+    pub fn of(scene: &MachineScene) -> Self {
+        let scene = first(scene);
         let creep = &scene.effects.creep;
         let degree = (creep.law == CreepLaw::Kalker).then_some(creep.kalker_degree);
         Self { law: creep.law, degree, heathcote_slip: scene.effects.groove_slip.on }
@@ -197,21 +201,30 @@ const REUSES: [f64; 5] = [0.0, 0.1, 0.3, 0.6, 1.0];
 /// Communication steps over the output interval.
 const COMMUNICATION: [f64; 7] = [0.125, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
+/// The first bearing.
+fn first(scene: &MachineScene) -> &Scene {
+    match scene {
+        MachineScene::Bearing(scene) => scene,
+        MachineScene::Shaft(scene) => &scene.bearings[0].scene,
+    }
+}
+
 /// \[s] the tiny step of the numerical reference, then twice that, which gives its error bar.
-pub fn reference_steps(scene: &Scene) -> [f64; 2] {
-    let fine = scene.load.output_interval.0 * f64::from(-reference_halvings(scene)).exp2();
+pub fn reference_steps(scene: &MachineScene) -> [f64; 2] {
+    let fine = scene.output_interval() * f64::from(-reference_halvings(scene)).exp2();
     [fine, 2.0 * fine]
 }
 
 /// [-] halvings of the output interval that lead to the tiny step; enough for a ladder of fixed steps.
-fn reference_halvings(scene: &Scene) -> i32 {
-    let step = REFERENCE_STEP / Scales::of(scene).frequency;
-    let halvings = (scene.load.output_interval.0 / step).log2().round() as i32;
+fn reference_halvings(scene: &MachineScene) -> i32 {
+    let frequencies = scene.bearings().into_iter().map(|(_, scene)| Scales::of(scene).frequency);
+    let step = REFERENCE_STEP / frequencies.fold(f64::MIN_POSITIVE, f64::max);
+    let halvings = (scene.output_interval() / step).log2().round() as i32;
     halvings.clamp(ABOVE_REFERENCE + 3, 16)
 }
 
 /// All settings of the levers that change the model, at the scene's own step.
-pub fn model_settings(scene: &Scene) -> Vec<Setting> {
+pub fn model_settings(scene: &MachineScene) -> Vec<Setting> {
     let quasi_static =
         Setting { level: Level::Equilibrium, ..Setting::plain(Lever::Level, "equilibrium", scene.clone()) };
     let mut richest = Setting::creep(scene, CreepModel::RICHEST);
@@ -221,13 +234,10 @@ pub fn model_settings(scene: &Scene) -> Vec<Setting> {
 }
 
 /// All settings of the levers that leave the model as it is.
-pub fn numerical_settings(scene: &Scene) -> Vec<Setting> {
-    let interval = scene.load.output_interval.0;
-    let changed = |lever, label: String, change: &dyn Fn(&mut Scene)| {
-        let mut scene = scene.clone();
-        change(&mut scene);
-        Setting::plain(lever, label, scene)
-    };
+pub fn numerical_settings(scene: &MachineScene) -> Vec<Setting> {
+    let interval = scene.output_interval();
+    let changed =
+        |lever, label: String, change: &dyn Fn(&mut Scene)| Setting::plain(lever, label, scene.with(change));
     let goals = Accuracy::VARIANTS.iter().map(|&goal| {
         changed(Lever::Goal, <&str>::from(goal).to_string(), &|s| {
             let Scales { approach, frequency } = Scales::of(s);
@@ -263,8 +273,10 @@ pub fn numerical_settings(scene: &Scene) -> Vec<Setting> {
     ];
     let communication = importers
         .into_iter()
+        // An importer of a shaft gives loads and speeds, no motion of races.
+        .filter(|_| scene.shaft().is_none())
         // Derivatives are those of a twist: a race under a wrench has none to give.
-        .filter(|&(_, inputs)| inputs != Inputs::Derivatives || scene.inner.drive == Drive::Pose)
+        .filter(|&(_, inputs)| inputs != Inputs::Derivatives || first(scene).inner.drive == Drive::Pose)
         .flat_map(|(lever, inputs)| {
             COMMUNICATION.map(|factor| {
                 let communication = factor * interval;
@@ -272,7 +284,7 @@ pub fn numerical_settings(scene: &Scene) -> Vec<Setting> {
                 Setting { communication, inputs, ..Setting::plain(lever, label, scene.clone()) }
             })
         })
-        .filter(|setting| setting.communication <= 0.5 * scene.load.duration.0);
+        .filter(|setting| setting.communication <= 0.5 * scene.duration());
     goals
         .chain(fixed)
         .chain(tolerances)

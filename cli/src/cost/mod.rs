@@ -28,9 +28,9 @@ use levers::{CreepModel, Level, Lever, ReferenceKind, Setting};
 use norms::{Comparison, Errors, Norm, errors};
 use pool::Job;
 use record::{Record, record};
-use roulement::scene::Scene;
+use roulement::scene::machine::MachineScene;
 use roulement::scene::units::Time;
-use roulement::simulation::SimulationError;
+use roulement::simulation::machine::MachineError;
 
 /// The scenes of the standard study: name and text.
 pub const SCENES: [(&str, &str); 6] = [
@@ -88,7 +88,7 @@ pub struct SceneStudy {
     /// Short name, for files.
     pub name: String,
     /// Scene.
-    pub scene: Scene,
+    pub scene: MachineScene,
     /// How runs were compared: by their trajectories if the scene is smooth.
     pub comparison: Comparison,
     /// [-] difference of trajectories of the two finest runs, which decides that.
@@ -109,7 +109,7 @@ pub struct SceneStudy {
 impl SceneStudy {
     /// Title of the scene, or its name.
     pub fn title(&self) -> &str {
-        if self.scene.title.is_empty() { &self.name } else { &self.scene.title }
+        if self.scene.title().is_empty() { &self.name } else { self.scene.title() }
     }
 
     /// Error bar of a reference.
@@ -156,7 +156,7 @@ impl SceneStudy {
 pub enum StudyError {
     /// It cannot start or go on.
     #[error(transparent)]
-    Run(#[from] SimulationError),
+    Run(#[from] MachineError),
     /// It was ended from outside.
     #[error("interrupted")]
     Interrupted,
@@ -191,7 +191,7 @@ impl Choice {
 ///
 /// # Errors
 /// See [`study_of`].
-pub fn study(name: &str, scene: &Scene, progress: &ProgressBar) -> Result<SceneStudy, StudyError> {
+pub fn study(name: &str, scene: &MachineScene, progress: &ProgressBar) -> Result<SceneStudy, StudyError> {
     study_of(name, scene, &Choice::default(), progress)
 }
 
@@ -202,11 +202,11 @@ pub fn study(name: &str, scene: &Scene, progress: &ProgressBar) -> Result<SceneS
 /// part of the result.
 pub fn study_of(
     name: &str,
-    scene: &Scene,
+    scene: &MachineScene,
     choice: &Choice,
     progress: &ProgressBar,
 ) -> Result<SceneStudy, StudyError> {
-    let duration = scene.load.duration.0;
+    let duration = scene.duration();
     let window_start = WINDOW_START * duration;
     let [fine, coarse] = levers::reference_steps(scene);
     let chosen = |settings: Vec<Setting>| settings.into_iter().filter(|s| choice.has(s.lever));
@@ -222,9 +222,11 @@ pub fn study_of(
     if has_model {
         let richest = Setting::creep(scene, CreepModel::RICHEST);
         let mut half = richest.clone();
-        let solver = &mut half.scene.solver;
-        (solver.max_step, solver.initial_step) =
-            (Time(0.5 * solver.max_step.0), Time(0.5 * solver.initial_step.0));
+        half.scene.change(|scene| {
+            let solver = &mut scene.solver;
+            (solver.max_step, solver.initial_step) =
+                (Time(0.5 * solver.max_step.0), Time(0.5 * solver.initial_step.0));
+        });
         references.extend([("richest model".into(), richest), ("richest model, half the step".into(), half)]);
     }
     let needed = references.iter().map(|(what, setting)| (what.clone(), setting, true));
@@ -288,7 +290,7 @@ pub fn study_of(
     let runs = [("reference", Some(&tiny)), ("richest model", rich.as_ref())];
     let settled = runs
         .into_iter()
-        .filter_map(|(what, reference)| Some((what, reference?.run.means.as_ref()?)))
+        .filter_map(|(what, reference)| Some((what, &reference?.run.means)))
         .map(|(what, means)| settling::sentence(scene, what, means))
         .collect();
     let model_bar = rich.as_ref().map_or(Errors::default(), |rich| rich.error_bar);

@@ -89,12 +89,25 @@ pub enum Comparison {
     WindowMeans,
 }
 
-/// Errors of a run against a reference from `window_start` \[s] on, at the times that both have.
+/// Errors of a run against a reference from `window_start` \[s] on, at the times that both have; of several bearings, the largest.
 ///
 /// Differences are over the root mean square of the reference, of a vector as a whole; powers of the races are over that of all
 /// contacts, and shares over nothing.
 pub fn errors(record: &Record, reference: &Record, how: Comparison, window_start: f64) -> Errors {
-    let pairs = common(record, reference, window_start);
+    let bearings = record.bearings.iter().zip(&reference.bearings);
+    let of_bearing = |(samples, reference): (&Vec<Sample>, &Vec<Sample>)| {
+        of(record.level, samples, reference, how, window_start)
+    };
+    let larger = |all: Errors, one: Errors| {
+        let most = |i: usize| all.0[i].into_iter().chain(one.0[i]).reduce(f64::max);
+        Errors(std::array::from_fn(most))
+    };
+    bearings.map(of_bearing).reduce(larger).unwrap_or_default()
+}
+
+/// Errors of a bearing.
+fn of(level: Level, run: &[Sample], reference: &[Sample], how: Comparison, window_start: f64) -> Errors {
+    let pairs = common(run, reference, window_start);
     let distance = |get: &dyn Fn(&Sample) -> &[f64]| relative_distance(&pairs, get, how);
     let mut errors = Errors::default();
     let mut set = |norm: Norm, error: Option<f64>| errors.0[norm as usize] = error.filter(|e| e.is_finite());
@@ -110,16 +123,15 @@ pub fn errors(record: &Record, reference: &Record, how: Comparison, window_start
     };
     let all = sums(&|s| s.friction_power);
     for (norm, race) in [(Norm::InnerPower, 0), (Norm::OuterPower, 1)] {
-        let [run, of] = sums(&|s| s.race_power[race]);
-        set(norm, Some(((run - of) / all[1]).abs()));
+        let [own, of] = sums(&|s| s.race_power[race]);
+        set(norm, Some(((own - of) / all[1]).abs()));
     }
-    let [run, of] = sums(&|s| s.spin_power);
-    set(Norm::SpinShare, Some((run / all[0] - of / all[1]).abs()));
-    let power = mean_power(reference, window_start);
-    set(Norm::Power, Some((mean_power(record, window_start) / power - 1.0).abs()));
-    if let (Level::Dynamic, [first, .., last], [ref_first, .., ref_last]) =
-        (record.level, &record.samples[..], &reference.samples[..])
-    {
+    let [own, of] = sums(&|s| s.spin_power);
+    set(Norm::SpinShare, Some((own / all[0] - of / all[1]).abs()));
+    // References are integrated in time.
+    let power = mean_power(Level::Dynamic, reference, window_start);
+    set(Norm::Power, Some((mean_power(level, run, window_start) / power - 1.0).abs()));
+    if let (Level::Dynamic, [first, .., last], [ref_first, .., ref_last]) = (level, run, reference) {
         let lost = ref_last.dissipated - ref_first.dissipated;
         set(Norm::Energy, Some(((last.unaccounted - first.unaccounted) / lost).abs()));
     }
@@ -127,12 +139,12 @@ pub fn errors(record: &Record, reference: &Record, how: Comparison, window_start
 }
 
 /// Samples of both runs at equal times in the window.
-fn common<'a>(record: &'a Record, reference: &'a Record, from: f64) -> Vec<(&'a Sample, &'a Sample)> {
+fn common<'a>(run: &'a [Sample], reference: &'a [Sample], from: f64) -> Vec<(&'a Sample, &'a Sample)> {
     /// \[s] times closer than this are equal: communication points differ by rounding alone.
     const SAME_TIME: f64 = 1e-10;
-    let mut others = reference.samples.iter().peekable();
+    let mut others = reference.iter().peekable();
     let mut pairs = Vec::new();
-    for sample in record.samples.iter().filter(|sample| sample.time >= from - SAME_TIME) {
+    for sample in run.iter().filter(|sample| sample.time >= from - SAME_TIME) {
         while others.next_if(|other| other.time < sample.time - SAME_TIME).is_some() {}
         if let Some(other) = others.next_if(|other| other.time <= sample.time + SAME_TIME) {
             pairs.push((sample, other));
@@ -161,10 +173,10 @@ fn relative_distance(
 }
 
 /// \[W] mean power lost from a time on: by the energy lost, or of an equilibrium by its friction power.
-fn mean_power(record: &Record, from: f64) -> f64 {
-    let window = record.samples.partition_point(|sample| sample.time < from * (1.0 - 1e-9));
-    let window = &record.samples[window..];
-    match (record.level, window) {
+fn mean_power(level: Level, samples: &[Sample], from: f64) -> f64 {
+    let window = samples.partition_point(|sample| sample.time < from * (1.0 - 1e-9));
+    let window = &samples[window..];
+    match (level, window) {
         (Level::Dynamic, [first, .., last]) => {
             (last.dissipated - first.dissipated) / (last.time - first.time)
         }
@@ -204,7 +216,13 @@ mod tests {
         };
         let samples = (0..=points).map(sample).collect();
         let cost = Cost { cpu: 1.0, instructions: None };
-        Record { samples, cost, work: Statistics::default(), level: Level::Dynamic, means: None }
+        Record {
+            bearings: vec![samples],
+            cost,
+            work: Statistics::default(),
+            level: Level::Dynamic,
+            means: vec![],
+        }
     }
 
     #[test]
@@ -245,7 +263,7 @@ mod tests {
     fn invariant_quantities_of_contacts_are_in_no_promise() {
         let reference = run(100, 0.0, 0.0);
         let mut other = reference.clone();
-        for sample in &mut other.samples {
+        for sample in &mut other.bearings[0] {
             // The races exchange their powers, half of the spin is gone, and one ball carries it all.
             sample.race_power.swap(0, 1);
             (sample.spin_power, sample.largest_load, sample.peak_pressure) = (0.3, 5e3, 4e9);
@@ -257,7 +275,7 @@ mod tests {
         }
         assert_eq!(errors.worst(), Some(0.0));
         // Without friction there is no share of it.
-        for sample in &mut other.samples {
+        for sample in &mut other.bearings[0] {
             (sample.race_power, sample.spin_power, sample.friction_power) = ([0.0; 2], 0.0, 0.0);
         }
         let none = super::errors(&other, &reference, Comparison::Pointwise, 0.25);
@@ -271,6 +289,6 @@ mod tests {
             let same = errors(&run(points, 0.1, 0.0), &reference, Comparison::Pointwise, 0.25);
             assert!(same.get(Norm::Wrench).unwrap() < 1e-12);
         }
-        assert_eq!(common(&run(7, 0.0, 0.0), &reference, 0.5).len(), 1);
+        assert_eq!(common(&run(7, 0.0, 0.0).bearings[0], &reference.bearings[0], 0.5).len(), 1);
     }
 }

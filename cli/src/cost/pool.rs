@@ -7,7 +7,7 @@ use indicatif::ProgressBar;
 use roulement::scene::CreepLaw;
 
 use super::StudyError;
-use super::levers::{Level, Setting};
+use super::levers::{CreepModel, Level, Setting};
 use super::record::{Record, record};
 
 /// A run to be done.
@@ -29,16 +29,17 @@ impl Job<'_> {
             Level::Equilibrium => self.setting.communication / 20.0,
             // What tolerances ask of balls of a centimetre that have been struck.
             Level::Dynamic => {
-                let of_tolerance = 5e-5 * (scene.solver.tolerance / 1e-6).powf(0.4);
-                scene.solver.max_step.0.min(of_tolerance).min(self.setting.communication)
+                let solver = scene.solver();
+                let of_tolerance = 5e-5 * (solver.tolerance / 1e-6).powf(0.4);
+                solver.max_step.0.min(of_tolerance).min(self.setting.communication)
             }
         };
-        let law = match scene.effects.creep.law {
+        let law = match CreepModel::of(scene).law {
             CreepLaw::Kalker => 6.0,
             CreepLaw::KalkerTable => 2.0,
             _ => 1.0,
         };
-        (law * scene.load.duration.0 / step).ceil().max(1.0) as u64
+        (law * scene.duration() / step).ceil().max(1.0) as u64
     }
 }
 

@@ -9,13 +9,13 @@ use super::levers::{Inputs, Level, Setting};
 use super::meter::{Cost, Meter};
 use super::{StudyError, WINDOW_START};
 use crate::report::means::{Blocks, Means};
-use crate::report::quantities::Parts;
 use roulement::model::bodies::Race;
 use roulement::model::state::Statistics;
 use roulement::numerics::motion::{Pose, Twist};
 use roulement::scene::Drive;
 use roulement::simulation::Simulation;
 use roulement::simulation::inputs;
+use roulement::simulation::machine::{Machine, MachineError};
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::{Rows, play_with};
 
@@ -84,16 +84,16 @@ impl Sample {
 /// A finished run.
 #[derive(Clone, Debug)]
 pub struct Record {
-    /// Samples from the start on.
-    pub samples: Vec<Sample>,
+    /// Samples of every bearing from the start on.
+    pub bearings: Vec<Vec<Sample>>,
     /// Cost without the start; the least of some runs.
     pub cost: Cost,
     /// Work of the integrator.
     pub work: Statistics,
     /// Was it integrated in time?
     pub level: Level,
-    /// Means over the window in which errors are measured, and whether they have settled.
-    pub means: Option<Means>,
+    /// Means of every bearing by its name over the window in which errors are measured, and whether they have settled.
+    pub means: Vec<(String, Means)>,
 }
 
 /// Runs a setting, repeatedly if it is short.
@@ -101,7 +101,7 @@ pub struct Record {
 /// # Errors
 /// If the run cannot start or go on, or was interrupted.
 pub fn record(setting: &Setting, interrupted: &AtomicBool) -> Result<Record, StudyError> {
-    let start = Simulation::new(&setting.scene)?;
+    let start = Machine::new(&setting.scene)?;
     let mut best = run(setting, start.clone(), interrupted)?;
     let (mut total, mut runs) = (best.cost.cpu, 1);
     while total < ENOUGH_TIME && runs < MOST_RUNS {
@@ -115,38 +115,59 @@ pub fn record(setting: &Setting, interrupted: &AtomicBool) -> Result<Record, Stu
     Ok(best)
 }
 
-fn run(
-    setting: &Setting,
-    mut simulation: Simulation,
-    interrupted: &AtomicBool,
-) -> Result<Record, StudyError> {
-    let rows = Rows { interval: setting.communication, duration: setting.scene.load.duration.0 };
-    let pitch_radius = 0.5 * simulation.model().bearing.pitch_diameter;
-    let mut samples = Vec::with_capacity(rows.count() as usize + 1);
-    let mut blocks = Blocks::new(Parts::of(&simulation), pitch_radius);
-    let advance = |simulation: &mut Simulation, end: f64| match setting.level {
-        Level::Dynamic => {
-            simulation.set_inputs(inputs_of_step(simulation, setting.inputs, end));
-            simulation.advance(end)
-        }
-        Level::Equilibrium => {
-            simulation.set_start_time(end);
-            simulation.set_inputs(simulation.scripted_inputs(end));
-            simulation.initialise()
-        }
-    };
+fn run(setting: &Setting, mut machine: Machine, interrupted: &AtomicBool) -> Result<Record, StudyError> {
+    let rows = Rows { interval: setting.communication, duration: setting.scene.duration() };
+    let radius = |bearing: &Simulation| 0.5 * bearing.model().bearing.pitch_diameter;
+    let none = || Vec::with_capacity(rows.count() as usize + 1);
+    let mut bearings: Vec<Vec<Sample>> = machine.bearings().map(|_| none()).collect();
+    let mut blocks: Vec<Blocks> =
+        machine.bearings().map(|(_, bearing)| Blocks::of_bearing(bearing)).collect();
     let meter = Meter::start();
-    let flow = play_with(&mut simulation, rows, advance, |simulation| {
-        samples.push(Sample::new(simulation.outputs(), pitch_radius));
-        blocks.push(simulation.outputs());
-        if interrupted.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    })?;
+    let flow = play_with(
+        &mut machine,
+        rows,
+        |machine, end| advance(setting, machine, end),
+        |machine| {
+            for ((_, bearing), (samples, blocks)) in
+                machine.bearings().zip(bearings.iter_mut().zip(&mut blocks))
+            {
+                samples.push(Sample::new(bearing.outputs(), radius(bearing)));
+                blocks.push(bearing.outputs());
+            }
+            if interrupted.load(Ordering::Relaxed) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        },
+    )?;
     if flow.is_break() {
         return Err(StudyError::Interrupted);
     }
     let cost = meter.stop();
-    let means = blocks.means_from(WINDOW_START);
-    Ok(Record { samples, cost, work: simulation.state().statistics, level: setting.level, means })
+    let means = machine.bearings().zip(&blocks);
+    let means =
+        means.filter_map(|((name, _), blocks)| Some((name.to_string(), blocks.means_from(WINDOW_START)?)));
+    let means = means.collect();
+    Ok(Record { bearings, cost, work: machine.statistics(), level: setting.level, means })
+}
+
+/// Takes a machine to the time \[s] of the next communication point.
+fn advance(setting: &Setting, machine: &mut Machine, end: f64) -> Result<(), MachineError> {
+    match (setting.level, &mut *machine) {
+        (Level::Dynamic, Machine::Bearing(simulation)) => {
+            simulation.set_inputs(inputs_of_step(simulation, setting.inputs, end));
+            simulation.advance(end)?;
+        }
+        (Level::Dynamic, Machine::Shaft(system)) => system.advance(end)?,
+        (Level::Equilibrium, Machine::Bearing(simulation)) => {
+            simulation.set_start_time(end);
+            simulation.set_inputs(simulation.scripted_inputs(end));
+            simulation.initialise()?;
+        }
+        (Level::Equilibrium, Machine::Shaft(_)) => *machine = Machine::starting_at(&setting.scene, end)?,
+    }
+    Ok(())
 }
 
 /// Inputs that an importer sets at the start of a step to `end` \[s].

@@ -271,8 +271,8 @@ fn scene(study: &SceneStudy, blocks: &mut Vec<Block>) {
         text(format!(
             "{} ms simulated, communication step {}, numerical reference at fixed steps of {}. The two finest runs \
              differ by {} at equal times.",
-            study.scene.load.duration.0 * 1e3,
-            seconds(study.scene.load.output_interval.0),
+            study.scene.duration() * 1e3,
+            seconds(study.scene.output_interval()),
             seconds(study.reference_step),
             number(Some(study.divergence)),
         )),

@@ -13,6 +13,6 @@ mod sample;
 
 pub use difference::Difference;
 pub use estimate::Estimate;
-pub use refine::{Compared, MOST_ROUNDS, Refined, refine};
+pub use refine::{Compared, MOST_ROUNDS, Refined, finer, refine, twin_of_coarser};
 pub use rounds::{Judgement, Rounds, TWIN};
-pub use sample::{Lengths, Run, Sample, sizes};
+pub use sample::{Course, Lengths, Run, Sample, sizes};

@@ -1,7 +1,6 @@
 //! Runs of a scene with smaller and smaller steps, until its error goal is kept or known not to be.
 
-use roulement::Scene;
-use roulement::scene::units::Time;
+use roulement::scene::machine::MachineScene;
 
 use super::{Judgement, Rounds, Run, TWIN};
 
@@ -27,32 +26,23 @@ pub struct Refined<P> {
 /// # Errors
 /// Those of `play`.
 pub fn refine<P: Compared, E>(
-    scene: &Scene,
-    mut play: impl FnMut(&Scene, bool) -> Result<P, E>,
+    scene: &MachineScene,
+    mut play: impl FnMut(&MachineScene, bool) -> Result<P, E>,
 ) -> Result<Refined<P>, E> {
     let mut run = play(scene, true)?;
-    let Some(goal) = scene.solver.goal else {
+    let Some(goal) = scene.solver().goal else {
         return Ok(Refined { run, rounds: None });
-    };
-    let with = |solver| {
-        let mut scene = scene.clone();
-        scene.solver = solver;
-        scene
     };
     let mut rounds = Rounds::new(Some(goal), MOST_ROUNDS);
     rounds.push(run.comparable());
     let said = loop {
         match rounds.judge() {
             Judgement::Refine => {
-                run = play(&with(scene.solver.refined(rounds.refinements())), true)?;
+                run = play(&finer(scene, rounds.refinements()), true)?;
                 rounds.push(run.comparable());
             }
             Judgement::Twin => {
-                let Some(coarser) = rounds.coarser() else { break "met" };
-                let mut solver = coarser.solver;
-                solver.max_step = Time(solver.max_step.0 * (1.0 + TWIN));
-                solver.initial_step = Time(solver.initial_step.0 * (1.0 + TWIN));
-                let twin = play(&with(solver), false)?.comparable();
+                let twin = play(&twin_of_coarser(scene, rounds.refinements()), false)?.comparable();
                 rounds.push_twin(&twin);
             }
             Judgement::Done => break "met",
@@ -61,4 +51,18 @@ pub fn refine<P: Compared, E>(
         }
     };
     Ok(Refined { run, rounds: Some((rounds, said)) })
+}
+
+/// A scene with steps halved so often.
+pub fn finer(scene: &MachineScene, halvings: u32) -> MachineScene {
+    scene.with(|scene| scene.solver = scene.solver.refined(halvings))
+}
+
+/// The scene of the coarser one of the last two of so many runs, with steps that differ from its own by next to nothing.
+pub fn twin_of_coarser(scene: &MachineScene, runs: u32) -> MachineScene {
+    let coarser = if runs < 2 { scene.clone() } else { finer(scene, runs - 2) };
+    coarser.with(|scene| {
+        scene.solver.max_step.0 *= 1.0 + TWIN;
+        scene.solver.initial_step.0 *= 1.0 + TWIN;
+    })
 }

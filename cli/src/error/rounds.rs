@@ -5,11 +5,10 @@ use std::fmt::Write;
 use roulement::scene::{ErrorGoal, ErrorOf};
 
 use super::difference::Difference;
-use super::sample::{Run, sizes};
+use super::sample::{Course, Run};
 use crate::cost::levers::seconds;
 use crate::report::figures::Figures;
 use crate::report::means::{Means, MeasuredError};
-use crate::report::quantities::{COUNT, QUANTITIES};
 
 /// [-] what the steps of a twin are changed by: nothing that matters to a run whose histories are a matter of its steps.
 pub const TWIN: f64 = 1e-9;
@@ -55,7 +54,7 @@ pub struct Rounds {
     runs: Vec<Run>,
     differences: Vec<Difference>,
     /// Quantities that are chaotic, and by what the difference of the twin has grown.
-    chaotic: [Option<f64>; COUNT],
+    chaotic: Vec<Option<f64>>,
     /// Number of differences when a twin was run last.
     twin: usize,
     /// Runs with smaller and smaller steps.
@@ -63,10 +62,9 @@ pub struct Rounds {
 }
 
 /// An error and where it is.
-#[derive(Clone, Copy)]
 struct Largest {
     error: f64,
-    of: &'static str,
+    of: String,
 }
 
 impl Rounds {
@@ -78,7 +76,7 @@ impl Rounds {
             rounds: vec![],
             runs: vec![],
             differences: vec![],
-            chaotic: [None; COUNT],
+            chaotic: vec![],
             twin: 0,
             refinements: 0,
         }
@@ -92,6 +90,7 @@ impl Rounds {
         if let Some(last) = self.runs.last() {
             self.differences.push(Difference::of(last, &run));
         }
+        self.chaotic.resize(run.quantities().count(), None);
         let cpu = run.cpu;
         self.runs.push(run);
         if self.runs.len() > 2 {
@@ -113,7 +112,7 @@ impl Rounds {
             return;
         };
         let apart = Difference::of(twin, coarse);
-        for i in 0..COUNT {
+        for i in 0..self.chaotic.len() {
             // Differences that would be no error need no name.
             let matters = last.histories[i] > self.goal.map_or(LARGE, |goal| goal.error);
             if matters && apart.histories[i] > CHAOTIC * last.histories[i] {
@@ -137,10 +136,12 @@ impl Rounds {
 
     /// [-] interval of the mean of a quantity of the finest run over its size; infinite where there are too few rows to tell.
     fn interval(&self, i: usize) -> f64 {
-        let Some(run) = self.runs.last() else { return f64::INFINITY };
-        let mean = run.means.as_ref().and_then(|means| means.find(QUANTITIES[i].name));
+        let Some((part, i)) = self.runs.last().and_then(|run| run.quantities().nth(i)) else {
+            return f64::INFINITY;
+        };
+        let mean = part.means.as_ref().and_then(|means| means.find(&part.quantities[i].name));
         let interval = mean.and_then(|mean| mean.interval);
-        interval.map_or(f64::INFINITY, |interval| interval / sizes(&run.samples, run.lengths)[i])
+        interval.map_or(f64::INFINITY, |interval| interval / part.sizes[i])
     }
 
     /// [-] error of the histories of a quantity over its size; none where it is chaotic.
@@ -150,14 +151,21 @@ impl Rounds {
         self.chaotic[i].is_none().then(|| last.histories[i].max(earlier))
     }
 
+    /// Name of a quantity.
+    fn name(&self, i: usize) -> String {
+        let quantity = self.runs.last().and_then(|run| run.quantities().nth(i));
+        quantity.map_or_else(String::new, |(part, i)| part.name_of(i))
+    }
+
     /// Largest errors of means and of histories.
     fn largest(&self) -> [Largest; 2] {
         let over = |error: &dyn Fn(usize) -> f64| {
-            let all = (0..COUNT).map(|i| Largest { error: error(i), of: QUANTITIES[i].name });
             // The first of equal ones; what is not a number is larger than any.
-            all.fold(Largest { error: 0.0, of: "none" }, |most, one| {
-                if one.error > most.error || one.error.is_nan() { one } else { most }
-            })
+            let (error, of) = (0..self.chaotic.len()).fold((0.0, None), |(most, of), i| {
+                let error = error(i);
+                if error > most || error.is_nan() { (error, Some(i)) } else { (most, of) }
+            });
+            Largest { error, of: of.map_or("none".into(), |i| self.name(i)) }
         };
         [over(&|i| self.mean_error(i)), over(&|i| self.history_error(i).unwrap_or(0.0))]
     }
@@ -176,7 +184,7 @@ impl Rounds {
             return false;
         };
         let least = self.goal.map_or(LARGE, |goal| goal.error);
-        (0..COUNT).any(|i| {
+        (0..self.chaotic.len()).any(|i| {
             let large = self.chaotic[i].is_none() && last.histories[i] > least;
             let stays = match (before.last(), self.goal) {
                 (Some(before), _) => last.histories[i] > FALLS * before.histories[i],
@@ -207,7 +215,7 @@ impl Rounds {
                 if goal.of == ErrorOf::Means { 0.0 } else { self.history_error(i).unwrap_or(0.0) };
             self.chaotic[i].is_none() && self.mean_error(i).max(histories) > goal.error
         };
-        if !(0..COUNT).any(regular) {
+        if !(0..self.chaotic.len()).any(regular) {
             return Judgement::TooShort;
         }
         if self.refinements >= self.most { Judgement::TooMany } else { Judgement::Refine }
@@ -223,38 +231,35 @@ impl Rounds {
         self.rounds.len()
     }
 
-    /// The coarser one of the last two runs.
-    pub fn coarser(&self) -> Option<&Run> {
-        self.runs.first()
-    }
-
-    /// Error bars of all figures of the finest run; none with one run alone.
-    pub fn bars(&self) -> Option<Figures> {
+    /// Error bars of all figures of each part of the finest run; none with one run alone.
+    pub fn bars(&self) -> Option<Vec<Figures>> {
         let [coarse, fine] = &self.runs[..] else { return None };
-        let mut bars = fine.figures.distance(&coarse.figures);
-        let sizes = sizes(&fine.samples, fine.lengths);
-        for i in 0..COUNT {
-            bars.set(QUANTITIES[i].name, self.mean_error(i) * sizes[i]);
-        }
-        Some(bars)
+        let of_part = |((coarse, fine), first): ((&Course, &Course), usize)| {
+            let mut bars = fine.figures.distance(&coarse.figures);
+            for (i, quantity) in fine.quantities.iter().enumerate() {
+                bars.set(quantity.name.clone(), self.mean_error(first + i) * fine.sizes[i]);
+            }
+            bars
+        };
+        Some(coarse.parts.iter().zip(&fine.parts).zip(fine.firsts()).map(of_part).collect())
     }
 
-    /// Means of the finest run with their errors.
-    pub fn means(&self) -> Option<Means> {
-        let run = self.runs.last()?;
-        let mut means = run.means.clone()?;
-        if self.differences.is_empty() {
-            return Some(means);
-        }
-        let sizes = sizes(&run.samples, run.lengths);
-        for mean in &mut means.means {
-            let Some(i) = QUANTITIES.iter().position(|quantity| quantity.name == mean.name) else {
-                continue;
-            };
-            let history = self.history_error(i).map(|error| error * sizes[i]);
-            mean.error = Some(MeasuredError { mean: self.mean_error(i) * sizes[i], history });
-        }
-        Some(means)
+    /// Means of each part of the finest run with their errors.
+    pub fn means(&self) -> Vec<Option<Means>> {
+        let Some(run) = self.runs.last() else { return vec![] };
+        let of_part = |(part, first): (&Course, usize)| {
+            let mut means = part.means.clone()?;
+            for mean in means.means.iter_mut().filter(|_| !self.differences.is_empty()) {
+                let Some(i) = part.quantities.iter().position(|quantity| quantity.name == mean.name) else {
+                    continue;
+                };
+                let history = self.history_error(first + i).map(|error| error * part.sizes[i]);
+                mean.error =
+                    Some(MeasuredError { mean: self.mean_error(first + i) * part.sizes[i], history });
+            }
+            Some(means)
+        };
+        run.parts.iter().zip(run.firsts()).map(of_part).collect()
     }
 
     /// \[s] CPU time of all runs.
@@ -305,8 +310,8 @@ impl Rounds {
 
     /// Says what is chaotic, and how that was seen.
     fn write_chaos(&self, out: &mut String) -> std::fmt::Result {
-        let names: Vec<&str> =
-            (0..COUNT).filter(|&i| self.chaotic[i].is_some()).map(|i| QUANTITIES[i].name).collect();
+        let names: Vec<String> =
+            (0..self.chaotic.len()).filter(|&i| self.chaotic[i].is_some()).map(|i| self.name(i)).collect();
         let growth = self.chaotic.iter().flatten().copied().fold(0.0, f64::max);
         if names.is_empty() {
             return Ok(());
@@ -322,8 +327,9 @@ impl Rounds {
     /// Why a goal is not met, and what would meet it.
     fn write_why(&self, out: &mut String, goal: ErrorGoal) -> std::fmt::Result {
         let over = |i: &usize| self.chaotic[*i].is_some() && self.mean_error(*i) > goal.error;
-        let duration = self.runs.last().and_then(|run| run.samples.last()).map_or(0.0, |sample| sample.time);
-        let widest = (0..COUNT).filter(over).map(|i| self.mean_error(i) / goal.error).fold(0.0, f64::max);
+        let duration = self.runs.last().map_or(0.0, Run::end);
+        let widest =
+            (0..self.chaotic.len()).filter(over).map(|i| self.mean_error(i) / goal.error).fold(0.0, f64::max);
         if widest.is_infinite() {
             writeln!(
                 out,

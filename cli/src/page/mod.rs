@@ -9,5 +9,6 @@ pub mod grid;
 pub mod history;
 pub mod html;
 pub mod record;
+pub mod shaft;
 pub mod sweep;
 pub mod table;

@@ -8,19 +8,20 @@ use roulement::scene::Scene;
 use roulement::schema::regular;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::Outputs;
+use roulement::simulation::system::{System, SystemOutputs};
 use serde_json::{Value, json};
 
-use super::{bearing, fields, history};
+use super::{bearing, fields, history, shaft};
 use crate::report::figures::Shown;
 use crate::report::json;
 use crate::report::spectrum::Spectrum;
 use crate::sweep::store::aside;
-use crate::watch::Seen;
+use crate::watch::{BearingSeen, ShaftSeen};
 
 /// Name of its file.
 pub const FILE: &str = "run.json";
 /// What runs write beside the record, those of shafts too. Tables of a new run take the place of former ones by themselves.
-const BESIDE: [&str; 10] = [
+const BESIDE: [&str; 11] = [
     "summary.txt",
     "means.csv",
     "spectrum.csv",
@@ -29,6 +30,7 @@ const BESIDE: [&str; 10] = [
     "bearing.svg",
     "balls.svg",
     "results.csv.round",
+    "shaft.csv.round",
     "shaft.csv",
     "shaft.svg",
 ];
@@ -42,7 +44,7 @@ pub struct Run<'a> {
     /// Rows that pictures are drawn of.
     pub rows: &'a [Outputs],
     /// What was gathered of all rows.
-    pub seen: &'a Seen,
+    pub seen: &'a BearingSeen,
     /// Figures and their error bars.
     pub shown: &'a Shown,
     /// What estimates of effects say.
@@ -99,6 +101,57 @@ impl Run<'_> {
     }
 }
 
+/// What the record of a shaft with its bearings is made of; each bearing has one of its own, in a directory of its name beside it.
+pub struct ShaftRun<'a> {
+    /// The shaft at the end.
+    pub system: &'a System,
+    /// Rows that pictures are drawn of.
+    pub rows: &'a [SystemOutputs],
+    /// What was gathered of all rows.
+    pub seen: &'a ShaftSeen,
+    /// Figures and their error bars.
+    pub shown: &'a Shown,
+    /// The summary in words.
+    pub summary: &'a str,
+    /// \[s] wall and CPU time.
+    pub took: [f64; 2],
+    /// Why it ended before its time.
+    pub ended_early: Option<String>,
+}
+
+impl ShaftRun<'_> {
+    /// The record.
+    pub fn to_json(&self) -> Value {
+        let Self { system, rows, seen, shown, summary, took, ended_early } = self;
+        json!({
+            "form": FORM,
+            "program": env!("ROULEMENT_VERSION"),
+            "title": system.scene().title,
+            "scene": system.scene().source,
+            "ended_early": ended_early,
+            "shaft": shaft::describe(system),
+            "summary": json::of_shaft(system, seen, shown),
+            "summary_text": summary,
+            "cost": { "wall": took[0], "cpu": took[1] },
+            "history": shaft::columns(system, rows).to_json(),
+        })
+    }
+
+    /// Writes it: the run is finished then.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        put(path, &self.to_json())
+    }
+}
+
+/// Names of the bearings in the record of a shaft; none in that of a bearing.
+pub fn bearings(record: &Value) -> Option<Vec<String>> {
+    let bearings = record["shaft"]["bearings"].as_array()?;
+    Some(bearings.iter().filter_map(|bearing| bearing["name"].as_str().map(str::to_string)).collect())
+}
+
 /// Puts a record in the place of another at once, so that it is whole whenever the program is killed.
 fn put(path: &Path, record: &Value) -> io::Result<()> {
     let part = aside(path);
@@ -113,16 +166,6 @@ fn put(path: &Path, record: &Value) -> io::Result<()> {
 pub fn begin(directory: &Path) -> io::Result<()> {
     std::fs::create_dir_all(directory)?;
     put(&directory.join(FILE), &json!({ "form": FORM, "unfinished": true }))?;
-    clear(directory)
-}
-
-/// The same for a directory of a shaft, which has no record of its own: those of its bearings have.
-///
-/// # Errors
-/// As [`begin`].
-pub fn begin_shaft(directory: &Path) -> io::Result<()> {
-    std::fs::create_dir_all(directory)?;
-    remove(&directory.join(FILE))?;
     clear(directory)
 }
 
@@ -179,7 +222,7 @@ pub fn read(directory: &Path) -> Result<Value, String> {
     }
     match record["form"].as_u64() {
         Some(FORM) => {
-            if record["fields"].is_null() {
+            if record["fields"].is_null() && bearings(&record).is_none() {
                 record["fields"] = fields::solved(&record["field_causes"]).into();
             }
             Ok(record)

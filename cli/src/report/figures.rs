@@ -1,5 +1,6 @@
 //! The figures of a summary by their names, and their error bars.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use roulement::model::bodies::Race;
@@ -12,7 +13,7 @@ use super::means::Means;
 
 /// Figures by name.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Figures(BTreeMap<&'static str, f64>);
+pub struct Figures(BTreeMap<Cow<'static, str>, f64>);
 
 impl Figures {
     /// All figures of a run that has come to its end; those of means, too.
@@ -27,7 +28,7 @@ impl Figures {
         let (inner, outer) = (balls(|b| b.inner.load), balls(|b| b.outer.load));
         let inner_angle = balls(|b| b.inner.contact_angle.to_degrees());
         let outer_angle = balls(|b| b.outer.contact_angle.to_degrees());
-        let mut figures = Self(BTreeMap::from([
+        let mut figures: Self = [
             ("end force.x", force.x),
             ("end force.y", force.y),
             ("end force.z", force.z),
@@ -53,13 +54,20 @@ impl Figures {
             ("lost", now.dissipated),
             ("stored", now.stored_energy),
             ("balance", energy.balance(now)),
-        ]));
+        ]
+        .into_iter()
+        .collect();
         if let Some(means) = means {
-            figures.0.extend(means.means.iter().map(|mean| (mean.name, mean.mean)));
+            figures.add_means(means);
             let names = ["largest eccentricity", "largest pocket load", "largest land load"];
-            figures.0.extend(names.into_iter().zip(means.largest));
+            names.into_iter().zip(means.largest).for_each(|(name, value)| figures.set(name, value));
         }
         figures
+    }
+
+    /// Takes all means by their names.
+    pub fn add_means(&mut self, means: &Means) {
+        self.0.extend(means.means.iter().map(|mean| (mean.name.clone(), mean.mean)));
     }
 
     /// A figure; not a number where it is not there.
@@ -68,19 +76,25 @@ impl Figures {
     }
 
     /// All of them with their names.
-    pub fn iter(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        self.0.iter().map(|(name, value)| (*name, *value))
+    pub fn iter(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.0.iter().map(|(name, value)| (name.as_ref(), *value))
     }
 
     /// Gives a figure another value.
-    pub fn set(&mut self, name: &'static str, value: f64) {
-        self.0.insert(name, value);
+    pub fn set(&mut self, name: impl Into<Cow<'static, str>>, value: f64) {
+        self.0.insert(name.into(), value);
     }
 
     /// How far figures are from those of another run; what one of them does not have is left out.
     pub fn distance(&self, other: &Self) -> Self {
-        let both = self.0.iter().filter_map(|(name, value)| Some((*name, value - other.0.get(name)?)));
+        let both = self.0.iter().filter_map(|(name, value)| Some((name.clone(), value - other.0.get(name)?)));
         Self(both.map(|(name, difference)| (name, difference.abs())).collect())
+    }
+}
+
+impl FromIterator<(&'static str, f64)> for Figures {
+    fn from_iter<I: IntoIterator<Item = (&'static str, f64)>>(figures: I) -> Self {
+        Self(figures.into_iter().map(|(name, value)| (name.into(), value)).collect())
     }
 }
 

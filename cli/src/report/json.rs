@@ -3,14 +3,42 @@
 use roulement::Scene;
 use roulement::effects::estimate::Verdict;
 use roulement::simulation::Simulation;
+use roulement::simulation::machine::Machine;
+use roulement::simulation::system::System;
 use serde_json::{Map, Value, json};
 
 use super::figures::{Figures, Shown};
 use super::means::{Mean, Means};
-use crate::watch::Seen;
+use crate::watch::{BearingSeen, Seen, ShaftSeen};
 
-/// Summary of a run, with error bars where figures have them.
-pub fn summary(simulation: &Simulation, seen: &Seen, shown: &Shown) -> Value {
+/// Summary of a run, with error bars where figures have them: of a bearing alone, or of each bearing of a shaft by its name, and of the
+/// shaft as `shaft`. Figures are those of the bearings, then of the shaft.
+pub fn of_machine(machine: &Machine, seen: &Seen, shown: &[Shown]) -> Value {
+    let bearings = machine.bearings().zip(&seen.bearings).zip(shown);
+    let mut all: Map<String, Value> = bearings
+        .map(|(((name, bearing), seen), shown)| (name.to_string(), summary(bearing, seen, shown)))
+        .collect();
+    if let (Some(system), Some(seen), Some(shown)) = (machine.shaft(), &seen.shaft, shown.last()) {
+        all.insert("shaft".into(), of_shaft(system, seen, shown));
+        return Value::Object(all);
+    }
+    all.into_iter().next().map_or(Value::Null, |(_, of_bearing)| of_bearing)
+}
+
+/// Summary of a shaft with its housings.
+pub fn of_shaft(system: &System, seen: &ShaftSeen, shown: &Shown) -> Value {
+    json!({
+        "title": system.scene().title,
+        "time": system.time(),
+        "figures": figures(&shown.figures),
+        "error_bars": shown.bars.as_ref().map(figures),
+        "means": seen.means.as_ref().map(means),
+        "warnings": seen.warnings(system),
+    })
+}
+
+/// Summary of a bearing.
+pub fn summary(simulation: &Simulation, seen: &BearingSeen, shown: &Shown) -> Value {
     let statistics = &simulation.outputs().statistics;
     json!({
         "title": simulation.scene().title,

@@ -7,13 +7,15 @@
 //! means of the later half of the window about a line of their own: a decay that fills the window bends the line through all of
 //! them, and its bend would pass for noise.
 
+use std::borrow::Cow;
 use std::io;
 use std::path::Path;
 
+use roulement::simulation::Simulation;
 use roulement::simulation::outputs::Outputs;
 
 use super::interval;
-use super::quantities::{COUNT, Parts, QUANTITIES, Size, values, weights};
+use super::quantities::{Parts, Size, Watched, of_bearing, values, weights};
 
 /// [-] blocks of a run; even.
 const MOST_BLOCKS: usize = 128;
@@ -42,15 +44,15 @@ struct Block {
     /// \[s] times of the first and the last row.
     span: [f64; 2],
     /// Of weights, and of values times these.
-    weights: [f64; COUNT],
-    sums: [f64; COUNT],
+    weights: Vec<f64>,
+    sums: Vec<f64>,
     largest: [f64; 3],
 }
 
 impl Block {
     /// A row of values that count for so much.
-    fn of_row(time: f64, values: [f64; COUNT], weights: [f64; COUNT], largest: [f64; 3]) -> Self {
-        let sums = std::array::from_fn(|i| values[i] * weights[i]);
+    fn of_row(time: f64, values: &[f64], weights: Vec<f64>, largest: [f64; 3]) -> Self {
+        let sums = values.iter().zip(&weights).map(|(value, weight)| value * weight).collect();
         Self { rows: 1, span: [time; 2], weights, sums, largest }
     }
 
@@ -70,15 +72,16 @@ pub struct Blocks {
     blocks: Vec<Block>,
     rows_per_block: u64,
     rows: u64,
-    parts: Parts,
-    pitch_radius: f64,
+    quantities: Vec<Watched>,
+    /// \[m] what forces have a moment at.
+    arm: f64,
 }
 
 /// The mean of a quantity over the window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mean {
     /// Name.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Unit.
     pub unit: &'static str,
     /// \[unit] mean.
@@ -122,22 +125,33 @@ pub struct Trend {
 pub struct Means {
     /// \[s] first and last time of the window.
     pub window: [f64; 2],
-    /// Means in the order of [`QUANTITIES`]; those of a cage where there is one.
+    /// Means of all quantities that are shown.
     pub means: Vec<Mean>,
-    /// Largest values of the cage: eccentricity \[m], pocket load \[N], land load \[N].
+    /// Largest values of a cage: eccentricity \[m], pocket load \[N], land load \[N].
     pub largest: [f64; 3],
 }
 
 impl Blocks {
-    /// None yet.
-    pub fn new(parts: Parts, pitch_radius: f64) -> Self {
-        Self { blocks: vec![], rows_per_block: 1, rows: 0, parts, pitch_radius }
+    /// None yet of these quantities; forces have a moment at an arm \[m].
+    pub fn new(quantities: Vec<Watched>, arm: f64) -> Self {
+        Self { blocks: vec![], rows_per_block: 1, rows: 0, quantities, arm }
     }
 
-    /// Adds a row.
+    /// None yet of a bearing.
+    pub fn of_bearing(simulation: &Simulation) -> Self {
+        let pitch_radius = 0.5 * simulation.model().bearing.pitch_diameter;
+        Self::new(of_bearing(Parts::of(simulation)), pitch_radius)
+    }
+
+    /// Adds a row of a bearing.
     pub fn push(&mut self, outputs: &Outputs) {
         let largest = LARGEST.map(|get| get(outputs));
-        self.add(Block::of_row(outputs.time, values(outputs), weights(outputs), largest));
+        self.add(Block::of_row(outputs.time, &values(outputs), weights(outputs).to_vec(), largest));
+    }
+
+    /// Adds a row of values, which all count the same.
+    pub fn push_values(&mut self, time: f64, values: &[f64]) {
+        self.add(Block::of_row(time, values, vec![1.0; values.len()], [0.0; 3]));
     }
 
     fn add(&mut self, row: Block) {
@@ -182,18 +196,19 @@ impl Blocks {
         let mut all = window[0].clone();
         window[1..].iter().for_each(|block| all.join(block));
         let mean = |i: usize| mean_of(all.sums[i], all.weights[i]);
+        let quantities = &self.quantities;
         let largest_of = |size: Size| {
-            let of = (0..COUNT).filter(|&i| QUANTITIES[i].size == size);
+            let of = (0..quantities.len()).filter(|&i| quantities[i].size == size);
             of.map(|i| mean(i).abs()).fold(0.0, f64::max)
         };
-        let size = |i: usize| match QUANTITIES[i].size {
+        let size = |i: usize| match quantities[i].size {
             Size::Own => mean(i).abs(),
-            Size::Moment => largest_of(Size::Force) * self.pitch_radius,
+            Size::Moment => largest_of(Size::Force) * self.arm,
             Size::One => 1.0,
             size => largest_of(size),
         };
         let start = self.blocks[0].span[0];
-        let there = (0..COUNT).filter(|&i| QUANTITIES[i].is_of(self.parts));
+        let there = (0..quantities.len()).filter(|&i| quantities[i].shown);
         let means = there.map(|i| {
             let each = window.len().div_ceil(GROUPS);
             let of_trend = groups(window, i, each, window.len() / each);
@@ -202,7 +217,7 @@ impl Blocks {
                 let each = (window.len() / n).max(1);
                 groups(window, i, each, n.min(window.len()))
             });
-            let (name, unit) = (QUANTITIES[i].name, QUANTITIES[i].unit);
+            let (name, unit) = (quantities[i].name.clone(), quantities[i].unit);
             Mean { name, unit, mean: mean(i), trend, interval, error: None }
         });
         Some(Means { window: all.span, means: means.collect(), largest: all.largest })
@@ -219,8 +234,7 @@ fn mean_of(sum: f64, weight: f64) -> f64 {
 /// not divide.
 fn groups(window: &[Block], quantity: usize, each: usize, n: usize) -> Vec<f64> {
     let mean = |blocks: &[Block]| {
-        let sum =
-            |of: fn(&Block) -> &[f64; COUNT]| blocks.iter().map(|block| of(block)[quantity]).sum::<f64>();
+        let sum = |of: fn(&Block) -> &[f64]| blocks.iter().map(|block| of(block)[quantity]).sum::<f64>();
         mean_of(sum(|block| &block.sums), sum(|block| &block.weights))
     };
     window[window.len() - n * each..].chunks_exact(each).map(mean).collect()
@@ -357,6 +371,7 @@ impl Means {
 
 #[cfg(test)]
 mod tests {
+    use super::super::quantities::COUNT;
     use super::*;
 
     /// Means of a run of 1 s whose quantities are all the same function of time.
@@ -365,10 +380,10 @@ mod tests {
     }
 
     fn run(rows: u32, duration: f64, value: impl Fn(f64) -> f64) -> Means {
-        let mut blocks = Blocks::new(Parts { cage: true, moving_outer: true }, 1.0);
+        let mut blocks = Blocks::new(of_bearing(Parts { cage: true, moving_outer: true }), 1.0);
         for row in 0..=rows {
             let time = duration * f64::from(row) / f64::from(rows);
-            blocks.add(Block::of_row(time, [value(time); COUNT], [1.0; COUNT], [value(time); 3]));
+            blocks.add(Block::of_row(time, &[value(time); COUNT], vec![1.0; COUNT], [value(time); 3]));
         }
         assert!(blocks.blocks.len() <= MOST_BLOCKS);
         blocks.means().unwrap_or_else(|| panic!("there are rows"))
@@ -421,7 +436,7 @@ mod tests {
     #[test]
     fn closed_form_a_mean_of_slip_is_by_the_speed_that_rolls() {
         // A speed of rolling 10 cos(t) that swings, and a body that stays behind by a tenth of it and 1e-3.
-        let mut blocks = Blocks::new(Parts { cage: true, moving_outer: true }, 1.0);
+        let mut blocks = Blocks::new(of_bearing(Parts { cage: true, moving_outer: true }), 1.0);
         let (mut slips, mut rolls) = (0.0, 0.0);
         for row in 0..4000 {
             let time = f64::from(row) * 1e-2;
@@ -429,8 +444,8 @@ mod tests {
             let behind = 0.1 * rolling.abs() + 1e-3;
             blocks.add(Block::of_row(
                 time,
-                [behind / rolling.abs(); COUNT],
-                [rolling.abs(); COUNT],
+                &[behind / rolling.abs(); COUNT],
+                vec![rolling.abs(); COUNT],
                 [0.0; 3],
             ));
             if blocks.rows > Blocks::window_begins(4000) {
@@ -440,9 +455,10 @@ mod tests {
         let mean = blocks.means().unwrap().means[0].mean;
         assert!((mean - slips / rolls).abs() < 1e-12, "{mean} {}", slips / rolls);
         // Nothing rolls.
-        let mut still = Blocks::new(Parts { cage: true, moving_outer: true }, 1.0);
-        (0..50)
-            .for_each(|row| still.add(Block::of_row(f64::from(row), [0.0; COUNT], [0.0; COUNT], [0.0; 3])));
+        let mut still = Blocks::new(of_bearing(Parts { cage: true, moving_outer: true }), 1.0);
+        (0..50).for_each(|row| {
+            still.add(Block::of_row(f64::from(row), &[0.0; COUNT], vec![0.0; COUNT], [0.0; 3]))
+        });
         let still = still.means().unwrap();
         assert!(still.means.iter().all(|mean| mean.mean == 0.0) && still.unsettled().count() == 0);
     }

@@ -18,4 +18,5 @@ pub mod results;
 pub mod shaft;
 pub mod spectrum;
 pub mod style;
+pub mod tables;
 pub mod thinned;

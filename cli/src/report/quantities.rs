@@ -1,8 +1,12 @@
-//! The quantities whose means are reported, and whose errors are measured.
+//! The quantities whose means are reported, and whose errors are measured: those of a bearing, and those of a shaft with its housings.
 
+use std::borrow::Cow;
+
+use roulement::interface::variables::{Source, SystemVariables};
 use roulement::model::bodies::Race;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::{BallOutput, CageOutput, Outputs, RaceOutput};
+use roulement::simulation::system::System;
 
 /// What the size of a quantity is measured by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,8 +21,23 @@ pub enum Size {
     Position,
     /// The largest speed of a race or of the cage.
     Speed,
+    /// The largest tilt.
+    Tilt,
     /// 1.
     One,
+}
+
+/// What is watched of a bearing or a shaft.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Watched {
+    /// Name.
+    pub name: Cow<'static, str>,
+    /// Unit.
+    pub unit: &'static str,
+    /// What its size is measured by.
+    pub size: Size,
+    /// Is its mean reported?
+    pub shown: bool,
 }
 
 /// A quantity whose mean is reported.
@@ -55,11 +74,6 @@ impl Parts {
 }
 
 impl Quantity {
-    /// Is it one of the cage?
-    pub fn is_of_cage(&self) -> bool {
-        !self.is_of(Parts { cage: false, moving_outer: true })
-    }
-
     /// Is it reported of a bearing of these parts?
     pub fn is_of(&self, parts: Parts) -> bool {
         (self.shown)(parts)
@@ -99,7 +113,7 @@ fn cage(outputs: &Outputs, get: fn(&CageOutput) -> f64) -> f64 {
 /// [-] their number.
 pub const COUNT: usize = 22;
 
-/// All of them.
+/// All of them of a bearing.
 pub static QUANTITIES: [Quantity; COUNT] = [
     quantity("force.x on the inner race", "N", Size::Force, |o| o.inner.wrench.force.x),
     quantity("force.y on the inner race", "N", Size::Force, |o| o.inner.wrench.force.y),
@@ -124,6 +138,64 @@ pub static QUANTITIES: [Quantity; COUNT] = [
     of_cage("pocket power", |o| cage(o, |cage| cage.pocket_power)),
     of_cage("land power", |o| cage(o, |cage| cage.land_power)),
 ];
+
+/// All of them, as they are watched in a bearing of these parts.
+pub fn of_bearing(parts: Parts) -> Vec<Watched> {
+    let watched = |quantity: &Quantity| Watched {
+        name: quantity.name.into(),
+        unit: quantity.unit,
+        size: quantity.size,
+        shown: quantity.is_of(parts),
+    };
+    QUANTITIES.iter().map(watched).collect()
+}
+
+/// What is watched of a shaft and its housings: speed, torque, displacements and tilts, by the names that variables of packages have.
+#[derive(Clone, Debug)]
+pub struct ShaftQuantities {
+    variables: SystemVariables,
+    references: Vec<usize>,
+}
+
+impl ShaftQuantities {
+    /// Those of a shaft.
+    pub fn of(system: &System) -> Self {
+        let variables = SystemVariables::new(system);
+        let rows = variables.rows().iter().enumerate();
+        let own = rows.filter(|(_, row)| matches!(row.source, Source::Shaft(_)));
+        let own = own.filter(|(_, row)| size_of(&row.name, row.unit.name).is_some());
+        let references = own.map(|(reference, _)| reference).collect();
+        Self { variables, references }
+    }
+
+    /// Their names and sizes.
+    pub fn watched(&self) -> Vec<Watched> {
+        let rows = self.references.iter().map(|reference| &self.variables.rows()[*reference]);
+        let watched = rows.filter_map(|row| {
+            let size = size_of(&row.name, row.unit.name)?;
+            Some(Watched { name: row.name.clone().into(), unit: row.unit.name, size, shown: true })
+        });
+        watched.collect()
+    }
+
+    /// Their values.
+    pub fn values(&self, system: &System) -> Vec<f64> {
+        self.references.iter().map(|reference| self.variables.value(*reference, system)).collect()
+    }
+}
+
+/// What the size of a shaft's variable is measured by; none of what is no quantity with a mean: angle, velocities, energies, and loads,
+/// which are given.
+fn size_of(name: &str, unit: &str) -> Option<Size> {
+    match (name, unit) {
+        ("shaft.speed", _) => Some(Size::Speed),
+        ("shaft.torque", _) => Some(Size::Own),
+        ("shaft.angle", _) => None,
+        (_, "m") => Some(Size::Position),
+        (_, "rad") => Some(Size::Tilt),
+        _ => None,
+    }
+}
 
 /// All of them at a row.
 pub fn values(outputs: &Outputs) -> [f64; COUNT] {

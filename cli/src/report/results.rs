@@ -7,10 +7,12 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use roulement::interface::variables::Variables;
+use roulement::interface::variables::{Source, SystemVariables, Variables, quoted};
 use roulement::scene::Scene;
 use roulement::scene::units::{Quantity, Time};
+use roulement::simulation::Simulation;
 use roulement::simulation::inputs::Inputs;
+use roulement::simulation::machine::Machine;
 use roulement::simulation::outputs::Outputs;
 
 use super::number;
@@ -43,6 +45,13 @@ pub struct Choice {
     pub columns: Vec<String>,
     /// Time of the rows.
     pub window: Window,
+}
+
+impl Choice {
+    /// Is a column chosen?
+    pub fn wants(&self, name: &str) -> bool {
+        self.columns.is_empty() || self.columns.iter().any(|pattern| fits(name, pattern))
+    }
 }
 
 /// \[s] span of time, ends included.
@@ -119,25 +128,107 @@ impl Columns {
         {
             return Err(ResultsError::Column(pattern.clone()));
         }
-        let wanted = |name: &str| {
-            choice.columns.is_empty() || choice.columns.iter().any(|pattern| fits(name, pattern))
-        };
         let chosen: Vec<usize> =
-            names().enumerate().filter(|(_, name)| wanted(name)).map(|(i, _)| i).collect();
+            names().enumerate().filter(|(_, name)| choice.wants(name)).map(|(i, _)| i).collect();
         Ok(Self { variables, chosen, window: choice.window })
     }
 
+    /// Those of a bearing of a shaft that are chosen with its name before them.
+    fn named(scene: &Scene, bearing: &str, choice: &Choice) -> Self {
+        let variables = Variables::moving(scene, true);
+        let names = variables.rows().iter().map(|row| named(bearing, &row.name)).enumerate();
+        let chosen = names.filter(|(_, name)| choice.wants(name)).map(|(i, _)| i).collect();
+        Self { variables, chosen, window: choice.window }
+    }
+
     /// Names and units, the time first.
-    pub fn names(&self) -> impl Iterator<Item = (&str, &str)> {
+    pub fn names(&self) -> impl Iterator<Item = (&str, &'static str)> {
         let of = |i: &usize| (self.variables.rows()[*i].name.as_str(), self.variables.rows()[*i].unit.name);
         std::iter::once(("time", "s")).chain(self.chosen.iter().map(of))
     }
 
     /// Values of a row, if its time is in the window.
     pub fn row(&self, inputs: &Inputs, outputs: &Outputs) -> Option<impl Iterator<Item = f64>> {
-        let value = |i: &usize| self.variables.value(&self.variables.rows()[*i], inputs, outputs);
-        let values = std::iter::once(outputs.time).chain(self.chosen.iter().map(value));
+        let values = std::iter::once(outputs.time).chain(self.values(inputs, outputs));
         self.window.contains(outputs.time).then_some(values)
+    }
+
+    /// Values of all but the time.
+    fn values(&self, inputs: &Inputs, outputs: &Outputs) -> impl Iterator<Item = f64> {
+        let value = move |i: &usize| self.variables.value(&self.variables.rows()[*i], inputs, outputs);
+        self.chosen.iter().map(value)
+    }
+}
+
+/// Name of a column of a bearing of a machine.
+fn named(bearing: &str, column: &str) -> String {
+    if bearing.is_empty() { column.to_string() } else { format!("{}.{column}", quoted(bearing)) }
+}
+
+/// Columns of the one table of a whole machine: of a bearing alone its own; of a shaft those of the shaft and its housings, then those
+/// of every bearing with its name before them, all as variables of packages are named.
+pub struct MachineColumns {
+    shaft: Option<(SystemVariables, Vec<usize>)>,
+    /// By the name of their bearing.
+    bearings: Vec<(String, Columns)>,
+    window: Window,
+}
+
+impl MachineColumns {
+    /// Those that are chosen.
+    ///
+    /// # Errors
+    /// If a chosen column is not there.
+    pub fn new(machine: &Machine, choice: &Choice) -> Result<Self, ResultsError> {
+        let Some(system) = machine.shaft() else {
+            let of = |(name, bearing): (&str, &Simulation)| {
+                Ok((name.to_string(), Columns::new(bearing.scene(), choice)?))
+            };
+            let bearings = machine.bearings().map(of).collect::<Result<_, _>>()?;
+            return Ok(Self { shaft: None, bearings, window: choice.window });
+        };
+        let variables = SystemVariables::new(system);
+        let own = variables.rows().iter().enumerate();
+        let own = own.filter(|(_, row)| matches!(row.source, Source::Shaft(_)));
+        let chosen = own.filter(|(_, row)| choice.wants(&row.name)).map(|(reference, _)| reference).collect();
+        let mut bearings = vec![];
+        for (name, bearing) in system.bearings() {
+            let columns = Columns::named(bearing.scene(), name, choice);
+            bearings.push((name.to_string(), columns));
+        }
+        let all = Self { shaft: Some((variables, chosen)), bearings, window: choice.window };
+        let names: Vec<String> = all.names().map(|(name, _)| name).collect();
+        let missing = |pattern: &&String| !names.iter().any(|name| fits(name, pattern));
+        match choice.columns.iter().find(missing) {
+            Some(pattern) => Err(ResultsError::Column(pattern.clone())),
+            None => Ok(all),
+        }
+    }
+
+    /// Names and units, the time first.
+    pub fn names(&self) -> impl Iterator<Item = (String, &'static str)> {
+        let shaft = self.shaft.iter().flat_map(|(variables, chosen)| {
+            chosen.iter().map(|i| (variables.rows()[*i].name.clone(), variables.rows()[*i].unit.name))
+        });
+        let bearings = self.bearings.iter().flat_map(|(bearing, columns)| {
+            columns.names().skip(1).map(move |(name, unit)| (named(bearing, name), unit))
+        });
+        [("time".to_string(), "s")].into_iter().chain(shaft).chain(bearings)
+    }
+
+    /// Values of a row, if its time is in the window.
+    pub fn row(&self, machine: &Machine) -> Option<Vec<f64>> {
+        if !self.window.contains(machine.time()) {
+            return None;
+        }
+        let mut row = vec![machine.time()];
+        if let (Some((variables, chosen)), Some(system)) = (&self.shaft, machine.shaft()) {
+            row.extend(chosen.iter().map(|reference| variables.value(*reference, system)));
+        }
+        for ((_, columns), (_, bearing)) in self.bearings.iter().zip(machine.bearings()) {
+            row.extend(columns.values(bearing.inputs(), bearing.outputs()));
+        }
+        Some(row)
     }
 }
 
@@ -150,50 +241,50 @@ enum Sink {
     Parquet(Box<ParquetWriter>),
 }
 
-/// A result table being written.
-pub struct ResultsWriter {
-    columns: Columns,
+/// A table of numbers being written: Parquet where its path ends so, else CSV.
+pub struct TableWriter {
     sink: Sink,
     path: String,
 }
 
-impl ResultsWriter {
-    /// Begins a table: Parquet where the path ends so, else CSV.
+impl TableWriter {
+    /// Begins a table of columns with these names and units.
     ///
     /// # Errors
-    /// If the file cannot be written, or a chosen column is not there.
-    pub fn create(path: &Path, scene: &Scene, choice: &Choice) -> Result<Self, ResultsError> {
-        let columns = Columns::new(scene, choice)?;
+    /// If the file cannot be written.
+    pub fn create<'a>(
+        path: &Path,
+        names: impl Iterator<Item = (impl AsRef<str>, &'a str)>,
+    ) -> Result<Self, ResultsError> {
         let name = path.display().to_string();
-        let sink = Self::begin(path, &columns)
-            .map_err(|source| ResultsError::Write { path: name.clone(), source })?;
-        Ok(Self { columns, sink, path: name })
+        let sink =
+            Self::begin(path, names).map_err(|source| ResultsError::Write { path: name.clone(), source })?;
+        Ok(Self { sink, path: name })
     }
 
-    fn begin(path: &Path, columns: &Columns) -> io::Result<Sink> {
+    fn begin<'a>(path: &Path, names: impl Iterator<Item = (impl AsRef<str>, &'a str)>) -> io::Result<Sink> {
         if is_parquet(path) {
             #[cfg(feature = "parquet")]
             {
-                let columns = columns.names().map(|(name, unit)| Column::number(name, unit));
+                let columns = names.map(|(name, unit)| Column::number(name.as_ref(), unit));
                 return Ok(Sink::Parquet(Box::new(ParquetWriter::create(path, columns.collect())?)));
             }
             #[cfg(not(feature = "parquet"))]
             return Err(io::Error::other("this program was built without Parquet"));
         }
         let mut writer = csv::Writer::from_writer(vec![]);
-        writer.write_record(columns.names().map(|(name, unit)| format!("{name} [{unit}]")))?;
+        writer.write_record(names.map(|(name, unit)| format!("{} [{unit}]", name.as_ref())))?;
         let line = writer.into_inner().map_err(|why| io::Error::other(why.to_string()))?;
         let mut file = File::create(path)?;
         file.write_all(&line)?;
         Ok(Sink::Csv { file, line })
     }
 
-    /// Adds a row, if its time is in the window.
+    /// Adds a row.
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn write(&mut self, inputs: &Inputs, outputs: &Outputs) -> Result<(), ResultsError> {
-        let Some(values) = self.columns.row(inputs, outputs) else { return Ok(()) };
+    pub fn write(&mut self, values: impl Iterator<Item = f64>) -> Result<(), ResultsError> {
         let written = match &mut self.sink {
             Sink::Csv { file, line } => {
                 line.clear();

@@ -1,18 +1,16 @@
 //! What is left of a run of a shaft with its housings: its table, its plots, its words.
 
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 use roulement::contact::REGULARISATION_SPEED;
+use roulement::interface::variables::quoted;
 use roulement::scene::system::SystemScene;
 use roulement::simulation::system::{HousingOutputs, PointOutput, System, SystemOutputs};
 
-use super::number;
+use super::figures::Shown;
 use super::plots::{Curve, Panel, figure};
-use super::results::Window;
 use super::style::PlotError;
 
 /// Names of all points of a shaft whose motion is known: bearings, loads, points.
@@ -40,64 +38,34 @@ fn points_of_housing(outputs: &HousingOutputs) -> impl Iterator<Item = &PointOut
     outputs.seats.iter().chain(&outputs.loads).chain(&outputs.points)
 }
 
-/// Table of a shaft and its housings over time: CSV with units in the header.
-pub struct ShaftTable {
-    file: BufWriter<File>,
-    window: Window,
+/// Names and units of the columns of the table of a shaft and its housings, the time first.
+pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
+    let own = [("time", "s"), ("shaft.angle", "rad"), ("shaft.speed", "rad/s"), ("shaft.torque", "N m")];
+    let mut columns: Vec<_> = own.map(|(name, unit)| (name.to_string(), unit)).into();
+    for place in places(scene) {
+        let of = [("x", "m"), ("y", "m"), ("z", "m"), ("ry", "rad"), ("rz", "rad")];
+        columns.extend(of.map(|(component, unit)| (format!("shaft.{place}.{component}"), unit)));
+    }
+    for (index, housing) in scene.housings.iter().enumerate() {
+        for place in places_of_housing(scene, index) {
+            let of = [("x", "m"), ("y", "m"), ("z", "m"), ("rx", "rad"), ("ry", "rad"), ("rz", "rad")];
+            let housing = &housing.name;
+            columns.extend(of.map(|(component, unit)| (format!("{housing}.{place}.{component}"), unit)));
+        }
+    }
+    columns
 }
 
-impl ShaftTable {
-    /// Begins a file.
-    ///
-    /// # Errors
-    /// If it cannot be written.
-    pub fn create(path: &Path, scene: &SystemScene, window: Window) -> io::Result<Self> {
-        let mut file = BufWriter::new(File::create(path)?);
-        let mut names: Vec<String> =
-            ["time [s]", "shaft.angle [rad]", "shaft.speed [rad/s]", "shaft.torque [N m]"]
-                .map(String::from)
-                .into();
-        for place in places(scene) {
-            let of = [("x", "m"), ("y", "m"), ("z", "m"), ("ry", "rad"), ("rz", "rad")];
-            names.extend(of.map(|(component, unit)| format!("shaft.{place}.{component} [{unit}]")));
-        }
-        for (index, housing) in scene.housings.iter().enumerate() {
-            for place in places_of_housing(scene, index) {
-                let of = [("x", "m"), ("y", "m"), ("z", "m"), ("rx", "rad"), ("ry", "rad"), ("rz", "rad")];
-                let housing = &housing.name;
-                names.extend(of.map(|(component, unit)| format!("{housing}.{place}.{component} [{unit}]")));
-            }
-        }
-        writeln!(file, "{}", names.join(","))?;
-        Ok(Self { file, window })
+/// Values of these columns.
+pub fn row(outputs: &SystemOutputs) -> Vec<f64> {
+    let mut row = vec![outputs.time, outputs.spin.angle, outputs.spin.speed, outputs.torque];
+    for PointOutput { displacement: d, tilt, .. } in points(outputs) {
+        row.extend([d.x, d.y, d.z, tilt.y, tilt.z]);
     }
-
-    /// Writes a row.
-    ///
-    /// # Errors
-    /// If it cannot be written.
-    pub fn write(&mut self, outputs: &SystemOutputs) -> io::Result<()> {
-        if !self.window.contains(outputs.time) {
-            return Ok(());
-        }
-        let mut line = vec![];
-        let mut row = vec![outputs.time, outputs.spin.angle, outputs.spin.speed, outputs.torque];
-        for PointOutput { displacement: d, tilt, .. } in points(outputs) {
-            row.extend([d.x, d.y, d.z, tilt.y, tilt.z]);
-        }
-        for PointOutput { displacement, tilt, .. } in outputs.housings.iter().flat_map(points_of_housing) {
-            row.extend(displacement.iter().chain(tilt.iter()));
-        }
-        for (index, value) in row.into_iter().enumerate() {
-            if index > 0 {
-                line.push(b',');
-            }
-            number::append(&mut line, value);
-        }
-        line.push(b'\n');
-        self.file.write_all(&line)?;
-        self.file.flush()
+    for PointOutput { displacement, tilt, .. } in outputs.housings.iter().flat_map(points_of_housing) {
+        row.extend(displacement.iter().chain(tilt.iter()));
     }
+    row
 }
 
 /// Draws the shaft's motion at its bearings over time, its path there, and the motion of housings at their bearings.
@@ -124,12 +92,12 @@ pub fn write_plot(
             .collect(),
         least,
     };
-    // About where each bearing's point is in the mean of the second half: bearings lie apart by more than they move.
+    // In the second half, about its mean: bearings lie apart by more than they move, and a start goes further than an orbit.
     let later = &rows[rows.len() / 2..];
     let path = |k: usize| {
         let mean =
             later.iter().map(|row| row.seats[k].displacement).sum::<Vector3<f64>>() / later.len() as f64;
-        let points = rows.iter().map(|row| (row.seats[k].displacement - mean) * 1e6);
+        let points = later.iter().map(|row| (row.seats[k].displacement - mean) * 1e6);
         Curve { name: names[k].to_string(), points: points.map(|d| (d.y, d.z)).collect(), band: vec![] }
     };
     let of_shaft = |y_label, least, get: fn(&SystemOutputs) -> f64| Panel {
@@ -221,42 +189,58 @@ pub fn creeping(system: &System) -> Option<String> {
     })
 }
 
-/// What a shaft's run came to, in words: of the shaft, and of its bearings a line each.
-pub fn summary(system: &System, means: &[Option<[f64; 2]>]) -> String {
-    let (scene, outputs) = (system.scene(), system.outputs());
+/// What a shaft's run came to, in words, with error bars where its figures and those of its bearings have them: of the shaft, and of its
+/// bearings some lines each.
+pub fn summary(system: &System, shaft: &Shown, bearings: &[Shown]) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
-    let mut line = |words: std::fmt::Arguments<'_>| {
-        let _ = writeln!(text, "{words}");
-    };
+    let _ = write_summary(&mut text, system, shaft, bearings);
+    text
+}
+
+fn write_summary(out: &mut String, system: &System, shaft: &Shown, bearings: &[Shown]) -> std::fmt::Result {
+    let (scene, outputs) = (system.scene(), system.outputs());
     if !scene.title.is_empty() {
-        line(format_args!("{}", scene.title));
+        writeln!(out, "{}", scene.title)?;
     }
-    line(format_args!("at {:.3} ms", outputs.time * 1e3));
-    let spin = &outputs.spin;
-    line(format_args!("shaft            {:.4} rad/s, driven by {:.5} N m", spin.speed, outputs.torque));
+    writeln!(out, "at {:.3} ms", outputs.time * 1e3)?;
+    writeln!(
+        out,
+        "shaft            {} rad/s, driven by {} N m",
+        shaft.text("end shaft.speed", 1.0, 4),
+        shaft.text("end shaft.torque", 1.0, 5)
+    )?;
     if let ([first, .., last], false) = (system.shaft().modes.as_slice(), system.shaft().modes.is_empty()) {
         let count = system.shaft().modes.len();
-        line(format_args!("shaft modes      {count} between held stations, {first:.0} to {last:.0} Hz"));
+        writeln!(out, "shaft modes      {count} between held stations, {first:.0} to {last:.0} Hz")?;
     }
-    for ((name, bearing), (seat, means)) in system.bearings().zip(outputs.seats.iter().zip(means)) {
+    for ((name, bearing), shown) in system.bearings().zip(bearings) {
         let direction = scene.bearings.iter().find(|mounted| mounted.name == name);
         let sign = direction.map_or(1.0, |mounted| mounted.mounting.direction.sign());
         // What the shaft does to the bearing, in the shaft's axes.
         let force = bearing.outputs().inner.wrench.force;
         let (axial, radial) = (-sign * force.x, force.y.hypot(force.z));
-        let d = seat.displacement * 1e6;
-        line(format_args!(
-            "{name:<16} shaft at x {:.3} y {:.3} z {:.3} um; it presses with {radial:.1} N across, {axial:.1} N along x",
-            d.x, d.y, d.z
-        ));
+        let seat = |axis: &str| {
+            let name = format!("end {}.seat.displacement.{axis}", quoted(name));
+            shaft.text(&name, 1e6, 3)
+        };
+        writeln!(
+            out,
+            "{name:<16} shaft at x {} y {} z {} um; it presses with {radial:.1} N across, {axial:.1} N along x",
+            seat("x"),
+            seat("y"),
+            seat("z")
+        )?;
         let loads = bearing.outputs().balls.iter().map(|ball| ball.inner.load);
         let (least, most) =
             loads.fold((f64::INFINITY, 0.0f64), |(low, high), load| (low.min(load), high.max(load)));
-        let power = means.map_or(String::new(), |[power, torque]| {
-            format!("; mean losses {power:.3} W, friction torque {torque:.5} N m")
+        let has_means = !shown.figures.get("friction power").is_nan();
+        let power = has_means.then(|| {
+            let [power, torque] = [("friction power", 3), ("friction torque", 5)]
+                .map(|(name, digits)| shown.text(name, 1.0, digits));
+            format!("; mean losses {power} W, friction torque {torque} N m")
         });
-        line(format_args!("{:<16} ball loads {least:.1} to {most:.1} N{power}", ""));
+        writeln!(out, "{:<16} ball loads {least:.1} to {most:.1} N{}", "", power.unwrap_or_default())?;
     }
     let housings = scene.housings.iter().zip(&outputs.housings);
     for (housing, outputs) in housings.clone() {
@@ -268,19 +252,20 @@ pub fn summary(system: &System, means: &[Option<[f64; 2]>]) -> String {
             )
         };
         let first = outputs.seats.first().map_or_else(String::new, at);
-        line(format_args!("{:<16} at its first bearing {first}", housing.name));
+        writeln!(out, "{:<16} at its first bearing {first}", housing.name)?;
     }
     let energies = [("energy", &outputs.energies)].into_iter();
     for (name, energies) in energies.chain(housings.map(|(housing, o)| (housing.name.as_str(), &o.energies)))
     {
-        line(format_args!(
+        writeln!(
+            out,
             "{:<16} put in {:.5} J, to bearings {:.5} J, damped {:.5} J, balance {:.2e} J",
             name,
             energies.input,
             energies.bearings,
             energies.damping,
             energies.unaccounted()
-        ));
+        )?;
     }
-    text
+    Ok(())
 }

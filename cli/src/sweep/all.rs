@@ -6,13 +6,13 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use roulement::SceneError;
+use roulement::scene::machine::MachineScene;
 
 use super::SweepError;
 use super::case::{self, Wanted};
-use super::cases::{CaseScene, Cases, Setting, scene_of};
-use super::shaft;
+use super::cases::{Cases, Setting};
+use super::columns;
 use super::store::{Store, aside};
-use crate::report::results::{Choice, Columns};
 
 /// A sweep: cases of a scene, what is wanted of them, and where their rows are kept.
 pub struct Sweep {
@@ -39,20 +39,14 @@ impl Sweep {
         let text = |case| cases.text_of(&base, case);
         let name = |case| Ok(Store::name(&text(case).map_err(|why| why.to_string())?, &wanted));
         let names: Vec<Result<String, String>> = on_threads(cases.rows.len(), threads(), name);
-        let read = |case: usize| scene_of(&text(case)?);
+        let read = |case: usize| MachineScene::edited(&text(case)?);
         // A misspelt key is no matter of single cases.
         for (place, key) in cases.keys.iter().enumerate() {
             let sets = |case: &usize| cases.rows[*case].get(place).is_some_and(Option::is_some);
             first_read((0..names.len()).filter(sets), read, &format!("no case that sets {}", key.name))?;
         }
         if let Some(scene) = first_read(0..names.len(), read, "no case")? {
-            match scene {
-                CaseScene::Bearing(scene) => {
-                    let choice = Choice { columns: wanted.columns.clone(), ..Choice::default() };
-                    drop(Columns::new(&scene, &choice)?);
-                }
-                CaseScene::System(scene) => shaft::check(&scene, &wanted)?,
-            }
+            columns::check(&scene, &wanted.columns)?;
         }
         let store = Store::new(directory)?;
         let is_number = |setting: &Setting| setting.shown.parse::<f64>().is_ok();
@@ -139,9 +133,9 @@ impl Sweep {
 /// The first of some cases whose scene can be read; none if there is no case.
 fn first_read(
     cases: impl Iterator<Item = usize>,
-    read: impl Fn(usize) -> Result<CaseScene, SceneError>,
+    read: impl Fn(usize) -> Result<MachineScene, SceneError>,
     what: &str,
-) -> Result<Option<CaseScene>, SweepError> {
+) -> Result<Option<MachineScene>, SweepError> {
     let mut first = None;
     for case in cases {
         match read(case) {

@@ -4,21 +4,21 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use roulement::Scene;
 use roulement::interface::variables::{Source, Variables};
+use roulement::scene::machine::MachineScene;
 use roulement::simulation::Simulation;
+use roulement::simulation::machine::Machine;
 use roulement::simulation::play::{Rows, play};
 
 use super::SweepError;
-use super::cases::{CaseScene, scene_of};
+use super::columns::GatheredMachine;
 use super::extremes::{Gathered, OF_BALLS};
-use super::shaft;
 use crate::error::{Compared, Refined, Run, refine};
 use crate::report::cells::{Cell, Column};
 use crate::report::means::Means;
 use crate::report::quantities::QUANTITIES;
-use crate::report::results::{Choice, ResultsError, ResultsWriter};
-use crate::watch::{Seen, Watch};
+use crate::report::results::{Choice, MachineColumns, ResultsError, TableWriter};
+use crate::watch::{BearingSeen, Seen, Watch};
 
 /// What is wanted of every case.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +37,7 @@ pub const WARNINGS: &str = "warnings";
 pub type Row = Vec<(Column, Cell)>;
 
 /// Why a run has no result.
-pub(super) enum Ended {
+enum Ended {
     /// It was interrupted.
     Interrupted,
     /// It failed, or what is wanted of it is not there.
@@ -48,9 +48,9 @@ pub(super) enum Ended {
 
 /// A run that came to its end.
 struct Done {
-    simulation: Simulation,
+    machine: Machine,
     seen: Seen,
-    gathered: Gathered,
+    gathered: GatheredMachine,
 }
 
 /// Runs a case and gives its row, which begins with how it ended; none if it was interrupted. A whole table goes to a file.
@@ -58,23 +58,16 @@ struct Done {
 /// # Errors
 /// If the file of the table cannot be written. A case that fails is no error.
 pub fn run(
-    scene: &CaseScene,
+    scene: &MachineScene,
     wanted: &Wanted,
     table: Option<&Path>,
     interrupted: &AtomicBool,
 ) -> Result<Option<Row>, SweepError> {
-    let own = match scene {
-        CaseScene::Bearing(scene) => measured(scene, wanted, table, interrupted).map(|(done, goal)| {
-            let mut row = vec![number("time", "s", done.simulation.time())];
-            row.extend(summary(&done.simulation, &done.seen, &done.gathered, goal));
-            row
-        }),
-        CaseScene::System(scene) => shaft::run(scene, wanted, interrupted),
-    };
-    match own {
-        Ok(own) => {
+    match measured(scene, wanted, table, interrupted) {
+        Ok((done, goal)) => {
             let mut row = ended("done", "");
-            row.extend(own);
+            row.push(number("time", "s", done.machine.time()));
+            row.extend(of_machine(&done, goal));
             Ok(Some(row))
         }
         Err(Ended::Failed(why)) => Ok(Some(ended("failed", &why))),
@@ -93,7 +86,7 @@ pub fn run_text(
     table: Option<&Path>,
     interrupted: &AtomicBool,
 ) -> Result<Option<Row>, SweepError> {
-    match scene_of(text) {
+    match MachineScene::edited(text) {
         Ok(scene) => run(&scene, wanted, table, interrupted),
         Err(why) => Ok(Some(failed(&why.to_string()))),
     }
@@ -111,7 +104,7 @@ fn ended(status: &str, reason: &str) -> Row {
 
 /// Runs a scene, again and again with smaller steps where it has an error goal, and says how that ended.
 fn measured(
-    scene: &Scene,
+    scene: &MachineScene,
     wanted: &Wanted,
     table: Option<&Path>,
     interrupted: &AtomicBool,
@@ -122,20 +115,20 @@ fn measured(
         played(scene, wanted, table, interrupted)
     })?;
     let Some((rounds, said)) = rounds else { return Ok((done, None)) };
-    done.seen.means = rounds.means();
+    done.seen.set_means(rounds.means());
     Ok((done, Some(said)))
 }
 
 impl Compared for Done {
     fn comparable(&mut self) -> Run {
         // What it costs is no result.
-        self.seen.take_comparable(&self.simulation, 0.0)
+        self.seen.take_comparable(&self.machine, 0.0)
     }
 }
 
 /// Plays a scene to its end.
 fn played(
-    scene: &Scene,
+    scene: &MachineScene,
     wanted: &Wanted,
     table: Option<&Path>,
     interrupted: &AtomicBool,
@@ -145,26 +138,29 @@ fn played(
         ResultsError::Column(_) => Ended::Failed(why.to_string()),
         ResultsError::Write { .. } => Ended::Files(SweepError::Files(why.to_string())),
     };
-    let mut simulation = Simulation::new(scene).map_err(|why| failed(&why))?;
-    let rows = Rows::of(&simulation);
-    let mut watch = Watch::of(&simulation);
-    let mut gathered = Gathered::new(&simulation, rows.count() + 1, &wanted.columns).map_err(written)?;
+    let mut machine = Machine::new(scene).map_err(|why| failed(&why))?;
+    let rows = Rows::of_scene(scene);
+    let mut watch = Watch::of(&machine);
+    let mut gathered =
+        GatheredMachine::new(scene, &machine, rows.count() + 1, &wanted.columns).map_err(written)?;
     let choice = Choice { columns: wanted.columns.clone(), ..Choice::default() };
-    let mut table = table
-        .map(|path| ResultsWriter::create(path, simulation.scene(), &choice))
-        .transpose()
-        .map_err(written)?;
-    let flow = play(&mut simulation, rows, |simulation| {
+    let begun = |path: &Path| -> Result<_, ResultsError> {
+        let columns = MachineColumns::new(&machine, &choice)?;
+        let table = TableWriter::create(path, columns.names())?;
+        Ok((columns, table))
+    };
+    let mut table = table.map(begun).transpose().map_err(written)?;
+    let flow = play(&mut machine, rows, |machine| {
         if interrupted.load(Ordering::Relaxed) {
             return ControlFlow::Break(Ended::Interrupted);
         }
-        if let Some(Err(why)) =
-            table.as_mut().map(|table| table.write(simulation.inputs(), simulation.outputs()))
+        if let Some((columns, table)) = &mut table
+            && let Some(Err(why)) = columns.row(machine).map(|row| table.write(row.into_iter()))
         {
             return ControlFlow::Break(written(why));
         }
-        watch.push(simulation);
-        gathered.push(simulation);
+        watch.push(machine);
+        gathered.push(machine);
         ControlFlow::Continue(())
     });
     match flow {
@@ -172,8 +168,41 @@ fn played(
         Ok(ControlFlow::Break(why)) => return Err(why),
         Ok(ControlFlow::Continue(())) => {}
     }
-    table.map(ResultsWriter::finish).transpose().map_err(written)?;
-    Ok(Done { simulation, seen: watch.finish(), gathered })
+    table.map(|(_, table)| table.finish()).transpose().map_err(written)?;
+    Ok(Done { machine, seen: watch.finish(), gathered })
+}
+
+/// What came of a machine: of a shaft its own columns, then those of every bearing with its name before them.
+fn of_machine(done: &Done, goal: Option<&'static str>) -> Row {
+    let Done { machine, seen, gathered } = done;
+    let mut row = vec![];
+    if let (Some(system), Some(seen)) = (machine.shaft(), &seen.shaft) {
+        row.push((Column::text(WARNINGS), Cell::Text(seen.warnings(system).join("; "))));
+        row.extend(goal.map(|goal| (Column::text("error_goal"), Cell::Text(goal.to_string()))));
+        let error = |name: &str| seen.means.as_ref()?.find(name)?.error;
+        for column in &gathered.shaft {
+            let of = |what: &str| format!("{}.{what}", column.name);
+            row.push(number(&of("mean"), &column.unit, gathered.counted.mean(column)));
+            row.push(number(&of("least"), &column.unit, column.extremes.least));
+            row.push(number(&of("largest"), &column.unit, column.extremes.largest));
+            row.push(number(&of("end"), &column.unit, column.end));
+            if let Some(error) = error(&column.name) {
+                row.push(number(&of("error"), &column.unit, error.mean));
+            }
+        }
+    }
+    let goal = goal.filter(|_| machine.shaft().is_none());
+    for (((name, bearing), seen), gathered) in machine.bearings().zip(&seen.bearings).zip(&gathered.bearings)
+    {
+        let own = summary(bearing, seen, gathered, goal);
+        row.extend(own.into_iter().map(|(mut column, cell)| {
+            if !name.is_empty() {
+                column.name = format!("{name}.{}", column.name);
+            }
+            (column, cell)
+        }));
+    }
+    row
 }
 
 /// The key of a quantity, as the variables of packages are named: `inner.force.x` for "force.x on the inner race".
@@ -186,7 +215,7 @@ pub fn key_of(quantity: &str) -> String {
     of_race("inner").or_else(|| of_race("outer")).unwrap_or_else(|| quantity.replace(' ', "_"))
 }
 
-pub(super) fn number(name: &str, unit: &str, value: f64) -> (Column, Cell) {
+fn number(name: &str, unit: &str, value: f64) -> (Column, Cell) {
     (Column::number(name, unit), if value.is_nan() { Cell::Empty } else { Cell::Number(value) })
 }
 
@@ -203,9 +232,9 @@ fn settled(means: &Means) -> &'static str {
 }
 
 /// What came of a bearing.
-pub(super) fn summary(
+fn summary(
     simulation: &Simulation,
-    seen: &Seen,
+    seen: &BearingSeen,
     gathered: &Gathered,
     goal: Option<&'static str>,
 ) -> Row {
@@ -219,7 +248,7 @@ pub(super) fn summary(
             row.push((Column::text("error_goal"), Cell::Text(goal.to_string())));
         }
         for mean in &means.means {
-            let key = key_of(mean.name);
+            let key = key_of(&mean.name);
             let of = |what: &str| format!("{key}.{what}");
             row.push(number(&of("mean"), mean.unit, mean.mean));
             if let Some(place) = QUANTITIES.iter().position(|quantity| quantity.name == mean.name) {

@@ -28,8 +28,8 @@
 
 use std::path::{Path, PathBuf};
 
+use roulement::scene::machine::MachineScene;
 use roulement::scene::schedule::{files, is_block};
-use roulement::scene::system::SystemScene;
 use roulement::schema::regular;
 use roulement::{Scene, SceneError};
 use toml::{Table, Value};
@@ -256,34 +256,12 @@ impl Cases {
     }
 }
 
-/// The scene of a case.
-pub enum CaseScene {
-    /// Of a bearing.
-    Bearing(Box<Scene>),
-    /// Of a shaft with its bearings.
-    System(Box<SystemScene>),
-}
-
-/// The scene of such a text; a message does not name its lines, which nobody has written.
-///
-/// # Errors
-/// If the scene is refused; names the key.
-pub fn scene_of(text: &str) -> Result<CaseScene, SceneError> {
-    if SystemScene::is_system(text) {
-        return SystemScene::edited(text).map(|scene| CaseScene::System(Box::new(scene)));
-    }
-    Scene::edited(text, [("", ""); 0]).map(|scene| CaseScene::Bearing(Box::new(scene)))
-}
-
 /// Text of the base scene in a file, which stands alone, and what its reader should know.
 ///
 /// # Errors
 /// If the scene is refused.
 pub fn base_of(path: &Path) -> Result<(String, Vec<String>), SceneError> {
-    if regular::text(path).is_ok_and(|text| SystemScene::is_system(&text)) {
-        return SystemScene::load(path).map(|scene| (scene.source.clone(), scene.notes()));
-    }
-    Scene::load(path).map(|scene| (scene.source.clone(), scene.notes()))
+    MachineScene::load(path).map(|scene| (scene.source().to_string(), scene.notes()))
 }
 
 /// All keys of a section with their own sections, down to values.

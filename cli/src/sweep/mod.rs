@@ -5,7 +5,7 @@
 //! | `cases` | which cases: a table of scene keys, CSV or TOML |
 //! | `ranges` | cases from ranges: grid and Latin hypercube |
 //! | `case` | one case, from its scene to its row of the summary |
-//! | `shaft` | the same of a shaft with its bearings |
+//! | `columns` | columns that are chosen for the summary, of bearings and of a shaft |
 //! | `extremes` | least and largest values of a run, means of chosen columns |
 //! | `store` | rows of finished cases on the disk, by a hash of all that they follow from |
 //! | `all` | all cases on some threads |
@@ -14,9 +14,9 @@
 pub mod all;
 pub mod case;
 pub mod cases;
+mod columns;
 mod extremes;
 mod ranges;
-mod shaft;
 pub mod store;
 pub mod summary;
 

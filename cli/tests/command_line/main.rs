@@ -16,6 +16,7 @@ mod runs;
 mod same_bits;
 mod scene_keys;
 mod shaft;
+mod shaft_keeps;
 mod signs;
 mod spectrum;
 mod sweep;

@@ -92,7 +92,6 @@ fn consistency_cases_of_a_shaft_are_runs_of_its_changed_file() {
         ("bearing.middle.set.friction.ball_race\n0.05\n", &[][..], &["bearing.middle", "left, right"][..]),
         ("shaft.masss\n2\n", &[], &["masss"]),
         ("shaft.mass\n2\n", &["--columns", "middle.ball[1].inner.load"], &["middle.ball[1].inner.load"]),
-        ("shaft.mass\n2\n", &["--tables", "csv"], &["--tables", "--runs"]),
     ] {
         let bad = scratch.path("bad.csv");
         std::fs::write(&bad, cases).unwrap();

@@ -25,7 +25,7 @@ fn short_study() -> &'static SceneStudy {
         let mut scene =
             Scene::edited(include_str!("../../../scenes/cost/misalignment.toml"), changes).unwrap();
         scene.effects.cage = roulement::effects::cage::Settings::default();
-        study("short", &scene, &ProgressBar::hidden()).unwrap()
+        study("short", &scene.into(), &ProgressBar::hidden()).unwrap()
     })
 }
 
@@ -119,7 +119,7 @@ fn invariant_references_are_not_mixed_and_the_richest_model_is_its_own() {
 
 #[test]
 fn invariant_every_creep_model_of_the_study_changes_the_scene_as_it_says() {
-    let scene = Scene::parse(SCENES[0].1).unwrap();
+    let scene = Scene::parse(SCENES[0].1).unwrap().into();
     let models = CreepModel::studied();
     for (index, &model) in models.iter().enumerate() {
         let setting = Setting::creep(&scene, model);
@@ -152,8 +152,9 @@ fn invariant_polynomials_come_closer_to_the_table_with_their_degree() {
 fn invariant_the_cage_of_the_misalignment_scene_is_measured() {
     let mut scene = Scene::parse(SCENES[5].1).unwrap();
     scene.load.duration.0 = 8e-3;
-    let fixed =
-        |scene: &Scene, step| record(&Setting::fixed_step(scene, step), &AtomicBool::default()).unwrap();
+    let fixed = |scene: &Scene, step| {
+        record(&Setting::fixed_step(&scene.clone().into(), step), &AtomicBool::default()).unwrap()
+    };
     let caged = fixed(&scene, 1e-5);
     let error = |norm| {
         let errors = errors(&caged, &fixed(&scene, 2e-5), Comparison::WindowMeans, 2e-3);
@@ -162,7 +163,7 @@ fn invariant_the_cage_of_the_misalignment_scene_is_measured() {
     // The cage falls on its land and strikes the pockets: its speed is a quantity of its own.
     let mean = |speeds: &[f64]| speeds.iter().sum::<f64>() / speeds.len() as f64;
     let apart = |run: &roulement_cli::cost::record::Record| {
-        run.samples.iter().map(|s| (s.cage_speed - mean(&s.orbital_speed)).abs()).fold(0.0, f64::max)
+        run.bearings[0].iter().map(|s| (s.cage_speed - mean(&s.orbital_speed)).abs()).fold(0.0, f64::max)
     };
     assert!(apart(&caged) > 0.1, "{}", apart(&caged));
     assert!(error(Norm::CageSpeed) > 0.0 && error(Norm::CageSpeed) != error(Norm::Orbit));
@@ -195,6 +196,7 @@ fn invariant_results_do_not_depend_on_threads_and_only_levers_that_were_asked_fo
     let mut scene = Scene::parse(SCENES[5].1).unwrap();
     scene.effects.cage = roulement::effects::cage::Settings::default();
     scene.load.duration.0 = 1e-3;
+    let scene = scene.into();
     let only = vec![Lever::StepCap, Lever::Level];
     let run = |threads| {
         let choice = Choice { only: only.clone(), threads, ..Choice::default() };
@@ -223,13 +225,13 @@ fn closed_form_the_reference_step_follows_the_bearing_and_not_the_rows() {
     let step = |name: &str, interval: &str| {
         let path = format!("{}/../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(path).unwrap();
-        let scene = Scene::edited(&text, [("load.output_interval", interval)]).unwrap();
+        let scene = Scene::edited(&text, [("load.output_interval", interval)]).unwrap().into();
         let [fine, coarse] = reference_steps(&scene);
         assert_eq!(coarse, 2.0 * fine);
         let settings = numerical_settings(&scene);
         let fixed = settings.iter().filter(|setting| setting.lever == Lever::FixedStep);
         assert!(
-            fixed.clone().count() > 3 && fixed.into_iter().all(|s| s.scene.solver.max_step.0 > 7.9 * fine)
+            fixed.clone().count() > 3 && fixed.into_iter().all(|s| s.scene.solver().max_step.0 > 7.9 * fine)
         );
         fine
     };
@@ -292,7 +294,7 @@ fn regression_goals_keep_their_wrench_error() {
 fn regression_goals_keep_their_wrench_error_on_all_smooth_scenes() {
     let mut smooth = 0;
     for (name, text) in SCENES {
-        let study = study(name, &Scene::parse(text).unwrap(), &ProgressBar::hidden()).unwrap();
+        let study = study(name, &Scene::parse(text).unwrap().into(), &ProgressBar::hidden()).unwrap();
         if study.comparison == Comparison::Pointwise {
             check_goals(&study);
             smooth += 1;
@@ -304,7 +306,7 @@ fn regression_goals_keep_their_wrench_error_on_all_smooth_scenes() {
 #[test]
 fn an_interrupted_study_keeps_the_runs_that_it_has() {
     let scene = Scene::parse(SCENES[0].1).unwrap();
-    let scene = Scene::edited(&scene.source, [("load.duration", "\"2 ms\"")]).unwrap();
+    let scene = Scene::edited(&scene.source, [("load.duration", "\"2 ms\"")]).unwrap().into();
     let choice = Choice { only: vec![Lever::StepCap], threads: 1, ..Choice::default() };
     let bar = ProgressBar::hidden();
     // Once the references are there.

@@ -148,7 +148,7 @@ fn independent(scene: &Scene, like: &Record) -> Record {
     let mut samples = vec![balls.sample(0.0, y.as_slice())];
     let mut step = 1e-7;
     let mut evaluations = 0;
-    for pair in like.samples.windows(2) {
+    for pair in like.bearings[0].windows(2) {
         let (from, to) = (pair[0].time, pair[1].time);
         // Interval by interval: the script's breakpoints are communication points, and no step crosses one.
         let mut solver = Dop853::from_param(
@@ -177,7 +177,7 @@ fn independent(scene: &Scene, like: &Record) -> Record {
         samples.push(balls.sample(to, y.as_slice()));
     }
     println!("DOP853: {evaluations} evaluations of the right-hand side");
-    Record { samples, ..like.clone() }
+    Record { bearings: vec![samples], ..like.clone() }
 }
 
 /// Quantities that are compared.
@@ -198,8 +198,9 @@ fn compare(scene: &Scene) -> [[f64; 2]; COMPARED.len()] {
     // Within a communication step we follow a cubic that meets the script at its ends: steps so short that it does not
     // matter.
     let communication = scene.load.output_interval.0 / 8.0;
-    let runs = reference_steps(scene).map(|step| {
-        record(&Setting { communication, ..Setting::fixed_step(scene, step) }, &AtomicBool::default())
+    let machine = scene.clone().into();
+    let runs = reference_steps(&machine).map(|step| {
+        record(&Setting { communication, ..Setting::fixed_step(&machine, step) }, &AtomicBool::default())
             .unwrap()
     });
     let truth = independent(scene, &runs[0]);

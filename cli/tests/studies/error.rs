@@ -6,10 +6,10 @@ use std::sync::OnceLock;
 use roulement::scene::{ErrorGoal, ErrorOf, Scene, Solver};
 use roulement::simulation::Simulation;
 use roulement::simulation::play::{Rows, play};
-use roulement_cli::error::{Difference, Estimate, Judgement, Lengths, Rounds, Run, Sample, sizes};
+use roulement_cli::error::{Course, Difference, Estimate, Judgement, Lengths, Rounds, Run, Sample, sizes};
 use roulement_cli::report::figures::Figures;
-use roulement_cli::report::means::Blocks;
-use roulement_cli::report::quantities::{COUNT, Parts, QUANTITIES};
+use roulement_cli::report::means::{Blocks, Means};
+use roulement_cli::report::quantities::{COUNT, Parts, QUANTITIES, Watched, of_bearing};
 
 use crate::common::{Scratch, edited};
 
@@ -41,18 +41,36 @@ fn column<'a>(table: &'a [(String, Vec<String>)], name: &str) -> &'a [String] {
 fn synthetic(solver: Solver, added: impl Fn(f64) -> f64) -> Run {
     let index = QUANTITIES.iter().position(|quantity| quantity.name == "friction power").unwrap();
     let mut outputs = Simulation::new(&edited("thrust", &[])).unwrap().outputs().clone();
-    let mut blocks = Blocks::new(Parts { cage: false, moving_outer: false }, 1.0);
+    let quantities = of_bearing(Parts { cage: false, moving_outer: false });
+    let mut blocks = Blocks::new(quantities.clone(), 1.0);
     let mut samples = Vec::new();
     for row in 0..=1000 {
         outputs.time = f64::from(row) * 1e-3;
         outputs.friction_power = 100.0 * (1.0 + added(outputs.time));
         blocks.push(&outputs);
-        let mut values = [1.0; COUNT];
+        let mut values = vec![1.0; COUNT];
         values[index] = outputs.friction_power;
         samples.push(Sample { time: outputs.time, values, largest_load: 1.0 });
     }
     let lengths = Lengths { pitch_radius: 1.0, ball_diameter: 0.1 };
-    Run { solver, cpu: 1.0, samples, means: blocks.means(), figures: Figures::default(), lengths }
+    run_of(solver, (quantities, lengths), samples, &blocks)
+}
+
+/// A run of a bearing of these quantities and lengths.
+fn run_of(
+    solver: Solver,
+    (quantities, lengths): (Vec<Watched>, Lengths),
+    samples: Vec<Sample>,
+    blocks: &Blocks,
+) -> Run {
+    let sizes = sizes(&samples, &quantities, lengths, 0.0);
+    let (name, means) = (String::new(), blocks.means());
+    let part = Course { name, quantities, samples, means, figures: Figures::default(), sizes };
+    Run { solver, cpu: 1.0, parts: vec![part] }
+}
+
+fn means_of(rounds: &Rounds) -> Means {
+    rounds.means().remove(0).unwrap()
 }
 
 fn goal(error: f64) -> Option<ErrorGoal> {
@@ -72,7 +90,7 @@ fn closed_form_rounds_end_where_the_error_of_order_two_is_below_the_goal() {
         let known = 3.0 * error_of(rounds.refinements() - 1);
         assert_eq!((rounds.judge(), rounds.refinements()), (Judgement::Done, needed), "{target}: {known}");
         assert!(known <= target && rounds.report().contains("met"), "{}", rounds.report());
-        let means = rounds.means().unwrap();
+        let means = means_of(&rounds);
         let error = means.find("friction power").unwrap().error.unwrap();
         assert!((error.mean / (100.0 * known) - 1.0).abs() < 0.1, "{error:?}");
         assert!((error.history.unwrap() / error.mean - 1.0).abs() < 1e-9);
@@ -123,7 +141,7 @@ fn closed_form_chaos_is_told_from_coarse_steps_and_has_an_interval() {
     for part in ["CHAOTIC          friction power", "NOT MET", "load.duration of about"] {
         assert!(report.contains(part), "{report}");
     }
-    let means = rounds.means().unwrap();
+    let means = means_of(&rounds);
     let power = means.find("friction power").unwrap();
     let error = power.error.unwrap();
     assert!((power.mean - 100.0).abs() < error.mean && error.mean > 2.0 && error.mean < 8.0, "{power:?}");
@@ -236,7 +254,7 @@ fn played(scene: &Scene, solver: Solver) -> (Run, [f64; 2]) {
     let bearing = &simulation.model().bearing;
     let lengths =
         Lengths { pitch_radius: 0.5 * bearing.pitch_diameter, ball_diameter: 2.0 * bearing.ball.radius };
-    let mut blocks = Blocks::new(Parts::of(&simulation), lengths.pitch_radius);
+    let mut blocks = Blocks::of_bearing(&simulation);
     let (mut samples, mut estimate) = (Vec::new(), Estimate::default());
     let rows = Rows::of(&simulation);
     let _: ControlFlow<()> = play(&mut simulation, rows, |simulation| {
@@ -246,7 +264,7 @@ fn played(scene: &Scene, solver: Solver) -> (Run, [f64; 2]) {
         ControlFlow::Continue(())
     })
     .unwrap();
-    let run = Run { solver, cpu: 0.0, samples, means: blocks.means(), figures: Figures::default(), lengths };
+    let run = run_of(solver, (of_bearing(Parts::of(&simulation)), lengths), samples, &blocks);
     (run, estimate.errors(&simulation).unwrap())
 }
 
@@ -336,7 +354,7 @@ fn invariant_a_run_up_through_its_resonance_keeps_its_means_and_says_what_blows_
     let mut rounds = Rounds::new(None, 2);
     rounds.push(run);
     rounds.push(half.clone());
-    let (measured, sizes) = (rounds.means().unwrap(), sizes(&half.samples, half.lengths));
+    let (measured, sizes) = (means_of(&rounds), &half.parts[0].sizes);
     let mut by_chance = 0;
     for (i, quantity) in QUANTITIES.iter().enumerate() {
         let Some(mean) = measured.find(quantity.name) else { continue };
@@ -386,7 +404,7 @@ fn closed_form_means_that_agree_by_chance_have_the_error_of_what_differs_now_and
     let mut rounds = Rounds::new(goal(0.1), 10);
     rounds.push(synthetic(Solver::default(), |_| 0.0));
     rounds.push(synthetic(Solver::default().refined(1), blows));
-    let means = rounds.means().unwrap();
+    let means = means_of(&rounds);
     let error = means.find("friction power").unwrap().error.unwrap().mean / 100.0;
     // Of eight groups of 62 rows four have 11 rows of a blow; divisions into 16 and 32 have narrower intervals.
     let expected = 2.365 * (4.0f64 / 7.0 / 8.0).sqrt() * 11.0 * 0.02 / 62.0;
@@ -395,7 +413,7 @@ fn closed_form_means_that_agree_by_chance_have_the_error_of_what_differs_now_and
     let mut rounds = Rounds::new(goal(0.1), 10);
     rounds.push(synthetic(Solver::default(), |_| 0.0));
     rounds.push(synthetic(Solver::default().refined(1), |_| 1e-3));
-    let error = rounds.means().unwrap().find("friction power").unwrap().error.unwrap().mean / 100.0;
+    let error = means_of(&rounds).find("friction power").unwrap().error.unwrap().mean / 100.0;
     assert!((error / 1e-3 - 1.0).abs() < 1e-6, "{error}");
 }
 

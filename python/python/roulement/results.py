@@ -16,8 +16,9 @@ class Results:
     """Histories of a run: arrays by name, with their units.
 
     `results["friction_power"]` is a history; `results["inner.force"]` has its components x, y, z as columns, and
-    `results["ball.inner.load"]` one for each ball. `results.time` [s] are the times of all rows, `results.summary` is what
-    `roulement run --json` prints.
+    `results["ball.inner.load"]` one for each ball. Those of a bearing on a shaft have its name before them:
+    `results.bearing("left")["ball.inner.load"]`, or `results["left.friction_power"]`. `results.time` [s] are the times of all rows,
+    `results.summary` is what `roulement run --json` prints.
     """
 
     def __init__(self, names, table, summary):
@@ -60,9 +61,20 @@ class Results:
         places = [self._places[of] for of in self.parts(name)]
         return self._table[:, places[0]] if name in self._places else self._table[:, places]
 
+    def bearing(self, name):
+        """The results of a bearing of a shaft by itself, as those of a bearing alone are."""
+        before = f"{name}."
+        own = [column for column in self.names if column.startswith(before)]
+        if name not in self.summary or not own:
+            raise KeyError(f"{name} is no bearing of this run, or has no columns in it")
+        names = [("time", self.units["time"])] + [(column[len(before):], self.units[column]) for column in own]
+        return Results(names, self._table[:, [0, *(self._places[column] for column in own)]], self.summary[name])
+
     def mean(self, quantity):
         """Mean of a quantity over the second half of the run with its interval at 95 %, drift and whether it has settled, as a
-        dictionary. Names are those of means.csv, such as `friction power`."""
+        dictionary. Names are those of means.csv, such as `friction power`; those of a shaft are those of its variables."""
+        if "means" not in self.summary:
+            return Results([("time", "s")], self._table[:, :1], self.summary["shaft"]).mean(quantity)
         for mean in self.summary["means"]["quantities"]:
             if mean["quantity"] == quantity:
                 return mean

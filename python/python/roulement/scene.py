@@ -1,4 +1,4 @@
-"""Scenes: a bearing, its load and what is simulated."""
+"""Scenes: a bearing, or a shaft with its bearings, its loads and what is simulated."""
 
 import json
 import os
@@ -10,8 +10,8 @@ from ._toml import flat, to_toml
 
 
 class Scene:
-    """A scene: a bearing, its load and what is simulated, as a scene file describes them. It does not change; `with_` gives
-    another one.
+    """A scene: a bearing, or a shaft with its bearings, its loads and what is simulated, as a scene file describes them. It does not
+    change; `with_` gives another one.
 
     Raises ValueError where a key or value is wrong, with the key, the value and the allowed range.
     """
@@ -49,6 +49,11 @@ class Scene:
         """Its title."""
         return self._native.title
 
+    @property
+    def bearings(self):
+        """Names of the bearings of a shaft; none of a bearing alone."""
+        return [name for name in self._native.bearings if name]
+
     def notes(self):
         """What its reader should know: defaults that were taken, values beyond any bearing."""
         return self._native.notes()
@@ -66,7 +71,8 @@ class Scene:
 
 def effects(scene):
     """Which effects of a scene are on, and which that are off would matter: a dictionary with `settings` by effect and
-    `estimates`, a list with `subject`, `standing`, `matters`, `value`, `threshold`, `unit`, `sentence` and what to `write`."""
+    `estimates`, a list with `subject`, `standing`, `matters`, `value`, `threshold`, `unit`, `sentence` and what to `write`. Of a shaft one
+    of each bearing, by its name."""
     return json.loads(scene._native.effects())
 
 
@@ -90,19 +96,15 @@ def find_libraries():
 
 
 def package(scene, path, library=None, name=None):
-    """Writes the FMI 2.0 package of a scene; returns its path.
+    """Writes the FMI 2.0 package of a scene, a bearing or a shaft with its bearings; returns its path.
 
     `library` is the shared library, or a list with one for each platform, that of this package if not given (`find_libraries`); `name`
     that of the model, of the file if not given.
     Raises OSError if a library is missing or of another platform.
     """
-    return _package(_native.package, scene._native, path, library, name)
-
-
-def _package(write, of, path, library, name):
     if library is None:
         library = find_libraries()
     elif isinstance(library, (str, os.PathLike)):
         library = [library]
-    write(of, Path(path), [Path(of) for of in library], name or Path(path).stem)
+    _native.package(scene._native, Path(path), [Path(of) for of in library], name or Path(path).stem)
     return Path(path)

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from . import _native
-from .scene import _package
+from .scene import Scene
+from .scene import package as write_package
 
 
 def reduce(mass, stiffness, interface, highest, gyroscopic=None):
@@ -100,7 +100,7 @@ def write(path, mass, stiffness, translations, stations, *, weights=None, gyrosc
 
 def package(file, path, library=None, name=None):
     """Writes the FMI 2.0 package of a shaft with its bearings from its file; returns its path. Options as of `roulement.package`."""
-    return _package(_native.package_shaft, Path(file), path, library, name)
+    return write_package(Scene.load(file), path, library, name)
 
 
 def write_ross(path, rotor, nodes, highest):

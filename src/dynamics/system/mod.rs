@@ -8,7 +8,7 @@ use super::equations::BearingStep;
 use super::{Boundary, StepFailure, Workspace, Worst};
 use crate::model::Model;
 use crate::model::state::{State, Statistics};
-use crate::model::structure::{StructureEnergies, StructureState};
+use crate::model::structure::{Spin, StructureEnergies, StructureState, Turning};
 use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::newton::{self, NewtonBuffers, NewtonWork};
@@ -164,12 +164,27 @@ impl Part<'_> {
 fn finished(one: &StructureStep<'_>, mut end: StructureState, step: &HhtStep) -> StructureState {
     let (before, after) = (&one.start.powers, &end.powers);
     let integral = |before: f64, after: f64| 0.5 * step.h * (before + after);
+    let input = integral(before.input, after.input) + spun_up(one, &end, step);
+    let energies = &one.start.energies;
     end.energies = StructureEnergies {
-        input: one.start.energies.input + integral(before.input, after.input),
-        bearings: one.start.energies.bearings + integral(before.bearings, after.bearings),
-        damping: one.start.energies.damping + integral(before.damping, after.damping),
+        input: energies.input + input,
+        worked: energies.worked + input.abs(),
+        bearings: energies.bearings + integral(before.bearings, after.bearings),
+        damping: energies.damping + integral(before.damping, after.damping),
         stored: one.model.stored(&end.coordinates, &end.rates, &end.spin),
-        at_start: one.start.energies.at_start,
+        at_start: energies.at_start,
     };
     end
+}
+
+/// \[J] what the trapezoidal rule misses of the work that a drive at a given speed does on the inertia of the spin: the torque jumps
+/// where the script of the speed bends, but its work is the change of `1/2 I W^2`.
+fn spun_up(one: &StructureStep<'_>, end: &StructureState, step: &HhtStep) -> f64 {
+    if one.model.turning != Turning::Given {
+        return 0.0;
+    }
+    let (before, after) = (&one.start.spin, &end.spin);
+    let power = |spin: &Spin| spin.acceleration * spin.speed;
+    let gained = 0.5 * (after.speed * after.speed - before.speed * before.speed);
+    one.model.polar_inertia * (gained - 0.5 * step.h * (power(before) + power(after)))
 }

@@ -21,6 +21,14 @@ pub struct StructureLoad {
     pub axial_moment: f64,
 }
 
+impl StructureLoad {
+    /// The same without what acts from outside.
+    #[must_use]
+    pub fn without_force(&self) -> Self {
+        Self { force: DVector::zeros(self.force.len()), axial_moment: 0.0, ..self.clone() }
+    }
+}
+
 /// Where a structure carries a race.
 #[derive(Clone, Debug)]
 pub struct Seat {

@@ -16,7 +16,9 @@ use crate::model::bodies::Race;
 use crate::scene::system::SystemScene;
 use crate::scene::{Giver, Group};
 use crate::simulation::inputs::Inputs;
-use crate::simulation::system::{Played, ShaftInputs, System, SystemError, drive_is_scripted};
+use crate::simulation::system::{
+    Played, ShaftInputs, System, SystemError, drive_is_scripted, shaft_follows_time,
+};
 
 /// Scripts of a bearing.
 const GROUPS: usize = Group::VARIANTS.len();
@@ -105,7 +107,7 @@ impl Simulated for SystemUnit {
     }
 
     fn follows_time(&self) -> bool {
-        self.system.follows_time()
+        shaft_follows_time(self.system.scene())
     }
 
     fn duration(&self) -> f64 {

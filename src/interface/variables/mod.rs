@@ -22,7 +22,7 @@ use crate::simulation::outputs::Outputs;
 use race_rows::RaceVariable;
 pub use race_setting::InputKind;
 use race_setting::RaceSetting;
-pub use shaft_rows::ShaftSource;
+pub use shaft_rows::{ShaftSource, quoted};
 pub use system::{SystemGroup, SystemVariables};
 
 /// FMI causality.

@@ -129,6 +129,8 @@ pub struct StructurePowers {
 pub struct StructureEnergies {
     /// Work of loads, weight and drive.
     pub input: f64,
+    /// The same of every step, whether it put in or took out.
+    pub worked: f64,
     /// Given to its bearings.
     pub bearings: f64,
     /// Lost to its damping.
@@ -143,6 +145,11 @@ impl StructureEnergies {
     /// \[J] put in, but neither given on, lost nor stored.
     pub fn unaccounted(&self) -> f64 {
         self.input - self.bearings - self.damping - (self.stored - self.at_start)
+    }
+
+    /// \[J] what errors of the energy are measured by: all that was put in and taken out since the start.
+    pub fn turned_over(&self) -> f64 {
+        self.worked.max(self.damping)
     }
 }
 

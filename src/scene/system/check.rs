@@ -170,8 +170,10 @@ pub fn solvers(bearings: &[MountedScene]) -> Result<(), SceneError> {
     let first = &bearings[0].scene.solver;
     for bearing in bearings {
         alone(bearing)?;
-        if bearing.scene.solver.alpha_f != first.alpha_f || bearing.scene.solver.level != first.level {
-            let why = "all bearings of a system are integrated together: give alpha_f and level in [solver] of the system";
+        let own = &bearing.scene.solver;
+        if own.alpha_f != first.alpha_f || own.level != first.level || own.goal != first.goal {
+            let why = "all bearings of a system are integrated together: give alpha_f, level and an error goal in [solver] of the \
+                       system";
             return Err(SceneError::conflict("solver", why));
         }
     }
@@ -186,12 +188,6 @@ fn alone(bearing: &MountedScene) -> Result<(), SceneError> {
         return refuse(
             "solver.level",
             "\"equilibrium\" is for a bearing without a shaft: a shaft with its bearings is dynamic",
-        );
-    }
-    if scene.solver.goal.is_some() {
-        return refuse(
-            "solver.accuracy",
-            "{ error = ... } is for a bearing without a shaft: give \"fast\", \"balanced\" or \"reference\", or max_step and tolerance",
         );
     }
     if scene.effects.frame.section.is_some() {

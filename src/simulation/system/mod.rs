@@ -1,7 +1,10 @@
 //! Several bearings on a shaft, in motion together: one implicit step for all.
 
 mod advance;
+mod critical_speeds;
+mod equilibrium;
 mod inputs;
+mod linear;
 mod loads;
 mod outputs;
 mod snapshot;
@@ -20,8 +23,11 @@ use crate::model::structure::{Carrier, StructureState};
 use crate::numerics::step_control::StepControl;
 use crate::scene::system::SystemScene;
 use crate::schema::numbers::four;
+pub use critical_speeds::{Campbell, CampbellRow, CriticalSpeed, campbell, largest_speed};
+pub use equilibrium::{BearingEquilibrium, MachineEquilibrium};
 use inputs::ShaftPaths;
 pub use inputs::{Played, ShaftInputs, drive_is_scripted};
+pub use linear::{Linear, ShaftMode, Whirl};
 pub use outputs::{HousingOutputs, PointOutput, SystemOutputs};
 pub use snapshot::SystemSnapshot;
 
@@ -67,6 +73,20 @@ pub enum SystemError {
         bearing: String,
         /// \[rad] tilt of its seat where the search ended.
         tilt: f64,
+    },
+    /// A preload that nothing holds.
+    #[error(
+        "bearing \"{name}\": mounting.preload asks for {} N, and {} N are left on a shaft without loads: nothing holds it; a preload needs \
+         a bearing that pushes against it, as two of opposite mounting.direction do",
+        four(.asked), four(.left)
+    )]
+    Preload {
+        /// The bearing.
+        name: String,
+        /// \[N] asked for.
+        asked: f64,
+        /// \[N] left.
+        left: f64,
     },
     /// A step end that is not a time after the present one.
     #[error("cannot advance from {from} s to {to} s")]
@@ -168,13 +188,6 @@ impl System {
         fit
     }
 
-    /// Does anything change by itself with time?
-    pub fn follows_time(&self) -> bool {
-        drive_is_scripted(&self.scene)
-            || self.scene.loads().any(|load| load.is_scripted())
-            || self.bearings.iter().any(|bearing| follows_time(&bearing.scene))
-    }
-
     /// What the shaft does.
     pub fn outputs(&self) -> &SystemOutputs {
         &self.outputs
@@ -184,6 +197,13 @@ impl System {
     fn of_bearing(&self, index: usize, source: SimulationError) -> SystemError {
         SystemError::Bearing { name: self.scene.bearings[index].name.clone(), source }
     }
+}
+
+/// Does anything change by itself with time?
+pub fn shaft_follows_time(scene: &SystemScene) -> bool {
+    drive_is_scripted(scene)
+        || scene.loads().any(|load| load.is_scripted())
+        || scene.bearings.iter().any(|bearing| follows_time(&bearing.scene))
 }
 
 /// Positions of all stations of a shaft \[m]: bearings, then loads, points, discs and gears.

@@ -58,6 +58,7 @@ impl System {
             move |source: SimulationError| SystemError::Bearing { name, source }
         };
         let mut bearings = vec![];
+        let mut asked = vec![];
         let mut joints = vec![];
         let mut seated = vec![0; carriers.len()];
         for (index, mounted) in scene.bearings.iter().enumerate() {
@@ -65,7 +66,8 @@ impl System {
             if let Some((_, inputs)) = given {
                 bearing.set_inputs(inputs[index]);
             }
-            let offset = preload(mounted, &bearing.model).map_err(inside(mounted))?;
+            let Preloaded { offset, force } = preload(mounted, &bearing.model).map_err(inside(mounted))?;
+            asked.push(force);
             let housing = scene.housing_of(index).map(|housing| (Race::Outer, housing + 1, 0.0));
             for (race, structure, offset) in [(Race::Inner, 0, offset)].into_iter().chain(housing) {
                 let station = &carriers[structure].stations[seated[structure]];
@@ -101,6 +103,7 @@ impl System {
             friction: vec![0.0; scene.bearings.len()],
         };
         statics.solve(&mut states)?;
+        statics.check_preloads(&asked, &states)?;
         statics.initialise(&states)?;
         // Housings feel the friction torque of their bearings too, which those say that are in balance.
         if carriers.len() > 1 {
@@ -180,18 +183,37 @@ fn at_rest(structure: &Structure, spin: Spin) -> StructureState {
     }
 }
 
-/// \[m] axial way of a bearing's inner race by its preload, along the bearing's x axis.
-fn preload(mounted: &MountedScene, model: &Model) -> Result<f64, SimulationError> {
+/// A preload of a bearing.
+struct Preloaded {
+    /// \[m] axial way of its inner race along its x axis.
+    offset: f64,
+    /// \[N] axial force that it takes while its races are held there.
+    force: f64,
+}
+
+/// The preload of a bearing.
+fn preload(mounted: &MountedScene, model: &Model) -> Result<Preloaded, SimulationError> {
     let preload = mounted.mounting.preload;
-    let Some(force) = preload.force else {
-        return Ok(preload.displacement.map_or(0.0, |way| way.0));
+    let under = |given| {
+        let mut problem = EquilibriumInput::from_scene(&mounted.scene, Gyroscopic::Friction);
+        problem.conditions = [Prescribed::Motion(0.0); 5];
+        problem.conditions[0] = given;
+        (problem.inner_speed, problem.outer_speed) = (0.0, 0.0);
+        problem.frame = Default::default();
+        equilibrium::solve(model, &problem)
     };
-    let mut problem = EquilibriumInput::from_scene(&mounted.scene, Gyroscopic::Friction);
-    problem.conditions = [Prescribed::Motion(0.0); 5];
-    problem.conditions[0] = Prescribed::Load(force.0);
-    (problem.inner_speed, problem.outer_speed) = (0.0, 0.0);
-    problem.frame = Default::default();
-    Ok(equilibrium::solve(model, &problem)?.displacement[0])
+    Ok(match (preload.force, preload.displacement) {
+        (Some(force), _) => {
+            let offset = under(Prescribed::Load(force.0))?.displacement[0];
+            Preloaded { offset, force: force.0 }
+        }
+        // What cannot be solved for held races is not judged.
+        (None, Some(way)) => {
+            let force = under(Prescribed::Motion(way.0)).map_or(0.0, |solution| solution.load[0]);
+            Preloaded { offset: way.0, force }
+        }
+        (None, None) => Preloaded { offset: 0.0, force: 0.0 },
+    })
 }
 
 /// States of the structures where a run starts, with accelerations under what the bearings do.

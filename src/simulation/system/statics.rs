@@ -22,6 +22,8 @@ const ROUNDED: f64 = 1e-6;
 const NEAR: f64 = 1e-4;
 /// [-] longest step over the smallest ball diameter.
 const LONGEST_STEP: f64 = 0.01;
+/// [-] part of a preload below which it is gone.
+const VANISHED: f64 = 0.01;
 /// \[rad] tilt of a seat that no housing is meant to have: ball bearings take less than a half of it.
 const FAR: f64 = 0.01;
 /// Most steps.
@@ -137,7 +139,7 @@ impl Statics<'_> {
     }
 
     /// First coordinate of each structure, and their number.
-    fn first(&self) -> Vec<usize> {
+    pub fn first(&self) -> Vec<usize> {
         self.carriers.iter().fold(vec![0], |mut first, one| {
             first.push(first[first.len() - 1] + one.structure.size());
             first
@@ -212,29 +214,99 @@ impl Statics<'_> {
                     whole[(row(i), row(k))] = matrix[(i, k)];
                 }
             }
-            // Motion of the inner race against the outer one, by all coordinates.
-            let mut relative = Map::zeros(size);
             for Joint { race, structure, seat, .. } in
                 self.joints.iter().filter(|joint| joint.bearing == index)
             {
-                let (sign, on_race) = match race {
-                    Race::Inner => (1.0, -held),
+                let on_race = match race {
+                    Race::Inner => -held,
                     Race::Outer => {
                         let moment = held.fixed_rows::<3>(3) + arm.cross(&held.fixed_rows::<3>(0));
                         let turning = Vector3::x() * self.friction[index];
-                        (-1.0, stack(&held.fixed_rows::<3>(0).into_owned(), &(moment + turning)))
+                        stack(&held.fixed_rows::<3>(0).into_owned(), &(moment + turning))
                     }
                 };
                 let own = self.carriers[*structure].structure.size();
                 seat.add_force(&on_race, &mut residual.rows_mut(first[*structure], own));
-                relative += seat.spread(size, first[*structure]) * sign;
             }
+            let relative = self.relative(index, &first);
             stiffness += relative.tr_mul(&(whole * &relative));
         }
         if let Some(turn) = self.turn() {
             residual[turn] = 0.0;
         }
         Ok(Trial { residual, stiffness, force })
+    }
+
+    /// Motion of a bearing's inner race against its outer one, in the bearing's frame, by all coordinates; with the first one of each
+    /// structure, and the end.
+    fn relative(&self, bearing: usize, first: &[usize]) -> Map {
+        let size = first[first.len() - 1];
+        let joints = self.joints.iter().filter(|joint| joint.bearing == bearing);
+        joints.fold(Map::zeros(size), |relative, Joint { race, structure, seat, .. }| {
+            let sign = if *race == Race::Inner { 1.0 } else { -1.0 };
+            relative + seat.spread(size, first[*structure]) * sign
+        })
+    }
+
+    /// Stiffness of all together about where the structures are.
+    pub fn stiffness(&mut self, states: &[StructureState]) -> Result<DMatrix<f64>, SystemError> {
+        self.evaluate(states).map(|trial| trial.stiffness)
+    }
+
+    /// What a matrix of each bearing, of forces on its inner race by motion of that against the outer one, is of all coordinates.
+    pub fn spread(&self, of_bearings: &[Matrix6<f64>]) -> DMatrix<f64> {
+        let first = self.first();
+        let size = first[first.len() - 1];
+        let mut whole = DMatrix::zeros(size, size);
+        for (index, own) in of_bearings.iter().enumerate() {
+            let relative = self.relative(index, &first);
+            whole += relative.tr_mul(&(own * &relative));
+        }
+        whole
+    }
+
+    /// Refuses preloads \[N] that nothing holds: of which nothing is left, on a shaft that no load takes it from either.
+    pub fn check_preloads(&mut self, asked: &[f64], states: &[StructureState]) -> Result<(), SystemError> {
+        if self.vanished(asked, states)?.is_none() {
+            return Ok(());
+        }
+        let unloaded: Vec<StructureLoad> = self.loads.iter().map(StructureLoad::without_force).collect();
+        let mut unloaded = Statics {
+            loads: &unloaded,
+            bearings: &mut *self.bearings,
+            friction: vec![0.0; asked.len()],
+            ..*self
+        };
+        let mut rest = states.to_vec();
+        // One that is not held axially at all goes away under any preload.
+        let solved = unloaded.solve(&mut rest);
+        let left = solved.and_then(|()| unloaded.vanished(asked, &rest));
+        match left {
+            Ok(Some((index, left))) => Err(SystemError::Preload {
+                name: self.scene.bearings[index].name.clone(),
+                asked: asked[index],
+                left,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// A bearing that asks for a preload \[N] of which next to nothing is left, and what is \[N].
+    fn vanished(
+        &mut self,
+        asked: &[f64],
+        states: &[StructureState],
+    ) -> Result<Option<(usize, f64)>, SystemError> {
+        self.place_races(states);
+        for (index, asked) in asked.iter().enumerate().filter(|(_, asked)| **asked > 0.0) {
+            let bearing = &mut self.bearings[index];
+            let held = held_load(&bearing.scene, &bearing.model, &mut bearing.inputs, self.time);
+            let left = held.map_err(|source| self.of_bearing(index, source))?.0[0].abs();
+            if left < VANISHED * asked {
+                return Ok(Some((index, left)));
+            }
+        }
+        Ok(None)
     }
 
     /// Starts the bearings with their races where the structures are.

@@ -1,19 +1,19 @@
-//! What is gathered of a run row by row, whoever plays it: means, spectrum, energy, limits, and what its error is told from.
+//! What is gathered of a bearing in a run: means, spectrum, energy, limits, and what its error is told from.
 
 use roulement::model::bodies::Race;
 use roulement::simulation::Simulation;
 
-use crate::error::{Estimate, Lengths, Run, Sample};
+use crate::error::{Course, Estimate, Lengths, Sample, sizes};
 use crate::report::energy::EnergyWatch;
 use crate::report::figures::Figures;
 use crate::report::limits::Limits;
 use crate::report::means::{Blocks, Means};
-use crate::report::quantities::Parts;
+use crate::report::quantities::{Parts, of_bearing};
 use crate::report::spectrum::{Recorder, Spectrum};
 use crate::report::thinned::Thinned;
 
-/// Gathers while a run is played.
-pub struct Watch {
+/// Gathers while a bearing runs.
+pub struct BearingWatch {
     blocks: Blocks,
     spectrum: Option<Recorder>,
     energy: EnergyWatch,
@@ -22,8 +22,8 @@ pub struct Watch {
     samples: Thinned<Sample>,
 }
 
-/// What was gathered of a run.
-pub struct Seen {
+/// What was gathered of a bearing.
+pub struct BearingSeen {
     /// Means over the second half.
     pub means: Option<Means>,
     /// Spectrum of its second half, where the scene asks for one.
@@ -38,11 +38,11 @@ pub struct Seen {
     samples: Vec<Sample>,
 }
 
-impl Watch {
+impl BearingWatch {
     /// Of a simulation that has not been played yet.
     pub fn of(simulation: &Simulation) -> Self {
         Self {
-            blocks: Blocks::new(Parts::of(simulation), 0.5 * simulation.model().bearing.pitch_diameter),
+            blocks: Blocks::of_bearing(simulation),
             spectrum: Recorder::of(simulation),
             energy: EnergyWatch::default(),
             limits: Limits::default(),
@@ -65,8 +65,8 @@ impl Watch {
     }
 
     /// All of it, at the end.
-    pub fn finish(self) -> Seen {
-        Seen {
+    pub fn finish(self) -> BearingSeen {
+        BearingSeen {
             means: self.blocks.means(),
             spectrum: self.spectrum.and_then(Recorder::finish),
             energy: self.energy,
@@ -77,7 +77,7 @@ impl Watch {
     }
 }
 
-impl Seen {
+impl BearingSeen {
     /// Figures of the summary of a run that ended so.
     pub fn figures(&self, simulation: &Simulation) -> Figures {
         Figures::of(simulation, self.means.as_ref(), &self.limits, &self.energy)
@@ -85,8 +85,6 @@ impl Seen {
 
     /// What whoever reads results of this run should know, a sentence each: its summary and its notes say the same.
     pub fn warnings(&self, simulation: &Simulation) -> Vec<String> {
-        let pressure = simulation.scene().pressure_note(self.limits.peak_pressure);
-        let pressure = pressure.map(|note| note.trim_start_matches("warning: ").to_string());
         let of_race = |race: Race| {
             let share = self.limits.over_shoulders[race as usize];
             (share > 0.0).then(|| {
@@ -94,21 +92,34 @@ impl Seen {
             })
         };
         let shoulders = Race::BOTH.into_iter().filter_map(of_race);
-        pressure.into_iter().chain(shoulders).chain(self.energy.warning(simulation)).collect()
+        self.told(simulation).into_iter().chain(shoulders).chain(self.energy.warning(simulation)).collect()
     }
 
-    /// What is kept for comparison with other runs, with the CPU time \[s] of this one; its rows move there.
-    pub fn take_comparable(&mut self, simulation: &Simulation, cpu: f64) -> Run {
-        let bearing = &simulation.model().bearing;
-        let lengths =
-            Lengths { pitch_radius: 0.5 * bearing.pitch_diameter, ball_diameter: 2.0 * bearing.ball.radius };
-        Run {
-            solver: simulation.scene().solver,
-            cpu,
-            samples: std::mem::take(&mut self.samples),
+    /// The same, but for what its summary says: the pressure, and what its life leaves out.
+    pub fn told(&self, simulation: &Simulation) -> Vec<String> {
+        let pressure = simulation.scene().pressure_note(self.limits.peak_pressure);
+        let life = simulation.outputs().life.and_then(|life| life.warning());
+        let bare = |note: String| note.trim_start_matches("warning: ").to_string();
+        pressure.into_iter().chain(life).map(bare).collect()
+    }
+
+    /// What is kept for comparison with other runs, under the name of the bearing; its rows move there.
+    pub fn take_course(&mut self, name: &str, simulation: &Simulation) -> Course {
+        let quantities = of_bearing(Parts::of(simulation));
+        let samples = std::mem::take(&mut self.samples);
+        Course {
+            name: name.to_string(),
+            sizes: sizes(&samples, &quantities, lengths(simulation), 0.0),
+            quantities,
+            samples,
             means: self.means.clone(),
             figures: self.figures(simulation),
-            lengths,
         }
     }
+}
+
+/// Lengths of a bearing.
+pub fn lengths(simulation: &Simulation) -> Lengths {
+    let bearing = &simulation.model().bearing;
+    Lengths { pitch_radius: 0.5 * bearing.pitch_diameter, ball_diameter: 2.0 * bearing.ball.radius }
 }

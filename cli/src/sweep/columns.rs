@@ -1,0 +1,98 @@
+//! Columns that are chosen for the summary, of bearings and of a shaft.
+
+use roulement::interface::variables::{Causality, Source, SystemVariables, Variable};
+use roulement::scene::machine::MachineScene;
+use roulement::simulation::machine::Machine;
+
+use super::extremes::{Counted, Gathered, OfColumn};
+use crate::report::results::{Choice, Columns, ResultsError, fits};
+
+/// Columns that are chosen of each bearing, by the names that its own table has: those that begin with its name, or with `*`; of a
+/// bearing alone, all of them.
+fn of_bearings(scene: &MachineScene, chosen: &[String]) -> Vec<Vec<String>> {
+    let of = |name: &str| -> Vec<String> {
+        if name.is_empty() {
+            return chosen.to_vec();
+        }
+        let own = |pattern: &String| {
+            let (bearing, column) = pattern.split_once('.')?;
+            fits(name, bearing).then(|| column.to_string())
+        };
+        chosen.iter().filter_map(own).collect()
+    };
+    scene.bearings().into_iter().map(|(name, _)| of(name)).collect()
+}
+
+/// Is all there that is chosen?
+///
+/// # Errors
+/// If a column is not there.
+pub fn check(scene: &MachineScene, chosen: &[String]) -> Result<(), ResultsError> {
+    for ((_, bearing), columns) in scene.bearings().into_iter().zip(of_bearings(scene, chosen)) {
+        Columns::new(bearing, &Choice { columns, ..Choice::default() })?;
+    }
+    let Some(shaft) = scene.shaft() else { return Ok(()) };
+    let known = |pattern: &str| {
+        pattern
+            .split_once('.')
+            .is_some_and(|(bearing, _)| shaft.bearings.iter().any(|own| fits(&own.name, bearing)))
+    };
+    match chosen.iter().find(|pattern| !known(pattern)) {
+        Some(pattern) => Err(ResultsError::Column(pattern.clone())),
+        None => Ok(()),
+    }
+}
+
+/// What is gathered of chosen columns of a machine: those of bearings, and all of a shaft.
+pub struct GatheredMachine {
+    /// Of every bearing.
+    pub bearings: Vec<Gathered>,
+    /// Outputs of the shaft and its housings.
+    pub shaft: Vec<OfColumn>,
+    variables: Option<SystemVariables>,
+    /// Their references.
+    references: Vec<usize>,
+    /// Rows that means are over.
+    pub counted: Counted,
+}
+
+impl GatheredMachine {
+    /// Of a run with so many rows, that of the start included.
+    ///
+    /// # Errors
+    /// If a column is not there.
+    pub fn new(
+        scene: &MachineScene,
+        machine: &Machine,
+        rows: u64,
+        chosen: &[String],
+    ) -> Result<Self, ResultsError> {
+        let bearings = machine.bearings().zip(of_bearings(scene, chosen));
+        let bearings = bearings.map(|((_, bearing), columns)| Gathered::new(bearing, rows, &columns));
+        let variables = machine.shaft().map(SystemVariables::new);
+        let rows_of = || variables.iter().flat_map(|variables| variables.rows().iter().enumerate());
+        let is_output =
+            |row: &Variable| matches!(row.source, Source::Shaft(_)) && row.causality == Causality::Output;
+        let outputs = || rows_of().filter(|(_, row)| is_output(row));
+        Ok(Self {
+            bearings: bearings.collect::<Result<_, _>>()?,
+            shaft: outputs().map(|(_, row)| OfColumn::new(&row.name, row.unit.name)).collect(),
+            references: outputs().map(|(reference, _)| reference).collect(),
+            variables,
+            counted: Counted::new(rows),
+        })
+    }
+
+    /// Takes a row.
+    pub fn push(&mut self, machine: &Machine) {
+        for (gathered, (_, bearing)) in self.bearings.iter_mut().zip(machine.bearings()) {
+            gathered.push(bearing);
+        }
+        if let (Some(variables), Some(system)) = (&self.variables, machine.shaft()) {
+            for (column, reference) in self.shaft.iter_mut().zip(&self.references) {
+                column.push(variables.value(*reference, system), self.counted.counts());
+            }
+        }
+        self.counted.next();
+    }
+}

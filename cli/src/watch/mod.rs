@@ -1,0 +1,111 @@
+//! What is gathered of a run row by row, whoever plays it: of every bearing, and of the shaft with its housings where there is one.
+
+mod bearing;
+mod shaft;
+
+use roulement::simulation::Simulation;
+use roulement::simulation::machine::Machine;
+
+pub use bearing::{BearingSeen, BearingWatch};
+pub use shaft::{ShaftSeen, ShaftWatch};
+
+use crate::error::Run;
+use crate::report::figures::Figures;
+use crate::report::means::Means;
+
+/// Gathers while a machine runs.
+pub struct Watch {
+    bearings: Vec<BearingWatch>,
+    shaft: Option<ShaftWatch>,
+}
+
+/// What was gathered of a run.
+pub struct Seen {
+    /// Of every bearing.
+    pub bearings: Vec<BearingSeen>,
+    /// Of the shaft with its housings.
+    pub shaft: Option<ShaftSeen>,
+}
+
+impl Watch {
+    /// Of a machine that has not been played yet.
+    pub fn of(machine: &Machine) -> Self {
+        Self {
+            bearings: machine.bearings().map(|(_, bearing)| BearingWatch::of(bearing)).collect(),
+            shaft: machine.shaft().map(ShaftWatch::of),
+        }
+    }
+
+    /// Takes a row.
+    pub fn push(&mut self, machine: &Machine) {
+        for ((_, bearing), watch) in machine.bearings().zip(&mut self.bearings) {
+            watch.push(bearing);
+        }
+        if let (Some(watch), Some(system)) = (&mut self.shaft, machine.shaft()) {
+            watch.push(system);
+        }
+    }
+
+    /// All of it, at the end.
+    pub fn finish(self) -> Seen {
+        Seen {
+            bearings: self.bearings.into_iter().map(BearingWatch::finish).collect(),
+            shaft: self.shaft.map(ShaftWatch::finish),
+        }
+    }
+}
+
+impl Seen {
+    /// Figures of the summary of every bearing, then of the shaft.
+    pub fn figures(&self, machine: &Machine) -> Vec<Figures> {
+        let bearings =
+            machine.bearings().zip(&self.bearings).map(|((_, bearing), seen)| seen.figures(bearing));
+        let shaft = self.shaft.as_ref().zip(machine.shaft()).map(|(seen, system)| seen.figures(system));
+        bearings.chain(shaft).collect()
+    }
+
+    /// What whoever reads results of this run should know, a sentence each, with the name of the bearing before it.
+    pub fn warnings(&self, machine: &Machine) -> Vec<String> {
+        let named = |((name, bearing), seen): ((&str, &Simulation), &BearingSeen)| {
+            let before = if name.is_empty() { String::new() } else { format!("bearing {name}: ") };
+            seen.warnings(bearing).into_iter().map(move |warning| format!("{before}{warning}"))
+        };
+        let bearings = machine.bearings().zip(&self.bearings).flat_map(named);
+        let shaft = self.shaft.as_ref().zip(machine.shaft()).map(|(seen, system)| seen.warnings(system));
+        bearings.chain(shaft.into_iter().flatten()).collect()
+    }
+
+    /// What is told of a run beside its summary, a sentence each: the same, but for what summaries of bearings say themselves.
+    pub fn told(&self, machine: &Machine) -> Vec<String> {
+        let named = |((name, bearing), seen): ((&str, &Simulation), &BearingSeen)| {
+            let before = if name.is_empty() { String::new() } else { format!("bearing {name}: ") };
+            seen.told(bearing).into_iter().map(move |told| format!("warning: {before}{told}"))
+        };
+        let bearings = machine.bearings().zip(&self.bearings).flat_map(named);
+        let shaft = self.shaft.as_ref().zip(machine.shaft()).map(|(seen, system)| seen.warnings(system));
+        let shaft = shaft.into_iter().flatten().map(|warning| format!("warning: {warning}"));
+        bearings.chain(shaft).collect()
+    }
+
+    /// Puts means with their errors, of every bearing and then of the shaft, in the place of those that it has.
+    pub fn set_means(&mut self, means: Vec<Option<Means>>) {
+        let mut means = means.into_iter();
+        self.bearings.iter_mut().zip(&mut means).for_each(|(seen, means)| seen.means = means);
+        self.shaft.iter_mut().zip(means).for_each(|(seen, means)| seen.means = means);
+    }
+
+    /// What is kept for comparison with other runs, with the CPU time \[s] of this one; its rows move there.
+    pub fn take_comparable(&mut self, machine: &Machine, cpu: f64) -> Run {
+        let bearings = machine.bearings().zip(&mut self.bearings);
+        let mut parts: Vec<_> =
+            bearings.map(|((name, bearing), seen)| seen.take_course(name, bearing)).collect();
+        if let (Some(seen), Some(system)) = (&mut self.shaft, machine.shaft()) {
+            parts.push(seen.take_course(system));
+        }
+        let solver = match machine {
+            Machine::Bearing(bearing) => bearing.scene().solver,
+            Machine::Shaft(system) => system.scene().solver(),
+        };
+        Run { solver, cpu, parts }
+    }
+}

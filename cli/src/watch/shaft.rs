@@ -1,0 +1,130 @@
+//! What is gathered of a shaft with its housings in a run: means, energy, and rows that its error is told from.
+
+use roulement::model::structure::StructureEnergies;
+use roulement::simulation::system::System;
+
+use super::bearing::lengths;
+use crate::error::{Course, Lengths, Sample, sizes};
+use crate::report::energy::TOLERANCE;
+use crate::report::figures::Figures;
+use crate::report::means::{Blocks, Means};
+use crate::report::quantities::{ShaftQuantities, Watched};
+use crate::report::shaft::creeping;
+use crate::report::thinned::Thinned;
+
+/// [-] of the largest force in a bearing, at its pitch radius: a torque of no account.
+const NOTHING: f64 = 1e-6;
+
+/// Gathers while a shaft runs.
+pub struct ShaftWatch {
+    quantities: ShaftQuantities,
+    blocks: Blocks,
+    samples: Thinned<Sample>,
+    /// \[N] largest load of a ball of any bearing.
+    largest_load: f64,
+}
+
+/// What was gathered of a shaft.
+pub struct ShaftSeen {
+    /// Means over the second half.
+    pub means: Option<Means>,
+    watched: Vec<Watched>,
+    samples: Vec<Sample>,
+    largest_load: f64,
+}
+
+impl ShaftWatch {
+    /// Of a shaft that has not been played yet.
+    pub fn of(system: &System) -> Self {
+        let quantities = ShaftQuantities::of(system);
+        let blocks = Blocks::new(quantities.watched(), lengths_of(system).pitch_radius);
+        Self { quantities, blocks, samples: Thinned::default(), largest_load: 0.0 }
+    }
+
+    /// Takes a row.
+    pub fn push(&mut self, system: &System) {
+        let values = self.quantities.values(system);
+        self.blocks.push_values(system.time(), &values);
+        self.samples.push(Sample { time: system.time(), values, largest_load: 0.0 });
+        let loads = system.bearings().flat_map(|(_, bearing)| bearing.outputs().loads());
+        self.largest_load = loads.fold(self.largest_load, f64::max);
+    }
+
+    /// All of it, at the end.
+    pub fn finish(self) -> ShaftSeen {
+        ShaftSeen {
+            means: self.blocks.means(),
+            watched: self.quantities.watched(),
+            samples: self.samples.finish(),
+            largest_load: self.largest_load,
+        }
+    }
+}
+
+impl ShaftSeen {
+    /// Figures of the summary of a run that ended so: the variables at the end, energies, and means.
+    pub fn figures(&self, system: &System) -> Figures {
+        let quantities = ShaftQuantities::of(system);
+        let mut figures = Figures::default();
+        for (watched, value) in quantities.watched().into_iter().zip(quantities.values(system)) {
+            figures.set(format!("end {}", watched.name), value);
+        }
+        for (name, energies) in energies(system) {
+            let mut set = |what: &str, value| figures.set(format!("{name} {what}"), value);
+            set("put in", energies.input);
+            set("to bearings", energies.bearings);
+            set("damped", energies.damping);
+            set("balance", energies.unaccounted());
+        }
+        if let Some(means) = &self.means {
+            figures.add_means(means);
+        }
+        figures
+    }
+
+    /// What whoever reads results of this run should know, a sentence each.
+    pub fn warnings(&self, system: &System) -> Vec<String> {
+        let unaccounted = |(name, energies): (String, &StructureEnergies)| {
+            let (left, all) = (energies.unaccounted(), energies.turned_over());
+            (left.abs() > TOLERANCE * all).then(|| {
+                format!(
+                    "energy of the {name} does not close to 1 %: {left:.3e} J, {:.2} % of what was put in, given to bearings or lost; \
+                     lower solver.max_step = {:e} s",
+                    100.0 * left / all,
+                    system.scene().solver().max_step.0
+                )
+            })
+        };
+        creeping(system).into_iter().chain(energies(system).filter_map(unaccounted)).collect()
+    }
+
+    /// What is kept for comparison with other runs; its rows move there.
+    pub fn take_course(&mut self, system: &System) -> Course {
+        let samples = std::mem::take(&mut self.samples);
+        let lengths = lengths_of(system);
+        let torque = NOTHING * self.largest_load * lengths.pitch_radius;
+        Course {
+            name: String::new(),
+            sizes: sizes(&samples, &self.watched, lengths, torque),
+            quantities: self.watched.clone(),
+            samples,
+            means: self.means.clone(),
+            figures: self.figures(system),
+        }
+    }
+}
+
+/// Energies of the shaft and of every housing, by name.
+fn energies(system: &System) -> impl Iterator<Item = (String, &StructureEnergies)> {
+    let outputs = system.outputs();
+    let housings = system.scene().housings.iter().zip(&outputs.housings);
+    let housings = housings.map(|(housing, own)| (format!("housing {}", housing.name), &own.energies));
+    [("shaft".to_string(), &outputs.energies)].into_iter().chain(housings)
+}
+
+/// Those of the smallest bearing.
+fn lengths_of(system: &System) -> Lengths {
+    let all = system.bearings().map(|(_, bearing)| lengths(bearing));
+    let smaller = |a: Lengths, b: Lengths| if b.pitch_radius < a.pitch_radius { b } else { a };
+    all.reduce(smaller).unwrap_or(Lengths { pitch_radius: 1.0, ball_diameter: 1.0 })
+}

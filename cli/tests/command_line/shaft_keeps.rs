@@ -1,0 +1,182 @@
+//! What a bearing alone has, a shaft with its bearings has too: measured errors, one record and page, effects, fields, tables of sweeps, costs.
+
+use super::sweep::{columns, good, numbers};
+use super::*;
+
+/// The pinion that is shipped, for 2 ms, with a load that rises: something to be wrong about.
+fn pinion() -> String {
+    let text = std::fs::read_to_string(scene("shafts/pinion")).unwrap();
+    let short = text
+        .replace("\"20 ms\"", "\"2 ms\"")
+        .replace("\"100 us\"", "\"20 us\"")
+        .replace("1260.5]", "[[0, 1260], [\"0.5 ms\", 1260], [\"0.6 ms\", 1900]]]");
+    assert!(short.contains("1900") && short.contains("\"2 ms\""));
+    short
+}
+
+/// A scene in a file, run with options; what it prints and says.
+fn run(scratch: &Scratch, text: &str, to: &str, options: &[&str]) -> (Option<i32>, String, String) {
+    let file = scratch.path(&format!("{to}.toml"));
+    std::fs::write(&file, text).unwrap();
+    let output = roulement(&[&["run", &file, "-o", &scratch.path(to)], options].concat());
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn independent_reference_errors_of_a_shaft_and_its_bearings_are_below_their_bars() {
+    let scratch = Scratch::new("shaft-error");
+    let coarse = pinion() + "[solver]\naccuracy = \"fast\"\n";
+    let (code, said, told) = run(&scratch, &coarse, "measured", &["--error", "2e-3", "--rounds", "9"]);
+    assert_eq!(code, Some(0), "{said}{told}");
+    assert!(said.contains("error goal       2e-3 of means and histories: met"), "{said}");
+    assert!(said.contains("round 2") && !said.contains("not measured"), "{said}");
+    // Seats, torque and losses have their bars.
+    for (line, bars) in [("shaft            ", 2), ("left             shaft at", 3), ("mean losses", 2)] {
+        let found =
+            said.lines().find(|other| other.contains(line)).unwrap_or_else(|| panic!("{line}: {said}"));
+        assert_eq!(found.matches("(+- ").count(), bars, "{found}");
+    }
+    // The same goal in the file.
+    let goal = pinion() + "[solver]\naccuracy = { error = 2e-3 }\n";
+    let (code, said, _) = run(&scratch, &goal, "goal", &["--rounds", "9"]);
+    assert!(code == Some(0) && said.contains("error goal       2e-3"), "{said}");
+    // Against steps that no round took.
+    let fixed = pinion() + "[solver]\nmax_step = \"0.4 us\"\ninitial_step = \"0.4 us\"\ntolerance = 1e-2\n";
+    assert_eq!(run(&scratch, &fixed, "exact", &[]).0, Some(0));
+    let mut compared = 0;
+    for part in ["", "left/", "right/"] {
+        let table = |run: &str| columns(&scratch.read(&format!("{run}/{part}means.csv")));
+        let (measured, exact) = (table("measured"), table("exact"));
+        assert_eq!(measured["quantity"], exact["quantity"]);
+        let [means, bars, truth] =
+            [&measured["mean"], &measured["error"], &exact["mean"]].map(|column| numbers(column));
+        // What is 0 but for the rounding of the others of its kind.
+        let units = &measured["unit"];
+        let rounding = |i: usize| {
+            let alike = (0..truth.len()).filter(|&j| units[j] == units[i]).map(|j| truth[j].abs());
+            1e-9 * alike.fold(0.0, f64::max)
+        };
+        for i in 0..means.len() {
+            let off = (means[i] - truth[i]).abs();
+            let name = &measured["quantity"][i];
+            assert!(off <= bars[i] + rounding(i), "{part}{name}: {off:e}, bar {:e}", bars[i]);
+            compared += 1;
+        }
+    }
+    assert!(compared > 40, "{compared}");
+    // A goal that is not met has the same exit code as that of a bearing.
+    let (code, said, _) = run(&scratch, &coarse, "unmet", &["--error", "1e-6", "--rounds", "2"]);
+    assert!(code == Some(3) && said.contains("NOT MET"), "{said}");
+}
+
+#[test]
+fn consistency_a_shaft_has_one_record_and_one_page_with_its_bearings() {
+    let scratch = Scratch::new("shaft-page");
+    let (code, said, _) = run(&scratch, &pinion(), "out", &["--json"]);
+    assert_eq!(code, Some(0));
+    let said: Value = serde_json::from_str(&said).unwrap();
+    let record: Value = serde_json::from_str(&scratch.read("out/run.json")).unwrap();
+    assert_eq!(record["summary"], said["shaft"]);
+    let torque = record["summary"]["figures"]["end shaft.torque"].as_f64().unwrap();
+    let table = columns(&scratch.read("out/shaft.csv"));
+    let last = *numbers(&table["shaft.torque [N m]"]).last().unwrap();
+    assert!((torque / last - 1.0).abs() < 1e-14, "{torque} {last}");
+    for name in ["left", "right"] {
+        let own: Value = serde_json::from_str(&scratch.read(&format!("out/{name}/run.json"))).unwrap();
+        assert_eq!(own["summary"], said[name]);
+    }
+    let page = scratch.path("page.html");
+    good(&roulement(&["report", &scratch.path("out"), "-o", &page]));
+    let page = std::fs::read_to_string(page).unwrap();
+    let data = page.split_once("<script type=\"application/json\"").map(|(_, rest)| rest).unwrap_or(&page);
+    for part in ["\"shaft.left.x\"", "\"name\":\"left\"", "\"name\":\"right\"", "left", "Pinion shaft"] {
+        assert!(data.contains(part), "{part}");
+    }
+    // A page of a bearing of it by itself.
+    good(&roulement(&["report", &scratch.path("out/left"), "-o", &scratch.path("left.html")]));
+}
+
+#[test]
+fn consistency_effects_and_fields_are_of_the_bearing_that_is_meant() {
+    let scratch = Scratch::new("shaft-effects");
+    let file = scratch.path("shaft.toml");
+    std::fs::write(&file, pinion()).unwrap();
+    let said = good(&roulement(&["effects", &file]));
+    let [left, right] = ["bearing left", "bearing right"].map(|title| said.find(title).unwrap());
+    assert!(left < right && said.matches("off, and would matter").count() == 2, "{said}");
+    let json: Value = serde_json::from_str(&good(&roulement(&["effects", &file, "--json"]))).unwrap();
+    let subject = |name: &str| json[name]["estimates"].as_array().unwrap().len();
+    assert!(subject("left") > 10 && subject("left") == subject("right"));
+    // The load of a contact where the run ends, from the field and from the run.
+    let per_ball = pinion().replace("[load]", "[bearing.set.effects]\nper_ball_outputs = true\n[load]");
+    assert_eq!(run(&scratch, &per_ball, "out", &[]).0, Some(0));
+    let field = scratch.path("field.csv");
+    let command = ["field", &file, "--contacts", "2.outer", "--cells", "24", "-o", &field];
+    let refused = roulement(&command);
+    let why = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(!refused.status.success() && why.contains("--bearing: say which one of left, right"), "{why}");
+    good(&roulement(&[&command[..], &["--bearing", "right"]].concat()));
+    let table = columns(&scratch.read("field.csv"));
+    let [area, pressure] = ["area [m2]", "pressure [Pa]"].map(|name| numbers(&table[name]));
+    let carried: f64 = area.iter().zip(&pressure).map(|(area, pressure)| area * pressure).sum();
+    let loads = columns(&scratch.read("out/right/results.csv"));
+    let load = *numbers(&loads["ball[2].outer.load [N]"]).last().unwrap();
+    assert!((carried / load - 1.0).abs() < 0.01, "{carried} of {load} N");
+}
+
+#[test]
+fn consistency_whole_tables_of_a_sweep_have_shaft_and_bearings() {
+    let scratch = Scratch::new("shaft-tables");
+    let (base, cases, to) = (scratch.path("shaft.toml"), scratch.path("cases.csv"), scratch.path("sweep"));
+    std::fs::write(&base, pinion()).unwrap();
+    std::fs::write(&cases, "shaft.mass\n2 kg\n3 kg\n").unwrap();
+    good(&roulement(&["sweep", &cases, "--scene", &base, "-o", &to, "--tables", "csv"]));
+    let summary = columns(&scratch.read("sweep/summary.csv"));
+    let table = columns(&scratch.read(&format!("sweep/tables/{}.csv", summary["file"][1])));
+    let heavier = pinion().replace("\"1.8 kg\"", "\"3 kg\"");
+    assert_eq!(run(&scratch, &heavier, "out", &[]).0, Some(0));
+    let shaft = columns(&scratch.read("out/shaft.csv"));
+    assert_eq!(table["shaft.torque [N.m]"], shaft["shaft.torque [N m]"]);
+    assert_eq!(table["left.seat.displacement.z [m]"], shaft["shaft.left.z [m]"]);
+    let right = columns(&scratch.read("out/right/results.csv"));
+    for name in ["inner.force.x [N]", "friction_power [W]"] {
+        assert_eq!(table[&format!("right.{name}")], right[name]);
+    }
+}
+
+#[test]
+fn regression_a_load_that_no_bearing_bears_is_warned_of_on_a_shaft_too() {
+    let scratch = Scratch::new("shaft-overload");
+    let heavy = pinion().replace("-475.0", "-100e3");
+    let (code, said, told) = run(&scratch, &heavy, "out", &[]);
+    assert_eq!(code, Some(0), "{told}");
+    for name in ["left", "right"] {
+        let warned = format!("warning: bearing {name}: the largest contact pressure is ");
+        assert!(told.contains(&warned), "{told}");
+        assert!(
+            said.contains(&format!("WARNING          bearing {name}: the largest contact pressure is ")),
+            "{said}"
+        );
+    }
+    let (_, said, told) = run(&scratch, &pinion(), "out", &[]);
+    assert!(!said.contains("WARNING") && !told.contains("warning"), "{said}{told}");
+}
+
+#[test]
+fn what_accuracy_costs_on_a_shaft_is_measured() {
+    let scratch = Scratch::new("shaft-cost");
+    let file = scratch.path("shaft.toml");
+    std::fs::write(&file, pinion().replace("\"2 ms\"", "\"1 ms\"")).unwrap();
+    let to = scratch.path("cost");
+    let said = good(&roulement(&["cost", &file, "-o", &to, "--only", "step-cap,creep-law"]));
+    assert!(said.contains("For 1 % of the mean power take "), "{said}");
+    let table = std::fs::read_dir(&to).unwrap().map(|file| file.unwrap().path());
+    let table =
+        table.into_iter().find(|path| path.extension().is_some_and(|ending| ending == "csv")).unwrap();
+    let table = columns(&std::fs::read_to_string(table).unwrap());
+    let levers = &table["lever"];
+    assert!(
+        levers.iter().any(|lever| lever == "step cap") && levers.iter().any(|lever| lever == "creep law")
+    );
+}

@@ -1,0 +1,291 @@
+//! The quasi-static equilibrium of a shaft on its bearings, as it is reported: forces, displacements, stiffness, life, and how it swings.
+
+use std::f64::consts::TAU;
+use std::fmt;
+
+use nalgebra::{Matrix6, Vector3};
+use serde_json::{Map, Value, json};
+
+use super::critical_speeds::{Campbell, campbell};
+use super::linear::ShaftMode;
+use super::{System, SystemError, SystemOutputs};
+use crate::analysis::condensed::Condensed;
+use crate::effects::reports::LifeOutput;
+use crate::model::bodies::Race;
+use crate::scene::system::SystemScene;
+use crate::simulation::outputs::Outputs;
+
+/// [-] exponent of the life of several bearings together: Weibull's of ball bearings (ISO/TS 16281; Lundberg and Palmgren 1947).
+const WEIBULL: f64 = 10.0 / 9.0;
+
+/// An equilibrium.
+#[derive(Clone, Debug)]
+pub struct MachineEquilibrium {
+    title: String,
+    /// Motion at all points of the shaft and its housings.
+    pub outputs: SystemOutputs,
+    /// Every bearing.
+    pub bearings: Vec<BearingEquilibrium>,
+    /// How it swings about where it is, by growing frequency.
+    pub modes: Vec<ShaftMode>,
+    /// Natural frequencies over the speed.
+    pub campbell: Campbell,
+}
+
+/// A bearing in it.
+#[derive(Clone, Debug)]
+pub struct BearingEquilibrium {
+    /// Its name.
+    pub name: String,
+    /// \[N] force on the shaft, in its axes.
+    pub force: Vector3<f64>,
+    /// [N m] moment on the shaft about the centre of its bore, in the axes of the shaft.
+    pub moment: Vector3<f64>,
+    /// Stiffness between its races [N/m, N, N m], in axes of its own: force and moment by displacement and rotation.
+    pub stiffness: Matrix6<f64>,
+    /// \[h] reference and modified life at the present speed.
+    pub hours: Option<[Option<f64>; 2]>,
+    /// All else, in axes of its own.
+    pub outputs: Outputs,
+}
+
+impl MachineEquilibrium {
+    /// That of a scene at a time \[s] of its scripts, with natural frequencies up to a speed [rad/s].
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn of(scene: &SystemScene, time: f64, up_to: f64) -> Result<Self, SystemError> {
+        let system = System::starting_at(scene, time)?;
+        let campbell = campbell(scene, time, up_to)?;
+        let modes = system.modes()?.unwrap_or_default();
+        let bearings = system.bearings().zip(&scene.bearings).map(|((name, bearing), mounted)| {
+            let sign = mounted.mounting.direction.sign();
+            let in_shaft = |v: &Vector3<f64>| Vector3::new(sign * v.x, sign * v.y, v.z);
+            let outputs = bearing.outputs().clone();
+            let conditions = bearing.conditions();
+            let spin = |race: Race| {
+                (outputs[race].pose.orientation.inverse() * outputs[race].twist.angular_velocity).x
+            };
+            let speed = (spin(Race::Inner) - spin(Race::Outer)).abs();
+            let hours = outputs.life.filter(|_| speed > 0.0).map(|life| {
+                let hours = |revolutions: f64| revolutions * 1e6 * TAU / speed / 3600.0;
+                [Some(hours(life.reference)), life.modified.map(hours)]
+            });
+            BearingEquilibrium {
+                name: name.to_string(),
+                force: in_shaft(&outputs.inner.wrench.force),
+                moment: in_shaft(&outputs.inner.wrench.moment),
+                stiffness: Condensed::new(bearing.model(), bearing.state(), &conditions).stiffness,
+                hours,
+                outputs,
+            }
+        });
+        let bearings = bearings.collect();
+        Ok(Self { title: scene.title.clone(), outputs: system.outputs().clone(), bearings, modes, campbell })
+    }
+
+    /// \[h] life of all bearings together, reference and modified; none where one of them has none.
+    pub fn hours(&self) -> [Option<f64>; 2] {
+        [0, 1].map(|which| {
+            let of = |bearing: &BearingEquilibrium| bearing.hours?[which];
+            let each = self.bearings.iter().map(of).collect::<Option<Vec<f64>>>()?;
+            let failing: f64 = each.iter().map(|hours| hours.powf(-WEIBULL)).sum();
+            Some(failing.powf(-1.0 / WEIBULL))
+        })
+    }
+
+    /// All of it, SI units.
+    pub fn to_json(&self) -> Value {
+        let vector = |v: &Vector3<f64>| json!({ "x": v.x, "y": v.y, "z": v.z });
+        let outputs = &self.outputs;
+        let bearing = |(place, of): (usize, &BearingEquilibrium)| {
+            let balls = &of.outputs.balls;
+            let column = |get: &dyn Fn(usize) -> f64| (0..balls.len()).map(get).collect::<Vec<_>>();
+            let seat = &outputs.seats[place];
+            let value = json!({
+                "force": vector(&of.force),
+                "moment": vector(&of.moment),
+                "displacement": vector(&seat.displacement),
+                "tilt": vector(&seat.tilt),
+                "stiffness": of.stiffness.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
+                "peak_pressure": of.peak_pressure(),
+                "friction_torque": of.outputs.friction_torque,
+                "life": of.outputs.life.as_ref().map(|life| life_json(life, of.hours)),
+                "balls": {
+                    "inner_load": column(&|k| balls[k].inner.load),
+                    "outer_load": column(&|k| balls[k].outer.load),
+                    "inner_contact_angle": column(&|k| balls[k].inner.contact_angle),
+                    "outer_contact_angle": column(&|k| balls[k].outer.contact_angle),
+                },
+            });
+            (of.name.clone(), value)
+        };
+        let mode = |mode: &ShaftMode| json!({ "frequency": mode.frequency, "damping": mode.damping, "whirl": mode.whirl.name(), "at": mode.place });
+        let modes = |all: &[ShaftMode]| all.iter().map(mode).collect::<Vec<_>>();
+        let [reference, modified] = self.hours();
+        json!({
+            "units": "SI: m, N, N m, rad, rad/s, Hz; life in h and million revolutions. Forces and moments are those on the shaft, in its axes; \
+                      stiffness is in the axes of each bearing",
+            "time": outputs.time,
+            "speed": outputs.spin.speed,
+            "torque": outputs.torque,
+            "bearings": self.bearings.iter().enumerate().map(bearing).collect::<Map<_, _>>(),
+            "life_of_all_hours": { "L10r": reference, "modified": modified },
+            "modes": modes(&self.modes),
+            "campbell": self.campbell.rows.iter().map(|row| json!({
+                "speed": row.speed,
+                "modes": modes(&row.modes),
+            })).collect::<Vec<_>>(),
+            "critical_speeds": self.campbell.critical.iter().map(|critical| {
+                let mut value = mode(&critical.mode);
+                value["speed"] = critical.speed.into();
+                value["driven_by_unbalance"] = critical.is_driven_by_unbalance().into();
+                value
+            }).collect::<Vec<_>>(),
+        })
+    }
+}
+
+fn life_json(life: &LifeOutput, hours: Option<[Option<f64>; 2]>) -> Value {
+    let [reference, modified] = hours.unwrap_or_default();
+    json!({
+        "L10r": life.reference,
+        "modified": life.modified,
+        "L10r_hours": reference,
+        "modified_hours": modified,
+        "equivalent_load": life.equivalent_load,
+        "static_safety": life.static_safety,
+        "load_rests_on": life.load_rests_on.name(),
+    })
+}
+
+impl BearingEquilibrium {
+    /// \[Pa] largest contact pressure.
+    pub fn peak_pressure(&self) -> f64 {
+        let contacts = self.outputs.balls.iter().flat_map(|ball| [&ball.inner, &ball.outer]);
+        contacts.map(|contact| contact.peak_pressure).fold(0.0, f64::max)
+    }
+}
+
+/// \[rpm] of a speed [rad/s].
+fn rpm(speed: f64) -> f64 {
+    speed * 60.0 / TAU
+}
+
+/// Frequencies of a row of the table that are shown: those that matter lie low.
+const SHOWN: usize = 8;
+
+impl fmt::Display for MachineEquilibrium {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let outputs = &self.outputs;
+        if !self.title.is_empty() {
+            writeln!(f, "{}", self.title)?;
+        }
+        writeln!(
+            f,
+            "shaft            {:.2} rpm, held by {:.5} N m",
+            rpm(outputs.spin.speed),
+            outputs.torque
+        )?;
+        for (of, seat) in self.bearings.iter().zip(&outputs.seats) {
+            self.write_bearing(f, of, seat)?;
+        }
+        if let [Some(reference), modified] = self.hours() {
+            let modified = modified.map_or(String::new(), |hours| format!(", modified {hours:.4e} h"));
+            writeln!(f, "life of all      L10r {reference:.4e} h{modified}")?;
+        }
+        writeln!(f, "\nnatural frequencies at {:.2} rpm", rpm(outputs.spin.speed))?;
+        for mode in &self.modes {
+            writeln!(
+                f,
+                "{:>14.2} Hz  {:<9} damping {:8.5}, most at {}",
+                mode.frequency,
+                mode.whirl.name(),
+                mode.damping,
+                mode.place
+            )?;
+        }
+        writeln!(f, "\nspeed [rpm]    natural frequencies [Hz]: f forward, b backward, p planar, a axial")?;
+        for row in &self.campbell.rows {
+            let shown = row.modes.iter().take(SHOWN);
+            let shown: Vec<String> =
+                shown.map(|mode| format!("{:9.2}{}", mode.frequency, &mode.whirl.name()[..1])).collect();
+            writeln!(f, "{:>11.1}    {}", rpm(row.speed), shown.join(" "))?;
+        }
+        let up_to = rpm(self.campbell.rows.last().map_or(0.0, |row| row.speed));
+        if self.campbell.critical.is_empty() {
+            return writeln!(f, "\nno critical speed up to {up_to:.0} rpm");
+        }
+        writeln!(f, "\ncritical speeds up to {up_to:.0} rpm")?;
+        for critical in &self.campbell.critical {
+            let driven = if critical.is_driven_by_unbalance() { "" } else { "; no unbalance drives it" };
+            writeln!(
+                f,
+                "{:>14.1} rpm {:<9} damping {:8.5}, most at {}{driven}",
+                rpm(critical.speed),
+                critical.mode.whirl.name(),
+                critical.mode.damping,
+                critical.mode.place
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl MachineEquilibrium {
+    fn write_bearing(
+        &self,
+        f: &mut fmt::Formatter<'_>,
+        of: &BearingEquilibrium,
+        seat: &super::PointOutput,
+    ) -> fmt::Result {
+        let (force, moment, d, tilt) = (of.force, of.moment, seat.displacement * 1e6, seat.tilt * 1e6);
+        writeln!(
+            f,
+            "\n{:<16} force on the shaft x {:.2} y {:.2} z {:.2} N",
+            of.name, force.x, force.y, force.z
+        )?;
+        writeln!(f, "{:<16} moment on it y {:.5} z {:.5} N m", "", moment.y, moment.z)?;
+        writeln!(
+            f,
+            "{:<16} shaft at x {:.4} y {:.4} z {:.4} um, tilted by y {:.3} z {:.3} urad",
+            "", d.x, d.y, d.z, tilt.y, tilt.z
+        )?;
+        let loads = of.outputs.balls.iter().map(|ball| ball.inner.load);
+        let (least, most) =
+            loads.fold((f64::INFINITY, 0.0f64), |(low, high), load| (low.min(load), high.max(load)));
+        writeln!(
+            f,
+            "{:<16} ball loads {least:.2} to {most:.2} N, pressure {:.1} MPa, friction torque {:.5} N m",
+            "",
+            of.peak_pressure() * 1e-6,
+            of.outputs.friction_torque
+        )?;
+        if let Some(life) = &of.outputs.life {
+            let [reference, modified] = of.hours.unwrap_or_default();
+            let hours = |hours: Option<f64>| hours.map_or(String::new(), |hours| format!(" ({hours:.4e} h)"));
+            let modified = life
+                .modified
+                .map_or(String::new(), |life| format!(", modified {life:.4e}{}", hours(modified)));
+            writeln!(
+                f,
+                "{:<16} L10r {:.4e} million revolutions{}{modified}; P {:.2} N, static safety {:.3}",
+                "",
+                life.reference,
+                hours(reference),
+                life.equivalent_load,
+                life.static_safety
+            )?;
+        }
+        writeln!(
+            f,
+            "{:<16} stiffness, own axes: Fx, Fy, Fz [N], Mx, My, Mz [N m] by x, y, z [m], rx, ry, rz [rad]",
+            ""
+        )?;
+        for row in of.stiffness.row_iter() {
+            let row: Vec<String> = row.iter().map(|value| format!("{value:12.4e}")).collect();
+            writeln!(f, "{:<16} {}", "", row.join(" "))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,186 @@
+//! The linear equations of motion of a shaft, its housings and its bearings about where they are, and how they swing.
+//!
+//! ```text
+//! M q'' + (C + W G) q' + K q = 0          W spin of the shaft
+//! ```
+//! Coordinates are those of all structures, one after the other. Bearings are springs between their races, with the stiffness of their
+//! quasi-static equilibrium, and dampers, with their balls condensed out ([`crate::analysis::condensed`]); what supports of a bearing's own
+//! weigh and damp is left out. Dampers are those of rolling: where balls hardly roll there are none, as a contact that sticks is a spring
+//! across its normal and no damper.
+
+use nalgebra::{Complex, DMatrix, DVector, Matrix6};
+
+use super::statics::Statics;
+use super::{System, SystemError};
+use crate::analysis::condensed::Condensed;
+use crate::dynamics::system::StructureLoad;
+use crate::model::structure::Carrier;
+use crate::numerics::modes::{Mode, modes};
+
+/// [-] of the displacements of a mode: more along the axis is an axial one; less whirl goes to and fro.
+const HALF: f64 = 0.5;
+
+/// [m/s] rolling speed from which on contacts damp: above it some 0.1 mm of a contact are rolled over in the period of 1 kHz.
+const ROLLS: f64 = 0.1;
+
+/// Linear equations of motion.
+#[derive(Clone, Debug)]
+pub struct Linear {
+    /// Mass matrix.
+    pub mass: DMatrix<f64>,
+    /// Damping, and gyroscopic terms at the spin of the shaft.
+    pub damping: DMatrix<f64>,
+    /// Stiffness.
+    pub stiffness: DMatrix<f64>,
+}
+
+/// How the shaft goes in a mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Whirl {
+    /// Round its axis as it turns itself.
+    Forward,
+    /// Round its axis against its own turn.
+    Backward,
+    /// To and fro across its axis.
+    Planar,
+    /// Along its axis.
+    Axial,
+}
+
+impl Whirl {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Forward => "forward",
+            Self::Backward => "backward",
+            Self::Planar => "planar",
+            Self::Axial => "axial",
+        }
+    }
+}
+
+/// A mode of a machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShaftMode {
+    /// \[Hz] frequency.
+    pub frequency: f64,
+    /// [-] damping over critical damping.
+    pub damping: f64,
+    /// How the shaft goes.
+    pub whirl: Whirl,
+    /// Where the machine moves most.
+    pub place: String,
+}
+
+impl System {
+    /// Linear equations of motion about the present state.
+    ///
+    /// # Errors
+    /// If a bearing has no equilibrium where it is.
+    pub fn linear(&self) -> Result<Linear, SystemError> {
+        let mut bearings = self.bearings.clone();
+        let of = |index: usize| {
+            let (carrier, spin) = (&self.carriers[index], self.states[index].spin);
+            StructureLoad { force: DVector::zeros(carrier.structure.size()), spin, axial_moment: 0.0 }
+        };
+        let loads: Vec<_> = (0..self.carriers.len()).map(of).collect();
+        let condensed = |bearing: &super::Simulation| {
+            let supported = bearing.model.supports.iter().any(Option::is_some);
+            let of = || Condensed::new(&bearing.model, &bearing.state, &bearing.conditions()).damping;
+            let rolls = bearing.outputs().rolling_speed.abs() > ROLLS;
+            if rolls && !supported { of() } else { Matrix6::zeros() }
+        };
+        let dampers: Vec<_> = self.bearings.iter().map(condensed).collect();
+        let mut statics = Statics {
+            scene: &self.scene,
+            time: self.time,
+            carriers: &self.carriers,
+            scales: &self.scales,
+            loads: &loads,
+            joints: &self.joints,
+            bearings: &mut bearings,
+            friction: vec![0.0; dampers.len()],
+        };
+        let stiffness = statics.stiffness(&self.states)?;
+        let mut damping = statics.spread(&dampers);
+        let mut mass = DMatrix::zeros(damping.nrows(), damping.nrows());
+        for ((Carrier { structure, .. }, state), from) in
+            self.carriers.iter().zip(&self.states).zip(statics.first())
+        {
+            let at = ((from, from), (structure.size(), structure.size()));
+            mass.view_mut(at.0, at.1).copy_from(&structure.mass);
+            let mut own = damping.view_mut(at.0, at.1);
+            own += &structure.damping + &structure.gyroscopic * state.spin.speed;
+        }
+        Ok(Linear { mass, damping, stiffness })
+    }
+
+    /// All modes about the present state, by their frequency; none where eigenvalues are not found.
+    ///
+    /// # Errors
+    /// As [`System::linear`].
+    pub fn modes(&self) -> Result<Option<Vec<ShaftMode>>, SystemError> {
+        let Linear { mass, damping, stiffness } = self.linear()?;
+        let found = modes(&mass, &damping, &stiffness);
+        Ok(found.map(|modes| modes.iter().map(|mode| self.describe(mode)).collect()))
+    }
+
+    fn describe(&self, mode: &Mode) -> ShaftMode {
+        // Displacements at every station of every structure.
+        let mut first = 0;
+        let mut moved: Vec<(usize, usize, [Complex<f64>; 3])> = vec![];
+        for (index, carrier) in self.carriers.iter().enumerate() {
+            let own = mode.shape.rows(first, carrier.structure.size());
+            first += own.len();
+            for (station, map) in carrier.stations.iter().enumerate() {
+                let along = |axis: usize| {
+                    map.row(axis).iter().zip(own.iter()).map(|(by, amplitude)| amplitude * *by).sum()
+                };
+                moved.push((index, station, [along(0), along(1), along(2)]));
+            }
+        }
+        let size = |d: &[Complex<f64>; 3]| d.iter().map(|part| part.norm_sqr()).sum::<f64>();
+        let on_shaft = || moved.iter().filter(|(structure, ..)| *structure == 0).map(|(.., d)| d);
+        let all: f64 = on_shaft().map(size).sum();
+        let along: f64 = on_shaft().map(|d| d[0].norm_sqr()).sum();
+        // From y to z is forwards for a shaft that turns about +x.
+        let turn: f64 = on_shaft().map(|d| -2.0 * (d[1].conj() * d[2]).im).sum();
+        let whirl = turn / (all - along) * self.states[0].spin.speed.signum();
+        let whirl = match whirl {
+            _ if along > HALF * all => Whirl::Axial,
+            whirl if whirl > HALF => Whirl::Forward,
+            whirl if whirl < -HALF => Whirl::Backward,
+            _ => Whirl::Planar,
+        };
+        let most = moved.iter().max_by(|a, b| size(&a.2).total_cmp(&size(&b.2)));
+        let place = most.map_or(String::new(), |(structure, station, _)| self.place(*structure, *station));
+        ShaftMode { frequency: mode.frequency(), damping: mode.damping(), whirl, place }
+    }
+
+    /// Name of a station of the shaft or a housing.
+    fn place(&self, structure: usize, station: usize) -> String {
+        let scene = &self.scene;
+        let named = |names: Vec<String>| names.get(station).cloned();
+        let numbered =
+            |what: &str, count: usize| (1..=count).map(move |k| format!("{what} {k}")).collect::<Vec<_>>();
+        let own = match structure.checked_sub(1) {
+            None => {
+                let mut names: Vec<String> = scene.bearings.iter().map(|of| of.name.clone()).collect();
+                names.extend(scene.shaft.load.iter().map(|of| of.name.clone()));
+                names.extend(scene.shaft.point.iter().map(|of| of.name.clone()));
+                names.extend(numbered("disc", scene.shaft.disc.len()));
+                names.extend(numbered("gear", scene.shaft.gear.len()));
+                named(names).map(|name| format!("the shaft at {name}"))
+            }
+            Some(index) => {
+                let housing = &scene.housings[index];
+                let mut names: Vec<String> =
+                    scene.bearings_in(index).map(|of| scene.bearings[of].name.clone()).collect();
+                names.extend(housing.load.iter().map(|of| of.name.clone()));
+                names.extend(housing.point.iter().map(|of| of.name.clone()));
+                named(names).map(|name| format!("{} at {name}", housing.name))
+            }
+        };
+        own.unwrap_or_default()
+    }
+}
