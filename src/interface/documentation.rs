@@ -1,7 +1,7 @@
 //! The page that a package brings along: interface, frames, effects, limits, parameters.
 
 use crate::effects::AnyEffect;
-use crate::interface::variables::{Causality, Source, SystemVariables, Variable, Variables};
+use crate::interface::variables::{Causality, Offered, SystemVariables, Variable, Variables};
 use crate::scene::{Dependencies, Drive, Orientation, Scene};
 use crate::schema::numbers::Variability;
 use crate::simulation::system::System;
@@ -117,26 +117,26 @@ pub fn system_page(system: &System) -> String {
     )
 }
 
+/// The table of parameters among rows.
+fn parameters(rows: &[Variable]) -> String {
+    let start = |row: &Variable| {
+        row.offered().map_or_else(String::new, |Offered { range, variability, start }| {
+            let when = match variability {
+                Variability::Fixed => "before the start",
+                Variability::Tunable => "between steps too",
+            };
+            format!("{start} ({} to {}), {when}", range.low, range.high)
+        })
+    };
+    table(rows, |row| row.causality == Causality::Parameter, start)
+}
+
 /// The page of a scene's package.
 pub fn page(scene: &Scene) -> String {
     let title = if scene.title.is_empty() { "Ball bearing" } else { &scene.title };
     let variables = Variables::new(scene);
     let interface = interface(variables.rows());
-    let parameters = table(
-        variables.rows(),
-        |row| row.causality == Causality::Parameter,
-        |row| {
-            let Source::Parameter(parameter) = &row.source else {
-                return String::new();
-            };
-            let when = match parameter.variability {
-                Variability::Fixed => "before the start",
-                Variability::Tunable => "between steps too",
-            };
-            let (start, range) = (parameter.start, parameter.range);
-            format!("{start} ({} to {}), {when}", range.low, range.high)
-        },
-    );
+    let parameters = parameters(variables.rows());
     let dependencies = match scene.interface.dependencies {
         Dependencies::Point => {
             "The dependencies of outputs in modelDescription.xml are those at a communication point, where none follows an \

@@ -7,7 +7,9 @@ use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
 
 use crate::analysis::condensed::Condensed;
-use crate::interface::variables::{Causality, InputKind, Kind, Source, SystemVariables, Variable, Variables};
+use crate::interface::variables::{
+    Causality, InputKind, Kind, Offered, Source, SystemVariables, Variable, Variables,
+};
 use crate::scene::{Dependencies, Drive};
 use crate::schema::numbers::Variability;
 use crate::schema::variable_units::{self as units, Unit};
@@ -338,8 +340,8 @@ fn scalar_variable(xml: &mut Xml, reference: usize, row: &Variable, start: f64) 
 }
 
 fn variability(row: &Variable) -> &'static str {
-    match row.source {
-        Source::Parameter(parameter) if parameter.variability == Variability::Tunable => "tunable",
+    match row.offered() {
+        Some(Offered { variability: Variability::Tunable, .. }) => "tunable",
         _ => "fixed",
     }
 }

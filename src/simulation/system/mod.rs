@@ -21,6 +21,7 @@ use super::{Simulation, SimulationError, follows_time};
 use crate::dynamics::system::{Joint, SystemWorkspace};
 use crate::model::structure::{Carrier, StructureState};
 use crate::numerics::step_control::StepControl;
+use crate::scene::Scene;
 use crate::scene::system::SystemScene;
 use crate::schema::numbers::four;
 pub use critical_speeds::{Campbell, CampbellRow, CriticalSpeed, campbell, largest_speed};
@@ -180,12 +181,21 @@ impl System {
     /// races on the shaft or in a housing counts for nothing. False, with nothing changed, if there are too many or too few.
     #[must_use]
     pub fn set_inputs(&mut self, shaft: ShaftInputs, bearings: Vec<Inputs>) -> bool {
-        let fit = shaft.loads.len() == self.inputs.loads.len() && bearings.len() == self.bearings.len();
+        let fit = shaft.fits(&self.inputs) && bearings.len() == self.bearings.len();
         if fit {
             self.inputs = shaft;
             self.bearings.iter_mut().zip(bearings).for_each(|(bearing, inputs)| bearing.set_inputs(inputs));
         }
         fit
+    }
+
+    /// Goes on with scenes of its bearings, in their order, that differ in tunable parameters alone.
+    pub fn tune(&mut self, scenes: &[Scene]) {
+        let own = Arc::make_mut(&mut self.scene).bearings.iter_mut();
+        for ((bearing, mounted), scene) in self.bearings.iter_mut().zip(own).zip(scenes) {
+            bearing.tune(scene);
+            mounted.scene = scene.clone();
+        }
     }
 
     /// What the shaft does.
@@ -203,6 +213,7 @@ impl System {
 pub fn shaft_follows_time(scene: &SystemScene) -> bool {
     drive_is_scripted(scene)
         || scene.loads().any(|load| load.is_scripted())
+        || scene.shaft.gear.iter().any(|gear| gear.torque.is_scripted())
         || scene.bearings.iter().any(|bearing| follows_time(&bearing.scene))
 }
 
