@@ -56,7 +56,6 @@ pub fn render(simulation: &Simulation, name: &str) -> std::io::Result<ModelDescr
         title: if scene.title.is_empty() { "ball bearing" } else { &scene.title },
         name,
         guid: &guid,
-        directional_derivatives: true,
         dependencies: scene.interface.dependencies,
         stop: scene.load.duration.0,
         step: recommended_step(simulation),
@@ -79,7 +78,6 @@ pub fn render_system(system: &System, name: &str) -> std::io::Result<ModelDescri
         title: if scene.title.is_empty() { "shaft on ball bearings" } else { &scene.title },
         name,
         guid: &guid,
-        directional_derivatives: false,
         dependencies: Dependencies::Point,
         stop: scene.load.duration.0,
         step: steps.fold(scene.load.output_interval.0, f64::min),
@@ -93,8 +91,6 @@ struct About<'a> {
     title: &'a str,
     name: &'a str,
     guid: &'a str,
-    /// Are derivatives of outputs by inputs offered?
-    directional_derivatives: bool,
     /// What the dependencies of its outputs are about.
     dependencies: Dependencies,
     /// \[s] end of the default experiment.
@@ -171,7 +167,7 @@ fn co_simulation(xml: &mut Xml, about: &About<'_>) -> std::io::Result<()> {
             ("maxOutputDerivativeOrder", "1"),
             ("canGetAndSetFMUstate", "true"),
             ("canSerializeFMUstate", "true"),
-            ("providesDirectionalDerivative", if about.directional_derivatives { "true" } else { "false" }),
+            ("providesDirectionalDerivative", "true"),
         ])
         .write_empty()?;
     Ok(())

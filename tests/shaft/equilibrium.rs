@@ -103,6 +103,11 @@ fn invariant_a_free_shaft_and_one_at_a_given_speed_swing_alike() {
     let free = equilibrium(&free);
     assert_eq!(given.modes.len(), free.modes.len());
     for (given, free) in given.modes.iter().zip(&free.modes) {
-        assert!((given.frequency / free.frequency - 1.0).abs() < 1e-3, "{} {}", given.frequency, free.frequency);
+        assert!(
+            (given.frequency / free.frequency - 1.0).abs() < 1e-3,
+            "{} {}",
+            given.frequency,
+            free.frequency
+        );
     }
 }

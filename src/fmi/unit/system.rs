@@ -7,9 +7,9 @@ use std::sync::Arc;
 use strum::VariantArray;
 
 use super::bearing::{givers, marked};
-use super::{Simulated, UnitSnapshot};
+use super::{Simulated, UnitSnapshot, derivatives};
 use crate::fmi::log::Log;
-use crate::fmi::outcome::{Outcome, Status, error};
+use crate::fmi::outcome::{Outcome, Status};
 use crate::interface::contradiction::Contradiction;
 use crate::interface::variables::{SystemGroup, SystemVariables, Variable};
 use crate::model::bodies::Race;
@@ -26,8 +26,8 @@ const GROUPS: usize = Group::VARIANTS.len();
 /// A system with its variables.
 #[derive(Clone)]
 pub struct SystemUnit {
-    variables: Arc<SystemVariables>,
-    system: System,
+    pub(super) variables: Arc<SystemVariables>,
+    pub(super) system: System,
     /// Inputs of the next step: of the shaft, and of every bearing.
     next: (ShaftInputs, Vec<Inputs>),
 }
@@ -236,7 +236,7 @@ impl Simulated for SystemUnit {
         }
     }
 
-    fn derivatives(&self, _: Option<&UnitSnapshot>, _: &[bool]) -> Outcome<Vec<Vec<f64>>> {
-        error("directional derivatives of a shaft with its bearings are not offered")
+    fn derivatives(&self, before: Option<&UnitSnapshot>, played: &[bool]) -> Outcome<Vec<Vec<f64>>> {
+        derivatives::columns_of_system(self, before, &self.played(played))
     }
 }

@@ -150,7 +150,9 @@ fn row(
         causality,
         nominal,
         limits: match source {
-            ShaftSource::Number(ShaftParameter { number, .. }) => [number.range.low, number.range.high].map(Some),
+            ShaftSource::Number(ShaftParameter { number, .. }) => {
+                [number.range.low, number.range.high].map(Some)
+            }
             _ => [None; 2],
         },
         description,
@@ -205,7 +207,8 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
         let nominal = if parameter.start == 0.0 { 1.0 } else { parameter.start.abs() };
         let unit = (units::of_parameter(number.range.unit), nominal);
         let (description, source) = (number.description.to_string(), ShaftSource::Number(parameter));
-        let name = name.split_once('.').map_or(name.clone(), |(part, key)| format!("{}.{key}", quoted_part(part)));
+        let name =
+            name.split_once('.').map_or(name.clone(), |(part, key)| format!("{}.{key}", quoted_part(part)));
         rows.push(row(name, unit, Causality::Parameter, description, source));
     }
     rows

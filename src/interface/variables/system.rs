@@ -95,6 +95,16 @@ impl SystemVariables {
         values
     }
 
+    /// Rates of all rows that inputs were given with; loads and drive have none.
+    pub fn rates(&self, system: &System) -> Vec<f64> {
+        let mut rates = vec![0.0; self.rows.len()];
+        for (part, (_, bearing)) in self.bearings.iter().zip(system.bearings()) {
+            let own = part.variables.rates(bearing.inputs());
+            rates[part.first..part.first + own.len()].copy_from_slice(&own);
+        }
+        rates
+    }
+
     /// Turns the values of all rows (those of outputs are ignored) and their rates into inputs of shaft and bearings, on top of those
     /// that a system has.
     ///

@@ -6,9 +6,9 @@ use std::fmt;
 use nalgebra::{Matrix6, Vector3};
 use serde_json::{Map, Value, json};
 
+use super::super::start::held_load;
 use super::critical_speeds::{Campbell, campbell};
 use super::linear::ShaftMode;
-use super::super::start::held_load;
 use super::{System, SystemError, SystemOutputs};
 use crate::analysis::condensed::Condensed;
 use crate::effects::reports::LifeOutput;

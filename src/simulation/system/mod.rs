@@ -115,6 +115,12 @@ pub enum SystemError {
         /// \[rad] largest tilt.
         limit: f64,
     },
+    /// The step has no derivatives.
+    #[error("at {} s the step has no derivatives: its Newton matrix is singular", four(.0))]
+    Singular(f64),
+    /// Inputs of another system.
+    #[error("there are too many or too few inputs for this system")]
+    OtherInputs,
     /// So late that a step no longer changes the time.
     #[error("at {} s a step of {} s is lost in rounding: begin nearer to time 0", four(.time), four(.step))]
     LostInRounding {
