@@ -62,7 +62,7 @@ fn independent_code_natural_frequencies_and_critical_speeds_are_those_of_ross() 
         for (theirs, ours) in row["frequencies"].as_array().unwrap().iter().zip(&found.modes) {
             let theirs = theirs.as_f64().unwrap();
             // Theirs are without the damping of contacts, which is up to 0.03 of critical.
-            assert!((ours.frequency / theirs - 1.0).abs() < 4e-3, "{rpm} rpm: {} {theirs}", ours.frequency);
+            assert!((ours.frequency / theirs - 1.0).abs() < 6e-3, "{rpm} rpm: {} {theirs}", ours.frequency);
         }
     }
     let found = campbell(&scene(DISC), 0.0, 15000.0 * RPM).unwrap();
