@@ -81,7 +81,7 @@ def test_names_units_and_abilities(package):
         assert start is None or math.isclose(float(variable.start), start), name
     abilities = description.coSimulation
     assert abilities.canGetAndSetFMUstate and abilities.canSerializeFMUstate
-    assert not abilities.providesDirectionalDerivative
+    assert abilities.providesDirectionalDerivative
     assert float(description.defaultExperiment.stopTime) == 5e-3
 
 
