@@ -71,7 +71,7 @@ export function cards(run) {
     if (powers.every(Number.isFinite)) card('friction power', withUnit(powers.reduce((sum, power) => sum + power, 0), 'power', 'W', 5), 'mean, of all bearings');
     const worst = get => mounted.map(([name, own]) => [get(own), name]).reduce((a, b) => (b[0] > a[0] ? b : a));
     const [load, at] = worst(largestLoad);
-    card('largest ball load', withUnit(load, 'load', 'N', 5), `in the run, of ${at}`);
+    card('largest ball load', withUnit(load, 'load', 'N'), `in the run, of ${at}`);
     const [pressure, where] = worst(own => own.record.summary.peak_pressure);
     card('peak pressure', withUnit(pressure, 'pressure', 'Pa'), `largest in the run, of ${where}`);
   }
@@ -93,7 +93,7 @@ export function machineSection(run, open) {
     const { figures: f, error_bars: e, peak_pressure: pressure } = own.record.summary;
     const force = forceOf(own.record.summary, bearing.direction);
     const most = f['largest inner load'] > f['largest outer load'] ? 'largest inner load' : 'largest outer load';
-    return [...row, cell('force', force.across, force.acrossBar), cell('force', force.along, force.alongBar), cell(most, f[most], e?.[most]), withUnit(largestLoad(own), 'load', 'N', 5), withUnit(pressure, 'pressure', 'Pa'),
+    return [...row, cell('force', force.across, force.acrossBar), cell('force', force.along, force.alongBar), cell(most, f[most], e?.[most]), withUnit(largestLoad(own), 'load', 'N'), withUnit(pressure, 'pressure', 'Pa'),
       cell('friction power', f['friction power'], e?.['friction power']), cell('friction torque', f['friction torque'], e?.['friction torque']), ...lives.map(([name]) => life(own, name) ?? '\u2013')];
   });
   const energy = name => ['put in', 'to bearings', 'damped', 'balance'].map(what => cell(`${name} ${what}`, figures[`${name} ${what}`], bars?.[`${name} ${what}`]));

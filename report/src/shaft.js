@@ -100,7 +100,7 @@ function draw(run, open) {
   const low = Math.min(...list.map(part => part.r[0])), high = Math.max(...list.map(part => part.r[1]));
   const labels = list.map(part => part.label).filter(Boolean);
   // Labels of the last places need room beside them.
-  const room = Math.max(SIDE, ...labels.map(label => LETTER * label.text.length + 20 - ((x1 - label.x) / (x1 - x0)) * (WIDTH - 4 * SIDE)));
+  const room = Math.min(0.4 * WIDTH, Math.max(SIDE, ...labels.map(label => LETTER * label.text.length + 20 - ((x1 - label.x) / (x1 - x0)) * (WIDTH - 4 * SIDE))));
   const scale = Math.min((WIDTH - SIDE - room) / (x1 - x0), MOST / (high - low));
   const across = Math.max(scale, LEAST / (high - low));
   const left = SIDE + 0.5 * (WIDTH - SIDE - room - scale * (x1 - x0));
@@ -234,7 +234,7 @@ function facts(run) {
     ['Shaft', shaft.sections.length ? `${shaft.sections.length} section${shaft.sections.length > 1 ? 's' : ''} of beams` : shaft.modes.length ? 'of matrices' : 'rigid'],
     ['Modes', shaft.modes.length ? `${shaft.modes.length} between held places, ${digits(shaft.modes[0], 4)} to ${digits(shaft.modes.at(-1), 4)}\u202fHz` : null],
     ['Bearings', [...kinds].map(([kind, names]) => `${names.join(', ')}: ${kind}`).join('; ')],
-    ['Gears', shaft.gears.map(({ position, pitch_radius: radius, helix_angle: helix }, i) => `gear ${i + 1}: pitch radius ${millimetres(radius)}, helix ${short((helix * 180) / Math.PI, 4)}\u00b0, at ${millimetres(position)}`).join('; ')],
+    ['Gears', shaft.gears.map(({ position, pitch_radius: radius, helix_angle: helix }, i) => `gear ${i + 1}: pitch radius ${millimetres(radius)}${helix ? `, helix ${short((helix * 180) / Math.PI, 4)}\u00b0` : ''}, at ${millimetres(position)}`).join('; ')],
     ['Discs', shaft.discs.map(({ position, mass, unbalance }, i) => `disc ${i + 1}: ${short(mass)}\u202fkg${unbalance ? `, unbalance ${short(unbalance * 1e6, 4)}\u202fg\u202fmm` : ''}, at ${millimetres(position)}`).join('; ')],
     ['Forces along x, y, z', loads.map(({ name, force }) => `${name}: ${vector(force)}`).join('; ')],
     ['Gravity', size > 0 ? `${short(size)}\u202fm/s\u00b2` : null],
