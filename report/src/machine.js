@@ -40,7 +40,7 @@ function forceOf({ figures, error_bars: bars }, direction) {
   const bar = axis => bars?.[of(axis)];
   return {
     along: direction * x, alongBar: bar('x'), across,
-    acrossBar: bars && (across > 0 ? (Math.abs(y) * bar('y') + Math.abs(z) * bar('z')) / across : 0),
+    acrossBar: Number.isFinite(bar('y') + bar('z')) ? (Math.abs(y) * bar('y') + Math.abs(z) * bar('z')) / (across || 1) : null,
   };
 }
 
