@@ -5,6 +5,7 @@
 
 use std::convert::Infallible;
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 use super::hertz::HertzContact;
 use super::materials::Pair;
@@ -36,8 +37,7 @@ impl Polynomial {
         current[0] = 1.0;
         for k in 0..NODES {
             let weight = if k == 0 { 1.0 } else { 2.0 } / n;
-            let coefficient: f64 =
-                (0..NODES).map(|j| weight * values[j] * (k as f64 * PI * (j as f64 + 0.5) / n).cos()).sum();
+            let coefficient: f64 = (0..NODES).map(|j| weight * values[j] * COSINES[k][j]).sum();
             for (power, term) in powers.iter_mut().zip(current) {
                 *power += coefficient * term;
             }
@@ -53,6 +53,11 @@ impl Polynomial {
         Self(powers)
     }
 }
+
+/// Chebyshev polynomials (first index) at the nodes.
+static COSINES: LazyLock<[[f64; NODES]; NODES]> = LazyLock::new(|| {
+    std::array::from_fn(|k| std::array::from_fn(|j| (k as f64 * PI * (j as f64 + 0.5) / NODES as f64).cos()))
+});
 
 /// Position of Chebyshev node j in [-1, 1].
 fn node(j: usize) -> f64 {

@@ -7,7 +7,7 @@ use super::state::{Phase, State};
 use super::unit::{BearingUnit, SystemUnit, Unit};
 use crate::analysis::auto;
 use crate::interface::model_description;
-use crate::interface::variables::{Causality, Kind, Source, Variable};
+use crate::interface::variables::{Causality, Kind, Offered, Variable};
 use crate::scene::machine::MachineScene;
 use crate::scene::system::SystemScene;
 use crate::scene::{Giver, Scene};
@@ -404,11 +404,11 @@ impl Instance {
             if !value.is_finite() {
                 return error(format!("{} = {value} is not a finite number", row.name));
             }
-            if let Source::Parameter(parameter) = &row.source {
-                if self.state.phase == Phase::StepComplete && parameter.variability == Variability::Fixed {
+            if let Some(Offered { range, variability, .. }) = row.offered() {
+                if self.state.phase == Phase::StepComplete && variability == Variability::Fixed {
                     return error(format!("{} is fixed: it can be set before the start only", row.name));
                 }
-                parameter.range.check(parameter.key, *value).or_else(|why| error(why.to_string()))?;
+                range.check(&row.name, *value).or_else(|why| error(why.to_string()))?;
             }
         }
         let started = self.state.phase == Phase::StepComplete;

@@ -1,7 +1,7 @@
 //! The page that a package brings along: interface, frames, effects, limits, parameters.
 
 use crate::effects::AnyEffect;
-use crate::interface::variables::{Causality, Source, SystemVariables, Variable, Variables};
+use crate::interface::variables::{Causality, Offered, SystemVariables, Variable, Variables};
 use crate::scene::{Dependencies, Drive, Orientation, Scene};
 use crate::schema::numbers::Variability;
 use crate::simulation::system::System;
@@ -82,7 +82,7 @@ fn interface(rows: &[Variable]) -> String {
 
 /// The page of a system's package.
 pub fn system_page(system: &System) -> String {
-    let scene = system.scene();
+    let (scene, variables) = (system.scene(), SystemVariables::new(system));
     let title = if scene.title.is_empty() { "Shaft on ball bearings" } else { &scene.title };
     let against = scene.bearings.iter().filter(|bearing| bearing.mounting.direction.sign() < 0.0);
     let against: Vec<&str> = against.map(|bearing| bearing.name.as_str()).collect();
@@ -100,21 +100,37 @@ pub fn system_page(system: &System) -> String {
          <h2>Steps</h2>\n<p>Inputs are those at the start of a communication step; outputs those at its end. Forces, moments, speed and \
          torque move linearly to the given values within the step. Steps may vary; they are divided internally by error control. A step \
          that cannot be finished ends with fmi2Discard at the last time reached. The FMU state holds everything: a replay gives the same \
-         bits. There are no parameters and no directional derivatives.</p>\n\
+         bits. Directional derivatives are those of the last step, of outputs by inputs.</p>\n\
          <p>What the file gives as a table over time is played here too, exactly in every internal step: the force and moment of each \
          named load, the speed or torque of the shaft, and what each bearing has as a script. Setting an input ends the script of \
          the load, of the drive, or of the group of inputs of its bearing.</p>\n\
          <h2>Interface</h2>\n<table><tr><th>name</th><th>unit</th><th>causality</th><th>meaning</th></tr>\n{interface}\
          </table>\n\
+         <h2>Parameters</h2>\n<table><tr><th>name</th><th>unit</th><th>start (range), may be set</th><th>meaning</th></tr>\n{parameters}</table>\n\
          <h2>System</h2>\n<pre>{source}</pre>\n\
          <p>Licences of what this package is linked from: <a href=\"licenses/licenses.txt\">licenses/licenses.txt</a>.</p>\n\
          </body></html>\n",
         title = escape(title),
         bearings = scene.bearings.len(),
         version = env!("CARGO_PKG_VERSION"),
-        interface = interface(SystemVariables::new(system).rows()),
+        interface = interface(variables.rows()),
+        parameters = parameters(variables.rows()),
         source = escape(&scene.source),
     )
+}
+
+/// The table of parameters among rows.
+fn parameters(rows: &[Variable]) -> String {
+    let start = |row: &Variable| {
+        row.offered().map_or_else(String::new, |Offered { range, variability, start }| {
+            let when = match variability {
+                Variability::Fixed => "before the start",
+                Variability::Tunable => "between steps too",
+            };
+            format!("{start} ({} to {}), {when}", range.low, range.high)
+        })
+    };
+    table(rows, |row| row.causality == Causality::Parameter, start)
 }
 
 /// The page of a scene's package.
@@ -122,21 +138,7 @@ pub fn page(scene: &Scene) -> String {
     let title = if scene.title.is_empty() { "Ball bearing" } else { &scene.title };
     let variables = Variables::new(scene);
     let interface = interface(variables.rows());
-    let parameters = table(
-        variables.rows(),
-        |row| row.causality == Causality::Parameter,
-        |row| {
-            let Source::Parameter(parameter) = &row.source else {
-                return String::new();
-            };
-            let when = match parameter.variability {
-                Variability::Fixed => "before the start",
-                Variability::Tunable => "between steps too",
-            };
-            let (start, range) = (parameter.start, parameter.range);
-            format!("{start} ({} to {}), {when}", range.low, range.high)
-        },
-    );
+    let parameters = parameters(variables.rows());
     let dependencies = match scene.interface.dependencies {
         Dependencies::Point => {
             "The dependencies of outputs in modelDescription.xml are those at a communication point, where none follows an \

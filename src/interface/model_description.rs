@@ -7,7 +7,9 @@ use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
 
 use crate::analysis::condensed::Condensed;
-use crate::interface::variables::{Causality, InputKind, Kind, Source, SystemVariables, Variable, Variables};
+use crate::interface::variables::{
+    Causality, InputKind, Kind, Offered, Source, SystemVariables, Variable, Variables,
+};
 use crate::scene::{Dependencies, Drive};
 use crate::schema::numbers::Variability;
 use crate::schema::variable_units::{self as units, Unit};
@@ -54,7 +56,6 @@ pub fn render(simulation: &Simulation, name: &str) -> std::io::Result<ModelDescr
         title: if scene.title.is_empty() { "ball bearing" } else { &scene.title },
         name,
         guid: &guid,
-        directional_derivatives: true,
         dependencies: scene.interface.dependencies,
         stop: scene.load.duration.0,
         step: recommended_step(simulation),
@@ -77,7 +78,6 @@ pub fn render_system(system: &System, name: &str) -> std::io::Result<ModelDescri
         title: if scene.title.is_empty() { "shaft on ball bearings" } else { &scene.title },
         name,
         guid: &guid,
-        directional_derivatives: false,
         dependencies: Dependencies::Point,
         stop: scene.load.duration.0,
         step: steps.fold(scene.load.output_interval.0, f64::min),
@@ -91,8 +91,6 @@ struct About<'a> {
     title: &'a str,
     name: &'a str,
     guid: &'a str,
-    /// Are derivatives of outputs by inputs offered?
-    directional_derivatives: bool,
     /// What the dependencies of its outputs are about.
     dependencies: Dependencies,
     /// \[s] end of the default experiment.
@@ -169,7 +167,7 @@ fn co_simulation(xml: &mut Xml, about: &About<'_>) -> std::io::Result<()> {
             ("maxOutputDerivativeOrder", "1"),
             ("canGetAndSetFMUstate", "true"),
             ("canSerializeFMUstate", "true"),
-            ("providesDirectionalDerivative", if about.directional_derivatives { "true" } else { "false" }),
+            ("providesDirectionalDerivative", "true"),
         ])
         .write_empty()?;
     Ok(())
@@ -338,8 +336,8 @@ fn scalar_variable(xml: &mut Xml, reference: usize, row: &Variable, start: f64) 
 }
 
 fn variability(row: &Variable) -> &'static str {
-    match row.source {
-        Source::Parameter(parameter) if parameter.variability == Variability::Tunable => "tunable",
+    match row.offered() {
+        Some(Offered { variability: Variability::Tunable, .. }) => "tunable",
         _ => "fixed",
     }
 }

@@ -3,7 +3,7 @@
 //! It is a deserializer of serde of our own because that of `toml` is compiled for each section four times, 1 MB in all, and tells where an
 //! error is by bytes of the text alone: this one names the key.
 
-use serde::de::value::StringDeserializer;
+use serde::de::value::StrDeserializer;
 use serde::de::{
     DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error, IntoDeserializer, MapAccess,
     SeqAccess, Unexpected, VariantAccess, Visitor,
@@ -37,8 +37,10 @@ impl ReadError {
         key
     }
 
-    fn inside(mut self, name: String) -> Self {
-        self.inside_out.push(name);
+    #[cold]
+    #[inline(never)]
+    fn inside(mut self, name: &str) -> Self {
+        self.inside_out.push(name.to_owned());
         self
     }
 }
@@ -112,7 +114,20 @@ impl<'de> Deserializer<'de> for Reader {
                     }
                 }
             }
-            Value::Table(table) => visitor.visit_map(Keys { rest: table.into_iter(), next: None }),
+            Value::Table(table) => visitor.visit_map(Keys::of(table)),
+        }
+    }
+
+    /// A table alone: no section is written as a list of its values, and reading that would be compiled for each of them.
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, ReadError> {
+        match self.0 {
+            Value::Table(table) => visitor.visit_map(Keys::of(table)),
+            other => Err(ReadError::invalid_type(kind(&other), &visitor)),
         }
     }
 
@@ -146,7 +161,7 @@ impl<'de> Deserializer<'de> for Reader {
 
     forward_to_deserialize_any! {
         bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
-        tuple_struct map struct identifier ignored_any
+        tuple_struct map identifier ignored_any
     }
 }
 
@@ -166,7 +181,7 @@ impl<'de> SeqAccess<'de> for &mut Entries {
         match seed.deserialize(Reader(value)) {
             Ok(read) => Ok(Some(read)),
             // Numbers of a list are told by the list's key.
-            Err(why) => Err(if is_section { why.inside(format!("[{place}]")) } else { why }),
+            Err(why) => Err(if is_section { why.inside(&format!("[{place}]")) } else { why }),
         }
     }
 
@@ -181,21 +196,27 @@ struct Keys {
     next: Option<(String, Value)>,
 }
 
+impl Keys {
+    fn of(table: map::Map<String, Value>) -> Self {
+        Self { rest: table.into_iter(), next: None }
+    }
+}
+
 impl<'de> MapAccess<'de> for Keys {
     type Error = ReadError;
 
     fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, ReadError> {
         self.next = self.rest.next();
         let Some((key, _)) = &self.next else { return Ok(None) };
-        let name: StringDeserializer<ReadError> = key.clone().into_deserializer();
-        seed.deserialize(name).map(Some).map_err(|why| why.inside(key.clone()))
+        let name: StrDeserializer<'_, ReadError> = key.as_str().into_deserializer();
+        seed.deserialize(name).map(Some).map_err(|why| why.inside(key))
     }
 
     fn next_value_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<T::Value, ReadError> {
         let Some((key, value)) = self.next.take() else {
             return Err(ReadError::custom("a value was asked for before its key"));
         };
-        seed.deserialize(Reader(value)).map_err(|why| why.inside(key))
+        seed.deserialize(Reader(value)).map_err(|why| why.inside(&key))
     }
 }
 
@@ -210,7 +231,7 @@ impl<'de> EnumAccess<'de> for Choice {
     type Variant = Content;
 
     fn variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<(T::Value, Content), ReadError> {
-        let name: StringDeserializer<ReadError> = self.name.into_deserializer();
+        let name: StrDeserializer<'_, ReadError> = self.name.as_str().into_deserializer();
         Ok((seed.deserialize(name)?, Content(self.content)))
     }
 }
@@ -244,6 +265,30 @@ impl<'de> VariantAccess<'de> for Content {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, ReadError> {
-        self.value()?.deserialize_any(visitor)
+        self.value()?.deserialize_struct("", &[], visitor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+
+    use super::*;
+
+    #[test]
+    fn regression_a_section_is_no_list_of_its_values() {
+        #[derive(Debug, PartialEq, Deserialize)]
+        struct Section {
+            length: f64,
+            sides: [f64; 2],
+        }
+        let read = |text: &str| {
+            let mut table: toml::Table = toml::from_str(text).unwrap();
+            read::<Section>(table.remove("section").unwrap())
+        };
+        let section = read("section = { length = 1.0, sides = [2.0, 3.0] }");
+        assert_eq!(section, Ok(Section { length: 1.0, sides: [2.0, 3.0] }));
+        let list = read("section = [1.0, [2.0, 3.0]]").unwrap_err();
+        assert_eq!(list.message(), "invalid type: sequence, expected struct Section");
     }
 }

@@ -140,15 +140,20 @@ fn balanced(
         return None;
     }
     let mut step = FIRST_STEP;
+    let mut by_rate_here = None;
     for _ in 0..MAX_ITERATIONS {
         if in_balance(&(here, limit)) {
             return rolls(contacts, races, &motion).then_some(motion);
         }
-        let contact = |race: Race| ball_by_rate(&contacts[race], &motion, &races[race]);
-        let mut by_rate: Matrix6<f64> = contact(Race::Inner) + contact(Race::Outer);
-        if ambient.depends_on_motion() {
-            by_rate += outside_by_rate(ambient, &motion);
-        }
+        // A trial that was refused leaves the motion as it was.
+        let by_rate = *by_rate_here.get_or_insert_with(|| {
+            let contact = |race: Race| ball_by_rate(&contacts[race], &motion, &races[race]);
+            let by_rate: Matrix6<f64> = contact(Race::Inner) + contact(Race::Outer);
+            match ambient.depends_on_motion() {
+                true => by_rate + outside_by_rate(ambient, &motion),
+                false => by_rate,
+            }
+        });
         let by_orbit = orbit(&motion).inertia_by_rate(model, &motion);
         // First row and column along the orbit, the others of moments over the radius and velocities of the surface.
         let velocities = by_rate.fixed_columns::<3>(0) * tangential + by_orbit.column(2);
@@ -179,7 +184,7 @@ fn balanced(
         if is_near(&trial) && there.norm() < 1.2 * here.norm() {
             // Steps grow as the residual falls: near the balance this is Newton's method.
             step *= (here.norm() / there.norm()).clamp(LEAST_GROWTH, LARGEST_GROWTH);
-            (motion, here) = (trial, there);
+            (motion, here, by_rate_here) = (trial, there, None);
         } else {
             step *= 0.3;
         }

@@ -332,11 +332,16 @@ fn bad_calls_are_refused_and_say_why() {
     let (mut value, beyond) = (0.0, package.rows.len() as u32);
     unsafe {
         assert_eq!(fmi2GetReal(c, &beyond, 1, &mut value), Status::Error);
-        let (unknown, known) = (package.reference("left.inner.force.x"), package.reference("mesh.force.x"));
+        let (unknown, known) = (package.reference("left.inner.force.x"), package.reference("shaft.torque"));
         let status = fmi2GetDirectionalDerivative(c, &unknown, 1, &known, 1, &1.0, &mut value);
         assert_eq!(status, Status::Error);
-        assert!(told("directional derivatives of a shaft with its bearings are not offered"));
+        assert!(told("shaft.torque cannot be a known of a directional derivative"));
     }
+    // Parameters of the start, and beyond their range.
+    refused("shaft.mass", 2.0);
+    assert!(told("shaft.mass is fixed: it can be set before the start only"));
+    refused("solver.tolerance", 1.0);
+    assert!(told("solver.tolerance = 1") && told("is out of range: allowed is "), "{messages:?}");
     run(c, 0..2);
     // A force that pushes balls through the races.
     let before = outputs(&package, c);
@@ -439,7 +444,7 @@ fn names_units_and_abilities_are_told() {
     for word in [
         "canGetAndSetFMUstate=\"true\"",
         "canSerializeFMUstate=\"true\"",
-        "providesDirectionalDerivative=\"false\"",
+        "providesDirectionalDerivative=\"true\"",
         "modelIdentifier=\"gear\"",
     ] {
         assert!(description.xml.contains(word), "{word}");
@@ -460,4 +465,180 @@ fn regression_the_text_in_a_package_stands_alone_and_gives_the_same_system() {
         bits(&native_outputs(&system))
     });
     assert_eq!(systems[0], systems[1]);
+}
+
+/// A gear in place of the mesh, whose torque is an input.
+fn geared(torque: &str) -> String {
+    let gear = "[[shaft.gear]]\ntorque = TORQUE\npitch_radius = \"24 mm\"\npressure_angle = \"20 deg\"\nhelix_angle = \"15 deg\"\n\
+                offset = \"-10 mm\"\nposition = \"90 deg\"\n[[shaft.load]]\nname = \"fan-end\"";
+    text(SPEED, CONSTANT, "")
+        .replace("[[shaft.load]]\n        name = \"fan-end\"", &gear.replace("TORQUE", torque))
+}
+
+#[test]
+fn invariant_derivatives_of_a_step_are_its_differences() {
+    let free = text("torque = \"0.3 N m\"\nstart_speed = \"6000 rpm\"", CONSTANT, "");
+    let knowns = ["mesh.force.y", "mesh.force.z", "mesh.moment.z", "'fan-end'.force.y", "left.friction"];
+    for (name, text, more, change) in [
+        ("given", geared("25.0"), &["shaft.speed", "shaft.gear[1].torque"][..], [1e-2, 0.05]),
+        ("free", free, &["shaft.torque"][..], [0.05, 0.0]),
+    ] {
+        let package = Package::of_system(&format!("system-derivatives-{name}"), &text);
+        let c = package.start();
+        run(c, 0..4);
+        let mut saved = ptr::null_mut();
+        unsafe { assert_eq!(fmi2GetFMUstate(c, &mut saved), Status::Ok) };
+        let unknowns = [
+            "mesh.displacement.y",
+            "mesh.displacement.z",
+            "left.inner.force.y",
+            "right.inner.force.x",
+            "shaft.angle",
+        ];
+        let of = |known: &str, change: f64| -> Vec<f64> {
+            unsafe { assert_eq!(fmi2SetFMUstate(c, saved), Status::Ok) };
+            let value = get(&package, c, known);
+            set(&package, c, known, value + change);
+            run(c, 4..5);
+            unknowns.iter().map(|unknown| get(&package, c, unknown)).collect()
+        };
+        let changes = [2.0, 2.0, 0.1, 2.0, 1e-3].into_iter().chain(change);
+        for (known, change) in knowns.iter().chain(more).zip(changes) {
+            let (plus, minus) = (of(known, change), of(known, -change));
+            of(known, 0.0);
+            let differences: Vec<f64> =
+                plus.iter().zip(&minus).map(|(plus, minus)| (plus - minus) / (2.0 * change)).collect();
+            let mut found = vec![0.0; unknowns.len()];
+            let references: Vec<u32> = unknowns.iter().map(|name| package.reference(name)).collect();
+            let known_reference = package.reference(known);
+            let status = unsafe {
+                fmi2GetDirectionalDerivative(
+                    c,
+                    references.as_ptr(),
+                    5,
+                    &known_reference,
+                    1,
+                    &1.0,
+                    found.as_mut_ptr(),
+                )
+            };
+            assert_eq!(status, Status::Ok, "{known}");
+            for (index, unknown) in unknowns.iter().enumerate() {
+                // Of quantities of a kind, the largest has the size.
+                let alike = if index < 2 {
+                    0..2
+                } else if index < 4 {
+                    2..4
+                } else {
+                    4..5
+                };
+                let size = alike.map(|k| differences[k].abs()).fold(1e-12, f64::max);
+                let off = (found[index] - differences[index]).abs();
+                assert!(
+                    off < 5e-3 * size,
+                    "{name} {unknown} by {known}: {} {}",
+                    found[index],
+                    differences[index]
+                );
+            }
+            assert!(differences.iter().any(|value| *value != 0.0), "{known}");
+        }
+        unsafe {
+            assert_eq!(fmi2FreeFMUstate(c, &mut saved), Status::Ok);
+            fmi2FreeInstance(c);
+        }
+    }
+}
+
+#[test]
+fn invariant_the_torque_of_a_gear_is_an_input_and_a_table_of_it_a_script() {
+    // Set from outside it is that of another file.
+    let (package, other) = (
+        Package::of_system("system-gear", &geared("25.0")),
+        Package::of_system("system-gear-more", &geared("30.0")),
+    );
+    let c = initialising(&package);
+    assert_eq!(get(&package, c, "shaft.gear[1].torque"), 25.0);
+    set(&package, c, "shaft.gear[1].torque", 30.0);
+    assert_eq!(unsafe { fmi2ExitInitializationMode(c) }, Status::Ok);
+    let c_other = other.start();
+    run(c, 0..5);
+    run(c_other, 0..5);
+    assert_eq!(bits(&outputs(&package, c)), bits(&outputs(&other, c_other)));
+    // A table is played, as in a native run, until it is set.
+    let table = geared("[[0, 25], [\"50 us\", 30]]");
+    let scripted = Package::of_system("system-gear-table", &table);
+    let c_scripted = scripted.start();
+    let mut native = System::new(&scene(&table)).unwrap();
+    run(c_scripted, 0..5);
+    advance(&mut native, 0..5);
+    assert_eq!(bits(&outputs(&scripted, c_scripted)), bits(&native_outputs(&native)));
+    assert_eq!(get(&scripted, c_scripted, "shaft.gear[1].torque"), 30.0);
+    for c in [c, c_other, c_scripted] {
+        unsafe { fmi2FreeInstance(c) };
+    }
+}
+
+#[test]
+fn invariant_a_parameter_is_that_of_the_changed_file() {
+    let disc = "[[shaft.disc]]\nposition = 0.0\nmass = 0.5\npolar_inertia = 2e-4\ntransverse_inertia = 1e-4\nunbalance = \"2 g mm\"\n[[shaft.point]]";
+    // Steps that follow the bearing would follow the changed file.
+    let solver = "[solver]\nmax_step = 2e-5\ninitial_step = 1e-6\ntolerance = 1e-7\n[load]";
+    let plain = plain().replace("[[shaft.point]]", disc).replace("[load]", solver);
+    let package = Package::of_system("system-parameters", &plain);
+    for (name, value, from, to) in [
+        ("shaft.mass", 2.5, "mass = \"1.8 kg\"", "mass = 2.5"),
+        ("shaft.disc[1].unbalance", 4e-6, "\"2 g mm\"", "4e-6"),
+        ("left.mounting.preload.force", 1200.0, "\"1500 N\"", "1200.0"),
+        ("right.mounting.position", 0.06, "position = \"50 mm\"", "position = 0.06"),
+        (
+            "left.bearing.inner_conformity",
+            0.53,
+            "[[bearing]]\n        name = \"right\"",
+            "set = { bearing = { inner_conformity = 0.53 } }\n[[bearing]]\nname = \"right\"",
+        ),
+        ("solver.max_step", 1e-5, "max_step = 2e-5", "max_step = 1e-5"),
+    ] {
+        let c = initialising(&package);
+        assert_eq!(unsafe { fmi2FreeInstance(c) }, ());
+        let c = package.instantiate();
+        set(&package, c, name, value);
+        initialise(c);
+        let changed = plain.replacen(from, to, 1);
+        assert_ne!(changed, plain, "{name}");
+        let other = Package::of_system(
+            &format!("system-parameters-{}", name.replace(['.', '[', ']'], "-")),
+            &changed,
+        );
+        let c_other = other.start();
+        run(c, 0..4);
+        run(c_other, 0..4);
+        let (ours, theirs) = (outputs(&package, c), outputs(&other, c_other));
+        let off = ours
+            .iter()
+            .zip(&theirs)
+            .map(|(a, b)| (a - b).abs() / a.abs().max(b.abs()).max(1e-9))
+            .fold(0.0, f64::max);
+        assert!(off == 0.0, "{name}: {off}");
+        unsafe {
+            fmi2FreeInstance(c);
+            fmi2FreeInstance(c_other);
+        }
+    }
+    // A tunable one counts from the next step on.
+    let of = |tolerance: Option<f64>| {
+        let c = package.start();
+        run(c, 0..2);
+        tolerance.into_iter().for_each(|value| set(&package, c, "solver.tolerance", value));
+        run(c, 2..12);
+        let mut steps = 0;
+        assert_eq!(
+            unsafe { fmi2GetInteger(c, &package.reference("left.integrator.steps"), 1, &mut steps) },
+            Status::Ok
+        );
+        unsafe { fmi2FreeInstance(c) };
+        steps
+    };
+    assert!(of(Some(1e-12)) > 2 * of(None), "{} {}", of(Some(1e-12)), of(None));
+    assert_eq!(of(None), of(None));
 }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
+mod equilibrium;
 mod hard;
 mod housing;
 mod motion;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
+use roulement::effects::reports::LifeOutput;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::model::Model;
 use roulement::scene::Scene;
@@ -111,7 +112,7 @@ fn of_shaft(scene: &SystemScene, time: f64, json: bool, up_to: Option<Speed>) ->
     say(&if json { format!("{:#}\n", found.to_json()) } else { found.to_string() })?;
     for (of, mounted) in found.bearings.iter().zip(&scene.bearings) {
         let pressure = mounted.scene.pressure_note(of.peak_pressure());
-        let life = of.outputs.life.as_ref().and_then(|life| life.warning());
+        let life = of.outputs.life.as_ref().and_then(LifeOutput::warning);
         let bare = |note: String| note.trim_start_matches("warning: ").to_string();
         tell(
             pressure

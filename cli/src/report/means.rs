@@ -457,7 +457,7 @@ mod tests {
         // Nothing rolls.
         let mut still = Blocks::new(of_bearing(Parts { cage: true, moving_outer: true }), 1.0);
         (0..50).for_each(|row| {
-            still.add(Block::of_row(f64::from(row), &[0.0; COUNT], vec![0.0; COUNT], [0.0; 3]))
+            still.add(Block::of_row(f64::from(row), &[0.0; COUNT], vec![0.0; COUNT], [0.0; 3]));
         });
         let still = still.means().unwrap();
         assert!(still.means.iter().all(|mean| mean.mean == 0.0) && still.unsettled().count() == 0);

@@ -148,7 +148,7 @@ fn consistency_whole_tables_of_a_sweep_have_shaft_and_bearings() {
 #[test]
 fn regression_a_load_that_no_bearing_bears_is_warned_of_on_a_shaft_too() {
     let scratch = Scratch::new("shaft-overload");
-    let heavy = pinion().replace("-475.0", "-100e3");
+    let heavy = pinion().replace("1500 N", "178 kN");
     let (code, said, told) = run(&scratch, &heavy, "out", &[]);
     assert_eq!(code, Some(0), "{told}");
     for name in ["left", "right"] {

@@ -1,5 +1,6 @@
 //! One implicit step of a system: several bearings, and structures that carry their races.
 
+mod sensitivity;
 mod step;
 mod structure;
 
@@ -14,6 +15,7 @@ use crate::numerics::hht::HhtStep;
 use crate::numerics::newton::{self, NewtonBuffers, NewtonWork};
 use crate::numerics::size::larger;
 use crate::numerics::step_control::StepControl;
+pub use sensitivity::{Perturbed, Started, advance_perturbed};
 pub use step::{Joint, StructureStep, SystemStep};
 pub use structure::{Seat, StructureLoad, StructureTrial};
 
@@ -35,7 +37,8 @@ pub struct Part<'a> {
 /// Buffers of a system's step, kept between steps.
 #[derive(Clone, Debug, Default)]
 pub struct SystemWorkspace {
-    unknowns: Vec<f64>,
+    /// Unknowns of the last step.
+    pub unknowns: Vec<f64>,
     newton: NewtonBuffers,
 }
 

@@ -1,15 +1,17 @@
-//! Derivatives of a bearing's outputs by its inputs, by small changes of these.
+//! Derivatives of outputs of a bearing, or of a shaft with its bearings, by its inputs, by small changes of these.
 
-use super::{BearingUnit, UnitSnapshot};
+use super::{BearingUnit, SystemUnit, UnitSnapshot};
 use crate::fmi::outcome::{Outcome, error};
 use crate::interface::variables::{Causality, InputKind, Kind, Variable};
 use crate::scene::{Groups, Level};
 use crate::simulation::inputs::Inputs;
 use crate::simulation::outputs::Outputs;
+use crate::simulation::system::{Played, ShaftInputs, SystemError};
 use crate::simulation::{Simulation, SimulationError};
 
 /// Sizes of the changes of inputs whose effects are compared: small against what bends the contact laws (an approach of
 /// some micrometres, slip speeds of millimetres per second), large against rounding.
+#[derive(Clone, Copy)]
 struct Changes {
     /// \[m] of positions, and of points at the pitch radius by rotations.
     displacement: f64,
@@ -40,7 +42,25 @@ impl Changes {
             Some(InputKind::Moment) => self.force * self.length,
             Some(InputKind::Friction) => self.friction,
             Some(InputKind::Temperature) => self.displacement / (STEEL_EXPANSION * self.length),
-            None => row.small_change().unwrap_or(f64::NAN),
+            None => match row.unit.name {
+                // Loads, torques and the speed of a shaft.
+                _ if row.small_change().is_some() => row.small_change().unwrap_or(f64::NAN),
+                "N" => self.force,
+                "N.m" => self.force * self.length,
+                "rad/s" => self.velocity / self.length,
+                _ => f64::NAN,
+            },
+        }
+    }
+
+    /// The smaller ones of two bearings.
+    fn smaller(self, other: Self) -> Self {
+        Self {
+            displacement: self.displacement.min(other.displacement),
+            velocity: self.velocity.min(other.velocity),
+            force: self.force.min(other.force),
+            friction: self.friction.min(other.friction),
+            length: self.length.min(other.length),
         }
     }
 }
@@ -73,26 +93,16 @@ pub fn columns(unit: &BearingUnit, before: Option<&UnitSnapshot>, played: Groups
     let dynamic = simulation.scene().solver.level == Level::Dynamic;
     let changes = changes(simulation, duration.filter(|_| dynamic));
     let rows = variables.rows();
-    let inputs: Vec<usize> = (0..rows.len())
-        .filter(|&i| rows[i].causality == Causality::Input && rows[i].kind == Kind::Real)
-        .collect();
+    let inputs = knowns(rows);
 
-    // Two perturbations per input, of opposite sign; at the end of what is allowed there is one.
     let values = variables.values(base, simulation.outputs());
-    let moved = |index: usize, sign: f64| {
-        let value = values[index] + sign * changes.of(&rows[index]);
-        rows[index].allowed().map_or(value, |range| value.clamp(range.low, range.high))
-    };
+    let moved = |index: usize, sign: f64| moved(&rows[index], values[index], sign, &changes);
     let perturbed = |index: usize, sign: f64| -> Outcome<Inputs> {
         let mut values = values.clone();
         values[index] = moved(index, sign);
         variables.inputs(&values, &variables.rates(base), base).or_else(|why| error(why.to_string()))
     };
-    let mut perturbations = Vec::with_capacity(2 * inputs.len());
-    for &index in &inputs {
-        perturbations.push(perturbed(index, 1.0)?);
-        perturbations.push(perturbed(index, -1.0)?);
-    }
+    let perturbations = both_ways(&inputs, perturbed)?;
     let mut central = simulation.clone();
     let outputs: Vec<Outputs> = match before {
         Some(before) => {
@@ -115,11 +125,99 @@ pub fn columns(unit: &BearingUnit, before: Option<&UnitSnapshot>, played: Groups
         }
     };
 
-    let mut columns = vec![vec![]; rows.len()];
-    for (&index, pair) in inputs.iter().zip(outputs.chunks_exact(2)) {
-        let [plus, minus] = [0, 1].map(|side: usize| variables.values(base, &pair[side]));
-        let apart = moved(index, 1.0) - moved(index, -1.0);
-        columns[index] = plus.iter().zip(&minus).map(|(plus, minus)| (plus - minus) / apart).collect();
+    let of = outputs.iter().map(|outputs| variables.values(base, outputs)).collect::<Vec<_>>();
+    Ok(differences(rows.len(), &inputs, &of, |index| moved(index, 1.0) - moved(index, -1.0)))
+}
+
+/// The same of a shaft with its bearings.
+///
+/// # Errors
+/// If they do not exist here.
+pub fn columns_of_system(
+    unit: &SystemUnit,
+    before: Option<&UnitSnapshot>,
+    played: &Played,
+) -> Outcome<Vec<Vec<f64>>> {
+    let (variables, system) = (&unit.variables, &unit.system);
+    fn failed<T>(why: &SystemError) -> Outcome<T> {
+        error(format!("no directional derivatives here: {why}"))
     }
-    Ok(columns)
+    let duration = before.map(|before| system.time() - before.time());
+    let changes = system.bearings().map(|(_, bearing)| changes(bearing, duration)).reduce(Changes::smaller);
+    let Some(changes) = changes else { return error("there is no bearing") };
+    let rows = variables.rows();
+    let inputs = knowns(rows);
+    let values = variables.values(system);
+    let rates = variables.rates(system);
+    let moved = |index: usize, sign: f64| moved(&rows[index], values[index], sign, &changes);
+    let perturbed = |index: usize, sign: f64| -> Outcome<(ShaftInputs, Vec<Inputs>)> {
+        let mut values = values.clone();
+        values[index] = moved(index, sign);
+        variables.inputs(&values, &rates, system).or_else(|why| error(why.to_string()))
+    };
+    let perturbations = both_ways(&inputs, perturbed)?;
+    let outputs: Vec<Vec<f64>> = match before {
+        Some(before) => {
+            let UnitSnapshot::System(before) = before else {
+                return error("the start of the last step is of a bearing");
+            };
+            let mut central = system.clone();
+            if !central.restore(before) {
+                return error("the start of the last step is of another scene");
+            }
+            let bearings = system.bearings().map(|(_, bearing)| *bearing.inputs()).collect();
+            if !central.set_inputs(system.inputs().clone(), bearings) {
+                return error("the start of the last step is of another scene");
+            }
+            let ends = central.advance_perturbed(system.time(), &perturbations, played);
+            let ends = ends.or_else(|why| failed(&why))?;
+            ends.iter().map(|system| variables.values(system)).collect()
+        }
+        None => {
+            let start = |(shaft, bearings): &(ShaftInputs, Vec<Inputs>)| {
+                let mut central = system.clone();
+                if !central.set_inputs(shaft.clone(), bearings.clone()) {
+                    return Err(SystemError::OtherInputs);
+                }
+                central.initialise()?;
+                Ok(variables.values(&central))
+            };
+            perturbations.iter().map(start).collect::<Result<_, _>>().or_else(|why| failed(&why))?
+        }
+    };
+    Ok(differences(rows.len(), &inputs, &outputs, |index| moved(index, 1.0) - moved(index, -1.0)))
+}
+
+/// References of the inputs that there are derivatives by.
+fn knowns(rows: &[Variable]) -> Vec<usize> {
+    let inputs = rows.iter().enumerate();
+    let inputs = inputs.filter(|(_, row)| row.causality == Causality::Input && row.kind == Kind::Real);
+    inputs.map(|(index, _)| index).collect()
+}
+
+/// A changed value of an input.
+fn moved(row: &Variable, value: f64, sign: f64, changes: &Changes) -> f64 {
+    let value = value + sign * changes.of(row);
+    row.allowed().map_or(value, |range| value.clamp(range.low, range.high))
+}
+
+/// Two perturbations per input, of opposite sign; at the end of what is allowed there is one.
+fn both_ways<P>(inputs: &[usize], perturbed: impl Fn(usize, f64) -> Outcome<P>) -> Outcome<Vec<P>> {
+    let signs = inputs.iter().flat_map(|index| [(*index, 1.0), (*index, -1.0)]);
+    signs.map(|(index, sign)| perturbed(index, sign)).collect()
+}
+
+/// Derivatives of so many rows by every input from their values under each pair of perturbations, and how far these are apart.
+fn differences(
+    rows: usize,
+    inputs: &[usize],
+    values: &[Vec<f64>],
+    apart: impl Fn(usize) -> f64,
+) -> Vec<Vec<f64>> {
+    let mut columns = vec![vec![]; rows];
+    for (&index, pair) in inputs.iter().zip(values.chunks_exact(2)) {
+        let apart = apart(index);
+        columns[index] = pair[0].iter().zip(&pair[1]).map(|(plus, minus)| (plus - minus) / apart).collect();
+    }
+    columns
 }

@@ -1,20 +1,20 @@
 //! A shaft with its bearings.
 //!
-//! Its scripts are, in this order: those of every bearing, group by group; one of each named load; that of the drive.
+//! Its scripts are, in this order: those of every bearing, group by group; one of each named load; one of each gear; that of the drive.
 
 use std::sync::Arc;
 
 use strum::VariantArray;
 
 use super::bearing::{givers, marked};
-use super::{Simulated, UnitSnapshot};
+use super::{Simulated, UnitSnapshot, derivatives};
 use crate::fmi::log::Log;
-use crate::fmi::outcome::{Outcome, Status, error};
+use crate::fmi::outcome::{Outcome, Status};
 use crate::interface::contradiction::Contradiction;
 use crate::interface::variables::{SystemGroup, SystemVariables, Variable};
 use crate::model::bodies::Race;
-use crate::scene::system::SystemScene;
-use crate::scene::{Giver, Group};
+use crate::scene::system::{MountedScene, SystemScene};
+use crate::scene::{Giver, Group, SceneError};
 use crate::simulation::inputs::Inputs;
 use crate::simulation::system::{
     Played, ShaftInputs, System, SystemError, drive_is_scripted, shaft_follows_time,
@@ -26,8 +26,8 @@ const GROUPS: usize = Group::VARIANTS.len();
 /// A system with its variables.
 #[derive(Clone)]
 pub struct SystemUnit {
-    variables: Arc<SystemVariables>,
-    system: System,
+    pub(super) variables: Arc<SystemVariables>,
+    pub(super) system: System,
     /// Inputs of the next step: of the shaft, and of every bearing.
     next: (ShaftInputs, Vec<Inputs>),
 }
@@ -52,12 +52,29 @@ impl SystemUnit {
         self.system.scene().bearings.len()
     }
 
+    fn gears(&self) -> usize {
+        self.system.scene().shaft.gear.len()
+    }
+
+    /// The scene with the parameters among these values.
+    fn scene_with(&self, values: &[f64]) -> Outcome<SystemScene> {
+        let mut scene = self.system.scene().clone();
+        self.variables.set_parameters(&mut scene, values);
+        let check = |mounted: &MountedScene| {
+            let refused = |why: SceneError| (Status::Error, format!("bearing {}: {why}", mounted.name));
+            mounted.scene.check().map_err(refused)
+        };
+        scene.bearings.iter().try_for_each(check)?;
+        Ok(scene)
+    }
+
     /// What a script gives.
     fn group(&self, script: usize) -> SystemGroup {
         let (bearings, loads) = (GROUPS * self.bearing_count(), self.system.scene().loads().count());
         match script.checked_sub(bearings) {
             None => SystemGroup::Bearing(script / GROUPS, Group::VARIANTS[script % GROUPS]),
             Some(load) if load < loads => SystemGroup::Load(load),
+            Some(gear) if gear < loads + self.gears() => SystemGroup::Gear(gear - loads),
             Some(_) => SystemGroup::Drive,
         }
     }
@@ -65,9 +82,11 @@ impl SystemUnit {
     /// Its scripts that are marked.
     fn played(&self, marks: &[bool]) -> Played {
         let (bearings, rest) = marks.split_at(GROUPS * self.bearing_count());
-        let (loads, drive) = rest.split_at(self.system.scene().loads().count());
+        let (loads, rest) = rest.split_at(self.system.scene().loads().count());
+        let (gears, drive) = rest.split_at(self.gears());
         Played {
             loads: loads.to_vec(),
+            gears: gears.to_vec(),
             drive: drive.contains(&true),
             bearings: bearings.chunks(GROUPS).map(marked).collect(),
         }
@@ -114,8 +133,9 @@ impl Simulated for SystemUnit {
         self.system.scene().load.duration.0
     }
 
-    fn start_at(&mut self, time: f64, _values: &[f64]) -> Outcome {
-        self.system = System::starting_at(self.system.scene(), time).map_err(|why| refused(&why))?;
+    fn start_at(&mut self, time: f64, values: &[f64]) -> Outcome {
+        let scene = self.scene_with(values)?;
+        self.system = System::starting_at(&scene, time).map_err(|why| refused(&why))?;
         Ok(())
     }
 
@@ -123,8 +143,10 @@ impl Simulated for SystemUnit {
         if time == self.system.time() { Ok(()) } else { self.start_at(time, &[]) }
     }
 
-    /// There are no parameters.
-    fn tune(&mut self, _values: &[f64]) -> Outcome {
+    fn tune(&mut self, values: &[f64]) -> Outcome {
+        let scene = self.scene_with(values)?;
+        let scenes: Vec<_> = scene.bearings.into_iter().map(|mounted| mounted.scene).collect();
+        self.system.tune(&scenes);
         Ok(())
     }
 
@@ -160,7 +182,8 @@ impl Simulated for SystemUnit {
         let scene = self.system.scene();
         let of_bearings = self.system.bearings().flat_map(|(_, bearing)| givers(bearing.scene()));
         let loads = scene.loads().map(|load| load.is_scripted());
-        let of_shaft = loads.chain([drive_is_scripted(scene)]);
+        let gears = scene.shaft.gear.iter().map(|gear| gear.torque.is_scripted());
+        let of_shaft = loads.chain(gears).chain([drive_is_scripted(scene)]);
         of_bearings.chain(of_shaft.map(|scripted| scripted.then_some(Giver::Scene))).collect()
     }
 
@@ -170,6 +193,7 @@ impl Simulated for SystemUnit {
             SystemGroup::Load(load) => {
                 (scene.loads().nth(load).map_or_else(String::new, |load| load.name.into()), Group::Loads)
             }
+            SystemGroup::Gear(gear) => (format!("the torque of gear {}", gear + 1), Group::Loads),
             SystemGroup::Drive => ("the shaft's drive".into(), Group::Speeds),
             SystemGroup::Bearing(index, group) => {
                 (format!("{group} of {}", scene.bearings[index].name), group)
@@ -182,7 +206,8 @@ impl Simulated for SystemUnit {
         Some(match self.variables.group(reference, &self.system)? {
             SystemGroup::Bearing(index, group) => GROUPS * index + group as usize,
             SystemGroup::Load(load) => after_bearings + load,
-            SystemGroup::Drive => after_bearings + self.system.scene().loads().count(),
+            SystemGroup::Gear(gear) => after_bearings + self.system.scene().loads().count() + gear,
+            SystemGroup::Drive => after_bearings + self.system.scene().loads().count() + self.gears(),
         })
     }
 
@@ -211,7 +236,7 @@ impl Simulated for SystemUnit {
         }
     }
 
-    fn derivatives(&self, _: Option<&UnitSnapshot>, _: &[bool]) -> Outcome<Vec<Vec<f64>>> {
-        error("directional derivatives of a shaft with its bearings are not offered")
+    fn derivatives(&self, before: Option<&UnitSnapshot>, played: &[bool]) -> Outcome<Vec<Vec<f64>>> {
+        derivatives::columns_of_system(self, before, &self.played(played))
     }
 }

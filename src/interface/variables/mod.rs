@@ -14,7 +14,7 @@ use crate::effects::growth::RISE;
 use crate::effects::{Getter, InputRow, Reports};
 use crate::model::bodies::{PerRace, Race};
 use crate::scene::{Drive, Group, Scene};
-use crate::schema::numbers::{FRICTION, Parameter, Range};
+use crate::schema::numbers::{FRICTION, Parameter, Range, Variability};
 use crate::schema::variable_units::Unit;
 use crate::simulation::Simulation;
 use crate::simulation::inputs::Inputs;
@@ -168,9 +168,13 @@ impl Variables {
         Self::of_bearing(scene, per_ball, |_| false)
     }
 
-    /// The variables of a bearing of a system: structures carry its inner race, perhaps its outer one, and its numbers are no parameters.
+    /// The variables of a bearing of a system: structures carry its inner race, perhaps its outer one. Numbers of the integration are
+    /// those of the system.
     pub fn carried(scene: &Scene, carried: impl Fn(Race) -> bool) -> Self {
-        Self::of_bearing(scene, scene.effects.per_ball.on, carried)
+        let mut table = Self::of_bearing(scene, scene.effects.per_ball.on, carried);
+        table.add_parameters(scene);
+        table.rows.retain(|row| !row.name.starts_with("solver."));
+        table
     }
 
     fn of_bearing(scene: &Scene, per_ball: bool, carried: impl Fn(Race) -> bool) -> Self {
@@ -331,7 +335,28 @@ impl Variables {
     }
 }
 
+/// What may be said of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offered {
+    /// Allowed values.
+    pub range: Range,
+    /// When it may be set.
+    pub variability: Variability,
+    /// Its value in the scene.
+    pub start: f64,
+}
+
 impl Variable {
+    /// What a parameter is offered as; none of other variables.
+    pub fn offered(&self) -> Option<Offered> {
+        let (range, variability, start) = match &self.source {
+            Source::Parameter(own) => (own.range, own.variability, own.start),
+            Source::Shaft(ShaftSource::Number(own)) => (own.number.range, own.number.variability, own.start),
+            _ => return None,
+        };
+        Some(Offered { range, variability, start })
+    }
+
     /// Kind of an input; none for other variables.
     pub fn input_kind(&self) -> Option<InputKind> {
         match &self.source {

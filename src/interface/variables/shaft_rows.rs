@@ -1,7 +1,7 @@
 //! The rows of a system's shaft and housings: loads and drive, turn, energies, and the motion of stations.
 
 use super::{Causality, Kind, Source, Variable};
-use crate::scene::system::SystemScene;
+use crate::scene::system::{ShaftParameter, SystemScene};
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::system::{HousingOutputs, PointOutput, ShaftInputs, SystemOutputs};
 
@@ -12,8 +12,12 @@ pub enum ShaftSource {
     Force(usize, usize),
     /// The same of its moment.
     Moment(usize, usize),
+    /// Torque of a gear.
+    Gear(usize),
     /// Speed or torque, whichever drives the shaft.
     Drive,
+    /// A number of the scene.
+    Number(ShaftParameter),
     /// The shaft as a whole.
     Whole(fn(&SystemOutputs) -> f64),
     /// A housing as a whole, by its index.
@@ -103,7 +107,9 @@ impl ShaftSource {
         match self {
             Self::Force(load, axis) => inputs.loads[load].force[axis],
             Self::Moment(load, axis) => inputs.loads[load].moment[axis],
+            Self::Gear(index) => inputs.gears[index],
             Self::Drive => inputs.drive,
+            Self::Number(parameter) => parameter.start,
             Self::Whole(get) => get(outputs),
             Self::Housing(index, get) => get(&outputs.housings[index]),
             Self::Motion(station, quantity, axis) => quantity.read(station.of(outputs), axis),
@@ -115,8 +121,9 @@ impl ShaftSource {
         match self {
             Self::Force(load, axis) => inputs.loads[load].force[axis] = value,
             Self::Moment(load, axis) => inputs.loads[load].moment[axis] = value,
+            Self::Gear(index) => inputs.gears[index] = value,
             Self::Drive => inputs.drive = value,
-            Self::Whole(_) | Self::Housing(..) | Self::Motion(..) => {}
+            Self::Number(_) | Self::Whole(_) | Self::Housing(..) | Self::Motion(..) => {}
         }
     }
 }
@@ -142,7 +149,12 @@ fn row(
         kind: Kind::Real,
         causality,
         nominal,
-        limits: [None; 2],
+        limits: match source {
+            ShaftSource::Number(ShaftParameter { number, .. }) => {
+                [number.range.low, number.range.high].map(Some)
+            }
+            _ => [None; 2],
+        },
         description,
         source: Source::Shaft(source),
     }
@@ -169,6 +181,12 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
             rows.push(row(name, (units::NEWTON_METRE, 1.0), Causality::Input, description, source));
         }
     }
+    for index in 0..shaft.gear.len() {
+        let name = format!("shaft.gear[{}].torque", index + 1);
+        let description = format!("torque about +x that the mesh of gear {} exerts on the shaft", index + 1);
+        let unit = (units::NEWTON_METRE, 1.0);
+        rows.push(row(name, unit, Causality::Input, description, ShaftSource::Gear(index)));
+    }
     turn(scene, &mut rows);
     for (index, load) in shaft.load.iter().enumerate() {
         motion(&mut rows, Station::Load(None, index), &quoted(&load.name), &load.name);
@@ -184,7 +202,21 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
     for index in 0..scene.housings.len() {
         housing(scene, index, &mut rows);
     }
+    for (name, parameter) in scene.parameters() {
+        let number = parameter.number;
+        let nominal = if parameter.start == 0.0 { 1.0 } else { parameter.start.abs() };
+        let unit = (units::of_parameter(number.range.unit), nominal);
+        let (description, source) = (number.description.to_string(), ShaftSource::Number(parameter));
+        let name =
+            name.split_once('.').map_or(name.clone(), |(part, key)| format!("{}.{key}", quoted_part(part)));
+        rows.push(row(name, unit, Causality::Parameter, description, source));
+    }
     rows
+}
+
+/// The first part of a name: quoted, but for what has an index.
+fn quoted_part(part: &str) -> String {
+    if part == "shaft" || part == "solver" { part.into() } else { quoted(part) }
 }
 
 /// Energies and motion of a housing.

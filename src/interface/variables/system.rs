@@ -3,6 +3,7 @@
 use super::shaft_rows::{self, ShaftSource};
 use super::{InputError, Source, Variable, Variables, references_of_inputs};
 use crate::scene::Group;
+use crate::scene::system::SystemScene;
 use crate::simulation::Simulation;
 use crate::simulation::inputs::Inputs;
 use crate::simulation::system::{ShaftInputs, System};
@@ -29,6 +30,8 @@ struct Part {
 pub enum SystemGroup {
     /// Force and moment at a named load, by its index.
     Load(usize),
+    /// Torque of a gear, by its index.
+    Gear(usize),
     /// Speed or torque of the shaft.
     Drive,
     /// A group of inputs of a bearing, by its index.
@@ -92,6 +95,16 @@ impl SystemVariables {
         values
     }
 
+    /// Rates of all rows that inputs were given with; loads and drive have none.
+    pub fn rates(&self, system: &System) -> Vec<f64> {
+        let mut rates = vec![0.0; self.rows.len()];
+        for (part, (_, bearing)) in self.bearings.iter().zip(system.bearings()) {
+            let own = part.variables.rates(bearing.inputs());
+            rates[part.first..part.first + own.len()].copy_from_slice(&own);
+        }
+        rates
+    }
+
     /// Turns the values of all rows (those of outputs are ignored) and their rates into inputs of shaft and bearings, on top of those
     /// that a system has.
     ///
@@ -122,6 +135,18 @@ impl SystemVariables {
         Ok((shaft, bearings))
     }
 
+    /// Writes the parameters among the values of all rows into a scene.
+    pub fn set_parameters(&self, scene: &mut SystemScene, values: &[f64]) {
+        for (row, value) in self.rows.iter().zip(values) {
+            if let Some(ShaftSource::Number(parameter)) = shaft_source(row) {
+                parameter.set(scene, *value);
+            }
+        }
+        for (part, mounted) in self.bearings.iter().zip(&mut scene.bearings) {
+            part.variables.set_parameters(&mut mounted.scene, &values[part.first..]);
+        }
+    }
+
     /// What an input is given together with; none for other variables.
     pub fn group(&self, reference: usize, system: &System) -> Option<SystemGroup> {
         if let Some((index, own)) = self.part(reference) {
@@ -131,8 +156,12 @@ impl SystemVariables {
         }
         match shaft_source(&self.rows[reference])? {
             ShaftSource::Force(load, _) | ShaftSource::Moment(load, _) => Some(SystemGroup::Load(load)),
+            ShaftSource::Gear(index) => Some(SystemGroup::Gear(index)),
             ShaftSource::Drive => Some(SystemGroup::Drive),
-            ShaftSource::Whole(_) | ShaftSource::Housing(..) | ShaftSource::Motion(..) => None,
+            ShaftSource::Number(_)
+            | ShaftSource::Whole(_)
+            | ShaftSource::Housing(..)
+            | ShaftSource::Motion(..) => None,
         }
     }
 

@@ -6,11 +6,13 @@
 mod bearing;
 mod check;
 mod check_housing;
+mod numbers;
 
 use std::path::Path;
 
 use bearing::{Shared, WrittenBearing};
 use nalgebra::Vector3;
+pub use numbers::{ShaftNumber, ShaftParameter};
 use serde::Deserialize;
 use toml::{Table, Value};
 

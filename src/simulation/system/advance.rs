@@ -2,15 +2,21 @@
 
 use std::cmp::Ordering;
 
+use nalgebra::DVector;
+
+use super::super::inputs::Inputs;
 use super::super::script::Script;
-use super::super::{SimulationError, step_limits};
+use super::super::{Simulation, SimulationError, step_limits};
 use super::inputs::{Given, Played, ShaftInputs};
 use super::{System, SystemError, SystemOutputs, loads};
-use crate::dynamics::StepFailure;
-use crate::dynamics::system::{Part, StructureStep, try_step};
+use crate::dynamics::system::{
+    Part, Perturbed, Started, StructureLoad, StructureStep, advance_perturbed, try_step,
+};
+use crate::dynamics::{Boundary, StepFailure, Workspace};
 use crate::model::bodies::Race;
-use crate::model::structure::{Spin, Turning};
+use crate::model::structure::{Carrier, Spin, StructureState, Turning};
 use crate::numerics::tilt;
+use crate::scene::Groups;
 
 impl System {
     /// Runs its own steps to exactly `end` \[s] by the scripts of all bearings and the shaft.
@@ -36,39 +42,68 @@ impl System {
     /// # Errors
     /// As [`System::advance`].
     pub fn advance_with(&mut self, end: f64, played: &Played) -> Result<(), SystemError> {
+        self.advance_perturbed(end, &[], played).map(drop)
+    }
+
+    /// Like [`System::advance_with`]; also gives what slightly different inputs would have led to, in the same steps. That is exact to first
+    /// order: take differences between perturbations of opposite sign.
+    ///
+    /// # Errors
+    /// As [`System::advance`], if there are too many or too few inputs, and if the Newton matrix of a step is singular.
+    pub fn advance_perturbed(
+        &mut self,
+        end: f64,
+        inputs: &[(ShaftInputs, Vec<Inputs>)],
+        played: &Played,
+    ) -> Result<Vec<Self>, SystemError> {
         let begin = self.time;
         if !(end > begin && end.is_finite()) {
             return Err(SystemError::Backwards { from: begin, to: end });
         }
-        let scripts: Vec<Script> = self
-            .bearings
-            .iter_mut()
-            .zip(&played.bearings)
-            .map(|(bearing, groups)| {
-                // Structures move these.
-                let scripted = bearing.scripted_inputs(begin);
-                for race in Race::BOTH.into_iter().filter(|race| bearing.model.is_carried(*race)) {
-                    bearing.inputs[race] = scripted[race];
-                }
-                let script = bearing.begin_script(*groups);
-                bearing.paths = bearing.paths.towards(&bearing.inputs, begin, end - begin);
-                script
-            })
-            .collect();
+        let beside = |(shaft, bearings): &(ShaftInputs, Vec<Inputs>)| {
+            let mut system = self.clone();
+            let fit = system.set_inputs(shaft.clone(), bearings.clone());
+            fit.then(|| system.begin(end, played)).map(|_| system)
+        };
+        let perturbed: Option<Vec<Self>> = inputs.iter().map(beside).collect();
+        let mut perturbed = perturbed.ok_or(SystemError::OtherInputs)?;
+        let scripts = self.begin(end, played);
+        let result = self.follow(&scripts, played, end, &mut perturbed);
+        self.finish(&scripts, played, result.is_ok());
+        perturbed.iter_mut().for_each(|system| system.finish(&scripts, played, false));
+        result?;
+        for (index, bearing) in self.bearings.iter().enumerate() {
+            bearing.check_contacts().map_err(|source| self.of_bearing(index, source))?;
+        }
+        Ok(perturbed)
+    }
+
+    /// Begins a communication step to a time \[s]: scripts of the bearings, and paths to the inputs that were set.
+    fn begin(&mut self, end: f64, played: &Played) -> Vec<Script> {
+        let begin = self.time;
         self.paths = self.paths.towards(&self.inputs, begin, end - begin);
-        let result = self.follow(&scripts, played, end);
-        let mut checked = Ok(());
-        for (index, (bearing, script)) in self.bearings.iter_mut().zip(&scripts).enumerate() {
-            bearing.end_script(script, result.is_ok());
-            if result.is_ok() && checked.is_ok() {
-                checked = bearing.check_contacts().map_err(|source| (index, source));
+        let bearings = self.bearings.iter_mut().zip(&played.bearings);
+        let script = |(bearing, groups): (&mut Simulation, &Groups)| {
+            // Structures move these.
+            let scripted = bearing.scripted_inputs(begin);
+            for race in Race::BOTH.into_iter().filter(|race| bearing.model.is_carried(*race)) {
+                bearing.inputs[race] = scripted[race];
             }
+            let script = bearing.begin_script(*groups);
+            bearing.paths = bearing.paths.towards(&bearing.inputs, begin, end - begin);
+            script
+        };
+        bearings.map(script).collect()
+    }
+
+    /// Inputs and outputs at the end of a communication step. The last step's own evaluation serves for outputs where it was `accepted`.
+    fn finish(&mut self, scripts: &[Script], played: &Played, accepted: bool) {
+        for (bearing, script) in self.bearings.iter_mut().zip(scripts) {
+            bearing.end_script(script, accepted);
         }
         let given = Given { scene: &self.scene, paths: &self.paths, played };
         (self.inputs, self.paths) = given.reached(&self.inputs, self.time);
         self.report();
-        result?;
-        checked.map_err(|(index, source)| self.of_bearing(index, source))
     }
 
     /// Sets what the inputs of bearings say of races that structures carry to where these are.
@@ -91,7 +126,13 @@ impl System {
         self.outputs = SystemOutputs::of(&self.scene, &self.carriers, &self.states, torque, self.time);
     }
 
-    fn follow(&mut self, scripts: &[Script], played: &Played, end: f64) -> Result<(), SystemError> {
+    fn follow(
+        &mut self,
+        scripts: &[Script],
+        played: &Played,
+        end: f64,
+        perturbed: &mut [Self],
+    ) -> Result<(), SystemError> {
         let least = self.scene.solver().min_step.0;
         let of_bearings = scripts
             .iter()
@@ -108,10 +149,18 @@ impl System {
             }
             apart
         });
-        knots.into_iter().chain([end]).try_for_each(|stop| self.step_to(scripts, played, stop))
+        knots.into_iter().chain([end]).try_for_each(|stop| self.step_to(scripts, played, stop, perturbed))
     }
 
-    fn step_to(&mut self, scripts: &[Script], played: &Played, end: f64) -> Result<(), SystemError> {
+    fn step_to(
+        &mut self,
+        scripts: &[Script],
+        played: &Played,
+        end: f64,
+        perturbed: &mut [Self],
+    ) -> Result<(), SystemError> {
+        // The perturbed steps leave the running system as it is.
+        let mut aside = vec![];
         while self.time < end {
             let remaining = end - self.time;
             let given = Given { scene: &self.scene, paths: &self.paths, played };
@@ -130,33 +179,10 @@ impl System {
             if next.partial_cmp(&self.time) != Some(Ordering::Greater) {
                 return Err(SystemError::LostInRounding { time: self.time, step: h });
             }
-            let given = Given { scene: &self.scene, paths: &self.paths, played };
-            let loads = loads::at(&given, &self.carriers, &self.states[0], self.time, next);
-            let speed = self.speed_of_races(&loads[0].spin);
-            let boundaries: Vec<_> = self
-                .bearings
-                .iter()
-                .zip(scripts)
-                .zip(&speed)
-                .map(|((bearing, script), speed)| {
-                    let mut boundary = bearing.imposed(script, next);
-                    boundary.loads[Race::Inner].speed = *speed;
-                    boundary.see_spins(&bearing.model);
-                    boundary
-                })
-                .collect();
-            let structures: Vec<_> = self
-                .carriers
-                .iter()
-                .zip(&self.scales)
-                .zip(self.states.iter().zip(&loads))
-                .map(|((carrier, scales), (start, load))| StructureStep {
-                    model: &carrier.structure,
-                    scales,
-                    start,
-                    load,
-                })
-                .collect();
+            let loads = self.loads(played, next);
+            let boundaries = self.imposed(scripts, &loads, next);
+            let start = (!perturbed.is_empty()).then(|| self.bearings.clone());
+            let structures = structure_steps(&self.carriers, &self.scales, &self.states, &loads);
             let mut parts: Vec<Part<'_>> = self
                 .bearings
                 .iter_mut()
@@ -173,6 +199,10 @@ impl System {
             drop(parts);
             match tried {
                 Ok(ends) => {
+                    if let Some(mut start) = start {
+                        let accepted = (&boundaries[..], &loads[..], h);
+                        self.perturb(&mut start, accepted, (scripts, played, next), perturbed, &mut aside)?;
+                    }
                     self.states = ends;
                     self.time = next;
                     self.check_step(&boundaries)?;
@@ -187,17 +217,85 @@ impl System {
         Ok(())
     }
 
-    fn too_small(
+    /// Takes perturbed systems along a step that was accepted: from where bearings started, under these boundaries and loads.
+    fn perturb(
         &self,
-        index: usize,
-        failure: StepFailure,
-        boundary: &crate::dynamics::Boundary,
-    ) -> SystemError {
+        start: &mut [Simulation],
+        (boundaries, loads, h): (&[Boundary], &[StructureLoad], f64),
+        (scripts, played, next): (&[Script], &Played, f64),
+        perturbed: &mut [Self],
+        aside: &mut Vec<Workspace>,
+    ) -> Result<(), SystemError> {
+        for (start, bearing) in start.iter_mut().zip(&self.bearings) {
+            // Renewed by the step itself.
+            start.state.differences.clone_from(&bearing.state.differences);
+        }
+        let bearings = start.iter().zip(&self.bearings).zip(boundaries);
+        let bearings: Vec<Started<'_>> = bearings
+            .map(|((start, bearing), boundary)| Started {
+                model: &bearing.model,
+                start: &start.state,
+                boundary,
+                accepted: &bearing.workspace,
+            })
+            .collect();
+        let imposed: Vec<_> = perturbed
+            .iter()
+            .map(|system| {
+                let loads = system.loads(played, next);
+                let mut boundaries = system.imposed(scripts, &loads, next);
+                for (boundary, bearing) in boundaries.iter_mut().zip(&system.bearings) {
+                    boundary.see_temperatures(&bearing.state);
+                }
+                (loads, boundaries)
+            })
+            .collect();
+        let ends = {
+            let parts = perturbed.iter_mut().zip(&imposed).map(|(system, (loads, boundaries))| {
+                let Self { bearings, carriers, scales, states, .. } = system;
+                Perturbed {
+                    states: bearings.iter_mut().map(|bearing| &mut bearing.state).collect(),
+                    boundaries: boundaries.clone(),
+                    structures: structure_steps(carriers, scales, states, loads),
+                }
+            });
+            let structures = structure_steps(&self.carriers, &self.scales, &self.states, loads);
+            let accepted = (h, &self.workspace.unknowns[..]);
+            advance_perturbed(&bearings, &structures, &self.joints, accepted, parts, aside)
+        };
+        let ends = ends.ok_or(SystemError::Singular(self.time))?;
+        for (system, states) in perturbed.iter_mut().zip(ends) {
+            (system.states, system.time) = (states, next);
+        }
+        Ok(())
+    }
+
+    /// What acts on the structures at the end of a step \[s].
+    fn loads(&self, played: &Played, next: f64) -> Vec<StructureLoad> {
+        let given = Given { scene: &self.scene, paths: &self.paths, played };
+        loads::at(&given, &self.carriers, &self.states[0], self.time, next)
+    }
+
+    /// What is imposed on the bearings there.
+    fn imposed(&self, scripts: &[Script], loads: &[StructureLoad], next: f64) -> Vec<Boundary> {
+        let speeds = self.speed_of_races(&loads[0].spin);
+        let bearings = self.bearings.iter().zip(scripts).zip(&speeds);
+        bearings
+            .map(|((bearing, script), speed)| {
+                let mut boundary = bearing.imposed(script, next);
+                boundary.loads[Race::Inner].speed = *speed;
+                boundary.see_spins(&bearing.model);
+                boundary
+            })
+            .collect()
+    }
+
+    fn too_small(&self, index: usize, failure: StepFailure, boundary: &Boundary) -> SystemError {
         self.of_bearing(index, self.bearings[index].too_small(failure, boundary))
     }
 
     /// Refuses a state that the models of shaft and contacts do not hold for.
-    fn check_step(&self, boundaries: &[crate::dynamics::Boundary]) -> Result<(), SystemError> {
+    fn check_step(&self, boundaries: &[Boundary]) -> Result<(), SystemError> {
         for (index, (bearing, boundary)) in self.bearings.iter().zip(boundaries).enumerate() {
             let checked: Result<(), SimulationError> = bearing.check_creep(boundary);
             checked.map_err(|source| self.of_bearing(index, source))?;
@@ -222,4 +320,21 @@ impl System {
         };
         self.scene.bearings.iter().map(|bearing| bearing.mounting.direction.sign() * speed).collect()
     }
+}
+
+/// Structures at the start of a step, and what acts on them at its end.
+fn structure_steps<'a>(
+    carriers: &'a [Carrier],
+    scales: &'a [DVector<f64>],
+    states: &'a [StructureState],
+    loads: &'a [StructureLoad],
+) -> Vec<StructureStep<'a>> {
+    let all = carriers.iter().zip(scales).zip(states.iter().zip(loads));
+    all.map(|((carrier, scales), (start, load))| StructureStep {
+        model: &carrier.structure,
+        scales,
+        start,
+        load,
+    })
+    .collect()
 }

@@ -6,6 +6,7 @@ use std::fmt;
 use nalgebra::{Matrix6, Vector3};
 use serde_json::{Map, Value, json};
 
+use super::super::start::held_load;
 use super::critical_speeds::{Campbell, campbell};
 use super::linear::ShaftMode;
 use super::{System, SystemError, SystemOutputs};
@@ -39,7 +40,7 @@ pub struct BearingEquilibrium {
     pub name: String,
     /// \[N] force on the shaft, in its axes.
     pub force: Vector3<f64>,
-    /// [N m] moment on the shaft about the centre of its bore, in the axes of the shaft.
+    /// [N m] moment on the shaft across its axis, about the centre of the bore, in the axes of the shaft.
     pub moment: Vector3<f64>,
     /// Stiffness between its races [N/m, N, N m], in axes of its own: force and moment by displacement and rotation.
     pub stiffness: Matrix6<f64>,
@@ -60,7 +61,11 @@ impl MachineEquilibrium {
         let modes = system.modes()?.unwrap_or_default();
         let bearings = system.bearings().zip(&scene.bearings).map(|((name, bearing), mounted)| {
             let sign = mounted.mounting.direction.sign();
-            let in_shaft = |v: &Vector3<f64>| Vector3::new(sign * v.x, sign * v.y, v.z);
+            let in_shaft = |x: f64, y: f64, z: f64| Vector3::new(sign * x, sign * y, z);
+            // What holds the inner race in balance. Balls that were just started creep a little, which a moment of running takes away.
+            let ([x, y, z, about_y, about_z], _) =
+                held_load(bearing.scene(), bearing.model(), &mut bearing.inputs().clone(), time)
+                    .map_err(|source| SystemError::Bearing { name: name.to_string(), source })?;
             let outputs = bearing.outputs().clone();
             let conditions = bearing.conditions();
             let spin = |race: Race| {
@@ -71,16 +76,16 @@ impl MachineEquilibrium {
                 let hours = |revolutions: f64| revolutions * 1e6 * TAU / speed / 3600.0;
                 [Some(hours(life.reference)), life.modified.map(hours)]
             });
-            BearingEquilibrium {
+            Ok(BearingEquilibrium {
                 name: name.to_string(),
-                force: in_shaft(&outputs.inner.wrench.force),
-                moment: in_shaft(&outputs.inner.wrench.moment),
+                force: -in_shaft(x, y, z),
+                moment: -in_shaft(0.0, about_y, about_z),
                 stiffness: Condensed::new(bearing.model(), bearing.state(), &conditions).stiffness,
                 hours,
                 outputs,
-            }
+            })
         });
-        let bearings = bearings.collect();
+        let bearings = bearings.collect::<Result<_, SystemError>>()?;
         Ok(Self { title: scene.title.clone(), outputs: system.outputs().clone(), bearings, modes, campbell })
     }
 

@@ -15,6 +15,8 @@ use crate::scene::{Groups, Schedule};
 pub struct ShaftInputs {
     /// Force \[N] and moment [N m] at every named load, in the order of [`SystemScene::loads`], in the shaft's axes.
     pub loads: Vec<Wrench>,
+    /// [N m] torque about +x that the mesh of every gear exerts on the shaft.
+    pub gears: Vec<f64>,
     /// Speed [rad/s] or torque [N m], whichever the scene drives the shaft by.
     pub drive: f64,
 }
@@ -25,7 +27,13 @@ impl ShaftInputs {
         let wrench =
             |load: NamedLoad<'_>| Wrench { force: load.force.at(time), moment: load.moment.at(time) };
         let drive = drive_of(scene).map_or(0.0, |drive| drive.at(time));
-        Self { loads: scene.loads().map(wrench).collect(), drive }
+        let gears = scene.shaft.gear.iter().map(|gear| gear.torque.at(time)).collect();
+        Self { loads: scene.loads().map(wrench).collect(), gears, drive }
+    }
+
+    /// Are these those of the same system?
+    pub fn fits(&self, other: &Self) -> bool {
+        self.loads.len() == other.loads.len() && self.gears.len() == other.gears.len()
     }
 
     fn components(&self) -> impl Iterator<Item = Vector6<f64>> {
@@ -38,6 +46,8 @@ impl ShaftInputs {
 pub struct Played {
     /// Named loads.
     pub loads: Vec<bool>,
+    /// Torques of gears.
+    pub gears: Vec<bool>,
     /// Speed or torque.
     pub drive: bool,
     /// Groups of inputs of every bearing.
@@ -49,6 +59,7 @@ impl Played {
     pub fn none(scene: &SystemScene) -> Self {
         Self {
             loads: vec![false; scene.loads().count()],
+            gears: vec![false; scene.shaft.gear.len()],
             drive: false,
             bearings: vec![Groups::default(); scene.bearings.len()],
         }
@@ -58,6 +69,7 @@ impl Played {
     pub fn all(scene: &SystemScene) -> Self {
         Self {
             loads: vec![true; scene.loads().count()],
+            gears: vec![true; scene.shaft.gear.len()],
             drive: true,
             bearings: vec![Groups::ALL; scene.bearings.len()],
         }
@@ -128,6 +140,7 @@ impl TurnPath {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShaftPaths {
     loads: Vec<Ramp<6>>,
+    gears: Vec<Ramp<1>>,
     torque: Ramp<1>,
     turn: TurnPath,
 }
@@ -137,6 +150,7 @@ impl ShaftPaths {
     pub fn steady(inputs: &ShaftInputs, time: f64, angle: f64) -> Self {
         Self {
             loads: inputs.components().map(Ramp::constant).collect(),
+            gears: inputs.gears.iter().map(|torque| Ramp::constant(SVector::from([*torque]))).collect(),
             torque: Ramp::constant(SVector::from([inputs.drive])),
             turn: TurnPath::steady(time, angle, inputs.drive),
         }
@@ -145,8 +159,10 @@ impl ShaftPaths {
     /// Paths from here on, over a communication step.
     pub fn towards(&self, inputs: &ShaftInputs, time: f64, duration: f64) -> Self {
         let loads = self.loads.iter().zip(inputs.components());
+        let gears = self.gears.iter().zip(&inputs.gears);
         Self {
             loads: loads.map(|(now, next)| now.towards(time, next, duration)).collect(),
+            gears: gears.map(|(now, next)| now.towards(time, SVector::from([*next]), duration)).collect(),
             torque: self.torque.towards(time, SVector::from([inputs.drive]), duration),
             turn: self.turn.towards(time, inputs.drive, duration),
         }
@@ -157,9 +173,9 @@ impl ShaftPaths {
         self.torque.at(time)[0]
     }
 
-    /// Do they lead as many loads?
-    pub fn fits(&self, loads: usize) -> bool {
-        self.loads.len() == loads
+    /// Do they lead to as many loads and torques?
+    pub fn fits(&self, inputs: &ShaftInputs) -> bool {
+        self.loads.len() == inputs.loads.len() && self.gears.len() == inputs.gears.len()
     }
 }
 
@@ -183,6 +199,14 @@ impl Given<'_> {
         }
     }
 
+    /// [N m] torque of a gear at a time \[s].
+    pub fn gear(&self, index: usize, time: f64) -> f64 {
+        match self.scene.shaft.gear.get(index) {
+            Some(gear) if self.plays_gear(index) => gear.torque.at(time),
+            _ => self.paths.gears[index].at(time)[0],
+        }
+    }
+
     /// Turn at a time \[s], where the speed is given.
     pub fn spin(&self, time: f64) -> Spin {
         if self.plays_drive() { scripted_spin(self.scene, time) } else { self.paths.turn.at(time) }
@@ -201,6 +225,11 @@ impl Given<'_> {
         self.played.loads[index] && self.scene.loads().nth(index).is_some_and(|load| load.is_scripted())
     }
 
+    /// Is the torque of a gear that of its table?
+    pub fn plays_gear(&self, index: usize) -> bool {
+        self.played.gears[index] && self.scene.shaft.gear[index].torque.is_scripted()
+    }
+
     /// Is speed or torque that of its table?
     pub fn plays_drive(&self) -> bool {
         self.played.drive && drive_is_scripted(self.scene)
@@ -214,6 +243,12 @@ impl Given<'_> {
             if self.plays_load(index) {
                 inputs.loads[index] = scripted.loads[index];
                 *ramp = Ramp::constant(self.load(index, time));
+            }
+        }
+        for (index, ramp) in paths.gears.iter_mut().enumerate() {
+            if self.plays_gear(index) {
+                inputs.gears[index] = scripted.gears[index];
+                *ramp = Ramp::constant(SVector::from([scripted.gears[index]]));
             }
         }
         if self.plays_drive() {

@@ -139,7 +139,7 @@ impl System {
                 moved.push((index, station, [along(0), along(1), along(2)]));
             }
         }
-        let size = |d: &[Complex<f64>; 3]| d.iter().map(|part| part.norm_sqr()).sum::<f64>();
+        let size = |d: &[Complex<f64>; 3]| d.iter().map(Complex::norm_sqr).sum::<f64>();
         let on_shaft = || moved.iter().filter(|(structure, ..)| *structure == 0).map(|(.., d)| d);
         let all: f64 = on_shaft().map(size).sum();
         let along: f64 = on_shaft().map(|d| d[0].norm_sqr()).sum();

@@ -70,7 +70,7 @@ fn on_shaft(
         // The pitch point is in the plane of its station.
         let mesh = Mesh { offset: 0.0, ..gear.mesh() };
         let factor = gear.ripple().map_or(1.0, |ripple| ripple.factor(spin.angle));
-        let Wrench { force, moment } = mesh.wrench(gear.torque.at(time) * factor);
+        let Wrench { force, moment } = mesh.wrench(given.gear(index, time) * factor);
         add(gears + index, stack(&force, &moment));
     }
     if free {
@@ -92,7 +92,8 @@ fn schedules<'a>(given: &Given<'a>) -> Vec<&'a Schedule> {
     let played = given.scene.loads().enumerate().filter(|(index, _)| given.plays_load(*index));
     let components = played.flat_map(|(_, load)| load.force.0.iter().chain(&load.moment.0));
     let drive = [&shaft.speed, &shaft.torque].into_iter().flatten().filter(|_| given.plays_drive());
-    components.chain(drive).chain(shaft.gear.iter().map(|gear| &gear.torque)).collect()
+    let gears = shaft.gear.iter().enumerate().filter(|(index, _)| given.plays_gear(*index));
+    components.chain(drive).chain(gears.map(|(_, gear)| &gear.torque)).collect()
 }
 
 /// \[s] times at which a table of a load or of the drive bends, of those that are played.

@@ -21,6 +21,7 @@ use super::{Simulation, SimulationError, follows_time};
 use crate::dynamics::system::{Joint, SystemWorkspace};
 use crate::model::structure::{Carrier, StructureState};
 use crate::numerics::step_control::StepControl;
+use crate::scene::Scene;
 use crate::scene::system::SystemScene;
 use crate::schema::numbers::four;
 pub use critical_speeds::{Campbell, CampbellRow, CriticalSpeed, campbell, largest_speed};
@@ -114,6 +115,12 @@ pub enum SystemError {
         /// \[rad] largest tilt.
         limit: f64,
     },
+    /// The step has no derivatives.
+    #[error("at {} s the step has no derivatives: its Newton matrix is singular", four(.0))]
+    Singular(f64),
+    /// Inputs of another system.
+    #[error("there are too many or too few inputs for this system")]
+    OtherInputs,
     /// So late that a step no longer changes the time.
     #[error("at {} s a step of {} s is lost in rounding: begin nearer to time 0", four(.time), four(.step))]
     LostInRounding {
@@ -180,12 +187,21 @@ impl System {
     /// races on the shaft or in a housing counts for nothing. False, with nothing changed, if there are too many or too few.
     #[must_use]
     pub fn set_inputs(&mut self, shaft: ShaftInputs, bearings: Vec<Inputs>) -> bool {
-        let fit = shaft.loads.len() == self.inputs.loads.len() && bearings.len() == self.bearings.len();
+        let fit = shaft.fits(&self.inputs) && bearings.len() == self.bearings.len();
         if fit {
             self.inputs = shaft;
             self.bearings.iter_mut().zip(bearings).for_each(|(bearing, inputs)| bearing.set_inputs(inputs));
         }
         fit
+    }
+
+    /// Goes on with scenes of its bearings, in their order, that differ in tunable parameters alone.
+    pub fn tune(&mut self, scenes: &[Scene]) {
+        let own = Arc::make_mut(&mut self.scene).bearings.iter_mut();
+        for ((bearing, mounted), scene) in self.bearings.iter_mut().zip(own).zip(scenes) {
+            bearing.tune(scene);
+            mounted.scene = scene.clone();
+        }
     }
 
     /// What the shaft does.
@@ -203,6 +219,7 @@ impl System {
 pub fn shaft_follows_time(scene: &SystemScene) -> bool {
     drive_is_scripted(scene)
         || scene.loads().any(|load| load.is_scripted())
+        || scene.shaft.gear.iter().any(|gear| gear.torque.is_scripted())
         || scene.bearings.iter().any(|bearing| follows_time(&bearing.scene))
 }
 

@@ -43,11 +43,10 @@ impl System {
     /// Goes to a point that the same system was at; false, with nothing changed, if the snapshot is of another one.
     #[must_use]
     pub fn restore(&mut self, snapshot: &SystemSnapshot) -> bool {
-        let loads = self.inputs.loads.len();
         let same = snapshot.bearings.len() == self.bearings.len()
             && self.bearings.iter().zip(&snapshot.bearings).all(|(bearing, snapshot)| bearing.fits(snapshot))
-            && snapshot.inputs.loads.len() == loads
-            && snapshot.paths.fits(loads)
+            && snapshot.inputs.fits(&self.inputs)
+            && snapshot.paths.fits(&self.inputs)
             && snapshot.states.len() == self.states.len()
             && self
                 .carriers

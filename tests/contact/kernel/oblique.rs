@@ -143,6 +143,96 @@ fn invariant_what_a_contact_did_before_does_not_change_its_bits() {
     }
 }
 
+/// A ball that rolls along the circumference with no lateral creep at all, whatever the sign of these zeros; and one that rolls obliquely
+/// from the same place.
+fn without_lateral_creep(race: Race, zero: f64) -> [BallMotion<f64>; 2] {
+    let x = motion(race);
+    let straight = BallMotion {
+        position: Vector3::new(x[0], x[1].hypot(x[2]), zero),
+        velocity: Vector3::new(zero, zero, x[4].hypot(x[5])),
+        angular_velocity: Vector3::new(x[6], x[7].hypot(x[8]), zero),
+    };
+    let turning = straight.angular_velocity + Vector3::new(0.0, 0.0, 3e3);
+    [straight, BallMotion { angular_velocity: turning, ..straight }]
+}
+
+#[test]
+fn invariant_a_contact_without_lateral_creep_has_its_bits_after_oblique_rolling_too() {
+    // Numbers as they are written, and signs of zeros with them.
+    let written = |of: &dyn std::fmt::Debug| format!("{of:?}");
+    let mut models: Vec<_> = FRICTION.iter().map(|law| (*law, model_of(law))).collect();
+    // Not plain, with and without friction.
+    let resisting = [("effects.hysteresis", "true")];
+    for (law, changes) in [("frictionless", &[][..]), ("saturated", &resisting)] {
+        let creep = format!("\"{law}\"");
+        let changes = [&[("effects.creep", &*creep)], changes].concat();
+        let scene = Scene::edited(include_str!("../../../scenes/thrust.toml"), changes).unwrap();
+        models.push((law, Model::new(&scene).unwrap()));
+    }
+    for ((law, model), zero) in models.iter().flat_map(|model| [0.0, -0.0].map(|zero| (model, zero))) {
+        for race in Race::BOTH {
+            let contact = model.contact(race, &Conditions::of_friction(0.08));
+            let [straight, oblique] = without_lateral_creep(race, zero);
+            let race_motion = RaceMotion {
+                position: Vector3::new(motion(race)[9], zero, zero),
+                axis: Vector3::new(1.0, zero, zero),
+                across: Vector3::y(),
+                velocity: Vector3::repeat(zero),
+                angular_velocity: Vector3::new(motion(race)[15], zero, zero),
+            };
+            let alone = contact.evaluated(&straight, &race_motion);
+            assert!(alone.load > 50.0 && alone.creepage.lateral == 0.0, "{law} {race:?} {alone:?}");
+            let general = ContactModel { across: None, ..contact };
+            if contact.path(false) == Path::Plain && *law != "frictionless" {
+                assert_eq!(
+                    written(&general.evaluated(&straight, &race_motion)),
+                    written(&alone),
+                    "{law} {race:?}"
+                );
+                assert!(
+                    contact.evaluated(&oblique, &race_motion).rolling_cosine.abs() < 0.9,
+                    "{law} {race:?}"
+                );
+            }
+            // By four: as the first that a group does, after oblique ones, after its own, beside an oblique one.
+            let evaluations = [
+                vec![[straight; WIDTH]],
+                vec![[oblique; WIDTH], [straight; WIDTH]],
+                vec![[oblique; WIDTH], [straight; WIDTH], [straight; WIDTH]],
+                vec![[oblique; WIDTH], [straight, straight, straight, oblique]],
+                vec![[straight; WIDTH], [straight, straight, straight, oblique]],
+            ];
+            for before in evaluations {
+                let mut together = ContactGroup::filled(&contact.evaluated(&oblique, &race_motion));
+                for balls in &before {
+                    together.evaluate(&contact, &race_motion, &BallMotion::of_balls(balls));
+                }
+                for lane in 0..3 {
+                    assert_eq!(
+                        written(&together.contact(lane)),
+                        written(&alone),
+                        "{law} {race:?} {zero:?} {lane}"
+                    );
+                }
+            }
+            // With derivatives: the path that it went before does not change one of them.
+            let variable = |v: &Vector3<f64>, first: usize| {
+                Vector3::from_fn(|i, _| Dual::<9>::variable(v[i], first + i, 1.0 + i as f64))
+            };
+            let ball = BallMotion {
+                position: variable(&straight.position, 0),
+                velocity: variable(&straight.velocity, 3),
+                angular_velocity: variable(&straight.angular_velocity, 6),
+            };
+            let seen = [false, true].map(|obliquely| {
+                contact.differentiated(contact.path(obliquely), &ball, &race_motion.constant())
+            });
+            assert_eq!(written(&seen[0]), written(&seen[1]), "{law} {race:?} {zero:?}");
+            assert_eq!(seen[0].load.value.to_bits(), alone.load.to_bits(), "{law} {race:?}");
+        }
+    }
+}
+
 #[test]
 fn invariant_oblique_rolling_stays_within_the_limits_and_loses_power() {
     for law in FRICTION.into_iter().filter(|law| *law != "linear") {

@@ -1,0 +1,88 @@
+//! Sensitivities of a step of a system, as those of a bearing ([`crate::dynamics::advance_perturbed`]): one Newton matrix for all, of which
+//! every perturbation takes the change that it makes.
+
+use super::step::{Joint, StructureStep, SystemStep};
+use super::{BearingStep, finished};
+use crate::dynamics::accept::{StepEnd, accept};
+use crate::dynamics::{Boundary, Workspace};
+use crate::model::Model;
+use crate::model::state::State;
+use crate::model::structure::StructureState;
+use crate::numerics::newton::Equations;
+
+/// A bearing of a system at the start of a step, and what was imposed on it at its end.
+pub struct Started<'a> {
+    /// Its model.
+    pub model: &'a Model,
+    /// Its state at the start.
+    pub start: &'a State,
+    /// What was imposed.
+    pub boundary: &'a Boundary,
+    /// Its buffers as the accepted step left them.
+    pub accepted: &'a Workspace,
+}
+
+/// A system under slightly different inputs.
+pub struct Perturbed<'a> {
+    /// State of every bearing at the start of the step, then at its end.
+    pub states: Vec<&'a mut State>,
+    /// What is imposed on each at the end.
+    pub boundaries: Vec<Boundary>,
+    /// Structures at the start, and what acts on them.
+    pub structures: Vec<StructureStep<'a>>,
+}
+
+/// Takes perturbed systems along a step of `h` \[s] whose accepted unknowns are a solution; gives the states of their structures. None if
+/// the Newton matrix is singular.
+pub fn advance_perturbed<'a>(
+    bearings: &[Started<'_>],
+    structures: &[StructureStep<'_>],
+    joints: &[Joint],
+    (h, solution): (f64, &[f64]),
+    perturbed: impl Iterator<Item = Perturbed<'a>>,
+    aside: &mut Vec<Workspace>,
+) -> Option<Vec<Vec<StructureState>>> {
+    aside.resize_with(bearings.len(), Workspace::default);
+    for (own, bearing) in aside.iter_mut().zip(bearings) {
+        own.list_those_of(bearing.accepted);
+    }
+    let steps = bearings.iter().zip(aside.iter_mut());
+    let steps: Vec<_> = steps
+        .map(|(of, workspace)| BearingStep::new(of.model, of.start, of.boundary, h, workspace))
+        .collect();
+    let step = steps.first()?.step;
+    SystemStep::new(steps, structures, joints, step).residual(solution, true);
+    let mut unknowns = vec![0.0; solution.len()];
+    let mut ends = vec![];
+    for Perturbed { mut states, boundaries, structures } in perturbed {
+        // The differences to the table are frozen in a step, in its perturbations too.
+        for (state, bearing) in states.iter_mut().zip(bearings) {
+            state.differences.clone_from(&bearing.start.differences);
+        }
+        let parts = bearings.iter().zip(&states).zip(&boundaries).zip(aside.iter_mut());
+        let steps = parts.map(|(((bearing, state), boundary), workspace)| {
+            let mut own = BearingStep::new(bearing.model, state, boundary, h, workspace);
+            // No residual is small enough to be left alone: only its change counts.
+            own.force_tolerance = 0.0;
+            own
+        });
+        let mut equations = SystemStep::new(steps.collect(), &structures, joints, step);
+        equations.residual(solution, false);
+        if !equations.correction(&mut unknowns) {
+            return None;
+        }
+        for (unknown, solved) in unknowns.iter_mut().zip(solution) {
+            *unknown += solved;
+        }
+        equations.residual(&unknowns, false);
+        let trials: Vec<_> = equations.trials.iter().map(|trial| trial.end.clone()).collect();
+        drop(equations);
+        let parts = bearings.iter().zip(&mut states).zip(&boundaries).zip(aside.iter_mut());
+        for (((bearing, state), boundary), workspace) in parts {
+            let end = StepEnd::new(bearing.model, state, boundary, h, workspace);
+            accept(bearing.model, state, boundary, &step, (workspace, &end));
+        }
+        ends.push(structures.iter().zip(trials).map(|(one, end)| finished(one, end, &step)).collect());
+    }
+    Some(ends)
+}
