@@ -80,7 +80,7 @@ export function cards(run) {
 
 /** A row for each bearing, the energy of shaft and housings, and what is to be warned of. `open` shows the run of a bearing. */
 export function machineSection(run, open) {
-  const { figures, error_bars: bars, warnings = [] } = run.record.summary;
+  const { figures, error_bars: bars } = run.record.summary;
   const mounted = [...run.mounted.values()];
   const lives = [['life.L10r', 'rating life L10r'], ['life.modified', 'modified life']].filter(([name]) => mounted.some(own => own.has(name)));
   const heads = ['bearing', 'position', 'x points to', 'housing'];
@@ -98,9 +98,8 @@ export function machineSection(run, open) {
   });
   const energy = name => ['put in', 'to bearings', 'damped', 'balance'].map(what => cell(`${name} ${what}`, figures[`${name} ${what}`], bars?.[`${name} ${what}`]));
   const bodies = [['shaft', 'shaft'], ...run.shaft.housings.map(housing => [housing.name, `housing ${housing.name}`])];
-  const told = [...warnings, ...[...run.mounted].filter(([, own]) => own.record.summary.warning).map(([name, own]) => `${name}: ${own.record.summary.warning}`)];
   return section('machine', 'Shaft and bearings',
-    run.record.ended_early ? h('p', { class: 'warning' }, `The run ended early: ${run.record.ended_early}`) : null, told.map(text => h('p', { class: 'warning' }, text)),
+    run.record.ended_early ? h('p', { class: 'warning' }, `The run ended early: ${run.record.ended_early}`) : null, (run.record.warnings ?? []).map(text => h('p', { class: 'warning' }, text)),
     table(heads, rows, { numbers: heads.map((_, i) => i).filter(i => i === 1 || i > 3) }),
     mounted.length ? h('p', { class: 'note' }, 'Forces are those of the bearings on the shaft, in its axes. Forces, power and torque are means over the second half, or at the end of a run that is too short for means. \u00b1: numerical error, where \u201c--error\u201d measured it.') : null,
     mounted.length ? null : h('p', { class: 'note' }, 'What the bearings do is in the run of this machine by itself: \u201croulement report\u201d of its folder.'),
