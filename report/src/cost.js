@@ -21,7 +21,9 @@ export function cost(runs) {
     ['rows of the table', run => String(run.record.table_rows ?? '\u2013')],
     ['program', run => run.record.program],
   ];
-  return section('cost', 'Cost and steps', table(['', ...runs.map(run => run.name || 'run')], rows.map(([name, get]) => [name, ...runs.map(get)]), { numbers: runs.map((_, i) => i + 1) }));
+  // Steps are counted in the runs of the bearings.
+  const known = rows.map(([name, get]) => [name, ...runs.map(run => (run.shaft && /step|factor|contacts/.test(name) ? '\u2013' : get(run)))]).filter(row => row.slice(1).some(text => text !== '\u2013'));
+  return section('cost', runs[0].shaft ? 'Cost' : 'Cost and steps', table(['', ...runs.map(run => run.name || 'run')], known, { numbers: runs.map((_, i) => i + 1) }));
 }
 
 /** Columns that are made of others: the mean step between rows, [s]. */

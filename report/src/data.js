@@ -52,9 +52,13 @@ export class Run {
     const run = new Run();
     run.index = index;
     run.record = record;
+    // One of both.
     run.bearing = record.bearing;
+    run.shaft = record.shaft;
+    // Runs of the bearings of a shaft by their names (machine.js).
+    run.mounted = new Map();
     run.name = record.name;
-    run.title = record.title || record.name || 'ball bearing';
+    run.title = record.title || record.name || (record.shaft ? 'shaft' : 'ball bearing');
     run.grids = [];
     for (const grid of [...record.tables, record.history]) run.grids.push(await readGrid(grid));
     run.series = new Map();
@@ -85,14 +89,15 @@ export class Run {
     return series ? valueAt(series, time) : NaN;
   }
 
-  /** Mean over the second half. */
-  mean(name) {
+  /** Mean over the second half, of what is made of each value. */
+  mean(name, of = value => value) {
     const series = this.series.get(name);
     if (!series) return NaN;
     const from = this.begin + 0.5 * (this.end - this.begin);
     let sum = 0, count = 0;
     for (let i = 0; i < series.t.length; i++) {
-      if (series.t[i] >= from && Number.isFinite(series.v[i])) { sum += series.v[i]; count++; }
+      const value = of(series.v[i]);
+      if (series.t[i] >= from && Number.isFinite(value)) { sum += value; count++; }
     }
     return count ? sum / count : NaN;
   }

@@ -16,10 +16,10 @@ export function drawing(run) {
 
 const figure = (picture, caption) => h('figure', {}, picture, h('figcaption', {}, caption));
 
-const millimetres = value => `${short(value * 1e3)}\u202fmm`;
+export const millimetres = value => `${short(value * 1e3)}\u202fmm`;
 
 /** A number without zeros at its end. */
-function short(value, count = 5) {
+export function short(value, count = 5) {
   const text = digits(value, count);
   return text.includes('.') ? text.replace(/\.?0+$/, '') : text;
 }
@@ -109,10 +109,10 @@ function axialSection(run) {
   return s('svg', { viewBox: `0 0 ${SIZE} ${SIZE}`, role: 'img', class: 'drawing', 'aria-label': `Section: ${bearing.balls} balls of ${millimetres(ball)}, pitch diameter ${millimetres(pitch)}, contact angle ${digits((contact * 180) / Math.PI, 3)} degrees` }, parts);
 }
 
-const marker = (id, name) => s('marker', { id, viewBox: '0 0 10 10', refX: 8, refY: 5, markerWidth: 6, markerHeight: 6, orient: 'auto-start-reverse' },
+export const marker = (id, name) => s('marker', { id, viewBox: '0 0 10 10', refX: 8, refY: 5, markerWidth: 6, markerHeight: 6, orient: 'auto-start-reverse' },
   s('path', { d: 'M0 0L10 5L0 10z', class: name }));
 
-const arrowTo = (a, b, text) => [
+export const arrowTo = (a, b, text) => [
   s('line', { x1: a[0], y1: a[1], x2: b[0], y2: b[1], class: 'frame', 'marker-end': 'url(#load-arrow)' }),
   s('text', { x: b[0] + (b[0] - a[0]) * 0.18, y: b[1] + (b[1] - a[1]) * 0.18 + 5, class: 'symbol', 'text-anchor': 'middle' }, text)];
 

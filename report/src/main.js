@@ -6,6 +6,9 @@ import { clock } from './clock.js';
 import { startTheme, toggleTheme } from './theme.js';
 import { drawing } from './drawing.js';
 import { cards, summary } from './summary.js';
+import { assemble, likes, words as machineWords, machineSection, cards as machineCards } from './machine.js';
+import { shaftDrawing } from './shaft.js';
+import { orbits } from './orbits.js';
 import { polar } from './polar.js';
 import { plotsSection, startPlots, setZoom } from './plots.js';
 import { spectra } from './spectra.js';
@@ -24,16 +27,19 @@ async function start() {
   const runs = [];
   for (const record of data.runs) runs.push(await Run.of(record, runs.length));
   runs.forEach(addSteps);
+  assemble(runs);
   const sweeps = [];
   for (const sweep of data.sweeps) sweeps.push(await readSweep(sweep));
   const root = document.getElementById('report');
   const body = h('main', { id: 'main' });
   const contents = h('nav', { 'aria-label': 'Contents', class: 'contents' });
   root.replaceChildren(h('a', { class: 'skip', href: '#main' }, 'To the results'), head(runs, sweeps, run => show(run)), contents, body);
+  // Pressing its button keeps the choice of runs right.
+  const open = run => { root.querySelectorAll('header .choice button')[runs.indexOf(run)].click(); scrollTo({ top: 0 }); };
   // Each run's parts are made once: a part that stays keeps what was chosen in it.
   const made = new Map();
   const bottom = licences();
-  const show = (run, beside = runs) => {
+  const show = (run, beside = run && likes(run, runs)) => {
     if (run) {
       const [begin, end] = [Math.min(...beside.map(other => other.begin)), Math.max(...beside.map(other => other.end))];
       if (!made.size || begin !== clock.begin || end !== clock.end) {
@@ -46,7 +52,7 @@ async function start() {
         root.append(transport());
         startPlots();
       }
-      if (!made.has(run)) made.set(run, partsOf(run, beside));
+      if (!made.has(run)) made.set(run, run.shaft ? partsOfShaft(run, beside, open) : partsOf(run, beside));
     }
     body.replaceChildren(...sweepParts, ...(made.get(run) ?? []), bottom);
     contents.replaceChildren(...[...body.querySelectorAll('section')].map(part => h('a', { href: `#${part.id}` }, part.querySelector('h2').textContent)));
@@ -64,10 +70,17 @@ function partsOf(run, beside) {
   return parts.filter(Boolean);
 }
 
+/** The same of a shaft; `open` shows one of its bearings. */
+function partsOfShaft(run, beside, open) {
+  const parts = [h('div', { id: 'cards' }, machineCards(run)), shaftDrawing(run, open), machineSection(run, open), summary(beside), plotsSection(beside, run), orbits(run), spectra(run), cost(beside), sceneText(run)];
+  return parts.filter(Boolean);
+}
+
 function head(runs, sweeps, show) {
-  const title = [...runs, ...sweeps].map(part => part.title || part.name || 'sweep').join(' \u00b7 ');
+  // Bearings are parts of their machines.
+  const title = [...runs.filter(run => !run.of), ...sweeps].map(part => part.title || part.name || 'sweep').join(' \u00b7 ');
   const run = runs[0];
-  const words = run ? [`${run.bearing.balls} balls of ${digits(run.bearing.ball_diameter * 1e3, 4)} mm on ${digits(run.bearing.pitch_diameter * 1e3, 4)} mm`, run.bearing.clearance === null ? `${digits((run.bearing.contact_angle * 180) / Math.PI, 4)}\u00b0` : `${digits(run.bearing.clearance * 1e6, 3)} \u00b5m clearance`,
+  const words = run?.shaft ? [...machineWords(run), `${withUnit(run.end - run.begin, 'time', 's')} simulated`].join(' \u00b7 ') : run ? [`${run.bearing.balls} balls of ${digits(run.bearing.ball_diameter * 1e3, 4)} mm on ${digits(run.bearing.pitch_diameter * 1e3, 4)} mm`, run.bearing.clearance === null ? `${digits((run.bearing.contact_angle * 180) / Math.PI, 4)}\u00b0` : `${digits(run.bearing.clearance * 1e6, 3)} \u00b5m clearance`,
     `inner ${rpm(run.bearing.speeds.inner.most)}`, `${withUnit(run.end - run.begin, 'time', 's')} simulated`].join(' \u00b7 ') : `${sweeps.reduce((sum, sweep) => sum + sweep.count, 0)} cases`;
   return h('header', {}, h('div', {}, h('h1', {}, title), h('p', {}, words)),
     h('div', { class: 'row' }, runs.length > 1 ? choice('Run that is shown', runs.map((other, i) => [i, other.name || `run ${i + 1}`]), 0, i => show(runs[i])) : null,

@@ -10,8 +10,9 @@ const ms = 1e3;
 const plots = new Set();
 let zoom = null;
 
-/** Quantities of the bearing: title, columns with a word each. */
+/** Quantities of the bearing, or of the shaft: title, columns with a word each. */
 function groups(run) {
+  if (run.shaft) return ofShaft(run);
   const race = run.bearing.loaded;
   const xyz = (name, axes = ['x', 'y', 'z']) => axes.map(axis => [`${name}.${axis}`, axis]);
   return [
@@ -28,6 +29,23 @@ function groups(run) {
   ];
 }
 
+/** Motion of the shaft at its bearings, then at other places, and of housings; a text is a heading. */
+function ofShaft({ shaft }) {
+  const axes = [['x', 'Displacement along x'], ['y', 'Displacement along y'], ['z', 'Displacement along z']];
+  const turns = [['ry', 'Tilt about y'], ['rz', 'Tilt about z']];
+  const at = (body, names, axis) => names.map(name => [`${body}.${name}.${axis}`, name]);
+  const names = list => list.map(({ name }) => name);
+  const others = names([...shaft.loads, ...shaft.points]);
+  const motion = (body, list, what) => what.map(([axis, title]) => [title, at(body, list, axis)]);
+  return [
+    ['Speed of the shaft', [['shaft.speed', 'speed']]], ['Torque that drives the shaft', [['shaft.torque', 'torque']]],
+    'The shaft at its bearings', ...motion('shaft', names(shaft.bearings), [...axes, ...turns]),
+    'The shaft at loads and points', ...motion('shaft', others, axes),
+    ...shaft.housings.flatMap(housing => [`${housing.name}, at its bearings, loads and points`,
+      ...motion(housing.name, [...names(shaft.bearings.filter(bearing => bearing.housing === housing.name)), ...names(housing.loads), ...names(housing.points)], [...axes, ['rx', 'Rotation about x'], ['ry', 'Rotation about y'], ['rz', 'Rotation about z']])]),
+  ];
+}
+
 /** Quantities of every ball. */
 const OF_BALLS = [
   ['Load', 'load'], ['Contact angle', 'contact_angle'], ['Peak pressure', 'peak_pressure'],
@@ -37,13 +55,17 @@ const OF_BALLS = [
 
 export function plotsSection(runs, current) {
   const run = current;
-  const bearing = h('div', { class: 'plots' });
-  for (const [title, columns] of groups(run)) {
+  const blocks = [h('div', { class: 'plots' })];
+  for (const group of groups(run)) {
+    if (typeof group === 'string') { blocks.push(h('h3', {}, group), h('div', { class: 'plots' })); continue; }
+    const [title, columns] = group;
     // Several runs: the same columns of all of them.
     const curves = runs.flatMap((other, k) => columns.filter(([name]) => other.has(name) && !other.isNothing(name))
       .map(([name, word]) => ({ run: other, name, word: runs.length > 1 ? `${word} \u00b7 ${other.name}` : word, dash: k })));
-    if (curves.length) bearing.append(plot(title, curves));
+    if (curves.length) blocks.at(-1).append(plot(title, curves));
   }
+  // A heading of nothing is left out.
+  const whole = blocks.filter((block, i) => (block.tagName === 'H3' ? blocks[i + 1] : block).childElementCount);
   const balls = h('div', { class: 'plots' });
   const showBalls = race => {
     drop(balls);
@@ -53,10 +75,10 @@ export function plotsSection(runs, current) {
       balls.append(plot(`${title}, ${race} race`, names.map((name, i) => ({ run, name, word: String(i + 1), ball: i + 1 }))));
     }
   };
-  showBalls('inner');
+  if (run.bearing) showBalls('inner');
   const own = h('div', { class: 'plots' });
   const all = [...run.series.keys()].filter(name => run.get(name).t.length > 1).sort();
-  const input = h('input', { list: 'columns', type: 'search', placeholder: 'column, such as ball[3].outer.load', 'aria-label': 'Column to plot', onchange: () => add() });
+  const input = h('input', { list: 'columns', type: 'search', placeholder: `column, such as ${run.shaft ? `shaft.${run.shaft.bearings[0].name}.z` : 'ball[3].outer.load'}`, 'aria-label': 'Column to plot', onchange: () => add() });
   const add = () => {
     const name = input.value.trim();
     const found = all.includes(name) ? [name] : all.filter(column => name.length > 2 && column.includes(name)).slice(0, 24);
@@ -68,7 +90,7 @@ export function plotsSection(runs, current) {
   };
   return section('histories', 'Over time',
     h('p', { class: 'note' }, 'Move over a plot: cursors of all plots and the playback follow. Drag to zoom in, double-click to zoom out. Click a name to hide its curve. Curves that are 0 throughout are left out.'),
-    bearing, h('h3', {}, 'Every ball'), choice('Race', [['inner', 'inner race'], ['outer', 'outer race']], 'inner', showBalls), balls,
+    whole, run.bearing ? [h('h3', {}, 'Every ball'), choice('Race', [['inner', 'inner race'], ['outer', 'outer race']], 'inner', showBalls), balls] : null,
     h('h3', {}, `Any of the ${all.length} columns`), h('div', { class: 'row' }, input, h('datalist', { id: 'columns' }, all.map(name => h('option', { value: name }))), h('button', { type: 'button', onclick: add }, 'Plot')), own);
 }
 

@@ -29,7 +29,7 @@ function ring(text, radius, label) {
 }
 
 /** A round number at or above a value. */
-function round(value) {
+export function round(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   return power * [1, 1.5, 2, 3, 4, 5, 6, 8, 10].find(step => step * power >= value * 0.9999);
 }

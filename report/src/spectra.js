@@ -7,11 +7,10 @@ import { spectrum } from './fft.js';
 import { digits, shown } from './units.js';
 
 export function spectra(run) {
-  const candidates = [...run.series.values()].filter(s => !s.constant && s.t.length >= 64 && /force|moment|position|torque|power|speed|load$|eccentricity|slip|angle/.test(s.name)).map(s => s.name)
+  const candidates = [...run.series.values()].filter(s => !s.constant && s.t.length >= 64 && (run.shaft ? s.name !== 'shaft.angle' : /force|moment|position|torque|power|speed|load$|eccentricity|slip|angle/.test(s.name))).map(s => s.name)
     .filter(name => !run.isNothing(name)).sort((a, b) => a.startsWith('ball[') - b.startsWith('ball[') || a.localeCompare(b));
   if (!candidates.length) return null;
-  const race = run.bearing.loaded;
-  const liveliest = ['y', 'z', 'x'].map(axis => `${race}.force.${axis}`).filter(name => candidates.includes(name));
+  const liveliest = ['y', 'z', 'x'].map(axis => (run.shaft ? `shaft.${run.shaft.bearings[0].name}.${axis}` : `${run.bearing.loaded}.force.${axis}`)).filter(name => candidates.includes(name));
   const state = { name: liveliest[0] ?? candidates[0], axis: 'Hz', scale: 'log' };
   const lines = marked(run);
   const body = h('div', { class: 'plot-body', role: 'img', 'aria-label': 'Amplitude spectrum' });
@@ -55,8 +54,13 @@ export function spectra(run) {
   table(['frequency', 'name', 'Hz', 'order'], lines.list.map(line => [line.short, line.long, digits(line.frequency, 5), lines.shaft > 0 ? digits(line.frequency / lines.shaft, 4) : '\u2013']), { numbers: [2, 3] }));
 }
 
-/** Mean frequencies of cage and damage, and of the shaft. */
+/** Mean frequencies of cage and damage, and of the shaft; of a machine those of its meshes. */
 function marked(run) {
+  if (run.shaft) {
+    const shaft = Math.abs(run.mean('shaft.speed')) / (2 * Math.PI);
+    const meshes = run.shaft.gears.flatMap(({ teeth }, i) => (teeth ? [{ short: `gear ${i + 1}`, long: `${teeth} teeth that mesh`, frequency: teeth * shaft }] : []));
+    return { list: shaft > 0 ? [{ short: 'shaft', long: 'turns of the shaft', frequency: shaft }, ...meshes] : [], shaft };
+  }
   const speeds = ['inner', 'outer'].map(race => Math.abs(run.mean(`${race}.speed`)) / (2 * Math.PI));
   const own = run.bearing.loaded === 'inner' ? 0 : 1;
   const shaft = (speeds[own] > 0 ? speeds[own] : speeds[1 - own]) || 0;

@@ -5,6 +5,10 @@ import { digits, shown } from './units.js';
 
 /** Units of the figures by their names. */
 function unitOf(name) {
+  // Of a shaft; what its parts are called may be any word.
+  if (/ (put in|to bearings|damped|balance)$/.test(name)) return 'J';
+  if (/displacement\.[xyz]$/.test(name)) return 'm';
+  if (/(tilt|rotation)\.[xyz]$/.test(name)) return 'rad';
   if (/force|load|between balls/.test(name)) return 'N';
   if (/moment|torque/.test(name)) return 'N.m';
   if (/position|eccentricity/.test(name)) return 'm';
@@ -15,7 +19,8 @@ function unitOf(name) {
   return 'J';
 }
 
-function text(name, value, bar) {
+/** A figure with its unit and error bar. */
+export function figure(name, value, bar) {
   if (value === undefined || value === null) return '\u2013';
   const unit = unitOf(name);
   const [factor, word] = unit === 'deg' ? [1, '\u00b0'] : unit === 'share' ? [100, '%'] : shown(name, unit, Math.abs(value));
@@ -26,17 +31,21 @@ function text(name, value, bar) {
 const HEADLINES = ['friction torque', 'friction power', 'largest inner load', 'largest outer load', 'cage speed', 'cage slip'];
 
 export function cards(run) {
-  const { figures, error_bars: bars, means, peak_pressure: pressure } = run.record.summary;
-  const settled = name => means?.quantities.find(mean => mean.quantity === name)?.settled;
+  const { figures, error_bars: bars, peak_pressure: pressure } = run.record.summary;
   const card = (name, value, note, good) => h('div', { class: 'card' }, h('div', { class: 'card-name' }, name), h('div', { class: 'card-value' }, value),
     h('div', { class: `card-note ${good === false ? 'bad' : ''}` }, note));
   const list = HEADLINES.filter(name => figures[name] !== undefined && figures[name] !== null).map(name => {
-    const state = settled(name);
-    const note = state === undefined ? 'at the end' : state === null ? 'mean; too few rows to tell' : state ? 'mean, settled' : 'mean, NOT settled';
-    return card(name, text(name, figures[name], bars?.[name]), note, state ?? undefined);
+    const note = settledNote(run, name);
+    return card(name, figure(name, figures[name], bars?.[name]), note, !/NOT/.test(note));
   });
   list.push(card('peak pressure', `${digits(pressure * 1e-6, 4)} MPa`, 'largest in the run'));
   return h('div', { class: 'cards' }, list);
+}
+
+/** Is a figure a mean, and has it settled? */
+export function settledNote(run, name) {
+  const state = run.record.summary.means?.quantities.find(mean => mean.quantity === name)?.settled;
+  return state === undefined ? 'at the end' : state === null ? 'mean; too few rows to tell' : state ? 'mean, settled' : 'mean, NOT settled';
 }
 
 /** How well a mean is known. */
@@ -52,7 +61,8 @@ export function summary(runs) {
 function of(run) {
   const { means, warning } = run.record.summary;
   const parts = [];
-  if (run.record.ended_early) parts.push(h('p', { class: 'warning' }, `The run ended early: ${run.record.ended_early}`));
+  // That of a shaft stands above its table.
+  if (run.record.ended_early && !run.shaft) parts.push(h('p', { class: 'warning' }, `The run ended early: ${run.record.ended_early}`));
   if (warning) parts.push(h('p', { class: 'warning' }, warning));
   if (means) {
     const rows = means.quantities.map(mean => {
@@ -61,8 +71,11 @@ function of(run) {
       return [mean.quantity, show(mean.mean, 6), factorOf[1], show(mean.interval_95, 2), show(mean.error, 2), show(mean.drift, 2), mark(mean)];
     });
     const [begin, end] = means.window;
-    parts.push(table(['mean of', 'value', 'unit', '\u00b1 95 %', 'numerical error', 'drift', ''], rows,
-      { numbers: [1, 3, 4, 5], caption: `${run.title}: means over ${digits(begin * 1e3, 4)} to ${digits(end * 1e3, 4)} ms` }));
+    const all = table(['mean of', 'value', 'unit', '\u00b1 95 %', 'numerical error', 'drift', ''], rows,
+      { numbers: [1, 3, 4, 5], caption: `${run.title}: means over ${digits(begin * 1e3, 4)} to ${digits(end * 1e3, 4)} ms` });
+    // A shaft has some for each of its places.
+    const drift = means.quantities.filter(mean => mean.settled === false).length;
+    parts.push(run.shaft ? h('details', { open: rows.length <= 24 }, h('summary', {}, `Means of all ${rows.length} quantities; ${drift || 'none'} of them ${drift === 1 ? 'drifts' : 'drift'}`), all) : all);
     if (means.settled === false) {
       parts.push(h('p', { class: 'warning' }, means.needed_duration ? `Not all means have settled: a duration of about ${digits(means.needed_duration * 1e3, 3)} ms would do.` : 'Not all means have settled, and no decay is to be seen.'));
     }
@@ -74,8 +87,9 @@ function of(run) {
 /** Figures of all runs. */
 function sideBySide(runs) {
   const names = [...new Set(runs.flatMap(run => Object.keys(run.record.summary.figures)))];
-  const rows = names.map(name => [name, ...runs.map(run => text(name, run.record.summary.figures[name], run.record.summary.error_bars?.[name]))]);
-  return table(['figure', ...runs.map(run => run.name || run.title)], rows, { numbers: runs.map((_, i) => i + 1), caption: 'All runs side by side' });
+  const rows = names.map(name => [name, ...runs.map(run => figure(name, run.record.summary.figures[name], run.record.summary.error_bars?.[name]))]);
+  const all = table(['figure', ...runs.map(run => run.name || run.title)], rows, { numbers: runs.map((_, i) => i + 1), caption: 'All runs side by side' });
+  return runs[0].shaft ? h('details', {}, h('summary', {}, `All ${rows.length} figures side by side`), all) : all;
 }
 
 function estimateNote(runs) {

@@ -119,7 +119,7 @@ function showCase(sweep, i, holder) {
   if (reason) parts.push(h('p', { class: 'warning' }, reason));
   const tables = sweep.tables.get(fileOf(sweep, i));
   const number = cell(sweep, 'case', i);
-  parts.push(runOf(sweep, i) ? h('p', {}, h('a', { href: '#drawing' }, `Drawing, playback and plots of case ${number}`), ' stand below.')
+  parts.push(runOf(sweep, i) ? h('p', {}, h('a', { href: '#drawing' }, `Drawing${runOf(sweep, i).shaft ? '' : ', playback'} and plots of case ${number}`), ' stand below.')
     : h('p', { class: 'note' }, 'For its drawing, playback and plots, give the command of the sweep ', h('code', {}, `--runs ${number}`), ' once more, and make this page again.'));
   if (tables) parts.push(caseplots(tables));
   parts.push(h('details', { open: !tables }, h('summary', {}, `All ${others.length} figures`), table(['figure', 'value'], others.map(name => [label(sweep, name), cell(sweep, name, i, 6)]), { numbers: [1] })));

@@ -5,11 +5,13 @@ export function shown(name, unit, largest = 0) {
   const small = (limit, factor, other, otherUnit) => (largest < limit ? [factor, other] : [1, otherUnit]);
   switch (unit) {
     case 'm': {
-      if (/position|eccentricity|approach|gap|thickness|semi_axis|clearance|displacement/.test(name) && largest < 2e-3) return [1e6, '\u00b5m'];
+      if (/position|eccentricity|approach|gap|thickness|semi_axis|clearance|displacement|\.[xyz]$/.test(name) && largest < 2e-3) return [1e6, '\u00b5m'];
       return [1e3, 'mm'];
     }
     case 'rad':
       if (/angle|azimuth|turned/.test(name)) return [180 / Math.PI, '\u00b0'];
+      // Tilts of shafts and housings are small.
+      if (largest < 1e-3 && /tilt|rotation|\.r[xyz]$/.test(name) && !/^(inner|outer)\./.test(name)) return [1e6, '\u00b5rad'];
       return [1e3, 'mrad'];
     case 'Pa': return largest < 1e4 ? [1, 'Pa'] : [1e-6, 'MPa'];
     case 'N.m': return small(1, 1e3, 'N mm', 'N m');

@@ -252,6 +252,7 @@ impl Place {
             rows: &played.plotted_shaft,
             seen,
             shown,
+            warnings: played.seen.warnings(&played.machine),
             summary: text,
             took: [played.wall.as_secs_f64(), played.cpu],
             ended_early: played.end.early(),

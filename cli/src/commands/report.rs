@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use roulement_cli::page::grid::{Grid, without};
+use roulement_cli::page::grid::{Grid, thinned, without};
 use roulement_cli::page::{fields, html, record, sweep, table};
 use roulement_cli::sweep::store::RUNS;
 use serde_json::{Value, json};
@@ -27,36 +27,45 @@ pub struct Options {
     /// Rows of a table at most; as many as there is room for if not given.
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..))]
     rows: Option<u32>,
-    /// Tables of `roulement field`, whose contacts are shown with those at the end of the first run.
+    /// Tables of `roulement field`, whose contacts are shown with those at the end of the first bearing.
     #[arg(long)]
     field: Vec<PathBuf>,
 }
 
 /// [byte] pages beyond this are slow to send and to open.
 const LARGE: usize = 2_000_000;
+/// [-] rows of motion that a shaft and the bearings on it share; the record of each has up to 1025.
+const HISTORY: usize = 600;
+/// [-] rows of each of them at least.
+const LEAST: usize = 33;
 
 /// Writes the page.
 ///
 /// # Errors
 /// If a directory has no results, or the page cannot be written.
 pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
-    let mut runs = vec![];
+    let mut runs: Vec<Value> = vec![];
     let mut sweeps = vec![];
+    let mut titles = vec![];
     for directory in &options.results {
         if is_sweep(directory) {
             sweeps.push(of_sweep(directory, options)?);
         } else {
-            runs.extend(of_machine(directory, options)?);
+            let machine = of_machine(directory, options)?;
+            // A shaft is what its bearings are a part of.
+            titles.push(title(&machine[0]).to_string());
+            runs.extend(machine);
         }
     }
     for path in &options.field {
-        let run = runs.first_mut().ok_or("--field: there is no run that its contacts could belong to")?;
+        let of_bearing = runs.iter_mut().find(|run| run["shaft"].is_null());
+        let run = of_bearing.ok_or("--field: there is no run that its contacts could belong to")?;
         let more = fields::read(path)?;
         if let Some(list) = run["fields"].as_array_mut() {
             list.extend(more);
         }
     }
-    let titles: Vec<&str> = runs.iter().chain(&sweeps).map(title).collect();
+    titles.extend(sweeps.iter().map(|sweep| title(sweep).to_string()));
     let title = titles.join(" | ");
     let words: Vec<&str> = runs.iter().filter_map(|run| run["summary_text"].as_str()).collect();
     let words = words.join("\n");
@@ -105,18 +114,24 @@ fn of_sweep(directory: &Path, options: &Options) -> Result<Value, Box<dyn Error>
 
 /// A run of a bearing; or that of a shaft, then of every bearing on it.
 fn of_machine(directory: &Path, options: &Options) -> Result<Vec<Value>, Box<dyn Error>> {
-    let run = of_run(directory, options)?;
-    let bearings = record::bearings(&run).unwrap_or_default();
-    let mut runs = vec![run];
-    for name in bearings {
-        runs.push(of_run(&directory.join(name), options)?);
+    let record = record::read(directory)?;
+    let bearings = record::bearings(&record).unwrap_or_default();
+    let share = 1 + bearings.len();
+    let mut runs = vec![of_run(directory, record, options, share)?];
+    for name in &bearings {
+        let directory = directory.join(name);
+        runs.push(of_run(&directory, record::read(&directory)?, options, share)?);
     }
     Ok(runs)
 }
 
-/// Record and table of a bearing or a shaft.
-fn of_run(directory: &Path, options: &Options) -> Result<Value, Box<dyn Error>> {
-    let mut record = record::read(directory)?;
+/// Record and table of a bearing or a shaft; so many runs share the room of one.
+fn of_run(
+    directory: &Path,
+    mut record: Value,
+    options: &Options,
+    share: usize,
+) -> Result<Value, Box<dyn Error>> {
     record["name"] = name_of(directory).into();
     let is_shaft = record::bearings(&record).is_some();
     let path = directory.join(if is_shaft { "shaft.csv" } else { "results.csv" });
@@ -127,7 +142,7 @@ fn of_run(directory: &Path, options: &Options) -> Result<Value, Box<dyn Error>> 
     }
     // Columns that are chosen are those of bearings.
     let columns = if is_shaft { vec![] } else { options.columns.clone() };
-    let choice = table::Choice { columns, rows: options.rows.map(|rows| rows as usize) };
+    let choice = table::Choice { columns, rows: options.rows.map(|rows| rows as usize), share };
     let read = table::read(&path, &choice)?;
     // What the table has at the same times is not written twice.
     if let [grid] = read.grids.as_slice()
@@ -135,6 +150,9 @@ fn of_run(directory: &Path, options: &Options) -> Result<Value, Box<dyn Error>> 
     {
         let names: Vec<String> = grid.names().map(str::to_string).collect();
         record["history"] = without(&record["history"], &names);
+    }
+    if share > 1 {
+        record["history"] = thinned(&record["history"], (HISTORY / share).max(LEAST));
     }
     record["table_rows"] = read.rows.into();
     record["strides"] = read.strides.into();

@@ -83,7 +83,7 @@ fn guide(guidance: Guidance) -> &'static str {
 }
 
 /// What it is at the start, and its least and largest value.
-fn schedule(schedule: &Schedule) -> Value {
+pub fn schedule(schedule: &Schedule) -> Value {
     let values = schedule.values();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

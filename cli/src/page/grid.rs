@@ -148,11 +148,27 @@ pub fn read(grid: &Value) -> Result<Vec<(String, Vec<f64>)>, String> {
 
 /// A grid without columns of names that are in another one, whose rows are at the same times.
 pub fn without(grid: &Value, names: &[String]) -> Value {
-    let keep = |column: &&Value| {
-        column[0].as_str().is_none_or(|name| name == "time" || !names.iter().any(|n| n == name))
-    };
+    let rows = grid["rows"].as_u64().unwrap_or(0) as usize;
+    rebuilt(grid, |name| name == "time" || !names.iter().any(|n| n == name), &Vec::from_iter(0..rows))
+}
+
+/// A grid of every n-th row and the last one, so that it has at most so many, two or more.
+pub fn thinned(grid: &Value, most: usize) -> Value {
+    let rows = grid["rows"].as_u64().unwrap_or(0) as usize;
+    if rows <= most.max(2) {
+        return grid.clone();
+    }
+    // Places of the last row and of every n-th one.
+    let stride = rows.div_ceil(most.max(2) - 1);
+    let kept: Vec<usize> = (0..rows - 1).step_by(stride).chain([rows - 1]).collect();
+    rebuilt(grid, |_| true, &kept)
+}
+
+/// A grid of some columns and rows of another one.
+fn rebuilt(grid: &Value, wanted: impl Fn(&str) -> bool, rows: &[usize]) -> Value {
+    let keep = |column: &&Value| column[0].as_str().is_none_or(&wanted);
     let Ok(columns) = read(grid) else { return grid.clone() };
-    let mut left = Grid::new(grid["rows"].as_u64().unwrap_or(0) as usize);
+    let mut left = Grid::new(rows.len());
     let described: Map<String, Value> = ["constant", "moving"]
         .iter()
         .filter_map(|key| grid[key].as_array())
@@ -162,6 +178,7 @@ pub fn without(grid: &Value, names: &[String]) -> Value {
         .collect();
     for (name, values) in columns {
         if let Some(unit) = described.get(&name) {
+            let values = rows.iter().map(|&row| values[row]).collect();
             left.push(&name, unit.as_str().unwrap_or_default(), values);
         }
     }
@@ -196,6 +213,13 @@ mod tests {
         let rest = read(&without(&json, &["wave".into()])).unwrap_or_default();
         let names: Vec<_> = rest.iter().map(|column| column.0.as_str()).collect();
         assert_eq!(names, ["speed", "time", "short"]);
+        for most in [2, 3, 7, 500, 999] {
+            let few = read(&thinned(&json, most)).unwrap_or_default();
+            let times = &few.iter().find(|column| column.0 == "time").expect("a time").1;
+            assert!(times.len() <= most && (times[0], times.last()) == (time[0], time.last()), "{most}");
+            assert!(times.len() == most || times.len() > most / 2, "{most}: {}", times.len());
+        }
+        assert_eq!(thinned(&json, 1000), json);
         assert!(read(&json!({ "rows": 3 })).is_err());
     }
 }

@@ -111,6 +111,8 @@ pub struct ShaftRun<'a> {
     pub seen: &'a ShaftSeen,
     /// Figures and their error bars.
     pub shown: &'a Shown,
+    /// What whoever reads its results should know, of its bearings, too.
+    pub warnings: Vec<String>,
     /// The summary in words.
     pub summary: &'a str,
     /// \[s] wall and CPU time.
@@ -122,7 +124,7 @@ pub struct ShaftRun<'a> {
 impl ShaftRun<'_> {
     /// The record.
     pub fn to_json(&self) -> Value {
-        let Self { system, rows, seen, shown, summary, took, ended_early } = self;
+        let Self { system, rows, seen, shown, warnings, summary, took, ended_early } = self;
         json!({
             "form": FORM,
             "program": env!("ROULEMENT_VERSION"),
@@ -130,6 +132,7 @@ impl ShaftRun<'_> {
             "scene": system.scene().source,
             "ended_early": ended_early,
             "shaft": shaft::describe(system),
+            "warnings": warnings,
             "summary": json::of_shaft(system, seen, shown),
             "summary_text": summary,
             "cost": { "wall": took[0], "cpu": took[1] },

@@ -2,17 +2,20 @@
 
 use nalgebra::Vector3;
 use roulement::scene::system::SystemScene;
-use roulement::schema::units::Length;
+use roulement::schema::Components;
+use roulement::schema::units::{Force, Length};
 use roulement::simulation::system::{System, SystemOutputs};
 use serde_json::{Value, json};
 
+use super::bearing::{self, schedule};
 use super::grid::Grid;
 use crate::report::shaft;
 
-/// All of it; lengths \[m], angles \[rad].
+/// All of it; lengths \[m], angles \[rad]. Each bearing has its own dimensions with it: a sweep keeps the record of a shaft alone.
 pub fn describe(system: &System) -> Value {
     let SystemScene { shaft, housings, bearings, gravity, .. } = system.scene();
     let place = |place: &[Length; 3]| place.map(|length| length.0);
+    let force = |force: &Components<Force>| force.0.each_ref().map(schedule);
     json!({
         "sections": shaft.section.iter().map(|beam| json!({
             "from": beam.from.0,
@@ -23,6 +26,7 @@ pub fn describe(system: &System) -> Value {
         "discs": shaft.disc.iter().map(|disc| json!({
             "position": disc.position.0,
             "mass": disc.mass.0,
+            "polar_inertia": disc.polar_inertia.0,
             "unbalance": disc.unbalance.map_or(0.0, |unbalance| unbalance.0),
         })).collect::<Vec<_>>(),
         "gears": shaft.gear.iter().map(|gear| json!({
@@ -32,18 +36,32 @@ pub fn describe(system: &System) -> Value {
             "helix_angle": gear.helix_angle.0,
             "teeth": gear.teeth,
         })).collect::<Vec<_>>(),
-        "loads": shaft.load.iter().map(|load| json!({ "name": load.name, "position": load.position.0 })).collect::<Vec<_>>(),
+        "loads": shaft.load.iter().map(|load| json!({
+            "name": load.name,
+            "position": load.position.0,
+            "force": force(&load.force),
+        })).collect::<Vec<_>>(),
         "points": shaft.point.iter().map(|point| json!({ "name": point.name, "position": point.position.0 })).collect::<Vec<_>>(),
-        "bearings": bearings.iter().enumerate().map(|(index, mounted)| json!({
+        "bearings": bearings.iter().zip(system.bearings()).enumerate().map(|(index, (mounted, (_, own)))| json!({
             "name": mounted.name,
             "position": mounted.mounting.position.0,
             "direction": mounted.mounting.direction.sign(),
             "housing": system.scene().housing_of(index).map(|housing| &housings[housing].name),
+            "bearing": bearing::describe(own.scene(), own.model()),
         })).collect::<Vec<_>>(),
         "housings": housings.iter().map(|housing| json!({
             "name": housing.name,
             "centre": housing.centre.as_ref().map(place),
             "feet": housing.foot.iter().map(|foot| place(&foot.position)).collect::<Vec<_>>(),
+            "loads": housing.load.iter().map(|load| json!({
+                "name": load.name,
+                "position": place(&load.position),
+                "force": force(&load.force),
+            })).collect::<Vec<_>>(),
+            "points": housing.point.iter().map(|point| json!({
+                "name": point.name,
+                "position": place(&point.position),
+            })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
         "modes": system.shaft().modes,
         "gravity": Vector3::from(*gravity).as_slice(),

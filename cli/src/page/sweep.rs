@@ -80,7 +80,7 @@ fn tables(directory: &Path, names: &[String], records: &[csv::StringRecord]) -> 
         let rows = columns_of(path).map(|columns| ROOM / files.len() / columns.max(1)).unwrap_or(0);
         // Of fewer rows there is nothing to be seen.
         if rows >= 16 {
-            let read = table::read(path, &table::Choice { columns: vec![], rows: Some(rows) })?;
+            let read = table::read(path, &table::Choice { columns: vec![], rows: Some(rows), share: 1 })?;
             tables.insert(name.clone(), read.grids.iter().map(Grid::to_json).collect());
         }
     }

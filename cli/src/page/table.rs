@@ -19,6 +19,8 @@ pub struct Choice {
     pub columns: Vec<String>,
     /// Rows at most; as many as there is room for, if not given.
     pub rows: Option<usize>,
+    /// Tables that share the room, those of a shaft and the bearings on it; one by itself if 0.
+    pub share: usize,
 }
 
 /// Columns of the bearing, and of its balls where these have fewer rows.
@@ -59,13 +61,14 @@ pub fn read(path: &Path, choice: &Choice) -> Result<Read, String> {
     let rows = table.byte_records().filter(Result::is_ok).count();
     let is_of_ball = |i: &usize| columns[*i].name.starts_with("ball[");
     let (of_balls, of_bearing): (Vec<usize>, Vec<usize>) = chosen.iter().copied().partition(is_of_ball);
+    let room = ROOM / choice.share.max(1);
     let stride = |count: usize| {
-        let most = choice.rows.unwrap_or(ROOM / count.max(1)).max(2);
+        let most = choice.rows.unwrap_or(room / count.max(1)).max(2);
         // Places of the last row and of every n-th one.
         rows.div_ceil(most - 1).max(1)
     };
     let mut groups = vec![];
-    if rows * (of_balls.len() + of_bearing.len()) <= 2 * ROOM && choice.rows.is_none_or(|most| rows <= most) {
+    if rows * (of_balls.len() + of_bearing.len()) <= 2 * room && choice.rows.is_none_or(|most| rows <= most) {
         groups.push((1, chosen));
     } else {
         groups.extend(

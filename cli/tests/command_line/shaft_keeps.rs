@@ -159,6 +159,11 @@ fn regression_a_load_that_no_bearing_bears_is_warned_of_on_a_shaft_too() {
             "{said}"
         );
     }
+    // The page shows those of the record.
+    let record: Value = serde_json::from_str(&scratch.read("out/run.json")).unwrap();
+    let warnings = record["warnings"].as_array().unwrap();
+    assert_eq!(warnings.len(), said.matches("WARNING          ").count());
+    assert!(warnings.iter().all(|warning| said.contains(warning.as_str().unwrap())), "{warnings:?}");
     let (_, said, told) = run(&scratch, &pinion(), "out", &[]);
     assert!(!said.contains("WARNING") && !told.contains("warning"), "{said}{told}");
 }
