@@ -42,7 +42,10 @@ pub fn modes(mass: &DMatrix<f64>, damping: &DMatrix<f64>, stiffness: &DMatrix<f6
     };
     let (damping, stiffness) = (scaled(damping)?, scaled(stiffness)?);
     // Time in units of the fastest swing: rates and displacements are then of a size.
-    let rate = stiffness.amax().sqrt().max(damping.amax()).max(f64::MIN_POSITIVE);
+    let rate = stiffness.amax().sqrt().max(damping.amax());
+    if rate == 0.0 {
+        return Some(vec![]);
+    }
     let (damping, stiffness) = (damping / rate, stiffness / (rate * rate));
     let mut whole = DMatrix::zeros(2 * n, 2 * n);
     whole.view_mut((0, n), (n, n)).fill_with_identity();
