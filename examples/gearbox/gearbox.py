@@ -70,7 +70,7 @@ WANTED = {
     "loss": ["friction_power"],
     "rolling": ["rolling_power.inner", "rolling_power.outer"],
     "cage": ["cage.speed"],
-    "life": ["life.L10r"],
+    "damage": ["life.damage"],
     "load": of_ball("inner.load"),
     "azimuth": of_ball("azimuth"),
 }
@@ -110,7 +110,9 @@ def table(found):
             axial, *radial = -found[side, "force"][at].mean(axis=0)
             radial, hand = np.linalg.norm(radial), np.linalg.norm(hand)
             loads, losses = found[side, "load"][at], found[side, "loss"][at].mean()
-            hours = 1e6 / np.mean(1 / found[side, "life"][at]) / (SPEED / (2 * np.pi) * 3600)
+            # The part of the life that was used up in the phase, in the time that it took.
+            used, time = (np.ptp(of[at]) for of in (found[side, "damage"], found["time"]))
+            hours = time / used / 3600
             balls = f"{loads.min():.0f} to {loads.max():.0f}"
             lines.append(f"| {phase} | {side} | {radial:.0f}, {hand:.0f} | {abs(axial):.0f} | {balls} | {losses:.1f} | {hours:.0f} |")
     return "\n".join(lines)

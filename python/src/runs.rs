@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
-use roulement::simulation::play::{Rows, play};
+use roulement::simulation::play::{Rows, play_observed};
 use roulement_cli::error::{Compared, Refined, Run, refine};
 use roulement_cli::report::cells::{Cell, Column};
 use roulement_cli::report::figures::Shown;
@@ -78,7 +78,7 @@ fn played(scene: &MachineScene, choice: &Choice, progress: Option<&Py<PyAny>>) -
     let mut watch = Watch::of(&machine);
     let mut table = vec![];
     let mut told = Instant::now();
-    let flow = play(&mut machine, rows, |machine| {
+    let flow = play_observed(&mut machine, rows, &mut watch, |machine, watch| {
         watch.push(machine);
         table.extend(columns.row(machine).into_iter().flatten());
         let is_last = machine.time() >= rows.duration;
@@ -104,7 +104,8 @@ fn played(scene: &MachineScene, choice: &Choice, progress: Option<&Py<PyAny>>) -
         Ok(ControlFlow::Continue(())) => {}
     }
     let names = columns.names().map(|(name, unit)| (name, unit.to_string())).collect();
-    Ok(Done { machine, seen: watch.finish(), names, table })
+    let seen = watch.finish(&machine);
+    Ok(Done { machine, seen, names, table })
 }
 
 /// Writes a table of float64 as Parquet.

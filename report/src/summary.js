@@ -55,7 +55,7 @@ function mark(mean) {
 }
 
 export function summary(runs) {
-  return section('summary', 'Summary', runs.length > 1 ? sideBySide(runs) : null, runs.map(of), estimateNote(runs));
+  return section('summary', 'Summary', runs.length > 1 ? sideBySide(runs) : null, runs.map(of), errorNote(runs));
 }
 
 function of(run) {
@@ -92,10 +92,8 @@ function sideBySide(runs) {
   return runs[0].shaft ? h('details', {}, h('summary', {}, `All ${rows.length} figures side by side`), all) : all;
 }
 
-function estimateNote(runs) {
-  const lines = runs.filter(run => run.record.summary.error_estimate && !run.record.summary.error_bars).map(run => {
-    const { histories, means } = run.record.summary.error_estimate;
-    return `${runs.length > 1 ? `${run.name}: ` : ''}numerical error estimated at ${digits(histories, 2)} of histories and ${digits(means, 2)} of means, within a factor of ten; \u201croulement run --error\u201d measures it.`;
-  });
+function errorNote(runs) {
+  const lines = runs.filter(run => !run.record.summary.error_bars).map(run =>
+    `${runs.length > 1 ? `${run.name}: ` : ''}numerical error not measured; \u201croulement run --error\u201d measures it.`);
   return lines.map(line => h('p', { class: 'note' }, line));
 }

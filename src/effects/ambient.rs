@@ -223,6 +223,10 @@ impl Effect for Settings {
         ]
     }
 
+    fn headlines(&self) -> &'static [&'static str] {
+        &["ambient.drag_power"]
+    }
+
     fn rows(&self) -> Vec<Row> {
         let power = Row {
             name: "ambient.drag_power".into(),

@@ -163,6 +163,11 @@ pub trait Effect: Clone + 'static {
         vec![]
     }
 
+    /// Names of those of these outputs that the summary of a run has.
+    fn headlines(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// Outputs of a ball (0 is the first), where every ball is reported.
     fn ball_rows(&self, _ball: usize) -> Vec<Row> {
         vec![]
@@ -199,6 +204,8 @@ pub trait AnyEffect {
     fn switch(&mut self, key: &str, on: bool);
     /// See [`Effect::rows`].
     fn rows(&self) -> Vec<Row>;
+    /// See [`Effect::headlines`].
+    fn headlines(&self) -> &'static [&'static str];
     /// See [`Effect::ball_rows`].
     fn ball_rows(&self, ball: usize) -> Vec<Row>;
 }
@@ -248,6 +255,10 @@ impl<T: Effect> AnyEffect for T {
 
     fn rows(&self) -> Vec<Row> {
         Effect::rows(self)
+    }
+
+    fn headlines(&self) -> &'static [&'static str] {
+        Effect::headlines(self)
     }
 
     fn ball_rows(&self, ball: usize) -> Vec<Row> {

@@ -371,6 +371,10 @@ impl Effect for Settings {
         Ok(())
     }
 
+    fn headlines(&self) -> &'static [&'static str] {
+        &["temperature_rise.inner", "temperature_rise.outer", "temperature_rise.balls", "heat.out"]
+    }
+
     fn rows(&self) -> Vec<Row> {
         if self.section.is_none() {
             return vec![];

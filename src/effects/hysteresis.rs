@@ -36,6 +36,10 @@ impl Effect for Settings {
         self.on.then(|| "on".into())
     }
 
+    fn headlines(&self) -> &'static [&'static str] {
+        &["power.hysteresis"]
+    }
+
     fn rows(&self) -> Vec<Row> {
         let power = |ball: &BallOutput| ball.inner.hysteresis_power + ball.outer.hysteresis_power;
         let row = || {

@@ -153,6 +153,15 @@ impl Effects {
         self.each().into_iter().flat_map(AnyEffect::inputs).collect()
     }
 
+    /// Outputs of the effects that are on, of which the summary of a run has a line each.
+    pub fn headlines(&self) -> Vec<Row> {
+        let of = |effect: &dyn AnyEffect| {
+            let names = effect.headlines();
+            effect.rows().into_iter().filter(move |row| names.contains(&row.name.as_str()))
+        };
+        self.each().into_iter().flat_map(of).collect()
+    }
+
     /// Outputs of a bearing with a number of balls, with or without every ball.
     pub fn rows(&self, balls: usize, every_ball: bool) -> Vec<Row> {
         let mut rows: Vec<Row> = self.each().into_iter().flat_map(AnyEffect::rows).collect();

@@ -229,6 +229,8 @@ pub struct LifeOutput {
     pub equivalent_load: f64,
     /// [-] static safety: load of a ball that would leave a mark over the largest load on the inner race; at most [`super::rating::SAFEST`].
     pub static_safety: f64,
+    /// [-] part of the reference life that was used up since the start.
+    pub damage: f64,
     /// The race that the load stands still on, by the scene or as it was found.
     pub load_rests_on: LoadRests,
     /// What was found, where the scene says otherwise.

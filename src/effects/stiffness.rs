@@ -76,6 +76,10 @@ impl Effect for Settings {
         self.on.then(|| "on".into())
     }
 
+    fn headlines(&self) -> &'static [&'static str] {
+        &["stiffness.x.x", "stiffness.y.y", "stiffness.z.z"]
+    }
+
     fn rows(&self) -> Vec<Row> {
         if !self.on {
             return vec![];

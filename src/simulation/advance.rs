@@ -7,7 +7,7 @@ use super::input_paths::InputPaths;
 use super::inputs::Inputs;
 use super::outputs::Outputs;
 use super::script::{Script, script_motion};
-use super::{Simulation, conditions, step_limits};
+use super::{Observe, Simulation, conditions, step_limits};
 use crate::dynamics::{Boundary, StepFailure, Workspace, advance_perturbed, failure_site, try_step};
 use crate::effects::film::Films;
 use crate::model::bodies::Race;
@@ -51,6 +51,17 @@ impl Simulation {
         inputs: &[Inputs],
         scripted: Groups,
     ) -> Result<Vec<Outputs>, SimulationError> {
+        self.advance_observed(end, inputs, scripted, None)
+    }
+
+    /// The same while somebody sees every step.
+    pub(super) fn advance_observed(
+        &mut self,
+        end: f64,
+        inputs: &[Inputs],
+        scripted: Groups,
+        observe: Option<Observe<'_>>,
+    ) -> Result<Vec<Outputs>, SimulationError> {
         let begin = self.state.time;
         if !(end > begin && end.is_finite()) {
             return Err(SimulationError::Backwards { from: begin, to: end });
@@ -69,7 +80,7 @@ impl Simulation {
             })
             .collect();
         self.paths = self.paths.towards(&self.inputs, begin, end - begin);
-        let result = self.follow(&script, end, &mut perturbed);
+        let result = self.follow(&script, end, &mut perturbed, observe);
         self.end_script(&script, result.is_ok());
         result.and_then(|()| self.check_contacts())?;
         let outputs = |p: &Perturbed| {
@@ -137,10 +148,21 @@ impl Simulation {
         script: &Script,
         end: f64,
         perturbed: &mut [Perturbed],
+        mut observe: Option<Observe<'_>>,
     ) -> Result<(), SimulationError> {
         let least = self.model.solver.min_step.0;
         let knots = script.knots(&self.scene, self.state.time, end, least);
-        knots.into_iter().chain([end]).try_for_each(|stop| self.step_to(script, stop, perturbed))
+        let mut stops = knots.into_iter().chain([end]);
+        stops.try_for_each(|stop| self.step_to(script, stop, perturbed, &mut observe))
+    }
+
+    /// Shows where a step has ended, and leaves all that the next one begins with as it is.
+    fn show(&mut self, script: &Script, observe: &mut dyn FnMut(&Self)) {
+        let inputs = self.inputs;
+        script.set_inputs(&self.scene, &self.paths, self.state.time, &mut self.inputs);
+        self.reach(true);
+        observe(self);
+        self.inputs = inputs;
     }
 
     fn step_to(
@@ -148,6 +170,7 @@ impl Simulation {
         script: &Script,
         end: f64,
         perturbed: &mut [Perturbed],
+        observe: &mut Option<Observe<'_>>,
     ) -> Result<(), SimulationError> {
         // The perturbed steps leave the running simulation as it is.
         let mut aside = Workspace::default();
@@ -194,6 +217,9 @@ impl Simulation {
                         ) {
                             return Err(SimulationError::Singular(start.time));
                         }
+                    }
+                    if let Some(observe) = observe {
+                        self.show(script, observe);
                     }
                     continue;
                 }

@@ -2,8 +2,8 @@
 
 use thiserror::Error;
 
-use super::play::Scripted;
-use super::system::{System, SystemError, shaft_follows_time};
+use super::play::{Observer, Scripted};
+use super::system::{System, SystemError, script_changes_within, shaft_follows_time};
 use super::{Simulation, SimulationError};
 use crate::model::state::Statistics;
 use crate::scene::machine::MachineScene;
@@ -79,6 +79,26 @@ impl Machine {
             ..all
         };
         each.reduce(join).unwrap_or_default()
+    }
+
+    /// Runs its own steps to exactly `end` \[s] by its script; an observer sees every one of them. It makes no difference to the motion.
+    ///
+    /// # Errors
+    /// See [`MachineError`].
+    pub fn advance_observed(&mut self, end: f64, observer: &mut dyn Observer) -> Result<(), MachineError> {
+        match self {
+            Self::Bearing(bearing) => {
+                bearing.advance_scripted_observed(end, &mut |bearing| observer.bearing(bearing))?;
+            }
+            Self::Shaft(system) => system.advance_observed(end, &mut |system| observer.shaft(system))?,
+        }
+        Ok(())
+    }
+
+    /// Does its script come to other values within a span \[s] of time?
+    pub fn script_changes_within(&self, from: f64, to: f64) -> bool {
+        let of_bearings = self.bearings().any(|(_, bearing)| bearing.script_changes_within(from, to));
+        of_bearings || self.shaft().is_some_and(|system| script_changes_within(system.scene(), from, to))
     }
 
     /// The shaft with its housings, where there is one.

@@ -5,6 +5,7 @@ mod cage_start;
 mod error;
 mod input_paths;
 pub mod inputs;
+pub mod instant;
 mod limits;
 pub mod machine;
 mod orientation;
@@ -267,14 +268,35 @@ impl Simulation {
         inputs
     }
 
+    /// Does its script come to other values within a span \[s] of time?
+    pub fn script_changes_within(&self, from: f64, to: f64) -> bool {
+        script::Script::new(&self.scene, Groups::ALL).changes_within(&self.scene, from, to)
+    }
+
     /// Runs its own steps to exactly `end` \[s] by the scene's script, which every step follows exactly; where it ends
     /// does not matter to the motion. The inputs are then those of the time reached.
     ///
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn advance_scripted(&mut self, end: f64) -> Result<(), SimulationError> {
+        self.advance_by_script(end, None)
+    }
+
+    /// The same; also lets somebody see every step where it has ended, which makes no difference to the motion.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn advance_scripted_observed(
+        &mut self,
+        end: f64,
+        observe: &mut dyn FnMut(&Self),
+    ) -> Result<(), SimulationError> {
+        self.advance_by_script(end, Some(observe))
+    }
+
+    fn advance_by_script(&mut self, end: f64, observe: Option<Observe<'_>>) -> Result<(), SimulationError> {
         self.inputs = self.scripted_inputs(self.state.time);
-        let advanced = self.advance_perturbed(end, &[], Groups::ALL);
+        let advanced = self.advance_observed(end, &[], Groups::ALL, observe);
         let scripted = self.scripted_inputs(self.state.time);
         let followed = self.inputs;
         self.inputs = scripted;
@@ -299,6 +321,9 @@ impl Simulation {
         conditions(&self.inputs, &self.state)
     }
 }
+
+/// What sees a simulation where a step has ended.
+type Observe<'a> = &'a mut dyn FnMut(&Simulation);
 
 /// Conditions of every contact of a state under these inputs.
 fn conditions(inputs: &Inputs, state: &State) -> Conditions {

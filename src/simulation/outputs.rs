@@ -327,7 +327,7 @@ fn sign(x: f64) -> f64 {
 }
 
 /// Frame that tilts with a race but does not spin.
-fn spin_free_frame(race: &BodyState) -> UnitQuaternion<f64> {
+pub(super) fn spin_free_frame(race: &BodyState) -> UnitQuaternion<f64> {
     let axis = race.pose.orientation * Vector3::x();
     UnitQuaternion::rotation_between(&Vector3::x(), &axis).unwrap_or_default()
 }

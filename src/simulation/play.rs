@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use super::machine::{Machine, MachineError};
+use super::system::System;
 use super::{Simulation, SimulationError};
 use crate::scene::machine::MachineScene;
 
@@ -22,6 +24,28 @@ impl Scripted for Simulation {
 
     fn advance_scripted(&mut self, end: f64) -> Result<(), SimulationError> {
         Self::advance_scripted(self, end)
+    }
+}
+
+/// What sees every step of a run, not its rows alone.
+pub trait Observer {
+    /// A bearing alone, where a step has ended.
+    fn bearing(&mut self, bearing: &Simulation);
+
+    /// A shaft with its bearings, where a step has ended.
+    fn shaft(&mut self, system: &System);
+}
+
+/// Two of them see the same.
+impl<A: Observer, B: Observer> Observer for (A, B) {
+    fn bearing(&mut self, bearing: &Simulation) {
+        self.0.bearing(bearing);
+        self.1.bearing(bearing);
+    }
+
+    fn shaft(&mut self, system: &System) {
+        self.0.shaft(system);
+        self.1.shaft(system);
     }
 }
 
@@ -88,6 +112,28 @@ pub fn play_with<S, E, B>(
         }
         let advanced = advance(machine, end);
         flow = row(machine);
+        advanced?;
+    }
+    Ok(flow)
+}
+
+/// Plays the scene's own script while an observer sees every step, and `row` sees it at every row.
+///
+/// # Errors
+/// See [`play_with`].
+pub fn play_observed<W: Observer, B>(
+    machine: &mut Machine,
+    rows: Rows,
+    observer: &mut W,
+    mut row: impl FnMut(&Machine, &mut W) -> ControlFlow<B>,
+) -> Result<ControlFlow<B>, MachineError> {
+    let mut flow = row(machine, observer);
+    for end in rows.times() {
+        if flow.is_break() {
+            break;
+        }
+        let advanced = machine.advance_observed(end, observer);
+        flow = row(machine, observer);
         advanced?;
     }
     Ok(flow)

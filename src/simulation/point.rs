@@ -2,8 +2,10 @@
 
 use std::sync::OnceLock;
 
+use super::instant::Instant;
 use super::outputs::{Outputs, RaceOutput};
 use super::{Simulation, conditions};
+use crate::forces::Contacts;
 use crate::model::Conditions;
 use crate::model::bodies::Race;
 
@@ -22,6 +24,21 @@ impl Point {
     /// A point under these conditions.
     pub fn new(conditions: Conditions, stepped: bool) -> Self {
         Self { conditions, stepped, outputs: OnceLock::new() }
+    }
+
+    /// What the bearing does there.
+    pub fn instant(&self, simulation: &Simulation) -> Instant {
+        let (model, state) = (&simulation.model, &simulation.state);
+        match (self.outputs.get(), self.stepped) {
+            (Some(outputs), _) => outputs.into(),
+            (None, true) => {
+                Instant::of(model, state, &simulation.workspace.contacts(model), &self.conditions)
+            }
+            (None, false) => {
+                let contacts = Contacts::new(model, state, &self.conditions);
+                Instant::of(model, state, &contacts, &self.conditions)
+            }
+        }
     }
 }
 

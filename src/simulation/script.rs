@@ -234,6 +234,11 @@ impl Script {
         playing
     }
 
+    /// Does any schedule come to other values within a span \[s] of time?
+    pub fn changes_within(&self, scene: &Scene, from: f64, to: f64) -> bool {
+        self.playing(scene).into_iter().any(|schedule| schedule.changes_within(from, to))
+    }
+
     /// \[s] times within a step at which a schedule has a kink, growing, not closer to one another or to the ends than `least`.
     pub fn knots(&self, scene: &Scene, from: f64, to: f64, least: f64) -> Vec<f64> {
         let playing = self.playing(scene);

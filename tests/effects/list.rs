@@ -66,7 +66,7 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
         ("effects.full_complement", 4, &["neighbours."]),
         ("effects.shoulder_outputs", 4, &["shoulder."]),
         ("effects.heat_outputs", 4, &["heat."]),
-        ("rating", 4, &["life."]),
+        ("rating", 5, &["life."]),
         (
             "growth",
             11,

@@ -267,8 +267,9 @@ fn keys_of_the_rating_say_what_life_is() {
         let rows = Variables::new(scene);
         rows.rows().iter().filter(|row| row.name.starts_with("life.")).map(|row| row.name.clone()).collect()
     };
-    assert_eq!(names(&oiled), ["life.L10r", "life.equivalent_load", "life.static_safety", "life.modified"]);
-    assert_eq!(names(&scene(&row, "")).len(), 3);
+    let all = ["life.L10r", "life.equivalent_load", "life.static_safety", "life.damage", "life.modified"];
+    assert_eq!(names(&oiled), all);
+    assert_eq!(names(&scene(&row, "")).len(), 4);
     // On the other race the load stands still: the mean of the other one is with the smaller power.
     let inner = life_of(&scene(&row, "load_rests_on = \"inner\"\n"));
     assert!(inner.reference < plain.reference, "{inner:?} {plain:?}");

@@ -5,6 +5,7 @@ mod closed_forms;
 #[path = "../common/evidence.rs"]
 mod evidence;
 mod hinge;
+mod instants;
 mod invariance;
 mod load_cases;
 #[path = "../common/mechanics.rs"]

@@ -211,7 +211,8 @@ impl Place {
         let (scene, rows) = (simulation.scene(), &played.plotted[index]);
         let mut plots = write_plots(scene, rows, directory)?;
         if let Some(means) = &seen.means {
-            write(&directory.join("means.csv"), |path| means.write(path))?;
+            let life = seen.life.map_or(vec![], |life| life.numbers());
+            write(&directory.join("means.csv"), |path| means.write(path, &life))?;
         }
         if let Some(spectrum) = &seen.spectrum {
             write(&directory.join("spectrum.csv"), |path| spectrum.write(path))?;
@@ -244,7 +245,7 @@ impl Place {
     ) -> Result<PathBuf, Box<dyn Error>> {
         let plot = shaft::write_plot(system.scene(), &played.plotted_shaft, &self.output)?;
         if let Some(means) = &seen.means {
-            write(&self.output.join("means.csv"), |path| means.write(path))?;
+            write(&self.output.join("means.csv"), |path| means.write(path, &[]))?;
         }
         write(&self.output.join("summary.txt"), |path| fs::write(path, text))?;
         let record = record::ShaftRun {

@@ -9,7 +9,7 @@ use cpu_time::ThreadTime;
 use indicatif::{ProgressBar, ProgressStyle};
 use roulement::simulation::machine::Machine;
 use roulement::simulation::outputs::Outputs;
-use roulement::simulation::play::{Rows, play};
+use roulement::simulation::play::{Rows, play_observed};
 use roulement::simulation::system::SystemOutputs;
 use roulement_cli::error::Run;
 use roulement_cli::report::results::ResultsError;
@@ -102,7 +102,7 @@ impl Player {
         let mut plotted_shaft = Thinned::default();
         let mut watch = Watch::of(&machine);
         let mut seen = 0;
-        let played = play(&mut machine, rows, |machine| {
+        let played = play_observed(&mut machine, rows, &mut watch, |machine, watch| {
             if let Some(Err(why)) = tables.as_mut().map(|tables| tables.write(machine)) {
                 return ControlFlow::Break(Stop::Results(why));
             }
@@ -136,7 +136,8 @@ impl Player {
         }
         let plotted = plotted.into_iter().map(Thinned::finish).collect();
         let plotted_shaft = plotted_shaft.finish();
-        Ok(Played { machine, plotted, plotted_shaft, seen: watch.finish(), wall, cpu, end })
+        let seen = watch.finish(&machine);
+        Ok(Played { machine, plotted, plotted_shaft, seen, wall, cpu, end })
     }
 }
 

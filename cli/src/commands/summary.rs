@@ -12,7 +12,7 @@ use roulement_cli::report::limits::Limits;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
 use roulement_cli::report::shaft;
 use roulement_cli::report::spectrum::is_wanted;
-use roulement_cli::watch::{BearingSeen, ShaftSeen};
+use roulement_cli::watch::{BearingSeen, Life, ShaftSeen, headlines};
 
 use super::effects::idle_in;
 use super::player::Played;
@@ -37,7 +37,8 @@ pub fn of_shaft(
     shown: &Shown,
     bearings: &[Shown],
 ) -> String {
-    let mut text = shaft::summary(system, shown, bearings);
+    let lives: Vec<Option<Life>> = run.seen.bearings.iter().map(|seen| seen.life).collect();
+    let mut text = shaft::summary(system, shown, bearings, &lives);
     // Writing to a string cannot fail.
     let _ = write_shaft(&mut text, run, (system, seen), shown);
     text
@@ -56,7 +57,7 @@ fn write_shaft(
         writeln!(out, "WARNING          {warning}")?;
     }
     if shown.bars.is_none() {
-        writeln!(out, "error            not measured: --error runs it again with half the steps")?;
+        write_unmeasured(out)?;
     }
     if let Some((_, bearing)) = system.bearings().next() {
         let s = &bearing.state().statistics;
@@ -70,6 +71,24 @@ fn write_shaft(
         )?;
     }
     write_wall(out, run, system.time())
+}
+
+/// A single run cannot tell its own error: its local errors add up where motions keep them, and are forgotten where these are stable.
+fn write_unmeasured(out: &mut String) -> std::fmt::Result {
+    writeln!(out, "error            not measured: --error measures it, by a run with half the steps")
+}
+
+/// The rating life over the window.
+fn write_life(out: &mut String, Life { life, hours, modified_hours }: &Life) -> std::fmt::Result {
+    let of = |million: f64, hours: &Option<f64>| {
+        let hours = hours.map_or(String::new(), |hours| format!(" ({hours:.0} h)"));
+        format!("{million:.4e} million revolutions{hours}")
+    };
+    write!(out, "life             L10r {}", of(life.reference, hours))?;
+    if let Some(modified) = life.modified {
+        write!(out, ", modified {}", of(modified, modified_hours))?;
+    }
+    writeln!(out, "; P {:.1} N, static safety {:.2}", life.equivalent_load, life.static_safety)
 }
 
 /// What it took, for so much simulated time \[s].
@@ -118,9 +137,6 @@ fn write_law(out: &mut String, scene: &Scene) -> std::fmt::Result {
     writeln!(out, "creep law        {name}{with} {missing} (default: kalker_table with heathcote_slip)")
 }
 
-/// Said of runs in which bodies strike each other.
-const BLOWS: &str = "\n                 balls without a cage or the cage strike now and then: powers at blows are further off";
-
 /// Whether the means have settled.
 fn write_settled(out: &mut String, means: &Means) -> std::fmt::Result {
     write_settled_of_all(out, [(None, Some(means))].into_iter())
@@ -132,10 +148,19 @@ fn write_settled_of_all<'a>(
     all: impl Iterator<Item = (Option<&'a str>, Option<&'a Means>)>,
 ) -> std::fmt::Result {
     let all: Vec<_> = all.filter_map(|(name, means)| Some((name, means?))).collect();
-    if all.iter().any(|(_, means)| !means.can_tell()) {
-        return writeln!(out, "settled?         too few rows to tell: lower load.output_interval");
+    if let Some((_, means)) = all.iter().find(|(_, means)| means.scripted) {
+        let [begin, end] = means.window.map(|time| time * 1e3);
+        writeln!(
+            out,
+            "NOT SETTLED      the script changes between {begin:.3} and {end:.3} ms: means are over what it passes through"
+        )?;
+    } else if all.iter().any(|(_, means)| !means.can_tell()) {
+        return writeln!(
+            out,
+            "settled?         too few steps to tell: a longer load.duration, or a smaller solver.max_step, has more"
+        );
     }
-    if all.iter().all(|(_, means)| means.unsettled().next().is_none()) {
+    if all.iter().all(|(_, means)| means.settled() == Some(true)) {
         return writeln!(
             out,
             "settled          all means: no drift beyond noise or {NEGLIGIBLE} of their size"
@@ -150,6 +175,9 @@ fn write_settled_of_all<'a>(
                 mean.name, mean.mean, mean.unit, trend.drift, trend.noise
             )?;
         }
+    }
+    if all.iter().any(|(_, means)| means.scripted) {
+        return Ok(());
     }
     let needed = all.iter().try_fold(0.0, |longest, (_, means)| Some(f64::max(longest, means.needed()?)));
     match needed {
@@ -184,7 +212,7 @@ fn write_bearing(
     shown: &Shown,
     verdicts: &Verdicts,
 ) -> std::fmt::Result {
-    let BearingSeen { means, spectrum, energy, limits, estimate, .. } = seen;
+    let BearingSeen { means, spectrum, energy, limits, .. } = seen;
     let now = simulation.outputs();
     let text = |name: &str, factor, digits| shown.text(name, factor, digits);
     let range = |[least, most]: [&str; 2]| format!("{} to {}", text(least, 1.0, 3), text(most, 1.0, 3));
@@ -223,8 +251,14 @@ fn write_bearing(
     }
     if let Some(means) = means {
         write_means(out, means, shown, now.cage.is_some())?;
+        if let Some(life) = &seen.life {
+            write_life(out, life)?;
+        }
         write_law(out, simulation.scene())?;
         write_settled(out, means)?;
+    }
+    for (row, value) in headlines(simulation) {
+        writeln!(out, "{:<16} {value:.5e} {} at the end: {}", row.name, row.unit.name, row.description)?;
     }
     match spectrum {
         Some(spectrum) => write!(out, "{spectrum}")?,
@@ -244,15 +278,8 @@ fn write_bearing(
     if let Some(warning) = energy.warning(simulation) {
         writeln!(out, "WARNING          {warning}")?;
     }
-    // Of a bearing on a shaft it says nothing: its local errors are not those of the shaft.
-    let estimated = run.machine.shaft().is_none().then(|| estimate.errors(simulation)).flatten();
-    if let (None, Some([histories, means])) = (&shown.bars, estimated) {
-        writeln!(
-            out,
-            "error, estimate  histories {histories:.0e}, means {means:.0e} of their size, within a factor of ten or so, and no \
-             promise: --error measures it{}",
-            if estimate.has_blows() { BLOWS } else { "" }
-        )?;
+    if shown.bars.is_none() {
+        write_unmeasured(out)?;
     }
     for line in idle_in(verdicts, limits.over_shoulders != [0.0; 2]) {
         writeln!(out, "did not matter   {line}")?;

@@ -132,7 +132,7 @@ fn run(setting: &Setting, mut machine: Machine, interrupted: &AtomicBool) -> Res
                 machine.bearings().zip(bearings.iter_mut().zip(&mut blocks))
             {
                 samples.push(Sample::new(bearing.outputs(), radius(bearing)));
-                blocks.push(bearing.outputs());
+                blocks.push(&bearing.outputs().into());
             }
             if interrupted.load(Ordering::Relaxed) {
                 ControlFlow::Break(())

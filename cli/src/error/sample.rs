@@ -22,7 +22,7 @@ impl Sample {
     /// Takes a row of a bearing.
     pub fn new(outputs: &Outputs) -> Self {
         let largest_load = outputs.loads().fold(0.0, f64::max);
-        Self { time: outputs.time, values: values(outputs).to_vec(), largest_load }
+        Self { time: outputs.time, values: values(&outputs.into()).to_vec(), largest_load }
     }
 }
 

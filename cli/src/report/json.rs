@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 
 use super::figures::{Figures, Shown};
 use super::means::{Mean, Means};
-use crate::watch::{BearingSeen, Seen, ShaftSeen};
+use crate::watch::{BearingSeen, Life, Seen, ShaftSeen, headlines};
 
 /// Summary of a run, with error bars where figures have them: of a bearing alone, or of each bearing of a shaft by its name, and of the
 /// shaft as `shaft`. Figures are those of the bearings, then of the shaft.
@@ -45,8 +45,9 @@ pub fn summary(simulation: &Simulation, seen: &BearingSeen, shown: &Shown) -> Va
         "time": simulation.time(),
         "figures": figures(&shown.figures),
         "error_bars": shown.bars.as_ref().map(figures),
-        "error_estimate": seen.estimate.errors(simulation).map(|[histories, means]| json!({ "histories": histories, "means": means })),
         "means": seen.means.as_ref().map(means),
+        "life": seen.life.as_ref().map(life),
+        "effects": headlines(simulation).into_iter().map(|(row, value)| (row.name, value.into())).collect::<Map<_, _>>(),
         "peak_pressure": seen.limits.peak_pressure,
         "energy_balance": seen.energy.balance(simulation.outputs()),
         "warning": seen.energy.warning(simulation),
@@ -55,6 +56,18 @@ pub fn summary(simulation: &Simulation, seen: &BearingSeen, shown: &Shown) -> Va
             "rejected_by_error": statistics.rejected_error,
             "rejected_by_newton": statistics.rejected_newton,
         },
+    })
+}
+
+fn life(Life { life, hours, modified_hours }: &Life) -> Value {
+    json!({
+        "L10r": life.reference,
+        "L10r_hours": hours,
+        "modified": life.modified,
+        "modified_hours": modified_hours,
+        "equivalent_load": life.equivalent_load,
+        "static_safety": life.static_safety,
+        "load_rests_on": life.load_rests_on.name(),
     })
 }
 
@@ -75,10 +88,11 @@ fn means(means: &Means) -> Value {
             "history_error": mean.error.and_then(|error| error.history),
         })
     };
-    let settled = means.can_tell().then(|| means.unsettled().next().is_none());
+    let settled = means.settled();
     json!({
         "window": means.window,
         "settled": settled,
+        "script_changes": means.scripted,
         "needed_duration": means.needed().filter(|_| settled == Some(false)),
         "quantities": means.means.iter().map(of).collect::<Vec<_>>(),
     })

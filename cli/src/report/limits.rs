@@ -1,6 +1,7 @@
 //! What a run met of the limits of a bearing: pressure, shoulders, neighbouring balls.
 
 use roulement::contact::shoulder::largest_share;
+use roulement::simulation::instant::Instant;
 use roulement::simulation::outputs::Outputs;
 
 /// Largest values over the rows of a run.
@@ -15,6 +16,12 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// Takes where a step has ended.
+    pub fn step(&mut self, instant: &Instant) {
+        self.peak_pressure = instant.peak_pressure.into_iter().fold(self.peak_pressure, f64::max);
+        self.between_balls = self.between_balls.max(instant.between_balls);
+    }
+
     /// Takes a row.
     pub fn push(&mut self, outputs: &Outputs) {
         let contacts = outputs.balls.iter().flat_map(|ball| [&ball.inner, &ball.outer]);

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use roulement::interface::variables::{Source, SystemVariables};
 use roulement::model::bodies::Race;
 use roulement::simulation::Simulation;
-use roulement::simulation::outputs::{BallOutput, CageOutput, Outputs, RaceOutput};
+use roulement::simulation::instant::Instant;
 use roulement::simulation::system::System;
 
 /// What the size of a quantity is measured by.
@@ -50,8 +50,8 @@ pub struct Quantity {
     /// What its size is measured by.
     pub size: Size,
     shown: fn(Parts) -> bool,
-    get: fn(&Outputs) -> f64,
-    weight: fn(&Outputs) -> f64,
+    get: fn(&Instant) -> f64,
+    weight: fn(&Instant) -> f64,
 }
 
 /// Parts of a bearing that some quantities are of.
@@ -80,34 +80,21 @@ impl Quantity {
     }
 }
 
-const fn quantity(name: &'static str, unit: &'static str, size: Size, get: fn(&Outputs) -> f64) -> Quantity {
+const fn quantity(name: &'static str, unit: &'static str, size: Size, get: fn(&Instant) -> f64) -> Quantity {
     Quantity { name, unit, size, shown: |_| true, get, weight: |_| 1.0 }
 }
 
 /// A slip: its mean is the mean speed of slip over the mean speed of rolling.
-const fn slip(name: &'static str, get: fn(&Outputs) -> f64) -> Quantity {
+const fn slip(name: &'static str, get: fn(&Instant) -> f64) -> Quantity {
     Quantity { weight: |o| o.rolling_speed.abs(), ..quantity(name, "1", Size::One, get) }
 }
 
-const fn of_cage(name: &'static str, get: fn(&Outputs) -> f64) -> Quantity {
+const fn of_cage(name: &'static str, get: fn(&Instant) -> f64) -> Quantity {
     Quantity { shown: |parts| parts.cage, ..quantity(name, "W", Size::Own, get) }
 }
 
-const fn of_moving_outer(name: &'static str, get: fn(&Outputs) -> f64) -> Quantity {
+const fn of_moving_outer(name: &'static str, get: fn(&Instant) -> f64) -> Quantity {
     Quantity { shown: |parts| parts.moving_outer, ..quantity(name, "m", Size::Position, get) }
-}
-
-/// [rad/s] spin of a race about its own axis.
-fn spin(race: &RaceOutput) -> f64 {
-    (race.pose.orientation.inverse() * race.twist.angular_velocity).x
-}
-
-fn of_balls(outputs: &Outputs, get: fn(&BallOutput) -> f64) -> f64 {
-    outputs.balls.iter().map(get).sum::<f64>() / outputs.balls.len() as f64
-}
-
-fn cage(outputs: &Outputs, get: fn(&CageOutput) -> f64) -> f64 {
-    outputs.cage.as_ref().map_or(0.0, get)
 }
 
 /// [-] their number.
@@ -126,17 +113,17 @@ pub static QUANTITIES: [Quantity; COUNT] = [
     of_moving_outer("position.x of the outer race", |o| o.outer.pose.position.x),
     of_moving_outer("position.y of the outer race", |o| o.outer.pose.position.y),
     of_moving_outer("position.z of the outer race", |o| o.outer.pose.position.z),
-    quantity("inner race speed", "rad/s", Size::Speed, |o| spin(&o.inner)),
-    quantity("outer race speed", "rad/s", Size::Speed, |o| spin(&o.outer)),
+    quantity("inner race speed", "rad/s", Size::Speed, |o| o.spin(Race::Inner)),
+    quantity("outer race speed", "rad/s", Size::Speed, |o| o.spin(Race::Outer)),
     quantity("cage speed", "rad/s", Size::Speed, |o| o.cage_speed),
     slip("cage slip", |o| o.cage_slip),
     slip("ball slip", |o| o.ball_slip),
     quantity("friction power", "W", Size::Own, |o| o.friction_power),
     quantity("friction torque", "N.m", Size::Own, |o| o.friction_torque),
-    quantity("inner power per ball", "W", Size::Own, |o| of_balls(o, |ball| ball.inner.power)),
-    quantity("outer power per ball", "W", Size::Own, |o| of_balls(o, |ball| ball.outer.power)),
-    of_cage("pocket power", |o| cage(o, |cage| cage.pocket_power)),
-    of_cage("land power", |o| cage(o, |cage| cage.land_power)),
+    quantity("inner power per ball", "W", Size::Own, |o| o.power_per_ball[0]),
+    quantity("outer power per ball", "W", Size::Own, |o| o.power_per_ball[1]),
+    of_cage("pocket power", |o| o.cage.map_or(0.0, |cage| cage.pocket_power)),
+    of_cage("land power", |o| o.cage.map_or(0.0, |cage| cage.land_power)),
 ];
 
 /// All of them, as they are watched in a bearing of these parts.
@@ -197,12 +184,12 @@ fn size_of(name: &str, unit: &str) -> Option<Size> {
     }
 }
 
-/// All of them at a row.
-pub fn values(outputs: &Outputs) -> [f64; COUNT] {
-    std::array::from_fn(|i| (QUANTITIES[i].get)(outputs))
+/// All of them at an instant.
+pub fn values(instant: &Instant) -> [f64; COUNT] {
+    std::array::from_fn(|i| (QUANTITIES[i].get)(instant))
 }
 
-/// What a row counts for in the means of all of them.
-pub fn weights(outputs: &Outputs) -> [f64; COUNT] {
-    std::array::from_fn(|i| (QUANTITIES[i].weight)(outputs))
+/// What an instant counts for in the means of all of them.
+pub fn weights(instant: &Instant) -> [f64; COUNT] {
+    std::array::from_fn(|i| (QUANTITIES[i].weight)(instant))
 }

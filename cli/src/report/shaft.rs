@@ -12,6 +12,7 @@ use roulement::simulation::system::{HousingOutputs, PointOutput, System, SystemO
 use super::figures::Shown;
 use super::plots::{Curve, Panel, figure};
 use super::style::PlotError;
+use crate::watch::Life;
 
 /// Names of all points of a shaft whose motion is known: bearings, loads, points.
 pub fn places(scene: &SystemScene) -> Vec<String> {
@@ -191,14 +192,19 @@ pub fn creeping(system: &System) -> Option<String> {
 
 /// What a shaft's run came to, in words, with error bars where its figures and those of its bearings have them: of the shaft, and of its
 /// bearings some lines each.
-pub fn summary(system: &System, shaft: &Shown, bearings: &[Shown]) -> String {
+pub fn summary(system: &System, shaft: &Shown, bearings: &[Shown], lives: &[Option<Life>]) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
-    let _ = write_summary(&mut text, system, shaft, bearings);
+    let _ = write_summary(&mut text, system, shaft, (bearings, lives));
     text
 }
 
-fn write_summary(out: &mut String, system: &System, shaft: &Shown, bearings: &[Shown]) -> std::fmt::Result {
+fn write_summary(
+    out: &mut String,
+    system: &System,
+    shaft: &Shown,
+    (bearings, lives): (&[Shown], &[Option<Life>]),
+) -> std::fmt::Result {
     let (scene, outputs) = (system.scene(), system.outputs());
     if !scene.title.is_empty() {
         writeln!(out, "{}", scene.title)?;
@@ -214,7 +220,7 @@ fn write_summary(out: &mut String, system: &System, shaft: &Shown, bearings: &[S
         let count = system.shaft().modes.len();
         writeln!(out, "shaft modes      {count} between held stations, {first:.0} to {last:.0} Hz")?;
     }
-    for ((name, bearing), shown) in system.bearings().zip(bearings) {
+    for ((name, bearing), (shown, life)) in system.bearings().zip(bearings.iter().zip(lives)) {
         let direction = scene.bearings.iter().find(|mounted| mounted.name == name);
         let sign = direction.map_or(1.0, |mounted| mounted.mounting.direction.sign());
         // What the shaft does to the bearing, in the shaft's axes.
@@ -241,6 +247,9 @@ fn write_summary(out: &mut String, system: &System, shaft: &Shown, bearings: &[S
             format!("; mean losses {power} W, friction torque {torque} N m")
         });
         writeln!(out, "{:<16} ball loads {least:.1} to {most:.1} N{}", "", power.unwrap_or_default())?;
+        if let Some(Life { life, hours: Some(hours), .. }) = life {
+            writeln!(out, "{:<16} life L10r {hours:.0} h, static safety {:.2}", "", life.static_safety)?;
+        }
     }
     let housings = scene.housings.iter().zip(&outputs.housings);
     for (housing, outputs) in housings.clone() {

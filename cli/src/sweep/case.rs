@@ -8,7 +8,7 @@ use roulement::interface::variables::{Source, Variables};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::Simulation;
 use roulement::simulation::machine::Machine;
-use roulement::simulation::play::{Rows, play};
+use roulement::simulation::play::{Rows, play_observed};
 
 use super::SweepError;
 use super::columns::GatheredMachine;
@@ -18,7 +18,7 @@ use crate::report::cells::{Cell, Column};
 use crate::report::means::Means;
 use crate::report::quantities::QUANTITIES;
 use crate::report::results::{Choice, MachineColumns, ResultsError, TableWriter};
-use crate::watch::{BearingSeen, Seen, Watch};
+use crate::watch::{BearingSeen, Life, Seen, Watch};
 
 /// What is wanted of every case.
 #[derive(Clone, Debug, Default)]
@@ -140,9 +140,8 @@ fn played(
     };
     let mut machine = Machine::new(scene).map_err(|why| failed(&why))?;
     let rows = Rows::of_scene(scene);
-    let mut watch = Watch::of(&machine);
-    let mut gathered =
-        GatheredMachine::new(scene, &machine, rows.count() + 1, &wanted.columns).map_err(written)?;
+    let gathered = GatheredMachine::new(scene, &machine, rows.duration, &wanted.columns).map_err(written)?;
+    let mut observers = (Watch::of(&machine), gathered);
     let choice = Choice { columns: wanted.columns.clone(), ..Choice::default() };
     let begun = |path: &Path| -> Result<_, ResultsError> {
         let columns = MachineColumns::new(&machine, &choice)?;
@@ -150,7 +149,7 @@ fn played(
         Ok((columns, table))
     };
     let mut table = table.map(begun).transpose().map_err(written)?;
-    let flow = play(&mut machine, rows, |machine| {
+    let flow = play_observed(&mut machine, rows, &mut observers, |machine, (watch, gathered)| {
         if interrupted.load(Ordering::Relaxed) {
             return ControlFlow::Break(Ended::Interrupted);
         }
@@ -169,7 +168,9 @@ fn played(
         Ok(ControlFlow::Continue(())) => {}
     }
     table.map(|(_, table)| table.finish()).transpose().map_err(written)?;
-    Ok(Done { machine, seen: watch.finish(), gathered })
+    let (watch, gathered) = observers;
+    let seen = watch.finish(&machine);
+    Ok(Done { machine, seen, gathered })
 }
 
 /// What came of a machine: of a shaft its own columns, then those of every bearing with its name before them.
@@ -182,7 +183,7 @@ fn of_machine(done: &Done, goal: Option<&'static str>) -> Row {
         let error = |name: &str| seen.means.as_ref()?.find(name)?.error;
         for column in &gathered.shaft {
             let of = |what: &str| format!("{}.{what}", column.name);
-            row.push(number(&of("mean"), &column.unit, gathered.counted.mean(column)));
+            row.push(number(&of("mean"), &column.unit, column.mean()));
             row.push(number(&of("least"), &column.unit, column.extremes.least));
             row.push(number(&of("largest"), &column.unit, column.extremes.largest));
             row.push(number(&of("end"), &column.unit, column.end));
@@ -224,10 +225,11 @@ fn optional(name: &str, unit: &str, value: Option<f64>) -> (Column, Cell) {
 }
 
 fn settled(means: &Means) -> &'static str {
-    match (means.can_tell(), means.unsettled().next()) {
-        (false, _) => "too few rows to tell",
-        (true, None) => "yes",
-        (true, Some(_)) => "no",
+    match (means.scripted, means.settled()) {
+        (true, _) => "no: the script changes",
+        (false, None) => "too few steps to tell",
+        (false, Some(true)) => "yes",
+        (false, Some(false)) => "no",
     }
 }
 
@@ -271,9 +273,14 @@ fn summary(
     row.push(number("over_outer_shoulders.largest", "1", seen.limits.over_shoulders[1]));
     row.push(number("between_balls.largest", "N", seen.limits.between_balls));
     row.push(number("energy_balance", "J", seen.energy.balance(simulation.outputs())));
-    let [histories, means] = seen.estimate.errors(simulation).map_or([f64::NAN; 2], |errors| errors);
-    row.push(number("error_estimate.histories", "1", histories));
-    row.push(number("error_estimate.means", "1", means));
+    if let Some(Life { life, hours, modified_hours }) = &seen.life {
+        row.push(number("life.L10r.window", "1", life.reference));
+        row.push(optional("life.L10r.hours", "h", *hours));
+        if life.modified.is_some() {
+            row.push(optional("life.modified.window", "1", life.modified));
+            row.push(optional("life.modified.hours", "h", *modified_hours));
+        }
+    }
     // What effects report at the end: life, heat, growth.
     let variables = Variables::moving(simulation.scene(), false);
     for report in variables.rows().iter().filter(|row| matches!(row.source, Source::Effect(_))) {
@@ -288,7 +295,7 @@ fn summary(
                 row.push((column, cell));
             }
         };
-        push("mean", gathered.mean(of));
+        push("mean", of.mean());
         push("least", of.extremes.least);
         push("largest", of.extremes.largest);
         push("end", of.end);

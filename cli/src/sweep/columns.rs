@@ -2,9 +2,12 @@
 
 use roulement::interface::variables::{Causality, Source, SystemVariables, Variable};
 use roulement::scene::machine::MachineScene;
+use roulement::simulation::Simulation;
 use roulement::simulation::machine::Machine;
+use roulement::simulation::play::Observer;
+use roulement::simulation::system::System;
 
-use super::extremes::{Counted, Gathered, OfColumn};
+use super::extremes::{Gathered, OfColumn};
 use crate::report::results::{Choice, Columns, ResultsError, fits};
 
 /// Columns that are chosen of each bearing, by the names that its own table has: those that begin with its name, or with `*`; of a
@@ -52,23 +55,21 @@ pub struct GatheredMachine {
     variables: Option<SystemVariables>,
     /// Their references.
     references: Vec<usize>,
-    /// Rows that means are over.
-    pub counted: Counted,
 }
 
 impl GatheredMachine {
-    /// Of a run with so many rows, that of the start included.
+    /// Of a run of a duration \[s].
     ///
     /// # Errors
     /// If a column is not there.
     pub fn new(
         scene: &MachineScene,
         machine: &Machine,
-        rows: u64,
+        duration: f64,
         chosen: &[String],
     ) -> Result<Self, ResultsError> {
         let bearings = machine.bearings().zip(of_bearings(scene, chosen));
-        let bearings = bearings.map(|((_, bearing), columns)| Gathered::new(bearing, rows, &columns));
+        let bearings = bearings.map(|((_, bearing), columns)| Gathered::new(bearing, duration, &columns));
         let variables = machine.shaft().map(SystemVariables::new);
         let rows_of = || variables.iter().flat_map(|variables| variables.rows().iter().enumerate());
         let is_output =
@@ -76,23 +77,34 @@ impl GatheredMachine {
         let outputs = || rows_of().filter(|(_, row)| is_output(row));
         Ok(Self {
             bearings: bearings.collect::<Result<_, _>>()?,
-            shaft: outputs().map(|(_, row)| OfColumn::new(&row.name, row.unit.name)).collect(),
+            shaft: outputs().map(|(_, row)| OfColumn::new(&row.name, row.unit.name, duration)).collect(),
             references: outputs().map(|(reference, _)| reference).collect(),
             variables,
-            counted: Counted::new(rows),
         })
     }
 
-    /// Takes a row.
+    /// Takes a row: the start and equilibria have no steps.
     pub fn push(&mut self, machine: &Machine) {
-        for (gathered, (_, bearing)) in self.bearings.iter_mut().zip(machine.bearings()) {
+        match machine {
+            Machine::Bearing(bearing) => self.bearing(bearing),
+            Machine::Shaft(system) => self.shaft(system),
+        }
+    }
+}
+
+impl Observer for GatheredMachine {
+    fn bearing(&mut self, bearing: &Simulation) {
+        self.bearings.iter_mut().for_each(|gathered| gathered.push(bearing));
+    }
+
+    fn shaft(&mut self, system: &System) {
+        for (gathered, (_, bearing)) in self.bearings.iter_mut().zip(system.bearings()) {
             gathered.push(bearing);
         }
-        if let (Some(variables), Some(system)) = (&self.variables, machine.shaft()) {
+        if let Some(variables) = &self.variables {
             for (column, reference) in self.shaft.iter_mut().zip(&self.references) {
-                column.push(variables.value(*reference, system), self.counted.counts());
+                column.push(system.time(), variables.value(*reference, system));
             }
         }
-        self.counted.next();
     }
 }

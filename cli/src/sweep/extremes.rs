@@ -1,4 +1,4 @@
-//! Least and largest values over all rows of a run, and means of chosen columns.
+//! Least and largest values over all steps of a run, and means of chosen columns over its window.
 
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::{BallOutput, Outputs};
@@ -42,62 +42,53 @@ pub struct OfColumn {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Over all rows.
+    /// Over all steps.
     pub extremes: Extremes,
     /// At the end.
     pub end: f64,
-    sum: f64,
+    /// \[s] where the window of means begins.
+    begin: f64,
+    /// \[s] of the last value.
+    time: f64,
+    /// \[unit s] and \[s] of the window so far.
+    integral: f64,
+    duration: f64,
 }
 
 impl OfColumn {
-    /// Before the first row.
-    pub fn new(name: &str, unit: &str) -> Self {
+    /// Before the start of a run of a duration \[s].
+    pub fn new(name: &str, unit: &str, duration: f64) -> Self {
         Self {
             name: name.to_string(),
             unit: unit.to_string(),
             extremes: Extremes::NONE,
             end: f64::NAN,
-            sum: 0.0,
+            begin: Blocks::window_begins(duration),
+            time: f64::NAN,
+            integral: 0.0,
+            duration: 0.0,
         }
     }
 
-    /// Takes the value of a row, which counts for the mean or not.
-    pub fn push(&mut self, value: f64, counts: bool) {
+    /// Goes on to the value at a time \[s]. A time that was there already adds nothing.
+    pub fn push(&mut self, time: f64, value: f64) {
+        if self.time >= time {
+            return;
+        }
         self.extremes.push(value);
-        self.end = value;
-        if counts {
-            self.sum += value;
+        if time > self.begin && !self.time.is_nan() {
+            let from = self.time.max(self.begin);
+            let share = (from - self.time) / (time - self.time);
+            let first = self.end + share * (value - self.end);
+            self.integral += 0.5 * (time - from) * (first + value);
+            self.duration += time - from;
         }
-    }
-}
-
-/// Rows of a run, and those that means are over.
-#[derive(Clone, Copy, Debug)]
-pub struct Counted {
-    /// First row of the window of means.
-    begin: u64,
-    rows: u64,
-}
-
-impl Counted {
-    /// Of a run with so many rows, that of the start included.
-    pub fn new(rows: u64) -> Self {
-        Self { begin: Blocks::window_begins(rows), rows: 0 }
+        (self.time, self.end) = (time, value);
     }
 
-    /// Is the present row in the window of means?
-    pub fn counts(&self) -> bool {
-        self.rows >= self.begin
-    }
-
-    /// Goes on to the next row.
-    pub fn next(&mut self) {
-        self.rows += 1;
-    }
-
-    /// Mean of a column over the window of means.
-    pub fn mean(&self, of: &OfColumn) -> f64 {
-        of.sum / (self.rows - self.begin.min(self.rows)) as f64
+    /// Over the window of means.
+    pub fn mean(&self) -> f64 {
+        self.integral / self.duration
     }
 }
 
@@ -110,15 +101,14 @@ pub struct Gathered {
     /// Chosen columns.
     pub chosen: Vec<OfColumn>,
     columns: Option<Columns>,
-    counted: Counted,
 }
 
 impl Gathered {
-    /// Of a run with so many rows, that of the start included; of variables by their names with `*` for any characters.
+    /// Of a run of a duration \[s]; of variables by their names with `*` for any characters.
     ///
     /// # Errors
     /// If a variable is not there.
-    pub fn new(simulation: &Simulation, rows: u64, chosen: &[String]) -> Result<Self, ResultsError> {
+    pub fn new(simulation: &Simulation, duration: f64, chosen: &[String]) -> Result<Self, ResultsError> {
         let columns = if chosen.is_empty() {
             None
         } else {
@@ -132,31 +122,24 @@ impl Gathered {
             chosen: columns
                 .iter()
                 .flat_map(|columns| columns.names().skip(1))
-                .map(|(name, unit)| OfColumn::new(name, unit))
+                .map(|(name, unit)| OfColumn::new(name, unit, duration))
                 .collect(),
             columns,
-            counted: Counted::new(rows),
         })
     }
 
-    /// Takes a row.
+    /// Takes where a step has ended.
     pub fn push(&mut self, simulation: &Simulation) {
         let outputs: &Outputs = simulation.outputs();
-        self.quantities.iter_mut().zip(values(outputs)).for_each(|(of, value)| of.push(value));
+        self.quantities.iter_mut().zip(values(&outputs.into())).for_each(|(of, value)| of.push(value));
         for (of, (_, _, get)) in self.balls.iter_mut().zip(OF_BALLS) {
             outputs.balls.iter().for_each(|ball| of.push(get(ball)));
         }
         if let Some(row) = self.columns.as_ref().and_then(|columns| columns.row(simulation.inputs(), outputs))
         {
             for (of, value) in self.chosen.iter_mut().zip(row.skip(1)) {
-                of.push(value, self.counted.counts());
+                of.push(outputs.time, value);
             }
         }
-        self.counted.next();
-    }
-
-    /// Mean of a chosen column over the window of means.
-    pub fn mean(&self, of: &OfColumn) -> f64 {
-        self.counted.mean(of)
     }
 }

@@ -1,9 +1,15 @@
 //! What is gathered of a bearing in a run: means, spectrum, energy, limits, and what its error is told from.
 
+use std::f64::consts::TAU;
+
+use roulement::effects::Row;
+use roulement::effects::rating::Sums;
+use roulement::effects::reports::LifeOutput;
+use roulement::model::Model;
 use roulement::model::bodies::Race;
 use roulement::simulation::Simulation;
 
-use crate::error::{Course, Estimate, Lengths, Sample, sizes};
+use crate::error::{Course, Lengths, Sample, sizes};
 use crate::report::energy::EnergyWatch;
 use crate::report::figures::Figures;
 use crate::report::limits::Limits;
@@ -18,7 +24,8 @@ pub struct BearingWatch {
     spectrum: Option<Recorder>,
     energy: EnergyWatch,
     limits: Limits,
-    estimate: Estimate,
+    /// Revolutions and loads from step to step, for the life over the window.
+    rated: Thinned<(f64, Sums)>,
     samples: Thinned<Sample>,
 }
 
@@ -32,8 +39,8 @@ pub struct BearingSeen {
     pub energy: EnergyWatch,
     /// Limits of the bearing that it met.
     pub limits: Limits,
-    /// Its error, as far as its local errors tell.
-    pub estimate: Estimate,
+    /// Life over the window of the means.
+    pub life: Option<Life>,
     /// Rows for comparison with other runs.
     samples: Vec<Sample>,
 }
@@ -46,32 +53,47 @@ impl BearingWatch {
             spectrum: Recorder::of(simulation),
             energy: EnergyWatch::default(),
             limits: Limits::default(),
-            estimate: Estimate::default(),
+            rated: Thinned::default(),
             samples: Thinned::default(),
+        }
+    }
+
+    /// Takes where a step has ended.
+    pub fn step(&mut self, simulation: &Simulation) {
+        let instant = simulation.instant();
+        self.blocks.push(&instant);
+        self.limits.step(&instant);
+        if let Some(sums) = &simulation.state().rating {
+            self.rated.push((instant.time, *sums));
         }
     }
 
     /// Takes a row.
     pub fn push(&mut self, simulation: &Simulation) {
+        // The start, and equilibria, have no steps.
+        self.step(simulation);
         let outputs = simulation.outputs();
-        self.blocks.push(outputs);
         if let Some(spectrum) = &mut self.spectrum {
             spectrum.push(outputs);
         }
         self.energy.push(outputs);
         self.limits.push(outputs);
-        self.estimate.push(simulation);
         self.samples.push(Sample::new(outputs));
     }
 
     /// All of it, at the end.
-    pub fn finish(self) -> BearingSeen {
+    pub fn finish(self, simulation: &Simulation) -> BearingSeen {
+        let means = self.blocks.means().map(|means| Means {
+            scripted: simulation.script_changes_within(means.window[0], means.window[1]),
+            ..means
+        });
+        let rated = self.rated.finish();
         BearingSeen {
-            means: self.blocks.means(),
+            life: means.as_ref().and_then(|means| Life::over(means.window, &rated, simulation.model())),
+            means,
             spectrum: self.spectrum.and_then(Recorder::finish),
             energy: self.energy,
             limits: self.limits,
-            estimate: self.estimate,
             samples: self.samples.finish(),
         }
     }
@@ -98,7 +120,7 @@ impl BearingSeen {
     /// The same, but for what its summary says: the pressure, and what its life leaves out.
     pub fn told(&self, simulation: &Simulation) -> Vec<String> {
         let pressure = simulation.scene().pressure_note(self.limits.peak_pressure);
-        let life = simulation.outputs().life.and_then(|life| life.warning());
+        let life = self.life.and_then(|life| life.life.warning());
         let bare = |note: String| note.trim_start_matches("warning: ").to_string();
         pressure.into_iter().chain(life).map(bare).collect()
     }
@@ -116,6 +138,52 @@ impl BearingSeen {
             figures: self.figures(simulation),
         }
     }
+}
+
+/// The rating life under what a window of a run has seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Life {
+    /// In million revolutions, with all that goes with it.
+    pub life: LifeOutput,
+    /// \[h] reference life at the mean speed of the window; none where nothing turns.
+    pub hours: Option<f64>,
+    /// \[h] modified life.
+    pub modified_hours: Option<f64>,
+}
+
+impl Life {
+    /// Names, units and values of its numbers, for the table of means.
+    pub fn numbers(&self) -> Vec<(&'static str, &'static str, f64)> {
+        let Self { life, hours, modified_hours } = self;
+        let all = [
+            ("life L10r", "1e6", Some(life.reference)),
+            ("life L10r in hours", "h", *hours),
+            ("modified life", "1e6", life.modified),
+            ("modified life in hours", "h", *modified_hours),
+            ("equivalent load", "N", Some(life.equivalent_load)),
+            ("static safety", "1", Some(life.static_safety)),
+        ];
+        all.into_iter().filter_map(|(name, unit, value)| Some((name, unit, value?))).collect()
+    }
+
+    /// Over a window \[s], from what was seen up to times \[s].
+    fn over(window: [f64; 2], rated: &[(f64, Sums)], model: &Model) -> Option<Self> {
+        let rating = model.rating.as_ref()?;
+        let (_, end) = rated.last()?;
+        let before = rated.iter().rev().find(|(time, _)| *time <= window[0]).unwrap_or(&rated[0]);
+        let sums = end.since(&before.1);
+        let life = rating.after(&sums);
+        let speed = sums.speed().filter(|speed| *speed > 0.0);
+        let hours = |million: f64| speed.map(|speed| million * 1e6 * TAU / speed / 3600.0);
+        Some(Self { life, hours: hours(life.reference), modified_hours: life.modified.and_then(hours) })
+    }
+}
+
+/// What every effect that is on promises for the summary, with its value at the end.
+pub fn headlines(simulation: &Simulation) -> Vec<(Row, f64)> {
+    let reports = simulation.outputs().reports();
+    let rows = simulation.scene().effects.headlines();
+    rows.into_iter().map(|row| (row.get.get(&reports), row)).map(|(value, row)| (row, value)).collect()
 }
 
 /// Lengths of a bearing.

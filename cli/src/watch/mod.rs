@@ -1,12 +1,14 @@
-//! What is gathered of a run row by row, whoever plays it: of every bearing, and of the shaft with its housings where there is one.
+//! What is gathered of a run step by step and row by row, whoever plays it: of every bearing, and of the shaft with its housings where there is one.
 
 mod bearing;
 mod shaft;
 
 use roulement::simulation::Simulation;
 use roulement::simulation::machine::Machine;
+use roulement::simulation::play::Observer;
+use roulement::simulation::system::System;
 
-pub use bearing::{BearingSeen, BearingWatch};
+pub use bearing::{BearingSeen, BearingWatch, Life, headlines};
 pub use shaft::{ShaftSeen, ShaftWatch};
 
 use crate::error::Run;
@@ -46,11 +48,27 @@ impl Watch {
         }
     }
 
-    /// All of it, at the end.
-    pub fn finish(self) -> Seen {
+    /// All of it, at the end of a machine.
+    pub fn finish(self, machine: &Machine) -> Seen {
+        let bearings = self.bearings.into_iter().zip(machine.bearings());
         Seen {
-            bearings: self.bearings.into_iter().map(BearingWatch::finish).collect(),
-            shaft: self.shaft.map(ShaftWatch::finish),
+            bearings: bearings.map(|(watch, (_, bearing))| watch.finish(bearing)).collect(),
+            shaft: self.shaft.zip(machine.shaft()).map(|(watch, system)| watch.finish(system)),
+        }
+    }
+}
+
+impl Observer for Watch {
+    fn bearing(&mut self, bearing: &Simulation) {
+        self.bearings.iter_mut().for_each(|watch| watch.step(bearing));
+    }
+
+    fn shaft(&mut self, system: &System) {
+        for ((_, bearing), watch) in system.bearings().zip(&mut self.bearings) {
+            watch.step(bearing);
+        }
+        if let Some(watch) = &mut self.shaft {
+            watch.step(system);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What is gathered of a shaft with its housings in a run: means, energy, and rows that its error is told from.
 
 use roulement::model::structure::StructureEnergies;
-use roulement::simulation::system::System;
+use roulement::simulation::system::{System, script_changes_within};
 
 use super::bearing::lengths;
 use crate::error::{Course, Lengths, Sample, sizes};
@@ -37,23 +37,33 @@ impl ShaftWatch {
     /// Of a shaft that has not been played yet.
     pub fn of(system: &System) -> Self {
         let quantities = ShaftQuantities::of(system);
-        let blocks = Blocks::new(quantities.watched(), lengths_of(system).pitch_radius);
+        let duration = system.scene().load.duration.0;
+        let blocks = Blocks::new(quantities.watched(), lengths_of(system).pitch_radius, duration);
         Self { quantities, blocks, samples: Thinned::default(), largest_load: 0.0 }
+    }
+
+    /// Takes where a step has ended.
+    pub fn step(&mut self, system: &System) {
+        self.blocks.push_values(system.time(), &self.quantities.values(system));
     }
 
     /// Takes a row.
     pub fn push(&mut self, system: &System) {
+        self.step(system);
         let values = self.quantities.values(system);
-        self.blocks.push_values(system.time(), &values);
         self.samples.push(Sample { time: system.time(), values, largest_load: 0.0 });
         let loads = system.bearings().flat_map(|(_, bearing)| bearing.outputs().loads());
         self.largest_load = loads.fold(self.largest_load, f64::max);
     }
 
     /// All of it, at the end.
-    pub fn finish(self) -> ShaftSeen {
+    pub fn finish(self, system: &System) -> ShaftSeen {
+        let means = self.blocks.means().map(|means| Means {
+            scripted: script_changes_within(system.scene(), means.window[0], means.window[1]),
+            ..means
+        });
         ShaftSeen {
-            means: self.blocks.means(),
+            means,
             watched: self.quantities.watched(),
             samples: self.samples.finish(),
             largest_load: self.largest_load,

@@ -9,6 +9,7 @@ mod cost;
 mod documents_run;
 mod effects;
 mod field;
+mod means;
 mod packages;
 mod refusals;
 mod report;

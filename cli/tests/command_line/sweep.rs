@@ -85,15 +85,20 @@ fn consistency_numbers_of_a_case_are_those_of_a_run() {
         let extreme = |name: &str| -> f64 { summary[name][case].parse().unwrap() };
         let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
         let largest = |values: Vec<f64>| values.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        assert_eq!(extreme("friction_power.largest [W]"), largest(of("friction_power [W]")));
-        assert_eq!(extreme("inner.force.x.least [N]"), least(of("inner.force.x [N]")));
+        // Steps see more than rows: extremes are no less, and hardly more, as loads swing slower than rows are apart.
+        let beyond = |name: &str, of_rows: f64, sign: f64| {
+            let more = sign * (extreme(name) - of_rows);
+            assert!(more >= 0.0 && more < 1e-2 * of_rows.abs(), "{name}: {} {of_rows}", extreme(name));
+        };
+        beyond("friction_power.largest [W]", largest(of("friction_power [W]")), 1.0);
+        beyond("inner.force.x.least [N]", least(of("inner.force.x [N]")), -1.0);
         let loads: Vec<f64> = (1..=10).flat_map(|ball| of(&format!("ball[{ball}].inner.load [N]"))).collect();
-        assert_eq!(extreme("ball.inner.load.largest [N]"), largest(loads.clone()));
-        assert_eq!(extreme("ball.inner.load.least [N]"), least(loads));
+        beyond("ball.inner.load.largest [N]", largest(loads.clone()), 1.0);
+        beyond("ball.inner.load.least [N]", least(loads), -1.0);
         // A chosen column: its mean over the window of the means.
         let one = of("ball[3].outer.load [N]");
         assert_eq!(extreme("ball[3].outer.load.end [N]"), *one.last().unwrap());
-        assert_eq!(extreme("ball[3].outer.load.least [N]"), least(one.clone()));
+        beyond("ball[3].outer.load.least [N]", least(one.clone()), -1.0);
         let begin: f64 = means["window_begin [s]"][0].parse().unwrap();
         let window: Vec<f64> = of("time [s]")
             .into_iter()
@@ -102,7 +107,8 @@ fn consistency_numbers_of_a_case_are_those_of_a_run() {
             .map(|(_, load)| load)
             .collect();
         let mean = window.iter().sum::<f64>() / window.len() as f64;
-        assert!((extreme("ball[3].outer.load.mean [N]") / mean - 1.0).abs() < 1e-14);
+        // Over time, and not over rows.
+        assert!((extreme("ball[3].outer.load.mean [N]") / mean - 1.0).abs() < 1e-4);
         // What an effect reports is there where it is on.
         let life = &summary["life.L10r.end [1]"];
         assert_eq!(life[case].is_empty(), case == 1);

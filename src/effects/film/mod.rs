@@ -247,6 +247,10 @@ impl Effect for Settings {
         verdicts::of(self.section.as_ref(), estimate)
     }
 
+    fn headlines(&self) -> &'static [&'static str] {
+        &["film.ratio", "rolling_power.inner", "rolling_power.outer"]
+    }
+
     fn rows(&self) -> Vec<Row> {
         if self.section.is_none() {
             return vec![];

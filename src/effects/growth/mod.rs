@@ -388,6 +388,10 @@ impl Effect for Settings {
         }
     }
 
+    fn headlines(&self) -> &'static [&'static str] {
+        &["clearance", "contact_angle.free"]
+    }
+
     fn rows(&self) -> Vec<Row> {
         if self.section.is_none() {
             return vec![];

@@ -11,6 +11,8 @@ pub mod standard;
 use crate::effects::reports::LifeOutput;
 use serde::{Deserialize, Serialize};
 
+use std::f64::consts::TAU;
+
 use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::keys::Keys;
 use crate::contact::materials::Pair;
@@ -68,6 +70,8 @@ pub enum LoadRests {
 }
 
 impl LoadRests {
+    const ALL: [Self; 3] = [Self::Inner, Self::Outer, Self::Neither];
+
     /// From the share \[-] of the turn of the races against each other in which the load goes with the inner race.
     fn of_share(share: f64) -> Self {
         if share.abs() <= STANDING {
@@ -166,6 +170,8 @@ pub struct Rates {
     pub with_inner: Option<f64>,
     /// \[N] largest load of a ball on the inner race.
     pub largest: f64,
+    /// [1/s] rate at which the reference life is used up, for each race that the load may stand still on.
+    pub ageing: [f64; 3],
 }
 
 /// What a run has seen.
@@ -181,6 +187,9 @@ pub struct Sums {
     turns: [f64; 2],
     /// \[N] largest load of a ball on the inner race so far.
     largest: f64,
+    /// [-] part of the reference life that is used up: revolutions over the life under the loads that they had (Miner 1945); for each
+    /// race that the load may stand still on.
+    damage: [f64; 3],
     /// Those of the last step.
     now: Rates,
     /// How load and races turned there; none where the load points nowhere.
@@ -200,6 +209,9 @@ impl Sums {
         let (before, rates) = (self.now, now.rates);
         self.duration += h;
         self.turn += 0.5 * h * (before.speed + rates.speed);
+        for (sum, (before, now)) in self.damage.iter_mut().zip(before.ageing.into_iter().zip(rates.ageing)) {
+            *sum += 0.5 * h * (before + now);
+        }
         for (race, sums) in self.powers.iter_mut().enumerate() {
             for (power, sum) in sums.iter_mut().enumerate() {
                 *sum += 0.5
@@ -225,6 +237,25 @@ impl Sums {
         self.add(Instant { rates: end.now, turning: end.turning }, h);
     }
 
+    /// What was seen since an earlier time of the same run. The largest load is that of the whole run.
+    #[must_use]
+    pub fn since(&self, earlier: &Self) -> Self {
+        let mut since = *self;
+        since.duration -= earlier.duration;
+        since.turn -= earlier.turn;
+        for (of_race, before) in since.powers.iter_mut().zip(&earlier.powers) {
+            of_race.iter_mut().zip(before).for_each(|(sum, before)| *sum -= before);
+        }
+        since.turns.iter_mut().zip(&earlier.turns).for_each(|(sum, before)| *sum -= before);
+        since.damage.iter_mut().zip(&earlier.damage).for_each(|(sum, before)| *sum -= before);
+        since
+    }
+
+    /// [rad/s] mean speed of the races against each other; none of no time.
+    pub fn speed(&self) -> Option<f64> {
+        (self.duration > 0.0).then(|| self.turn / self.duration)
+    }
+
     /// Means over the revolutions; of a bearing that has not turned, what holds now.
     fn means(&self) -> Rates {
         if self.turn > 0.0 {
@@ -232,7 +263,13 @@ impl Sums {
             let [load, races] = self.turns;
             let told = self.turn >= TOLD && races > 0.0;
             let with_inner = if told { Some(load / races) } else { self.now.with_inner };
-            Rates { speed: self.turn / self.duration, powers, with_inner, largest: self.largest }
+            Rates {
+                speed: self.turn / self.duration,
+                powers,
+                with_inner,
+                largest: self.largest,
+                ageing: self.now.ageing,
+            }
         } else {
             Rates { largest: self.largest, ..self.now }
         }
@@ -325,23 +362,30 @@ impl Rating {
         rates.with_inner = turning
             .filter(|_| relative != 0.0)
             .map(|turning| (turning.load_speed - turning.spins[1]) / relative);
+        rates.ageing = LoadRests::ALL.map(|on| rates.speed / (TAU * 1e6 * self.reference(&rates, on)));
         Instant { rates, turning }
+    }
+
+    /// [million revolutions] reference life while the load stands still on a race.
+    fn reference(&self, rates: &Rates, load_rests_on: LoadRests) -> f64 {
+        let loads = [0, 1].map(|race| {
+            let power = usize::from(load_rests_on.is_on(race));
+            rates.powers[race][power].powf(1.0 / EXPONENTS[power])
+        });
+        standard::reference_life(self.ball_ratings, loads).min(LONGEST)
     }
 
     /// Life under what a run has seen.
     pub fn after(&self, sums: &Sums) -> LifeOutput {
-        self.life(&sums.means())
+        let life = self.life(&sums.means());
+        LifeOutput { damage: sums.damage[life.load_rests_on as usize], ..life }
     }
 
     /// Life under loads that stay.
     pub fn life(&self, rates: &Rates) -> LifeOutput {
         let found = rates.with_inner.map(LoadRests::of_share);
         let load_rests_on = self.load_rests_on.or(found).unwrap_or_default();
-        let loads = [0, 1].map(|race| {
-            let power = usize::from(load_rests_on.is_on(race));
-            rates.powers[race][power].powf(1.0 / EXPONENTS[power])
-        });
-        let reference = standard::reference_life(self.ball_ratings, loads).min(LONGEST);
+        let reference = self.reference(rates, load_rests_on);
         let equivalent_load = self.dynamic_load_rating / reference.cbrt();
         let modified = self.lubrication.map(|(viscosity, contamination)| {
             let ratio = viscosity / standard::reference_viscosity(rates.speed, self.pitch_diameter);
@@ -351,7 +395,15 @@ impl Rating {
         });
         let static_safety = (self.static_ball_load / rates.largest).min(SAFEST);
         let contradiction = found.filter(|found| *found != load_rests_on);
-        LifeOutput { reference, modified, equivalent_load, static_safety, load_rests_on, contradiction }
+        LifeOutput {
+            reference,
+            modified,
+            equivalent_load,
+            static_safety,
+            damage: 0.0,
+            load_rests_on,
+            contradiction,
+        }
     }
 }
 
@@ -435,7 +487,13 @@ impl Effect for Settings {
             return vec![];
         };
         let mut rows: Vec<(&str, Unit, f64, &str, FromLife)> = vec![
-            ("life.L10r", ONE, 1e3, "reference rating life in million revolutions", |life| life.reference),
+            (
+                "life.L10r",
+                ONE,
+                1e3,
+                "reference rating life in million revolutions, under all loads since the start",
+                |life| life.reference,
+            ),
             ("life.equivalent_load", NEWTON, 1e3, "dynamic equivalent reference load", |life| {
                 life.equivalent_load
             }),
@@ -445,6 +503,14 @@ impl Effect for Settings {
                 1.0,
                 "load of a ball that leaves a mark over the largest load on the inner race",
                 |life| life.static_safety,
+            ),
+            (
+                "life.damage",
+                ONE,
+                1e-9,
+                "part of the reference rating life that was used up since the start; the time between two values over their difference is \
+                 the life under the loads of that time",
+                |life| life.damage,
             ),
         ];
         if section.viscosity.is_some() {

@@ -103,6 +103,24 @@ impl Schedule {
         knots.into_iter()
     }
 
+    /// Does it come to other values within a span \[s] of time? A swing about one value does not.
+    pub fn changes_within(&self, from: f64, to: f64) -> bool {
+        match self {
+            Self::Constant(_) => false,
+            Self::Sine(sine) => sine.begin.is_some_and(|begin| begin > from && begin < to),
+            Self::Table(_) => {
+                let places = [from, to].into_iter().chain(self.knots(from, to));
+                let values: Vec<f64> = places.map(|time| self.at(time)).collect();
+                let (low, high) =
+                    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                        (low.min(*value), high.max(*value))
+                    });
+                high - low > 1e-9 * high.abs().max(low.abs())
+            }
+            Self::Sum(parts) => parts.iter().any(|part| part.changes_within(from, to)),
+        }
+    }
+
     /// \[s] shortest period in which it swings at a time \[s]; none where it does not.
     pub fn shortest_period(&self, time: f64) -> Option<f64> {
         let of = |part: &Self| match part {

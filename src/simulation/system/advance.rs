@@ -18,17 +18,32 @@ use crate::model::structure::{Carrier, Spin, StructureState, Turning};
 use crate::numerics::tilt;
 use crate::scene::Groups;
 
+/// What sees a system where a step has ended.
+type Observe<'a> = &'a mut dyn FnMut(&System);
+
 impl System {
     /// Runs its own steps to exactly `end` \[s] by the scripts of all bearings and the shaft.
     ///
     /// # Errors
     /// See [`SystemError`]; the state is then that of the last converged step, at [`System::time`].
     pub fn advance(&mut self, end: f64) -> Result<(), SystemError> {
+        self.advance_by_script(end, None)
+    }
+
+    /// The same; also lets somebody see every step where it has ended, which makes no difference to the motion.
+    ///
+    /// # Errors
+    /// As [`System::advance`].
+    pub fn advance_observed(&mut self, end: f64, observe: &mut dyn FnMut(&Self)) -> Result<(), SystemError> {
+        self.advance_by_script(end, Some(observe))
+    }
+
+    fn advance_by_script(&mut self, end: f64, observe: Option<Observe<'_>>) -> Result<(), SystemError> {
         self.inputs = ShaftInputs::scripted(&self.scene, self.time);
         self.bearings
             .iter_mut()
             .for_each(|bearing| bearing.inputs = bearing.scripted_inputs(bearing.state.time));
-        let result = self.advance_with(end, &Played::all(&self.scene));
+        let result = self.advance_shown(end, &[], &Played::all(&self.scene), observe).map(drop);
         self.bearings
             .iter_mut()
             .for_each(|bearing| bearing.inputs = bearing.scripted_inputs(bearing.state.time));
@@ -56,6 +71,16 @@ impl System {
         inputs: &[(ShaftInputs, Vec<Inputs>)],
         played: &Played,
     ) -> Result<Vec<Self>, SystemError> {
+        self.advance_shown(end, inputs, played, None)
+    }
+
+    fn advance_shown(
+        &mut self,
+        end: f64,
+        inputs: &[(ShaftInputs, Vec<Inputs>)],
+        played: &Played,
+        observe: Option<Observe<'_>>,
+    ) -> Result<Vec<Self>, SystemError> {
         let begin = self.time;
         if !(end > begin && end.is_finite()) {
             return Err(SystemError::Backwards { from: begin, to: end });
@@ -68,7 +93,7 @@ impl System {
         let perturbed: Option<Vec<Self>> = inputs.iter().map(beside).collect();
         let mut perturbed = perturbed.ok_or(SystemError::OtherInputs)?;
         let scripts = self.begin(end, played);
-        let result = self.follow(&scripts, played, end, &mut perturbed);
+        let result = self.follow((&scripts, played), end, &mut perturbed, observe);
         self.finish(&scripts, played, result.is_ok());
         perturbed.iter_mut().for_each(|system| system.finish(&scripts, played, false));
         result?;
@@ -128,10 +153,10 @@ impl System {
 
     fn follow(
         &mut self,
-        scripts: &[Script],
-        played: &Played,
+        (scripts, played): (&[Script], &Played),
         end: f64,
         perturbed: &mut [Self],
+        mut observe: Option<Observe<'_>>,
     ) -> Result<(), SystemError> {
         let least = self.scene.solver().min_step.0;
         let of_bearings = scripts
@@ -149,15 +174,28 @@ impl System {
             }
             apart
         });
-        knots.into_iter().chain([end]).try_for_each(|stop| self.step_to(scripts, played, stop, perturbed))
+        let mut stops = knots.into_iter().chain([end]);
+        stops.try_for_each(|stop| self.step_to((scripts, played), stop, perturbed, &mut observe))
+    }
+
+    /// Shows where a step has ended, and leaves all that the next one begins with as it is.
+    fn show(&mut self, scripts: &[Script], observe: &mut dyn FnMut(&Self)) {
+        let inputs: Vec<Inputs> = self.bearings.iter().map(|bearing| bearing.inputs).collect();
+        for (bearing, script) in self.bearings.iter_mut().zip(scripts) {
+            script.set_inputs(&bearing.scene, &bearing.paths, bearing.state.time, &mut bearing.inputs);
+            bearing.reach(true);
+        }
+        self.report();
+        observe(self);
+        self.bearings.iter_mut().zip(inputs).for_each(|(bearing, inputs)| bearing.inputs = inputs);
     }
 
     fn step_to(
         &mut self,
-        scripts: &[Script],
-        played: &Played,
+        (scripts, played): (&[Script], &Played),
         end: f64,
         perturbed: &mut [Self],
+        observe: &mut Option<Observe<'_>>,
     ) -> Result<(), SystemError> {
         // The perturbed steps leave the running system as it is.
         let mut aside = vec![];
@@ -206,6 +244,9 @@ impl System {
                     self.states = ends;
                     self.time = next;
                     self.check_step(&boundaries)?;
+                    if let Some(observe) = observe {
+                        self.show(scripts, observe);
+                    }
                 }
                 Err((index, failure)) => {
                     if !self.control.above_minimum() {

@@ -4,13 +4,14 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector6;
 
-use super::inputs::Given;
+use super::inputs::{Given, Played, ShaftInputs, ShaftPaths};
 use super::{first_stations, housing_stations};
 use crate::dynamics::system::StructureLoad;
 use crate::loads::{Mesh, unbalance as unbalance_of};
 use crate::model::state::stack;
 use crate::model::structure::{Carrier, Spin, StructureState, Turning};
 use crate::numerics::motion::Wrench;
+use crate::scene::system::SystemScene;
 use crate::scene::{GearSection, Schedule};
 
 /// Loads of the shaft and the housings at a time \[s]. Where the shaft's turn is a coordinate, the direction of unbalance follows it
@@ -94,6 +95,14 @@ fn schedules<'a>(given: &Given<'a>) -> Vec<&'a Schedule> {
     let drive = [&shaft.speed, &shaft.torque].into_iter().flatten().filter(|_| given.plays_drive());
     let gears = shaft.gear.iter().enumerate().filter(|(index, _)| given.plays_gear(*index));
     components.chain(drive).chain(gears.map(|(_, gear)| &gear.torque)).collect()
+}
+
+/// Does a load or the drive of a scene come to other values within a span \[s] of time?
+pub fn script_changes_within(scene: &SystemScene, from: f64, to: f64) -> bool {
+    let inputs = ShaftInputs::scripted(scene, from);
+    let (paths, played) = (ShaftPaths::steady(&inputs, from, 0.0), Played::all(scene));
+    let given = Given { scene, paths: &paths, played: &played };
+    schedules(&given).into_iter().any(|schedule| schedule.changes_within(from, to))
 }
 
 /// \[s] times at which a table of a load or of the drive bends, of those that are played.

@@ -29,6 +29,7 @@ pub use equilibrium::{BearingEquilibrium, MachineEquilibrium};
 use inputs::ShaftPaths;
 pub use inputs::{Played, ShaftInputs, drive_is_scripted};
 pub use linear::{Linear, ShaftMode, Whirl};
+pub use loads::script_changes_within;
 pub use outputs::{HousingOutputs, PointOutput, SystemOutputs};
 pub use snapshot::SystemSnapshot;
 

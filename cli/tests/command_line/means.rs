@@ -1,0 +1,118 @@
+//! Means of a run: over time and not over rows, the life over their window, and when they have settled.
+
+use super::sweep::{columns, good, numbers};
+use super::*;
+
+/// Runs a text into a directory; what it prints, and its means by name.
+fn run(scratch: &Scratch, text: &str, to: &str) -> (String, impl Fn(&str) -> f64 + use<>) {
+    let file = scratch.path(&format!("{to}.toml"));
+    std::fs::write(&file, text).unwrap();
+    let said = good(&roulement(&["run", &file, "-o", &scratch.path(to)]));
+    let means = columns(&scratch.read(&format!("{to}/means.csv")));
+    let of = move |name: &str| {
+        let at = means["quantity"].iter().position(|other| other == name).unwrap_or_else(|| panic!("{name}"));
+        means["mean"][at].parse::<f64>().unwrap()
+    };
+    (said, of)
+}
+
+#[test]
+fn regression_a_mean_is_over_time_and_no_matter_of_rows() {
+    let scratch = Scratch::new("mean-of-rows");
+    let text = include_str!("../../../tests/data/means/spall.toml");
+    for interval in ["0.1 ms", "37 us", "1 ms"] {
+        let (_, mean) = run(&scratch, &text.replace("\"0.1 ms\"", &format!("\"{interval}\"")), "out");
+        let torque = mean("friction torque");
+        // By rows of 0.1 ms it was 0.01254.
+        assert!((torque / 0.01404 - 1.0).abs() < 0.02, "rows of {interval}: {torque}");
+    }
+}
+
+/// A bearing whose load comes down to what it stays at.
+fn unloaded(force: &str, duration: &str) -> String {
+    let scene = edited(
+        "thrust",
+        &[
+            ("load.x.force", force),
+            ("load.duration", duration),
+            ("rating", "{ viscosity = 1e-5, contamination = 0.5 }"),
+        ],
+    );
+    scene.source
+}
+
+#[test]
+fn invariant_a_life_is_of_the_window_of_the_means() {
+    let scratch = Scratch::new("life-of-window");
+    let (_, steady) = run(&scratch, &unloaded("1500", "\"20 ms\""), "steady");
+    let (said, after) =
+        run(&scratch, &unloaded("[[0, 6000], [\"4 ms\", 6000], [\"5 ms\", 1500]]", "\"20 ms\""), "after");
+    // The modified life falls with a high power of the load.
+    let allowed = [
+        ("life L10r", 0.01),
+        ("life L10r in hours", 0.01),
+        ("modified life", 0.03),
+        ("equivalent load", 0.003),
+    ];
+    for (name, allowed) in allowed {
+        let (steady, after) = (steady(name), after(name));
+        assert!((after / steady - 1.0).abs() < allowed, "{name}: {after}, steady {steady}");
+    }
+    assert!(said.contains("life             L10r ") && said.contains(" h)"), "{said}");
+    // What counts from the start is far shorter, and its damage gives the life of a phase by difference.
+    let table = columns(&scratch.read("after/results.csv"));
+    let life = *numbers(&table["life.L10r [1]"]).last().unwrap();
+    assert!(life < 0.5 * steady("life L10r"), "{life}");
+    let (time, damage) = (numbers(&table["time [s]"]), numbers(&table["life.damage [1]"]));
+    let half = time.iter().position(|time| *time > 0.01).unwrap();
+    let last = time.len() - 1;
+    let hours = (time[last] - time[half]) / (damage[last] - damage[half]) / 3600.0;
+    assert!((hours / steady("life L10r in hours") - 1.0).abs() < 0.01, "{hours}");
+    let json: Value = serde_json::from_str(&good(&roulement(&[
+        "run",
+        &scratch.path("after.toml"),
+        "-o",
+        &scratch.path("json"),
+        "--json",
+    ])))
+    .unwrap();
+    assert_eq!(
+        json["life"]["L10r_hours"].as_f64().map(f64::round),
+        Some(after("life L10r in hours").round())
+    );
+}
+
+#[test]
+fn regression_means_over_a_change_of_the_script_have_not_settled() {
+    let scratch = Scratch::new("settled-script");
+    let inside = unloaded("[[0, 2000], [\"14 ms\", 2000], [\"15 ms\", 1500]]", "\"20 ms\"");
+    let (said, _) = run(&scratch, &inside, "inside");
+    assert!(said.contains("NOT SETTLED      the script changes between 10.000 and 20.000 ms"), "{said}");
+    let json: Value = serde_json::from_str(&scratch.read("inside/run.json")).unwrap();
+    assert_eq!(json["summary"]["means"]["settled"], false);
+    // A table that holds its value there changes nothing.
+    let before = unloaded("[[0, 2000], [\"4 ms\", 2000], [\"5 ms\", 1500], [\"15 ms\", 1500]]", "\"20 ms\"");
+    let (said, _) = run(&scratch, &before, "before");
+    assert!(!said.contains("the script changes"), "{said}");
+}
+
+#[test]
+fn every_effect_that_is_on_has_a_line_in_the_summary() {
+    let scratch = Scratch::new("headlines");
+    for (name, lines) in [
+        (
+            "effects/loss_of_lubrication",
+            &["film.ratio", "rolling_power.inner", "temperature_rise.inner", "heat.out"][..],
+        ),
+        ("effects/growth", &["clearance"]),
+        ("effects/stiffness", &["stiffness.x.x"]),
+        ("effects/rating", &["life "]),
+    ] {
+        let Ok(text) = std::fs::read_to_string(scene(name)) else { panic!("{name}") };
+        let scene = roulement::Scene::edited(&text, [("load.duration", "\"2 ms\"")]).unwrap();
+        let said = good(&scratch.run(&scene, "out", &[]));
+        for line in lines {
+            assert!(said.lines().any(|other| other.starts_with(line)), "{name}: {said}");
+        }
+    }
+}
