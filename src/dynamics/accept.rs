@@ -191,15 +191,25 @@ pub fn accept(
     state.energies = end.energies;
     state.powers = end.powers;
     let solved = Solved { workspace, guide: model.cage_guide() };
+    grow(model, state, boundary, |ball, race| workspace.touch(ball, race));
+    record(model, state, &solved, &boundary.conditions, Some(step.h));
+    state.force_tolerance = force_tolerance(&solved, state.balls.len(), reach(model, state), error);
+}
+
+/// Goes on to what rings and balls have grown by at the end of a step, whose work is put in.
+pub(super) fn grow(
+    model: &Model,
+    state: &mut State,
+    boundary: &Boundary,
+    touch: impl Fn(usize, Race) -> Touch,
+) {
     if let Some(growth) = &model.growth {
-        let grown = grown(|ball, race| workspace.touch(ball, race), state, boundary);
+        let grown = grown(touch, state, boundary);
         let work = state.grown.map_or(0.0, |before| growth.work(&before, &grown));
         state.energies.put_in(work);
         state.energies.unaccounted += work;
         state.grown = Some(grown);
     }
-    record(model, state, &solved, &boundary.conditions, Some(step.h));
-    state.force_tolerance = force_tolerance(&solved, state.balls.len(), reach(model, state), error);
 }
 
 /// What rings and balls have grown by, and what these contacts set against it.
@@ -313,6 +323,16 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     renew_polynomials(model, state, boundary);
     state.trend = Trend::default();
     let contacts = Contacts::new(model, state, &boundary.conditions);
+    take_forces(model, state, boundary, &contacts);
+    state.energies.stored = stored_energy(model, state, &contacts);
+    let touch = |ball: usize, race: Race| contacts.balls[ball].raceways[race].touch();
+    state.grown = model.growth.as_ref().map(|_| grown(touch, state, boundary));
+    record(model, state, &contacts, &boundary.conditions, None);
+    state.force_tolerance = force_tolerance(&contacts, state.balls.len(), reach(model, state), 0.0);
+}
+
+/// Forces of these contacts at the motion that a state has, the accelerations and multipliers that they ask for, and their powers.
+pub(super) fn take_forces(model: &Model, state: &mut State, boundary: &Boundary, contacts: &Contacts) {
     let ball_model = &model.bearing.ball;
     let ambient = model.ambient(&boundary.frame);
     for (index, ball) in state.balls.iter_mut().enumerate() {
@@ -323,7 +343,7 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
         ball.acceleration = ball.total.force / ball_model.mass;
         ball.angular_acceleration = ball.total.moment / ball_model.inertia;
     }
-    let totals = Totals::of(&contacts, state.balls.len());
+    let totals = Totals::of(contacts, state.balls.len());
     let mut powers = Powers {
         input: power_into_balls(&ambient, state.balls.iter().map(BallState::motion)),
         friction: totals.friction_power,
@@ -342,9 +362,4 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     }
     state.supports = supports_of(model, |race| Some(state.race(race)), boundary, &mut powers);
     state.powers = powers;
-    state.energies.stored = stored_energy(model, state, &contacts);
-    let touch = |ball: usize, race: Race| contacts.balls[ball].raceways[race].touch();
-    state.grown = model.growth.as_ref().map(|_| grown(touch, state, boundary));
-    record(model, state, &contacts, &boundary.conditions, None);
-    state.force_tolerance = force_tolerance(&contacts, state.balls.len(), reach(model, state), 0.0);
 }

@@ -71,6 +71,11 @@ impl Sums {
         (self.marked, self.at) = (self.energies, time);
     }
 
+    /// The same from where others were at a time \[s] before this.
+    pub fn mark_as(&mut self, then: &Self, time: f64) {
+        (self.marked, self.at) = (then.energies, time);
+    }
+
     /// \[W] mean powers since the last communication point, at a time \[s]; powers of this moment where that is now. `guide` is
     /// the race that guides the cage: 0 the inner, 1 the outer one.
     pub fn output(&self, time: f64, guide: Option<usize>) -> HeatOutput {

@@ -2,6 +2,7 @@
 
 pub mod arrowhead;
 pub mod elliptic;
+pub mod hermite;
 pub mod hht;
 pub mod kept_lu;
 pub mod lanes;

@@ -63,6 +63,11 @@ impl StepControl {
         if steps <= EVEN_STEPS { remaining / steps } else { self.step() }
     }
 
+    /// \[s] the next step is shorter than this.
+    pub fn longest(&self) -> f64 {
+        self.step() * (1.0 + 1e-6)
+    }
+
     /// After a converged step with this local error in units of its tolerance: is it accepted? Sets the next step.
     pub fn judge(&mut self, error: f64) -> bool {
         // An error of exactly zero must not ask for an infinite step.

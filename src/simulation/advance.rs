@@ -7,7 +7,7 @@ use super::input_paths::InputPaths;
 use super::inputs::Inputs;
 use super::outputs::Outputs;
 use super::script::{Script, script_motion};
-use super::{Observe, Simulation, conditions, step_limits};
+use super::{Simulation, conditions, step_limits};
 use crate::dynamics::{Boundary, StepFailure, Workspace, advance_perturbed, failure_site, try_step};
 use crate::effects::film::Films;
 use crate::model::bodies::Race;
@@ -15,7 +15,7 @@ use crate::model::state::State;
 use crate::scene::{Drive, Groups, Level};
 
 /// A simulation beside the running one, under slightly different inputs.
-struct Perturbed {
+pub(super) struct Perturbed {
     state: State,
     paths: InputPaths,
     inputs: Inputs,
@@ -51,17 +51,6 @@ impl Simulation {
         inputs: &[Inputs],
         scripted: Groups,
     ) -> Result<Vec<Outputs>, SimulationError> {
-        self.advance_observed(end, inputs, scripted, None)
-    }
-
-    /// The same while somebody sees every step.
-    pub(super) fn advance_observed(
-        &mut self,
-        end: f64,
-        inputs: &[Inputs],
-        scripted: Groups,
-        observe: Option<Observe<'_>>,
-    ) -> Result<Vec<Outputs>, SimulationError> {
         let begin = self.state.time;
         if !(end > begin && end.is_finite()) {
             return Err(SimulationError::Backwards { from: begin, to: end });
@@ -80,7 +69,7 @@ impl Simulation {
             })
             .collect();
         self.paths = self.paths.towards(&self.inputs, begin, end - begin);
-        let result = self.follow(&script, end, &mut perturbed, observe);
+        let result = self.follow(&script, end, &mut perturbed);
         self.end_script(&script, result.is_ok());
         result.and_then(|()| self.check_contacts())?;
         let outputs = |p: &Perturbed| {
@@ -148,33 +137,34 @@ impl Simulation {
         script: &Script,
         end: f64,
         perturbed: &mut [Perturbed],
-        mut observe: Option<Observe<'_>>,
     ) -> Result<(), SimulationError> {
+        // The perturbed steps leave the running simulation as it is.
+        let mut aside = Workspace::default();
+        for stop in self.stops(script, end) {
+            while self.state.time < stop {
+                self.step_towards(script, stop, perturbed, &mut aside)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// \[s] times at which a step ends on the way to `end`: knots of the script, and the end.
+    pub(super) fn stops(&self, script: &Script, end: f64) -> Vec<f64> {
         let least = self.model.solver.min_step.0;
-        let knots = script.knots(&self.scene, self.state.time, end, least);
-        let mut stops = knots.into_iter().chain([end]);
-        stops.try_for_each(|stop| self.step_to(script, stop, perturbed, &mut observe))
+        let mut stops = script.knots(&self.scene, self.state.time, end, least);
+        stops.push(end);
+        stops
     }
 
-    /// Shows where a step has ended, and leaves all that the next one begins with as it is.
-    fn show(&mut self, script: &Script, observe: &mut dyn FnMut(&Self)) {
-        let inputs = self.inputs;
-        script.set_inputs(&self.scene, &self.paths, self.state.time, &mut self.inputs);
-        self.reach(true);
-        observe(self);
-        self.inputs = inputs;
-    }
-
-    fn step_to(
+    /// Takes one step towards a time \[s], not beyond it.
+    pub(super) fn step_towards(
         &mut self,
         script: &Script,
         end: f64,
         perturbed: &mut [Perturbed],
-        observe: &mut Option<Observe<'_>>,
+        aside: &mut Workspace,
     ) -> Result<(), SimulationError> {
-        // The perturbed steps leave the running simulation as it is.
-        let mut aside = Workspace::default();
-        while self.state.time < end {
+        loop {
             let remaining = end - self.state.time;
             let period = script.shortest_period(&self.scene, self.state.time);
             if let Some(limit) = step_limits::largest_step(&self.model, &self.state, period) {
@@ -206,22 +196,11 @@ impl Simulation {
                             (&mut p.state, boundary)
                         });
                         let accepted = &self.workspace;
-                        if !advance_perturbed(
-                            &self.model,
-                            &start,
-                            &boundary,
-                            h,
-                            perturbed,
-                            accepted,
-                            &mut aside,
-                        ) {
+                        if !advance_perturbed(&self.model, &start, &boundary, h, perturbed, accepted, aside) {
                             return Err(SimulationError::Singular(start.time));
                         }
                     }
-                    if let Some(observe) = observe {
-                        self.show(script, observe);
-                    }
-                    continue;
+                    return Ok(());
                 }
                 Err(failure) => failure,
             };
@@ -229,7 +208,6 @@ impl Simulation {
                 return Err(self.too_small(failure, &boundary));
             }
         }
-        Ok(())
     }
 
     /// The step that was tried last failed, and cannot be any smaller.

@@ -2,7 +2,8 @@
 
 use thiserror::Error;
 
-use super::play::{Observer, Scripted};
+use super::course::Course;
+use super::play::Scripted;
 use super::system::{System, SystemError, script_changes_within, shaft_follows_time};
 use super::{Simulation, SimulationError};
 use crate::model::state::Statistics;
@@ -81,20 +82,6 @@ impl Machine {
         each.reduce(join).unwrap_or_default()
     }
 
-    /// Runs its own steps to exactly `end` \[s] by its script; an observer sees every one of them. It makes no difference to the motion.
-    ///
-    /// # Errors
-    /// See [`MachineError`].
-    pub fn advance_observed(&mut self, end: f64, observer: &mut dyn Observer) -> Result<(), MachineError> {
-        match self {
-            Self::Bearing(bearing) => {
-                bearing.advance_scripted_observed(end, &mut |bearing| observer.bearing(bearing))?;
-            }
-            Self::Shaft(system) => system.advance_observed(end, &mut |system| observer.shaft(system))?,
-        }
-        Ok(())
-    }
-
     /// Does its script come to other values within a span \[s] of time?
     pub fn script_changes_within(&self, from: f64, to: f64) -> bool {
         let of_bearings = self.bearings().any(|(_, bearing)| bearing.script_changes_within(from, to));
@@ -125,12 +112,44 @@ impl From<System> for Machine {
 impl Scripted for Machine {
     type Error = MachineError;
 
-    fn advance_scripted(&mut self, end: f64) -> Result<(), MachineError> {
+    fn time(&self) -> f64 {
+        Self::time(self)
+    }
+
+    fn begin(&mut self, end: f64) -> Result<Course, MachineError> {
+        Ok(match self {
+            Self::Bearing(bearing) => bearing.begin(end)?,
+            Self::Shaft(system) => system.begin(end)?,
+        })
+    }
+
+    fn step(&mut self, course: &mut Course, row: f64) -> Result<(), MachineError> {
         match self {
-            Self::Bearing(bearing) => bearing.advance_scripted(end)?,
-            Self::Shaft(system) => system.advance(end)?,
+            Self::Bearing(bearing) => bearing.step(course, row)?,
+            Self::Shaft(system) => system.step(course, row)?,
         }
         Ok(())
+    }
+
+    fn look_back(&mut self, course: &mut Course, time: f64) {
+        match self {
+            Self::Bearing(bearing) => bearing.look_back(course, time),
+            Self::Shaft(system) => system.look_back(course, time),
+        }
+    }
+
+    fn look_up(&mut self, course: &mut Course) {
+        match self {
+            Self::Bearing(bearing) => bearing.look_up(course),
+            Self::Shaft(system) => system.look_up(course),
+        }
+    }
+
+    fn end(&mut self, course: Course, accepted: bool) {
+        match self {
+            Self::Bearing(bearing) => bearing.end(course, accepted),
+            Self::Shaft(system) => system.end(course, accepted),
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod advance;
 mod cage_start;
+pub mod course;
 mod error;
 mod input_paths;
 pub mod inputs;
@@ -273,30 +274,20 @@ impl Simulation {
         script::Script::new(&self.scene, Groups::ALL).changes_within(&self.scene, from, to)
     }
 
-    /// Runs its own steps to exactly `end` \[s] by the scene's script, which every step follows exactly; where it ends
-    /// does not matter to the motion. The inputs are then those of the time reached.
+    /// Runs its own steps to exactly `end` \[s], where the last of them ends, by the scene's script, which every step follows exactly. The
+    /// inputs are then those of the time reached.
     ///
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn advance_scripted(&mut self, end: f64) -> Result<(), SimulationError> {
-        self.advance_by_script(end, None)
-    }
-
-    /// The same; also lets somebody see every step where it has ended, which makes no difference to the motion.
-    ///
-    /// # Errors
-    /// As [`Simulation::advance`].
-    pub fn advance_scripted_observed(
-        &mut self,
-        end: f64,
-        observe: &mut dyn FnMut(&Self),
-    ) -> Result<(), SimulationError> {
-        self.advance_by_script(end, Some(observe))
-    }
-
-    fn advance_by_script(&mut self, end: f64, observe: Option<Observe<'_>>) -> Result<(), SimulationError> {
         self.inputs = self.scripted_inputs(self.state.time);
-        let advanced = self.advance_observed(end, &[], Groups::ALL, observe);
+        let advanced = self.advance_with(end, Groups::ALL);
+        self.take_scripted_inputs();
+        advanced
+    }
+
+    /// Sets the inputs to what the script says now.
+    fn take_scripted_inputs(&mut self) {
         let scripted = self.scripted_inputs(self.state.time);
         let followed = self.inputs;
         self.inputs = scripted;
@@ -306,7 +297,6 @@ impl Simulation {
                 self.inputs[race] = followed[race];
             }
         }
-        advanced.map(drop)
     }
 
     fn boundary(&self, time: f64) -> Boundary {
@@ -321,9 +311,6 @@ impl Simulation {
         conditions(&self.inputs, &self.state)
     }
 }
-
-/// What sees a simulation where a step has ended.
-type Observe<'a> = &'a mut dyn FnMut(&Simulation);
 
 /// Conditions of every contact of a state under these inputs.
 fn conditions(inputs: &Inputs, state: &State) -> Conditions {

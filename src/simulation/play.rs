@@ -2,32 +2,44 @@
 
 use std::ops::ControlFlow;
 
+use super::Simulation;
+use super::course::Course;
 use super::machine::{Machine, MachineError};
 use super::system::System;
-use super::{Simulation, SimulationError};
 use crate::scene::machine::MachineScene;
 
-/// What plays its own script.
+/// What plays its own script step by step, and shows what it does at any time within the last one.
 pub trait Scripted {
     /// Why it could not go on.
     type Error;
 
-    /// Runs its own steps to exactly `end` \[s] by its script.
+    /// \[s] time.
+    fn time(&self) -> f64;
+
+    /// Begins a run to `end` \[s] by its script.
     ///
     /// # Errors
-    /// If a step cannot be finished; it is then where the last one ended.
-    fn advance_scripted(&mut self, end: f64) -> Result<(), Self::Error>;
+    /// If that is no later time.
+    fn begin(&mut self, end: f64) -> Result<Course, Self::Error>;
+
+    /// Takes one step, which ends where the motion wants it, whatever `row` \[s] is: only that time may then be looked back
+    /// to. What goes from equilibrium to equilibrium goes to that row.
+    ///
+    /// # Errors
+    /// If the step cannot be finished; it is then where the last one ended.
+    fn step(&mut self, course: &mut Course, row: f64) -> Result<(), Self::Error>;
+
+    /// Shows what it did at a time \[s] within the last step, until it looks up.
+    fn look_back(&mut self, course: &mut Course, time: f64);
+
+    /// Is where the last step ended again. What is reported since the last row begins anew at the time that was looked at.
+    fn look_up(&mut self, course: &mut Course);
+
+    /// Ends a run; `accepted` where its last step was.
+    fn end(&mut self, course: Course, accepted: bool);
 }
 
-impl Scripted for Simulation {
-    type Error = SimulationError;
-
-    fn advance_scripted(&mut self, end: f64) -> Result<(), SimulationError> {
-        Self::advance_scripted(self, end)
-    }
-}
-
-/// What sees every step of a run, not its rows alone.
+/// What sees the start of a run and every step, not its rows alone.
 pub trait Observer {
     /// A bearing alone, where a step has ended.
     fn bearing(&mut self, bearing: &Simulation);
@@ -82,19 +94,100 @@ impl Rows {
     }
 }
 
-/// Plays the scene's own script, exactly in every step: the distance of rows has no part in the motion.
+/// What is seen of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Seen {
+    /// The start, or where a step has ended.
+    Step,
+    /// A row.
+    Row,
+}
+
+/// Plays the scene's own script, exactly in every step: where rows are has no part in the motion. `row` sees it at every row, that of the start
+/// included, and may end the play.
 ///
 /// # Errors
-/// See [`play_with`].
+/// If a step cannot be finished; `row` has then seen where it came to.
 pub fn play<S: Scripted, B>(
     machine: &mut S,
     rows: Rows,
-    row: impl FnMut(&S) -> ControlFlow<B>,
+    mut row: impl FnMut(&S) -> ControlFlow<B>,
 ) -> Result<ControlFlow<B>, S::Error> {
-    play_with(machine, rows, S::advance_scripted, row)
+    play_seen(machine, rows, |machine, seen| match seen {
+        Seen::Row => row(machine),
+        Seen::Step => ControlFlow::Continue(()),
+    })
 }
 
-/// Plays a machine: `advance` takes it to the time \[s] of the next row, `row` sees it at every row, that of the start included, and
+/// The same while an observer sees the start and every step.
+///
+/// # Errors
+/// As [`play`].
+pub fn play_observed<W: Observer, B>(
+    machine: &mut Machine,
+    rows: Rows,
+    observer: &mut W,
+    mut row: impl FnMut(&Machine, &mut W) -> ControlFlow<B>,
+) -> Result<ControlFlow<B>, MachineError> {
+    play_seen(machine, rows, |machine, seen| match (seen, machine) {
+        (Seen::Row, machine) => row(machine, observer),
+        (Seen::Step, Machine::Bearing(bearing)) => {
+            observer.bearing(bearing);
+            ControlFlow::Continue(())
+        }
+        (Seen::Step, Machine::Shaft(system)) => {
+            observer.shaft(system);
+            ControlFlow::Continue(())
+        }
+    })
+}
+
+/// Rows within a step come before its end, in the order of time.
+fn play_seen<S: Scripted, B>(
+    machine: &mut S,
+    rows: Rows,
+    mut see: impl FnMut(&S, Seen) -> ControlFlow<B>,
+) -> Result<ControlFlow<B>, S::Error> {
+    let mut flow = see(machine, Seen::Step);
+    if flow.is_continue() {
+        flow = see(machine, Seen::Row);
+    }
+    let mut course = machine.begin(rows.duration)?;
+    let mut times = rows.times().peekable();
+    let mut shown = machine.time();
+    while flow.is_continue()
+        && let Some(&next) = times.peek()
+    {
+        if let Err(why) = machine.step(&mut course, next) {
+            if machine.time() > shown {
+                let _ = see(machine, Seen::Row);
+            }
+            machine.end(course, false);
+            return Err(why);
+        }
+        let end = machine.time();
+        while flow.is_continue()
+            && let Some(row) = times.next_if(|row| *row < end)
+        {
+            machine.look_back(&mut course, row);
+            flow = see(machine, Seen::Row);
+            machine.look_up(&mut course);
+            shown = row;
+        }
+        if flow.is_continue() {
+            flow = see(machine, Seen::Step);
+        }
+        if flow.is_continue() && times.next_if(|row| *row == end).is_some() {
+            flow = see(machine, Seen::Row);
+            machine.look_up(&mut course);
+            shown = end;
+        }
+    }
+    machine.end(course, true);
+    Ok(flow)
+}
+
+/// Plays a machine from row to row, as an importer does from one communication point to the next: `advance` takes it to the time \[s] of the next row, `row` sees it at every row, that of the start included, and
 /// may end the play.
 ///
 /// # Errors
@@ -112,28 +205,6 @@ pub fn play_with<S, E, B>(
         }
         let advanced = advance(machine, end);
         flow = row(machine);
-        advanced?;
-    }
-    Ok(flow)
-}
-
-/// Plays the scene's own script while an observer sees every step, and `row` sees it at every row.
-///
-/// # Errors
-/// See [`play_with`].
-pub fn play_observed<W: Observer, B>(
-    machine: &mut Machine,
-    rows: Rows,
-    observer: &mut W,
-    mut row: impl FnMut(&Machine, &mut W) -> ControlFlow<B>,
-) -> Result<ControlFlow<B>, MachineError> {
-    let mut flow = row(machine, observer);
-    for end in rows.times() {
-        if flow.is_break() {
-            break;
-        }
-        let advanced = machine.advance_observed(end, observer);
-        flow = row(machine, observer);
         advanced?;
     }
     Ok(flow)

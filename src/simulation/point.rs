@@ -1,5 +1,6 @@
 //! Outputs of the last communication point: computed when they are first asked for, once.
 
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use super::instant::Instant;
@@ -9,13 +10,24 @@ use crate::forces::Contacts;
 use crate::model::Conditions;
 use crate::model::bodies::Race;
 
+/// What is known of contacts.
+#[derive(Clone, Debug)]
+enum Known {
+    /// Nothing: they have to be evaluated.
+    Nothing,
+    /// The workspace has those of the step that led here.
+    OfStep,
+    /// All of it.
+    All(Box<Contacts>),
+}
+
 /// What the outputs of a communication point depend on, beside model and state.
 #[derive(Clone, Debug)]
 pub(super) struct Point {
     /// Conditions there: inputs that are set later are those of the next step.
     conditions: Conditions,
-    /// Has a step led here whose contacts the workspace has?
-    stepped: bool,
+    /// What is known of its contacts.
+    contacts: Known,
     /// The outputs, once they were asked for.
     outputs: OnceLock<Outputs>,
 }
@@ -23,21 +35,25 @@ pub(super) struct Point {
 impl Point {
     /// A point under these conditions.
     pub fn new(conditions: Conditions, stepped: bool) -> Self {
-        Self { conditions, stepped, outputs: OnceLock::new() }
+        let contacts = if stepped { Known::OfStep } else { Known::Nothing };
+        Self { conditions, contacts, outputs: OnceLock::new() }
+    }
+
+    /// A point whose contacts were evaluated.
+    pub fn of_contacts(conditions: Conditions, contacts: Contacts) -> Self {
+        Self { conditions, contacts: Known::All(Box::new(contacts)), outputs: OnceLock::new() }
     }
 
     /// What the bearing does there.
     pub fn instant(&self, simulation: &Simulation) -> Instant {
-        let (model, state) = (&simulation.model, &simulation.state);
-        match (self.outputs.get(), self.stepped) {
-            (Some(outputs), _) => outputs.into(),
-            (None, true) => {
-                Instant::of(model, state, &simulation.workspace.contacts(model), &self.conditions)
-            }
-            (None, false) => {
-                let contacts = Contacts::new(model, state, &self.conditions);
-                Instant::of(model, state, &contacts, &self.conditions)
-            }
+        match self.outputs.get() {
+            Some(outputs) => outputs.into(),
+            None => Instant::of(
+                &simulation.model,
+                &simulation.state,
+                &simulation.contacts_of(self),
+                &self.conditions,
+            ),
         }
     }
 }
@@ -45,14 +61,18 @@ impl Point {
 impl Simulation {
     /// Outputs of the last communication point.
     pub fn outputs(&self) -> &Outputs {
-        let Point { conditions, stepped, outputs } = &self.point;
-        outputs.get_or_init(|| {
-            let (model, state) = (&self.model, &self.state);
-            match stepped {
-                true => Outputs::of(model, state, &self.workspace.contacts(model), conditions),
-                false => Outputs::new(model, state, conditions),
-            }
-        })
+        let Point { conditions, outputs, .. } = &self.point;
+        outputs
+            .get_or_init(|| Outputs::of(&self.model, &self.state, &self.contacts_of(&self.point), conditions))
+    }
+
+    /// All contacts of a communication point that this is at.
+    pub(super) fn contacts_of<'a>(&'a self, point: &'a Point) -> Cow<'a, Contacts> {
+        match &point.contacts {
+            Known::All(contacts) => Cow::Borrowed(contacts),
+            Known::OfStep => Cow::Owned(self.workspace.contacts(&self.model)),
+            Known::Nothing => Cow::Owned(Contacts::new(&self.model, &self.state, &point.conditions)),
+        }
     }
 
     /// A race at the last communication point. It takes no contacts, as other outputs do.

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod closed_forms;
+mod dense;
 #[path = "../common/evidence.rs"]
 mod evidence;
 mod hinge;

@@ -12,7 +12,7 @@ use roulement::model::bodies::Race;
 use roulement::scene::machine::MachineScene;
 use roulement::scene::units::{Quantity, Time};
 use roulement::simulation::machine::Machine;
-use roulement::simulation::play::{Rows, Scripted};
+use roulement::simulation::play::Scripted;
 
 use super::run::{INTERRUPTED, heeded_interrupt};
 use super::{load, tell};
@@ -96,17 +96,19 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
                   slip.y [m/s],sticks [1]";
     table.write_record(header.split(',')).map_err(cannot_write)?;
     let interrupted = heeded_interrupt()?;
-    let interval = scene.output_interval();
+    // The steps are those of a whole run.
+    let end = times.iter().copied().fold(scene.duration(), f64::max);
+    let mut course = machine.begin(end)?;
     for time in times {
-        let now = machine.time();
-        for row in (Rows { interval, duration: time }).times().filter(|row| *row > now) {
+        while machine.time() < time {
             if interrupted.load(Ordering::Relaxed) {
                 table.flush().map_err(|why| cannot_write(why.into()))?;
                 tell([format!("interrupted at {:.3} ms", machine.time() * 1e3)]);
                 return Ok(ExitCode::from(INTERRUPTED));
             }
-            machine.advance_scripted(row)?;
+            machine.step(&mut course, time)?;
         }
+        machine.look_back(&mut course, time);
         let Some((_, simulation)) = machine.bearings().nth(index) else { continue };
         for Contact { ball, race } in &options.contacts {
             let (model, state, conditions) =
@@ -121,6 +123,7 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
             let [a, b] = field.semi_axes.map(|axis| axis * 1e6);
             tell([format!("{what}: {:.1} % sticks, ellipse {a:.1} x {b:.1} um", 100.0 * field.stick)]);
         }
+        machine.look_up(&mut course);
     }
     table.flush().map_err(|why| cannot_write(why.into()))?;
     Ok(ExitCode::SUCCESS)

@@ -149,7 +149,7 @@ fn played(
         Ok((columns, table))
     };
     let mut table = table.map(begun).transpose().map_err(written)?;
-    let flow = play_observed(&mut machine, rows, &mut observers, |machine, (watch, gathered)| {
+    let flow = play_observed(&mut machine, rows, &mut observers, |machine, (watch, _)| {
         if interrupted.load(Ordering::Relaxed) {
             return ControlFlow::Break(Ended::Interrupted);
         }
@@ -159,7 +159,6 @@ fn played(
             return ControlFlow::Break(written(why));
         }
         watch.push(machine);
-        gathered.push(machine);
         ControlFlow::Continue(())
     });
     match flow {

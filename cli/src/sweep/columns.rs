@@ -82,14 +82,6 @@ impl GatheredMachine {
             variables,
         })
     }
-
-    /// Takes a row: the start and equilibria have no steps.
-    pub fn push(&mut self, machine: &Machine) {
-        match machine {
-            Machine::Bearing(bearing) => self.bearing(bearing),
-            Machine::Shaft(system) => self.shaft(system),
-        }
-    }
 }
 
 impl Observer for GatheredMachine {

@@ -58,7 +58,7 @@ impl BearingWatch {
         }
     }
 
-    /// Takes where a step has ended.
+    /// Takes the start, or where a step has ended.
     pub fn step(&mut self, simulation: &Simulation) {
         let instant = simulation.instant();
         self.blocks.push(&instant);
@@ -70,8 +70,6 @@ impl BearingWatch {
 
     /// Takes a row.
     pub fn push(&mut self, simulation: &Simulation) {
-        // The start, and equilibria, have no steps.
-        self.step(simulation);
         let outputs = simulation.outputs();
         if let Some(spectrum) = &mut self.spectrum {
             spectrum.push(outputs);

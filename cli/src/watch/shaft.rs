@@ -42,14 +42,13 @@ impl ShaftWatch {
         Self { quantities, blocks, samples: Thinned::default(), largest_load: 0.0 }
     }
 
-    /// Takes where a step has ended.
+    /// Takes the start, or where a step has ended.
     pub fn step(&mut self, system: &System) {
         self.blocks.push_values(system.time(), &self.quantities.values(system));
     }
 
     /// Takes a row.
     pub fn push(&mut self, system: &System) {
-        self.step(system);
         let values = self.quantities.values(system);
         self.samples.push(Sample { time: system.time(), values, largest_load: 0.0 });
         let loads = system.bearings().flat_map(|(_, bearing)| bearing.outputs().loads());

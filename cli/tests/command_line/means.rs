@@ -28,6 +28,45 @@ fn regression_a_mean_is_over_time_and_no_matter_of_rows() {
     }
 }
 
+#[test]
+fn invariant_rows_do_not_move_the_motion() {
+    let scratch = Scratch::new("rows-of-a-motion");
+    let shaft = include_str!("../../../scenes/shafts/housing.toml");
+    for (text, tables, means) in [
+        (edited("cage", &[("load.duration", "\"4 ms\"")]).source, &["results.csv"][..], &["means.csv"][..]),
+        (
+            shaft.replace("duration = \"20 ms\"", "duration = \"4 ms\""),
+            &["shaft.csv", "left/results.csv"],
+            &["means.csv", "left/means.csv"],
+        ),
+    ] {
+        let with = |interval: &str| {
+            let at = text.find("output_interval").unwrap();
+            let end = at + text[at..].find('\n').unwrap();
+            format!("{}output_interval = \"{interval}\"{}", &text[..at], &text[end..])
+        };
+        for (interval, to) in [("0.5 ms", "coarse"), ("50 us", "fine")] {
+            let file = scratch.path(&format!("{to}.toml"));
+            std::fs::write(&file, with(interval)).unwrap();
+            good(&roulement(&["run", &file, "-o", &scratch.path(to)]));
+        }
+        for file in means {
+            assert_eq!(
+                scratch.read(&format!("coarse/{file}")),
+                scratch.read(&format!("fine/{file}")),
+                "{file}"
+            );
+        }
+        for file in tables {
+            let [coarse, fine] = ["coarse", "fine"].map(|to| columns(&scratch.read(&format!("{to}/{file}"))));
+            for (name, values) in &coarse {
+                let every: Vec<&String> = fine[name].iter().step_by(10).collect();
+                assert_eq!(values.iter().collect::<Vec<_>>(), every, "{file}: {name}");
+            }
+        }
+    }
+}
+
 /// A bearing whose load comes down to what it stays at.
 fn unloaded(force: &str, duration: &str) -> String {
     let scene = edited(

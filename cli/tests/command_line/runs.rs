@@ -412,8 +412,8 @@ fn a_run_whose_energy_does_not_close_says_so_with_the_cause() {
     let scratch = Scratch::new("energy");
     // Steps of 0.1 ms without damping, where a ball swings with 45 kHz.
     let long_steps = [
-        ("solver.max_step", "1e-3"),
-        ("solver.initial_step", "1e-3"),
+        ("solver.max_step", "1e-4"),
+        ("solver.initial_step", "1e-4"),
         ("solver.tolerance", "1e-2"),
         ("effects.damping", "0.0"),
         ("friction.ball_race", "0.001"),
@@ -425,8 +425,8 @@ fn a_run_whose_energy_does_not_close_says_so_with_the_cause() {
     assert!(warnings.len() == 1 && parts.iter().all(|part| warnings[0].contains(part)), "{warnings:?}");
     // Balls that lose and find their contacts, in long steps.
     let impacts = [
-        ("solver.max_step", "2e-4"),
-        ("solver.initial_step", "2e-4"),
+        ("solver.max_step", "1e-4"),
+        ("solver.initial_step", "1e-4"),
         ("solver.tolerance", "1e-2"),
         ("effects.creep", "\"frictionless\""),
         ("effects.damping", "0.0"),

@@ -279,7 +279,6 @@ fn played(scene: &Scene, solver: Solver) -> Run {
     let mut machine = Machine::from(simulation);
     let _: ControlFlow<()> = play_observed(&mut machine, rows, &mut kept, |machine, kept| {
         let (_, bearing) = machine.bearings().next().unwrap();
-        kept.bearing(bearing);
         kept.samples.push(Sample::new(bearing.outputs()));
         ControlFlow::Continue(())
     })

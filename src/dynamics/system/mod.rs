@@ -1,5 +1,6 @@
 //! One implicit step of a system: several bearings, and structures that carry their races.
 
+mod dense;
 mod sensitivity;
 mod step;
 mod structure;
@@ -15,6 +16,7 @@ use crate::numerics::hht::HhtStep;
 use crate::numerics::newton::{self, NewtonBuffers, NewtonWork};
 use crate::numerics::size::larger;
 use crate::numerics::step_control::StepControl;
+pub use dense::{Stepped, within};
 pub use sensitivity::{Perturbed, Started, advance_perturbed};
 pub use step::{Joint, StructureStep, SystemStep};
 pub use structure::{Seat, StructureLoad, StructureTrial};

@@ -7,6 +7,7 @@ use crate::model::state::stack;
 use crate::model::structure::{
     Map, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
 };
+use crate::numerics::hermite::Hermite;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
 
@@ -184,6 +185,33 @@ impl StructureTrial {
         let stored = model.stored(&end.coordinates, &end.rates, &end.spin);
         end.energies = StructureEnergies { stored, at_start: stored, ..StructureEnergies::default() };
         end
+    }
+
+    /// The state at a time \[s] within the step from one state to another, before the forces of its bearings; its energies are those at the start.
+    pub fn within(
+        model: &Structure,
+        [start, end]: [&StructureState; 2],
+        between: Hermite,
+        given: Spin,
+    ) -> Self {
+        let mut trial = Self::new(start);
+        let at = &mut trial.end;
+        let of = |state: &StructureState| {
+            (state.coordinates.clone(), state.rates.clone(), state.accelerations.clone())
+        };
+        let ((q0, v0, a0), (q1, v1, a1)) = (of(start), of(end));
+        at.accelerations = between.linear([a0, a1]);
+        at.coordinates = between.at([q0, q1], [v0.clone(), v1.clone()]);
+        at.rates = between.linear([v0, v1]);
+        at.spin = model.spin([&at.coordinates, &at.rates, &at.accelerations], given);
+        trial
+    }
+
+    /// The same after the forces of its bearings.
+    pub fn settled(mut self, model: &Structure, load: &StructureLoad) -> StructureState {
+        self.sum_forces(model, load);
+        self.account(model, load);
+        self.end
     }
 
     /// Total force.

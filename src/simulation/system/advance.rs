@@ -18,37 +18,25 @@ use crate::model::structure::{Carrier, Spin, StructureState, Turning};
 use crate::numerics::tilt;
 use crate::scene::Groups;
 
-/// What sees a system where a step has ended.
-type Observe<'a> = &'a mut dyn FnMut(&System);
-
 impl System {
     /// Runs its own steps to exactly `end` \[s] by the scripts of all bearings and the shaft.
     ///
     /// # Errors
     /// See [`SystemError`]; the state is then that of the last converged step, at [`System::time`].
     pub fn advance(&mut self, end: f64) -> Result<(), SystemError> {
-        self.advance_by_script(end, None)
-    }
-
-    /// The same; also lets somebody see every step where it has ended, which makes no difference to the motion.
-    ///
-    /// # Errors
-    /// As [`System::advance`].
-    pub fn advance_observed(&mut self, end: f64, observe: &mut dyn FnMut(&Self)) -> Result<(), SystemError> {
-        self.advance_by_script(end, Some(observe))
-    }
-
-    fn advance_by_script(&mut self, end: f64, observe: Option<Observe<'_>>) -> Result<(), SystemError> {
         self.inputs = ShaftInputs::scripted(&self.scene, self.time);
-        self.bearings
-            .iter_mut()
-            .for_each(|bearing| bearing.inputs = bearing.scripted_inputs(bearing.state.time));
-        let result = self.advance_shown(end, &[], &Played::all(&self.scene), observe).map(drop);
-        self.bearings
-            .iter_mut()
-            .for_each(|bearing| bearing.inputs = bearing.scripted_inputs(bearing.state.time));
+        self.take_scripted_inputs();
+        let result = self.advance_with(end, &Played::all(&self.scene));
+        self.take_scripted_inputs();
         self.see_races();
         result
+    }
+
+    /// Sets the inputs of all bearings to what their scripts say now.
+    pub(super) fn take_scripted_inputs(&mut self) {
+        for bearing in &mut self.bearings {
+            bearing.inputs = bearing.scripted_inputs(bearing.state.time);
+        }
     }
 
     /// Runs its own steps to exactly `end` \[s] under the inputs as set, some of them given by the scripts where there are some: those
@@ -71,16 +59,6 @@ impl System {
         inputs: &[(ShaftInputs, Vec<Inputs>)],
         played: &Played,
     ) -> Result<Vec<Self>, SystemError> {
-        self.advance_shown(end, inputs, played, None)
-    }
-
-    fn advance_shown(
-        &mut self,
-        end: f64,
-        inputs: &[(ShaftInputs, Vec<Inputs>)],
-        played: &Played,
-        observe: Option<Observe<'_>>,
-    ) -> Result<Vec<Self>, SystemError> {
         let begin = self.time;
         if !(end > begin && end.is_finite()) {
             return Err(SystemError::Backwards { from: begin, to: end });
@@ -88,23 +66,29 @@ impl System {
         let beside = |(shaft, bearings): &(ShaftInputs, Vec<Inputs>)| {
             let mut system = self.clone();
             let fit = system.set_inputs(shaft.clone(), bearings.clone());
-            fit.then(|| system.begin(end, played)).map(|_| system)
+            fit.then(|| system.begin_scripts(end, played)).map(|_| system)
         };
         let perturbed: Option<Vec<Self>> = inputs.iter().map(beside).collect();
         let mut perturbed = perturbed.ok_or(SystemError::OtherInputs)?;
-        let scripts = self.begin(end, played);
-        let result = self.follow((&scripts, played), end, &mut perturbed, observe);
+        let scripts = self.begin_scripts(end, played);
+        let result = self.follow((&scripts, played), end, &mut perturbed);
         self.finish(&scripts, played, result.is_ok());
         perturbed.iter_mut().for_each(|system| system.finish(&scripts, played, false));
         result?;
-        for (index, bearing) in self.bearings.iter().enumerate() {
-            bearing.check_contacts().map_err(|source| self.of_bearing(index, source))?;
-        }
+        self.check_contacts()?;
         Ok(perturbed)
     }
 
+    /// Refuses contacts of the step that was accepted last, as bearings do.
+    pub(super) fn check_contacts(&self) -> Result<(), SystemError> {
+        for (index, bearing) in self.bearings.iter().enumerate() {
+            bearing.check_contacts().map_err(|source| self.of_bearing(index, source))?;
+        }
+        Ok(())
+    }
+
     /// Begins a communication step to a time \[s]: scripts of the bearings, and paths to the inputs that were set.
-    fn begin(&mut self, end: f64, played: &Played) -> Vec<Script> {
+    pub(super) fn begin_scripts(&mut self, end: f64, played: &Played) -> Vec<Script> {
         let begin = self.time;
         self.paths = self.paths.towards(&self.inputs, begin, end - begin);
         let bearings = self.bearings.iter_mut().zip(&played.bearings);
@@ -122,7 +106,7 @@ impl System {
     }
 
     /// Inputs and outputs at the end of a communication step. The last step's own evaluation serves for outputs where it was `accepted`.
-    fn finish(&mut self, scripts: &[Script], played: &Played, accepted: bool) {
+    pub(super) fn finish(&mut self, scripts: &[Script], played: &Played, accepted: bool) {
         for (bearing, script) in self.bearings.iter_mut().zip(scripts) {
             bearing.end_script(script, accepted);
         }
@@ -132,7 +116,7 @@ impl System {
     }
 
     /// Sets what the inputs of bearings say of races that structures carry to where these are.
-    fn see_races(&mut self) {
+    pub(super) fn see_races(&mut self) {
         for bearing in &mut self.bearings {
             for race in Race::BOTH.into_iter().filter(|race| bearing.model.is_carried(*race)) {
                 let state = bearing.state.race(race);
@@ -156,8 +140,19 @@ impl System {
         (scripts, played): (&[Script], &Played),
         end: f64,
         perturbed: &mut [Self],
-        mut observe: Option<Observe<'_>>,
     ) -> Result<(), SystemError> {
+        // The perturbed steps leave the running system as it is.
+        let mut aside = vec![];
+        for stop in self.stops((scripts, played), end) {
+            while self.time < stop {
+                self.step_towards((scripts, played), stop, perturbed, &mut aside)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// \[s] times at which a step ends on the way to `end`: knots of the scripts, and the end.
+    pub(super) fn stops(&self, (scripts, played): (&[Script], &Played), end: f64) -> Vec<f64> {
         let least = self.scene.solver().min_step.0;
         let of_bearings = scripts
             .iter()
@@ -174,32 +169,19 @@ impl System {
             }
             apart
         });
-        let mut stops = knots.into_iter().chain([end]);
-        stops.try_for_each(|stop| self.step_to((scripts, played), stop, perturbed, &mut observe))
+        knots.push(end);
+        knots
     }
 
-    /// Shows where a step has ended, and leaves all that the next one begins with as it is.
-    fn show(&mut self, scripts: &[Script], observe: &mut dyn FnMut(&Self)) {
-        let inputs: Vec<Inputs> = self.bearings.iter().map(|bearing| bearing.inputs).collect();
-        for (bearing, script) in self.bearings.iter_mut().zip(scripts) {
-            script.set_inputs(&bearing.scene, &bearing.paths, bearing.state.time, &mut bearing.inputs);
-            bearing.reach(true);
-        }
-        self.report();
-        observe(self);
-        self.bearings.iter_mut().zip(inputs).for_each(|(bearing, inputs)| bearing.inputs = inputs);
-    }
-
-    fn step_to(
+    /// Takes one step towards a time \[s], not beyond it.
+    pub(super) fn step_towards(
         &mut self,
         (scripts, played): (&[Script], &Played),
         end: f64,
         perturbed: &mut [Self],
-        observe: &mut Option<Observe<'_>>,
+        aside: &mut Vec<Workspace>,
     ) -> Result<(), SystemError> {
-        // The perturbed steps leave the running system as it is.
-        let mut aside = vec![];
-        while self.time < end {
+        loop {
             let remaining = end - self.time;
             let given = Given { scene: &self.scene, paths: &self.paths, played };
             let of_shaft = loads::shortest_period(&given, &self.states[0], self.time);
@@ -239,14 +221,11 @@ impl System {
                 Ok(ends) => {
                     if let Some(mut start) = start {
                         let accepted = (&boundaries[..], &loads[..], h);
-                        self.perturb(&mut start, accepted, (scripts, played, next), perturbed, &mut aside)?;
+                        self.perturb(&mut start, accepted, (scripts, played, next), perturbed, aside)?;
                     }
                     self.states = ends;
                     self.time = next;
-                    self.check_step(&boundaries)?;
-                    if let Some(observe) = observe {
-                        self.show(scripts, observe);
-                    }
+                    return self.check_step(&boundaries);
                 }
                 Err((index, failure)) => {
                     if !self.control.above_minimum() {
@@ -255,7 +234,6 @@ impl System {
                 }
             }
         }
-        Ok(())
     }
 
     /// Takes perturbed systems along a step that was accepted: from where bearings started, under these boundaries and loads.
@@ -312,13 +290,13 @@ impl System {
     }
 
     /// What acts on the structures at the end of a step \[s].
-    fn loads(&self, played: &Played, next: f64) -> Vec<StructureLoad> {
+    pub(super) fn loads(&self, played: &Played, next: f64) -> Vec<StructureLoad> {
         let given = Given { scene: &self.scene, paths: &self.paths, played };
         loads::at(&given, &self.carriers, &self.states[0], self.time, next)
     }
 
     /// What is imposed on the bearings there.
-    fn imposed(&self, scripts: &[Script], loads: &[StructureLoad], next: f64) -> Vec<Boundary> {
+    pub(super) fn imposed(&self, scripts: &[Script], loads: &[StructureLoad], next: f64) -> Vec<Boundary> {
         let speeds = self.speed_of_races(&loads[0].spin);
         let bearings = self.bearings.iter().zip(scripts).zip(&speeds);
         bearings
@@ -364,7 +342,7 @@ impl System {
 }
 
 /// Structures at the start of a step, and what acts on them at its end.
-fn structure_steps<'a>(
+pub(super) fn structure_steps<'a>(
     carriers: &'a [Carrier],
     scales: &'a [DVector<f64>],
     states: &'a [StructureState],

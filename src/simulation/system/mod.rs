@@ -1,6 +1,7 @@
 //! Several bearings on a shaft, in motion together: one implicit step for all.
 
 mod advance;
+mod course;
 mod critical_speeds;
 mod equilibrium;
 mod inputs;

@@ -1,0 +1,52 @@
+//! Dense output of a system: bearings and structures at a time within a step that was accepted.
+
+use super::structure::StructureTrial;
+use super::{Joint, StructureStep, finished};
+use crate::dynamics::{Boundary, StepBound, dense};
+use crate::model::Model;
+use crate::model::structure::StructureState;
+use crate::numerics::hermite::Hermite;
+use crate::numerics::hht::HhtStep;
+
+/// A bearing over a step.
+pub struct Stepped<'a> {
+    /// Its model.
+    pub model: &'a Model,
+    /// States where the step began and ended.
+    pub ends: [&'a StepBound; 2],
+    /// What is imposed at the time that is asked for.
+    pub boundary: Boundary,
+}
+
+/// Bearings with their contacts, and structures, at `part` \[s] of a step of `h` \[s]; the structures have the loads of that time.
+pub fn within(
+    bearings: &mut [Stepped<'_>],
+    structures: &[StructureStep<'_>],
+    ends: &[StructureState],
+    joints: &[Joint],
+    (part, h): (f64, f64),
+) -> (Vec<StepBound>, Vec<StructureState>) {
+    let between = Hermite::new(part, h);
+    let moved = structures
+        .iter()
+        .zip(ends)
+        .map(|(one, end)| StructureTrial::within(one.model, [one.start, end], between, one.load.spin));
+    let mut trials: Vec<_> = moved.collect();
+    let mut seats = vec![];
+    for Joint { bearing, race, structure, seat } in joints {
+        let motion = trials[*structure].seat(structures[*structure].model, seat);
+        bearings[*bearing].boundary.motion[*race] = (motion.pose(), motion.twist());
+        seats.push(motion);
+    }
+    let of_bearing = |of: &Stepped<'_>| dense::within(of.model, of.ends, &of.boundary);
+    let bearings: Vec<_> = bearings.iter().map(of_bearing).collect();
+    for (Joint { bearing, race, structure, seat }, motion) in joints.iter().zip(&seats) {
+        trials[*structure].add(seat, motion, &bearings[*bearing].state.race(*race).bearing_wrench);
+    }
+    let step = HhtStep { h: part, ..HhtStep::new(0.0, h) };
+    let settled = trials.into_iter().zip(structures).map(|(trial, one)| {
+        let state = trial.settled(one.model, one.load);
+        finished(one, state, &step)
+    });
+    (bearings, settled.collect())
+}
