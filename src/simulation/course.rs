@@ -100,13 +100,14 @@ impl Scripted for Simulation {
 
     fn look_up(&mut self, course: &mut Course) {
         let time = self.state.time;
-        match course.end.take().and_then(|mut end| end.bearings.pop()) {
-            Some(end) => {
-                self.begin_report_at(time, Some(end.state));
-                self.show_end(&course.scripts[0]);
-            }
-            None => self.begin_report_at(time, None),
+        let Some(end) = course.end.take().and_then(|mut end| end.bearings.pop()) else {
+            self.begin_report();
+            return;
+        };
+        if let Some(start) = &mut course.start {
+            self.go_back_to(end.state, &mut start.bearings[0].state, time);
         }
+        self.show_end(&course.scripts[0]);
     }
 
     fn end(&mut self, course: Course, accepted: bool) {
@@ -140,14 +141,21 @@ impl Simulation {
         self.point = Point::of_contacts(conditions(&self.inputs, &self.state), seen.contacts);
     }
 
-    /// What is reported since the last row begins anew at a time \[s] that is looked at; then the state is that of the `end` of the step.
-    pub(super) fn begin_report_at(&mut self, time: f64, end: Option<State>) {
-        let heat = self.state.heat;
-        if let Some(end) = end {
-            self.state = end;
+    /// What is reported since the last row begins anew.
+    pub(super) fn begin_report(&mut self) {
+        if let Some(heat) = &mut self.state.heat {
+            heat.mark(self.state.time);
         }
-        if let (Some(own), Some(then)) = (&mut self.state.heat, &heat) {
-            own.mark_as(then, time);
+    }
+
+    /// Is at the end of the last step again, after a time \[s] was looked at. What is reported since the last row begins anew there, for the next
+    /// row within the same step, too.
+    pub(super) fn go_back_to(&mut self, end: State, start: &mut State, time: f64) {
+        let seen = std::mem::replace(&mut self.state, end);
+        for state in [&mut self.state, start] {
+            if let (Some(heat), Some(then)) = (&mut state.heat, &seen.heat) {
+                heat.mark_as(then, time);
+            }
         }
     }
 }

@@ -191,7 +191,7 @@ fn invariant_heat_of_rows_adds_up_to_what_was_lost() {
         (heat.inner + heat.outer + heat.balls + heat.cage) * (pair[1].time - pair[0].time)
     });
     let lost = simulation.state().energies.friction;
-    assert!((heat.sum::<f64>() / lost - 1.0).abs() < 1e-3, "{lost}");
+    assert!((heat.sum::<f64>() / lost - 1.0).abs() < 1e-9, "{lost}");
 }
 
 #[test]

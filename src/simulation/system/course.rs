@@ -82,11 +82,12 @@ impl Scripted for System {
     fn look_up(&mut self, course: &mut Course) {
         let time = self.time;
         let Some(Moment { time: end, bearings, structures }) = course.end.take() else {
-            self.bearings.iter_mut().for_each(|bearing| bearing.begin_report_at(time, None));
+            self.bearings.iter_mut().for_each(Simulation::begin_report);
             return;
         };
-        for (bearing, end) in self.bearings.iter_mut().zip(bearings) {
-            bearing.begin_report_at(time, Some(end.state));
+        let starts = course.start.iter_mut().flat_map(|start| &mut start.bearings);
+        for ((bearing, end), start) in self.bearings.iter_mut().zip(bearings).zip(starts) {
+            bearing.go_back_to(end.state, &mut start.state, time);
         }
         (self.states, self.time) = (structures, end);
         self.show(course);
