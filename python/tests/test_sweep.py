@@ -52,9 +52,8 @@ def test_lists_and_dictionaries_are_cases(tmp_path, thrust):
         sweep.run([{"friction.bal_race": 0.1}], short, tmp_path / "wrong")
 
 
-def test_consistency_the_same_cases_in_fmpy_have_the_same_numbers(tmp_path, thrust):
-    # Times of rows are sums of binary fractions: steps of both end at the same last bit.
-    interval, rows = 2.0**-13, 16
+def test_consistency_the_same_cases_in_fmpy_have_the_same_numbers_but_for_the_error_of_steps(tmp_path, thrust):
+    interval, rows = 1e-4, 20
     base = thrust.with_({"load.output_interval": interval, "load.duration": interval * rows, "effects.per_ball_outputs": True})
     cases = [{"friction.ball_race": mu, "load.x.force": force} for mu in (0.05, 0.1) for force in ("1 kN", "2 kN")]
     cases += [{"outer.misalignment.rz": "1 mrad", "bearing.inner_conformity": 0.53}]
@@ -70,11 +69,14 @@ def test_consistency_the_same_cases_in_fmpy_have_the_same_numbers(tmp_path, thru
             values.append(fmu.getReal(wanted))
         for name, column in zip(columns, np.array(values).T):
             of = {kind: table[f"{name}.{kind}"][k] for kind in ("mean", "least", "largest", "end")}
-            assert of["end"] == column[-1], (case, name)
-            # A sweep sees all steps, a master the points at which it asks.
+            # A package ends a step at every point of communication, a sweep where the motion wants it: both are within the error of steps,
+            # which is 2 % of a course as long as no error goal asks for less.
             swing = np.ptp(column)
-            assert column.min() - swing <= of["least"] <= column.min(), (case, name, of, column.min())
-            assert column.max() <= of["largest"] <= column.max() + swing, (case, name, of, column.max())
+            of_steps = 0.02 * swing
+            assert abs(of["end"] - column[-1]) <= of_steps, (case, name, of, column[-1])
+            # A sweep sees all steps, a master the points at which it asks.
+            assert column.min() - swing <= of["least"] <= column.min() + of_steps, (case, name, of, column.min())
+            assert column.max() - of_steps <= of["largest"] <= column.max() + swing, (case, name, of, column.max())
             # A mean is an integral over time of the second half: between the sums over rows from below and above, of what steps see.
             second = column[rows // 2 :]
             assert abs(of["mean"] - np.trapezoid(second) / (len(second) - 1)) < 0.5 * np.ptp(second), (case, name, of)

@@ -159,6 +159,8 @@ pub enum StepFailure {
 ///
 /// # Errors
 /// See [`StepFailure`]; the step control has then been told.
+// A function of its own in programs, too: scripts/step-instructions counts what it takes.
+#[inline(never)]
 pub fn try_step(
     model: &Model,
     state: &mut State,

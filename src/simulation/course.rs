@@ -130,14 +130,20 @@ impl Simulation {
 
     /// Shows where the last step has ended.
     pub(super) fn show_end(&mut self, script: &Script) {
-        script.set_inputs(&self.scene, &self.paths, self.state.time, &mut self.inputs);
+        self.show_inputs(script);
         self.reach(true);
+    }
+
+    /// Inputs that the steps follow, and beside them what the script says of those that they do not need.
+    fn show_inputs(&mut self, script: &Script) {
+        script.set_inputs(&self.scene, &self.paths, self.state.time, &mut self.inputs);
+        self.take_scripted_inputs();
     }
 
     /// Shows what was seen within the last step.
     pub(super) fn see(&mut self, script: &Script, seen: StepBound) {
         self.state = seen.state;
-        script.set_inputs(&self.scene, &self.paths, self.state.time, &mut self.inputs);
+        self.show_inputs(script);
         self.point = Point::of_contacts(conditions(&self.inputs, &self.state), seen.contacts);
     }
 

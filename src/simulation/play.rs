@@ -1,5 +1,6 @@
 //! Playing a simulation from start to end, row by row: the one loop of runs, studies and tests.
 
+use std::iter::Peekable;
 use std::ops::ControlFlow;
 
 use super::Simulation;
@@ -68,18 +69,25 @@ pub struct Rows {
     pub interval: f64,
     /// \[s] time of the last row, even if that is no multiple of the interval.
     pub duration: f64,
+    /// Does a step end at every row, as that of a package does at every communication point?
+    pub end_steps: bool,
 }
 
 impl Rows {
+    /// Rows that are read from steps.
+    pub fn new(interval: f64, duration: f64) -> Self {
+        Self { interval, duration, end_steps: false }
+    }
+
     /// Those that the scene of a simulation asks for.
     pub fn of(simulation: &Simulation) -> Self {
         let load = &simulation.scene().load;
-        Self { interval: load.output_interval.0, duration: load.duration.0 }
+        Self::new(load.output_interval.0, load.duration.0)
     }
 
     /// Those that a scene asks for.
     pub fn of_scene(scene: &MachineScene) -> Self {
-        Self { interval: scene.output_interval(), duration: scene.duration() }
+        Self::new(scene.output_interval(), scene.duration())
     }
 
     /// [-] number of rows after that of the start.
@@ -152,12 +160,26 @@ fn play_seen<S: Scripted, B>(
     if flow.is_continue() {
         flow = see(machine, Seen::Row);
     }
-    let mut course = machine.begin(rows.duration)?;
     let mut times = rows.times().peekable();
-    let mut shown = machine.time();
     while flow.is_continue()
         && let Some(&next) = times.peek()
     {
+        let end = if rows.end_steps { next } else { rows.duration };
+        flow = play_to(machine, end, &mut times, &mut see)?;
+    }
+    Ok(flow)
+}
+
+fn play_to<S: Scripted, B>(
+    machine: &mut S,
+    end: f64,
+    rows: &mut Peekable<impl Iterator<Item = f64>>,
+    see: &mut impl FnMut(&S, Seen) -> ControlFlow<B>,
+) -> Result<ControlFlow<B>, S::Error> {
+    let mut course = machine.begin(end)?;
+    let (mut shown, mut flow) = (machine.time(), ControlFlow::Continue(()));
+    while flow.is_continue() && machine.time() < end {
+        let next = rows.peek().copied().unwrap_or(end);
         if let Err(why) = machine.step(&mut course, next) {
             if machine.time() > shown {
                 let _ = see(machine, Seen::Row);
@@ -165,9 +187,9 @@ fn play_seen<S: Scripted, B>(
             machine.end(course, false);
             return Err(why);
         }
-        let end = machine.time();
+        let now = machine.time();
         while flow.is_continue()
-            && let Some(row) = times.next_if(|row| *row < end)
+            && let Some(row) = rows.next_if(|row| *row < now)
         {
             machine.look_back(&mut course, row);
             flow = see(machine, Seen::Row);
@@ -177,10 +199,10 @@ fn play_seen<S: Scripted, B>(
         if flow.is_continue() {
             flow = see(machine, Seen::Step);
         }
-        if flow.is_continue() && times.next_if(|row| *row == end).is_some() {
+        if flow.is_continue() && rows.next_if(|row| *row == now).is_some() {
             flow = see(machine, Seen::Row);
             machine.look_up(&mut course);
-            shown = end;
+            shown = now;
         }
     }
     machine.end(course, true);

@@ -20,7 +20,7 @@ const CAGE: &str = include_str!("../../scenes/cage.toml");
 /// A run by the scene's script.
 fn run(text: &str, changes: &[(&str, &str)], duration: f64) -> Simulation {
     let mut simulation = Simulation::new(&scene(text, changes)).unwrap();
-    let rows = Rows { interval: 1e-3, duration };
+    let rows = Rows::new(1e-3, duration);
     let _: ControlFlow<()> = play(&mut simulation, rows, |_| ControlFlow::Continue(())).unwrap();
     simulation
 }

@@ -29,7 +29,7 @@ def thrust(tmp_path_factory, thrust_text):
     # Balls that stick on one race damp the swing along the axis which a step of the load begins.
     text += "\n[start]\nspin_balance = false\n"
     package = build(text, directory, "thrust")
-    roulement("run", directory / "thrust.toml", "-o", directory)
+    roulement("run", directory / "thrust.toml", "-o", directory, "--steps-end-at-rows")
     with open(directory / "results.csv") as table:
         rows = [{name.split(" [")[0]: float(v) for name, v in row.items()} for row in csv.DictReader(table)]
     references = {v.name: v.valueReference for v in read_model_description(package).modelVariables}

@@ -19,7 +19,7 @@ def native_rows(scene_text, directory):
     """Result table of `roulement run`, exact numbers by column name without unit."""
     scene = directory / "native.toml"
     scene.write_text(scene_text)
-    roulement("run", scene, "-o", directory / "native")
+    roulement("run", scene, "-o", directory / "native", "--steps-end-at-rows")
     with open(directory / "native" / "results.csv") as table:
         rows = list(csv.DictReader(table))
     return [{name.split(" [")[0]: float(value) for name, value in row.items()} for row in rows]

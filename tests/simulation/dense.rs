@@ -67,8 +67,8 @@ fn invariant_rows_leave_the_motion_as_it_is() {
         "effects/planet_carrier",
     ] {
         let scene = scene(name, &[]);
-        let (coarse, of_coarse) = rows(&scene, Rows { interval: 5e-4, duration });
-        let (fine, of_fine) = rows(&scene, Rows { interval: 7.8125e-6, duration });
+        let (coarse, of_coarse) = rows(&scene, Rows::new(5e-4, duration));
+        let (fine, of_fine) = rows(&scene, Rows::new(7.8125e-6, duration));
         let (one, other) = (coarse.state(), fine.state());
         assert_eq!((&one.balls, &one.bodies), (&other.balls, &other.bodies), "{name}");
         assert_eq!(
@@ -128,7 +128,7 @@ fn fixed(scene: &Scene, step: f64) -> Scene {
 /// Root mean squares over rows, four in a step, of the differences from a reference: of rows where steps end, and of those within.
 fn errors(scene: &Scene, step: f64, reference: &[Outputs], sizes: [f64; 4]) -> [f64; 2] {
     let duration = reference.last().unwrap().time;
-    let (simulation, rows) = rows(&fixed(scene, step), Rows { interval: 0.25 * step, duration });
+    let (simulation, rows) = rows(&fixed(scene, step), Rows::new(0.25 * step, duration));
     assert_eq!(
         simulation.state().statistics.steps as f64,
         (duration / step).round(),
@@ -168,7 +168,7 @@ fn order_two_of_rows_within_steps_and_no_more_error_than_at_their_ends() {
     ] {
         let scene = scene(name, changes);
         let duration = 8e-4;
-        let (_, reference) = rows(&fixed(&scene, 1.5625e-7), Rows { interval: duration / 256.0, duration });
+        let (_, reference) = rows(&fixed(&scene, 1.5625e-7), Rows::new(duration / 256.0, duration));
         let found = [2.5e-5, 1.25e-5].map(|step| errors(&scene, step, &reference, sizes));
         println!("{name}: {found:?}");
         for [ends, within] in found {
@@ -183,7 +183,7 @@ fn order_two_of_rows_within_steps_and_no_more_error_than_at_their_ends() {
 #[test]
 fn invariant_heat_of_rows_adds_up_to_what_was_lost() {
     let scene = scene("cage", &[("effects.heat_outputs", "true"), ("load.duration", "\"3 ms\"")]);
-    let (simulation, rows) = rows(&scene, Rows { interval: 3e-6, duration: 3e-3 });
+    let (simulation, rows) = rows(&scene, Rows::new(3e-6, 3e-3));
     let start = rows[0].time;
     assert_eq!(start, 0.0);
     let heat = rows.windows(2).map(|pair| {
@@ -201,7 +201,7 @@ fn invariant_rows_leave_the_motion_of_a_shaft_as_it_is() {
         let play = |interval: f64| {
             let mut machine = Machine::new(&scene).unwrap();
             let mut seen = vec![];
-            let _: ControlFlow<()> = play(&mut machine, Rows { interval, duration: 1e-3 }, |machine| {
+            let _: ControlFlow<()> = play(&mut machine, Rows::new(interval, 1e-3), |machine| {
                 let of_bearings: Vec<_> =
                     machine.bearings().map(|(_, bearing)| bearing.outputs().clone()).collect();
                 seen.push((machine.shaft().unwrap().outputs().clone(), of_bearings));

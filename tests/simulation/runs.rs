@@ -28,7 +28,7 @@ fn radial() -> Scene {
 fn run(scene: &Scene, points: u32) -> (Simulation, Vec<Outputs>) {
     let mut simulation = Simulation::new(scene).unwrap();
     let interval = simulation.scene().load.output_interval.0;
-    let rows = Rows { interval, duration: f64::from(points) * interval };
+    let rows = Rows::new(interval, f64::from(points) * interval);
     let mut history = vec![];
     let _: ControlFlow<()> = play(&mut simulation, rows, |simulation| {
         history.push(simulation.outputs().clone());

@@ -16,7 +16,7 @@ const MISALIGNMENT: &str = include_str!("../../scenes/misalignment.toml");
 /// Plays a scene to a time \[s] and shows every row.
 fn run(scene: &Scene, interval: f64, duration: f64, mut row: impl FnMut(&Simulation)) -> Simulation {
     let mut simulation = Simulation::new(scene).unwrap();
-    let _: ControlFlow<()> = play(&mut simulation, Rows { interval, duration }, |simulation| {
+    let _: ControlFlow<()> = play(&mut simulation, Rows::new(interval, duration), |simulation| {
         row(simulation);
         ControlFlow::Continue(())
     })

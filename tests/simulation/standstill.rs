@@ -25,7 +25,7 @@ fn largest(speeds: &str, each: &mut dyn FnMut(&Outputs)) -> Vec<(Variable, f64)>
     let mut simulation = Simulation::new(&scene).unwrap();
     let variables = Variables::new(&scene);
     let mut sizes = vec![0.0; variables.rows().len()];
-    let rows = Rows { interval: 2e-4, duration: scene.load.duration.0 };
+    let rows = Rows::new(2e-4, scene.load.duration.0);
     let _: ControlFlow<()> = play(&mut simulation, rows, |simulation| {
         for (size, row) in sizes.iter_mut().zip(variables.rows()) {
             let value = variables.value(row, simulation.inputs(), simulation.outputs()).abs();

@@ -55,6 +55,9 @@ pub struct Options {
     /// Runs that `--error` may take, each with half the steps of the one before; a run that looks for chaos comes on top.
     #[arg(long, value_name = "N", default_value_t = MOST_ROUNDS, value_parser = clap::value_parser!(u32).range(2..=16))]
     rounds: u32,
+    /// End a step at every row, as a package does at every communication point. Without it, rows are read from steps and move nothing.
+    #[arg(long, conflicts_with = "error")]
+    steps_end_at_rows: bool,
 }
 
 /// Simulates a scene into a directory. What has been simulated until an error, Ctrl-C or SIGTERM is kept, with its summary and plots.
@@ -62,7 +65,8 @@ pub struct Options {
 /// # Errors
 /// If the simulation cannot start or go on, or files cannot be written.
 pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
-    let Options { scene, output, json, columns, window, error, means_only, rounds } = options;
+    let Options { scene, output, json, columns, window, error, means_only, rounds, steps_end_at_rows } =
+        options;
     let mut scene = load(&scene)?;
     if let Some(Some(error)) = error {
         scene.change(|scene| scene.solver.goal = Some(ErrorGoal { error, of: ErrorOf::All }));
@@ -78,7 +82,14 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
         choice: Choice { columns, window: window.unwrap_or_default() },
         said: if json { Said::Json } else { Said::Text },
     };
-    simulate(&Player::new(heeded_interrupt()?), &scene, &place, error.is_some(), rounds)
+    if steps_end_at_rows && scene.solver().goal.is_some() {
+        return Err(
+            "--steps-end-at-rows: an error goal asks for steps that rows do not move; leave out one of them"
+                .into(),
+        );
+    }
+    let player = Player::new(heeded_interrupt()?);
+    simulate(&player, &scene, &place, error.is_some(), rounds, steps_end_at_rows)
 }
 
 /// Set by Ctrl-C, and by SIGTERM, which queues of computing centres send; a second one does not wait for the row.
@@ -105,6 +116,7 @@ pub fn simulate(
     place: &Place,
     wants_error: bool,
     rounds: u32,
+    end_steps: bool,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let machine = Machine::new(scene)?;
     let verdicts = verdicts(&machine);
@@ -118,7 +130,8 @@ pub fn simulate(
     if wants_error || scene.solver().goal.is_some() {
         return measured(player, scene, (machine, tables), place, &verdicts, rounds);
     }
-    let played = player.play(machine, Rows::of_scene(scene), Some(tables), "")?;
+    let rows = Rows { end_steps, ..Rows::of_scene(scene) };
+    let played = player.play(machine, rows, Some(tables), "")?;
     place.leave(&played, &verdicts, None, "")?;
     ended(&played)
 }

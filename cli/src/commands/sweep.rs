@@ -152,7 +152,7 @@ fn keep_run(sweep: &Sweep, case: usize, interrupted: &Arc<AtomicBool>) -> Result
             Ok(scene) => {
                 let place = Place { output: part.clone(), choice: Choice::default(), said: Said::Nothing };
                 let player = Player { interrupted: Arc::clone(interrupted), words };
-                simulate(&player, &scene, &place, false, MOST_ROUNDS).map(drop)
+                simulate(&player, &scene, &place, false, MOST_ROUNDS, false).map(drop)
             }
             Err(why) => Err(why.into()),
         };

@@ -116,7 +116,7 @@ pub fn record(setting: &Setting, interrupted: &AtomicBool) -> Result<Record, Stu
 }
 
 fn run(setting: &Setting, mut machine: Machine, interrupted: &AtomicBool) -> Result<Record, StudyError> {
-    let rows = Rows { interval: setting.communication, duration: setting.scene.duration() };
+    let rows = Rows::new(setting.communication, setting.scene.duration());
     let radius = |bearing: &Simulation| 0.5 * bearing.model().bearing.pitch_diameter;
     let none = || Vec::with_capacity(rows.count() as usize + 1);
     let mut bearings: Vec<Vec<Sample>> = machine.bearings().map(|_| none()).collect();

@@ -49,6 +49,8 @@ pub struct SystemWorkspace {
 ///
 /// # Errors
 /// The index of the bearing where the residual or the local error is largest, and what failed.
+// A function of its own in programs, too: scripts/step-instructions counts what it takes.
+#[inline(never)]
 pub fn try_step(
     parts: &mut [Part<'_>],
     structures: &[StructureStep<'_>],

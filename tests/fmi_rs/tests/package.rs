@@ -63,7 +63,7 @@ fn values(bearing: &FMU2<CS>, references: &HashMap<String, u32>) -> [f64; 5] {
 
 /// The rows of a native run of the scene, in the order of the names.
 fn native(folder: &Path, scene: &str) -> Vec<[f64; 5]> {
-    roulement(&["run", scene, "-o", folder.to_str().unwrap()]);
+    roulement(&["run", scene, "-o", folder.to_str().unwrap(), "--steps-end-at-rows"]);
     let table = std::fs::read_to_string(folder.join("results.csv")).unwrap();
     let mut lines = table.lines();
     let head: Vec<&str> =
