@@ -90,6 +90,13 @@ impl Figures {
         let both = self.0.iter().filter_map(|(name, value)| Some((name.clone(), value - other.0.get(name)?)));
         Self(both.map(|(name, difference)| (name, difference.abs())).collect())
     }
+
+    /// All of them times a factor.
+    #[must_use]
+    pub fn times(mut self, factor: f64) -> Self {
+        self.0.values_mut().for_each(|value| *value *= factor);
+        self
+    }
 }
 
 impl FromIterator<(&'static str, f64)> for Figures {
