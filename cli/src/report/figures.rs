@@ -10,6 +10,7 @@ use roulement::simulation::outputs::{BallOutput, Outputs};
 use super::energy::EnergyWatch;
 use super::limits::Limits;
 use super::means::Means;
+use crate::watch::Phase;
 
 /// Figures by name.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -68,6 +69,11 @@ impl Figures {
     /// Takes all means by their names.
     pub fn add_means(&mut self, means: &Means) {
         self.0.extend(means.means.iter().map(|mean| (mean.name.clone(), mean.mean)));
+    }
+
+    /// Takes all means of a phase, by its name and theirs.
+    pub fn add_phase(&mut self, phase: &Phase) {
+        phase.means.means.iter().for_each(|mean| self.set(phase.figure(&mean.name), mean.mean));
     }
 
     /// A figure; not a number where it is not there.
