@@ -54,6 +54,29 @@ function mark(mean) {
   return mean.settled ? h('span', { class: 'mark good' }, '\u2713 settled') : h('span', { class: 'mark bad' }, '\u2717 drifts');
 }
 
+/** Life in the words of a table. */
+function lifeOf(life) {
+  if (!life) return '\u2013';
+  const hours = life.L10r_hours === null ? '' : ` (${digits(life.L10r_hours, 4)} h)`;
+  return `${digits(life.L10r, 4)} million revolutions${hours}`;
+}
+
+/** Phases of a run: a row for each. */
+function phases(run) {
+  const all = run.record.summary.phases ?? [];
+  if (!all.length) return null;
+  const of = (phase, name) => phase.quantities.find(mean => mean.quantity === name);
+  const mean = (phase, name) => { const own = of(phase, name); return own ? figure(name, own.mean, own.error) : '\u2013'; };
+  const span = (phase, name) => { const own = of(phase, name); return own ? `${figure(name, own.least)} to ${figure(name, own.largest)}` : '\u2013'; };
+  const state = phase => (phase.script_changes ? h('span', { class: 'mark bad' }, '\u2717 script changes') : mark(phase));
+  const names = run.shaft ? ['shaft.speed', 'shaft.torque'] : ['friction power', 'friction torque', 'cage slip'];
+  const shownNames = names.filter(name => all.some(phase => of(phase, name)));
+  const rows = all.map(phase => [phase.name, `${digits(phase.window[0] * 1e3, 5)} to ${digits(phase.window[1] * 1e3, 5)} ms`,
+    ...shownNames.flatMap(name => [mean(phase, name), span(phase, name)]), ...(run.shaft ? [] : [`${digits(phase.heat, 4)} J`, lifeOf(phase.life)]), state(phase)]);
+  const heads = ['phase', 'window', ...shownNames.flatMap(name => [`mean ${name}`, 'least to largest']), ...(run.shaft ? [] : ['heat of friction', 'life L10r']), ''];
+  return table(heads, rows, { caption: `${run.title}: phases` });
+}
+
 export function summary(runs) {
   return section('summary', 'Summary', runs.length > 1 ? sideBySide(runs) : null, runs.map(of), errorNote(runs));
 }
@@ -80,6 +103,8 @@ function of(run) {
       parts.push(h('p', { class: 'warning' }, means.needed_duration ? `Not all means have settled: a duration of about ${digits(means.needed_duration * 1e3, 3)} ms would do.` : 'Not all means have settled, and no decay is to be seen.'));
     }
   }
+  const inPhases = phases(run);
+  if (inPhases) parts.push(inPhases);
   parts.push(h('details', {}, h('summary', {}, 'The summary in words'), h('pre', { tabindex: 0 }, run.record.summary_text ?? '')));
   return parts;
 }

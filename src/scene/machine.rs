@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::system::SystemScene;
 use super::{Scene, SceneError, Solver};
-use crate::schema::regular;
+use crate::schema::{PhaseSection, regular};
 
 /// What a scene file describes.
 #[derive(Clone, Debug)]
@@ -104,6 +104,14 @@ impl MachineScene {
         match self {
             Self::Bearing(scene) => scene.load.output_interval.0,
             Self::Shaft(scene) => scene.load.output_interval.0,
+        }
+    }
+
+    /// Named windows of the run.
+    pub fn phases(&self) -> &[PhaseSection] {
+        match self {
+            Self::Bearing(scene) => &scene.phase,
+            Self::Shaft(scene) => &scene.phases,
         }
     }
 

@@ -26,8 +26,8 @@ use crate::effects::{film, growth, rating};
 pub use crate::schema::{
     Accuracy, BearingSection, Components, Condition, Dependencies, Direction, Drive, ErrorGoal, ErrorOf,
     Friction, GearSection, Giver, Group, Groups, InputGivers, Interface, Level, Load, Machine, Material,
-    Misalignment, Orientation, RaceLoad, RaceSection, RotatingSection, SceneError, Schedule, Sine, Solver,
-    Start, Tilt, Translation, schedule, units,
+    Misalignment, Orientation, PhaseSection, RaceLoad, RaceSection, RotatingSection, SceneError, Schedule,
+    Sine, Solver, Start, Tilt, Translation, schedule, units,
 };
 use crate::schema::{Follows, explain, regular};
 pub use scales::Scales;
@@ -84,6 +84,9 @@ pub struct Scene {
     pub solver: Solver,
     /// Duration, speeds and loads of the races.
     pub load: Load,
+    /// Named windows of the run, which have means and lives of their own.
+    #[serde(default)]
+    pub phase: Vec<PhaseSection>,
     /// Interface of the FMU.
     #[serde(default)]
     pub interface: Interface,

@@ -3,6 +3,7 @@
 use super::numbers::STEP;
 use super::{BearingSection, Condition, Drive, Giver, Group, Scene, SceneError, Schedule};
 use crate::model::bodies::Race;
+use crate::schema::check_phases;
 use crate::schema::numbers::Range;
 
 /// The directions of a race, in the order of their conditions.
@@ -17,7 +18,8 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
     steps(scene)?;
     scene.effects.agree(&scene.setup())?;
     inputs(scene)?;
-    load(scene)
+    load(scene)?;
+    check_phases(&scene.phase, scene.load.duration.0)
 }
 
 /// The master can only give what a package has as an input.

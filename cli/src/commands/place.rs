@@ -11,12 +11,13 @@ use roulement::simulation::system::System;
 use roulement_cli::page::record;
 use roulement_cli::report::figures::{Figures, Shown};
 use roulement_cli::report::json;
+use roulement_cli::report::phases;
 use roulement_cli::report::plots::{title, write_plots};
 use roulement_cli::report::results::{Choice, ResultsError, is_parquet};
 use roulement_cli::report::shaft;
 use roulement_cli::report::spectrum;
 use roulement_cli::report::tables::Tables;
-use roulement_cli::watch::{BearingSeen, ShaftSeen};
+use roulement_cli::watch::{BearingSeen, Phase, ShaftSeen};
 
 use super::player::{End, Played};
 use super::summary;
@@ -214,6 +215,7 @@ impl Place {
             let life = seen.life.map_or(vec![], |life| life.numbers());
             write(&directory.join("means.csv"), |path| means.write(path, &life))?;
         }
+        write_phases(directory, &seen.phases, shown)?;
         if let Some(spectrum) = &seen.spectrum {
             write(&directory.join("spectrum.csv"), |path| spectrum.write(path))?;
             let picture = directory.join("spectrum.svg");
@@ -247,6 +249,7 @@ impl Place {
         if let Some(means) = &seen.means {
             write(&self.output.join("means.csv"), |path| means.write(path, &[]))?;
         }
+        write_phases(&self.output, &seen.phases, shown)?;
         write(&self.output.join("summary.txt"), |path| fs::write(path, text))?;
         let record = record::ShaftRun {
             system,
@@ -269,6 +272,14 @@ struct Own<'a> {
     seen: &'a BearingSeen,
     shown: &'a Shown,
     verdicts: &'a Verdicts,
+}
+
+/// Writes the table of phases, where there are some.
+fn write_phases(directory: &Path, phases: &[Phase], shown: &Shown) -> Result<(), String> {
+    if phases.is_empty() {
+        return Ok(());
+    }
+    write(&directory.join(phases::FILE), |path| phases::write(path, phases, shown.bars.as_ref()))
 }
 
 /// Writes a file, with its name in the error.

@@ -10,8 +10,8 @@ use roulement::simulation::system::System;
 use roulement_cli::report::figures::Shown;
 use roulement_cli::report::limits::Limits;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
-use roulement_cli::report::shaft;
 use roulement_cli::report::spectrum::is_wanted;
+use roulement_cli::report::{phases, shaft};
 use roulement_cli::watch::{BearingSeen, Life, ShaftSeen, headlines};
 
 use super::effects::idle_in;
@@ -53,6 +53,19 @@ fn write_shaft(
     let bearings = system.bearings().zip(&run.seen.bearings);
     let bearings = bearings.map(|((name, _), seen)| (Some(name), seen.means.as_ref()));
     write_settled_of_all(out, bearings.chain([(None, seen.means.as_ref())]))?;
+    for (index, phase) in seen.phases.iter().enumerate() {
+        phases::head(out, phase)?;
+        for ((name, _), seen) in system.bearings().zip(&run.seen.bearings) {
+            // All parts come to the same phases.
+            let Some(phase) = seen.phases.get(index) else { continue };
+            let power = phase.means.of("friction power");
+            write!(out, "  {name:<14} friction {power:.4} W, heat {:.4e} J", phase.heat.unwrap_or(f64::NAN))?;
+            if let Some(life) = &phase.life {
+                phases::say_life(out, "; life ", life)?;
+            }
+            writeln!(out)?;
+        }
+    }
     for warning in run.seen.warnings(&run.machine) {
         writeln!(out, "WARNING          {warning}")?;
     }
@@ -76,19 +89,6 @@ fn write_shaft(
 /// A single run cannot tell its own error: its local errors add up where motions keep them, and are forgotten where these are stable.
 fn write_unmeasured(out: &mut String) -> std::fmt::Result {
     writeln!(out, "error            not measured: --error measures it, by a run with half the steps")
-}
-
-/// The rating life over the window.
-fn write_life(out: &mut String, Life { life, hours, modified_hours }: &Life) -> std::fmt::Result {
-    let of = |million: f64, hours: &Option<f64>| {
-        let hours = hours.map_or(String::new(), |hours| format!(" ({hours:.0} h)"));
-        format!("{million:.4e} million revolutions{hours}")
-    };
-    write!(out, "life             L10r {}", of(life.reference, hours))?;
-    if let Some(modified) = life.modified {
-        write!(out, ", modified {}", of(modified, modified_hours))?;
-    }
-    writeln!(out, "; P {:.1} N, static safety {:.2}", life.equivalent_load, life.static_safety)
 }
 
 /// What it took, for so much simulated time \[s].
@@ -252,11 +252,13 @@ fn write_bearing(
     if let Some(means) = means {
         write_means(out, means, shown, now.cage.is_some())?;
         if let Some(life) = &seen.life {
-            write_life(out, life)?;
+            phases::say_life(out, "life             ", life)?;
+            writeln!(out)?;
         }
         write_law(out, simulation.scene())?;
         write_settled(out, means)?;
     }
+    seen.phases.iter().try_for_each(|phase| phases::say(out, phase, shown))?;
     for (row, value) in headlines(simulation) {
         writeln!(out, "{:<16} {value:.5e} {} at the end: {}", row.name, row.unit.name, row.description)?;
     }

@@ -21,9 +21,10 @@ use crate::watch::{BearingSeen, ShaftSeen};
 /// Name of its file.
 pub const FILE: &str = "run.json";
 /// What runs write beside the record, those of shafts too. Tables of a new run take the place of former ones by themselves.
-const BESIDE: [&str; 11] = [
+const BESIDE: [&str; 12] = [
     "summary.txt",
     "means.csv",
+    "phases.csv",
     "spectrum.csv",
     "spectrum.svg",
     "contacts.svg",

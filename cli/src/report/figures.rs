@@ -10,6 +10,7 @@ use roulement::simulation::outputs::{BallOutput, Outputs};
 use super::energy::EnergyWatch;
 use super::limits::Limits;
 use super::means::Means;
+use crate::watch::Phase;
 
 /// Figures by name.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -70,6 +71,11 @@ impl Figures {
         self.0.extend(means.means.iter().map(|mean| (mean.name.clone(), mean.mean)));
     }
 
+    /// Takes all means of a phase, by its name and theirs.
+    pub fn add_phase(&mut self, phase: &Phase) {
+        phase.means.means.iter().for_each(|mean| self.set(phase.figure(&mean.name), mean.mean));
+    }
+
     /// A figure; not a number where it is not there.
     pub fn get(&self, name: &str) -> f64 {
         self.0.get(name).copied().unwrap_or(f64::NAN)
@@ -89,6 +95,13 @@ impl Figures {
     pub fn distance(&self, other: &Self) -> Self {
         let both = self.0.iter().filter_map(|(name, value)| Some((name.clone(), value - other.0.get(name)?)));
         Self(both.map(|(name, difference)| (name, difference.abs())).collect())
+    }
+
+    /// All of them times a factor.
+    #[must_use]
+    pub fn times(mut self, factor: f64) -> Self {
+        self.0.values_mut().for_each(|value| *value *= factor);
+        self
     }
 }
 

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 
 use super::figures::{Figures, Shown};
 use super::means::{Mean, Means};
-use crate::watch::{BearingSeen, Life, Seen, ShaftSeen, headlines};
+use crate::watch::{BearingSeen, Extreme, Life, Phase, Seen, ShaftSeen, headlines};
 
 /// Summary of a run, with error bars where figures have them: of a bearing alone, or of each bearing of a shaft by its name, and of the
 /// shaft as `shaft`. Figures are those of the bearings, then of the shaft.
@@ -33,6 +33,7 @@ pub fn of_shaft(system: &System, seen: &ShaftSeen, shown: &Shown) -> Value {
         "figures": figures(&shown.figures),
         "error_bars": shown.bars.as_ref().map(figures),
         "means": seen.means.as_ref().map(means),
+        "phases": phases(&seen.phases, shown),
         "warnings": seen.warnings(system),
     })
 }
@@ -47,6 +48,7 @@ pub fn summary(simulation: &Simulation, seen: &BearingSeen, shown: &Shown) -> Va
         "error_bars": shown.bars.as_ref().map(figures),
         "means": seen.means.as_ref().map(means),
         "life": seen.life.as_ref().map(life),
+        "phases": phases(&seen.phases, shown),
         "effects": headlines(simulation).into_iter().map(|(row, value)| (row.name, value.into())).collect::<Map<_, _>>(),
         "peak_pressure": seen.limits.peak_pressure,
         "energy_balance": seen.energy.balance(simulation.outputs()),
@@ -69,6 +71,39 @@ fn life(Life { life, hours, modified_hours }: &Life) -> Value {
         "static_safety": life.static_safety,
         "load_rests_on": life.load_rests_on.name(),
     })
+}
+
+/// Phases by their names, in their order.
+fn phases(phases: &[Phase], shown: &Shown) -> Value {
+    let of = |phase: &Phase| {
+        let mean = |mean: &Mean| {
+            let extreme = phase.extreme(&mean.name);
+            json!({
+                "quantity": mean.name,
+                "unit": mean.unit,
+                "mean": mean.mean,
+                "least": extreme.map(|extreme| extreme.least),
+                "largest": extreme.map(|extreme| extreme.largest),
+                "interval_95": mean.interval,
+                "settled": mean.trend.as_ref().map(|trend| trend.settled),
+                "drift": mean.trend.as_ref().map(|trend| trend.drift),
+                "error": shown.bars.as_ref().map(|bars| bars.get(&phase.figure(&mean.name))),
+            })
+        };
+        let peak = |peak: &Extreme| json!({ "quantity": peak.name, "unit": peak.unit, "least": peak.least, "largest": peak.largest });
+        json!({
+            "name": phase.name,
+            "window": phase.means.window,
+            "settled": phase.means.settled(),
+            "script_changes": phase.means.scripted,
+            "heat": phase.heat,
+            "life": phase.life.as_ref().map(life),
+            "damage": phase.life.as_ref().map(|life| life.life.damage),
+            "quantities": phase.means.means.iter().map(mean).collect::<Vec<_>>(),
+            "peaks": phase.peaks().map(peak).collect::<Vec<_>>(),
+        })
+    };
+    phases.iter().map(of).collect()
 }
 
 fn figures(figures: &Figures) -> Value {

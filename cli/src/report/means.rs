@@ -113,6 +113,8 @@ pub struct Blocks {
     quantities: Vec<Watched>,
     /// \[m] what forces have a moment at.
     arm: f64,
+    /// \[s] times that count; all where there is none.
+    window: Option<[f64; 2]>,
 }
 
 /// The mean of a quantity over the window.
@@ -175,7 +177,18 @@ impl Blocks {
     /// None yet of these quantities, of a run of a duration \[s]; forces have a moment at an arm \[m].
     pub fn new(quantities: Vec<Watched>, arm: f64, duration: f64) -> Self {
         let length = duration / (MOST_BLOCKS * FINER) as f64;
-        Self { blocks: vec![], length, last: None, spare: None, begin: 0.0, quantities, arm }
+        Self { blocks: vec![], length, last: None, spare: None, begin: 0.0, quantities, arm, window: None }
+    }
+
+    /// None yet of a window \[s] of a run: of a step that is not all in it, the part that is counts.
+    pub fn within(quantities: Vec<Watched>, arm: f64, window: [f64; 2]) -> Self {
+        let [from, to] = window;
+        Self { window: Some(window), ..Self::new(quantities, arm, to - from) }
+    }
+
+    /// What they are of.
+    pub fn quantities(&self) -> &[Watched] {
+        &self.quantities
     }
 
     /// None yet of a bearing.
@@ -204,31 +217,42 @@ impl Blocks {
         }
         let mut now = self.spare.take().unwrap_or_default();
         now.take(time, values, weights);
+        let [opens, closes] = self.window.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let until = time.min(closes);
         if let Some(last) = self.last.take() {
-            let mut from = last.time;
-            while from < time {
+            let mut from = last.time.max(opens);
+            while from < until {
                 let index = self.block_at(from);
                 let end = self.begin + (index + 1) as f64 * self.length;
-                // What is left beyond the end by rounding belongs to the block before it.
-                let to = if end >= time - 1e-9 * self.length { time } else { end };
+                // What is left beyond the end by rounding belongs to the block before it; a block that ends where it is looked for, to
+                // which rounding may lead in a short window of a long run, would never come to the end.
+                let rest = self.rounding(until) * self.length;
+                let to = if end >= until - rest || end <= from { until } else { end };
                 self.blocks[index].add([&last, &now], [from, to]);
                 from = to;
             }
             self.spare = Some(last);
         } else {
-            self.begin = time;
+            self.begin = time.max(opens);
         }
-        let index = self.block_before(time);
-        let block = &mut self.blocks[index];
-        block.steps += 1;
-        block.largest.iter_mut().zip(largest).for_each(|(most, value)| *most = most.max(value));
+        if (opens..=closes).contains(&time) {
+            let index = self.block_before(time);
+            let block = &mut self.blocks[index];
+            block.steps += 1;
+            block.largest.iter_mut().zip(largest).for_each(|(most, value)| *most = most.max(value));
+        }
         self.last = Some(now);
+    }
+
+    /// [-] part of a block that is rounding at a time \[s].
+    fn rounding(&self, time: f64) -> f64 {
+        (4.0 * f64::EPSILON * time.abs() / self.length).max(1e-9)
     }
 
     /// The block that what comes after a time belongs to.
     fn block_at(&mut self, time: f64) -> usize {
         loop {
-            let index = ((time - self.begin) / self.length + 1e-9).max(0.0) as usize;
+            let index = ((time - self.begin) / self.length + self.rounding(time)).max(0.0) as usize;
             if index < MOST_BLOCKS {
                 while self.blocks.len() <= index {
                     self.blocks.push(Block::empty(self.quantities.len()));
@@ -246,7 +270,7 @@ impl Blocks {
 
     /// The block that a time itself belongs to: the end of one, rather than the begin of the next.
     fn block_before(&mut self, time: f64) -> usize {
-        let blocks = ((time - self.begin) / self.length - 1e-9).max(0.0);
+        let blocks = ((time - self.begin) / self.length - self.rounding(time)).max(0.0);
         let index = (blocks as usize).min(self.blocks.len().saturating_sub(1));
         if self.blocks.is_empty() {
             self.blocks.push(Block::empty(self.quantities.len()));
@@ -264,9 +288,21 @@ impl Blocks {
         self.means_from(HALF)
     }
 
-    /// Means over what comes after this share of the time, in (0, 1); none without a step.
+    /// Means over all there is, or all of the window; none without a step in it. How long a run would settle them is not told: a window
+    /// stays where it is.
+    pub fn all(&self) -> Option<Means> {
+        let mut means = self.means_from(0.0)?;
+        means.means.iter_mut().filter_map(|mean| mean.trend.as_mut()).for_each(|trend| trend.needed = None);
+        Some(means)
+    }
+
+    /// Means over what comes after this share of the time, in [0, 1); none without a step.
     pub fn means_from(&self, share: f64) -> Option<Means> {
         let end = self.last.as_ref()?.time;
+        let end = self.window.map_or(end, |[_, closes]| end.min(closes));
+        if end <= self.begin {
+            return None;
+        }
         // The first block that begins after it.
         let first = ((end - self.begin) * share / self.length - 1e-9).max(0.0).ceil() as usize;
         let window = &self.blocks[first.min(self.blocks.len().checked_sub(1)?)..];
@@ -614,6 +650,48 @@ mod tests {
         (0..=50).for_each(|row| still.add(f64::from(row), &[0.0; COUNT], &[0.0; COUNT], [0.0; 3]));
         let still = still.means().unwrap();
         assert!(still.means.iter().all(|mean| mean.mean == 0.0) && still.unsettled().count() == 0);
+    }
+
+    #[test]
+    fn closed_form_means_of_a_window_are_over_the_parts_of_steps_in_it() {
+        // A line is integrated exactly, wherever the window begins and ends, and however short it is beside a step and its time.
+        let windows = [
+            [0.25, 0.75],
+            [0.0, 1.0],
+            [0.1234, 0.87654],
+            [0.3001, 0.3002],
+            [0.777_777, 0.777_778],
+            [0.5, 0.5 + 1e-12],
+        ];
+        for start in [0.0, 1e3] {
+            for window in windows {
+                let quantities = of_bearing(Parts { cage: true, moving_outer: true });
+                let window: [f64; 2] = window.map(|time| start + time);
+                let mut blocks = Blocks::within(quantities, 1.0, window);
+                for row in 0..=70 {
+                    let time = start + f64::from(row) / 70.0;
+                    blocks.add(time, &[2.0 * (time - start); COUNT], &[1.0; COUNT], [0.0; 3]);
+                }
+                let found = blocks.all().unwrap();
+                let exact = window[0] + window[1] - 2.0 * start;
+                assert_eq!(found.window, window);
+                assert!((found.means[0].mean - exact).abs() < 1e-12, "{window:?} {}", found.means[0].mean);
+            }
+        }
+        // A run that ends before it, or in it.
+        let mut blocks =
+            Blocks::within(of_bearing(Parts { cage: true, moving_outer: true }), 1.0, [0.6, 0.9]);
+        for row in 0..=50 {
+            blocks.add(0.01 * f64::from(row), &[0.01 * f64::from(row); COUNT], &[1.0; COUNT], [0.0; 3]);
+        }
+        assert_eq!(blocks.all(), None);
+        blocks.add(0.7, &[0.7; COUNT], &[1.0; COUNT], [0.0; 3]);
+        let found = blocks.all().unwrap();
+        assert!(
+            (found.means[0].mean - 0.65).abs() < 1e-12 && found.window == [0.6, 0.7],
+            "{:?}",
+            found.window
+        );
     }
 
     #[test]

@@ -11,6 +11,7 @@ pub mod means;
 pub mod number;
 #[cfg(feature = "parquet")]
 pub mod parquet;
+pub mod phases;
 pub mod plots;
 pub mod polar;
 pub mod quantities;

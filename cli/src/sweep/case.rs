@@ -18,7 +18,7 @@ use crate::report::cells::{Cell, Column};
 use crate::report::means::Means;
 use crate::report::quantities::QUANTITIES;
 use crate::report::results::{Choice, MachineColumns, ResultsError, TableWriter};
-use crate::watch::{BearingSeen, Life, Seen, Watch};
+use crate::watch::{BearingSeen, Life, Phase, Seen, Watch};
 
 /// What is wanted of every case.
 #[derive(Clone, Debug, Default)]
@@ -190,6 +190,7 @@ fn of_machine(done: &Done, goal: Option<&'static str>) -> Row {
                 row.push(number(&of("error"), &column.unit, error.mean));
             }
         }
+        row.extend(seen.phases.iter().flat_map(|phase| of_phase(phase, str::to_string)));
     }
     let goal = goal.filter(|_| machine.shaft().is_none());
     for (((name, bearing), seen), gathered) in machine.bearings().zip(&seen.bearings).zip(&gathered.bearings)
@@ -210,7 +211,8 @@ pub fn key_of(quantity: &str) -> String {
     let of_race = |race: &str| {
         let end = format!(" {race} race");
         let what = quantity.strip_suffix(&end)?.strip_suffix(" the")?;
-        Some(format!("{race}.{}", what.strip_suffix(" on").or(what.strip_suffix(" of"))?))
+        let what = what.strip_suffix(" on").or(what.strip_suffix(" of"))?;
+        Some(format!("{race}.{}", what.replace(' ', "_")))
     };
     of_race("inner").or_else(|| of_race("outer")).unwrap_or_else(|| quantity.replace(' ', "_"))
 }
@@ -230,6 +232,33 @@ fn settled(means: &Means) -> &'static str {
         (false, Some(true)) => "yes",
         (false, Some(false)) => "no",
     }
+}
+
+/// What came of a phase; `key` gives the name of a quantity.
+fn of_phase(phase: &Phase, key: impl Fn(&str) -> String) -> Row {
+    let of = |what: &str| format!("phase.{}.{what}", phase.name);
+    let mut row = vec![(Column::text(&of("settled")), Cell::Text(settled(&phase.means).to_string()))];
+    for mean in &phase.means.means {
+        row.push(number(&of(&format!("{}.mean", key(&mean.name))), mean.unit, mean.mean));
+    }
+    for extreme in &phase.extremes {
+        let key = key(&extreme.name);
+        row.push(number(&of(&format!("{key}.least")), extreme.unit, extreme.least));
+        row.push(number(&of(&format!("{key}.largest")), extreme.unit, extreme.largest));
+    }
+    if let Some(heat) = phase.heat {
+        row.push(number(&of("heat"), "J", heat));
+    }
+    if let Some(Life { life, hours, modified_hours }) = &phase.life {
+        row.push(number(&of("life.L10r"), "1", life.reference));
+        row.push(optional(&of("life.L10r.hours"), "h", *hours));
+        if life.modified.is_some() {
+            row.push(optional(&of("life.modified"), "1", life.modified));
+            row.push(optional(&of("life.modified.hours"), "h", *modified_hours));
+        }
+        row.push(number(&of("damage"), "1", life.damage));
+    }
+    row
 }
 
 /// What came of a bearing.
@@ -280,6 +309,7 @@ fn summary(
             row.push(optional("life.modified.hours", "h", *modified_hours));
         }
     }
+    row.extend(seen.phases.iter().flat_map(|phase| of_phase(phase, key_of)));
     // What effects report at the end: life, heat, growth.
     let variables = Variables::moving(simulation.scene(), false);
     for report in variables.rows().iter().filter(|row| matches!(row.source, Source::Effect(_))) {
@@ -311,6 +341,7 @@ mod tests {
         assert_eq!(key_of("force.x on the inner race"), "inner.force.x");
         assert_eq!(key_of("position.y of the outer race"), "outer.position.y");
         assert_eq!(key_of("inner race speed"), "inner_race_speed");
+        assert_eq!(key_of("peak pressure on the inner race"), "inner.peak_pressure");
         assert_eq!(key_of("friction power"), "friction_power");
     }
 }

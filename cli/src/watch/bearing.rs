@@ -7,16 +7,20 @@ use roulement::effects::rating::Sums;
 use roulement::effects::reports::LifeOutput;
 use roulement::model::Model;
 use roulement::model::bodies::Race;
+use roulement::scene::PhaseSection;
 use roulement::simulation::Simulation;
+use roulement::simulation::instant::Instant;
 
 use crate::error::{Course, Lengths, Sample, sizes};
 use crate::report::energy::EnergyWatch;
 use crate::report::figures::Figures;
 use crate::report::limits::Limits;
 use crate::report::means::{Blocks, Means};
-use crate::report::quantities::{Parts, of_bearing};
+use crate::report::quantities::{Parts, of_bearing, values, weights};
 use crate::report::spectrum::{Recorder, Spectrum};
 use crate::report::thinned::Thinned;
+
+use super::phases::{Now, Phase, PhaseWatch};
 
 /// Gathers while a bearing runs.
 pub struct BearingWatch {
@@ -27,6 +31,7 @@ pub struct BearingWatch {
     /// Revolutions and loads from step to step, for the life over the window.
     rated: Thinned<(f64, Sums)>,
     samples: Thinned<Sample>,
+    phases: Vec<PhaseWatch>,
 }
 
 /// What was gathered of a bearing.
@@ -41,14 +46,20 @@ pub struct BearingSeen {
     pub limits: Limits,
     /// Life over the window of the means.
     pub life: Option<Life>,
+    /// Phases of the run that it came to.
+    pub phases: Vec<Phase>,
     /// Rows for comparison with other runs.
     samples: Vec<Sample>,
 }
 
 impl BearingWatch {
-    /// Of a simulation that has not been played yet.
-    pub fn of(simulation: &Simulation) -> Self {
+    /// Of a simulation that has not been played yet, and phases of its run.
+    pub fn of(simulation: &Simulation, phases: &[PhaseSection]) -> Self {
+        let quantities = of_bearing(Parts::of(simulation));
+        let peaks = PEAKS.iter().filter(|peak| peak.is_of(simulation));
+        let peaks: Vec<_> = peaks.map(|peak| (peak.name.into(), peak.unit)).collect();
         Self {
+            phases: PhaseWatch::of_all(phases, &quantities, &peaks, lengths(simulation).pitch_radius),
             blocks: Blocks::of_bearing(simulation),
             spectrum: Recorder::of(simulation),
             energy: EnergyWatch::default(),
@@ -63,8 +74,16 @@ impl BearingWatch {
         let instant = simulation.instant();
         self.blocks.push(&instant);
         self.limits.step(&instant);
-        if let Some(sums) = &simulation.state().rating {
+        let rating = simulation.state().rating.as_ref();
+        if let Some(sums) = rating {
             self.rated.push((instant.time, *sums));
+        }
+        if !self.phases.is_empty() {
+            let peaks = PEAKS.iter().filter(|peak| peak.is_of(simulation));
+            let peaks: Vec<f64> = peaks.map(|peak| (peak.get)(&instant)).collect();
+            let (values, weights) = (values(&instant), weights(&instant));
+            let now = Now { time: instant.time, values: &values, weights: &weights, peaks: &peaks, rating };
+            self.phases.iter_mut().for_each(|phase| phase.step(&now));
         }
     }
 
@@ -79,12 +98,12 @@ impl BearingWatch {
         self.samples.push(Sample::new(outputs));
     }
 
-    /// All of it, at the end.
-    pub fn finish(self, simulation: &Simulation) -> BearingSeen {
-        let means = self.blocks.means().map(|means| Means {
-            scripted: simulation.script_changes_within(means.window[0], means.window[1]),
-            ..means
-        });
+    /// All of it, at the end. Does a script, of the bearing or of the shaft that carries it, come to other values within a span \[s] of time?
+    pub fn finish(self, simulation: &Simulation, changes: &dyn Fn(f64, f64) -> bool) -> BearingSeen {
+        let means = self
+            .blocks
+            .means()
+            .map(|means| Means { scripted: changes(means.window[0], means.window[1]), ..means });
         let rated = self.rated.finish();
         BearingSeen {
             life: means.as_ref().and_then(|means| Life::over(means.window, &rated, simulation.model())),
@@ -93,6 +112,11 @@ impl BearingWatch {
             energy: self.energy,
             limits: self.limits,
             samples: self.samples.finish(),
+            phases: self
+                .phases
+                .into_iter()
+                .filter_map(|phase| phase.finish(Some(simulation.model()), changes))
+                .collect(),
         }
     }
 }
@@ -100,7 +124,9 @@ impl BearingWatch {
 impl BearingSeen {
     /// Figures of the summary of a run that ended so.
     pub fn figures(&self, simulation: &Simulation) -> Figures {
-        Figures::of(simulation, self.means.as_ref(), &self.limits, &self.energy)
+        let mut figures = Figures::of(simulation, self.means.as_ref(), &self.limits, &self.energy);
+        self.phases.iter().for_each(|phase| figures.add_phase(phase));
+        figures
     }
 
     /// What whoever reads results of this run should know, a sentence each: its summary and its notes say the same.
@@ -164,18 +190,54 @@ impl Life {
         all.into_iter().filter_map(|(name, unit, value)| Some((name, unit, value?))).collect()
     }
 
-    /// Over a window \[s], from what was seen up to times \[s].
-    fn over(window: [f64; 2], rated: &[(f64, Sums)], model: &Model) -> Option<Self> {
-        let rating = model.rating.as_ref()?;
-        let (_, end) = rated.last()?;
-        let before = rated.iter().rev().find(|(time, _)| *time <= window[0]).unwrap_or(&rated[0]);
-        let sums = end.since(&before.1);
-        let life = rating.after(&sums);
+    /// Under what was seen.
+    pub fn of(sums: &Sums, model: &Model) -> Option<Self> {
+        let life = model.rating.as_ref()?.after(sums);
         let speed = sums.speed().filter(|speed| *speed > 0.0);
         let hours = |million: f64| speed.map(|speed| million * 1e6 * TAU / speed / 3600.0);
         Some(Self { life, hours: hours(life.reference), modified_hours: life.modified.and_then(hours) })
     }
+
+    /// Over a window \[s], from what was seen up to times \[s].
+    fn over(window: [f64; 2], rated: &[(f64, Sums)], model: &Model) -> Option<Self> {
+        let (_, end) = rated.last()?;
+        let before = rated.iter().rev().find(|(time, _)| *time <= window[0]).unwrap_or(&rated[0]);
+        Self::of(&end.since(&before.1), model)
+    }
 }
+
+/// What has a least and a largest value in a phase, beside quantities with means.
+struct Peak {
+    name: &'static str,
+    unit: &'static str,
+    of_cage: bool,
+    get: fn(&Instant) -> f64,
+}
+
+impl Peak {
+    fn is_of(&self, simulation: &Simulation) -> bool {
+        !self.of_cage || simulation.model().cage.is_some()
+    }
+}
+
+const PEAKS: [Peak; 6] = [
+    Peak { name: "peak pressure on the inner race", unit: "Pa", of_cage: false, get: |o| o.peak_pressure[0] },
+    Peak { name: "peak pressure on the outer race", unit: "Pa", of_cage: false, get: |o| o.peak_pressure[1] },
+    Peak { name: "load between balls", unit: "N", of_cage: false, get: |o| o.between_balls },
+    Peak {
+        name: "eccentricity of the cage",
+        unit: "m",
+        of_cage: true,
+        get: |o| o.cage.map_or(0.0, |cage| cage.eccentricity),
+    },
+    Peak {
+        name: "pocket load",
+        unit: "N",
+        of_cage: true,
+        get: |o| o.cage.map_or(0.0, |cage| cage.pocket_load),
+    },
+    Peak { name: "land load", unit: "N", of_cage: true, get: |o| o.cage.map_or(0.0, |cage| cage.land_load) },
+];
 
 /// What every effect that is on promises for the summary, with its value at the end.
 pub fn headlines(simulation: &Simulation) -> Vec<(Row, f64)> {

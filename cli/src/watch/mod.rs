@@ -1,6 +1,7 @@
 //! What is gathered of a run step by step and row by row, whoever plays it: of every bearing, and of the shaft with its housings where there is one.
 
 mod bearing;
+mod phases;
 mod shaft;
 
 use roulement::simulation::Simulation;
@@ -9,6 +10,7 @@ use roulement::simulation::play::Observer;
 use roulement::simulation::system::System;
 
 pub use bearing::{BearingSeen, BearingWatch, Life, headlines};
+pub use phases::{Extreme, Phase};
 pub use shaft::{ShaftSeen, ShaftWatch};
 
 use crate::error::Run;
@@ -32,8 +34,12 @@ pub struct Seen {
 impl Watch {
     /// Of a machine that has not been played yet.
     pub fn of(machine: &Machine) -> Self {
+        let phases = match machine {
+            Machine::Bearing(bearing) => &bearing.scene().phase,
+            Machine::Shaft(system) => &system.scene().phases,
+        };
         Self {
-            bearings: machine.bearings().map(|(_, bearing)| BearingWatch::of(bearing)).collect(),
+            bearings: machine.bearings().map(|(_, bearing)| BearingWatch::of(bearing, phases)).collect(),
             shaft: machine.shaft().map(ShaftWatch::of),
         }
     }
@@ -51,9 +57,10 @@ impl Watch {
     /// All of it, at the end of a machine.
     pub fn finish(self, machine: &Machine) -> Seen {
         let bearings = self.bearings.into_iter().zip(machine.bearings());
+        let changes = |from, to| machine.script_changes_within(from, to);
         Seen {
-            bearings: bearings.map(|(watch, (_, bearing))| watch.finish(bearing)).collect(),
-            shaft: self.shaft.zip(machine.shaft()).map(|(watch, system)| watch.finish(system)),
+            bearings: bearings.map(|(watch, (_, bearing))| watch.finish(bearing, &changes)).collect(),
+            shaft: self.shaft.map(|watch| watch.finish(&changes)),
         }
     }
 }

@@ -1,9 +1,10 @@
 //! What is gathered of a shaft with its housings in a run: means, energy, and rows that its error is told from.
 
 use roulement::model::structure::StructureEnergies;
-use roulement::simulation::system::{System, script_changes_within};
+use roulement::simulation::system::System;
 
 use super::bearing::lengths;
+use super::phases::{Now, Phase, PhaseWatch};
 use crate::error::{Course, Lengths, Sample, sizes};
 use crate::report::energy::TOLERANCE;
 use crate::report::figures::Figures;
@@ -22,12 +23,15 @@ pub struct ShaftWatch {
     samples: Thinned<Sample>,
     /// \[N] largest load of a ball of any bearing.
     largest_load: f64,
+    phases: Vec<PhaseWatch>,
 }
 
 /// What was gathered of a shaft.
 pub struct ShaftSeen {
     /// Means over the second half.
     pub means: Option<Means>,
+    /// Phases of the run that it came to.
+    pub phases: Vec<Phase>,
     watched: Vec<Watched>,
     samples: Vec<Sample>,
     largest_load: f64,
@@ -38,13 +42,19 @@ impl ShaftWatch {
     pub fn of(system: &System) -> Self {
         let quantities = ShaftQuantities::of(system);
         let duration = system.scene().load.duration.0;
-        let blocks = Blocks::new(quantities.watched(), lengths_of(system).pitch_radius, duration);
-        Self { quantities, blocks, samples: Thinned::default(), largest_load: 0.0 }
+        let (watched, arm) = (quantities.watched(), lengths_of(system).pitch_radius);
+        let phases = PhaseWatch::of_all(&system.scene().phases, &watched, &[], arm);
+        let blocks = Blocks::new(watched, arm, duration);
+        Self { quantities, blocks, samples: Thinned::default(), largest_load: 0.0, phases }
     }
 
     /// Takes the start, or where a step has ended.
     pub fn step(&mut self, system: &System) {
-        self.blocks.push_values(system.time(), &self.quantities.values(system));
+        let (time, values) = (system.time(), self.quantities.values(system));
+        self.blocks.push_values(time, &values);
+        let weights = vec![1.0; values.len()];
+        let now = Now { time, values: &values, weights: &weights, peaks: &[], rating: None };
+        self.phases.iter_mut().for_each(|phase| phase.step(&now));
     }
 
     /// Takes a row.
@@ -55,14 +65,16 @@ impl ShaftWatch {
         self.largest_load = loads.fold(self.largest_load, f64::max);
     }
 
-    /// All of it, at the end.
-    pub fn finish(self, system: &System) -> ShaftSeen {
-        let means = self.blocks.means().map(|means| Means {
-            scripted: script_changes_within(system.scene(), means.window[0], means.window[1]),
-            ..means
-        });
+    /// All of it, at the end. Does a script, of the shaft or of a bearing, come to other values within a span \[s] of time?
+    pub fn finish(self, changes: &dyn Fn(f64, f64) -> bool) -> ShaftSeen {
+        let means = self
+            .blocks
+            .means()
+            .map(|means| Means { scripted: changes(means.window[0], means.window[1]), ..means });
+        let phases = self.phases.into_iter().filter_map(|phase| phase.finish(None, changes));
         ShaftSeen {
             means,
+            phases: phases.collect(),
             watched: self.quantities.watched(),
             samples: self.samples.finish(),
             largest_load: self.largest_load,
@@ -88,6 +100,7 @@ impl ShaftSeen {
         if let Some(means) = &self.means {
             figures.add_means(means);
         }
+        self.phases.iter().for_each(|phase| figures.add_phase(phase));
         figures
     }
 

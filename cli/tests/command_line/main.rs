@@ -11,6 +11,7 @@ mod effects;
 mod field;
 mod means;
 mod packages;
+mod phases;
 mod refusals;
 mod report;
 mod runs;

@@ -6,8 +6,10 @@ mod common;
 mod cost;
 mod cost_reference;
 mod error;
+mod error_bars;
 mod law_comparison;
 mod law_switch;
 #[path = "../../../tests/common/random.rs"]
 mod random;
+mod random_machines;
 mod random_scenes;

@@ -33,7 +33,7 @@ enum End {
 }
 
 /// A scene of the kinds that users write: bearings from 1 mm to 60 mm balls, loads up to 3 GPa, speeds up to n dm = 2e6, scripts.
-fn scene(random: &mut Random) -> String {
+pub fn scene(random: &mut Random) -> String {
     let mut text = String::new();
     let diameter = random.logarithmic(1e-3, 60e-3);
     let balls = 5 + random.below(20);

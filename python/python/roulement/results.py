@@ -80,6 +80,16 @@ class Results:
                 return mean
         raise KeyError(f"{quantity} has no mean; those there are: {[m['quantity'] for m in self.summary['means']['quantities']]}")
 
+    def phase(self, name):
+        """A phase of the run, `[[phase]]` of its scene, as a dictionary: its window [s], whether it has settled, heat of friction [J],
+        life and damage, `quantities` with mean, least and largest value, and `peaks`. That of a bearing on a shaft is
+        `results.bearing("left").phase("aligned")`."""
+        summary = self.summary if "phases" in self.summary else self.summary["shaft"]
+        for phase in summary["phases"]:
+            if phase["name"] == name:
+                return phase
+        raise KeyError(f"{name} is no phase of this run; those there are: {[phase['name'] for phase in summary['phases']]}")
+
     def __repr__(self):
         rows, columns = self._table.shape
         return f"Results({rows} rows, {columns} columns)"

@@ -251,6 +251,32 @@ impl Sums {
         since
     }
 
+    /// What was seen up to a share of a step that ends with later sums: they grow evenly in it. The largest load is that of the step's end.
+    #[must_use]
+    pub fn within_step(&self, end: &Self, share: f64) -> Self {
+        let mut here = *end;
+        let mix = |here: &mut f64, begin: f64| *here = begin + share * (*here - begin);
+        mix(&mut here.duration, self.duration);
+        mix(&mut here.turn, self.turn);
+        for (of_race, begin) in here.powers.iter_mut().zip(&self.powers) {
+            of_race.iter_mut().zip(begin).for_each(|(sum, begin)| mix(sum, *begin));
+        }
+        here.turns.iter_mut().zip(&self.turns).for_each(|(sum, begin)| mix(sum, *begin));
+        here.damage.iter_mut().zip(&self.damage).for_each(|(sum, begin)| mix(sum, *begin));
+        here
+    }
+
+    /// \[N] largest load of a ball on the inner race where the last step ended.
+    pub fn load_now(&self) -> f64 {
+        self.now.largest
+    }
+
+    /// The same with another largest load \[N]: that of a part of the run.
+    #[must_use]
+    pub fn with_largest(self, largest: f64) -> Self {
+        Self { largest, ..self }
+    }
+
     /// [rad/s] mean speed of the races against each other; none of no time.
     pub fn speed(&self) -> Option<f64> {
         (self.duration > 0.0).then(|| self.turn / self.duration)

@@ -129,6 +129,8 @@ fn mount(table: &mut Table, given: &Shared, direction: MountingDirection) {
     inner.insert("drive".into(), "pose".into());
     table.insert("inner".into(), inner.into());
     let mut load = section(table, "load");
+    // Phases, too, are those of the shaft.
+    table.remove("phase");
     let outer_speed = load.remove("outer_speed");
     let mut load = Table::new();
     load.extend(outer_speed.map(|speed| ("outer_speed".to_string(), speed)));

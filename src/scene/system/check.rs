@@ -2,7 +2,7 @@
 
 use super::{MountedScene, Written, check_housing};
 use crate::schema::numbers::Range;
-use crate::schema::{Drive, Level, SceneError, ShaftSection};
+use crate::schema::{Drive, Level, SceneError, ShaftSection, check_phases};
 
 /// Masses of shafts and discs.
 pub const MASS: Range = Range::above(0.0, 1e6, "kg");
@@ -16,6 +16,7 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
     let load = &written.load;
     Range::above(0.0, 1e4, "s").check("load.duration", load.duration.0)?;
     Range::closed(1e-9, load.duration.0, "s").check("load.output_interval", load.output_interval.0)?;
+    check_phases(&written.phase, load.duration.0)?;
     if written.gravity.is_scripted() {
         return Err(SceneError::conflict("gravity", "gravity of a system is constant: give three numbers"));
     }

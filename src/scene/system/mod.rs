@@ -18,7 +18,9 @@ use toml::{Table, Value};
 
 use super::{Scene, SceneError};
 use crate::schema::units::{Acceleration, Force, Moment, Time};
-use crate::schema::{Components, HousingSection, Matrices, Mounting, ShaftSection, Solver, explain, regular};
+use crate::schema::{
+    Components, HousingSection, Matrices, Mounting, PhaseSection, ShaftSection, Solver, explain, regular,
+};
 
 /// A shaft with its bearings, as described by a file.
 #[derive(Clone, Debug)]
@@ -35,6 +37,8 @@ pub struct SystemScene {
     pub gravity: Vector3<f64>,
     /// Simulated time, and distance of rows.
     pub load: SystemLoad,
+    /// Named windows of the run, of the shaft and of all its bearings.
+    pub phases: Vec<PhaseSection>,
     /// Its text, which stands alone: every bearing with its whole scene in place of a file or a designation.
     pub source: String,
 }
@@ -94,6 +98,9 @@ struct Written {
     bearing: Vec<WrittenBearing>,
     /// Simulated time, and distance of rows.
     load: SystemLoad,
+    /// Named windows of the run, which have means and lives of their own.
+    #[serde(default)]
+    phase: Vec<PhaseSection>,
     /// [m/s2] acceleration of gravity along the shaft's x, y, z, constant: it acts on the shaft and inside the bearings. 0 if not given.
     #[serde(default)]
     gravity: Components<Acceleration>,
@@ -149,7 +156,8 @@ impl SystemScene {
         let written: Written = explain::read(text).map_err(|(why, spot)| place(why, spot))?;
         let placed = |error| place(error, None);
         check::check(&written).map_err(placed)?;
-        let Written { title, mut shaft, mut housing, bearing, load, gravity, solver } = written;
+        let Written { title, mut shaft, mut housing, bearing, load, phase: phases, gravity, solver } =
+            written;
         let gravity = gravity.at(0.0);
         let matrices = |given: &Option<Value>, key: &str| {
             let read = given.as_ref().map(|given| Matrices::of(given, folder, key)).transpose()?;
@@ -172,7 +180,7 @@ impl SystemScene {
         check::solvers(&bearings).map_err(placed)?;
         let source =
             standing_alone(text, &bearings, of_shaft.as_ref(), &of_housings, gravity != Vector3::zeros());
-        Ok(Self { title, shaft, housings: housing, bearings, gravity, load, source })
+        Ok(Self { title, shaft, housings: housing, bearings, gravity, load, phases, source })
     }
 
     /// What the reader of each bearing's scene should know.
