@@ -12,7 +12,7 @@ use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement::{Model, scene};
 use roulement_cli::cost::{Choice, report, study_of};
-use roulement_cli::package::{library_beside as built_with, write_fmu, write_system_fmu};
+use roulement_cli::package::{library_beside as built_with, write_fmu_with, write_system_fmu};
 use roulement_cli::report::json;
 use serde_json::{Map, Value};
 
@@ -148,11 +148,12 @@ pub fn package(
     path: PathBuf,
     libraries: Vec<PathBuf>,
     name: &str,
+    columns: Vec<String>,
 ) -> PyResult<()> {
     py.detach(|| {
         match scene.resolved()? {
-            MachineScene::Bearing(scene) => write_fmu(&scene, name, &libraries, &path),
-            MachineScene::Shaft(scene) => write_system_fmu(&scene, name, &libraries, &path),
+            MachineScene::Bearing(scene) => write_fmu_with(&scene, name, &columns, &libraries, &path),
+            MachineScene::Shaft(scene) => write_system_fmu(&scene, name, &columns, &libraries, &path),
         }
         .map_err(file)
     })

@@ -72,6 +72,20 @@ impl Bearing {
         Ok(self.text(&candidates, chosen))
     }
 
+    /// \[kg] mass of the outer ring of its best candidate, estimated from its section.
+    ///
+    /// # Errors
+    /// If no balls come near its ratings.
+    pub fn outer_ring_mass(&self) -> Result<f64, CatalogueError> {
+        let candidates = self.candidates()?;
+        let chosen = candidates.first().ok_or_else(|| CatalogueError::Range {
+            key: "candidate",
+            value: "1".into(),
+            range: "[1, 0]".into(),
+        })?;
+        Ok(self.rings(chosen)[1].mass)
+    }
+
     fn text(&self, candidates: &[Candidate], chosen: &Candidate) -> String {
         let geometry = &chosen.geometry;
         let [dynamic, static_] =

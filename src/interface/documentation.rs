@@ -1,6 +1,7 @@
 //! The page that a package brings along: interface, frames, effects, limits, parameters.
 
 use crate::effects::AnyEffect;
+use crate::interface::model_description::{Wanted, is_told};
 use crate::interface::variables::{Causality, Offered, SystemVariables, Variable, Variables};
 use crate::scene::{Dependencies, Drive, Orientation, Scene};
 use crate::schema::numbers::Variability;
@@ -67,11 +68,11 @@ fn table(
     rows.iter().filter(|row| wanted(row)).map(cells).collect()
 }
 
-/// Inputs, outputs and locals.
-fn interface(rows: &[Variable]) -> String {
+/// Inputs, locals, and outputs that are wanted.
+fn interface(rows: &[Variable], wanted: Wanted<'_>) -> String {
     table(
         rows,
-        |row| row.causality != Causality::Parameter,
+        |row| row.causality != Causality::Parameter && is_told(row, wanted),
         |row| match row.causality {
             Causality::Input => "input".into(),
             Causality::Local => "local".into(),
@@ -82,6 +83,11 @@ fn interface(rows: &[Variable]) -> String {
 
 /// The page of a system's package.
 pub fn system_page(system: &System) -> String {
+    system_page_with(system, &|_| true)
+}
+
+/// The same with some of its outputs.
+pub fn system_page_with(system: &System, wanted: Wanted<'_>) -> String {
     let (scene, variables) = (system.scene(), SystemVariables::new(system));
     let title = if scene.title.is_empty() { "Shaft on ball bearings" } else { &scene.title };
     let against = scene.bearings.iter().filter(|bearing| bearing.mounting.direction.sign() < 0.0);
@@ -113,7 +119,7 @@ pub fn system_page(system: &System) -> String {
         title = escape(title),
         bearings = scene.bearings.len(),
         version = env!("CARGO_PKG_VERSION"),
-        interface = interface(variables.rows()),
+        interface = interface(variables.rows(), wanted),
         parameters = parameters(variables.rows()),
         source = escape(&scene.source),
     )
@@ -135,9 +141,14 @@ fn parameters(rows: &[Variable]) -> String {
 
 /// The page of a scene's package.
 pub fn page(scene: &Scene) -> String {
+    page_with(scene, &|_| true)
+}
+
+/// The same with some of its outputs.
+pub fn page_with(scene: &Scene, wanted: Wanted<'_>) -> String {
     let title = if scene.title.is_empty() { "Ball bearing" } else { &scene.title };
     let variables = Variables::new(scene);
-    let interface = interface(variables.rows());
+    let interface = interface(variables.rows(), wanted);
     let parameters = parameters(variables.rows());
     let dependencies = match scene.interface.dependencies {
         Dependencies::Point => {

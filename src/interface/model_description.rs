@@ -44,11 +44,31 @@ pub struct ModelDescription {
 
 type Xml = Writer<Vec<u8>>;
 
+/// Which outputs a package tells of, by their names. Inputs and parameters it always tells of.
+pub type Wanted<'a> = &'a dyn Fn(&str) -> bool;
+
+/// Is a row told of by a package with these outputs?
+pub fn is_told(row: &Variable, wanted: Wanted<'_>) -> bool {
+    row.causality != Causality::Output || wanted(&row.name)
+}
+
 /// Renders the model description of a started scene for a package with a name.
 ///
 /// # Errors
 /// Only those of writing to memory.
 pub fn render(simulation: &Simulation, name: &str) -> std::io::Result<ModelDescription> {
+    render_with(simulation, name, &|_| true)
+}
+
+/// The same with some of its outputs. Value references and the identifier are those of all: what the library knows does not change.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_with(
+    simulation: &Simulation,
+    name: &str,
+    wanted: Wanted<'_>,
+) -> std::io::Result<ModelDescription> {
     let scene = simulation.scene();
     let variables = Variables::new(scene);
     let guid = guid(&scene.source, variables.rows());
@@ -61,7 +81,7 @@ pub fn render(simulation: &Simulation, name: &str) -> std::io::Result<ModelDescr
         step: recommended_step(simulation),
     };
     let starts = variables.values(simulation.inputs(), simulation.outputs());
-    let xml = document(&about, variables.rows(), &starts)?;
+    let xml = document(&about, &Told::new(variables.rows(), &starts, wanted))?;
     Ok(ModelDescription { xml, guid })
 }
 
@@ -70,6 +90,18 @@ pub fn render(simulation: &Simulation, name: &str) -> std::io::Result<ModelDescr
 /// # Errors
 /// Only those of writing to memory.
 pub fn render_system(system: &System, name: &str) -> std::io::Result<ModelDescription> {
+    render_system_with(system, name, &|_| true)
+}
+
+/// The same with some of its outputs, as [`render_with`].
+///
+/// # Errors
+/// As [`render`].
+pub fn render_system_with(
+    system: &System,
+    name: &str,
+    wanted: Wanted<'_>,
+) -> std::io::Result<ModelDescription> {
     let scene = system.scene();
     let variables = SystemVariables::new(system);
     let guid = guid(&scene.source, variables.rows());
@@ -82,8 +114,27 @@ pub fn render_system(system: &System, name: &str) -> std::io::Result<ModelDescri
         stop: scene.load.duration.0,
         step: steps.fold(scene.load.output_interval.0, f64::min),
     };
-    let xml = document(&about, variables.rows(), &variables.values(system))?;
+    let xml = document(&about, &Told::new(variables.rows(), &variables.values(system), wanted))?;
     Ok(ModelDescription { xml, guid })
+}
+
+/// The variables that a model description has.
+struct Told {
+    rows: Vec<Variable>,
+    /// Value reference of each: its place among all rows.
+    references: Vec<usize>,
+    starts: Vec<f64>,
+}
+
+impl Told {
+    fn new(all: &[Variable], starts: &[f64], wanted: Wanted<'_>) -> Self {
+        let told = || (0..all.len()).filter(|index| is_told(&all[*index], wanted));
+        Self {
+            rows: told().map(|index| all[index].clone()).collect(),
+            references: told().collect(),
+            starts: told().map(|index| starts[index]).collect(),
+        }
+    }
 }
 
 /// What a model description says of the whole package.
@@ -116,7 +167,8 @@ pub fn guid(source: &str, rows: &[Variable]) -> String {
     format!("{{{}-{}-{}-{}-{}}}", &hex[0..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..32])
 }
 
-fn document(about: &About<'_>, rows: &[Variable], starts: &[f64]) -> std::io::Result<String> {
+fn document(about: &About<'_>, told: &Told) -> std::io::Result<String> {
+    let rows = &told.rows;
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     xml.create_element("fmiModelDescription")
@@ -145,8 +197,8 @@ fn document(about: &About<'_>, rows: &[Variable], starts: &[f64]) -> std::io::Re
             })?;
             default_experiment(xml, about)?;
             xml.create_element("ModelVariables").write_inner_content(|xml| {
-                for (reference, (row, start)) in rows.iter().zip(starts).enumerate() {
-                    scalar_variable(xml, reference, row, *start)?;
+                for (reference, (row, start)) in told.references.iter().zip(rows.iter().zip(&told.starts)) {
+                    scalar_variable(xml, *reference, row, *start)?;
                 }
                 Ok(())
             })?;

@@ -121,9 +121,75 @@ pub struct Mounting {
     pub direction: MountingDirection,
     /// Name of the housing that its outer race sits in; what its scene says of the outer race if not given.
     pub housing: Option<String>,
+    /// Does the seat hold the outer ring along the bore (`"held"`), or does the ring slide there without friction (`"free"`: a floating
+    /// bearing, which takes no axial force)? The mass of a ring that slides is `outer.mass` of its scene, of a catalogue bearing an estimate.
+    #[serde(default)]
+    pub axial: AxialSeat,
+    /// Tilt of the bore that the outer ring sits in, in the axes of the shaft.
+    #[serde(default)]
+    pub misalignment: BoreTilt,
+    /// How far the middle of that bore lies beside the axis of the shaft.
+    #[serde(default)]
+    pub offset: BoreOffset,
     /// Preload of the bearing; at most one of both.
     #[serde(default)]
     pub preload: Preload,
+}
+
+impl Mounting {
+    /// Does it say how the outer ring sits, in a housing or not?
+    pub fn seats_outer_ring(&self) -> bool {
+        let Self { housing, axial, misalignment, offset, .. } = self;
+        let lies_off =
+            misalignment.values().into_iter().chain(offset.values()).any(|(_, value)| value.is_some());
+        housing.is_some() || *axial == AxialSeat::Free || lies_off
+    }
+}
+
+/// Does a seat hold its ring along the bore?
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AxialSeat {
+    /// It does, both ways.
+    #[default]
+    Held,
+    /// The ring slides without friction.
+    Free,
+}
+
+/// Tilt of a bore: rotation vector [0, ry, rz] of its axis.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table { ry = ..., rz = ... }")]
+pub struct BoreTilt {
+    /// \[rad] tilt about y, in the axes of the shaft, of the bore that its outer ring sits in; 0 if not given.
+    pub ry: Option<Angle>,
+    /// \[rad] tilt of that bore about z; 0 if not given.
+    pub rz: Option<Angle>,
+}
+
+impl BoreTilt {
+    /// Its numbers \[rad] by their keys.
+    pub fn values(&self) -> [(&'static str, Option<f64>); 2] {
+        [("ry", self.ry.map(|angle| angle.0)), ("rz", self.rz.map(|angle| angle.0))]
+    }
+}
+
+/// Place of a bore across the axis of the shaft.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table { y = ..., z = ... }")]
+pub struct BoreOffset {
+    /// \[m] how far the middle of that bore lies beside the axis of the shaft, along y; 0 if not given. Along x, `position` and `preload` say
+    /// where it is.
+    pub y: Option<Length>,
+    /// \[m] the same along z; 0 if not given.
+    pub z: Option<Length>,
+}
+
+impl BoreOffset {
+    /// Its numbers \[m] by their keys.
+    pub fn values(&self) -> [(&'static str, Option<f64>); 2] {
+        [("y", self.y.map(|length| length.0)), ("z", self.z.map(|length| length.0))]
+    }
 }
 
 /// Where the x axis of a bearing points.

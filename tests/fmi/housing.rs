@@ -98,6 +98,33 @@ fn invariant_a_package_with_a_housing_makes_the_steps_of_the_native_system() {
     unsafe { fmi2FreeInstance(c) };
 }
 
+/// A ring that slides in the housing goes along its own way, and across it with the seat.
+#[test]
+fn invariant_a_package_with_a_floating_bearing_makes_the_steps_of_the_native_system() {
+    let preload = ", preload = { force = \"1500 N\" }";
+    let text = text("[[0, 0], [\"0.2 ms\", -3000], [\"0.4 ms\", 0]]")
+        .replace("7206 B", "6205")
+        .replacen(preload, "", 1)
+        .replacen(preload, ", axial = \"free\"", 1);
+    let package = Package::of_system("housing-floating", &text);
+    let c = package.start();
+    let mut native = System::new(&SystemScene::parse(&text, None, "".as_ref()).unwrap()).unwrap();
+    for k in 0..30 {
+        assert_eq!(step(c, k), Status::Ok);
+        native.advance(f64::from(k) * STEP + STEP).unwrap();
+        assert_eq!(outputs(&package, c), native_outputs(&native), "step {k}");
+    }
+    for (axis, sign) in [("y", -1.0), ("z", 1.0)] {
+        let seat = get(&package, c, &format!("right.housing.displacement.{axis}"));
+        let race = get(&package, c, &format!("right.outer.position.{axis}"));
+        assert!((race - sign * seat).abs() < 1e-15, "{axis}: {race} {seat}");
+    }
+    let along = ["right.housing.displacement.x", "right.outer.position.x"].map(|name| get(&package, c, name));
+    assert!((along[0] + along[1]).abs() > 1e-7, "{along:?}");
+    assert!(get(&package, c, "right.outer.force.x").abs() < 30.0);
+    unsafe { fmi2FreeInstance(c) };
+}
+
 #[test]
 fn loads_of_a_housing_are_inputs_and_its_race_is_not() {
     let package = Package::of_system("housing-inputs", &text("0"));

@@ -475,6 +475,14 @@ fn geared(torque: &str) -> String {
         .replace("[[shaft.load]]\n        name = \"fan-end\"", &gear.replace("TORQUE", torque))
 }
 
+/// A shaft of these bearings as one on deep groove bearings, of which the left one floats in a bore that is tilted and lies off.
+fn seated(text: &str) -> String {
+    let preload = ", preload = { force = \"1500 N\" }";
+    let left =
+        ", axial = \"free\", misalignment = { ry = 4e-4, rz = -2e-4 }, offset = { y = 1e-5, z = -2e-5 }";
+    text.replace("7206 B", "6205").replacen(preload, left, 1).replacen(preload, "", 1)
+}
+
 #[test]
 fn invariant_derivatives_of_a_step_are_its_differences() {
     let free = text("torque = \"0.3 N m\"\nstart_speed = \"6000 rpm\"", CONSTANT, "");
@@ -482,6 +490,7 @@ fn invariant_derivatives_of_a_step_are_its_differences() {
     for (name, text, more, change) in [
         ("given", geared("25.0"), &["shaft.speed", "shaft.gear[1].torque"][..], [1e-2, 0.05]),
         ("free", free, &["shaft.torque"][..], [0.05, 0.0]),
+        ("floating", seated(&geared("25.0")), &["shaft.speed", "shaft.gear[1].torque"][..], [1e-2, 0.05]),
     ] {
         let package = Package::of_system(&format!("system-derivatives-{name}"), &text);
         let c = package.start();
@@ -502,7 +511,8 @@ fn invariant_derivatives_of_a_step_are_its_differences() {
             run(c, 4..5);
             unknowns.iter().map(|unknown| get(&package, c, unknown)).collect()
         };
-        let changes = [2.0, 2.0, 0.1, 2.0, 1e-3].into_iter().chain(change);
+        // Contacts near the limit of friction bend: a small change of it.
+        let changes = [2.0, 2.0, 0.1, 2.0, 1e-4].into_iter().chain(change);
         for (known, change) in knowns.iter().chain(more).zip(changes) {
             let (plus, minus) = (of(known, change), of(known, -change));
             of(known, 0.0);
@@ -579,41 +589,26 @@ fn invariant_the_torque_of_a_gear_is_an_input_and_a_table_of_it_a_script() {
     }
 }
 
-#[test]
-fn invariant_a_parameter_is_that_of_the_changed_file() {
-    let disc = "[[shaft.disc]]\nposition = 0.0\nmass = 0.5\npolar_inertia = 2e-4\ntransverse_inertia = 1e-4\nunbalance = \"2 g mm\"\n[[shaft.point]]";
-    // Steps that follow the bearing would follow the changed file.
-    let solver = "[solver]\nmax_step = 2e-5\ninitial_step = 1e-6\ntolerance = 1e-7\n[load]";
-    let plain = plain().replace("[[shaft.point]]", disc).replace("[load]", solver);
-    let package = Package::of_system("system-parameters", &plain);
-    for (name, value, from, to) in [
-        ("shaft.mass", 2.5, "mass = \"1.8 kg\"", "mass = 2.5"),
-        ("shaft.disc[1].unbalance", 4e-6, "\"2 g mm\"", "4e-6"),
-        ("left.mounting.preload.force", 1200.0, "\"1500 N\"", "1200.0"),
-        ("right.mounting.position", 0.06, "position = \"50 mm\"", "position = 0.06"),
-        (
-            "left.bearing.inner_conformity",
-            0.53,
-            "[[bearing]]\n        name = \"right\"",
-            "set = { bearing = { inner_conformity = 0.53 } }\n[[bearing]]\nname = \"right\"",
-        ),
-        ("solver.max_step", 1e-5, "max_step = 2e-5", "max_step = 1e-5"),
-    ] {
-        let c = initialising(&package);
+/// Parameters of a package: each set to a value, against the file in which a text stands in place of another.
+fn parameters_are_those_of_the_file(
+    tag: &str,
+    plain: &str,
+    package: &Package,
+    cases: &[(&str, f64, &str, &str)],
+) {
+    for (name, value, from, to) in cases {
+        let c = initialising(package);
         assert_eq!(unsafe { fmi2FreeInstance(c) }, ());
         let c = package.instantiate();
-        set(&package, c, name, value);
+        set(package, c, name, *value);
         initialise(c);
         let changed = plain.replacen(from, to, 1);
         assert_ne!(changed, plain, "{name}");
-        let other = Package::of_system(
-            &format!("system-parameters-{}", name.replace(['.', '[', ']'], "-")),
-            &changed,
-        );
+        let other = Package::of_system(&format!("{tag}-{}", name.replace(['.', '[', ']'], "-")), &changed);
         let c_other = other.start();
         run(c, 0..4);
         run(c_other, 0..4);
-        let (ours, theirs) = (outputs(&package, c), outputs(&other, c_other));
+        let (ours, theirs) = (outputs(package, c), outputs(&other, c_other));
         let off = ours
             .iter()
             .zip(&theirs)
@@ -625,6 +620,58 @@ fn invariant_a_parameter_is_that_of_the_changed_file() {
             fmi2FreeInstance(c_other);
         }
     }
+}
+
+#[test]
+fn invariant_a_parameter_of_a_seat_is_that_of_the_changed_file() {
+    let solver = "[solver]\nmax_step = 2e-5\ninitial_step = 1e-6\ntolerance = 1e-7\n[load]";
+    let mass = "mounting = { position = \"-50 mm\"";
+    let plain = seated(&plain()).replace("[load]", solver).replacen(
+        mass,
+        &format!("set = {{ outer = {{ mass = 0.05 }} }}\n{mass}"),
+        1,
+    );
+    let package = Package::of_system("system-seats", &plain);
+    let cases = [
+        ("left.mounting.misalignment.ry", -3e-4, "ry = 4e-4", "ry = -3e-4"),
+        ("left.mounting.misalignment.rz", 1e-4, "rz = -2e-4", "rz = 1e-4"),
+        ("left.mounting.offset.y", 3e-5, "y = 1e-5", "y = 3e-5"),
+        ("left.mounting.offset.z", 1e-5, "z = -2e-5", "z = 1e-5"),
+        ("left.outer.mass", 0.08, "mass = 0.05", "mass = 0.08"),
+    ];
+    parameters_are_those_of_the_file("system-seats", &plain, &package, &cases);
+    let names = package.rows.iter().map(|row| row.name.as_str());
+    assert!(!names.clone().any(|name| name.starts_with("right.mounting.offset")));
+    // Nothing moves the outer ring from outside.
+    assert!(
+        !package
+            .references(Causality::Input)
+            .into_iter()
+            .any(|reference| { package.rows[reference as usize].name.starts_with("left.outer") })
+    );
+}
+
+#[test]
+fn invariant_a_parameter_is_that_of_the_changed_file() {
+    let disc = "[[shaft.disc]]\nposition = 0.0\nmass = 0.5\npolar_inertia = 2e-4\ntransverse_inertia = 1e-4\nunbalance = \"2 g mm\"\n[[shaft.point]]";
+    // Steps that follow the bearing would follow the changed file.
+    let solver = "[solver]\nmax_step = 2e-5\ninitial_step = 1e-6\ntolerance = 1e-7\n[load]";
+    let plain = plain().replace("[[shaft.point]]", disc).replace("[load]", solver);
+    let package = Package::of_system("system-parameters", &plain);
+    let cases = [
+        ("shaft.mass", 2.5, "mass = \"1.8 kg\"", "mass = 2.5"),
+        ("shaft.disc[1].unbalance", 4e-6, "\"2 g mm\"", "4e-6"),
+        ("left.mounting.preload.force", 1200.0, "\"1500 N\"", "1200.0"),
+        ("right.mounting.position", 0.06, "position = \"50 mm\"", "position = 0.06"),
+        (
+            "left.bearing.inner_conformity",
+            0.53,
+            "[[bearing]]\n        name = \"right\"",
+            "set = { bearing = { inner_conformity = 0.53 } }\n[[bearing]]\nname = \"right\"",
+        ),
+        ("solver.max_step", 1e-5, "max_step = 2e-5", "max_step = 1e-5"),
+    ];
+    parameters_are_those_of_the_file("system-parameters", &plain, &package, &cases);
     // A tunable one counts from the next step on.
     let of = |tolerance: Option<f64>| {
         let c = package.start();

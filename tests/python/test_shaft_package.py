@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import Slave, build
+from conftest import Slave, build, roulement
 from fmpy import read_model_description, simulate_fmu
 from fmpy.validation import validate_fmu
 
@@ -60,6 +60,29 @@ def of_bearings(result, row=-1):
 
 def test_fmpy_finds_no_problem(package):
     assert validate_fmu(str(package)) == []
+
+
+def test_a_package_of_chosen_outputs_is_the_same_with_less(package, tmp_path):
+    chosen = tmp_path / "chosen.fmu"
+    roulement("fmu", package.with_suffix(".toml"), "-o", chosen, "--columns", "*.inner.force.*,shaft.torque")
+    assert validate_fmu(str(chosen)) == []
+    names = [v.name for v in read_model_description(chosen).modelVariables if v.causality == "output"]
+    assert sorted(names) == sorted([f"{side}.inner.force.{axis}" for side in ("left", "right") for axis in "xyz"] + ["shaft.torque"])
+    settings = {"stop_time": 20 * STEP, "step_size": STEP, "output_interval": STEP, "output": names}
+    found, wanted = (simulate_fmu(str(fmu), **settings) for fmu in (chosen, package))
+    for name in names:
+        assert np.array_equal(found[name], wanted[name]), name
+    # Derivatives of what is there are those of the whole package.
+    known = ["mesh.force.y", "shaft.speed"]
+    derivatives = []
+    for fmu in (chosen, package):
+        slave = Slave(fmu, tmp_path / f"unzipped-{fmu.stem}").start()
+        slave.fmu.doStep(0.0, STEP)
+        references = [[slave.references[name] for name in of] for of in (names, known)]
+        derivatives.append(list(slave.fmu.getDirectionalDerivative(*references, [1.0, 0.1])))
+        slave.fmu.terminate()
+        slave.fmu.freeInstance()
+    assert derivatives[0] == derivatives[1] and any(derivatives[0])
 
 
 def test_names_units_and_abilities(package):

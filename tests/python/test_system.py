@@ -49,8 +49,23 @@ def pair(tmp_path_factory):
     return folder
 
 
+@pytest.fixture(scope="module")
+def sharing(tmp_path_factory):
+    """The same with one package for both."""
+    folder = tmp_path_factory.mktemp("sharing")
+    FmuBuilder.build_FMU(str(HERE / "gain.py"), dest=str(folder))
+    description = folder / "system.toml"
+    description.write_text(SYSTEM.replace("Other.fmu", "Gain.fmu"))
+    roulement("system", description, "-o", folder)
+    with zipfile.ZipFile(folder / "pair.ssp") as archive:
+        assert archive.namelist() == ["SystemStructure.ssd", "resources/one.fmu"]
+    return folder
+
+
 @pytest.mark.parametrize("master", ["ecos", "libcosim"])
-def test_masters_honour_signs_units_and_start_values(pair, master):
+@pytest.mark.parametrize("packages", ["pair", "sharing"])
+def test_masters_honour_signs_units_and_start_values(packages, master, request):
+    pair = request.getfixturevalue(packages)
     watched = [f"{component}.seen.{name}" for component in ("one", "other") for name in ("x", "z", "warm")]
     command = [sys.executable, HERE / "written_system.py", master, pair, "pair", str(STEP), str(STEPS), *watched]
     run = subprocess.run(command, capture_output=True, text=True)

@@ -5,6 +5,7 @@ Usage: written_system.py ecos|libcosim FOLDER NAME STEP STEPS COMPONENT.VARIABLE
 
 import ctypes
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -29,9 +30,12 @@ def libcosim(folder, name, step, steps, watched):
     execution, observer = CosimExecution.from_osp_config_file(f"{folder}/{name}-osp"), CosimObserver.create_last_value()
     assert execution.add_observer(observer)
     assert execution.step(steps)
+    structure = Path(f"{folder}/{name}-osp/OspSystemStructure.xml").read_text()
     values = []
     for component, variable in watched:
-        variables = read_model_description(f"{folder}/{name}-osp/{component}.fmu").modelVariables
+        # Components may share a package.
+        (source,) = re.findall(f'<Simulator name="{component}" source="([^"]*)"', structure)
+        variables = read_model_description(f"{folder}/{name}-osp/{source}").modelVariables
         (reference,) = (v.valueReference for v in variables if v.name == variable)
         index = execution.slave_index_from_instance_name(component)
         values += observer.last_real_values(index, [reference])

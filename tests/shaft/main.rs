@@ -7,6 +7,7 @@ mod hard;
 mod housing;
 mod motion;
 mod reference;
+mod seats;
 #[path = "../scene/reference/sources.rs"]
 #[allow(dead_code)]
 mod sources;

@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::sources::{Section, Source, sources};
 
 /// Structs, and the section that each is in a file.
-const SECTIONS: [(&str, &str); 15] = [
+const SECTIONS: [(&str, &str); 17] = [
     ("Written", ""),
     ("ShaftSection", "shaft"),
     ("BeamSection", "shaft.section"),
@@ -21,6 +21,8 @@ const SECTIONS: [(&str, &str); 15] = [
     ("HousingPoint", "housing.point"),
     ("WrittenBearing", "bearing"),
     ("Mounting", "bearing.mounting"),
+    ("BoreTilt", "bearing.mounting.misalignment"),
+    ("BoreOffset", "bearing.mounting.offset"),
     ("Preload", "bearing.mounting.preload"),
     ("SystemLoad", "load"),
 ];

@@ -27,7 +27,7 @@ use roulement::interface::model_description::{render, render_system};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::Simulation;
 use roulement::simulation::system::System;
-use roulement_cli::package::{library_beside_executable, name_of, write_fmu, write_system_fmu};
+use roulement_cli::package::{library_beside_executable, name_of, write_fmu_with, write_system_fmu};
 
 /// 3-D dynamic ball bearing for gearbox co-simulation.
 #[derive(Parser)]
@@ -66,6 +66,10 @@ enum Command {
         /// Name of the model, and of its library; that of the package's file if not given.
         #[arg(long)]
         name: Option<String>,
+        /// Outputs that the package has, with commas between, `*` for any characters, as of `run`: 'left.inner.force.*,shaft.*'; all if
+        /// not given. Inputs and parameters are always there.
+        #[arg(long, value_delimiter = ',', value_name = "LIST")]
+        columns: Vec<String>,
     },
     /// Write packages that are connected, as an SSP file and as an OSP system structure for libcosim, from one description.
     System(system::Options),
@@ -123,12 +127,14 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Run(options) => return run::run(options),
         Command::Sweep(options) => return sweep::run(options),
         Command::Equilibrium(options) => equilibrium::run(&options)?,
-        Command::Fmu { scene, output, library, name } => {
+        Command::Fmu { scene, output, library, name, columns } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
             let name = name.unwrap_or_else(|| name_of(&output));
             match load(&scene)? {
-                MachineScene::Shaft(scene) => write_system_fmu(&scene, &name, &libraries, &output)?,
-                MachineScene::Bearing(scene) => write_fmu(&scene, &name, &libraries, &output)?,
+                MachineScene::Shaft(scene) => {
+                    write_system_fmu(&scene, &name, &columns, &libraries, &output)?;
+                }
+                MachineScene::Bearing(scene) => write_fmu_with(&scene, &name, &columns, &libraries, &output)?,
             }
             say(&format!("{}\n", output.display()))?;
         }

@@ -17,12 +17,17 @@ use zip::write::SimpleFileOptions;
 
 use roulement::fmi::SCENE_FILE;
 use roulement::interface::documentation;
-use roulement::interface::model_description::{ModelDescription, identifier, render, render_system};
+use roulement::interface::model_description::{
+    ModelDescription, identifier, render_system_with, render_with,
+};
+use roulement::interface::variables::{Causality, SystemVariables, Variable, Variables};
 use roulement::scene::Scene;
 use roulement::scene::system::SystemScene;
 use roulement::schema::regular::{self, LARGEST_BINARY};
 use roulement::simulation::system::{System, SystemError};
 use roulement::simulation::{Simulation, SimulationError};
+
+use crate::report::results::fits;
 
 /// Why a package was not written.
 #[derive(Debug, Error)]
@@ -76,6 +81,9 @@ pub enum PackageError {
         /// Kind of file that the platform loads.
         wanted: String,
     },
+    /// No output is chosen by a name.
+    #[error("--columns {0}: no output of the package has such a name; `*` stands for any characters")]
+    Column(String),
     /// Two libraries for one platform.
     #[error("there are two libraries for {0}")]
     Twice(&'static str),
@@ -132,27 +140,57 @@ pub fn write_fmu(
     libraries: &[PathBuf],
     output: &Path,
 ) -> Result<(), PackageError> {
-    let libraries = read_libraries(libraries)?;
-    let description = render(&Simulation::new(scene)?, name)?;
-    let content = Content { description, source: &scene.source, page: documentation::page(scene) };
-    write(&content, name, &libraries, output)
+    write_fmu_with(scene, name, &[], libraries, output)
 }
 
-/// Writes the package of a shaft with its bearings, as [`write_fmu`] does that of a bearing.
+/// The same with those outputs alone whose names fit one of the patterns, as [`Choice::columns`]; all if there is none.
+///
+/// # Errors
+/// See [`PackageError`].
+pub fn write_fmu_with(
+    scene: &Scene,
+    name: &str,
+    columns: &[String],
+    libraries: &[PathBuf],
+    output: &Path,
+) -> Result<(), PackageError> {
+    let libraries = read_libraries(libraries)?;
+    let wanted = wanted(columns, Variables::new(scene).rows())?;
+    let description = render_with(&Simulation::new(scene)?, name, &wanted)?;
+    let page = documentation::page_with(scene, &wanted);
+    write(&Content { description, source: &scene.source, page }, name, &libraries, output)
+}
+
+/// Names of outputs that fit one of the patterns.
+fn wanted<'a>(
+    columns: &'a [String],
+    rows: &[Variable],
+) -> Result<impl Fn(&str) -> bool + use<'a>, PackageError> {
+    let outputs = || rows.iter().filter(|row| row.causality == Causality::Output);
+    let missing = |pattern: &&String| !outputs().any(|row| fits(&row.name, pattern));
+    match columns.iter().find(missing) {
+        Some(pattern) => Err(PackageError::Column(pattern.clone())),
+        None => Ok(move |name: &str| columns.is_empty() || columns.iter().any(|pattern| fits(name, pattern))),
+    }
+}
+
+/// Writes the package of a shaft with its bearings, as [`write_fmu_with`] does that of a bearing.
 ///
 /// # Errors
 /// See [`PackageError`].
 pub fn write_system_fmu(
     scene: &SystemScene,
     name: &str,
+    columns: &[String],
     libraries: &[PathBuf],
     output: &Path,
 ) -> Result<(), PackageError> {
     let libraries = read_libraries(libraries)?;
     let system = System::new(scene)?;
-    let description = render_system(&system, name)?;
-    let content = Content { description, source: &scene.source, page: documentation::system_page(&system) };
-    write(&content, name, &libraries, output)
+    let wanted = wanted(columns, SystemVariables::new(&system).rows())?;
+    let description = render_system_with(&system, name, &wanted)?;
+    let page = documentation::system_page_with(&system, &wanted);
+    write(&Content { description, source: &scene.source, page }, name, &libraries, output)
 }
 
 /// Reads one library per platform.

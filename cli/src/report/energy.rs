@@ -9,7 +9,7 @@ use roulement::simulation::outputs::Outputs;
 /// ([`Energies::turned_over`](roulement::model::energies::Energies::turned_over)).
 pub const TOLERANCE: f64 = 1e-2;
 /// [-] of the stored energy: less is rounding, where nearly nothing is put in or lost.
-const ROUNDING: f64 = 1e-6;
+pub const ROUNDING: f64 = 1e-6;
 /// [-] steps in a period of the highest natural frequency below which the scheme damps it.
 const STEPS_A_PERIOD: f64 = 20.0;
 

@@ -264,8 +264,9 @@ fn write_summary(
         writeln!(out, "{:<16} at its first bearing {first}", housing.name)?;
     }
     let energies = [("energy", &outputs.energies)].into_iter();
-    for (name, energies) in energies.chain(housings.map(|(housing, o)| (housing.name.as_str(), &o.energies)))
-    {
+    let of_housings = housings.map(|(housing, o)| (housing.name.as_str(), &o.energies));
+    let of_rings = outputs.ground.iter().map(|own| ("sliding rings", own));
+    for (name, energies) in energies.chain(of_housings).chain(of_rings) {
         writeln!(
             out,
             "{:<16} put in {:.5} J, to bearings {:.5} J, damped {:.5} J, balance {:.2e} J",

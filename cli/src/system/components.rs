@@ -28,6 +28,12 @@ pub struct Component {
 const ABOUT_AXIS: [&str; 2] = ["turned", "drive_torque"];
 
 impl Component {
+    /// Another component with the same package.
+    fn shared_by(&self, name: &str, turned: bool) -> Self {
+        let Self { file, interface, .. } = self;
+        Self { name: name.into(), file: file.clone(), interface: interface.clone(), turned }
+    }
+
     /// Sign of a variable in the axes of the system. A component with its x axis the other way is seen after half a turn about z: x and
     /// y components have the other sign, and what turns about x.
     pub fn sign(&self, variable: &str) -> f64 {
@@ -50,12 +56,13 @@ pub fn prepare(
 ) -> Result<(Vec<Component>, Vec<String>), SystemError> {
     let mut made: Vec<Component> = vec![];
     let mut notes = vec![];
+    // Scenes that were packed, by the component that did it first: another file, or other changes, may say the same.
+    let mut packed: Vec<(String, usize)> = vec![];
     for (index, Named { name, source, turned }) in named.iter().enumerate() {
         let failed = |why: String| SystemError::Component { component: name.clone(), why };
         if let Some(same) = named[..index].iter().position(|before| before.source == *source) {
-            let Component { file, interface, .. } = &made[same];
-            let (file, interface) = (file.clone(), interface.clone());
-            made.push(Component { name: name.clone(), file, interface, turned: *turned });
+            let shared = made[same].shared_by(name, *turned);
+            made.push(shared);
             continue;
         }
         let file = format!("{name}.fmu");
@@ -71,6 +78,12 @@ pub fn prepare(
             Source::Scene(path, changes) => {
                 let (scene, said) = scene(&beside.join(path), changes).map_err(failed)?;
                 notes.extend(said.into_iter().map(|note| format!("{name}: {note}")));
+                if let Some((_, same)) = packed.iter().find(|(source, _)| *source == scene.source) {
+                    let shared = made[*same].shared_by(name, *turned);
+                    made.push(shared);
+                    continue;
+                }
+                packed.push((scene.source.clone(), index));
                 let mut libraries = libraries.to_vec();
                 if libraries.is_empty() {
                     libraries.push(library_beside_executable().map_err(|why| failed(why.to_string()))?);

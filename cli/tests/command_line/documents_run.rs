@@ -188,7 +188,8 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                     continue;
                 }
                 // A housing is added to the shaft that is shipped, bearings take the place of those with their names.
-                if table.get("housing").is_some_and(Value::is_array) {
+                let of_shaft = ["housing", "bearing"].map(|key| table.get(key).is_some_and(Value::is_array));
+                if of_shaft.contains(&true) {
                     let pinion = fs::read_to_string(root().join("scenes/shafts/pinion.toml")).unwrap();
                     let mut system: Table = pinion.parse().unwrap();
                     for (key, value) in table {

@@ -81,6 +81,72 @@ fn invariant_the_same_scene_and_library_give_the_same_bytes() {
     assert!(packed(&scratch, "a.fmu") == packed(&scratch, "b.fmu"));
 }
 
+/// Elements of a model description by their name and these attributes, in its order.
+fn elements(description: &str, element: &str, attributes: &[&str]) -> Vec<Vec<String>> {
+    let opening = format!("<{element} ");
+    let lines = description.lines().filter(|line| line.trim_start().starts_with(&opening));
+    let value = |line: &str, attribute: &str| {
+        let rest = line.split(&format!(" {attribute}=\"")).nth(1).unwrap_or_default();
+        rest.split('"').next().unwrap_or_default().to_string()
+    };
+    lines.map(|line| attributes.iter().map(|attribute| value(line, attribute)).collect()).collect()
+}
+
+#[test]
+fn a_package_of_chosen_outputs_has_these_alone_under_the_same_references() {
+    let scratch = Scratch::new("chosen");
+    let fmu = |scene: &str, name: &str, columns: &[&str]| {
+        let package = scratch.path(name);
+        let output = roulement(&[&["fmu", scene, "-o", &package, "--name", "chosen"], columns].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(system::unzipped(&package, "modelDescription.xml")).unwrap()
+    };
+    for (scene, columns, expected) in [
+        (scene("shafts/pinion"), "left.inner.force.*,shaft.torque,*.friction_power", 6),
+        (scene("thrust"), "inner.force.*,cage.speed", 4),
+    ] {
+        let all = fmu(&scene, "all.fmu", &[]);
+        let chosen = fmu(&scene, "chosen.fmu", &["--columns", columns]);
+        let of = |text: &str| elements(text, "ScalarVariable", &["name", "valueReference", "causality"]);
+        let (before, after) = (of(&all), of(&chosen));
+        let outputs = |all: &[Vec<String>]| all.iter().filter(|row| row[2] == "output").count();
+        assert_eq!(outputs(&after), expected, "{after:?}");
+        assert!(outputs(&before) > 4 * expected);
+        // What it tells of has the same names and references, and nothing but outputs is missing.
+        assert!(after.iter().all(|row| before.contains(row)));
+        let inputs =
+            |all: &[Vec<String>]| all.iter().filter(|row| row[2] != "output").cloned().collect::<Vec<_>>();
+        assert_eq!(inputs(&before), inputs(&after));
+        // Places of outputs are those among the variables that it has.
+        let unknowns = elements(&chosen, "Unknown", &["index"]);
+        assert_eq!(unknowns.len(), 2 * expected);
+        for index in unknowns {
+            let place: usize = index[0].parse().unwrap();
+            assert_eq!(after[place - 1][2], "output");
+        }
+        // The library takes the identifier of both.
+        let guid = |text: &str| text.split(" guid=\"").nth(1).unwrap().split('"').next().unwrap().to_string();
+        assert_eq!(guid(&all), guid(&chosen));
+        let told = ["all.fmu", "chosen.fmu"].map(|package| {
+            let page = system::unzipped(&scratch.path(package), "documentation/index.html");
+            String::from_utf8(page).unwrap().contains("inner.moment.x</code>")
+        });
+        assert_eq!(told, [true, false]);
+    }
+    let refused = roulement(&[
+        "fmu",
+        &scene("thrust"),
+        "-o",
+        &scratch.path("no.fmu"),
+        "--columns",
+        "cage.speed,innr.*",
+    ]);
+    assert!(!refused.status.success());
+    let message = String::from_utf8_lossy(&refused.stderr);
+    assert!(message.contains("--columns innr.*") && message.contains("no output"), "{message}");
+    assert!(!Path::new(&scratch.path("no.fmu")).exists());
+}
+
 #[test]
 fn the_library_of_the_same_build_is_found() {
     let scratch = Scratch::new("beside");

@@ -144,6 +144,30 @@ fn scenes_are_packed_as_by_the_command_for_one_and_shared() {
     }
 }
 
+/// Files and changes that come to the same scene have one package, whose library is in the system once.
+#[test]
+fn scenes_that_say_the_same_share_a_package() {
+    let scratch = Scratch::new("system-alike");
+    let text = fs::read_to_string(scene("thrust")).unwrap();
+    for name in ["left", "right"] {
+        fs::write(scratch.path(&format!("{name}.toml")), &text).unwrap();
+    }
+    let text = "name = \"pair\"\nstep = 1e-5\nstop = 1\n[components.left]\nscene = \"left.toml\"\n\
+                [components.right]\nscene = \"right.toml\"\nmounting = \"-x\"\n\
+                [components.slow]\nscene = \"right.toml\"\nchanges = { \"load.inner_speed\" = \"3000 rpm\" }\n\
+                [components.slower]\nscene = \"left.toml\"\nchanges = { \"load.inner_speed\" = \"3000 rpm\" }\n";
+    let output = system(&scratch, text, "out");
+    assert!(output.status.success(), "{}", message(output));
+    let structure = unzipped(&scratch.path("out/pair.ssp"), "SystemStructure.ssd");
+    let structure = String::from_utf8(structure).unwrap();
+    for (name, file) in [("left", "left"), ("right", "left"), ("slow", "slow"), ("slower", "slow")] {
+        let element =
+            structure.lines().find(|line| line.contains(&format!("Component name=\"{name}\""))).unwrap();
+        assert!(element.contains(&format!("source=\"resources/{file}.fmu\"")), "{element}");
+    }
+    assert!(!Path::new(&scratch.path("out/pair-osp/right.fmu")).exists());
+}
+
 #[test]
 fn start_values_of_others_are_seen_by_their_component() {
     let scratch = workplace("system-start");

@@ -95,16 +95,17 @@ def find_libraries():
     return found
 
 
-def package(scene, path, library=None, name=None):
+def package(scene, path, library=None, name=None, columns=()):
     """Writes the FMI 2.0 package of a scene, a bearing or a shaft with its bearings; returns its path.
 
     `library` is the shared library, or a list with one for each platform, that of this package if not given (`find_libraries`); `name`
-    that of the model, of the file if not given.
+    that of the model, of the file if not given; `columns` are the outputs that the package has, `*` stands for any characters in their
+    names, all if not given.
     Raises OSError if a library is missing or of another platform.
     """
     if library is None:
         library = find_libraries()
     elif isinstance(library, (str, os.PathLike)):
         library = [library]
-    _native.package(scene._native, Path(path), [Path(of) for of in library], name or Path(path).stem)
+    _native.package(scene._native, Path(path), [Path(of) for of in library], name or Path(path).stem, list(columns))
     return Path(path)

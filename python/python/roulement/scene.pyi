@@ -24,4 +24,5 @@ def package(
     path: str | PathLike[str],
     library: str | PathLike[str] | Sequence[str | PathLike[str]] | None = None,
     name: str | None = None,
+    columns: Sequence[str] = (),
 ) -> Path: ...

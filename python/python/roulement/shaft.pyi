@@ -31,5 +31,6 @@ def package(
     path: str | PathLike[str],
     library: str | PathLike[str] | Sequence[str | PathLike[str]] | None = None,
     name: str | None = None,
+    columns: Sequence[str] = (),
 ) -> Path: ...
 def write_ross(path: str | PathLike[str], rotor: Any, nodes: Sequence[int], highest: float) -> None: ...

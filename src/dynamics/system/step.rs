@@ -104,6 +104,10 @@ impl Share<'_> {
 
     /// Adds the block of a bearing's border in these rows and the columns of another share to the system's.
     fn add_block(&self, columns: &Self, reduced: &DMatrix<f64>, matrix: &mut DMatrix<f64>) {
+        // The ground does not move.
+        if self.to.is_empty() || columns.to.is_empty() {
+            return;
+        }
         let block = reduced.view((self.from, columns.from), (self.count(), columns.count()));
         let right = match &columns.carried {
             None => block.into_owned(),

@@ -39,6 +39,8 @@ pub struct Seat {
     map: Map,
     /// \[m] place of the race's origin in that frame while the coordinates are zero.
     offset: Vector3<f64>,
+    /// \[rad] its tilt there.
+    tilt: Vector3<f64>,
     /// 1, or -1 where the bearing's x axis points against the shaft's.
     direction: f64,
 }
@@ -51,7 +53,21 @@ impl Seat {
             (0..station.ncols()).filter(|k| station.column(*k).amax() > 0.0).collect();
         let signs = [direction, direction, 1.0];
         let map = Map::from_fn(coordinates.len(), |row, k| station[(row, coordinates[k])] * signs[row % 3]);
-        Self { coordinates, map, offset: Vector3::new(offset, 0.0, 0.0), direction }
+        Self { coordinates, map, offset: Vector3::new(offset, 0.0, 0.0), tilt: Vector3::zeros(), direction }
+    }
+
+    /// The same seat at another place across the axis \[m] and with a tilt [0, ry, rz] \[rad] of its own, in the axes of the structure.
+    #[must_use]
+    pub fn lying_off(mut self, place: Vector3<f64>, tilt: Vector3<f64>) -> Self {
+        let signs = Vector3::new(self.direction, self.direction, 1.0);
+        self.offset += signs.component_mul(&place);
+        self.tilt = signs.component_mul(&tilt);
+        self
+    }
+
+    /// \[rad] its tilt while the coordinates are zero, in the bearing's frame.
+    pub fn own_tilt(&self) -> &Vector3<f64> {
+        &self.tilt
     }
 
     /// Coordinates of the structure that move it.
@@ -82,6 +98,10 @@ impl Seat {
             (moved.fixed_rows::<3>(0).into_owned(), moved.fixed_rows::<3>(3).into_owned())
         };
         let ((place, mut angles), (velocity, mut spins)) = (halves(q), halves(rates));
+        // Zeros keep their signs.
+        if self.tilt != Vector3::zeros() {
+            angles += self.tilt;
+        }
         if let Some(spin) = given {
             angles.x += self.direction * spin.angle;
             spins.x += self.direction * spin.speed;
@@ -177,8 +197,9 @@ impl StructureTrial {
     pub fn started(mut self, model: &Structure, load: &StructureLoad) -> StructureState {
         self.sum_forces(model, load);
         let end = &mut self.end;
-        let solved = model.mass.clone().lu().solve(&end.total);
-        end.accelerations = solved.unwrap_or_else(|| DVector::zeros(model.size()));
+        // The ground has no coordinates where no ring slides.
+        let solved = (model.size() > 0).then(|| model.mass.clone().lu().solve(&end.total));
+        end.accelerations = solved.flatten().unwrap_or_else(|| DVector::zeros(model.size()));
         end.spin = model.spin([&end.coordinates, &end.rates, &end.accelerations], end.spin);
         self.account(model, load);
         let mut end = self.end;

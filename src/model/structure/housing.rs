@@ -83,6 +83,7 @@ fn still(
         by_spin: DVector::zeros(size),
         weights,
         turning: Turning::Still,
+        rings: 0,
     };
-    Carrier { structure, stations, modes: vec![] }
+    Carrier { structure, stations, sliding: vec![], modes: vec![] }
 }

@@ -9,9 +9,11 @@
 
 mod beam;
 mod housing;
+mod ring;
 mod shaft;
 
 use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6, Vector3};
+pub use ring::Ring;
 use serde::{Deserialize, Serialize};
 
 /// Vectors of any length as lists of numbers.
@@ -61,6 +63,8 @@ pub struct Structure {
     pub weights: OMatrix<f64, Dyn, nalgebra::U3>,
     /// How it turns.
     pub turning: Turning,
+    /// How many of its last coordinates are displacements of rings that slide along their bores.
+    pub rings: usize,
 }
 
 /// A structure that carries races, and what its stations do: places where races sit, loads act or motion is reported.
@@ -70,6 +74,8 @@ pub struct Carrier {
     pub structure: Structure,
     /// Displacement and rotation at each station, by the coordinates.
     pub stations: Vec<Map>,
+    /// Stations at which the outer ring slides along its bore, and the motion of that ring by the coordinates.
+    pub sliding: Vec<(usize, Map)>,
     /// \[Hz] frequencies of the modes that were kept between stations that are held; none of a rigid structure, or of matrices.
     pub modes: Vec<f64>,
 }
@@ -173,11 +179,18 @@ impl Structure {
     /// compare with forces, errors of coordinates with lengths.
     pub fn scales(&self) -> DVector<f64> {
         let mass = (0..3).map(|axis| self.total_mass(axis)).fold(f64::MIN_POSITIVE, f64::max);
-        DVector::from_fn(self.size(), |i, _| (self.mass[(i, i)] / mass).sqrt())
+        let first_ring = self.size() - self.rings;
+        DVector::from_fn(
+            self.size(),
+            |i, _| if i < first_ring { (self.mass[(i, i)] / mass).sqrt() } else { 1.0 },
+        )
     }
 
     /// \[kg] mass that an acceleration along an axis meets, where rigid displacements are among the coordinates: `t^T M t`.
     fn total_mass(&self, axis: usize) -> f64 {
+        if self.size() == 0 {
+            return 0.0;
+        }
         let weights = self.weights.column(axis);
         // `M t = w`, hence `t^T M t = w^T M^-1 w`.
         let solved = self.mass.clone().lu().solve(&weights.into_owned());

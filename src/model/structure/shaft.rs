@@ -154,7 +154,8 @@ impl Parts {
             by_spin: DVector::zeros(size),
             weights: weights.resize_vertically(size, 0.0),
             turning,
+            rings: 0,
         };
-        Carrier { structure, stations, modes }
+        Carrier { structure, stations, sliding: vec![], modes }
     }
 }

@@ -9,7 +9,7 @@ use toml::{Table, Value};
 use super::{MountedScene, SystemLoad};
 use crate::catalogue::Request;
 use crate::scene::{Scene, SceneError};
-use crate::schema::{Mounting, MountingDirection, explain, regular};
+use crate::schema::{AxialSeat, Mounting, MountingDirection, explain, regular};
 
 /// A bearing as it is written.
 #[derive(Deserialize)]
@@ -51,6 +51,7 @@ impl WrittenBearing {
         let Self { name, scene, catalogue, mounting, set } = self;
         let inside =
             |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
+        let mut estimated_mass = None;
         let (text, folder, file) = match (scene, catalogue) {
             (Some(Value::Table(keys)), None) => (keys.to_string(), given.folder.clone(), None),
             (Some(Value::String(file)), None) => {
@@ -60,10 +61,14 @@ impl WrittenBearing {
             }
             (None, Some(designation)) => {
                 let request = Request { designation: Some(designation.clone()), ..Request::default() };
-                let text = request.bearing().and_then(|bearing| bearing.scene(1));
                 let refuse =
                     |why| inside(SceneError::conflict("bearing.catalogue", format!("{designation}: {why}")));
-                (text.map_err(refuse)?, given.folder.clone(), None)
+                let bearing = request.bearing().map_err(refuse)?;
+                let text = bearing.scene(1).map_err(refuse)?;
+                if mounting.axial == AxialSeat::Free {
+                    estimated_mass = Some(bearing.outer_ring_mass().map_err(refuse)?);
+                }
+                (text, given.folder.clone(), None)
             }
             _ => {
                 let why = "give exactly one of scene (a file, or its keys) and catalogue (a designation)";
@@ -74,8 +79,8 @@ impl WrittenBearing {
             .map_err(|(why, _)| explain::with_place(why, &text, None, file.as_deref()))
             .map_err(inside)?;
         merge(&mut table, set);
-        if mounting.housing.is_some() {
-            in_housing(&mut table).map_err(inside)?;
+        if mounting.seats_outer_ring() {
+            seat_outer_ring(&mut table, &mounting, estimated_mass).map_err(inside)?;
         }
         mount(&mut table, given, mounting.direction);
         let scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
@@ -103,10 +108,19 @@ fn section(table: &mut Table, name: &str) -> Table {
     }
 }
 
-/// Makes a bearing's own scene that of a bearing whose outer race a housing moves.
-fn in_housing(table: &mut Table) -> Result<(), SceneError> {
+/// Makes a bearing's own scene that of a bearing whose outer race sits as its mounting says.
+fn seat_outer_ring(
+    table: &mut Table,
+    mounting: &Mounting,
+    estimated_mass: Option<f64>,
+) -> Result<(), SceneError> {
     let mut outer = section(table, "outer");
-    let why = "the outer race sits in mounting.housing, which moves it";
+    let why = match &mounting.housing {
+        Some(_) => {
+            "the outer race sits in mounting.housing, which moves it; a tilt of its bore is mounting.misalignment"
+        }
+        None => "mounting.axial, misalignment and offset say how the outer race sits",
+    };
     if let Some(key) = ["support", "misalignment"].into_iter().find(|key| outer.contains_key(*key)) {
         return Err(SceneError::conflict(format!("outer.{key}"), why));
     }
@@ -119,6 +133,9 @@ fn in_housing(table: &mut Table) -> Result<(), SceneError> {
         return Err(SceneError::conflict("load.outer_speed", why));
     }
     outer.insert("drive".into(), "pose".into());
+    if let Some(mass) = estimated_mass.filter(|_| !outer.contains_key("mass")) {
+        outer.insert("mass".into(), mass.into());
+    }
     table.insert("outer".into(), outer.into());
     Ok(())
 }

@@ -1,13 +1,18 @@
 //! What the keys of a system must agree in.
 
+use super::bearing::WrittenBearing;
 use super::{MountedScene, Written, check_housing};
 use crate::schema::numbers::Range;
-use crate::schema::{Drive, Level, SceneError, ShaftSection, check_phases};
+use crate::schema::{AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, check_phases};
 
 /// Masses of shafts and discs.
 pub const MASS: Range = Range::above(0.0, 1e6, "kg");
 /// Their moments of inertia.
 pub const INERTIA: Range = Range::above(0.0, 1e6, "kg m2");
+/// Tilts of bores: what small tilts of structures are added to.
+pub const BORE_TILT: Range = Range::closed(-0.05, 0.05, "rad");
+/// Places of bores beside the axis of the shaft.
+pub const BORE_OFFSET: Range = Range::closed(-0.01, 0.01, "m");
 /// Positions along a shaft.
 pub const POSITION: Range = Range::closed(-1e3, 1e3, "m");
 
@@ -62,6 +67,12 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
             );
             return Err(SceneError::conflict(format!("bearing.mounting.housing = \"{wanted}\""), why));
         }
+        bore(mounting)?;
+    }
+    let slides = |bearing: &WrittenBearing| bearing.mounting.axial == AxialSeat::Free;
+    if written.shaft.matrices.is_none() && written.bearing.iter().all(slides) {
+        let why = "nothing would hold the shaft along its axis: at least one bearing needs axial = \"held\"";
+        return Err(SceneError::conflict("bearing.mounting.axial = \"free\"", why));
     }
     for housing in &written.housing {
         check_housing::housing(housing)?;
@@ -71,6 +82,22 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
         }
     }
     shaft(&written.shaft)
+}
+
+/// How an outer ring sits.
+fn bore(mounting: &Mounting) -> Result<(), SceneError> {
+    for (key, tilt) in mounting.misalignment.values() {
+        BORE_TILT.check(&format!("bearing.mounting.misalignment.{key}"), tilt.unwrap_or(0.0))?;
+    }
+    for (key, length) in mounting.offset.values() {
+        BORE_OFFSET.check(&format!("bearing.mounting.offset.{key}"), length.unwrap_or(0.0))?;
+    }
+    let preload = mounting.preload;
+    if mounting.axial == AxialSeat::Free && (preload.force.is_some() || preload.displacement.is_some()) {
+        let why = "a ring that slides (axial = \"free\") takes no axial force: nothing would hold a preload";
+        return Err(SceneError::conflict("bearing.mounting.preload", why));
+    }
+    Ok(())
 }
 
 fn shaft(shaft: &ShaftSection) -> Result<(), SceneError> {
@@ -202,6 +229,17 @@ fn alone(bearing: &MountedScene) -> Result<(), SceneError> {
             "inner.support",
             "is for a bearing without a shaft: the inner race is a part of the shaft",
         );
+    }
+    if bearing.mounting.axial == AxialSeat::Free {
+        let Some(mass) = scene.outer.mass else {
+            return refuse(
+                "outer.mass",
+                "is needed: the outer ring slides (mounting.axial = \"free\") and moves by its mass",
+            );
+        };
+        let inside =
+            |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
+        MASS.check("outer.mass", mass.0).map_err(inside)?;
     }
     if scene.outer.drive == Drive::Wrench {
         return refuse(

@@ -19,7 +19,7 @@ use toml::{Table, Value};
 use super::{Scene, SceneError};
 use crate::schema::units::{Acceleration, Force, Moment, Time};
 use crate::schema::{
-    Components, HousingSection, Matrices, Mounting, PhaseSection, ShaftSection, Solver, explain, regular,
+    AxialSeat, Components, HousingSection, Matrices, Mounting, PhaseSection, ShaftSection, Solver, explain, regular,
 };
 
 /// A shaft with its bearings, as described by a file.
@@ -52,6 +52,21 @@ pub struct MountedScene {
     pub mounting: Mounting,
     /// The bearing by itself, in axes of its own; its inner race is moved by the shaft.
     pub scene: Scene,
+}
+
+impl MountedScene {
+    /// \[m, rad] place across the axis and tilt of the bore that its outer ring sits in, in the axes of the shaft.
+    pub fn bore(&self) -> (Vector3<f64>, Vector3<f64>) {
+        let [[y, z], [ry, rz]] = [self.mounting.offset.values(), self.mounting.misalignment.values()]
+            .map(|values| values.map(|(_, value)| value.unwrap_or(0.0)));
+        (Vector3::new(0.0, y, z), Vector3::new(0.0, ry, rz))
+    }
+
+    /// \[kg] mass of its outer ring, if that slides along the bore.
+    pub fn sliding_mass(&self) -> Option<f64> {
+        let slides = self.mounting.axial == AxialSeat::Free;
+        self.scene.outer.mass.filter(|_| slides).map(|mass| mass.0)
+    }
 }
 
 /// Force and moment at a named point of a shaft or a housing, in the shaft's axes.
@@ -209,6 +224,14 @@ impl SystemScene {
     pub fn housing_of(&self, bearing: usize) -> Option<usize> {
         let wanted = self.bearings[bearing].mounting.housing.as_ref()?;
         self.housings.iter().position(|housing| housing.name == *wanted)
+    }
+
+    /// Bearings whose outer rings sit in bores of the ground that are tilted, lie off, or let them slide, by their indices.
+    pub fn bearings_in_ground(&self) -> impl Iterator<Item = usize> {
+        (0..self.bearings.len()).filter(|bearing| {
+            let mounting = &self.bearings[*bearing].mounting;
+            mounting.housing.is_none() && mounting.seats_outer_ring()
+        })
     }
 
     /// Bearings that sit in a housing, by their indices.

@@ -1,9 +1,9 @@
 //! The numbers of a shaft, its housings and mountings that a package offers as parameters. Those of the bearings are in their own scenes.
 
 use super::SystemScene;
-use super::check::{INERTIA, MASS, POSITION};
-use crate::schema::Disc;
+use super::check::{BORE_OFFSET, BORE_TILT, INERTIA, MASS, POSITION};
 use crate::schema::numbers::{Range, Variability};
+use crate::schema::{AxialSeat, Disc, Mounting};
 
 const SPEED: Range = Range::closed(-1e5, 1e5, "rad/s");
 const UNBALANCE: Range = Range::closed(0.0, 1e3, "kg m");
@@ -68,6 +68,10 @@ fn disc(scene: &mut SystemScene, index: usize) -> Option<&mut Disc> {
     scene.shaft.disc.get_mut(index)
 }
 
+fn mounting(scene: &mut SystemScene, index: usize) -> Option<&mut Mounting> {
+    scene.bearings.get_mut(index).map(|bearing| &mut bearing.mounting)
+}
+
 /// One of all bearings, as they are integrated together.
 const fn solver(
     key: &'static str,
@@ -80,7 +84,7 @@ const fn solver(
 
 /// All of them.
 #[rustfmt::skip]
-static NUMBERS: [ShaftNumber; 19] = [
+static NUMBERS: [ShaftNumber; 24] = [
     number("mass", "mass of the shaft", MASS, of_shaft, |s, _| s.shaft.mass.as_mut().map(|mass| &mut mass.0)),
     number("polar_inertia", "moment of inertia of the shaft about its axis", INERTIA, of_shaft,
         |s, _| s.shaft.polar_inertia.as_mut().map(|inertia| &mut inertia.0)),
@@ -107,6 +111,18 @@ static NUMBERS: [ShaftNumber; 19] = [
         |s, k| s.bearings.get_mut(k)?.mounting.preload.force.as_mut().map(|force| &mut force.0)),
     number("mounting.preload.displacement", "way of the inner race by the preload of the bearing", WAY, of_bearings,
         |s, k| s.bearings.get_mut(k)?.mounting.preload.displacement.as_mut().map(|way| &mut way.0)),
+    number("mounting.misalignment.ry", "tilt about y of the bore of the bearing, axes of the shaft", BORE_TILT, of_bearings,
+        |s, k| mounting(s, k)?.misalignment.ry.as_mut().map(|angle| &mut angle.0)),
+    number("mounting.misalignment.rz", "tilt about z of the bore of the bearing, axes of the shaft", BORE_TILT, of_bearings,
+        |s, k| mounting(s, k)?.misalignment.rz.as_mut().map(|angle| &mut angle.0)),
+    number("mounting.offset.y", "y coordinate of the bore of the bearing, axes of the shaft", BORE_OFFSET, of_bearings,
+        |s, k| mounting(s, k)?.offset.y.as_mut().map(|length| &mut length.0)),
+    number("mounting.offset.z", "z coordinate of the bore of the bearing, axes of the shaft", BORE_OFFSET, of_bearings,
+        |s, k| mounting(s, k)?.offset.z.as_mut().map(|length| &mut length.0)),
+    number("outer.mass", "mass of the outer ring that slides in its bore", MASS, of_bearings, |s, k| {
+        let bearing = s.bearings.get_mut(k).filter(|bearing| bearing.mounting.axial == AxialSeat::Free)?;
+        bearing.scene.outer.mass.as_mut().map(|mass| &mut mass.0)
+    }),
     number("mass", "mass of the housing", MASS, of_housings, |s, k| s.housings.get_mut(k)?.mass.as_mut().map(|mass| &mut mass.0)),
     solver("tolerance", "local error of an internal step over the ball diameter", (TOLERANCE, Variability::Tunable),
         |s, k| s.bearings.get_mut(k).map(|bearing| &mut bearing.scene.solver.tolerance)),

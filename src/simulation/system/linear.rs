@@ -132,7 +132,8 @@ impl System {
         for (index, carrier) in self.carriers.iter().enumerate() {
             let own = mode.shape.rows(first, carrier.structure.size());
             first += own.len();
-            for (station, map) in carrier.stations.iter().enumerate() {
+            for station in 0..carrier.stations.len() {
+                let map = carrier.ring_at(station);
                 let along = |axis: usize| {
                     map.row(axis).iter().zip(own.iter()).map(|(by, amplitude)| amplitude * *by).sum()
                 };
@@ -172,6 +173,15 @@ impl System {
                 names.extend(numbered("gear", scene.shaft.gear.len()));
                 named(names).map(|name| format!("the shaft at {name}"))
             }
+            Some(index) if self.carriers[structure].sliding.iter().any(|(at, _)| *at == station) => {
+                let bearing = match index < scene.housings.len() {
+                    true => scene.bearings_in(index).nth(station),
+                    false => scene.bearings_in_ground().nth(station),
+                };
+                bearing.map(|bearing| format!("the outer ring of {}", scene.bearings[bearing].name))
+            }
+            // Bores in the ground that do not move are no places of a mode.
+            Some(index) if index >= scene.housings.len() => None,
             Some(index) => {
                 let housing = &scene.housings[index];
                 let mut names: Vec<String> =

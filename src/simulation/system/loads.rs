@@ -35,7 +35,12 @@ pub fn at(
         StructureLoad { force, spin: Spin::default(), axial_moment: 0.0 }
     });
     let of_shaft = on_shaft(given, &carriers[0], state, from, time);
-    [of_shaft].into_iter().chain(of_housings).collect()
+    let ground = carriers.get(given.scene.housings.len() + 1).map(|ground| StructureLoad {
+        force: ground.structure.weight(&given.scene.gravity),
+        spin: Spin::default(),
+        axial_moment: 0.0,
+    });
+    [of_shaft].into_iter().chain(of_housings).chain(ground).collect()
 }
 
 fn on_shaft(

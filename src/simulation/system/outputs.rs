@@ -53,6 +53,8 @@ pub struct SystemOutputs {
     pub energies: StructureEnergies,
     /// What the housings do, in the order of the scene.
     pub housings: Vec<HousingOutputs>,
+    /// Energies since the start of rings that slide in bores of the ground; none where there are none.
+    pub ground: Option<StructureEnergies>,
 }
 
 /// Motion of a station.
@@ -81,8 +83,8 @@ impl SystemOutputs {
             PointOutput { displacement, velocity, tilt: Vector3::new(0.0, tilt.y, tilt.z) }
         };
         let of = |range: std::ops::Range<usize>| shaft.stations[range].iter().map(on_shaft).collect();
-        let housings = carriers[1..].iter().zip(&states[1..]).enumerate();
-        let housings = housings.map(|(index, (carrier, state))| {
+        let housings = scene.housings.iter().zip(carriers[1..].iter().zip(&states[1..])).enumerate();
+        let housings = housings.map(|(index, (_, (carrier, state)))| {
             let mut all = carrier.stations.iter().map(|map| moved(map, state));
             let [loads, points] = housing_stations(scene, index);
             HousingOutputs {
@@ -103,6 +105,10 @@ impl SystemOutputs {
             powers: state.powers,
             energies: state.energies,
             housings: housings.collect(),
+            ground: states
+                .get(scene.housings.len() + 1)
+                .filter(|state| !state.coordinates.is_empty())
+                .map(|state| state.energies),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::DVector;
+use nalgebra::{DVector, Vector3};
 
 use super::super::inputs::Inputs;
 use super::super::{Simulation, SimulationError};
@@ -14,9 +14,10 @@ use crate::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::model::structure::{
-    Carrier, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
+    Carrier, Ring, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
 };
 use crate::numerics::step_control::StepControl;
+use crate::numerics::tilt;
 use crate::scene::system::{MountedScene, SystemScene};
 
 impl System {
@@ -68,11 +69,18 @@ impl System {
             }
             let Preloaded { offset, force } = preload(mounted, &bearing.model).map_err(inside(mounted))?;
             asked.push(force);
-            let housing = scene.housing_of(index).map(|housing| (Race::Outer, housing + 1, 0.0));
-            for (race, structure, offset) in [(Race::Inner, 0, offset)].into_iter().chain(housing) {
-                let station = &carriers[structure].stations[seated[structure]];
+            let outer = outer_structure(scene, index).map(|structure| (Race::Outer, structure));
+            for (race, structure) in [(Race::Inner, 0)].into_iter().chain(outer) {
+                let station = carriers[structure].ring_at(seated[structure]);
                 seated[structure] += 1;
-                let seat = Seat::new(station, mounted.mounting.direction.sign(), offset);
+                let direction = mounted.mounting.direction.sign();
+                let seat = match race {
+                    Race::Inner => Seat::new(station, direction, offset),
+                    Race::Outer => {
+                        let (place, tilt) = mounted.bore();
+                        Seat::new(station, direction, 0.0).lying_off(place, tilt)
+                    }
+                };
                 joints.push(Joint { bearing: index, race, structure, seat });
             }
             bearings.push(bearing);
@@ -106,7 +114,7 @@ impl System {
         statics.check_preloads(&asked, &states)?;
         statics.initialise(&states)?;
         // Housings feel the friction torque of their bearings too, which those say that are in balance.
-        if carriers.len() > 1 {
+        if !scene.housings.is_empty() {
             statics.see_friction();
             statics.solve(&mut states)?;
             statics.initialise(&states)?;
@@ -138,15 +146,34 @@ impl System {
     }
 }
 
-/// The shaft, then the housings.
+/// The shaft, then the housings, then the ground if it has bores.
 fn carriers(scene: &SystemScene) -> Result<Vec<Carrier>, SystemError> {
     let named = |name: String| move |why| SystemError::Structure { name, why };
     let shaft = Carrier::of_shaft(&scene.shaft, &stations(scene)).map_err(named("shaft".into()));
     let housings = scene.housings.iter().enumerate().map(|(index, housing)| {
         let name = format!("housing \"{}\"", housing.name);
-        Carrier::of_housing(housing, &places_of_housing(scene, index)).map_err(named(name))
+        let carrier = Carrier::of_housing(housing, &places_of_housing(scene, index)).map_err(named(name))?;
+        Ok(carrier.with_rings(&sliding(scene, scene.bearings_in(index))))
     });
-    [shaft].into_iter().chain(housings).collect()
+    let bores = scene.bearings_in_ground().count();
+    let ground = || Ok(Carrier::of_ground(bores).with_rings(&sliding(scene, scene.bearings_in_ground())));
+    [shaft].into_iter().chain(housings).chain((bores > 0).then(ground)).collect()
+}
+
+/// Rings that slide, of the bearings at the first stations of a structure.
+fn sliding(scene: &SystemScene, bearings: impl Iterator<Item = usize>) -> Vec<Ring> {
+    let ring = |(station, bearing): (usize, usize)| {
+        let mounted = &scene.bearings[bearing];
+        let axis = tilt::orientation(&mounted.bore().1) * Vector3::x();
+        mounted.sliding_mass().map(|mass| Ring { station, mass, axis })
+    };
+    bearings.enumerate().filter_map(ring).collect()
+}
+
+/// The structure that carries the outer race of a bearing, if one does.
+fn outer_structure(scene: &SystemScene, bearing: usize) -> Option<usize> {
+    let ground = || scene.bearings[bearing].mounting.seats_outer_ring().then_some(scene.housings.len());
+    scene.housing_of(bearing).or_else(ground).map(|structure| structure + 1)
 }
 
 /// Turn of a shaft at the start.

@@ -125,11 +125,12 @@ impl Statics<'_> {
         let tilted = |joint: &Joint| {
             let trial = StructureTrial::new(&states[joint.structure]);
             let seat = trial.seat(&self.carriers[joint.structure].structure, &joint.seat);
-            let axis = seat.pose().orientation * Vector3::x();
-            (joint.structure, joint.bearing, axis.y.hypot(axis.z))
+            let turned = seat.angles - joint.seat.own_tilt();
+            (joint.structure, joint.bearing, turned.y.hypot(turned.z))
         };
-        // The first structure is the shaft.
-        let seats = self.joints.iter().filter(|joint| joint.structure > 0).map(tilted);
+        // The first structure is the shaft, and the ground does not give way.
+        let housings = 1..=self.scene.housings.len();
+        let seats = self.joints.iter().filter(|joint| housings.contains(&joint.structure)).map(tilted);
         let (structure, bearing, tilt) = seats.max_by(|a, b| a.2.total_cmp(&b.2))?;
         (tilt > FAR).then(|| SystemError::GivesWay {
             housing: self.scene.housings[structure - 1].name.clone(),
@@ -206,6 +207,10 @@ impl Statics<'_> {
             let held = Vector6::new(x, y, z, 0.0, about_y, about_z);
             let inputs = &self.bearings[index].inputs;
             let arm = inputs.inner.pose.position - inputs.outer.pose.position;
+            // Along the axis the races carry the balls together; around it, friction does in part.
+            let balls =
+                self.bearings[index].model.bearing.ball.mass * self.bearings[index].state.balls.len() as f64;
+            let weight = Vector3::x() * (balls * inputs.effects.frame.motion.gravity.x);
             force = force.max(held.fixed_rows::<3>(0).amax());
             let row = |i: usize| if i < 3 { i } else { i + 1 };
             let mut whole = Matrix6::zeros();
@@ -222,7 +227,7 @@ impl Statics<'_> {
                     Race::Outer => {
                         let moment = held.fixed_rows::<3>(3) + arm.cross(&held.fixed_rows::<3>(0));
                         let turning = Vector3::x() * self.friction[index];
-                        stack(&held.fixed_rows::<3>(0).into_owned(), &(moment + turning))
+                        stack(&(held.fixed_rows::<3>(0) + weight), &(moment + turning))
                     }
                 };
                 let own = self.carriers[*structure].structure.size();
