@@ -9,6 +9,7 @@ use roulement::scene::machine::MachineScene;
 use roulement::simulation::Simulation;
 use roulement::simulation::system::System;
 use roulement_cli::page::record;
+use roulement_cli::report::losses::Closed;
 use roulement_cli::report::figures::{Figures, Shown};
 use roulement_cli::report::json;
 use roulement_cli::report::plots::{title, write_plots};
@@ -212,7 +213,9 @@ impl Place {
         let mut plots = write_plots(scene, rows, directory)?;
         if let Some(means) = &seen.means {
             let life = seen.life.map_or(vec![], |life| life.numbers());
-            write(&directory.join("means.csv"), |path| means.write(path, &life))?;
+            let closed = seen.closed.iter().flat_map(Closed::numbers);
+            let others: Vec<_> = closed.chain(life).collect();
+            write(&directory.join("means.csv"), |path| means.write(path, &others))?;
         }
         if let Some(spectrum) = &seen.spectrum {
             write(&directory.join("spectrum.csv"), |path| spectrum.write(path))?;

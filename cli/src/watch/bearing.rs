@@ -13,6 +13,7 @@ use crate::error::{Course, Lengths, Sample, sizes};
 use crate::report::energy::EnergyWatch;
 use crate::report::figures::Figures;
 use crate::report::limits::Limits;
+use crate::report::losses::{Closed, LossWatch, Sums as LossSums};
 use crate::report::means::{Blocks, Means};
 use crate::report::quantities::{Parts, of_bearing};
 use crate::report::spectrum::{Recorder, Spectrum};
@@ -24,6 +25,7 @@ pub struct BearingWatch {
     spectrum: Option<Recorder>,
     energy: EnergyWatch,
     limits: Limits,
+    losses: LossWatch,
     /// Revolutions and loads from step to step, for the life over the window.
     rated: Thinned<(f64, Sums)>,
     samples: Thinned<Sample>,
@@ -39,6 +41,8 @@ pub struct BearingSeen {
     pub energy: EnergyWatch,
     /// Limits of the bearing that it met.
     pub limits: Limits,
+    /// What closes its losses over the window of the means.
+    pub closed: Option<Closed>,
     /// Life over the window of the means.
     pub life: Option<Life>,
     /// Rows for comparison with other runs.
@@ -53,6 +57,7 @@ impl BearingWatch {
             spectrum: Recorder::of(simulation),
             energy: EnergyWatch::default(),
             limits: Limits::default(),
+            losses: LossWatch::default(),
             rated: Thinned::default(),
             samples: Thinned::default(),
         }
@@ -63,6 +68,7 @@ impl BearingWatch {
         let instant = simulation.instant();
         self.blocks.push(&instant);
         self.limits.step(&instant);
+        self.losses.step(simulation, &instant);
         if let Some(sums) = &simulation.state().rating {
             self.rated.push((instant.time, *sums));
         }
@@ -81,6 +87,11 @@ impl BearingWatch {
         self.samples.push(Sample::new(outputs));
     }
 
+    /// Its losses so far.
+    pub fn lost(&self) -> LossSums {
+        self.losses.last()
+    }
+
     /// All of it, at the end.
     pub fn finish(self, simulation: &Simulation) -> BearingSeen {
         let means = self.blocks.means().map(|means| Means {
@@ -89,6 +100,7 @@ impl BearingWatch {
         });
         let rated = self.rated.finish();
         BearingSeen {
+            closed: means.as_ref().and_then(|means| self.losses.over(means.window)),
             life: means.as_ref().and_then(|means| Life::over(means.window, &rated, simulation.model())),
             means,
             spectrum: self.spectrum.and_then(Recorder::finish),

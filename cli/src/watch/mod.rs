@@ -44,7 +44,7 @@ impl Watch {
             watch.push(bearing);
         }
         if let (Some(watch), Some(system)) = (&mut self.shaft, machine.shaft()) {
-            watch.push(system);
+            watch.push(system, self.bearings.iter().map(BearingWatch::lost));
         }
     }
 
@@ -68,7 +68,7 @@ impl Observer for Watch {
             watch.step(bearing);
         }
         if let Some(watch) = &mut self.shaft {
-            watch.step(system);
+            watch.step(system, self.bearings.iter().map(BearingWatch::lost));
         }
     }
 }

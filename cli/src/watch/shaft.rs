@@ -1,12 +1,14 @@
 //! What is gathered of a shaft with its housings in a run: means, energy, and rows that its error is told from.
 
 use roulement::model::structure::StructureEnergies;
+use roulement::simulation::losses::LOSSES;
 use roulement::simulation::system::{System, script_changes_within};
 
 use super::bearing::lengths;
 use crate::error::{Course, Lengths, Sample, sizes};
 use crate::report::energy::TOLERANCE;
 use crate::report::figures::Figures;
+use crate::report::losses::{Closed, LossWatch, Sums as LossSums};
 use crate::report::means::{Blocks, Means};
 use crate::report::quantities::{ShaftQuantities, Watched};
 use crate::report::shaft::creeping;
@@ -20,6 +22,7 @@ pub struct ShaftWatch {
     quantities: ShaftQuantities,
     blocks: Blocks,
     samples: Thinned<Sample>,
+    losses: LossWatch,
     /// \[N] largest load of a ball of any bearing.
     largest_load: f64,
 }
@@ -28,6 +31,8 @@ pub struct ShaftWatch {
 pub struct ShaftSeen {
     /// Means over the second half.
     pub means: Option<Means>,
+    /// What closes the losses of the whole machine over the window of the means.
+    pub closed: Option<Closed>,
     watched: Vec<Watched>,
     samples: Vec<Sample>,
     largest_load: f64,
@@ -39,17 +44,19 @@ impl ShaftWatch {
         let quantities = ShaftQuantities::of(system);
         let duration = system.scene().load.duration.0;
         let blocks = Blocks::new(quantities.watched(), lengths_of(system).pitch_radius, duration);
-        Self { quantities, blocks, samples: Thinned::default(), largest_load: 0.0 }
+        let (samples, losses) = (Thinned::default(), LossWatch::default());
+        Self { quantities, blocks, samples, losses, largest_load: 0.0 }
     }
 
-    /// Takes where a step has ended.
-    pub fn step(&mut self, system: &System) {
+    /// Takes where a step has ended, with the losses of its bearings so far.
+    pub fn step(&mut self, system: &System, bearings: impl Iterator<Item = LossSums>) {
         self.blocks.push_values(system.time(), &self.quantities.values(system));
+        self.losses.step_of_shaft(system, bearings);
     }
 
     /// Takes a row.
-    pub fn push(&mut self, system: &System) {
-        self.step(system);
+    pub fn push(&mut self, system: &System, bearings: impl Iterator<Item = LossSums>) {
+        self.step(system, bearings);
         let values = self.quantities.values(system);
         self.samples.push(Sample { time: system.time(), values, largest_load: 0.0 });
         let loads = system.bearings().flat_map(|(_, bearing)| bearing.outputs().loads());
@@ -63,6 +70,7 @@ impl ShaftWatch {
             ..means
         });
         ShaftSeen {
+            closed: means.as_ref().and_then(|means| self.losses.over(means.window)),
             means,
             watched: self.quantities.watched(),
             samples: self.samples.finish(),
@@ -88,6 +96,9 @@ impl ShaftSeen {
         }
         if let Some(means) = &self.means {
             figures.add_means(means);
+        }
+        if let Some(closed) = &self.closed {
+            figures.set(LOSSES[0].name, closed.lost);
         }
         figures
     }

@@ -11,6 +11,7 @@ use roulement::simulation::system::System;
 use roulement_cli::error::{Course, Difference, Judgement, Lengths, Rounds, Run, Sample, sizes};
 use roulement_cli::report::figures::Figures;
 use roulement_cli::report::means::{Blocks, Means};
+use roulement::simulation::losses::LOSSES;
 use roulement_cli::report::quantities::{COUNT, Parts, QUANTITIES, Watched, of_bearing};
 
 use crate::common::{Scratch, edited};
@@ -43,7 +44,7 @@ fn column<'a>(table: &'a [(String, Vec<String>)], name: &str) -> &'a [String] {
 fn synthetic(solver: Solver, added: impl Fn(f64) -> f64) -> Run {
     let index = QUANTITIES.iter().position(|quantity| quantity.name == "friction power").unwrap();
     let mut outputs = Simulation::new(&edited("thrust", &[])).unwrap().outputs().clone();
-    let quantities = of_bearing(Parts { cage: false, moving_outer: false });
+    let quantities = of_bearing(Parts { cage: false, moving_outer: false, losses: [false; LOSSES.len()] });
     let mut blocks = Blocks::new(quantities.clone(), 1.0, 1.0);
     let mut samples = Vec::new();
     for row in 0..=1000 {
