@@ -113,7 +113,8 @@ mod tests {
             "{fast:?}"
         );
         // A bore that is given is taken as it is: 30 mm.
-        let given = ("film", "{ iso_vg = 68, temperature = \"70 degC\", bore = \"30 mm\", outside = \"62 mm\" }");
+        let given =
+            ("film", "{ iso_vg = 68, temperature = \"70 degC\", bore = \"30 mm\", outside = \"62 mm\" }");
         assert_eq!(notes(&[given, ("load.inner_speed", "\"99900 rpm\"")]), Vec::<String>::new());
         let fast = notes(&[given, ("load.inner_speed", "\"100100 rpm\"")]);
         assert!(fast.len() == 1 && fast[0].contains("bore of 30.0 mm"), "{fast:?}");

@@ -112,7 +112,11 @@ impl Instant {
                 * if speeds[0] < 0.0 { -1.0 } else { 1.0 },
             losses: Losses::of(model, state, contacts, (&models, &races), &totals),
             torque_power: inner.drive_torque * speeds[0] + outer.drive_torque * speeds[1],
-            stored_energy: stored_energy(model, state, contacts),
+            // Most steps look at it.
+            stored_energy: match model.solver.energy_error > 0.0 {
+                true => state.energies.stored,
+                false => stored_energy(model, state, contacts),
+            },
             inner,
             outer,
             cage,

@@ -53,7 +53,8 @@ fn sums(scene: &Scene, [from, to]: [f64; 2]) -> (Sums, [f64; LOSSES.len()]) {
 }
 
 /// Name, text, changes, window \[s], parts that must be there.
-type Case = (&'static str, &'static str, &'static [(&'static str, &'static str)], [f64; 2], &'static [&'static str]);
+type Case =
+    (&'static str, &'static str, &'static [(&'static str, &'static str)], [f64; 2], &'static [&'static str]);
 
 /// Steady runs. Mist and oil slow balls down before they are steady.
 const STEADY: [Case; 8] = [
@@ -62,9 +63,21 @@ const STEADY: [Case; 8] = [
     ("oil", THRUST, &[OIL], [25e-3, 50e-3], &["loss.sliding", "loss.rolling"]),
     ("hysteresis", THRUST, &[LAGS], [25e-3, 50e-3], &["loss.sliding", "loss.hysteresis"]),
     ("mist", THRUST, &[MIST], [60e-3, 100e-3], &["loss.sliding", "loss.drag"]),
-    ("all of them", THRUST, &[OIL, LAGS, MIST], [60e-3, 100e-3], &["loss.sliding", "loss.rolling", "loss.hysteresis", "loss.drag"]),
+    (
+        "all of them",
+        THRUST,
+        &[OIL, LAGS, MIST],
+        [60e-3, 100e-3],
+        &["loss.sliding", "loss.rolling", "loss.hysteresis", "loss.drag"],
+    ),
     ("cage", CAGE, &[], [25e-3, 50e-3], &["loss.sliding", "loss.cage", "loss.damping"]),
-    ("cage in mist", CAGE, &[MIST], [40e-3, 80e-3], &["loss.sliding", "loss.cage", "loss.damping", "loss.drag"]),
+    (
+        "cage in mist",
+        CAGE,
+        &[MIST],
+        [40e-3, 80e-3],
+        &["loss.sliding", "loss.cage", "loss.damping", "loss.drag"],
+    ),
 ];
 
 #[test]
@@ -78,7 +91,12 @@ fn invariant_all_losses_are_what_torque_times_speed_brings() {
         // The parts are all of it, and only those that the scene has are anything.
         assert!((own.iter().sum::<f64>() / total - 1.0).abs() < 1e-12, "{name}");
         for (part, value) in LOSSES[1..].iter().zip(own) {
-            assert_eq!((part.is_of)(&scene), value != 0.0 || part.name == "loss.damping", "{name} {}", part.name);
+            assert_eq!(
+                (part.is_of)(&scene),
+                value != 0.0 || part.name == "loss.damping",
+                "{name} {}",
+                part.name
+            );
             assert!(value != 0.0 || !there.contains(&part.name), "{name} {}", part.name);
         }
         // Work of any kind, less what is stored, is lost: to what the steps leave open of an energy.
@@ -163,7 +181,10 @@ fn rows_of_what_is_off_are_not_there() {
         names(&[OIL, LAGS, MIST]),
         ["loss.total", "loss.sliding", "loss.hysteresis", "loss.rolling", "loss.drag", "loss.damping"]
     );
-    assert_eq!(names(&[undamped, ("film", "{ viscosity = 0.02, rolling_resistance = false }")]), ["loss.total", "loss.sliding"]);
+    assert_eq!(
+        names(&[undamped, ("film", "{ viscosity = 0.02, rolling_resistance = false }")]),
+        ["loss.total", "loss.sliding"]
+    );
     let heat = names(&[undamped, MIST, ("effects.heat_outputs", "true")]);
     assert_eq!(heat[3..], ["heat.inner", "heat.outer", "heat.balls", "heat.cage", "heat.medium"]);
 }

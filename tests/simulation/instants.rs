@@ -16,7 +16,8 @@ fn sums(of: &Instant) -> Vec<f64> {
         .cage
         .map_or(vec![], |c| vec![c.eccentricity, c.pocket_load, c.land_load, c.pocket_power, c.land_power]);
     let own = [of.cage_speed, of.rolling_speed, of.friction_power, of.friction_torque, of.between_balls];
-    let losses = LOSSES.map(|part| (part.get)(&of.losses)).into_iter().chain([of.torque_power, of.stored_energy]);
+    let losses =
+        LOSSES.map(|part| (part.get)(&of.losses)).into_iter().chain([of.torque_power, of.stored_energy]);
     own.into_iter().chain(of.power_per_ball).chain(of.peak_pressure).chain(cage).chain(losses).collect()
 }
 

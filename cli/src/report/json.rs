@@ -78,7 +78,7 @@ fn losses(means: &Means, of: &Closed) -> Value {
 
 /// What closes losses: mean powers \[W].
 fn closed(closed: &Closed) -> Value {
-    let Closed { torque, other, stored, lost } = closed;
+    let Closed { torque, other, stored, lost, .. } = closed;
     json!({ "torque_times_speed": torque, "other_work": other, "stored": stored, "lost": lost, "left_open": closed.left() })
 }
 

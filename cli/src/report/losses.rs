@@ -41,6 +41,8 @@ pub struct Closed {
     pub stored: f64,
     /// Losses.
     pub lost: f64,
+    /// Is it of motion? Friction of an equilibrium is not in balance, and work is not known.
+    pub in_motion: bool,
 }
 
 impl LossWatch {
@@ -60,7 +62,8 @@ impl LossWatch {
     pub fn step_of_shaft(&mut self, system: &System, bearings: impl Iterator<Item = Sums>) {
         let outputs = system.outputs();
         let mut sums = Sums { time: system.time(), ..Sums::default() };
-        for energies in std::iter::once(&outputs.energies).chain(outputs.housings.iter().map(|o| &o.energies)) {
+        for energies in std::iter::once(&outputs.energies).chain(outputs.housings.iter().map(|o| &o.energies))
+        {
             // What bearings are given is in their own sums.
             sums.put_in += energies.input - energies.bearings;
             sums.stored += energies.stored;
@@ -104,12 +107,13 @@ impl LossWatch {
         let duration = end.time - begin.time;
         let power = |of: fn(&Sums) -> f64| (of(&end) - of(&begin)) / duration;
         let (torque, put_in) = (power(|sums| sums.torque), power(|sums| sums.put_in));
-        let without_work = put_in.is_nan();
+        let in_motion = put_in.is_finite();
         let closed = Closed {
             torque,
-            other: if without_work { 0.0 } else { put_in - torque },
-            stored: if without_work { 0.0 } else { power(|sums| sums.stored) },
+            other: if in_motion { put_in - torque } else { 0.0 },
+            stored: if in_motion { power(|sums| sums.stored) } else { 0.0 },
             lost: power(|sums| sums.lost),
+            in_motion,
         };
         (duration > 0.0).then_some(closed)
     }
@@ -149,10 +153,14 @@ impl Closed {
 
     /// In words, a line each.
     pub fn lines(&self) -> [String; 2] {
-        let Self { torque, other, stored, lost } = self;
+        let Self { torque, other, stored, lost, in_motion } = self;
         let left = self.left();
         let share =
             if *lost > 0.0 { format!(", {:.1e} of the losses", left.abs() / lost) } else { String::new() };
+        if !in_motion {
+            let why = "in equilibria friction of the balls is not in balance";
+            return [format!("torque times speed {torque:.4} W"), format!("left open {left:.1e} W{share}: {why}")];
+        }
         [
             format!("brought by torque times speed {torque:.4} W, other work {other:.4} W"),
             format!("gone into motion and springs {stored:.4} W; left open {left:.1e} W{share}"),

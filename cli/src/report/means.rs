@@ -509,7 +509,11 @@ mod tests {
     }
 
     fn run(rows: u32, duration: f64, value: impl Fn(f64) -> f64) -> Means {
-        let mut blocks = Blocks::new(of_bearing(Parts { cage: true, moving_outer: true, losses: [true; LOSSES.len()] }), 1.0, duration);
+        let mut blocks = Blocks::new(
+            of_bearing(Parts { cage: true, moving_outer: true, losses: [true; LOSSES.len()] }),
+            1.0,
+            duration,
+        );
         for row in 0..=rows {
             let time = duration * f64::from(row) / f64::from(rows);
             blocks.add(time, &[value(time); COUNT], &[1.0; COUNT], [value(time); 3]);
@@ -577,13 +581,21 @@ mod tests {
                 0.75 + (share - 0.95) * 5.0
             }
         });
-        let mut blocks = Blocks::new(of_bearing(Parts { cage: false, moving_outer: false, losses: [false; LOSSES.len()] }), 1.0, 1.0);
+        let mut blocks = Blocks::new(
+            of_bearing(Parts { cage: false, moving_outer: false, losses: [false; LOSSES.len()] }),
+            1.0,
+            1.0,
+        );
         let value = |time: f64| if (0.7..0.75).contains(&time) { 5.0 } else { 1.0 };
         times.for_each(|time| blocks.add(time, &[value(time); COUNT], &[1.0; COUNT], [0.0; 3]));
         let mean = blocks.means().unwrap().means[0].mean;
         assert!((mean - 1.4).abs() < 0.03, "{mean}");
         // One that ends early has the second half of what there is, to a block.
-        let mut early = Blocks::new(of_bearing(Parts { cage: false, moving_outer: false, losses: [false; LOSSES.len()] }), 1.0, 1.0);
+        let mut early = Blocks::new(
+            of_bearing(Parts { cage: false, moving_outer: false, losses: [false; LOSSES.len()] }),
+            1.0,
+            1.0,
+        );
         for k in 0..=300 {
             let time = f64::from(k) * 1e-3;
             early.add(time, &[time; COUNT], &[1.0; COUNT], [0.0; 3]);
@@ -596,7 +608,11 @@ mod tests {
     #[test]
     fn closed_form_a_mean_of_slip_is_by_the_speed_that_rolls() {
         // A speed of rolling 10 cos(t) that swings, and a body that stays behind by a tenth of it and 1e-3.
-        let mut blocks = Blocks::new(of_bearing(Parts { cage: true, moving_outer: true, losses: [true; LOSSES.len()] }), 1.0, 40.0);
+        let mut blocks = Blocks::new(
+            of_bearing(Parts { cage: true, moving_outer: true, losses: [true; LOSSES.len()] }),
+            1.0,
+            40.0,
+        );
         for row in 0..=40_000 {
             let time = f64::from(row) * 1e-3;
             let rolling = (10.0 * time.cos()).abs();
@@ -613,7 +629,11 @@ mod tests {
         let expected = (0.1 * rolled + 1e-3 * 20.0) / rolled;
         assert!((mean - expected).abs() < 1e-6, "{mean} {expected}");
         // Nothing rolls.
-        let mut still = Blocks::new(of_bearing(Parts { cage: true, moving_outer: true, losses: [true; LOSSES.len()] }), 1.0, 50.0);
+        let mut still = Blocks::new(
+            of_bearing(Parts { cage: true, moving_outer: true, losses: [true; LOSSES.len()] }),
+            1.0,
+            50.0,
+        );
         (0..=50).for_each(|row| still.add(f64::from(row), &[0.0; COUNT], &[0.0; COUNT], [0.0; 3]));
         let still = still.means().unwrap();
         assert!(still.means.iter().all(|mean| mean.mean == 0.0) && still.unsettled().count() == 0);

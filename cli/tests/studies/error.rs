@@ -5,13 +5,13 @@ use std::sync::OnceLock;
 
 use roulement::scene::{ErrorGoal, ErrorOf, Scene, Solver};
 use roulement::simulation::Simulation;
+use roulement::simulation::losses::LOSSES;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::{Observer, Rows, play_observed};
 use roulement::simulation::system::System;
 use roulement_cli::error::{Course, Difference, Judgement, Lengths, Rounds, Run, Sample, sizes};
 use roulement_cli::report::figures::Figures;
 use roulement_cli::report::means::{Blocks, Means};
-use roulement::simulation::losses::LOSSES;
 use roulement_cli::report::quantities::{COUNT, Parts, QUANTITIES, Watched, of_bearing};
 
 use crate::common::{Scratch, edited};

@@ -18,11 +18,9 @@ fn limits(source: &Source) -> [Option<f64>; 2] {
         Source::Friction => [Some(FRICTION.low), Some(FRICTION.high)],
         Source::Parameter(parameter) => [Some(parameter.range.low), Some(parameter.range.high)],
         Source::Rise(_) => [Some(RISE.low), Some(RISE.high)],
-        Source::Bearing(_)
-        | Source::Loss(_)
-        | Source::Effect(_)
-        | Source::Input(_)
-        | Source::Shaft(_) => [None; 2],
+        Source::Bearing(_) | Source::Loss(_) | Source::Effect(_) | Source::Input(_) | Source::Shaft(_) => {
+            [None; 2]
+        }
     }
 }
 
