@@ -67,8 +67,8 @@ export function cards(run) {
   if (torque) card('torque that drives it', figure('torque', figures[torque]), settledNote(run, 'shaft.torque'));
   const mounted = [...run.mounted];
   if (mounted.length) {
-    const powers = mounted.map(([, own]) => own.record.summary.figures['friction power']);
-    if (powers.every(Number.isFinite)) card('friction power', withUnit(powers.reduce((sum, power) => sum + power, 0), 'power', 'W', 5), 'mean, of all bearings');
+    const powers = mounted.map(([, own]) => own.record.summary.figures['loss.total']);
+    if (powers.every(Number.isFinite)) card('losses', withUnit(powers.reduce((sum, power) => sum + power, 0), 'power', 'W', 5), 'mean, of all bearings');
     const worst = get => mounted.map(([name, own]) => [get(own), name]).reduce((a, b) => (b[0] > a[0] ? b : a));
     const [load, at] = worst(largestLoad);
     card('largest ball load', withUnit(load, 'load', 'N'), `in the run, of ${at}`);
@@ -84,7 +84,7 @@ export function machineSection(run, open) {
   const mounted = [...run.mounted.values()];
   const lives = [['life.L10r', 'rating life L10r'], ['life.modified', 'modified life']].filter(([name]) => mounted.some(own => own.has(name)));
   const heads = ['bearing', 'position', 'x points to', 'housing'];
-  if (mounted.length) heads.push('force across', 'force along x', 'largest ball load at the end', 'in the run', 'peak pressure', 'friction power', 'friction torque', ...lives.map(([, head]) => head));
+  if (mounted.length) heads.push('force across', 'force along x', 'largest ball load at the end', 'in the run', 'peak pressure', 'losses', 'friction torque', ...lives.map(([, head]) => head));
   const rows = run.shaft.bearings.map(bearing => {
     const own = run.mounted.get(bearing.name);
     const row = [own ? h('button', { type: 'button', class: 'open', 'aria-label': `Show the bearing ${bearing.name}`, onclick: () => open(own) }, bearing.name) : bearing.name,
@@ -94,14 +94,14 @@ export function machineSection(run, open) {
     const force = forceOf(own.record.summary, bearing.direction);
     const most = f['largest inner load'] > f['largest outer load'] ? 'largest inner load' : 'largest outer load';
     return [...row, cell('force', force.across, force.acrossBar), cell('force', force.along, force.alongBar), cell(most, f[most], e?.[most]), withUnit(largestLoad(own), 'load', 'N'), withUnit(pressure, 'pressure', 'Pa'),
-      cell('friction power', f['friction power'], e?.['friction power']), cell('friction torque', f['friction torque'], e?.['friction torque']), ...lives.map(([name]) => life(own, name) ?? '\u2013')];
+      cell('loss.total', f['loss.total'], e?.['loss.total']), cell('friction torque', f['friction torque'], e?.['friction torque']), ...lives.map(([name]) => life(own, name) ?? '\u2013')];
   });
   const energy = name => ['put in', 'to bearings', 'damped', 'balance'].map(what => cell(`${name} ${what}`, figures[`${name} ${what}`], bars?.[`${name} ${what}`]));
   const bodies = [['shaft', 'shaft'], ...run.shaft.housings.map(housing => [housing.name, `housing ${housing.name}`])];
   return section('machine', 'Shaft and bearings',
     run.record.ended_early ? h('p', { class: 'warning' }, `The run ended early: ${run.record.ended_early}`) : null, (run.record.warnings ?? []).map(text => h('p', { class: 'warning' }, text)),
     table(heads, rows, { numbers: heads.map((_, i) => i).filter(i => i === 1 || i > 3) }),
-    mounted.length ? h('p', { class: 'note' }, 'Forces are those of the bearings on the shaft, in its axes. Forces, power and torque are means over the second half, or at the end of a run that is too short for means. \u00b1: numerical error, where \u201c--error\u201d measured it.') : null,
+    mounted.length ? h('p', { class: 'note' }, 'Forces are those of the bearings on the shaft, in its axes. Forces, losses and torque are means over the second half, or at the end of a run that is too short for means. \u00b1: numerical error, where \u201c--error\u201d measured it.') : null,
     mounted.length ? null : h('p', { class: 'note' }, 'What the bearings do is in the run of this machine by itself: \u201croulement report\u201d of its folder.'),
     lives.length ? h('p', { class: 'note' }, 'Life under the loads of the second half, their damage summed; hours at its mean speed.') : null,
     h('h3', {}, 'Drive and energy'),

@@ -21,7 +21,7 @@ function groups(run) {
     [`Position of the ${race} race`, xyz(`${race}.position`)],
     [`Rotation of the ${race} race`, xyz(`${race}.rotation`, ['y', 'z'])],
     ['Friction torque', [['friction_torque', 'torque']]],
-    ['Power', [['friction_power', 'friction'], ['power.inner', 'inner contacts'], ['power.outer', 'outer contacts'], ['power.spin', 'of it spin'], ['damping_power', 'damping']]],
+    ['Power', [['loss.total', 'all losses'], ['friction_power', 'friction'], ['power.inner', 'inner contacts'], ['power.outer', 'outer contacts'], ['power.spin', 'of it spin'], ['damping_power', 'damping']]],
     ['Cage speed', [['cage.speed', 'cage']]],
     ['Slip of cage and balls below rolling', [['cage.slip', 'cage'], ['balls.slip', 'balls']]],
     ['Cage, centre', xyz('cage.eccentricity', ['y', 'z'])],

@@ -13,7 +13,7 @@ function unitOf(name) {
   if (/moment|torque/.test(name)) return 'N.m';
   if (/position|eccentricity/.test(name)) return 'm';
   if (/angle/.test(name)) return 'deg';
-  if (/power/.test(name)) return 'W';
+  if (/power|^loss\./.test(name)) return 'W';
   if (/slip|over /.test(name)) return 'share';
   if (/speed/.test(name)) return 'rad/s';
   return 'J';
@@ -28,7 +28,9 @@ export function figure(name, value, bar) {
   return `${digits(value * factor, 5)}${error} ${word}`.trim();
 }
 
-const HEADLINES = ['friction torque', 'friction power', 'largest inner load', 'largest outer load', 'cage speed', 'cage slip'];
+const HEADLINES = ['friction torque', 'loss.total', 'largest inner load', 'largest outer load', 'cage speed', 'cage slip'];
+
+const WORDS = { 'loss.total': 'losses' };
 
 export function cards(run) {
   const { figures, error_bars: bars, peak_pressure: pressure } = run.record.summary;
@@ -36,7 +38,7 @@ export function cards(run) {
     h('div', { class: `card-note ${good === false ? 'bad' : ''}` }, note));
   const list = HEADLINES.filter(name => figures[name] !== undefined && figures[name] !== null).map(name => {
     const note = settledNote(run, name);
-    return card(name, figure(name, figures[name], bars?.[name]), note, !/NOT/.test(note));
+    return card(WORDS[name] ?? name, figure(name, figures[name], bars?.[name]), note, !/NOT/.test(note));
   });
   list.push(card('peak pressure', `${digits(pressure * 1e-6, 4)} MPa`, 'largest in the run'));
   return h('div', { class: 'cards' }, list);
@@ -87,6 +89,7 @@ function of(run) {
   // That of a shaft stands above its table.
   if (run.record.ended_early && !run.shaft) parts.push(h('p', { class: 'warning' }, `The run ended early: ${run.record.ended_early}`));
   if (warning) parts.push(h('p', { class: 'warning' }, warning));
+  if (run.record.summary.losses) parts.push(...losses(run));
   if (means) {
     const rows = means.quantities.map(mean => {
       const factorOf = mean.unit === '1' ? [100, '%'] : shown(mean.quantity, mean.unit, Math.abs(mean.mean));
@@ -107,6 +110,17 @@ function of(run) {
   if (inPhases) parts.push(inPhases);
   parts.push(h('details', {}, h('summary', {}, 'The summary in words'), h('pre', { tabindex: 0 }, run.record.summary_text ?? '')));
   return parts;
+}
+
+/** All losses by part, and what brings them; of a machine, what brings those of all its bearings. */
+function losses(run) {
+  const { losses: of, error_bars: bars, figures } = run.record.summary;
+  const watts = (name, value) => figure(name, value, bars?.[name]);
+  const rows = [['all losses', watts('loss.total', figures['loss.total']), '100\u202f%'],
+    ...(of.parts ?? []).map(part => [part.words, watts(part.name, part.power), `${digits(100 * part.share, 3)}\u202f%`])];
+  const brought = [['torque times speed', of.torque_times_speed], ['other work', of.other_work], ['into motion and springs', of.stored], ['left open', of.left_open]];
+  return [table(['losses', 'mean power', 'share'], rows, { numbers: [1, 2], caption: `${run.title}: what is lost` }),
+    h('p', { class: 'note' }, `Brought over the same time: ${brought.map(([word, value]) => `${word} ${figure('power', value)}`).join(', ')}.`)];
 }
 
 /** Figures of all runs. */

@@ -157,6 +157,8 @@ fn under(
         rings: rings(scene, &outline, speeds),
         outline,
         clearance_change: clearance_change(scene, model, speeds),
+        oiled: scene.effects.film.lubrication(0.0) > 0.0,
+        oil_conductance: scene.effects.heat_balance.section.as_ref().map_or(0.0, |balance| 3.0 * balance.oil),
         contacts: places.into_iter().map(|place| place.estimate).collect(),
     })
 }

@@ -203,6 +203,12 @@ impl ContactModel<'_> {
         .scale(self.hysteresis)
     }
 
+    /// \[W] power that the hysteresis of an evaluated contact takes.
+    pub fn hysteresis_power(&self, contact: &BallRaceContact<f64>) -> f64 {
+        let curvature = self.curvature_along(contact.geometry.circumferential_curvature);
+        self.hysteresis_moment(contact.load) * contact.rolling_speed * curvature
+    }
+
     /// What the film of an evaluated contact depends on.
     pub fn film_loading(&self, contact: &BallRaceContact<f64>) -> Loading<f64> {
         let of_race = contact.geometry.circumferential_curvature;

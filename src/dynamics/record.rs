@@ -37,7 +37,9 @@ pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, conditions: 
         balance.advance(warm, &heating, h);
     }
     if let Some(heat) = &mut state.heat {
-        let powers = powers(pairs, balls);
+        let supports = state.supports.iter().flatten().fold(0.0, |sum, support| sum + support.lost);
+        let medium = if model.has_medium() { state.powers.around - supports } else { 0.0 };
+        let powers = ByContact { medium, ..powers(pairs, balls) };
         match h {
             Some(h) => heat.add(powers, h),
             None => heat.begin(powers, state.time),

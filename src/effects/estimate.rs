@@ -155,6 +155,10 @@ pub struct Estimate {
     pub outline: Outline,
     /// \[m] largest change of the diametral clearance by growth as the scene has it; none where that is not known beforehand.
     pub clearance_change: Option<f64>,
+    /// Is there oil, which may take heat as it flows?
+    pub oiled: bool,
+    /// [W/K] conductance of rings and balls to the oil, where the scene has it; else 0.
+    pub oil_conductance: f64,
 }
 
 impl Estimate {

@@ -1,6 +1,6 @@
 //! Report of the heat of friction by the part that it goes into: means since the last communication point.
 //!
-//! Half of what a contact loses goes into each of both surfaces: they are of like materials, and pass through the contact alike.
+//! All that [`losses`](crate::simulation::losses) has, but for contact damping and dampers of supports. Half of what a contact loses goes into each of both surfaces: they are of like materials, and pass through the contact alike.
 
 use super::reports::HeatOutput;
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ keys! {
     "heat_outputs" => on: bool = false,
 }
 
-/// What loses power to friction: contacts with the inner and with the outer race, pockets, lands, balls among themselves.
+/// What power is lost to: friction on the inner and on the outer race, in pockets, on lands, of balls among themselves; drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ByContact {
     /// Balls on the inner and on the outer race.
@@ -25,6 +25,8 @@ pub struct ByContact {
     pub lands: f64,
     /// Balls among themselves.
     pub balls: f64,
+    /// Balls in the medium around them.
+    pub medium: f64,
 }
 
 impl ByContact {
@@ -35,6 +37,7 @@ impl ByContact {
             pockets: f(self.pockets, other.pockets),
             lands: f(self.lands, other.lands),
             balls: f(self.balls, other.balls),
+            medium: f(self.medium, other.medium),
         }
     }
 }
@@ -92,11 +95,27 @@ impl Sums {
             outer: on_race(1),
             balls: 0.5 * (mean.races[0] + mean.races[1] + mean.pockets) + mean.balls,
             cage: 0.5 * (mean.pockets + mean.lands),
+            medium: mean.medium,
         }
     }
 }
 
 type FromHeat = fn(&HeatOutput) -> f64;
+
+fn row(of: &str, (name, part, get): (&str, &str, FromHeat)) -> Row {
+    Row {
+        name: format!("heat.{name}"),
+        unit: WATT,
+        nominal: 1.0,
+        description: format!("{of} that goes into {part}, mean since the last communication point"),
+        get: Getter::new(move |reports| reports.heat.map_or(0.0, get)),
+    }
+}
+
+/// What is reported beside the heat of friction where a medium is around the balls.
+pub fn row_of_medium() -> Row {
+    row("heat of drag", ("medium", "the medium around the balls", |heat| heat.medium))
+}
 
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
@@ -119,15 +138,7 @@ impl Effect for Settings {
             ("balls", "the balls", |heat| heat.balls),
             ("cage", "the cage", |heat| heat.cage),
         ];
-        let row = |(name, part, get): (&str, &str, FromHeat)| Row {
-            name: format!("heat.{name}"),
-            unit: WATT,
-            nominal: 1.0,
-            description: format!(
-                "heat of friction that goes into {part}, mean since the last communication point"
-            ),
-            get: Getter::new(move |reports| reports.heat.map_or(0.0, get)),
-        };
-        if self.on { parts.into_iter().map(row).collect() } else { vec![] }
+        let of = "heat of friction";
+        if self.on { parts.into_iter().map(|part| row(of, part)).collect() } else { vec![] }
     }
 }

@@ -392,7 +392,7 @@ impl Effect for Settings {
             name: "heat.out".into(),
             unit: WATT,
             nominal: 10.0,
-            description: "heat that goes out to the surroundings, to the oil and to parts as warm as these"
+            description: "heat that goes out to the surroundings, to the oil and to parts as warm as these; what drag heats is no part of it"
                 .into(),
             get: Getter::new(|reports| reports.warm.map_or(0.0, |warm| warm.out)),
         });

@@ -165,6 +165,10 @@ impl Effects {
     /// Outputs of a bearing with a number of balls, with or without every ball.
     pub fn rows(&self, balls: usize, every_ball: bool) -> Vec<Row> {
         let mut rows: Vec<Row> = self.each().into_iter().flat_map(AnyEffect::rows).collect();
+        // Two effects have it together.
+        if self.heat.on && self.ambient.section.is_some() {
+            rows.push(heat::row_of_medium());
+        }
         for ball in 0..if every_ball { balls } else { 0 } {
             rows.extend(per_ball::motion_rows(ball));
             rows.extend(self.each().into_iter().flat_map(|effect| effect.ball_rows(ball)));

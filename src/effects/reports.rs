@@ -216,6 +216,8 @@ pub struct HeatOutput {
     pub balls: f64,
     /// Cage.
     pub cage: f64,
+    /// The medium around the balls.
+    pub medium: f64,
 }
 
 /// Life and safety of a bearing.

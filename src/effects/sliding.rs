@@ -31,9 +31,10 @@ impl Estimate {
         if groove > 0.0 { groove / (spin + groove) } else { 0.0 }
     }
 
-    /// \[K] warming of the bearing by this friction power, which goes out through the seats of both rings.
+    /// \[K] warming of the bearing by this friction power, which goes out through the seats of both rings, and to oil whose conductance
+    /// is known.
     pub fn heating(&self) -> f64 {
-        self.friction_power() / self.outline.seats().iter().sum::<f64>()
+        self.friction_power() / (self.outline.seats().iter().sum::<f64>() + self.oil_conductance)
     }
 }
 

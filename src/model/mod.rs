@@ -284,6 +284,11 @@ impl Model {
         Ambient { gravity: frame.gravity, frame: moving, medium: self.medium, mass, inertia, radius }
     }
 
+    /// Is the medium around the balls felt?
+    pub fn has_medium(&self) -> bool {
+        self.medium.is_some()
+    }
+
     /// The race whose lands guide the cage; none where the balls do, or without a cage.
     pub fn cage_guide(&self) -> Option<Race> {
         self.cage.as_ref().and_then(CageModel::guide)

@@ -1,9 +1,10 @@
 //! What a bearing does at an instant, as far as means of a run are made of it: less than all outputs, for every step.
 
 use super::Simulation;
+use super::losses::Losses;
 use super::outputs::{Outputs, RaceOutput, spin_free_frame};
 use super::slip::{RollingOrbit, orbital_speed};
-use crate::forces::{Contacts, Totals};
+use crate::forces::{Contacts, Totals, stored_energy};
 use crate::model::bodies::{PerRace, Race};
 use crate::model::state::State;
 use crate::model::{Conditions, Model};
@@ -31,6 +32,12 @@ pub struct Instant {
     pub friction_power: f64,
     /// See [`Outputs::friction_torque`].
     pub friction_torque: f64,
+    /// See [`Outputs::losses`].
+    pub losses: Losses,
+    /// See [`Outputs::torque_power`].
+    pub torque_power: f64,
+    /// See [`Outputs::stored_energy`].
+    pub stored_energy: f64,
     /// \[W] mean over the balls of the friction power on the inner and the outer race.
     pub power_per_ball: [f64; 2],
     /// \[N] largest load between two balls.
@@ -63,7 +70,7 @@ impl Instant {
         let totals = Totals::of(contacts, state.balls.len());
         let models = model.contacts_facing(conditions, state.orientations.as_ref());
         let rolling = RollingOrbit::mean(model, state, contacts, &races, models.inner.surface.ball_radius);
-        let speed = state.race(Race::Inner).rate.x;
+        let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
         let cage_speed = state.cage().map_or_else(
             || state.balls.iter().map(|ball| orbital_speed(ball, outer)).sum::<f64>() / count,
             |cage| cage.rate.x,
@@ -102,7 +109,14 @@ impl Instant {
         Self {
             time: state.time,
             friction_torque: -state.race(Race::Inner).bearing_wrench.moment.dot(&races.inner.axis)
-                * if speed < 0.0 { -1.0 } else { 1.0 },
+                * if speeds[0] < 0.0 { -1.0 } else { 1.0 },
+            losses: Losses::of(model, state, contacts, (&models, &races), &totals),
+            torque_power: inner.drive_torque * speeds[0] + outer.drive_torque * speeds[1],
+            // Most steps look at it.
+            stored_energy: match model.solver.energy_error > 0.0 {
+                true => state.energies.stored,
+                false => stored_energy(model, state, contacts),
+            },
             inner,
             outer,
             cage,
@@ -155,6 +169,9 @@ impl From<&Outputs> for Instant {
             ball_slip: o.ball_slip,
             friction_power: o.friction_power,
             friction_torque: o.friction_torque,
+            losses: o.losses,
+            torque_power: o.torque_power,
+            stored_energy: o.stored_energy,
             power_per_ball: Race::BOTH.map(power),
             between_balls: o.neighbours.map_or(0.0, |neighbours| neighbours.largest_load),
             peak_pressure: Race::BOTH.map(pressure),

@@ -8,6 +8,7 @@ mod input_paths;
 pub mod inputs;
 pub mod instant;
 mod limits;
+pub mod losses;
 pub mod machine;
 mod orientation;
 pub mod outputs;

@@ -4,13 +4,12 @@ use std::ops::Index;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::losses::Losses;
 use super::slip::{RollingOrbit, orbital_speed};
 use crate::contact::{BallRaceContact, ContactModel, RaceMotion};
-use crate::dynamics::power_lost_around;
 use crate::effects::Reports;
 use crate::effects::film;
 use crate::effects::heat_balance::Warm;
-use crate::effects::moving_frame::FrameMotion;
 use crate::effects::reports::FilmOutput;
 use crate::effects::reports::Frequencies;
 use crate::effects::reports::GrowthOutput;
@@ -88,6 +87,10 @@ pub struct Outputs {
     pub damping_power: f64,
     /// \[W] power that the balls lose to the medium around them.
     pub drag_power: f64,
+    /// What is lost to what.
+    pub losses: Losses,
+    /// \[W] torque times speed of both races about their own axes: what their rotation puts in.
+    pub torque_power: f64,
     /// [Pa s] viscosity of the oil at the inner and at the outer race, where there is oil.
     pub oil: Option<[f64; 2]>,
     /// Temperatures, where the heat of friction gives them.
@@ -168,8 +171,10 @@ impl Outputs {
         let rolling = RollingOrbit::mean(model, state, contacts, &races, models.inner.surface.ball_radius);
         let frequencies = frequencies(model, &balls, [cage_speed, speeds[0], speeds[1]]);
         let [inner, outer] = Race::BOTH.map(|race| RaceOutput::new(state, model, race));
+        let losses = Losses::of(model, state, contacts, (&models, &races), &totals);
         Self {
             time: state.time,
+            torque_power: inner.drive_torque * speeds[0] + outer.drive_torque * speeds[1],
             friction_torque: -state.race(Race::Inner).bearing_wrench.moment.dot(&races.inner.axis)
                 * sign(speeds[0]),
             inner,
@@ -200,10 +205,8 @@ impl Outputs {
             oil: model.films.as_ref().map(|films| {
                 [0, 1].map(|race| films.supply(race, conditions.lubrication, &conditions.warmth).viscosity)
             }),
-            drag_power: power_lost_around(
-                &model.ambient(&FrameMotion::default()),
-                state.balls.iter().map(BallState::motion),
-            ),
+            drag_power: losses.drag,
+            losses,
             statistics: state.statistics,
         }
     }
@@ -382,8 +385,7 @@ fn resisted(
 ) -> ContactOutput {
     let loading = model.film_loading(contact);
     let film = model.film.map_or(FilmOutput::default(), |of| film::output(&of, &loading));
-    let hysteresis_power = model.hysteresis_moment(contact.load) * loading.speed * loading.curvature;
-    ContactOutput { film, hysteresis_power, ..output }
+    ContactOutput { film, hysteresis_power: model.hysteresis_power(contact), ..output }
 }
 
 /// A contact as it is reported; where grooves face along the axis, the side of the groove does not tell which race it is.

@@ -48,7 +48,7 @@ fn closed_form_two_parts_come_to_one_temperature() {
 #[test]
 fn closed_form_heat_goes_half_to_each_surface() {
     let balance = balance(&CLOSED.replace('}', ", inner_shaft = 0.0, outer_housing = 0.0 }"));
-    let powers = ByContact { races: [10.0, 4.0], pockets: 3.0, lands: 2.0, balls: 1.0 };
+    let powers = ByContact { races: [10.0, 4.0], pockets: 3.0, lands: 2.0, balls: 1.0, medium: 0.0 };
     let mut warm = Warm::default();
     balance.advance(&mut warm, &Heating { guide: Some(1), ..quiet(&powers, 0.0, 600.0) }, 1e-3);
     let expected = [5.0 / 0.2, (2.0 + 2.0) / 0.3, (5.0 + 2.0 + 3.0 + 1.0) / 0.1].map(|rate| rate * 1e-3);

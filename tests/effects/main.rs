@@ -18,6 +18,7 @@ mod heat_balance;
 #[path = "../common/kernel.rs"]
 mod kernel;
 mod list;
+mod losses;
 mod oil_runs;
 mod oil_torque;
 mod quasi_static;

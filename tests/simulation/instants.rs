@@ -3,6 +3,7 @@
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 use roulement::simulation::instant::Instant;
+use roulement::simulation::losses::LOSSES;
 use roulement::simulation::play::Scripted;
 
 fn scene(name: &str, changes: &[(&str, &str)]) -> Scene {
@@ -16,7 +17,9 @@ fn sums(of: &Instant) -> Vec<f64> {
         .cage
         .map_or(vec![], |c| vec![c.eccentricity, c.pocket_load, c.land_load, c.pocket_power, c.land_power]);
     let own = [of.cage_speed, of.rolling_speed, of.friction_power, of.friction_torque, of.between_balls];
-    own.into_iter().chain(of.power_per_ball).chain(of.peak_pressure).chain(cage).collect()
+    let losses =
+        LOSSES.map(|part| (part.get)(&of.losses)).into_iter().chain([of.torque_power, of.stored_energy]);
+    own.into_iter().chain(of.power_per_ball).chain(of.peak_pressure).chain(cage).chain(losses).collect()
 }
 
 #[test]
@@ -27,6 +30,7 @@ fn invariant_an_instant_has_what_outputs_have() {
         ("cage", &[("load.duration", "\"3 ms\"")]),
         ("effects/full_complement", &[]),
         ("effects/loss_of_lubrication", &[]),
+        ("effects/oil_mist", &[]),
     ] {
         let mut simulation = Simulation::new(&scene(name, changes)).unwrap();
         for point in 0..4 {

@@ -11,6 +11,7 @@ use roulement::simulation::system::System;
 use roulement_cli::page::record;
 use roulement_cli::report::figures::{Figures, Shown};
 use roulement_cli::report::json;
+use roulement_cli::report::losses::Closed;
 use roulement_cli::report::phases;
 use roulement_cli::report::plots::{title, write_plots};
 use roulement_cli::report::results::{Choice, ResultsError, is_parquet};
@@ -213,7 +214,9 @@ impl Place {
         let mut plots = write_plots(scene, rows, directory)?;
         if let Some(means) = &seen.means {
             let life = seen.life.map_or(vec![], |life| life.numbers());
-            write(&directory.join("means.csv"), |path| means.write(path, &life))?;
+            let closed = seen.closed.iter().flat_map(Closed::numbers);
+            let others: Vec<_> = closed.chain(life).collect();
+            write(&directory.join("means.csv"), |path| means.write(path, &others))?;
         }
         write_phases(directory, &seen.phases, shown)?;
         if let Some(spectrum) = &seen.spectrum {

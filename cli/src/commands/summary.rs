@@ -6,9 +6,11 @@ use roulement::analysis::estimate::Verdicts;
 use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
+use roulement::simulation::losses::LOSSES;
 use roulement::simulation::system::System;
 use roulement_cli::report::figures::Shown;
 use roulement_cli::report::limits::Limits;
+use roulement_cli::report::losses::Closed;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
 use roulement_cli::report::spectrum::is_wanted;
 use roulement_cli::report::{phases, shaft};
@@ -50,6 +52,14 @@ fn write_shaft(
     (system, seen): (&System, &ShaftSeen),
     shown: &Shown,
 ) -> std::fmt::Result {
+    if let Some(closed) = &seen.closed {
+        writeln!(
+            out,
+            "losses           {} W of all bearings, shaft and housings",
+            shown.text(LOSSES[0].name, 1.0, 4)
+        )?;
+        write_closed(out, closed)?;
+    }
     let bearings = system.bearings().zip(&run.seen.bearings);
     let bearings = bearings.map(|((name, _), seen)| (Some(name), seen.means.as_ref()));
     write_settled_of_all(out, bearings.chain([(None, seen.means.as_ref())]))?;
@@ -99,7 +109,12 @@ fn write_wall(out: &mut String, run: &Played, simulated: f64) -> std::fmt::Resul
 }
 
 /// Means over the window.
-fn write_means(out: &mut String, means: &Means, shown: &Shown, has_cage: bool) -> std::fmt::Result {
+fn write_means(
+    out: &mut String,
+    (means, closed): (&Means, Option<&Closed>),
+    shown: &Shown,
+    has_cage: bool,
+) -> std::fmt::Result {
     let [begin, end] = means.window;
     let text = |name: &str, factor, digits| shown.text(name, factor, digits);
     writeln!(out, "means over the last {:.3} ms", (end - begin) * 1e3)?;
@@ -110,7 +125,11 @@ fn write_means(out: &mut String, means: &Means, shown: &Shown, has_cage: bool) -
         text("cage slip", 100.0, 4),
         text("ball slip", 100.0, 4)
     )?;
-    writeln!(out, "friction power   {} W", text("friction power", 1.0, 4))?;
+    write_losses(out, means, shown)?;
+    if let Some(closed) = closed {
+        write_closed(out, closed)?;
+    }
+    writeln!(out, "friction power   {} W of all contacts", text("friction power", 1.0, 4))?;
     writeln!(
         out,
         "per ball         inner {} mW, outer {} mW",
@@ -125,6 +144,23 @@ fn write_means(out: &mut String, means: &Means, shown: &Shown, has_cage: bool) -
         writeln!(out, "cage friction    pockets {pocket} W, lands {land} W")?;
     }
     writeln!(out, "friction torque  {} N m", text("friction torque", 1.0, 5))
+}
+
+/// All losses, a line each with its share.
+fn write_losses(out: &mut String, means: &Means, shown: &Shown) -> std::fmt::Result {
+    let [whole, parts @ ..] = LOSSES;
+    writeln!(out, "losses           {} W", shown.text(whole.name, 1.0, 4))?;
+    let all = means.of(whole.name);
+    for part in parts.iter().filter(|part| means.find(part.name).is_some()) {
+        let share = if all > 0.0 { 100.0 * means.of(part.name) / all } else { 0.0 };
+        writeln!(out, "{:16} {} W, {share:.1} %: {}", "", shown.text(part.name, 1.0, 4), part.words)?;
+    }
+    Ok(())
+}
+
+/// What closes losses.
+fn write_closed(out: &mut String, closed: &Closed) -> std::fmt::Result {
+    closed.lines().into_iter().try_for_each(|line| writeln!(out, "{:16} {line}", ""))
 }
 
 /// What the creep law of the scene misses.
@@ -250,7 +286,7 @@ fn write_bearing(
         writeln!(out, "cage centre      {} um off axis", text("end eccentricity", 1e6, 3))?;
     }
     if let Some(means) = means {
-        write_means(out, means, shown, now.cage.is_some())?;
+        write_means(out, (means, seen.closed.as_ref()), shown, now.cage.is_some())?;
         if let Some(life) = &seen.life {
             phases::say_life(out, "life             ", life)?;
             writeln!(out)?;

@@ -1,6 +1,7 @@
 //! What is kept of a run for comparison with another one.
 
 use roulement::scene::Solver;
+use roulement::simulation::losses::LOSSES;
 use roulement::simulation::outputs::Outputs;
 
 use crate::report::figures::Figures;
@@ -119,7 +120,8 @@ pub fn sizes(samples: &[Sample], quantities: &[Watched], lengths: Lengths, torqu
     let speed = (0..quantities.len()).filter(|&i| quantities[i].size == Size::Speed).map(own);
     let speed = speed.fold(STANDS / lengths.pitch_radius, f64::max);
     let rests = RESTS / lengths.pitch_radius;
-    let friction = quantities.iter().position(|quantity| quantity.name == "friction power").map_or(0.0, own);
+    let of = |name: &str| quantities.iter().position(|quantity| quantity.name == name).map_or(0.0, own);
+    let (friction, losses) = (of("friction power"), of(LOSSES[0].name));
     let position = vector(Size::Position).max(NOTHING * lengths.ball_diameter);
     let of = |(i, quantity): (usize, &Watched)| match quantity.size {
         Size::Force => force,
@@ -129,11 +131,12 @@ pub fn sizes(samples: &[Sample], quantities: &[Watched], lengths: Lengths, torqu
         // What tilts by no more than what it moves at a pitch radius does not tilt.
         Size::Tilt => vector(Size::Tilt).max(position / lengths.pitch_radius),
         Size::One => 1.0,
-        Size::Own => {
+        Size::Own | Size::Losses => {
             let torque = (NOTHING * force * lengths.pitch_radius).max(torque);
             let nothing = if quantity.unit == "W" { torque * speed.max(rests) } else { torque };
             let of_cage = matches!(quantity.name.as_ref(), "pocket power" | "land power");
-            own(i).max(nothing).max(if of_cage { PART * friction } else { 0.0 })
+            let whole = if quantity.size == Size::Losses { losses } else { own(i) };
+            whole.max(nothing).max(if of_cage { PART * friction } else { 0.0 })
         }
     };
     quantities.iter().enumerate().map(of).collect()

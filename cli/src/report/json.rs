@@ -3,11 +3,13 @@
 use roulement::Scene;
 use roulement::effects::estimate::Verdict;
 use roulement::simulation::Simulation;
+use roulement::simulation::losses::LOSSES;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::system::System;
 use serde_json::{Map, Value, json};
 
 use super::figures::{Figures, Shown};
+use super::losses::Closed;
 use super::means::{Mean, Means};
 use crate::watch::{BearingSeen, Extreme, Life, Phase, Seen, ShaftSeen, headlines};
 
@@ -34,6 +36,7 @@ pub fn of_shaft(system: &System, seen: &ShaftSeen, shown: &Shown) -> Value {
         "error_bars": shown.bars.as_ref().map(figures),
         "means": seen.means.as_ref().map(means),
         "phases": phases(&seen.phases, shown),
+        "losses": seen.closed.as_ref().map(closed),
         "warnings": seen.warnings(system),
     })
 }
@@ -47,6 +50,7 @@ pub fn summary(simulation: &Simulation, seen: &BearingSeen, shown: &Shown) -> Va
         "figures": figures(&shown.figures),
         "error_bars": shown.bars.as_ref().map(figures),
         "means": seen.means.as_ref().map(means),
+        "losses": seen.means.as_ref().zip(seen.closed.as_ref()).map(|(means, of)| losses(means, of)),
         "life": seen.life.as_ref().map(life),
         "phases": phases(&seen.phases, shown),
         "effects": headlines(simulation).into_iter().map(|(row, value)| (row.name, value.into())).collect::<Map<_, _>>(),
@@ -59,6 +63,25 @@ pub fn summary(simulation: &Simulation, seen: &BearingSeen, shown: &Shown) -> Va
             "rejected_by_newton": statistics.rejected_newton,
         },
     })
+}
+
+/// Losses of a bearing by part, and what closes them: mean powers \[W].
+fn losses(means: &Means, of: &Closed) -> Value {
+    let all = means.of(LOSSES[0].name);
+    let parts = LOSSES[1..].iter().filter_map(|part| {
+        let power = means.find(part.name)?.mean;
+        let share = if all > 0.0 { power / all } else { 0.0 };
+        Some(json!({ "name": part.name, "words": part.words, "power": power, "share": share }))
+    });
+    let mut value = closed(of);
+    value["parts"] = parts.collect();
+    value
+}
+
+/// What closes losses: mean powers \[W].
+fn closed(closed: &Closed) -> Value {
+    let Closed { torque, other, stored, lost, .. } = closed;
+    json!({ "torque_times_speed": torque, "other_work": other, "stored": stored, "lost": lost, "left_open": closed.left() })
 }
 
 fn life(Life { life, hours, modified_hours }: &Life) -> Value {

@@ -14,6 +14,7 @@ use std::path::Path;
 
 use roulement::simulation::Simulation;
 use roulement::simulation::instant::Instant;
+use roulement::simulation::losses::LOSSES;
 
 use super::interval;
 use super::quantities::{Parts, Size, Watched, of_bearing, values, weights};
@@ -316,8 +317,10 @@ impl Blocks {
             let of = (0..quantities.len()).filter(|&i| quantities[i].size == size);
             of.map(|i| mean(i).abs()).fold(0.0, f64::max)
         };
+        let losses = quantities.iter().position(|quantity| quantity.name == LOSSES[0].name);
         let size = |i: usize| match quantities[i].size {
             Size::Own => mean(i).abs(),
+            Size::Losses => losses.map_or(0.0, |whole| mean(whole).abs()),
             Size::Moment => largest_of(Size::Force) * self.arm,
             Size::One => 1.0,
             size => largest_of(size),
@@ -326,7 +329,7 @@ impl Blocks {
         let nothing = |i: usize| {
             let torque = NOTHING * largest_of(Size::Force) * self.arm;
             match (quantities[i].size, quantities[i].unit) {
-                (Size::Own, "W") => torque * largest_of(Size::Speed),
+                (Size::Own | Size::Losses, "W") => torque * largest_of(Size::Speed),
                 (Size::Own, _) => torque,
                 _ => 0.0,
             }
@@ -542,7 +545,11 @@ mod tests {
     }
 
     fn run(rows: u32, duration: f64, value: impl Fn(f64) -> f64) -> Means {
-        let mut blocks = Blocks::new(of_bearing(Parts { cage: true, moving_outer: true }), 1.0, duration);
+        let mut blocks = Blocks::new(
+            of_bearing(Parts { cage: true, moving_outer: true, losses: [true; LOSSES.len()] }),
+            1.0,
+            duration,
+        );
         for row in 0..=rows {
             let time = duration * f64::from(row) / f64::from(rows);
             blocks.add(time, &[value(time); COUNT], &[1.0; COUNT], [value(time); 3]);
@@ -610,13 +617,21 @@ mod tests {
                 0.75 + (share - 0.95) * 5.0
             }
         });
-        let mut blocks = Blocks::new(of_bearing(Parts { cage: false, moving_outer: false }), 1.0, 1.0);
+        let mut blocks = Blocks::new(
+            of_bearing(Parts { cage: false, moving_outer: false, losses: [false; LOSSES.len()] }),
+            1.0,
+            1.0,
+        );
         let value = |time: f64| if (0.7..0.75).contains(&time) { 5.0 } else { 1.0 };
         times.for_each(|time| blocks.add(time, &[value(time); COUNT], &[1.0; COUNT], [0.0; 3]));
         let mean = blocks.means().unwrap().means[0].mean;
         assert!((mean - 1.4).abs() < 0.03, "{mean}");
         // One that ends early has the second half of what there is, to a block.
-        let mut early = Blocks::new(of_bearing(Parts { cage: false, moving_outer: false }), 1.0, 1.0);
+        let mut early = Blocks::new(
+            of_bearing(Parts { cage: false, moving_outer: false, losses: [false; LOSSES.len()] }),
+            1.0,
+            1.0,
+        );
         for k in 0..=300 {
             let time = f64::from(k) * 1e-3;
             early.add(time, &[time; COUNT], &[1.0; COUNT], [0.0; 3]);
@@ -629,7 +644,11 @@ mod tests {
     #[test]
     fn closed_form_a_mean_of_slip_is_by_the_speed_that_rolls() {
         // A speed of rolling 10 cos(t) that swings, and a body that stays behind by a tenth of it and 1e-3.
-        let mut blocks = Blocks::new(of_bearing(Parts { cage: true, moving_outer: true }), 1.0, 40.0);
+        let mut blocks = Blocks::new(
+            of_bearing(Parts { cage: true, moving_outer: true, losses: [true; LOSSES.len()] }),
+            1.0,
+            40.0,
+        );
         for row in 0..=40_000 {
             let time = f64::from(row) * 1e-3;
             let rolling = (10.0 * time.cos()).abs();
@@ -646,7 +665,11 @@ mod tests {
         let expected = (0.1 * rolled + 1e-3 * 20.0) / rolled;
         assert!((mean - expected).abs() < 1e-6, "{mean} {expected}");
         // Nothing rolls.
-        let mut still = Blocks::new(of_bearing(Parts { cage: true, moving_outer: true }), 1.0, 50.0);
+        let mut still = Blocks::new(
+            of_bearing(Parts { cage: true, moving_outer: true, losses: [true; LOSSES.len()] }),
+            1.0,
+            50.0,
+        );
         (0..=50).for_each(|row| still.add(f64::from(row), &[0.0; COUNT], &[0.0; COUNT], [0.0; 3]));
         let still = still.means().unwrap();
         assert!(still.means.iter().all(|mean| mean.mean == 0.0) && still.unsettled().count() == 0);
@@ -665,7 +688,8 @@ mod tests {
         ];
         for start in [0.0, 1e3] {
             for window in windows {
-                let quantities = of_bearing(Parts { cage: true, moving_outer: true });
+                let quantities =
+                    of_bearing(Parts { cage: true, moving_outer: true, losses: [true; LOSSES.len()] });
                 let window: [f64; 2] = window.map(|time| start + time);
                 let mut blocks = Blocks::within(quantities, 1.0, window);
                 for row in 0..=70 {
@@ -679,8 +703,11 @@ mod tests {
             }
         }
         // A run that ends before it, or in it.
-        let mut blocks =
-            Blocks::within(of_bearing(Parts { cage: true, moving_outer: true }), 1.0, [0.6, 0.9]);
+        let mut blocks = Blocks::within(
+            of_bearing(Parts { cage: true, moving_outer: true, losses: [true; LOSSES.len()] }),
+            1.0,
+            [0.6, 0.9],
+        );
         for row in 0..=50 {
             blocks.add(0.01 * f64::from(row), &[0.01 * f64::from(row); COUNT], &[1.0; COUNT], [0.0; 3]);
         }

@@ -7,6 +7,7 @@ pub mod fine;
 pub mod interval;
 pub mod json;
 pub mod limits;
+pub mod losses;
 pub mod means;
 pub mod number;
 #[cfg(feature = "parquet")]

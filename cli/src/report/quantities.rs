@@ -6,6 +6,7 @@ use roulement::interface::variables::{Source, SystemVariables};
 use roulement::model::bodies::Race;
 use roulement::simulation::Simulation;
 use roulement::simulation::instant::Instant;
+use roulement::simulation::losses::LOSSES;
 use roulement::simulation::system::System;
 
 /// What the size of a quantity is measured by.
@@ -25,6 +26,8 @@ pub enum Size {
     Tilt,
     /// 1.
     One,
+    /// The mean of all losses: of their parts, shares matter.
+    Losses,
 }
 
 /// What is watched of a bearing or a shaft.
@@ -61,6 +64,8 @@ pub struct Parts {
     pub cage: bool,
     /// Does a wrench move the outer race?
     pub moving_outer: bool,
+    /// Which losses can there be?
+    pub losses: [bool; LOSSES.len()],
 }
 
 impl Parts {
@@ -69,6 +74,7 @@ impl Parts {
         Self {
             cage: simulation.outputs().cage.is_some(),
             moving_outer: Race::loaded(simulation.scene()) == Race::Outer,
+            losses: LOSSES.map(|part| (part.is_of)(simulation.scene())),
         }
     }
 }
@@ -97,8 +103,14 @@ const fn of_moving_outer(name: &'static str, get: fn(&Instant) -> f64) -> Quanti
     Quantity { shown: |parts| parts.moving_outer, ..quantity(name, "m", Size::Position, get) }
 }
 
+const fn loss<const PART: usize>() -> Quantity {
+    let size = if PART == 0 { Size::Own } else { Size::Losses };
+    let own = quantity(LOSSES[PART].name, "W", size, |o| (LOSSES[PART].get)(&o.losses));
+    Quantity { shown: |parts| parts.losses[PART], ..own }
+}
+
 /// [-] their number.
-pub const COUNT: usize = 22;
+pub const COUNT: usize = 22 + LOSSES.len();
 
 /// All of them of a bearing.
 pub static QUANTITIES: [Quantity; COUNT] = [
@@ -124,6 +136,14 @@ pub static QUANTITIES: [Quantity; COUNT] = [
     quantity("outer power per ball", "W", Size::Own, |o| o.power_per_ball[1]),
     of_cage("pocket power", |o| o.cage.map_or(0.0, |cage| cage.pocket_power)),
     of_cage("land power", |o| o.cage.map_or(0.0, |cage| cage.land_power)),
+    loss::<0>(),
+    loss::<1>(),
+    loss::<2>(),
+    loss::<3>(),
+    loss::<4>(),
+    loss::<5>(),
+    loss::<6>(),
+    loss::<7>(),
 ];
 
 /// All of them, as they are watched in a bearing of these parts.

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use roulement::contact::REGULARISATION_SPEED;
 use roulement::interface::variables::quoted;
 use roulement::scene::system::SystemScene;
+use roulement::simulation::losses::LOSSES;
 use roulement::simulation::system::{HousingOutputs, PointOutput, System, SystemOutputs};
 
 use super::figures::Shown;
@@ -240,9 +241,9 @@ fn write_summary(
         let loads = bearing.outputs().balls.iter().map(|ball| ball.inner.load);
         let (least, most) =
             loads.fold((f64::INFINITY, 0.0f64), |(low, high), load| (low.min(load), high.max(load)));
-        let has_means = !shown.figures.get("friction power").is_nan();
+        let has_means = !shown.figures.get(LOSSES[0].name).is_nan();
         let power = has_means.then(|| {
-            let [power, torque] = [("friction power", 3), ("friction torque", 5)]
+            let [power, torque] = [(LOSSES[0].name, 3), ("friction torque", 5)]
                 .map(|(name, digits)| shown.text(name, 1.0, digits));
             format!("; mean losses {power} W, friction torque {torque} N m")
         });

@@ -179,6 +179,11 @@ fn of_machine(done: &Done, goal: Option<&'static str>) -> Row {
     if let (Some(system), Some(seen)) = (machine.shaft(), &seen.shaft) {
         row.push((Column::text(WARNINGS), Cell::Text(seen.warnings(system).join("; "))));
         row.extend(goal.map(|goal| (Column::text("error_goal"), Cell::Text(goal.to_string()))));
+        if let Some(closed) = &seen.closed {
+            row.push(number("loss.total.mean", "W", closed.lost));
+            row.push(number("torque_power.mean", "W", closed.torque));
+            row.push(number("loss.left_open", "W", closed.left()));
+        }
         let error = |name: &str| seen.means.as_ref()?.find(name)?.error;
         for column in &gathered.shaft {
             let of = |what: &str| format!("{}.{what}", column.name);
@@ -301,6 +306,10 @@ fn summary(
     row.push(number("over_outer_shoulders.largest", "1", seen.limits.over_shoulders[1]));
     row.push(number("between_balls.largest", "N", seen.limits.between_balls));
     row.push(number("energy_balance", "J", seen.energy.balance(simulation.outputs())));
+    if let Some(closed) = &seen.closed {
+        row.push(number("torque_power.mean", "W", closed.torque));
+        row.push(number("loss.left_open", "W", closed.left()));
+    }
     if let Some(Life { life, hours, modified_hours }) = &seen.life {
         row.push(number("life.L10r.window", "1", life.reference));
         row.push(optional("life.L10r.hours", "h", *hours));

@@ -15,6 +15,7 @@ use crate::error::{Course, Lengths, Sample, sizes};
 use crate::report::energy::EnergyWatch;
 use crate::report::figures::Figures;
 use crate::report::limits::Limits;
+use crate::report::losses::{Closed, LossWatch, Sums as LossSums};
 use crate::report::means::{Blocks, Means};
 use crate::report::quantities::{Parts, of_bearing, values, weights};
 use crate::report::spectrum::{Recorder, Spectrum};
@@ -28,6 +29,7 @@ pub struct BearingWatch {
     spectrum: Option<Recorder>,
     energy: EnergyWatch,
     limits: Limits,
+    losses: LossWatch,
     /// Revolutions and loads from step to step, for the life over the window.
     rated: Thinned<(f64, Sums)>,
     samples: Thinned<Sample>,
@@ -44,6 +46,8 @@ pub struct BearingSeen {
     pub energy: EnergyWatch,
     /// Limits of the bearing that it met.
     pub limits: Limits,
+    /// What closes its losses over the window of the means.
+    pub closed: Option<Closed>,
     /// Life over the window of the means.
     pub life: Option<Life>,
     /// Phases of the run that it came to.
@@ -64,6 +68,7 @@ impl BearingWatch {
             spectrum: Recorder::of(simulation),
             energy: EnergyWatch::default(),
             limits: Limits::default(),
+            losses: LossWatch::default(),
             rated: Thinned::default(),
             samples: Thinned::default(),
         }
@@ -74,6 +79,7 @@ impl BearingWatch {
         let instant = simulation.instant();
         self.blocks.push(&instant);
         self.limits.step(&instant);
+        self.losses.step(simulation, &instant);
         let rating = simulation.state().rating.as_ref();
         if let Some(sums) = rating {
             self.rated.push((instant.time, *sums));
@@ -98,6 +104,11 @@ impl BearingWatch {
         self.samples.push(Sample::new(outputs));
     }
 
+    /// Its losses so far.
+    pub fn lost(&self) -> LossSums {
+        self.losses.last()
+    }
+
     /// All of it, at the end. Does a script, of the bearing or of the shaft that carries it, come to other values within a span \[s] of time?
     pub fn finish(self, simulation: &Simulation, changes: &dyn Fn(f64, f64) -> bool) -> BearingSeen {
         let means = self
@@ -106,6 +117,7 @@ impl BearingWatch {
             .map(|means| Means { scripted: changes(means.window[0], means.window[1]), ..means });
         let rated = self.rated.finish();
         BearingSeen {
+            closed: means.as_ref().and_then(|means| self.losses.over(means.window)),
             life: means.as_ref().and_then(|means| Life::over(means.window, &rated, simulation.model())),
             means,
             spectrum: self.spectrum.and_then(Recorder::finish),

@@ -75,7 +75,7 @@ impl Observer for Watch {
             watch.step(bearing);
         }
         if let Some(watch) = &mut self.shaft {
-            watch.step(system);
+            watch.step(system, self.bearings.iter().map(BearingWatch::lost));
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What is gathered of a shaft with its housings in a run: means, energy, and rows that its error is told from.
 
 use roulement::model::structure::StructureEnergies;
+use roulement::simulation::losses::LOSSES;
 use roulement::simulation::system::System;
 
 use super::bearing::lengths;
@@ -8,6 +9,7 @@ use super::phases::{Now, Phase, PhaseWatch};
 use crate::error::{Course, Lengths, Sample, sizes};
 use crate::report::energy::{ROUNDING, TOLERANCE};
 use crate::report::figures::Figures;
+use crate::report::losses::{Closed, LossWatch, Sums as LossSums};
 use crate::report::means::{Blocks, Means};
 use crate::report::quantities::{ShaftQuantities, Watched};
 use crate::report::shaft::creeping;
@@ -21,6 +23,7 @@ pub struct ShaftWatch {
     quantities: ShaftQuantities,
     blocks: Blocks,
     samples: Thinned<Sample>,
+    losses: LossWatch,
     /// \[N] largest load of a ball of any bearing.
     largest_load: f64,
     phases: Vec<PhaseWatch>,
@@ -32,6 +35,8 @@ pub struct ShaftSeen {
     pub means: Option<Means>,
     /// Phases of the run that it came to.
     pub phases: Vec<Phase>,
+    /// What closes the losses of the whole machine over the window of the means.
+    pub closed: Option<Closed>,
     watched: Vec<Watched>,
     samples: Vec<Sample>,
     largest_load: f64,
@@ -45,16 +50,18 @@ impl ShaftWatch {
         let (watched, arm) = (quantities.watched(), lengths_of(system).pitch_radius);
         let phases = PhaseWatch::of_all(&system.scene().phases, &watched, &[], arm);
         let blocks = Blocks::new(watched, arm, duration);
-        Self { quantities, blocks, samples: Thinned::default(), largest_load: 0.0, phases }
+        let (samples, losses) = (Thinned::default(), LossWatch::default());
+        Self { quantities, blocks, samples, losses, largest_load: 0.0, phases }
     }
 
-    /// Takes the start, or where a step has ended.
-    pub fn step(&mut self, system: &System) {
+    /// Takes the start, or where a step has ended, with the losses of its bearings so far.
+    pub fn step(&mut self, system: &System, bearings: impl Iterator<Item = LossSums>) {
         let (time, values) = (system.time(), self.quantities.values(system));
         self.blocks.push_values(time, &values);
         let weights = vec![1.0; values.len()];
         let now = Now { time, values: &values, weights: &weights, peaks: &[], rating: None };
         self.phases.iter_mut().for_each(|phase| phase.step(&now));
+        self.losses.step_of_shaft(system, bearings);
     }
 
     /// Takes a row.
@@ -73,6 +80,7 @@ impl ShaftWatch {
             .map(|means| Means { scripted: changes(means.window[0], means.window[1]), ..means });
         let phases = self.phases.into_iter().filter_map(|phase| phase.finish(None, changes));
         ShaftSeen {
+            closed: means.as_ref().and_then(|means| self.losses.over(means.window)),
             means,
             phases: phases.collect(),
             watched: self.quantities.watched(),
@@ -101,6 +109,9 @@ impl ShaftSeen {
             figures.add_means(means);
         }
         self.phases.iter().for_each(|phase| figures.add_phase(phase));
+        if let Some(closed) = &self.closed {
+            figures.set(LOSSES[0].name, closed.lost);
+        }
         figures
     }
 

@@ -180,3 +180,47 @@ fn limit_a_shaft_that_creeps_below_breakaway_is_said_to() {
         assert!(!said.contains("the shaft creeps"), "{torque}: {said}");
     }
 }
+
+/// What a machine loses is what its bearings lose, and what its drive and its loads bring; drag in one of them is in it.
+#[test]
+fn invariant_losses_of_a_machine_are_those_of_its_bearings_and_close() {
+    let scratch = Scratch::new("shaft-losses");
+    let text = std::fs::read_to_string(scene("shafts/pinion")).unwrap();
+    let mist = "catalogue = \"7206 B\"\nset.effects.ambient = { density = 200.0, viscosity = 18e-6 }";
+    let text = text.replacen("catalogue = \"7206 B\"", mist, 1).replace("\"20 ms\"", "\"60 ms\"");
+    std::fs::write(scratch.path("shaft.toml"), text).unwrap();
+    let (file, to) = (scratch.path("shaft.toml"), scratch.path("out"));
+    let json: Value = serde_json::from_str(&run(&["run", &file, "-o", &to, "--json"])).unwrap();
+    let of = |part: &str, name: &str| json[part]["losses"][name].as_f64().unwrap();
+    let lost = ["left", "right"].map(|bearing| json[bearing]["figures"]["loss.total"].as_f64().unwrap());
+    let all = of("shaft", "lost");
+    // Sums are kept up to 1/512 of the run apart, and taken in between where the window of means begins.
+    assert!(((lost[0] + lost[1]) / all - 1.0).abs() < 1e-5, "{lost:?} {all}");
+    assert!(of("shaft", "left_open").abs() < 1e-5 * all, "{}", json["shaft"]["losses"]);
+    // Drive and gear together, of 19 kW that pass through; steady, so that nothing is stored.
+    let brought = of("shaft", "torque_times_speed") + of("shaft", "other_work");
+    assert!((brought / all - 1.0).abs() < 2e-3, "{}", json["shaft"]["losses"]);
+    assert!(of("shaft", "torque_times_speed") < -1e4);
+    // Of each bearing by itself, too: torque times the speed of the shaft.
+    for (bearing, lost) in ["left", "right"].into_iter().zip(lost) {
+        assert!(
+            (of(bearing, "torque_times_speed") / lost - 1.0).abs() < 2e-3,
+            "{bearing} {}",
+            json[bearing]["losses"]
+        );
+    }
+    let parts = |bearing: &str| -> Vec<String> {
+        let parts = json[bearing]["losses"]["parts"].as_array().unwrap();
+        parts.iter().map(|part| part["name"].as_str().unwrap().to_string()).collect()
+    };
+    assert_eq!(parts("left"), ["loss.sliding", "loss.drag", "loss.damping"]);
+    assert_eq!(parts("right"), ["loss.sliding", "loss.damping"]);
+    let drag = json["left"]["figures"]["loss.drag"].as_f64().unwrap();
+    assert!(drag > 0.05 * lost[0], "{drag} {lost:?}");
+    let said = scratch.read("out/summary.txt");
+    assert!(
+        said.contains(&format!("losses           {all:.4} W of all bearings, shaft and housings")),
+        "{said}"
+    );
+    assert!(said.contains(&format!("mean losses {:.3} W", lost[0])) && said.contains("left open"), "{said}");
+}

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use roulement::scene::{ErrorGoal, ErrorOf, Scene, Solver};
 use roulement::simulation::Simulation;
+use roulement::simulation::losses::LOSSES;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::{Observer, Rows, play_observed};
 use roulement::simulation::system::System;
@@ -43,7 +44,7 @@ fn column<'a>(table: &'a [(String, Vec<String>)], name: &str) -> &'a [String] {
 fn synthetic(solver: Solver, added: impl Fn(f64) -> f64) -> Run {
     let index = QUANTITIES.iter().position(|quantity| quantity.name == "friction power").unwrap();
     let mut outputs = Simulation::new(&edited("thrust", &[])).unwrap().outputs().clone();
-    let quantities = of_bearing(Parts { cage: false, moving_outer: false });
+    let quantities = of_bearing(Parts { cage: false, moving_outer: false, losses: [false; LOSSES.len()] });
     let mut blocks = Blocks::new(quantities.clone(), 1.0, 1.0);
     let mut samples = Vec::new();
     for row in 0..=1000 {

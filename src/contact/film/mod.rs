@@ -180,6 +180,11 @@ impl Film<'_> {
         Logarithms { speed: speed + ln(loading.curvature) + of_speed, heat: speed.scale(2.0) + of_heat }
     }
 
+    /// Is rolling resistance simulated?
+    pub fn resists(&self) -> bool {
+        self.raceway.lubricant.rolling_resistance
+    }
+
     /// [-] film ratio: minimum film over roughness.
     pub fn ratio<S: Scalar>(&self, loading: &Loading<S>) -> S {
         self.films(loading)[1].scale(self.supply.lubrication / self.raceway.lubricant.roughness)

@@ -308,9 +308,17 @@ impl Settings {
                 percent(share)
             )
         } else {
+            // A flow of oil takes most of the heat of fast bearings; only a balance of heat knows how much.
+            let cooled = match (estimate.oil_conductance > 0.0, estimate.oiled) {
+                (true, _) => "through the seats of both rings and to the oil",
+                (false, true) => {
+                    "through the seats of both rings alone: oil that flows takes heat, here unknown how much"
+                }
+                (false, false) => "through the seats of both rings, where no oil flows",
+            };
             format!(
-                "10 K between the inner ring and the rest change the deepest approach at held races by {}; friction alone warms \
-                 the bearing by about {} K",
+                "10 K between the inner ring and the rest change the deepest approach at held races by {}; friction would warm the \
+                 bearing by about {} K {cooled}",
                 percent(share),
                 digits(estimate.heating())
             )

@@ -18,6 +18,7 @@ use crate::schema::numbers::{FRICTION, Parameter, Range, Variability};
 use crate::schema::variable_units::Unit;
 use crate::simulation::Simulation;
 use crate::simulation::inputs::Inputs;
+use crate::simulation::losses::Losses;
 use crate::simulation::outputs::Outputs;
 use race_rows::RaceVariable;
 pub use race_setting::InputKind;
@@ -62,6 +63,8 @@ pub enum Source {
     Bearing(FromOutputs),
     /// An input of an effect.
     Input(InputRow),
+    /// Losses of a bearing.
+    Loss(fn(&Losses) -> f64),
     /// What an effect reports.
     Effect(Getter),
     /// A number of the scene.
@@ -182,7 +185,7 @@ impl Variables {
         for race in Race::BOTH {
             table.add_race(scene, race, carried(race));
         }
-        table.add_bearing();
+        table.add_bearing(scene);
         table.add_effects(scene, per_ball);
         table.add_temperatures(scene);
         table.inputs = references_of_inputs(&table.rows);
@@ -212,6 +215,7 @@ impl Variables {
     fn value_with(&self, row: &Variable, inputs: &Inputs, outputs: &Outputs, reports: &Reports<'_>) -> f64 {
         match &row.source {
             Source::Bearing(get) => get(outputs),
+            Source::Loss(get) => get(&outputs.losses),
             Source::Effect(getter) => getter.get(reports),
             Source::Race(race, quantity, component) if row.causality != Causality::Input => {
                 (quantity.read)(&outputs[*race], *component)
@@ -245,7 +249,11 @@ impl Variables {
             {
                 Some((access.get)(&inputs[*race], *component))
             }
-            Source::Race(..) | Source::Bearing(_) | Source::Effect(_) | Source::Shaft(_) => None,
+            Source::Race(..)
+            | Source::Bearing(_)
+            | Source::Loss(_)
+            | Source::Effect(_)
+            | Source::Shaft(_) => None,
         }
     }
 

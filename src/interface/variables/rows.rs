@@ -9,6 +9,7 @@ use crate::model::bodies::Race;
 use crate::scene::Scene;
 use crate::schema::numbers::FRICTION;
 use crate::schema::variable_units::{self as units, Unit};
+use crate::simulation::losses::LOSSES;
 
 /// Smallest and largest value that a variable can have.
 fn limits(source: &Source) -> [Option<f64>; 2] {
@@ -17,7 +18,9 @@ fn limits(source: &Source) -> [Option<f64>; 2] {
         Source::Friction => [Some(FRICTION.low), Some(FRICTION.high)],
         Source::Parameter(parameter) => [Some(parameter.range.low), Some(parameter.range.high)],
         Source::Rise(_) => [Some(RISE.low), Some(RISE.high)],
-        Source::Bearing(_) | Source::Effect(_) | Source::Input(_) | Source::Shaft(_) => [None; 2],
+        Source::Bearing(_) | Source::Loss(_) | Source::Effect(_) | Source::Input(_) | Source::Shaft(_) => {
+            [None; 2]
+        }
     }
 }
 
@@ -82,7 +85,7 @@ impl Variables {
         }
     }
 
-    pub(super) fn add_bearing(&mut self) {
+    pub(super) fn add_bearing(&mut self, scene: &Scene) {
         let friction = "friction coefficient of the ball-race contacts".to_string();
         self.add("friction".into(), units::ONE, Causality::Input, 0.1, friction, Source::Friction);
         let mut output = |name: &str, unit, nominal, description: &str, get: FromOutputs| {
@@ -95,7 +98,7 @@ impl Variables {
         let slip = "1 - cage speed over the orbital speed of balls that roll without slip on both races, which counts as no less than half \
                     of the cage speed; fades to 0 below 1e-3 m/s at the pitch radius";
         output("cage.slip", units::ONE, 1e-2, slip, |o| o.cage_slip);
-        let power = "power lost to friction in all contacts";
+        let power = "power lost to friction in all contacts; drag, contact damping and dampers of supports are in loss.total alone";
         output("friction_power", units::WATT, 1.0, power, |o| o.friction_power);
         let power = "power lost to contact damping";
         let kind = "power lost to friction in all contacts with the inner race";
@@ -133,6 +136,10 @@ impl Variables {
         let slip = "1 - mean orbital speed of the loaded balls over that of rolling without slip on both races, which counts as no less \
                     than half of the former; fades to 0 below 1e-3 m/s at the pitch radius";
         output("balls.slip", units::ONE, 1e-2, slip, |o| o.ball_slip);
+        for part in LOSSES.iter().filter(|part| (part.is_of)(scene)) {
+            let (name, description) = (part.name.into(), part.description.into());
+            self.add(name, units::WATT, Causality::Output, 1.0, description, Source::Loss(part.get));
+        }
         let mut count = |name: &str, description: &str, get: FromOutputs| {
             self.rows.push(Variable {
                 name: name.into(),

@@ -19,7 +19,8 @@ use toml::{Table, Value};
 use super::{Scene, SceneError};
 use crate::schema::units::{Acceleration, Force, Moment, Time};
 use crate::schema::{
-    AxialSeat, Components, HousingSection, Matrices, Mounting, PhaseSection, ShaftSection, Solver, explain, regular,
+    AxialSeat, Components, HousingSection, Matrices, Mounting, PhaseSection, ShaftSection, Solver, explain,
+    regular,
 };
 
 /// A shaft with its bearings, as described by a file.
