@@ -83,7 +83,7 @@ impl Scripted for Simulation {
         self.inputs = course.inputs[0];
         course.start = (row < self.state.time + self.state.control.longest()).then(|| self.moment());
         self.step_towards(&course.scripts[0], stop, &mut [], &mut Workspace::default())?;
-        self.show_end(&course.scripts[0]);
+        self.show_end(&course.scripts[0], &course.inputs[0]);
         self.check_contacts()
     }
 
@@ -94,7 +94,7 @@ impl Scripted for Simulation {
         self.inputs = course.inputs[0];
         let boundary = self.imposed(&course.scripts[0], time);
         let seen = within(&self.model, [&start.bearings[0], &end.bearings[0]], &boundary);
-        self.see(&course.scripts[0], seen);
+        self.see(&course.scripts[0], &course.inputs[0], seen);
         course.end = Some(end);
     }
 
@@ -107,11 +107,12 @@ impl Scripted for Simulation {
         if let Some(start) = &mut course.start {
             self.go_back_to(end.state, &mut start.bearings[0].state, time);
         }
-        self.show_end(&course.scripts[0]);
+        self.show_end(&course.scripts[0], &course.inputs[0]);
     }
 
     fn end(&mut self, course: Course, accepted: bool) {
         if self.model.solver.level == Level::Dynamic {
+            self.inputs = course.inputs[0];
             self.end_script(&course.scripts[0], accepted);
             self.take_scripted_inputs();
         }
@@ -129,21 +130,22 @@ impl Simulation {
     }
 
     /// Shows where the last step has ended.
-    pub(super) fn show_end(&mut self, script: &Script) {
-        self.show_inputs(script);
+    pub(super) fn show_end(&mut self, script: &Script, inputs: &Inputs) {
+        self.show_inputs(script, inputs);
         self.reach(true);
     }
 
-    /// Inputs that the steps follow, and beside them what the script says of those that they do not need.
-    fn show_inputs(&mut self, script: &Script) {
+    /// From the inputs that steps begin with, those that they follow, and beside them what the script says of those that they do not need.
+    fn show_inputs(&mut self, script: &Script, inputs: &Inputs) {
+        self.inputs = *inputs;
         script.set_inputs(&self.scene, &self.paths, self.state.time, &mut self.inputs);
         self.take_scripted_inputs();
     }
 
     /// Shows what was seen within the last step.
-    pub(super) fn see(&mut self, script: &Script, seen: StepBound) {
+    pub(super) fn see(&mut self, script: &Script, inputs: &Inputs, seen: StepBound) {
         self.state = seen.state;
-        self.show_inputs(script);
+        self.show_inputs(script, inputs);
         self.point = Point::of_contacts(conditions(&self.inputs, &self.state), seen.contacts);
     }
 

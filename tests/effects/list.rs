@@ -85,9 +85,24 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
             &["clearance", "contact_angle.", "interference.", "seat_pressure.", "temperature_rise.", "heat."],
         ),
     ];
+    // What can be lost to the effect is a loss of its own, beside all losses and sliding.
+    let losing = [
+        ("effects.damping", "loss.damping"),
+        ("effects.cage", "loss.cage"),
+        ("effects.hysteresis", "loss.hysteresis"),
+        ("effects.ambient", "loss.drag"),
+        ("support", "loss.support"),
+        ("film", "loss.rolling"),
+    ];
+    let (losses, base): (Vec<_>, Vec<_>) = base.into_iter().partition(|name| name.starts_with("loss."));
+    assert_eq!(losses, ["loss.total", "loss.sliding"]);
+    let first_parameter = first_parameter - losses.len();
     for effect in parse(OFF).effects.each() {
         let info = effect.info();
         let on = names(&parse(&alone(info.example)));
+        let (lost, on): (Vec<_>, Vec<_>) = on.into_iter().partition(|name| name.starts_with("loss."));
+        let part = losing.iter().find(|(key, _)| *key == info.key).map(|(_, name)| name.to_string());
+        assert_eq!(lost, [losses.clone(), part.into_iter().collect()].concat(), "{}", info.key);
         let (count, starts) = adding
             .iter()
             .find(|(key, ..)| *key == info.key)
@@ -122,7 +137,7 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
                       inertia = [1e-5, 6e-6, 6e-6]\npocket_clearance = 2e-4\nguided_by = \"balls\"\n",
     );
     let on = names(&both);
-    assert_eq!(on.len(), base.len() + 22 + 10 * (29 + 6) + 5);
+    assert_eq!(on.len(), base.len() + losses.len() + 22 + 10 * (29 + 6) + 5 + 1);
     assert_eq!(on.iter().filter(|name| name.contains("].pocket.")).count(), 60);
     assert_eq!(on.iter().collect::<BTreeSet<_>>().len(), on.len(), "names are unique");
 }

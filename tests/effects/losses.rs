@@ -6,6 +6,7 @@ use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 use roulement::simulation::losses::{LOSSES, Losses};
+use roulement::simulation::play::Scripted;
 
 use crate::scenes::scene;
 
@@ -28,6 +29,16 @@ fn each(losses: &Losses) -> [f64; LOSSES.len()] {
     LOSSES.map(|part| (part.get)(losses))
 }
 
+/// Runs a simulation by its script to a time, and shows it where each step has ended.
+fn each_step(simulation: &mut Simulation, to: f64, mut see: impl FnMut(&Simulation)) {
+    let mut course = simulation.begin(to).unwrap();
+    while simulation.time() < to {
+        simulation.step(&mut course, to).unwrap();
+        see(simulation);
+    }
+    simulation.end(course, true);
+}
+
 /// Runs a scene to a time, and sums from there to another, from step to step by the trapezoidal rule.
 fn sums(scene: &Scene, [from, to]: [f64; 2]) -> (Sums, [f64; LOSSES.len()]) {
     let mut simulation = Simulation::new(scene).unwrap();
@@ -35,17 +46,15 @@ fn sums(scene: &Scene, [from, to]: [f64; 2]) -> (Sums, [f64; LOSSES.len()]) {
     let start = simulation.instant();
     let energies = simulation.state().energies;
     let (mut sums, mut parts, mut before) = (Sums::default(), [0.0; LOSSES.len()], start.clone());
-    simulation
-        .advance_scripted_observed(to, &mut |bearing| {
-            let now = bearing.instant();
-            let half = 0.5 * (now.time - before.time);
-            sums.torque += half * (before.torque_power + now.torque_power);
-            for ((sum, a), b) in parts.iter_mut().zip(each(&before.losses)).zip(each(&now.losses)) {
-                *sum += half * (a + b);
-            }
-            before = now;
-        })
-        .unwrap();
+    each_step(&mut simulation, to, |bearing| {
+        let now = bearing.instant();
+        let half = 0.5 * (now.time - before.time);
+        sums.torque += half * (before.torque_power + now.torque_power);
+        for ((sum, a), b) in parts.iter_mut().zip(each(&before.losses)).zip(each(&now.losses)) {
+            *sum += half * (a + b);
+        }
+        before = now;
+    });
     let after = simulation.state().energies;
     sums.work = after.input + after.stiffened - energies.input - energies.stiffened;
     sums.stored = before.stored_energy - start.stored_energy;
@@ -152,14 +161,12 @@ fn invariant_heat_by_part_is_all_loss_but_for_damping() {
             let mut before = simulation.instant();
             let mut lost = 0.0;
             let end = 4e-4 * f64::from(point);
-            simulation
-                .advance_scripted_observed(end, &mut |bearing| {
-                    let now = bearing.instant();
-                    let of = |losses: &Losses| losses.total() - losses.damping - losses.support;
-                    lost += 0.5 * (now.time - before.time) * (of(&before.losses) + of(&now.losses));
-                    before = now;
-                })
-                .unwrap();
+            each_step(&mut simulation, end, |bearing| {
+                let now = bearing.instant();
+                let of = |losses: &Losses| losses.total() - losses.damping - losses.support;
+                lost += 0.5 * (now.time - before.time) * (of(&before.losses) + of(&now.losses));
+                before = now;
+            });
             let heat = simulation.outputs().heat.unwrap();
             let all = heat.inner + heat.outer + heat.balls + heat.cage + heat.medium;
             assert!((all / (lost / 4e-4) - 1.0).abs() < 1e-9, "{all} {}", lost / 4e-4);

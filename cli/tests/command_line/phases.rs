@@ -1,5 +1,6 @@
 //! Named windows of a run, `[[phase]]`: means, least and largest values, heat and life of each.
 
+use roulement::scene::Scene;
 use serde_json::Value;
 
 use super::sweep::{columns, good};
@@ -102,7 +103,7 @@ fn invariant_a_phase_is_judged_by_itself_and_stands_in_all_that_is_written() {
     };
     let at = row("between", "friction power");
     let number = |name: &str, at: usize| table[name][at].parse::<f64>().unwrap();
-    assert_eq!((table["begin"][at].as_str(), table["end"][at].as_str()), ("0.0070123", "0.01000077"));
+    assert_eq!((table["begin [s]"][at].as_str(), table["end [s]"][at].as_str()), ("0.0070123", "0.01000077"));
     assert!(number("error", at) > 0.0 && number("error", at) < 0.01 * number("mean", at));
     assert_eq!(table["settled"][at], "false");
     assert!(number("mean", row("heavy", "damage")) > number("mean", row("light", "damage")));

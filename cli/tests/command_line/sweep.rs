@@ -382,7 +382,9 @@ fn a_run_is_written_as_parquet_and_json_with_the_same_bits() {
     let json: Value = serde_json::from_str(&printed).unwrap();
     let means = columns(&scratch.read("out/means.csv"));
     let listed = json["means"]["quantities"].as_array().unwrap();
-    assert_eq!(listed.len(), means["mean"].len());
+    // Behind means are the four numbers that close the losses.
+    assert_eq!(means["quantity"][listed.len()..].first().map(String::as_str), Some("torque times speed"));
+    assert_eq!(listed.len() + 4, means["mean"].len());
     for (of, text) in listed.iter().zip(&means["mean"]) {
         assert!(
             (of["mean"].as_f64().unwrap() - text.parse::<f64>().unwrap()).abs()

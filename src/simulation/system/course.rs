@@ -71,9 +71,9 @@ impl Scripted for System {
         let (states, structures) = within(&mut stepped, &structures, &end.structures, &self.joints, spans);
         drop(stepped);
         (self.states, self.time) = (structures, time);
-        let bearings = self.bearings.iter_mut().zip(states).zip(&course.scripts);
-        for ((bearing, seen), script) in bearings {
-            bearing.see(script, seen);
+        let bearings = self.bearings.iter_mut().zip(states).zip(&course.scripts).zip(&course.inputs);
+        for (((bearing, seen), script), inputs) in bearings {
+            bearing.see(script, inputs, seen);
         }
         self.report();
         course.end = Some(end);
@@ -94,6 +94,7 @@ impl Scripted for System {
     }
 
     fn end(&mut self, course: Course, accepted: bool) {
+        self.bearings.iter_mut().zip(&course.inputs).for_each(|(bearing, own)| bearing.inputs = *own);
         if let Some(played) = &course.played {
             self.finish(&course.scripts, played, accepted);
         }
@@ -110,8 +111,8 @@ impl System {
 
     /// Shows where the last step has ended.
     fn show(&mut self, course: &Course) {
-        for (bearing, script) in self.bearings.iter_mut().zip(&course.scripts) {
-            bearing.show_end(script);
+        for ((bearing, script), inputs) in self.bearings.iter_mut().zip(&course.scripts).zip(&course.inputs) {
+            bearing.show_end(script, inputs);
         }
         self.report();
     }
