@@ -112,7 +112,9 @@ const scaled = (values, factor) => Float64Array.from(values, v => (Number.isFini
 /** Range that shows noise as noise, and is not set by the first row alone. */
 function range(u, low, high) {
   if (!Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
-  const air = high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? 0.06 * (high - low) : Math.max(0.05 * Math.abs(high), 1e-9);
+  // What is smaller than any axis can be written for is rounding of zeros.
+  const span = Math.max(1e-9 * Math.max(Math.abs(low), Math.abs(high)), 1e-11);
+  const air = high - low > span ? 0.06 * (high - low) : Math.max(0.05 * Math.abs(high), 1e-9);
   return [low - air, high + air];
 }
 

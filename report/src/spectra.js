@@ -6,6 +6,9 @@ import { css, colour, onTheme } from './theme.js';
 import { spectrum } from './fft.js';
 import { digits, shown } from './units.js';
 
+/** Amplitude in the unit of the plot that is rounding of zeros: no axis can be written for less. */
+const NOTHING = 1e-11;
+
 export function spectra(run) {
   const candidates = [...run.series.values()].filter(s => !s.constant && s.t.length >= 64 && (run.shaft ? s.name !== 'shaft.angle' : /force|moment|position|torque|power|speed|load$|eccentricity|slip|angle/.test(s.name))).map(s => s.name)
     .filter(name => !run.isNothing(name)).sort((a, b) => a.startsWith('ball[') - b.startsWith('ball[') || a.localeCompare(b));
@@ -34,11 +37,11 @@ export function spectra(run) {
     plot = new uPlot({
       width: Math.max(body.clientWidth, 280), height: 340, legend: { show: true },
       cursor: { drag: { x: true, y: false } },
-      scales: { x: { time: false }, y: state.scale === 'log' ? { distr: 3, range: (u, low, high) => [Math.max(low, high * 1e-5, 1e-300), high * 1.6] } : { range: (u, low, high) => [0, high * 1.1] } },
+      scales: { x: { time: false }, y: state.scale === 'log' ? { distr: 3, range: (u, low, high) => [Math.max(low, high * 1e-5, NOTHING), Math.max(high * 1.6, 10 * NOTHING)] } : { range: (u, low, high) => [0, Math.max(high * 1.1, 10 * NOTHING)] } },
       axes: [{ ...ink, label: state.axis === 'order' ? 'order of the shaft' : 'frequency [kHz]' }, { ...ink, size: 78, label: `${state.name}${unit ? ` [${unit}]` : ''}`, values: (u, values) => values.map(v => (v === null ? '' : digits(v, 2))) }],
       series: [{ label: state.axis === 'order' ? 'order' : 'kHz', value: (u, v) => (v === null ? '' : digits(v, 5)) }, { label: state.name, stroke: () => colour(0), width: 1.4, value: (u, v) => (v === null ? '' : digits(v, 4)), points: { show: false } }],
       hooks: { draw: [u => mark(u, lines, per)] },
-    }, [x, Float64Array.from(y, v => (state.scale === 'log' ? Math.max(v, top * 1e-9) : v))], body);
+    }, [x, Float64Array.from(y, v => (state.scale === 'log' ? Math.max(v, top * 1e-9, NOTHING) : v))], body);
     const stride = series.t.length < (run.record.table_rows ?? 0);
     note.textContent = `Hann window over ${digits(values.length * dt * 1e3, 4)} ms, resolution ${digits(2 / (values.length * dt), 3)} Hz, up to ${digits(0.5e-3 / dt, 4)} kHz, half the frequency of the rows.${stride ? ' The page has every n-th row of the table: what is faster than that folds back.' : ' What is faster than that folds back.'}`;
   };

@@ -2,9 +2,11 @@
 
 use crate::effects::heat::ByContact;
 use crate::effects::heat_balance::Heating;
+use crate::effects::means::{Averaged, OfRace};
 use crate::effects::rating::Turning;
 use crate::forces::{BallPair, Pairs};
 use crate::model::bodies::{Body, Race};
+use crate::model::energies::Powers;
 use crate::model::state::State;
 use crate::model::{Conditions, Model};
 
@@ -44,6 +46,32 @@ pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, conditions: 
             Some(h) => heat.add(powers, h),
             None => heat.begin(powers, state.time),
         }
+    }
+    if state.means.is_some() {
+        let now = averaged(model, state);
+        let time = state.time;
+        if let Some(means) = &mut state.means {
+            match h {
+                Some(h) => means.add(now, h),
+                None => means.begin(now, time),
+            }
+        }
+    }
+}
+
+/// What has means, of a state whose forces and powers are those of this moment.
+fn averaged(model: &Model, state: &State) -> Averaged {
+    let of_race = |race: Race| {
+        let wrench = state.wrench_on(race);
+        let drive_torque = state.drive_torque(model.bodies[race].as_ref(), race);
+        OfRace { force: wrench.force.into(), moment: wrench.moment.into(), drive_torque }
+    };
+    let Powers { friction, damping, around, .. } = state.powers;
+    Averaged {
+        races: Race::BOTH.map(of_race),
+        friction,
+        lost: friction + damping + around,
+        cage_speed: state.cage_speed(),
     }
 }
 

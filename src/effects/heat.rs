@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::effect::{Effect, Getter, Info, Row};
 use super::keys::keys;
+use super::since::{Numbers, Since};
 use crate::schema::variable_units::WATT;
 
 keys! {
@@ -29,8 +30,7 @@ pub struct ByContact {
     pub medium: f64,
 }
 
-impl ByContact {
-    /// Number by number with another.
+impl Numbers for ByContact {
     fn zip(&self, other: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
         Self {
             races: [0, 1].map(|race: usize| f(self.races[race], other.races[race])),
@@ -42,61 +42,19 @@ impl ByContact {
     }
 }
 
-/// Energies since the start, and where they were at the last communication point.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Sums {
-    /// \[W] powers now.
-    powers: ByContact,
-    /// \[J] energies.
-    energies: ByContact,
-    /// \[J] energies at the last communication point.
-    marked: ByContact,
-    /// \[s] time of that point.
-    at: f64,
-}
+/// \[J] energies since the start.
+pub type Sums = Since<ByContact>;
 
-impl Sums {
-    /// Takes the powers \[W] of this moment, at a time \[s] that no step has led to.
-    pub fn begin(&mut self, powers: ByContact, time: f64) {
-        self.powers = powers;
-        self.mark(time);
-    }
-
-    /// Adds a step of `h` \[s] by the trapezoidal rule, as the energy balance does.
-    pub fn add(&mut self, powers: ByContact, h: f64) {
-        let mean = self.powers.zip(&powers, |before, now| 0.5 * h * (before + now));
-        self.energies = self.energies.zip(&mean, |sum, step| sum + step);
-        self.powers = powers;
-    }
-
-    /// From here on, at a time \[s], means are taken.
-    pub fn mark(&mut self, time: f64) {
-        (self.marked, self.at) = (self.energies, time);
-    }
-
-    /// The same from where others were at a time \[s] before this.
-    pub fn mark_as(&mut self, then: &Self, time: f64) {
-        (self.marked, self.at) = (then.energies, time);
-    }
-
-    /// \[W] mean powers since the last communication point, at a time \[s]; powers of this moment where that is now. `guide` is
-    /// the race that guides the cage: 0 the inner, 1 the outer one.
-    pub fn output(&self, time: f64, guide: Option<usize>) -> HeatOutput {
-        let duration = time - self.at;
-        let mean = if duration > 0.0 {
-            self.energies.zip(&self.marked, |now, then| (now - then) / duration)
-        } else {
-            self.powers
-        };
-        let on_race =
-            |race: usize| 0.5 * mean.races[race] + if guide == Some(race) { 0.5 * mean.lands } else { 0.0 };
-        HeatOutput {
-            inner: on_race(0),
-            outer: on_race(1),
-            balls: 0.5 * (mean.races[0] + mean.races[1] + mean.pockets) + mean.balls,
-            cage: 0.5 * (mean.pockets + mean.lands),
-            medium: mean.medium,
-        }
+/// \[W] mean powers by the part that they heat; `guide` is the race that guides the cage: 0 the inner, 1 the outer one.
+pub fn by_part(mean: &ByContact, guide: Option<usize>) -> HeatOutput {
+    let on_race =
+        |race: usize| 0.5 * mean.races[race] + if guide == Some(race) { 0.5 * mean.lands } else { 0.0 };
+    HeatOutput {
+        inner: on_race(0),
+        outer: on_race(1),
+        balls: 0.5 * (mean.races[0] + mean.races[1] + mean.pockets) + mean.balls,
+        cage: 0.5 * (mean.pockets + mean.lands),
+        medium: mean.medium,
     }
 }
 

@@ -41,11 +41,13 @@ pub mod heat_balance;
 pub mod hysteresis;
 pub mod inherent;
 pub mod keys;
+pub mod means;
 pub mod moving_frame;
 pub mod per_ball;
 pub mod rating;
 pub mod reports;
 pub mod shoulder;
+pub mod since;
 mod sliding;
 pub mod stiffness;
 pub mod support;
@@ -97,7 +99,7 @@ macro_rules! effects {
 }
 
 effects! {
-    creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form, growth, rating, heat, defects,
+    creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form, growth, rating, heat, means, defects,
     frame, ambient, support, auto, film, hysteresis, heat_balance,
 }
 

@@ -4,6 +4,7 @@ use nalgebra::{Matrix6, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::heat_balance::Warm;
+use super::means::Averaged;
 use super::rating::LoadRests;
 use crate::numerics::motion::{Pose, Twist, Wrench};
 
@@ -24,6 +25,8 @@ pub struct Reports<'a> {
     pub life: Option<&'a LifeOutput>,
     /// Heat of friction by part.
     pub heat: Option<&'a HeatOutput>,
+    /// Means since the last communication point.
+    pub means: Option<&'a Averaged>,
     /// Frequencies of cage and damage.
     pub frequencies: &'a Frequencies,
     /// \[W] power that the balls lose to the medium around them.

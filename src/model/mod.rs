@@ -84,6 +84,8 @@ pub struct Model {
     pub rating: Option<Rating>,
     /// Is heat reported by part?
     pub heat_outputs: bool,
+    /// Are means since the last communication point reported?
+    pub mean_outputs: bool,
     /// [-] change of creepages over sliding ones after which Kalker's polynomials are solved anew.
     pub epsilon_switch: f64,
     /// [N m/N^1.33] coefficients of the hysteresis of rolling; 0 without it.
@@ -171,6 +173,7 @@ impl Model {
             cage,
             rating: scene.effects.rating.rating(&scene.bearing, &bearing.materials),
             heat_outputs: scene.effects.heat.on,
+            mean_outputs: scene.effects.means.on,
             growth: scene.effects.growth.growth(&scene.bearing, &scene.ball, &scene.race),
             films,
             heat_balance,

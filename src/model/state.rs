@@ -3,14 +3,14 @@
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
-use super::bodies::{Bodies, Body, PerRace, Race};
+use super::bodies::{Bodies, Body, Constraint, PerRace, Race, RigidBody};
 use super::energies::{Energies, Powers, Pressed};
 use crate::contact::body::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::effects::growth::Grown;
 use crate::effects::heat_balance::Warm;
 use crate::effects::reports::SupportState;
-use crate::effects::{heat, rating};
+use crate::effects::{heat, means, rating};
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::arrowhead::Eliminated;
 use crate::numerics::motion::{Pose, Twist, Wrench};
@@ -46,6 +46,14 @@ impl BallState {
             velocity: self.velocity,
             angular_velocity: self.angular_velocity,
         }
+    }
+
+    /// [rad/s] orbital speed about the axis of the outer race.
+    pub fn orbital_speed(&self, outer: &BodyState) -> f64 {
+        let frame = outer.pose.orientation.inverse();
+        let offset = frame * (self.position - outer.pose.position);
+        let relative = frame * (self.velocity - outer.velocity);
+        (offset.y * relative.z - offset.z * relative.y) / (offset.y * offset.y + offset.z * offset.z)
     }
 }
 
@@ -247,11 +255,37 @@ pub struct State {
     pub warm: Option<Warm>,
     /// Heat since the start by contact; none where it is not reported.
     pub heat: Option<heat::Sums>,
+    /// Integrals since the start of what has means; none where they are not reported.
+    pub means: Option<means::Sums>,
     /// Orientation of each damaged ball, in world axes; none where all balls are whole.
     pub orientations: Option<Vec<UnitQuaternion<f64>>>,
 }
 
 impl State {
+    /// Force and moment of the bearing on what holds a race: on its flange where it rests on a support.
+    pub fn wrench_on(&self, race: Race) -> Wrench {
+        self.supports[race].as_ref().map_or(self.race(race).bearing_wrench, |support| support.wrench)
+    }
+
+    /// [N m] torque that keeps a race at its prescribed speed; against that of the bearing where nothing does. `body` is the race as
+    /// it is moved.
+    pub fn drive_torque(&self, body: Option<&RigidBody>, race: Race) -> f64 {
+        let spin = body.and_then(|body| body.constraints.iter().position(|c| matches!(c, Constraint::Spin)));
+        let state = self.race(race);
+        match spin {
+            Some(index) => state.multipliers[index],
+            None => -self.wrench_on(race).moment.dot(&(state.pose.orientation * Vector3::x())),
+        }
+    }
+
+    /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
+    pub fn cage_speed(&self) -> f64 {
+        let outer = self.race(Race::Outer);
+        let orbits =
+            || self.balls.iter().map(|ball| ball.orbital_speed(outer)).sum::<f64>() / self.balls.len() as f64;
+        self.cage().map_or_else(orbits, |cage| cage.rate.x)
+    }
+
     /// The state of a race.
     pub fn race(&self, race: Race) -> &BodyState {
         &self.bodies[race]

@@ -83,9 +83,7 @@ impl Simulation {
     /// The script of a communication step that begins now, from the inputs as set; where paths lead is left to the caller.
     pub(super) fn begin_script(&mut self, scripted: Groups) -> Script {
         let begin = self.state.time;
-        if let Some(heat) = &mut self.state.heat {
-            heat.mark(begin);
-        }
+        self.begin_report();
         let script = Script::new(&self.scene, scripted);
         let mut given = self.inputs;
         self.script_fixed_races(begin, &mut given);

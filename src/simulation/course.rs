@@ -151,8 +151,12 @@ impl Simulation {
 
     /// What is reported since the last row begins anew.
     pub(super) fn begin_report(&mut self) {
+        let time = self.state.time;
         if let Some(heat) = &mut self.state.heat {
-            heat.mark(self.state.time);
+            heat.mark(time);
+        }
+        if let Some(means) = &mut self.state.means {
+            means.mark(time);
         }
     }
 
@@ -163,6 +167,9 @@ impl Simulation {
         for state in [&mut self.state, start] {
             if let (Some(heat), Some(then)) = (&mut state.heat, &seen.heat) {
                 heat.mark_as(then, time);
+            }
+            if let (Some(means), Some(then)) = (&mut state.means, &seen.means) {
+                means.mark_as(then, time);
             }
         }
     }

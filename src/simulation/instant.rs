@@ -3,7 +3,7 @@
 use super::Simulation;
 use super::losses::Losses;
 use super::outputs::{Outputs, RaceOutput, spin_free_frame};
-use super::slip::{RollingOrbit, orbital_speed};
+use super::slip::RollingOrbit;
 use crate::forces::{Contacts, Totals, stored_energy};
 use crate::model::bodies::{PerRace, Race};
 use crate::model::state::State;
@@ -64,17 +64,13 @@ pub struct CageInstant {
 impl Instant {
     /// Of a state whose contacts were evaluated.
     pub(super) fn of(model: &Model, state: &State, contacts: &Contacts, conditions: &Conditions) -> Self {
-        let outer = state.race(Race::Outer);
         let races = PerRace::new(|race| state.race(race).motion());
         let count = state.balls.len() as f64;
         let totals = Totals::of(contacts, state.balls.len());
         let models = model.contacts_facing(conditions, state.orientations.as_ref());
         let rolling = RollingOrbit::mean(model, state, contacts, &races, models.inner.surface.ball_radius);
         let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
-        let cage_speed = state.cage().map_or_else(
-            || state.balls.iter().map(|ball| orbital_speed(ball, outer)).sum::<f64>() / count,
-            |cage| cage.rate.x,
-        );
+        let cage_speed = state.cage_speed();
         let cage = model.cage.as_ref().zip(state.cage()).map(|(model, cage)| {
             let pockets = || contacts.balls.iter().filter_map(|of_ball| of_ball.pocket);
             let lands = || contacts.lands.iter().flatten();

@@ -239,6 +239,7 @@ impl Simulation {
             && snapshot.state.grown.is_some() == self.state.grown.is_some()
             && snapshot.state.rating.is_some() == self.state.rating.is_some()
             && snapshot.state.heat.is_some() == self.state.heat.is_some()
+            && snapshot.state.means.is_some() == self.state.means.is_some()
             && snapshot.state.warm.is_some() == self.state.warm.is_some()
             && damaged(&snapshot.state) == damaged(&self.state)
             && snapshot.inputs.rises.is_some() == self.inputs.rises.is_some()

@@ -5,11 +5,13 @@ use std::ops::Index;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::losses::Losses;
-use super::slip::{RollingOrbit, orbital_speed};
+use super::slip::RollingOrbit;
 use crate::contact::{BallRaceContact, ContactModel, RaceMotion};
 use crate::effects::Reports;
 use crate::effects::film;
+use crate::effects::heat::by_part;
 use crate::effects::heat_balance::Warm;
+use crate::effects::means::Averaged;
 use crate::effects::reports::FilmOutput;
 use crate::effects::reports::Frequencies;
 use crate::effects::reports::GrowthOutput;
@@ -70,6 +72,8 @@ pub struct Outputs {
     pub life: Option<LifeOutput>,
     /// Heat of friction by part, means since the last communication point, where it is reported.
     pub heat: Option<HeatOutput>,
+    /// Means since the last communication point, where they are asked for.
+    pub means: Option<Averaged>,
     /// Frequencies of cage and damage, by the mean contact angle on the outer race, weighted by load.
     pub frequencies: Frequencies,
     /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
@@ -151,7 +155,7 @@ impl Outputs {
             };
             BallOutput {
                 azimuth: seen.z.atan2(seen.y),
-                orbital_speed: orbital_speed(ball, outer),
+                orbital_speed: ball.orbital_speed(outer),
                 position: ball.position,
                 angular_velocity: ball.angular_velocity,
                 spin: along_orbit(&races.outer, &offset, &ball.angular_velocity),
@@ -186,8 +190,8 @@ impl Outputs {
             life: model.rating.as_ref().zip(state.rating.as_ref()).map(|(rating, sums)| rating.after(sums)),
             heat: state
                 .heat
-                .as_ref()
-                .map(|heat| heat.output(state.time, model.cage_guide().map(|race| race as usize))),
+                .map(|heat| by_part(&heat.mean(state.time), model.cage_guide().map(|race| race as usize))),
+            means: state.means.map(|means| means.mean(state.time)),
             growth: model.growth.as_ref().map(|growth| growth.output(&conditions.warmth)),
             frequencies,
             cage_speed,
@@ -233,6 +237,7 @@ impl Outputs {
             growth: self.growth.as_ref(),
             life: self.life.as_ref(),
             heat: self.heat.as_ref(),
+            means: self.means.as_ref(),
             frequencies: &self.frequencies,
             drag_power: self.drag_power,
             oil: self.oil,
@@ -338,16 +343,10 @@ pub(super) fn spin_free_frame(race: &BodyState) -> UnitQuaternion<f64> {
 impl RaceOutput {
     /// What a race does, from the state alone.
     pub(super) fn new(state: &State, model: &Model, race: Race) -> Self {
-        let support = state.supports[race].as_ref();
-        let state = state.race(race);
-        let wrench = support.map_or(state.bearing_wrench, |support| support.wrench);
-        let axis = state.pose.orientation * Vector3::x();
         let moved = model.bodies[race].as_ref();
-        let spin = moved.and_then(|body| body.constraints.iter().position(|c| matches!(c, Constraint::Spin)));
-        let drive_torque = match spin {
-            Some(index) => state.multipliers[index],
-            None => -wrench.moment.dot(&axis),
-        };
+        let (wrench, drive_torque) = (state.wrench_on(race), state.drive_torque(moved, race));
+        let state = state.race(race);
+        let axis = state.pose.orientation * Vector3::x();
         Self {
             pose: state.pose,
             twist: state.twist(),

@@ -18,7 +18,7 @@ use crate::contact::{BallRaceContact, RaceMotion};
 use crate::forces::Contacts;
 use crate::model::Model;
 use crate::model::bodies::{PerRace, Race};
-use crate::model::state::{BallState, BodyState, State};
+use crate::model::state::{BallState, State};
 
 /// [-] part of its own speed that the slip of a body is divided by where this is faster than rolling.
 const OWN: f64 = 0.5;
@@ -50,7 +50,7 @@ impl RollingOrbit {
         for (ball, contacts) in state.balls.iter().zip(&contacts.balls) {
             let load = contacts.raceways.inner.load.min(contacts.raceways.outer.load);
             if load > 0.0 {
-                let speed = orbital_speed(ball, outer);
+                let speed = ball.orbital_speed(outer);
                 rolling += load * rolling_speed(ball, speed, &contacts.raceways, races, &speeds, radius);
                 orbit += load * speed;
                 weight += load;
@@ -62,7 +62,7 @@ impl RollingOrbit {
         let bearing = &model.bearing;
         let rolling = bearing.epicyclic_speed(bearing.free_contact_angle, speeds.inner, speeds.outer);
         let balls = state.balls.iter();
-        let orbit = balls.map(|ball| orbital_speed(ball, outer)).sum::<f64>() / state.balls.len() as f64;
+        let orbit = balls.map(|ball| ball.orbital_speed(outer)).sum::<f64>() / state.balls.len() as f64;
         Self { rolling, orbit, floor }
     }
 
@@ -104,14 +104,6 @@ fn rolling_speed(
     }
     let (inner, outer) = (arms.inner * surface.outer, arms.outer * surface.inner);
     (speeds.inner * inner - speeds.outer * outer) / (inner - outer)
-}
-
-/// [rad/s] orbital speed of a ball about the axis of the outer race.
-pub(super) fn orbital_speed(ball: &BallState, outer: &BodyState) -> f64 {
-    let frame = outer.pose.orientation.inverse();
-    let offset = frame * (ball.position - outer.pose.position);
-    let relative = frame * (ball.velocity - outer.velocity);
-    (offset.y * relative.z - offset.z * relative.y) / (offset.y * offset.y + offset.z * offset.z)
 }
 
 #[cfg(test)]

@@ -201,6 +201,7 @@ pub fn state(
         rating: model.rating.map(|_| Default::default()),
         warm: model.heat_balance.map(|_| Warm { rises: problem.rises, out: 0.0 }),
         heat: model.heat_outputs.then(Default::default),
+        means: model.mean_outputs.then(Default::default),
         orientations,
     })
 }

@@ -5,7 +5,6 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::slip::orbital_speed;
 use crate::contact::ball_spall::OnBall;
 use crate::contact::form::Form;
 use crate::contact::spall::Spalls;
@@ -34,7 +33,7 @@ pub(super) fn largest_step(model: &Model, state: &State, script: Option<f64>) ->
 
 /// [rad/s] speed of a ball along a race.
 fn speed(ball: &BallState, state: &State, race: Race) -> f64 {
-    orbital_speed(ball, state.race(Race::Outer)) - state.race(race).rate.x
+    ball.orbital_speed(state.race(Race::Outer)) - state.race(race).rate.x
 }
 
 fn over_waves(form: &Form, state: &State, race: Race) -> f64 {
@@ -91,7 +90,7 @@ fn until_contact(model: &Model, state: &State, race: Race, (spall, middle): (&On
     let out = radial - radial.normalize() * raceway.groove_circle_radius;
     let normal = (out + axis * (along - raceway.groove_offset)).normalize();
     // As the spall goes round: its middle and the contact by azimuth and latitude.
-    let turn = ball.angular_velocity - outer.axes[0] * orbital_speed(ball, outer);
+    let turn = ball.angular_velocity - outer.axes[0] * ball.orbital_speed(outer);
     let speed = turn.norm();
     let about = turn.try_normalize(0.0).unwrap_or(axis);
     let [from, to] = [middle, &normal].map(|direction| direction - about * direction.dot(&about));

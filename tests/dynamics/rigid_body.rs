@@ -59,6 +59,7 @@ impl Flight {
             rating: None,
             warm: None,
             heat: None,
+            means: None,
             orientations: None,
         };
         let speed = state.race(Race::Inner).rate.x;

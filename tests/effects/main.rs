@@ -19,6 +19,7 @@ mod heat_balance;
 mod kernel;
 mod list;
 mod losses;
+mod means;
 mod oil_runs;
 mod oil_torque;
 mod quasi_static;

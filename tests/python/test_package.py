@@ -89,6 +89,28 @@ def test_native_run_and_package_agree_to_the_last_bit(thrust_text, tmp_path, dri
     bearing.close()
 
 
+def test_means_since_the_last_point_add_up_whatever_the_points_are(thrust_text, tmp_path):
+    text = thrust_text.replace("[effects]", "[effects]\nmean_outputs = true", 1)
+    bearing = Slave(build(text, tmp_path, "means"), tmp_path / "unzipped").start()
+    names = ("energy.dissipated", "mean.loss.total", "inner.force.x", "mean.inner.force.x")
+    before, time = bearing.get(*names), 0.0
+    for step in (1e-4, 1e-3, 3e-4, 1e-5, 2e-3):
+        state = bearing.fmu.getFMUstate()
+        bearing.fmu.doStep(time, step)
+        now = bearing.get(*names)
+        assert math.isclose(now[1] * step, now[0] - before[0], rel_tol=1e-9), (step, now, before)
+        if step < 5e-5:
+            # One step: between the forces at its ends.
+            assert min(before[2], now[2]) - 1e-9 <= now[3] <= max(before[2], now[2]) + 1e-9
+        # The same again from a saved state.
+        bearing.fmu.setFMUstate(state)
+        bearing.fmu.doStep(time, step)
+        assert bearing.get(*names) == now
+        bearing.fmu.freeFMUstate(state)
+        before, time = now, time + step
+    bearing.close()
+
+
 def test_two_instances_are_independent(slave):
     alone = slave().start()
     for k in range(20):

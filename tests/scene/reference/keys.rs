@@ -377,6 +377,10 @@ fn range_in_list(list: &str, needs: &[(&str, &str)], key: &str) -> Option<String
 
 /// The range of a number, as a refusal states it.
 fn range(key: &str) -> Option<String> {
+    // Times of a phase lie within the run, whose end is that of the scene.
+    if key.starts_with("phase.") {
+        return None;
+    }
     for (list, needs) in LISTS {
         if let Some(name) = key.strip_prefix(list).and_then(|rest| rest.strip_prefix('.')) {
             return range_in_list(list, needs, name);
