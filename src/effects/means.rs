@@ -59,7 +59,7 @@ impl Numbers for Averaged {
 pub type Sums = Since<Averaged>;
 
 fn row(
-    name: String,
+    name: &str,
     (unit, nominal): (Unit, f64),
     what: &str,
     get: impl Fn(&Averaged) -> f64 + Send + Sync + 'static,
@@ -96,7 +96,7 @@ impl Effect for Settings {
             for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
                 let what =
                     format!("force that the bearing exerts on the {name} race, {axis} component, world axes");
-                rows.push(row(format!("{name}.force.{axis}"), (NEWTON, 1000.0), &what, move |o| {
+                rows.push(row(&format!("{name}.force.{axis}"), (NEWTON, 1000.0), &what, move |o| {
                     o.races[race].force[i]
                 }));
             }
@@ -105,19 +105,19 @@ impl Effect for Settings {
                     "moment that the bearing exerts on the {name} race, {axis} component, world axes"
                 );
                 let of = (NEWTON_METRE, 1.0);
-                rows.push(row(format!("{name}.moment.{axis}"), of, &what, move |o| o.races[race].moment[i]));
+                rows.push(row(&format!("{name}.moment.{axis}"), of, &what, move |o| o.races[race].moment[i]));
             }
             let what = format!("torque that keeps the {name} race at its prescribed speed");
             let of = (NEWTON_METRE, 0.1);
-            rows.push(row(format!("{name}.drive_torque"), of, &what, move |o| o.races[race].drive_torque));
+            rows.push(row(&format!("{name}.drive_torque"), of, &what, move |o| o.races[race].drive_torque));
         }
         let lost = "all power that the bearing loses";
-        rows.push(row("friction_power".into(), (WATT, 1.0), "power lost to friction in all contacts", |o| {
+        rows.push(row("friction_power", (WATT, 1.0), "power lost to friction in all contacts", |o| {
             o.friction
         }));
-        rows.push(row("loss.total".into(), (WATT, 1.0), lost, |o| o.lost));
+        rows.push(row("loss.total", (WATT, 1.0), lost, |o| o.lost));
         let cage = "speed of the cage about its axis; without a cage, mean orbital speed of the balls";
-        rows.push(row("cage.speed".into(), (RADIAN_PER_SECOND, 100.0), cage, |o| o.cage_speed));
+        rows.push(row("cage.speed", (RADIAN_PER_SECOND, 100.0), cage, |o| o.cage_speed));
         rows
     }
 }

@@ -143,7 +143,7 @@ pub fn write_fmu(
     write_fmu_with(scene, name, &[], libraries, output)
 }
 
-/// The same with those outputs alone whose names fit one of the patterns, as [`Choice::columns`]; all if there is none.
+/// The same with those outputs alone whose names fit one of the patterns, as [`crate::report::results::Choice`] has them; all if there is none.
 ///
 /// # Errors
 /// See [`PackageError`].
