@@ -47,28 +47,30 @@ impl Simulation {
                 inputs[race].pose = script::hinge(section, &inputs[race].frame, end);
             }
         }
-        let before = self.state.clone();
         let state = start::from_inputs(&self.scene, &self.model, &mut inputs, end)
             .map_err(|why| SimulationError::NoEquilibrium { time: end, why: Box::new(why) })?;
-        self.state = State {
-            control: before.control,
-            statistics: before.statistics,
-            energies: before.energies,
-            ..state
-        };
-        for ((_, body), (_, was)) in self.state.bodies.iter_mut().zip(before.bodies.iter()) {
-            let turned = 0.5 * (end - before.time) * (was.rate.x + body.rate.x);
-            body.count_turn((was.turned, was.turned_rest), turned);
-        }
+        let before = std::mem::replace(&mut self.state, state);
         self.inputs = inputs;
         self.paths = self.paths.after_script(&inputs, &self.state);
         self.check_room()?;
         self.settle();
-        if let (Some(mut sums), Some(now)) = (before.rating, &self.state.rating) {
-            sums.add_until(now, end - before.time);
-            self.state.rating = Some(sums);
-            self.reach(false);
-        }
+        self.go_on_from(&before);
         self.check_creep(&self.boundary(end))
+    }
+
+    /// An equilibrium that comes after another state: turns and loads are counted on, and the work of the integrator.
+    pub(super) fn go_on_from(&mut self, before: &State) {
+        let state = &mut self.state;
+        (state.control, state.statistics, state.energies) =
+            (before.control, before.statistics, before.energies);
+        let passed = state.time - before.time;
+        for ((_, body), (_, was)) in state.bodies.iter_mut().zip(before.bodies.iter()) {
+            body.count_turn((was.turned, was.turned_rest), 0.5 * passed * (was.rate.x + body.rate.x));
+        }
+        if let (Some(mut sums), Some(now)) = (before.rating, &state.rating) {
+            sums.add_until(now, passed);
+            state.rating = Some(sums);
+        }
+        self.reach(false);
     }
 }

@@ -1,5 +1,6 @@
 """A shaft with its bearings as one package, in FMPy."""
 
+import json
 import math
 
 import numpy as np
@@ -149,3 +150,26 @@ def test_a_saved_state_is_replayed_to_the_bit(package, tmp_path):
         assert ends[0] == ends[1] and len(ends[0]) > 100
     finally:
         slave.close()
+
+
+def test_a_package_of_equilibria_is_that_of_the_command(tmp_path):
+    text = TEXT + '\n[solver]\nlevel = "equilibrium"\n'
+    shaft = Slave(build(text, tmp_path, "level"), tmp_path / "unzipped").start()
+    assert any("outputs are those of the equilibrium" in message[2] for message in shaft.messages), shaft.messages
+    time = 0.0
+    for force, step in ((1260.5, 1e-3), (600.0, 2e-4), (-300.0, 5.0)):
+        shaft.set(mesh__force__z=force)
+        shaft.fmu.doStep(time, step)
+        time += step
+        scene = tmp_path / "there.toml"
+        scene.write_text(TEXT.replace("1260.5", str(force)))
+        wanted = json.loads(roulement("equilibrium", scene, "--json").stdout)["bearings"]
+        for side in ("left", "right"):
+            found = shaft.get(*(f"{side}.seat.displacement.{axis}" for axis in "xyz"), f"{side}.friction_torque")
+            of = wanted[side]
+            expected = [*of["displacement"].values(), of["friction_torque"]]
+            # Spins of the balls, which friction comes from, are iterated: they end a little differently where rounding does.
+            assert np.allclose(found, expected, rtol=[1e-8, 1e-8, 1e-8, 1e-4], atol=1e-13), (force, side)
+    # Steps of any length: there is no motion in between.
+    assert math.isclose(shaft.get("shaft.angle")[0], time * 100 * 2 * math.pi, rel_tol=1e-12)
+    shaft.close()

@@ -6,6 +6,7 @@ mod equilibrium;
 mod hard;
 mod housing;
 mod motion;
+mod quasi_static;
 mod reference;
 mod seats;
 #[path = "../scene/reference/sources.rs"]

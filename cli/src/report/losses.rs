@@ -136,35 +136,34 @@ fn at(kept: &[Sums], time: f64) -> Option<Sums> {
 }
 
 impl Closed {
-    /// \[W] what is put in, but neither stored nor lost.
+    /// \[W] what is put in, but neither stored nor lost; not a number of equilibria.
     pub fn left(&self) -> f64 {
-        self.torque + self.other - self.stored - self.lost
+        if self.in_motion { self.torque + self.other - self.stored - self.lost } else { f64::NAN }
     }
 
     /// Names, units and values, for the table of means.
-    pub fn numbers(&self) -> [(&'static str, &'static str, f64); 4] {
-        [
-            ("torque times speed", "W", self.torque),
-            ("other work", "W", self.other),
-            ("into motion and springs", "W", self.stored),
-            ("losses left open", "W", self.left()),
-        ]
+    pub fn numbers(&self) -> Vec<(&'static str, &'static str, f64)> {
+        let mut numbers = vec![("torque times speed", "W", self.torque)];
+        if self.in_motion {
+            numbers.push(("other work", "W", self.other));
+            numbers.push(("into motion and springs", "W", self.stored));
+            numbers.push(("losses left open", "W", self.left()));
+        }
+        numbers
     }
 
     /// In words, a line each.
-    pub fn lines(&self) -> [String; 2] {
+    pub fn lines(&self) -> Vec<String> {
         let Self { torque, other, stored, lost, in_motion } = self;
+        if !in_motion {
+            let why =
+                "equilibria do not close: there is no work, and friction of their balls is not in balance";
+            return vec![format!("torque times speed {torque:.4} W; {why}")];
+        }
         let left = self.left();
         let share =
             if *lost > 0.0 { format!(", {:.1e} of the losses", left.abs() / lost) } else { String::new() };
-        if !in_motion {
-            let why = "in equilibria friction of the balls is not in balance";
-            return [
-                format!("torque times speed {torque:.4} W"),
-                format!("left open {left:.1e} W{share}: {why}"),
-            ];
-        }
-        [
+        vec![
             format!("brought by torque times speed {torque:.4} W, other work {other:.4} W"),
             format!("gone into motion and springs {stored:.4} W; left open {left:.1e} W{share}"),
         ]

@@ -30,6 +30,10 @@ fn refused(why: &impl ToString) -> (Status, String) {
     (Status::Error, why.to_string())
 }
 
+/// What is told of a unit without motion in time.
+pub const OF_EQUILIBRIA: &str =
+    "solver.level = \"equilibrium\": outputs are those of the equilibrium under the inputs of each step";
+
 /// Those of some groups that are marked.
 pub fn marked(marks: &[bool]) -> Groups {
     Group::VARIANTS.iter().fold(Groups::default(), |groups, &group| {
@@ -202,8 +206,7 @@ impl Simulated for BearingUnit {
     fn announce(&self, log: &Log) {
         self.announce_goal(log);
         if self.simulation.scene().solver.level == Level::Equilibrium {
-            let what = "solver.level = \"equilibrium\": outputs are those of the equilibrium under the inputs of each step";
-            log.write(Status::Ok, what);
+            log.write(Status::Ok, OF_EQUILIBRIA);
         }
         self.announce_effects(log);
     }

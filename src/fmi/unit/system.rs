@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use strum::VariantArray;
 
-use super::bearing::{givers, marked};
+use super::bearing::{OF_EQUILIBRIA, givers, marked};
 use super::{Simulated, UnitSnapshot, derivatives};
 use crate::fmi::log::Log;
 use crate::fmi::outcome::{Outcome, Status};
@@ -14,7 +14,7 @@ use crate::interface::contradiction::Contradiction;
 use crate::interface::variables::{SystemGroup, SystemVariables, Variable};
 use crate::model::bodies::Race;
 use crate::scene::system::{MountedScene, SystemScene};
-use crate::scene::{Giver, Group, SceneError};
+use crate::scene::{Giver, Group, Level, SceneError};
 use crate::simulation::inputs::Inputs;
 use crate::simulation::system::{
     Played, ShaftInputs, System, SystemError, drive_is_scripted, shaft_follows_time,
@@ -231,6 +231,9 @@ impl Simulated for SystemUnit {
     }
 
     fn announce(&self, log: &Log) {
+        if self.system.scene().solver().level == Level::Equilibrium {
+            log.write(Status::Ok, OF_EQUILIBRIA);
+        }
         for (name, bearing) in self.system.bearings() {
             log.write(Status::Ok, &format!("{name}: {}", bearing.scene().effects.simulated()));
         }

@@ -194,8 +194,13 @@ fn sections(shaft: &ShaftSection) -> Result<(), SceneError> {
 }
 
 /// All bearings of a system are integrated together.
-pub fn solvers(bearings: &[MountedScene]) -> Result<(), SceneError> {
+pub fn solvers(bearings: &[MountedScene], shaft: &ShaftSection) -> Result<(), SceneError> {
     let first = &bearings[0].scene.solver;
+    if first.level == Level::Equilibrium && shaft.torque.is_some() {
+        let why =
+            "\"equilibrium\" needs a speed of the shaft: what shaft.torque does to it is a motion in time";
+        return Err(SceneError::conflict("solver.level", why));
+    }
     for bearing in bearings {
         alone(bearing)?;
         let own = &bearing.scene.solver;
@@ -212,12 +217,6 @@ pub fn solvers(bearings: &[MountedScene]) -> Result<(), SceneError> {
 fn alone(bearing: &MountedScene) -> Result<(), SceneError> {
     let (scene, name) = (&bearing.scene, &bearing.name);
     let refuse = |key: &str, why: &str| Err(SceneError::conflict(format!("bearing \"{name}\": {key}"), why));
-    if scene.solver.level == Level::Equilibrium {
-        return refuse(
-            "solver.level",
-            "\"equilibrium\" is for a bearing without a shaft: a shaft with its bearings is dynamic",
-        );
-    }
     if scene.effects.frame.section.is_some() {
         return refuse(
             "effects.frame",

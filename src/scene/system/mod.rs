@@ -193,7 +193,7 @@ impl SystemScene {
         let given = Shared { gravity, speed, load, solver, folder: folder.to_path_buf() };
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
         let bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
-        check::solvers(&bearings).map_err(placed)?;
+        check::solvers(&bearings, &shaft).map_err(placed)?;
         let source =
             standing_alone(text, &bearings, of_shaft.as_ref(), &of_housings, gravity != Vector3::zeros());
         Ok(Self { title, shaft, housings: housing, bearings, gravity, load, phases, source })

@@ -16,7 +16,7 @@ use crate::dynamics::{Boundary, StepFailure, Workspace};
 use crate::model::bodies::Race;
 use crate::model::structure::{Carrier, Spin, StructureState, Turning};
 use crate::numerics::tilt;
-use crate::scene::Groups;
+use crate::scene::{Groups, Level};
 
 impl System {
     /// Runs its own steps to exactly `end` \[s] by the scripts of all bearings and the shaft.
@@ -30,6 +30,11 @@ impl System {
         self.take_scripted_inputs();
         self.see_races();
         result
+    }
+
+    /// Is every point an equilibrium?
+    pub(super) fn is_quasi_static(&self) -> bool {
+        self.scene.solver().level == Level::Equilibrium
     }
 
     /// Sets the inputs of all bearings to what their scripts say now.
@@ -62,6 +67,9 @@ impl System {
         let begin = self.time;
         if !(end > begin && end.is_finite()) {
             return Err(SystemError::Backwards { from: begin, to: end });
+        }
+        if self.is_quasi_static() {
+            return self.advance_by_equilibria(end, inputs, played);
         }
         let beside = |(shaft, bearings): &(ShaftInputs, Vec<Inputs>)| {
             let mut system = self.clone();

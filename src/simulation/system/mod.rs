@@ -8,6 +8,7 @@ mod inputs;
 mod linear;
 mod loads;
 mod outputs;
+mod quasi_static;
 mod snapshot;
 mod start;
 mod statics;

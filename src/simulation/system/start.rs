@@ -34,7 +34,7 @@ impl System {
     /// # Errors
     /// See [`SystemError`].
     pub fn starting_at(scene: &SystemScene, time: f64) -> Result<Self, SystemError> {
-        Self::start(scene, time, None)
+        Self::start(scene, time, None, None)
     }
 
     /// Starts again at the present time, from the equilibrium under the present inputs.
@@ -43,15 +43,16 @@ impl System {
     /// See [`SystemError`].
     pub fn initialise(&mut self) -> Result<(), SystemError> {
         let bearings: Vec<Inputs> = self.bearings.iter().map(|bearing| bearing.inputs).collect();
-        *self = Self::start(&self.scene, self.time, Some((&self.inputs, &bearings)))?;
+        *self = Self::start(&self.scene, self.time, Some((&self.inputs, &bearings)), None)?;
         Ok(())
     }
 
-    /// Starts under these inputs of shaft and bearings, or those of the scripts.
-    fn start(
+    /// Starts under these inputs of shaft and bearings, or those of the scripts, with this turn of the shaft, or that of its drive.
+    pub(super) fn start(
         scene: &SystemScene,
         time: f64,
         given: Option<(&ShaftInputs, &[Inputs])>,
+        spin: Option<Spin>,
     ) -> Result<Self, SystemError> {
         let carriers = carriers(scene)?;
         let inside = |mounted: &MountedScene| {
@@ -88,7 +89,7 @@ impl System {
         let scripted = ShaftInputs::scripted(scene, time);
         let inputs = given.map_or(scripted, |(shaft, _)| shaft.clone());
         let turning = carriers[0].structure.turning;
-        let spin = initial_spin(scene, &inputs, turning, time);
+        let spin = spin.unwrap_or_else(|| initial_spin(scene, &inputs, turning, time));
         let mut states: Vec<StructureState> = carriers
             .iter()
             .enumerate()
