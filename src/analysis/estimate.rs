@@ -1,8 +1,11 @@
 //! What estimates of effects look at, of a scene: its equilibrium at time 0, or where its loads have a point at which a ball carries
-//! load first, with every race at the largest speed of its script.
+//! load first, with every race at the largest speed of its script. An effect that does not matter then may do at another time of the
+//! scripts, so that these are looked at, too.
 
 use crate::contact::shoulder::{largest_share, least_margin};
-use crate::effects::estimate::{BallEstimate, ContactEstimate, Estimate, Outline, RingEstimate, Verdict};
+use crate::effects::estimate::{
+    BallEstimate, ContactEstimate, Estimate, Outline, RingEstimate, Verdict, digits,
+};
 use crate::effects::film::USUAL_DENSITY;
 use crate::effects::growth::Warmth;
 use crate::effects::growth::rings::Cylinder;
@@ -31,12 +34,67 @@ pub enum EstimateError {
 /// What estimates say, or why nothing.
 pub type Verdicts = Result<Vec<Verdict>, EstimateError>;
 
-/// What estimates say of all effects in a scene.
+/// Most times of the scripts that are looked at.
+const MOST_TIMES: usize = 24;
+/// Times in a period of what swings.
+const IN_A_PERIOD: u32 = 8;
+
+/// What estimates say of all effects in a scene: that of the start, or of the first other time of its scripts at which the effect
+/// matters.
 ///
 /// # Errors
 /// See [`EstimateError`].
 pub fn verdicts(scene: &Scene, model: &Model) -> Verdicts {
-    Ok(scene.effects.verdicts(&of(scene, model)?))
+    let mut verdicts = scene.effects.verdicts(&of(scene, model)?);
+    for time in times(scene) {
+        // Where there is no equilibrium, the other times tell.
+        let Ok(there) = at(scene, model, time) else { continue };
+        for new in scene.effects.verdicts(&there).into_iter().filter(|new| new.matters) {
+            let same = |old: &&mut Verdict| (old.key, old.subject) == (new.key, new.subject);
+            if let Some(old) = verdicts.iter_mut().find(same).filter(|old| !old.matters) {
+                let sentence = format!("{}, at {} ms", new.sentence, digits(1e3 * time));
+                *old = Verdict { sentence, ..new };
+            }
+        }
+    }
+    Ok(verdicts)
+}
+
+/// \[s] times at which what acts on the bearing has a kink or an extreme value, growing: a selection that is even, with the least and the
+/// largest value of each script, where there are very many.
+fn times(scene: &Scene) -> Vec<f64> {
+    let duration = scene.load.duration.0;
+    let (mut times, mut extremes) = (vec![], vec![]);
+    for schedule in schedules(scene) {
+        let swings = schedule.shortest_period(duration).into_iter();
+        let swings = swings.flat_map(|period| {
+            (1..=IN_A_PERIOD).map(move |part| period * f64::from(part) / f64::from(IN_A_PERIOD))
+        });
+        let mut own: Vec<f64> = schedule.knots(0.0, duration).chain(swings).collect();
+        own.push(duration);
+        own.retain(|time| *time <= duration);
+        let by_value = |a: &&f64, b: &&f64| schedule.at(**a).total_cmp(&schedule.at(**b));
+        if schedule.is_scripted() {
+            extremes.extend(own.iter().min_by(by_value).into_iter().chain(own.iter().max_by(by_value)));
+            times.extend(own);
+        }
+    }
+    let stride = times.len().div_ceil(MOST_TIMES).max(1);
+    times.sort_by(f64::total_cmp);
+    let mut chosen: Vec<f64> = times.into_iter().step_by(stride).chain(extremes).collect();
+    chosen.sort_by(f64::total_cmp);
+    chosen.dedup();
+    chosen
+}
+
+/// Scripts of what acts on the bearing, but for speeds, which are looked at where they are largest.
+fn schedules(scene: &Scene) -> impl Iterator<Item = &Schedule> {
+    let directions = Race::loaded(scene).directions(scene);
+    let given = directions.into_iter().flat_map(|direction| [direction.load, direction.motion]).flatten();
+    let machine = Race::loaded(scene).machine(scene);
+    let machine = machine.into_iter().flat_map(Machine::schedules);
+    let others = [Some(&scene.friction.ball_race), scene.effects.film.schedule()];
+    given.chain(machine).chain(others.into_iter().flatten())
 }
 
 /// The same of a bearing whose races are where others have put them: in an equilibrium that is given.
@@ -53,16 +111,12 @@ pub fn verdicts_under(scene: &Scene, model: &Model, input: &EquilibriumInput) ->
 /// # Errors
 /// See [`EstimateError`].
 pub fn of(scene: &Scene, model: &Model) -> Result<Estimate, EstimateError> {
-    let directions = Race::loaded(scene).directions(scene);
-    let schedules = directions.into_iter().flat_map(|direction| [direction.load, direction.motion]).flatten();
-    let machine = Race::loaded(scene).machine(scene);
-    let schedules = schedules.chain(machine.into_iter().flat_map(Machine::schedules));
     // Where they have kinks, and where what swings about 0 is largest.
     let of = |schedule: &Schedule| {
         let swung = schedule.shortest_period(0.0).map(|period| 0.25 * period);
         schedule.knots(0.0, f64::INFINITY).chain(swung).collect::<Vec<_>>()
     };
-    let mut times: Vec<f64> = schedules.flat_map(of).collect();
+    let mut times: Vec<f64> = schedules(scene).flat_map(of).collect();
     times.sort_by(f64::total_cmp);
     let mut found = at(scene, model, 0.0);
     for time in times {
@@ -139,6 +193,7 @@ fn under(
         orbital_velocity: 0.5 * bearing.pitch_diameter * solution.cage_speed.abs(),
         friction: input.friction,
         saturates: scene.effects.creep.law.saturates(),
+        caged: scene.effects.cage.on,
         // Moments load balls, too.
         load: forces.max(largest),
         mass: mass(scene, model),

@@ -133,6 +133,8 @@ pub struct Estimate {
     pub friction: f64,
     /// Does the creep law saturate, so that grooves can slip?
     pub saturates: bool,
+    /// Is the cage simulated?
+    pub caged: bool,
     /// \[N] load that the bearing carries.
     pub load: f64,
     /// \[kg] mass of balls, cage and races under a wrench.

@@ -48,6 +48,13 @@ impl Instance {
         if !state.fits(&self.state) {
             return error("the FMU state is of another scene");
         }
+        // To the bit: derivatives go from one point to the other, however far apart they are said to be.
+        let leads_here = |before: &UnitSnapshot| snapshot.time() - before.time() == state.last_step;
+        if !state.before.as_ref().is_none_or(leads_here) {
+            return error(
+                "the FMU state contradicts itself: its last step does not lead from one point to the other",
+            );
+        }
         let no_number = "the FMU state holds a value that is not a number";
         if !state.is_finite() {
             return error(no_number);

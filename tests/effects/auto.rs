@@ -1,12 +1,14 @@
 //! `effects.auto`: effects that a scene asks to be found out.
 
 use roulement::Simulation;
-use roulement::analysis::auto;
+use roulement::analysis::{auto, estimate};
+use roulement::model::Model;
 use roulement::scene::Scene;
 
 use crate::scenes::scene;
 
 const THRUST: &str = include_str!("../../scenes/thrust.toml");
+const CAGE: &str = include_str!("../../scenes/cage.toml");
 const RADIAL: &str = include_str!("../../scenes/radial.toml");
 
 /// Changes of a scene.
@@ -28,6 +30,67 @@ fn found_out(text: &str, changes: Changes) -> (Scene, Vec<String>) {
     // Once: nothing is left to be done.
     assert_eq!(auto::resolve(resolved.clone()).unwrap().1, Vec::<String>::new());
     (resolved, notes)
+}
+
+fn model(text: &str, changes: Changes) -> Model {
+    Model::new(&scene(text, changes)).unwrap()
+}
+
+/// \[W] mean power that is lost in the second half of 20 ms.
+fn power(scene: &Scene) -> f64 {
+    let mut simulation = Simulation::new(scene).unwrap();
+    let mut lost = |end: f64| {
+        simulation.advance_scripted(end).unwrap();
+        simulation.outputs().dissipated
+    };
+    let half = lost(0.01);
+    (lost(0.02) - half) / 0.01
+}
+
+#[test]
+fn regression_an_effect_that_matters_later_in_the_script_stays_on() {
+    // Little slip of grooves under a light radial load beside thrust, most of the power under a heavy one: it was switched off, by the
+    // start alone.
+    let auto = ("effects", "\"auto\"");
+    let [thrust, end] = [("load.x", "{ force = 300 }"), ("load.duration", "\"20 ms\"")];
+    let light = [auto, thrust, end, ("load.y.force", "100")];
+    assert!(!found_out(RADIAL, &light).0.effects.groove_slip.on);
+    let many: Vec<String> = (0..200)
+        .map(|row| format!("[{}, {}]", 1e-4 * f64::from(row), if row == 173 { 8000 } else { 100 }))
+        .collect();
+    let many = format!("[{}]", many.join(", "));
+    for (load, at) in [
+        ("[[0, 100], [\"5 ms\", 100], [\"10 ms\", 8000]]", "at 10.0 ms"),
+        ("{ step = [\"100 N\", \"8 kN\"], at = \"12 ms\" }", "at 12"),
+        (
+            "{ mean = \"4.05 kN\", amplitude = \"3.95 kN\", frequency = \"100 Hz\", phase = \"-90 deg\" }",
+            " ms",
+        ),
+        (many.as_str(), "at 17.3 ms"),
+    ] {
+        let (found, notes) = found_out(RADIAL, &[auto, thrust, end, ("load.y.force", load)]);
+        assert!(found.effects.groove_slip.on, "{load}: {notes:?}");
+        let changes = [("effects.heathcote_slip", "false"), thrust, end, ("load.y.force", load)];
+        let verdicts = estimate::verdicts(&scene(RADIAL, &changes), &model(RADIAL, &changes)).unwrap();
+        let slip = verdicts.iter().find(|verdict| verdict.subject == "groove slip").unwrap();
+        assert!(slip.matters && slip.sentence.contains(at), "{}", slip.sentence);
+    }
+    // And it does.
+    let heavy = ("load.y.force", "[[0, 100], [\"5 ms\", 100], [\"10 ms\", 8000]]");
+    let with = power(&found_out(RADIAL, &[auto, thrust, end, heavy]).0);
+    let slipless = [("effects.creep", "\"kalker_table\""), ("effects.heathcote_slip", "false")];
+    let without = power(&scene(RADIAL, &[slipless[0], slipless[1], thrust, end, heavy]));
+    assert!(without < 0.9 * with, "{without} {with}");
+}
+
+#[test]
+fn regression_groove_slip_stays_on_where_there_is_a_cage() {
+    // It is 0.4 % of the power of the balls, and without it all loses 14 % more: it changes how balls push the cage.
+    let (found, notes) = found_out(CAGE, &[("effects.auto", "true")]);
+    assert!(found.effects.groove_slip.on, "{notes:?}");
+    let off = scene(CAGE, &[("effects.heathcote_slip", "false")]);
+    let [with, without] = [power(&found), power(&off)];
+    assert!((without / with - 1.0).abs() > 0.05, "{without} {with}");
 }
 
 #[test]

@@ -125,11 +125,6 @@ fn refusals_name_key_value_and_allowed_range() {
         ("[load]", "[laod]", &["laod"]),
         (
             "[load]",
-            "[solver]\nlevel = \"equilibrium\"\n[load]",
-            &["bearing \"left\": solver.level", "dynamic"],
-        ),
-        (
-            "[load]",
             "[bearing.set.effects.frame]\nangular_velocity = [1, 0, 0]\n[load]",
             &["\"right\": effects.frame"],
         ),
