@@ -44,6 +44,8 @@ pub struct Setup<'a> {
     pub rises_follow_time: bool,
     /// Is there a cage?
     pub cage: bool,
+    /// Is there the oil of a film?
+    pub oiled: bool,
     /// How both races get their motion, inner first.
     pub drives: [Drive; 2],
     /// May the inner and the outer race turn by the scene's script?

@@ -171,7 +171,11 @@ impl Model {
                 BallBallModel::new(bearing.ball.radius, material, friction)
             }),
             cage,
-            rating: scene.effects.rating.rating(&scene.bearing, &bearing.materials),
+            rating: scene.effects.rating.rating(
+                &scene.bearing,
+                &bearing.materials,
+                scene.effects.film.kinematic_viscosity(),
+            ),
             heat_outputs: scene.effects.heat.on,
             mean_outputs: scene.effects.means.on,
             growth: scene.effects.growth.growth(&scene.bearing, &scene.ball, &scene.race),

@@ -199,6 +199,7 @@ impl Scene {
             grows: self.effects.growth.section.is_some(),
             rises_follow_time: self.effects.growth.follows_time(),
             cage,
+            oiled: self.effects.film.section.is_some(),
             drives: [self.inner.drive, self.outer.drive],
             turning: [turns(&self.inner, &self.load.inner_speed), turns(&self.outer, &self.load.outer_speed)],
             expansions: [&self.ball, &self.race].map(|material| material.thermal_expansion.0),

@@ -5,6 +5,7 @@ use toml::Table;
 
 use super::Scene;
 use crate::effects::estimate::Outline;
+use crate::schema::numbers::four;
 
 /// [m rad/s] speed times bore, DN = 3e6 mm/min, beyond which no ball bearing is known to run: bearings of 120 mm did at 25,000 rpm
 /// (Bamberger, Zaretsky and Signer 1976).
@@ -13,6 +14,8 @@ const FASTEST: f64 = 3e6 * 1e-3 * std::f64::consts::TAU / 60.0;
 const BORE_SPREAD: f64 = 1.05;
 /// \[Pa] pressure at which balls leave marks of a ten thousandth of their diameter: the static load rating of ISO 76.
 const STATIC_RATING: f64 = 4200e6;
+/// [-] by how much two viscosities of one oil may differ, as data sheets round them.
+const SAME_OIL: f64 = 0.05;
 /// [-] friction coefficient above that of dry steel on steel.
 const ROUGHEST: f64 = 0.6;
 
@@ -47,7 +50,22 @@ impl Scene {
                 "warning: friction.ball_race = {friction} is above that of dry steel; lubricated contacts have 0.03 to 0.12"
             ));
         }
+        notes.extend(self.two_oils());
         notes
+    }
+
+    /// A warning where films and lives are of different oils.
+    fn two_oils(&self) -> Option<String> {
+        let rated = self.effects.rating.section.as_ref()?.viscosity?.0;
+        let oil = self.effects.film.kinematic_viscosity()?;
+        ((rated / oil - 1.0).abs() > SAME_OIL).then(|| {
+            format!(
+                "warning: rating.viscosity = {} mm2/s is not that of the oil of [film], {} mm2/s: life and films are of different oils; \
+                 without rating.viscosity the life takes the oil of [film]",
+                four(&(rated * 1e6)),
+                four(&(oil * 1e6))
+            )
+        })
     }
 
     /// A warning where balls are pressed on the races harder than they stand \[Pa].

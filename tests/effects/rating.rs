@@ -274,7 +274,8 @@ fn keys_of_the_rating_say_what_life_is() {
     let inner = life_of(&scene(&row, "load_rests_on = \"inner\"\n"));
     assert!(inner.reference < plain.reference, "{inner:?} {plain:?}");
     for (further, parts) in [
-        ("viscosity = 1e-5\n", &["rating.contamination", "viscosity and contamination"][..]),
+        ("viscosity = 1e-5\n", &["rating.contamination", "viscosity or the oil of a [film]"][..]),
+        ("contamination = 0.5\n", &["rating.viscosity", "needs contamination"]),
         ("contamination = 1.5\nviscosity = 1e-5\n", &["rating.contamination = 1.5", "[0, 1]"]),
         ("reliability = 0.5\n", &["rating.reliability = 0.5", "[0.9, 0.99]"]),
         ("viscosity = \"68 kg\"\n", &["rating.viscosity", "68 kg", "mm^2/s"]),
@@ -290,6 +291,29 @@ fn keys_of_the_rating_say_what_life_is() {
     let steep = include_str!("../../scenes/thrust.toml").replace("25 deg", "60 deg") + "\n[rating]\n";
     let message = Scene::parse(&steep).unwrap_err().to_string();
     assert!(message.contains("rating") && message.contains("0.7854"), "{message}");
+}
+
+#[test]
+fn identity_the_life_is_in_the_oil_of_the_film() {
+    let thrust = include_str!("../../scenes/thrust.toml");
+    let film = ("film", "{ iso_vg = 68, temperature = \"70 degC\" }");
+    let rated = |changes: &[(&str, &str)]| {
+        let scene = Scene::edited(thrust, [&[film][..], changes].concat()).unwrap();
+        let life = Simulation::new(&scene).unwrap().outputs().life.unwrap();
+        (life, scene.notes().into_iter().filter(|note| note.contains("different oils")).count())
+    };
+    let (own, notes) = rated(&[("rating.contamination", "0.5")]);
+    assert!(own.modified.is_some_and(|modified| modified != own.reference) && notes == 0);
+    // The same viscosity as a number.
+    let oil = Scene::edited(thrust, [film]).unwrap().effects.film.kinematic_viscosity().unwrap();
+    let text = oil.to_string();
+    let (given, notes) = rated(&[("rating.contamination", "0.5"), ("rating.viscosity", &text)]);
+    assert_eq!((given.modified, notes), (own.modified, 0));
+    // Another oil is told of.
+    let (other, notes) = rated(&[("rating.contamination", "0.5"), ("rating.viscosity", "\"10 mm^2/s\"")]);
+    assert!(other.modified < own.modified && notes == 1, "{other:?} {own:?}");
+    // Without contamination there is no modified life, oil or not.
+    assert_eq!(rated(&[("rating", "{}")]).0.modified, None);
 }
 
 /// A radial load of 8 kN that stands still, on an outer race that turns.

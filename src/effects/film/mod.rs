@@ -105,6 +105,12 @@ impl Settings {
         self.section.as_ref().map(|section| &section.lubrication)
     }
 
+    /// [m2/s] kinematic viscosity of the oil where nothing has warmed; none without a film.
+    pub fn kinematic_viscosity(&self) -> Option<f64> {
+        let section = self.section.as_ref()?;
+        Some(Oil::of(section).viscosity(section.oil_temperature()) / section.density.0)
+    }
+
     /// [-] degree of lubrication at a time \[s]; 0 without a film.
     pub fn lubrication(&self, time: f64) -> f64 {
         self.schedule().map_or(0.0, |schedule| schedule.at(time))

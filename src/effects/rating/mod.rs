@@ -32,7 +32,7 @@ pub struct Section {
     pub static_load_rating: Option<Force>,
     /// \[N] fatigue load limit C_u.
     pub fatigue_load_limit: Option<Force>,
-    /// [m2/s] kinematic viscosity of the lubricant where it runs; with `contamination` it gives the modified life.
+    /// [m2/s] kinematic viscosity of the lubricant where it runs, that of the oil of `[film]` if not given; with `contamination` it gives the modified life.
     pub viscosity: Option<KinematicViscosity>,
     /// [-] contamination factor e_C: 0 is very dirty, 1 is clean.
     pub contamination: Option<f64>,
@@ -335,8 +335,9 @@ pub struct Rating {
 }
 
 impl Settings {
-    /// Ratings of a bearing with materials of balls and races; none where life is not asked for.
-    pub fn rating(&self, bearing: &BearingSection, materials: &Pair) -> Option<Rating> {
+    /// Ratings of a bearing with materials of balls and races, in oil of a film with a kinematic viscosity [m2/s]; none where life is not
+    /// asked for.
+    pub fn rating(&self, bearing: &BearingSection, materials: &Pair, oil: Option<f64>) -> Option<Rating> {
         let section = self.section.as_ref()?;
         let geometry = Geometry {
             balls: bearing.balls,
@@ -358,7 +359,7 @@ impl Settings {
             ball_ratings: geometry.ball_ratings(dynamic),
             static_ball_load: own * (static_load_rating / own_rating),
             load_rests_on: section.load_rests_on,
-            lubrication: section.viscosity.map(|viscosity| viscosity.0).zip(section.contamination),
+            lubrication: section.viscosity.map(|viscosity| viscosity.0).or(oil).zip(section.contamination),
             reliability: standard::reliability_factor(section.reliability),
             pitch_diameter: geometry.pitch_diameter,
         })
@@ -492,9 +493,13 @@ impl Effect for Settings {
         let Some(section) = &self.section else {
             return Ok(());
         };
-        if section.viscosity.is_some() != section.contamination.is_some() {
-            let missing = if section.viscosity.is_some() { "contamination" } else { "viscosity" };
-            let why = "the modified life needs viscosity and contamination; without both there is none";
+        let missing = match (section.viscosity.is_some() || setup.oiled, section.contamination.is_some()) {
+            (false, true) => Some("viscosity"),
+            (true, false) if section.viscosity.is_some() => Some("contamination"),
+            _ => None,
+        };
+        if let Some(missing) = missing {
+            let why = "the modified life needs contamination, and a viscosity or the oil of a [film]; without both there is none";
             return Err(SceneError::conflict(format!("rating.{missing}"), why));
         }
         let angle = setup.bearing.contact_angle.map_or(0.0, |angle| angle.0);
@@ -539,7 +544,7 @@ impl Effect for Settings {
                 |life| life.damage,
             ),
         ];
-        if section.viscosity.is_some() {
+        if section.contamination.is_some() {
             rows.push((
                 "life.modified",
                 ONE,
