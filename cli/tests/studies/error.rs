@@ -289,6 +289,18 @@ fn played(scene: &Scene, solver: Solver) -> Run {
     run_of(solver, (quantities, lengths), kept.samples, &kept.blocks)
 }
 
+/// [-] root mean square over rows of a quantity's error over its size, without the hundredth of the rows where it is largest.
+fn usual(run: &Run, fine: &Run, name: &str) -> f64 {
+    let (run, fine) = (&run.parts[0], &fine.parts[0]);
+    let i = QUANTITIES.iter().position(|quantity| quantity.name == name).unwrap();
+    let rows = run.samples.iter().zip(&fine.samples);
+    let mut squares: Vec<f64> =
+        rows.map(|(one, other)| ((one.values[i] - other.values[i]) / fine.sizes[i]).powi(2)).collect();
+    squares.sort_by(f64::total_cmp);
+    let usual = &squares[..squares.len() - squares.len() / 100];
+    (usual.iter().sum::<f64>() / usual.len() as f64).sqrt()
+}
+
 /// Largest errors of a scene that says nothing about steps, against steps of an eighth.
 struct Errors {
     name: &'static str,
@@ -296,6 +308,8 @@ struct Errors {
     /// Without the friction torque.
     histories: f64,
     torque: f64,
+    /// Of the friction power, without the hundredth of the rows where it is largest.
+    usual_power: f64,
 }
 
 impl Errors {
@@ -315,7 +329,7 @@ impl Errors {
             "| `{name}` | {:.3} us | {tolerance:.1e} | {means:.1e} | {histories:.1e} | {torque:.1e} |",
             max_step.0 * 1e6,
         );
-        Self { name, means, histories, torque }
+        Self { name, means, histories, torque, usual_power: usual(&run, &fine, "friction power") }
     }
 
     /// Those of the scenes that take little time.
@@ -340,8 +354,12 @@ fn invariant_where_nothing_is_said_means_keep_one_and_histories_two_percent() {
 fn invariant_a_run_up_through_its_resonance_keeps_its_means_and_says_what_blows_leave_of_histories() {
     let run_up = Errors::of("run_up");
     assert!(run_up.means < 0.01, "{}", run_up.means);
-    // Balls strike each other: a blow of some microseconds that comes a microsecond earlier or later is another power at equal times.
-    assert!(run_up.histories < 0.15 && run_up.torque < 0.1, "{} {}", run_up.histories, run_up.torque);
+    // Balls strike each other: a blow of some microseconds that comes a microsecond earlier or later is another power at equal times. It has
+    // a hundred times the power of the rest, so that the few rows that it is in make the error of the history, which is then a matter of
+    // chance. All others keep to a few per cent.
+    let usual = run_up.usual_power;
+    println!("run_up: friction power without a hundredth of the rows {usual:.1e}");
+    assert!(usual < 0.05 && run_up.torque < 0.1 && run_up.histories > usual, "{usual} {}", run_up.torque);
     // Measured with one pair of runs, every mean is right within its error bar: those that agree by chance, too.
     // Without a budget of energy, which blows use up differently: the runs' steps are then exactly 1 to 2 to 8.
     let scene = edited("error/run_up", &[("solver.energy_error", "0")]);
@@ -364,8 +382,7 @@ fn invariant_a_run_up_through_its_resonance_keeps_its_means_and_says_what_blows_
         // Components that are 0 have the rounding of the others of their kind.
         assert!(truth.means[i] <= of_mean + 1e-9, "{}: {:e}, bar {of_mean:e}", quantity.name, truth.means[i]);
         by_chance += u32::from(truth.means[i] > 3.0 * pair.means[i] && truth.means[i] > 1e-6);
-        // That of histories is the difference of two runs, which blows keep apart: up to twice as wrong (docs/accuracy-cost.md).
-        assert!(truth.histories[i] <= 2.0 * of_history + 1e-9, "{}", quantity.name);
+        assert!(truth.histories[i] <= of_history + 1e-9, "{}", quantity.name);
     }
     assert!(by_chance > 0, "nothing agreed by chance: a scene without blows");
 }
