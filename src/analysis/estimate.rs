@@ -111,15 +111,8 @@ pub fn verdicts_under(scene: &Scene, model: &Model, input: &EquilibriumInput) ->
 /// # Errors
 /// See [`EstimateError`].
 pub fn of(scene: &Scene, model: &Model) -> Result<Estimate, EstimateError> {
-    // Where they have kinks, and where what swings about 0 is largest.
-    let of = |schedule: &Schedule| {
-        let swung = schedule.shortest_period(0.0).map(|period| 0.25 * period);
-        schedule.knots(0.0, f64::INFINITY).chain(swung).collect::<Vec<_>>()
-    };
-    let mut times: Vec<f64> = schedules(scene).flat_map(of).collect();
-    times.sort_by(f64::total_cmp);
     let mut found = at(scene, model, 0.0);
-    for time in times {
+    for time in times(scene) {
         if !matches!(found, Err(EstimateError::Unloaded)) {
             break;
         }

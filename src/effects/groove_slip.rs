@@ -78,9 +78,9 @@ impl Effect for Settings {
         } else {
             "[effects] heathcote_slip = true, with a creep law that saturates"
         };
-        let verdict = Verdict::share(KEY, "groove slip", self.on, (share, estimate.threshold), sentence);
         // With a share of 0.4 % scenes/cage.toml loses 62 W, and 72 W without.
-        let verdict = Verdict { matters: verdict.matters || estimate.caged && share > 0.0, ..verdict };
+        let threshold = if estimate.caged { 0.0 } else { estimate.threshold };
+        let verdict = Verdict::share(KEY, "groove slip", self.on, (share, threshold), sentence);
         vec![verdict.written(write).automatic(estimate.saturates.then_some(KEY))]
     }
 

@@ -188,6 +188,11 @@ impl StateReader {
         &self.blob[self.blob.len() - self.content_length()..]
     }
 
+    /// [s] duration of its last communication step, as the instance counts it.
+    pub fn last_step(&self) -> f64 {
+        (19.0 * STEP + STEP) - (18.0 * STEP + STEP)
+    }
+
     fn content_length(&self) -> usize {
         let at = 8 + self.package.guid.as_bytes().len();
         u64::from_le_bytes(self.blob[at..at + 8].try_into().unwrap()) as usize

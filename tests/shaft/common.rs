@@ -91,3 +91,21 @@ pub fn imbalance(system: &System, stored: &[f64]) -> [f64; 2] {
 pub fn stored(system: &System) -> Vec<f64> {
     system.bearings().map(|(_, bearing)| bearing.outputs().stored_energy).collect()
 }
+
+/// What a system shows at a time \[s] is exact to second order in the step: with steps of four, two and one times `step` \[s], against a
+/// quarter of it.
+pub fn assert_order_two(text: &str, end: f64, step: f64, show: impl Fn(&System) -> Vector3<f64>) {
+    let at = |step: f64| {
+        let solver = format!(
+            "[solver]\nmax_step = {step}\ninitial_step = {step}\nmin_step = 1e-12\ntolerance = 1e-2\n"
+        );
+        show(&run(&(text.to_string() + "\n" + &solver), end))
+    };
+    let exact = at(0.25 * step);
+    let errors = [4.0, 2.0, 1.0].map(|times| (at(times * step) - exact).norm());
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        // The reference has a sixteenth of the last error, which makes 2.07 of 2; order one and order three are far outside.
+        assert!((1.7..2.5).contains(&order), "{errors:?}");
+    }
+}

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, Matrix6, Vector3};
 use roulement::simulation::system::{PointOutput, System};
 
-use crate::common::{GEARBOX, forces, imbalance, run, scene, stored, system};
+use crate::common::{GEARBOX, assert_order_two, forces, imbalance, scene, stored, system};
 
 /// The gearbox shaft with both bearings in one housing.
 fn in_housing(housing: &str) -> String {
@@ -213,19 +213,7 @@ fn balls(bearing: &roulement::Simulation) -> f64 {
 #[test]
 fn order_of_convergence_of_a_shaft_in_a_soft_housing_is_two() {
     let text = on_feet(20.0, 500.0, "[[0, 0], [\"200 us\", -2000], [\"400 us\", 0]]");
-    let at = |step: f64| {
-        let solver = format!(
-            "[solver]\nmax_step = {step}\ninitial_step = {step}\nmin_step = 1e-12\ntolerance = 1e-2\n"
-        );
-        let system = run(&(text.clone() + &solver), 4e-4);
-        system.outputs().housings[0].seats[0].displacement
-    };
-    let exact = at(0.25e-6);
-    let errors = [4e-6, 2e-6, 1e-6].map(|step| (at(step) - exact).norm());
-    for pair in errors.windows(2) {
-        let order = (pair[0] / pair[1]).log2();
-        assert!((1.7..2.5).contains(&order), "{errors:?}");
-    }
+    assert_order_two(&text, 4e-4, 1e-6, |system| system.outputs().housings[0].seats[0].displacement);
 }
 
 #[test]

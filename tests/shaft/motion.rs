@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use roulement::Simulation;
 use roulement::scene::Scene;
 
-use crate::common::{GEARBOX, ROTOR, forces, imbalance, run, stored, system};
+use crate::common::{GEARBOX, ROTOR, assert_order_two, forces, imbalance, run, stored, system};
 
 /// The same bearing by the program for one: its inner race under a wrench has the mass and the inertia of the shaft.
 #[test]
@@ -118,23 +118,9 @@ fn invariant_energy_of_shaft_and_bearings_balances() {
 
 #[test]
 fn order_of_convergence_of_a_shaft_under_a_load_that_changes_is_two() {
-    let text = |step: f64| {
-        let load = "[[0, 100], [\"1 ms\", 300], [\"2 ms\", 0]]";
-        ROTOR.replace("[0, \"100 N\", 0]", &format!("[0, {load}, 0]"))
-            + &format!(
-                "\n[solver]\nmax_step = {step}\ninitial_step = {step}\nmin_step = 1e-12\ntolerance = 1e-2\n"
-            )
-    };
-    let at = |step: f64| {
-        let system = run(&text(step), 2e-3);
-        (system.outputs().loads[0].displacement, forces(&system)[0])
-    };
-    let exact = at(0.5e-6);
-    let errors = [8e-6, 4e-6, 2e-6].map(|step| (at(step).0 - exact.0).norm());
-    for pair in errors.windows(2) {
-        let order = (pair[0] / pair[1]).log2();
-        assert!((1.7..2.5).contains(&order), "{errors:?}");
-    }
+    let load = "[[0, 100], [\"1 ms\", 300], [\"2 ms\", 0]]";
+    let text = ROTOR.replace("[0, \"100 N\", 0]", &format!("[0, {load}, 0]"));
+    assert_order_two(&text, 2e-3, 2e-6, |system| system.outputs().loads[0].displacement);
 }
 
 #[test]

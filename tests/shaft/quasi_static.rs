@@ -28,6 +28,7 @@ fn numbers(system: &System) -> Vec<f64> {
     forces.chain(seats).chain(losses).collect()
 }
 
+/// Statics end where 1e-10 of the forces is out of balance; losses come from spins of balls, which are iterated, and end at some 1e-7.
 fn assert_alike(one: &System, other: &System, within: f64) {
     for (one, other) in numbers(one).into_iter().zip(numbers(other)) {
         assert!((one - other).abs() <= within * one.abs().max(1.0), "{one} {other}");

@@ -58,9 +58,11 @@ impl ShaftWatch {
     pub fn step(&mut self, system: &System, bearings: impl Iterator<Item = LossSums>) {
         let (time, values) = (system.time(), self.quantities.values(system));
         self.blocks.push_values(time, &values);
-        let weights = vec![1.0; values.len()];
-        let now = Now { time, values: &values, weights: &weights, peaks: &[], rating: None };
-        self.phases.iter_mut().for_each(|phase| phase.step(&now));
+        if !self.phases.is_empty() {
+            let weights = vec![1.0; values.len()];
+            let now = Now { time, values: &values, weights: &weights, peaks: &[], rating: None };
+            self.phases.iter_mut().for_each(|phase| phase.step(&now));
+        }
         self.losses.step_of_shaft(system, bearings);
     }
 

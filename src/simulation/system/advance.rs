@@ -326,6 +326,13 @@ impl System {
         for (index, (bearing, boundary)) in self.bearings.iter().zip(boundaries).enumerate() {
             let checked: Result<(), SimulationError> = bearing.check_creep(boundary);
             checked.map_err(|source| self.of_bearing(index, source))?;
+        }
+        self.check_tilts()
+    }
+
+    /// Refuses tilts beyond those that linear structures are valid for.
+    pub(super) fn check_tilts(&self) -> Result<(), SystemError> {
+        for (index, bearing) in self.bearings.iter().enumerate() {
             for race in Race::BOTH.into_iter().filter(|race| bearing.model.is_carried(*race)) {
                 let axis = bearing.state.race(race).axes[0];
                 let tilt = axis.y.hypot(axis.z);

@@ -51,6 +51,7 @@ impl System {
             bearing.go_on_from(&before.state);
         }
         next.report();
+        next.check_tilts()?;
         Ok(next)
     }
 }
