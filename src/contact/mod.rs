@@ -81,6 +81,20 @@ pub struct RaceMotion<S: Scalar> {
     pub angular_velocity: Vector3<S>,
 }
 
+impl Default for RaceMotion<f64> {
+    /// At rest at the origin.
+    fn default() -> Self {
+        let zero = Vector3::zeros();
+        Self {
+            position: zero,
+            axis: Vector3::x(),
+            across: Vector3::y(),
+            velocity: zero,
+            angular_velocity: zero,
+        }
+    }
+}
+
 impl<S: Scalar> RaceMotion<S> {
     /// A race that rests: origin \[m], its own axis and its own y axis.
     pub fn resting(position: Vector3<S>, axis: Vector3<S>, across: Vector3<f64>) -> Self {

@@ -4,13 +4,13 @@ use super::ball::{BallTrial, Surroundings};
 use super::body::{BodyTrial, RaceSeen};
 use super::body_sums::{BodyLoad, BodyScales, BodyStep};
 use super::cage::CageTrial;
-use super::{Boundary, Workspace};
+use super::{Boundary, Counted, Workspace};
 use crate::contact::many::ContactGroup;
 use crate::contact::{ContactModel, RaceMotion};
 use crate::effects::ambient::Ambient;
 use crate::model::Model;
 use crate::model::bodies::{Body, PerRace, Race, RigidBody};
-use crate::model::state::{BodyState, KeptMatrix, State, race_motion};
+use crate::model::state::{BodyState, State, race_motion};
 use crate::numerics::arrowhead::{BLOCK, SLOTS};
 use crate::numerics::hht::HhtStep;
 use crate::numerics::lanes::WIDTH;
@@ -30,16 +30,8 @@ pub struct BearingStep<'a> {
     pub start: &'a State,
     pub step: HhtStep,
     pub boundary: &'a Boundary,
-    /// Motion of the races at the end of the step.
-    pub(super) races: PerRace<RaceMotion<f64>>,
     pub force_tolerance: f64,
     pub workspace: &'a mut Workspace,
-    /// Ball-race contacts evaluated without derivatives.
-    pub contact_values: u64,
-    /// Ball-race contacts evaluated with derivatives.
-    pub contact_tangents: u64,
-    /// Corrections for which blocks of some balls were computed anew.
-    pub renewals: u64,
     /// How often the border was assembled.
     pub(super) assembled: u64,
     /// Corrections so far.
@@ -60,6 +52,7 @@ impl<'a> BearingStep<'a> {
         workspace.balls.resize_with(start.balls.len(), BallTrial::new);
         workspace.balls.iter_mut().for_each(|trial| trial.before = 0.0);
         workspace.settled = false;
+        workspace.counted = Counted::default();
         workspace.prepare_bodies(model, start);
         if let Some(cage) = &mut workspace.cage {
             cage.oil = model.oil_around_cage(&boundary.conditions);
@@ -71,6 +64,7 @@ impl<'a> BearingStep<'a> {
             let motion = start.balls[0].motion();
             PerRace::new(|race| ContactGroup::filled(&contacts[race].evaluate(&motion, &races[race])))
         });
+        workspace.races = races;
         Self {
             model,
             contacts,
@@ -78,12 +72,8 @@ impl<'a> BearingStep<'a> {
             start,
             step,
             boundary,
-            races,
             force_tolerance: start.force_tolerance,
             workspace,
-            contact_values: 0,
-            contact_tangents: 0,
-            renewals: 0,
             assembled: 0,
             corrections: 0,
             fresh: true,
@@ -95,28 +85,6 @@ impl<'a> BearingStep<'a> {
         self.model.solver.matrix_reuse > 0.0 && self.workspace.neighbours.is_empty()
     }
 
-    /// Takes the law and the tolerance that an iteration begins with, where the model has such ([`crate::model::switch`]).
-    pub fn begin_with_first_law(&mut self) -> bool {
-        let first = self.model.first_law(&self.boundary.conditions);
-        let Some((contacts, residual)) = first else {
-            return false;
-        };
-        let orientations = self.boundary.orientations.as_ref();
-        let PerRace { inner, outer } = contacts;
-        self.contacts = PerRace { inner: inner.facing(orientations), outer: outer.facing(orientations) };
-        self.force_tolerance = residual.max(self.start.force_tolerance);
-        true
-    }
-
-    /// Goes on from there with the model's own law and tolerance, and with a matrix of its own.
-    pub fn go_on_with_own_law(&mut self) {
-        let Boundary { conditions, orientations, .. } = self.boundary;
-        self.contacts = self.model.contacts_facing(conditions, orientations.as_ref());
-        self.force_tolerance = self.start.force_tolerance;
-        self.workspace.kept = KeptMatrix::default();
-        self.workspace.groups.forget();
-    }
-
     /// Are the balls independent of each other, because no body has unknowns and no two balls may touch?
     pub fn balls_are_independent(&self) -> bool {
         self.model.border_offsets() == [None; SLOTS] && self.workspace.neighbours.is_empty()
@@ -124,7 +92,7 @@ impl<'a> BearingStep<'a> {
 
     /// Motion of the outer race at the end of the step.
     pub(super) fn outer(&self) -> &RaceMotion<f64> {
-        &self.races.outer
+        &self.workspace.races.outer
     }
 
     /// Moves the bodies to the end of the step; may one of them be somewhere else than at the last evaluation?
@@ -133,7 +101,8 @@ impl<'a> BearingStep<'a> {
         let length = self.model.race_length();
         let offsets = self.model.border_offsets();
         let border = &unknowns[BLOCK * self.start.balls.len()..];
-        for ((body, trial), (_, start)) in self.workspace.bodies.iter_mut().zip(self.start.bodies.iter()) {
+        let Workspace { bodies, races, cage, .. } = &mut *self.workspace;
+        for ((body, trial), (_, start)) in bodies.iter_mut().zip(self.start.bodies.iter()) {
             if let (Some(trial), Some(from)) = (trial, offsets[body.index()]) {
                 if trial.is_carried() {
                     moved = true;
@@ -143,8 +112,8 @@ impl<'a> BearingStep<'a> {
                 moved |= own != trial.unknowns;
                 trial.move_to(own, start, &self.step, length);
                 match body {
-                    Body::Race(race) => self.races[race] = trial.motion_value(),
-                    Body::Cage => self.workspace.cage.iter_mut().for_each(|cage| cage.see(trial)),
+                    Body::Race(race) => races[race] = trial.motion_value(),
+                    Body::Cage => cage.iter_mut().for_each(|cage| cage.see(trial)),
                 }
             }
         }
@@ -161,7 +130,7 @@ impl<'a> BearingStep<'a> {
     /// Evaluates pairs and residuals of the groups of balls that have moved.
     pub(super) fn evaluate_moved(&mut self) {
         let workspace = &mut *self.workspace;
-        let bodies = (&self.races, &workspace.bodies, workspace.cage.as_ref());
+        let bodies = (&workspace.races, &workspace.bodies, workspace.cage.as_ref());
         let acts = (&self.contacts, &self.ambient);
         let around = Surroundings::new(self.model, acts, &self.start.differences, bodies);
         for (index, (trials, group)) in
@@ -169,7 +138,7 @@ impl<'a> BearingStep<'a> {
         {
             let moved = group.moved.iter().filter(|moved| **moved).count();
             if moved > 0 {
-                self.contact_values += 2 * moved as u64;
+                workspace.counted.contact_values += 2 * moved as u64;
                 around.evaluate_group(WIDTH * index, trials, group);
             }
         }
@@ -178,12 +147,13 @@ impl<'a> BearingStep<'a> {
     /// Derivatives of the balls to be renewed where they are, and their couplings to the bodies.
     pub(super) fn differentiate_renewed(&mut self) {
         let workspace = &mut *self.workspace;
-        let bodies = (&self.races, &workspace.bodies, workspace.cage.as_ref());
+        let bodies = (&workspace.races, &workspace.bodies, workspace.cage.as_ref());
         let acts = (&self.contacts, &self.ambient);
         let around = Surroundings::new(self.model, acts, &self.start.differences, bodies);
         let length = self.model.race_length();
         for (index, trial) in workspace.balls.iter_mut().enumerate().filter(|(_, trial)| trial.renewed) {
-            self.contact_tangents += trial.differentiate(index, &workspace.groups, &around, &self.step);
+            workspace.counted.contact_tangents +=
+                trial.differentiate(index, &workspace.groups, &around, &self.step);
             for (slot, body) in workspace.bodies.iter() {
                 if let Some(body) = body {
                     trial.couple_body(slot, body, &self.step, length);
@@ -195,7 +165,7 @@ impl<'a> BearingStep<'a> {
     /// Sums the forces of all pairs on the bodies that forces move.
     pub(super) fn scatter(&mut self) -> [Wrench; SLOTS] {
         let mut sums = [Wrench::default(); SLOTS];
-        let Workspace { balls, groups, bodies, cage, .. } = &mut *self.workspace;
+        let Workspace { balls, groups, bodies, races, cage, .. } = &mut *self.workspace;
         for (body, _) in bodies.iter().filter(|(_, trial)| trial.is_some()) {
             let sum = &mut sums[body.index()];
             match body {
@@ -209,7 +179,7 @@ impl<'a> BearingStep<'a> {
         if let (Some(model), Some(cage)) = (&self.model.cage, cage.as_mut())
             && let Some(guide) = model.guide()
         {
-            cage.touch_lands(model, &self.races[guide]);
+            cage.touch_lands(model, &races[guide]);
             for pair in cage.lands.iter().flatten() {
                 let on_race = &mut sums[Body::from(guide).index()];
                 *on_race = on_race.plus(Wrench { force: -pair.force, moment: pair.other_moment });
@@ -276,7 +246,8 @@ impl<'a> BearingStep<'a> {
         if let (Some(model), Some(cage), Some(guide)) =
             (&self.model.cage, self.workspace.cage.as_mut(), guide)
         {
-            lands = cage.land_reactions(model, &RaceSeen::new(guide, &self.races, &trials), &self.step);
+            lands =
+                cage.land_reactions(model, &RaceSeen::new(guide, &self.workspace.races, &trials), &self.step);
             cage.race_by_cage.fill(0.0);
             cage.cage_by_race.fill(0.0);
             if let (Some(race), Some(Some(own))) = (&trials[guide], trials.get(Body::Cage)) {
@@ -310,7 +281,7 @@ impl Equations for BearingStep<'_> {
             _ => {}
         }
         let renewed = self.workspace.balls.iter().any(|trial| trial.renewed);
-        self.renewals += u64::from(renewed && !with_tangent);
+        self.workspace.counted.renewals += u64::from(renewed && !with_tangent);
         // bodies first: the balls see them move
         let moved = self.move_bodies(unknowns);
         let factorises = !independent && (renewed || !self.workspace.factorised);

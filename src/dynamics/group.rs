@@ -163,11 +163,6 @@ impl Groups {
         }
     }
 
-    /// Forgets what was evaluated: forces where the balls are will be others.
-    pub fn forget(&mut self) {
-        self.0.iter_mut().for_each(|group| group.moved = [true; WIDTH]);
-    }
-
     /// The groups.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut BallGroup> {
         self.0.iter_mut()

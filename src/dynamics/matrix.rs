@@ -248,7 +248,7 @@ impl BearingStep<'_> {
             }
         }
         if renewed {
-            self.renewals += 1;
+            self.workspace.counted.renewals += 1;
             self.differentiate_bodies();
             self.differentiate_renewed();
             self.eliminate_renewed();

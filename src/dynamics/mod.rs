@@ -1,4 +1,5 @@
-//! One implicit step of the whole bearing: Newton's equations of balls and race bodies under the HHT scheme.
+//! One implicit step: Newton's equations of balls, race bodies and what carries them under the HHT scheme. [`system::try_step`] is the step of
+//! every machine, that of a bearing alone too.
 
 mod accept;
 mod ball;
@@ -20,38 +21,34 @@ mod neighbours;
 mod reaction;
 mod record;
 mod repair;
-mod sensitivity;
 mod step_turn;
 mod support;
 pub mod system;
 
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector6};
 
+use crate::contact::RaceMotion;
 use crate::contact::many::Touch;
 use crate::contact::pair::PairForces;
 use crate::effects::moving_frame::FrameMotion;
 use crate::forces::{BallContacts, BallPair, Contacts};
 use crate::model::bodies::{Bodies, Body, PerRace, Race};
-use crate::model::state::{KeptMatrix, State};
+use crate::model::state::KeptMatrix;
 use crate::model::{Conditions, Model};
 use crate::numerics::arrowhead::{Arrowhead, Member, Six};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::motion::{Pose, Twist};
-use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure};
+use crate::numerics::newton::NewtonFailure;
 use crate::numerics::ring::Ring;
-use crate::numerics::size::larger;
-use accept::{StepEnd, accept, renew_polynomials};
 pub use accept::{make_consistent, power_lost_around};
 use ball::BallTrial;
 use body::BodyTrial;
 pub use body_sums::BodyLoad;
 use cage::CageTrial;
-pub use dense::{StepBound, within};
-use equations::BearingStep;
+pub use dense::StepBound;
 pub use failure::{FailureSite, Worst, failure_site};
 use group::Groups;
 use neighbours::NeighbourTrial;
-pub use sensitivity::advance_perturbed;
 
 /// Motions, loads and conditions imposed at the end of a step.
 #[derive(Clone, Debug)]
@@ -70,6 +67,17 @@ pub struct Boundary {
     pub orientations: Option<Vec<UnitQuaternion<f64>>>,
 }
 
+/// Work of the equations of a bearing in a step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counted {
+    /// Ball-race contacts evaluated without derivatives.
+    contact_values: u64,
+    /// Ball-race contacts evaluated with derivatives.
+    contact_tangents: u64,
+    /// Corrections for which blocks of some balls were computed anew.
+    renewals: u64,
+}
+
 /// Buffers of a step, kept between steps.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
@@ -80,6 +88,8 @@ pub struct Workspace {
     kept: KeptMatrix,
     /// Trials of the bodies that forces move; empty before the first step.
     bodies: Bodies<Option<BodyTrial>>,
+    /// Motion of the races at the end of the step.
+    races: PerRace<RaceMotion<f64>>,
     cage: Option<CageTrial>,
     /// Neighbouring balls that may touch in the step.
     neighbours: Vec<NeighbourTrial>,
@@ -96,16 +106,16 @@ pub struct Workspace {
     /// The same of all groups of balls, where neighbouring balls do not touch.
     group_corrections: Vec<Six<Lanes>>,
     border_correction: DVector<f64>,
-    unknowns: Vec<f64>,
     /// A correction that is not evaluated.
     last_correction: Vec<f64>,
     /// Has the step that was solved last ended with it?
     settled: bool,
+    /// Work of the step.
+    counted: Counted,
     /// Accelerations and multipliers that do not change in the step but for the turn of orbits.
     steady: Vec<f64>,
     /// How they would change if they went on as in the last step.
     expected: Vec<f64>,
-    newton: NewtonBuffers,
 }
 
 impl Workspace {
@@ -152,83 +162,4 @@ pub enum StepFailure {
     Newton(NewtonFailure, Worst),
     /// The local error is too large; and where it is largest.
     Error(Worst),
-}
-
-/// Tries one step of `h` \[s]. On success the state is the new one; otherwise only its statistics, step control, kept
-/// matrix and differences to the table have changed.
-///
-/// # Errors
-/// See [`StepFailure`]; the step control has then been told.
-// A function of its own in programs, too: scripts/step-instructions counts what it takes.
-#[inline(never)]
-pub fn try_step(
-    model: &Model,
-    state: &mut State,
-    boundary: &Boundary,
-    h: f64,
-    workspace: &mut Workspace,
-) -> Result<(), StepFailure> {
-    let mut buffers = std::mem::take(&mut workspace.newton);
-    let mut unknowns = std::mem::take(&mut workspace.unknowns);
-    workspace.kept = std::mem::take(&mut state.matrix);
-    workspace.factorised = false;
-    // Here and not at the end of a step, so that a state keeps those that its forces were computed with.
-    renew_polynomials(model, state, boundary);
-    let mut statistics = state.statistics;
-    let mut equations = BearingStep::new(model, state, boundary, h, workspace);
-    equations.list_near();
-    equations.guess_steady_trend(&mut unknowns);
-    let mut solve = |equations: &mut BearingStep<'_>, unknowns: &mut [f64]| {
-        if equations.begin_with_first_law() {
-            newton::solve(equations, unknowns, &mut buffers, &mut statistics.newton)?;
-            equations.go_on_with_own_law();
-        }
-        newton::solve(equations, unknowns, &mut buffers, &mut statistics.newton)?;
-        // Each time around another pair of balls has met.
-        while equations.list_met() {
-            newton::solve(equations, unknowns, &mut buffers, &mut statistics.newton)?;
-        }
-        Ok(())
-    };
-    let mut solved = solve(&mut equations, &mut unknowns);
-    if solved.is_err() {
-        equations.workspace.kept = KeptMatrix::default();
-        equations.guess_steady_velocity(&mut unknowns);
-        solved = solve(&mut equations, &mut unknowns);
-        statistics.second_guesses += 1;
-    }
-    statistics.newton.factorisations += equations.renewals;
-    statistics.contact_values += equations.contact_values;
-    statistics.contact_tangents += equations.contact_tangents;
-    let mut control = state.control;
-    let end = match solved {
-        Err(failure) => {
-            statistics.rejected_newton += 1;
-            control.fail();
-            Err(StepFailure::Newton(failure, equations.worst_residual()))
-        }
-        Ok(()) => {
-            equations.correct_once_more(&mut unknowns);
-            let local = equations.local_error();
-            let end = StepEnd::new(model, state, boundary, h, equations.workspace);
-            let energy = end.energy_error(model, state, boundary, h, equations.workspace);
-            match control.judge(larger(local, energy)) {
-                true => Ok(end),
-                false => {
-                    statistics.rejected_error += 1;
-                    Err(StepFailure::Error(equations.worst_error()))
-                }
-            }
-        }
-    };
-    let step = equations.step;
-    workspace.newton = buffers;
-    workspace.unknowns = unknowns;
-    state.matrix = std::mem::take(&mut workspace.kept);
-    state.statistics = statistics;
-    state.control = control;
-    let end = end?;
-    workspace.follow_trend(model, &mut state.trend, &workspace.unknowns, h);
-    accept(model, state, boundary, &step, (workspace, &end));
-    Ok(())
 }

@@ -33,7 +33,7 @@ impl BearingStep<'_> {
     /// then to be computed anew.
     pub(super) fn repair_balls(&mut self) -> bool {
         let workspace = &mut *self.workspace;
-        let (balls, groups) = (&mut workspace.balls, &mut workspace.groups);
+        let (balls, groups, counted) = (&mut workspace.balls, &mut workspace.groups, &mut workspace.counted);
         let (tolerance, ball) = (self.force_tolerance, &self.model.bearing.ball);
         let is_thrown =
             |index: usize, groups: &Groups| groups.is_thrown(index, tolerance, &self.step, ball.mass);
@@ -41,7 +41,7 @@ impl BearingStep<'_> {
         if thrown == 0 || thrown as f64 > MANY * balls.len() as f64 {
             return false;
         }
-        let bodies = (&self.races, &workspace.bodies, workspace.cage.as_ref());
+        let bodies = (&workspace.races, &workspace.bodies, workspace.cage.as_ref());
         let acts = (&self.contacts, &self.ambient);
         let around = Surroundings::new(self.model, acts, &self.start.differences, bodies);
         for (index, (trial, start)) in balls.iter_mut().zip(&self.start.balls).enumerate() {
@@ -50,7 +50,7 @@ impl BearingStep<'_> {
                 let obliquely = PerRace::new(|race| groups.rolled_obliquely(index, race));
                 let alone = |unknowns: &Vector6<f64>| {
                     let here = BallAlone::new(index, (&equations, unknowns), &obliquely, &around, &self.step);
-                    self.contact_tangents += here.touching;
+                    counted.contact_tangents += here.touching;
                     here
                 };
                 let from = groups.unknowns(index);

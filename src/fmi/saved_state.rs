@@ -9,7 +9,7 @@ use super::state::State;
 use super::unit::UnitSnapshot;
 
 /// First bytes of a serialised state: what it is, and the version of its form.
-const MAGIC: &[u8; 8] = b"rlmtFM14";
+const MAGIC: &[u8; 8] = b"rlmtFM15";
 /// Bytes of the checksum.
 const CHECKSUM: usize = 32;
 

@@ -8,7 +8,6 @@ pub mod energies;
 pub mod raceways;
 pub mod state;
 pub mod structure;
-pub mod switch;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -39,7 +38,6 @@ use bodies::{Bodies, PerRace, Race, RigidBody};
 use cage::CageModel;
 use damage::DamagedBalls;
 use raceways::RacewayContacts;
-use switch::Switch;
 
 /// Conditions that may change from step to step and are the same in every contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -68,8 +66,6 @@ pub struct Model {
     pub bodies: Bodies<Option<RigidBody>>,
     /// Balls against raceways.
     raceways: PerRace<RacewayContacts>,
-    /// The law that each step's iteration begins with, in the experiment of [`switch`] alone.
-    switch: Option<Switch>,
     /// Balls against the cage's pockets and the cage against a race's lands, where a cage is simulated.
     pub cage: Option<CageModel>,
     /// Neighbouring balls against each other, where no cage keeps them apart.
@@ -164,7 +160,6 @@ impl Model {
         Ok(Self {
             bodies: Bodies::new(races, section.map(|section| Some(RigidBody::cage(section)))),
             raceways,
-            switch: None,
             ball_contact: cage.is_none().then(|| {
                 let material = (scene.ball.youngs_modulus.0, scene.ball.poisson_ratio);
                 let friction = scene.friction.ball_ball.unwrap_or(scene.friction.ball_race.at(0.0));

@@ -22,8 +22,6 @@ enum RacewayLaw {
     Saturated,
     Table(CreepTable),
     Kalker(CreepTable, Box<ScaledKalker>),
-    /// Polynomials in every evaluation, of the experiment in [`super::switch`].
-    Direct(Box<ScaledKalker>),
 }
 
 impl RacewayLaw {
@@ -57,7 +55,6 @@ impl RacewayLaw {
             Self::Regularised(parameters) => Law::Regularised(parameters),
             Self::Saturated => Law::Saturated,
             Self::Table(table) | Self::Kalker(table, _) => Law::Table(table),
-            Self::Direct(kalker) => Law::Kalker(kalker),
         }
     }
 }
@@ -119,19 +116,10 @@ impl RacewayContacts {
         self.across.as_ref().map(|(exchanged, law)| Across { exchanged, law: law.law() })
     }
 
-    /// The same with polynomials in every evaluation, where they were frozen for each step.
-    pub(super) fn unfrozen(self) -> Self {
-        let law = match self.law {
-            RacewayLaw::Kalker(_, kalker) => RacewayLaw::Direct(kalker),
-            law => law,
-        };
-        Self { law, ..self }
-    }
-
     /// Kalker's polynomials, where they are simulated.
     pub fn polynomials(&self) -> Option<&ScaledKalker> {
         match &self.law {
-            RacewayLaw::Kalker(_, kalker) | RacewayLaw::Direct(kalker) => Some(kalker),
+            RacewayLaw::Kalker(_, kalker) => Some(kalker),
             _ => None,
         }
     }

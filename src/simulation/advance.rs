@@ -1,34 +1,223 @@
-//! From one communication point to the next, in steps that end at the knots of the script.
+//! From one communication point to the next, in steps that end at the knots of the scripts: of a bearing alone, and of those of a shaft.
 
 use std::cmp::Ordering;
 
 use super::error::SimulationError;
-use super::input_paths::InputPaths;
 use super::inputs::Inputs;
 use super::outputs::Outputs;
 use super::script::{Script, script_motion};
-use super::{Simulation, conditions, step_limits};
-use crate::dynamics::{Boundary, StepFailure, Workspace, advance_perturbed, failure_site, try_step};
+use super::system::Played;
+use super::together::{Stopped, Together};
+use super::{Simulation, step_limits};
+use crate::dynamics::system::{Part, Perturbed, Started, StructureLoad, advance_perturbed, try_step};
+use crate::dynamics::{Boundary, StepFailure, Workspace, failure_site};
 use crate::effects::film::Films;
 use crate::model::bodies::Race;
 use crate::model::state::State;
+use crate::model::structure::StructureState;
+use crate::numerics::step_control::StepControl;
 use crate::scene::{Drive, Groups, Level};
 
-/// A simulation beside the running one, under slightly different inputs.
-pub(super) struct Perturbed {
-    state: State,
-    paths: InputPaths,
-    inputs: Inputs,
+impl Together<'_> {
+    /// Scripted its own steps to exactly `end` \[s] under the inputs as set, some of them given by the scripts where there are some: those
+    /// are then those of the time reached. Takes along what has slightly different inputs, in the same steps.
+    pub fn advance(
+        &mut self,
+        end: f64,
+        played: &Played,
+        perturbed: &mut [Together<'_>],
+    ) -> Result<(), Stopped> {
+        self.check_end(end)?;
+        for beside in &mut *perturbed {
+            beside.begin_scripts(end, played);
+        }
+        let scripts = self.begin_scripts(end, played);
+        let followed = self.follow((&scripts, played), end, perturbed);
+        self.finish((&scripts, played), followed.is_ok());
+        for beside in perturbed {
+            beside.finish((&scripts, played), false);
+        }
+        followed.and_then(|()| self.check_contacts())
+    }
+
+    /// Refuses an end of a communication step that is no later time.
+    pub fn check_end(&self, end: f64) -> Result<(), Stopped> {
+        let from = self.time();
+        let later = end > from && end.is_finite();
+        if later { Ok(()) } else { Err((0, SimulationError::Backwards { from, to: end })) }
+    }
+
+    fn follow(
+        &mut self,
+        course: (&[Script], &Played),
+        end: f64,
+        perturbed: &mut [Together<'_>],
+    ) -> Result<(), Stopped> {
+        // The perturbed steps leave the running bearings as they are.
+        let mut aside = vec![];
+        for stop in self.stops(course, end) {
+            while self.time() < stop {
+                self.step_towards(course, stop, perturbed, &mut aside)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// \[s] times at which a step ends on the way to `end`: knots of the scripts, not closer to one another or to the ends than the least
+    /// step, and the end.
+    pub fn stops(&self, (scripts, played): (&[Script], &Played), end: f64) -> Vec<f64> {
+        let from = self.time();
+        let least = self.bearings[0].model.solver.min_step.0;
+        let each = scripts.iter().zip(&*self.bearings);
+        let mut knots: Vec<f64> =
+            each.flat_map(|(script, bearing)| script.knots(&bearing.scene, from, end)).collect();
+        if let Some(structures) = &self.structures {
+            knots.extend(structures.knots(played, from, end));
+        }
+        knots.sort_by(f64::total_cmp);
+        let mut last = from;
+        knots.retain(|&knot| {
+            let apart = knot - last >= least && end - knot >= least;
+            if apart {
+                last = knot;
+            }
+            apart
+        });
+        knots.push(end);
+        knots
+    }
+
+    /// Takes one step towards a time \[s], not beyond it.
+    pub fn step_towards(
+        &mut self,
+        (scripts, played): (&[Script], &Played),
+        end: f64,
+        perturbed: &mut [Together<'_>],
+        aside: &mut Vec<Workspace>,
+    ) -> Result<(), Stopped> {
+        loop {
+            let time = self.time();
+            let mut control = self.bearings[0].state.control;
+            let of_structures = self.structures.as_ref().and_then(|all| all.shortest_period(played, time));
+            for (bearing, script) in self.bearings.iter().zip(scripts) {
+                let own = script.shortest_period(&bearing.scene, time);
+                let period = own.into_iter().chain(of_structures).reduce(f64::min);
+                if let Some(limit) = step_limits::largest_step(&bearing.model, &bearing.state, period) {
+                    control.cap(limit);
+                }
+            }
+            let remaining = end - time;
+            let h = control.step_within(remaining);
+            // The last step ends at the communication point to the bit.
+            let last = h >= remaining * (1.0 - 1e-9);
+            let next = if last { end } else { time + h };
+            if next.partial_cmp(&time) != Some(Ordering::Greater) {
+                return Err((0, SimulationError::LostInRounding { time, step: h }));
+            }
+            let loads = self.loads(played, next);
+            let boundaries = self.imposed(scripts, &loads, next);
+            let start: Option<Vec<State>> = (!perturbed.is_empty())
+                .then(|| self.bearings.iter().map(|bearing| bearing.state.clone()).collect());
+            match self.try_step(&boundaries, &loads, h, &mut control) {
+                Ok(ends) => {
+                    if let Some(start) = start {
+                        let accepted = (&boundaries[..], &loads[..], h);
+                        self.perturb(start, accepted, (scripts, played, next), perturbed, aside)?;
+                    }
+                    if let Some(structures) = &mut self.structures {
+                        structures.states = ends;
+                    }
+                    return self.check_step(&boundaries);
+                }
+                Err((index, failure)) => {
+                    if !control.above_minimum() {
+                        return Err((index, self.bearings[index].too_small(failure, &boundaries[index])));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Tries one step of `h` \[s] under these boundaries and loads; on success gives the states of the structures.
+    fn try_step(
+        &mut self,
+        boundaries: &[Boundary],
+        loads: &[StructureLoad],
+        h: f64,
+        control: &mut StepControl,
+    ) -> Result<Vec<StructureState>, (usize, StepFailure)> {
+        let mut buffers = std::mem::take(&mut self.bearings[0].buffers);
+        let structures = self.structures.as_deref();
+        let steps = structures.map_or(vec![], |all| all.steps(&all.states, loads));
+        let joints = structures.map_or(&[][..], |all| &all.joints);
+        let of = |(bearing, boundary)| {
+            let Simulation { model, state, workspace, .. }: &mut Simulation = bearing;
+            Part { model, state, boundary, workspace }
+        };
+        let mut parts: Vec<Part<'_>> = self.bearings.iter_mut().zip(boundaries).map(of).collect();
+        let tried = try_step(&mut parts, &steps, joints, h, control, &mut buffers);
+        self.bearings[0].buffers = buffers;
+        tried
+    }
+
+    /// Takes perturbed bearings along a step that was accepted: from where it started, under these boundaries and loads.
+    fn perturb(
+        &self,
+        mut start: Vec<State>,
+        (boundaries, loads, h): (&[Boundary], &[StructureLoad], f64),
+        (scripts, played, next): (&[Script], &Played, f64),
+        perturbed: &mut [Together<'_>],
+        aside: &mut Vec<Workspace>,
+    ) -> Result<(), Stopped> {
+        let time = start[0].time;
+        for (start, bearing) in start.iter_mut().zip(&*self.bearings) {
+            // Renewed by the step itself.
+            start.differences.clone_from(&bearing.state.differences);
+        }
+        let bearings = start.iter().zip(&*self.bearings).zip(boundaries);
+        let bearings: Vec<Started<'_>> = bearings
+            .map(|((start, bearing), boundary)| Started {
+                model: &bearing.model,
+                start,
+                boundary,
+                accepted: &bearing.workspace,
+            })
+            .collect();
+        let imposed: Vec<_> = perturbed
+            .iter()
+            .map(|beside| {
+                let loads = beside.loads(played, next);
+                (beside.imposed(scripts, &loads, next), loads)
+            })
+            .collect();
+        let parts = perturbed.iter_mut().zip(&imposed).map(|(beside, (boundaries, loads))| Perturbed {
+            states: beside.bearings.iter_mut().map(|bearing| &mut bearing.state).collect(),
+            boundaries,
+            structures: beside.structures.as_deref().map_or(vec![], |all| all.steps(&all.states, loads)),
+        });
+        let structures = self.structures.as_deref();
+        let steps = structures.map_or(vec![], |all| all.steps(&all.states, loads));
+        let joints = structures.map_or(&[][..], |all| &all.joints);
+        let accepted = (h, &self.bearings[0].buffers.unknowns[..]);
+        let ends = advance_perturbed(&bearings, &steps, joints, accepted, parts, aside)
+            .ok_or((0, SimulationError::Singular(time)))?;
+        for (beside, ends) in perturbed.iter_mut().zip(ends) {
+            if let Some(structures) = &mut beside.structures {
+                structures.states = ends;
+            }
+        }
+        Ok(())
+    }
 }
 
 impl Simulation {
-    /// Runs its own steps to exactly `end` \[s]. The inputs are taken as valid now, at the start.
+    /// Scripted its own steps to exactly `end` \[s]. The inputs are taken as valid now, at the start.
     ///
     /// # Errors
     /// See [`SimulationError`]; the state is then that of the last converged step, at [`Simulation::time`]. Depth and place of
     /// contacts are looked at where the step ends.
     pub fn advance(&mut self, end: f64) -> Result<(), SimulationError> {
-        self.advance_perturbed(end, &[], Groups::default()).map(drop)
+        self.advance_with(end, Groups::default())
     }
 
     /// Like [`Simulation::advance`], with some groups of inputs given by the scene's script where it has one. The inputs of
@@ -40,7 +229,7 @@ impl Simulation {
         self.advance_perturbed(end, &[], scripted).map(drop)
     }
 
-    /// Like [`Simulation::advance`], with some groups of inputs given by the scene's script where it has one; also gives the outputs that slightly different inputs would have led to, in the same
+    /// Like [`Simulation::advance_with`]; also gives the outputs that slightly different inputs would have led to, in the same
     /// steps. They are exact to first order: take differences between perturbations of opposite sign.
     ///
     /// # Errors
@@ -51,33 +240,20 @@ impl Simulation {
         inputs: &[Inputs],
         scripted: Groups,
     ) -> Result<Vec<Outputs>, SimulationError> {
-        let begin = self.state.time;
-        if !(end > begin && end.is_finite()) {
-            return Err(SimulationError::Backwards { from: begin, to: end });
-        }
         if self.model.solver.level == Level::Equilibrium {
+            self.alone().check_end(end).map_err(|(_, why)| why)?;
             return self.advance_by_equilibria(end, inputs, scripted);
         }
-        let script = self.begin_script(scripted);
-        let mut perturbed: Vec<Perturbed> = inputs
-            .iter()
-            .map(|inputs| {
-                let mut inputs = *inputs;
-                self.script_fixed_races(begin, &mut inputs);
-                let paths = self.paths.towards(&inputs, begin, end - begin);
-                Perturbed { state: self.state.clone(), paths, inputs }
-            })
-            .collect();
-        self.paths = self.paths.towards(&self.inputs, begin, end - begin);
-        let result = self.follow(&script, end, &mut perturbed);
-        self.end_script(&script, result.is_ok());
-        result.and_then(|()| self.check_contacts())?;
-        let outputs = |p: &Perturbed| {
-            let mut inputs = p.inputs;
-            script.set_inputs(&self.scene, &p.paths, p.state.time, &mut inputs);
-            Outputs::new(&self.model, &p.state, &conditions(&inputs, &p.state))
+        let beside = |inputs: &Inputs| {
+            let mut bearing = self.beside();
+            bearing.set_inputs(*inputs);
+            bearing
         };
-        Ok(perturbed.iter().map(outputs).collect())
+        let mut others: Vec<_> = inputs.iter().map(beside).collect();
+        let mut perturbed: Vec<_> = others.iter_mut().map(Self::alone).collect();
+        let played = Played::of_bearing(scripted);
+        self.alone().advance(end, &played, &mut perturbed).map_err(|(_, why)| why)?;
+        Ok(others.iter().map(|other| other.outputs().clone()).collect())
     }
 
     /// The script of a communication step that begins now, from the inputs as set; where paths lead is left to the caller.
@@ -125,85 +301,6 @@ impl Simulation {
                     input.speed = speed.at(time);
                 }
                 script_motion(&self.scene, race, time, &now, input);
-            }
-        }
-    }
-
-    /// Steps to `end` \[s] and to the knots of the script on the way.
-    fn follow(
-        &mut self,
-        script: &Script,
-        end: f64,
-        perturbed: &mut [Perturbed],
-    ) -> Result<(), SimulationError> {
-        // The perturbed steps leave the running simulation as it is.
-        let mut aside = Workspace::default();
-        for stop in self.stops(script, end) {
-            while self.state.time < stop {
-                self.step_towards(script, stop, perturbed, &mut aside)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// \[s] times at which a step ends on the way to `end`: knots of the script, and the end.
-    pub(super) fn stops(&self, script: &Script, end: f64) -> Vec<f64> {
-        let least = self.model.solver.min_step.0;
-        let mut stops = script.knots(&self.scene, self.state.time, end, least);
-        stops.push(end);
-        stops
-    }
-
-    /// Takes one step towards a time \[s], not beyond it.
-    pub(super) fn step_towards(
-        &mut self,
-        script: &Script,
-        end: f64,
-        perturbed: &mut [Perturbed],
-        aside: &mut Workspace,
-    ) -> Result<(), SimulationError> {
-        loop {
-            let remaining = end - self.state.time;
-            let period = script.shortest_period(&self.scene, self.state.time);
-            if let Some(limit) = step_limits::largest_step(&self.model, &self.state, period) {
-                self.state.control.cap(limit);
-            }
-            let h = self.state.control.step_within(remaining);
-            // The last step ends at the communication point to the bit.
-            let last = h >= remaining * (1.0 - 1e-9);
-            let next = if last { end } else { self.state.time + h };
-            if next.partial_cmp(&self.state.time) != Some(Ordering::Greater) {
-                return Err(SimulationError::LostInRounding { time: self.state.time, step: h });
-            }
-            let boundary = self.imposed(script, next);
-            let start = (!perturbed.is_empty()).then(|| self.state.clone());
-            let tried = try_step(&self.model, &mut self.state, &boundary, h, &mut self.workspace);
-            let failure = match tried {
-                Ok(()) => {
-                    self.check_creep(&boundary)?;
-                    if let Some(mut start) = start {
-                        // Renewed by the step itself.
-                        start.differences.clone_from(&self.state.differences);
-                        let (scene, model) = (&self.scene, &self.model);
-                        let perturbed = perturbed.iter_mut().map(|p| {
-                            let mut boundary = p.paths.boundary(boundary.time, &p.inputs);
-                            script.impose(scene, &p.paths, &mut boundary);
-                            boundary.see_spins(model);
-                            boundary.turn_balls(model, &p.state);
-                            boundary.see_temperatures(&p.state);
-                            (&mut p.state, boundary)
-                        });
-                        let accepted = &self.workspace;
-                        if !advance_perturbed(&self.model, &start, &boundary, h, perturbed, accepted, aside) {
-                            return Err(SimulationError::Singular(start.time));
-                        }
-                    }
-                    return Ok(());
-                }
-                Err(failure) => failure,
-            };
-            if !self.state.control.above_minimum() {
-                return Err(self.too_small(failure, &boundary));
             }
         }
     }

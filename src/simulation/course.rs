@@ -1,12 +1,14 @@
-//! A run by the scene's own script, step by step: steps end where the motion wants it, and times within a step are read from it.
+//! A run by the scripts, step by step: steps end where the motion wants it, and times within a step are read from it.
 
 use super::inputs::Inputs;
 use super::play::Scripted;
 use super::point::Point;
 use super::script::Script;
 use super::system::Played;
+use super::together::{Stopped, Together};
 use super::{Simulation, SimulationError, conditions};
-use crate::dynamics::{StepBound, Workspace, within};
+use crate::dynamics::StepBound;
+use crate::dynamics::system::{Stepped, within};
 use crate::model::state::State;
 use crate::model::structure::StructureState;
 use crate::scene::{Groups, Level};
@@ -15,33 +17,33 @@ use crate::scene::{Groups, Level};
 #[derive(Debug)]
 pub struct Course {
     /// Scripts of the bearings.
-    pub(super) scripts: Vec<Script>,
-    /// What scripts give of a shaft; none of a bearing alone.
-    pub(super) played: Option<Played>,
+    scripts: Vec<Script>,
+    /// What scripts give.
+    played: Played,
     /// \[s] times at which a step ends, the next one last.
-    pub(super) stops: Vec<f64>,
+    stops: Vec<f64>,
     /// Inputs of the bearings as steps have them: what the scripts do not give.
-    pub(super) inputs: Vec<Inputs>,
+    inputs: Vec<Inputs>,
     /// Where the last step began, if it may be looked into.
-    pub(super) start: Option<Moment>,
+    start: Option<Moment>,
     /// Where it ended, while an earlier time is looked at.
-    pub(super) end: Option<Moment>,
+    end: Option<Moment>,
 }
 
 /// States of a machine.
 #[derive(Clone, Debug)]
-pub struct Moment {
+struct Moment {
     /// \[s] time.
-    pub(super) time: f64,
+    time: f64,
     /// Of the bearings.
-    pub(super) bearings: Vec<StepBound>,
+    bearings: Vec<StepBound>,
     /// Of the shaft and the housings.
-    pub(super) structures: Vec<StructureState>,
+    structures: Vec<StructureState>,
 }
 
 impl Course {
     /// \[s] where the next step may not go beyond; none where the run has come to its end.
-    pub(super) fn stop_after(&mut self, time: f64) -> Option<f64> {
+    fn stop_after(&mut self, time: f64) -> Option<f64> {
         while self.stops.last().is_some_and(|stop| *stop <= time) {
             self.stops.pop();
         }
@@ -49,7 +51,7 @@ impl Course {
     }
 
     /// Where the last step began, if a time \[s] lies within it.
-    pub(super) fn start_before(&self, time: f64, end: f64) -> Option<&Moment> {
+    fn start_before(&self, time: f64, end: f64) -> Option<&Moment> {
         self.start.as_ref().filter(|start| start.time < time && time < end)
     }
 }
@@ -61,78 +63,139 @@ impl Scripted for Simulation {
         self.state.time
     }
 
-    fn begin(&mut self, end: f64) -> Result<Course, SimulationError> {
-        let begin = self.state.time;
-        if !(end > begin && end.is_finite()) {
-            return Err(SimulationError::Backwards { from: begin, to: end });
-        }
-        self.inputs = self.scripted_inputs(begin);
-        let script = self.begin_script(Groups::ALL);
-        self.paths = self.paths.towards(&self.inputs, begin, end - begin);
-        let mut stops = self.stops(&script, end);
-        stops.reverse();
-        let (scripts, inputs) = (vec![script], vec![self.inputs]);
-        Ok(Course { scripts, played: None, stops, inputs, start: None, end: None })
+    fn together(&mut self) -> Together<'_> {
+        self.alone()
     }
 
-    fn step(&mut self, course: &mut Course, row: f64) -> Result<(), SimulationError> {
-        if self.model.solver.level == Level::Equilibrium {
-            return self.advance_scripted(row);
-        }
-        let Some(stop) = course.stop_after(self.state.time) else { return Ok(()) };
-        self.inputs = course.inputs[0];
-        course.start = (row < self.state.time + self.state.control.longest()).then(|| self.moment());
-        self.step_towards(&course.scripts[0], stop, &mut [], &mut Workspace::default())?;
-        self.show_end(&course.scripts[0], &course.inputs[0]);
+    fn stopped(&self, (_, why): Stopped) -> SimulationError {
+        why
+    }
+
+    fn scripts(&self) -> Played {
+        Played::of_bearing(Groups::ALL)
+    }
+
+    fn script_inputs(&mut self) {
+        self.inputs = self.scripted_inputs(self.state.time);
+    }
+
+    fn advance_by_script(&mut self, end: f64) -> Result<(), SimulationError> {
+        self.advance_scripted(end)
+    }
+}
+
+impl Together<'_> {
+    /// Is every point an equilibrium?
+    pub(super) fn is_quasi_static(&self) -> bool {
+        self.bearings[0].model.solver.level == Level::Equilibrium
+    }
+
+    pub(super) fn begin_course(&mut self, end: f64, played: Played) -> Course {
+        let scripts = self.begin_scripts(end, &played);
+        let mut stops = self.stops((&scripts, &played), end);
+        stops.reverse();
+        let inputs = self.bearings.iter().map(|bearing| bearing.inputs).collect();
+        Course { scripts, played, stops, inputs, start: None, end: None }
+    }
+
+    pub(super) fn step(&mut self, course: &mut Course, row: f64) -> Result<(), Stopped> {
+        let time = self.time();
+        let Some(stop) = course.stop_after(time) else { return Ok(()) };
+        self.set_bearing_inputs(course);
+        let longest = self.bearings[0].state.control.longest();
+        course.start = (row < time + longest).then(|| self.moment());
+        self.step_towards((&course.scripts, &course.played), stop, &mut [], &mut vec![])?;
+        self.show(course);
         self.check_contacts()
     }
 
-    fn look_back(&mut self, course: &mut Course, time: f64) {
-        let Some(start) = course.start_before(time, self.state.time) else { return };
+    pub(super) fn look_back(&mut self, course: &mut Course, time: f64) {
+        let Some(start) = course.start_before(time, self.time()) else { return };
         let end = self.moment();
-        self.state.clone_from(&start.bearings[0].state);
-        self.inputs = course.inputs[0];
-        let boundary = self.imposed(&course.scripts[0], time);
-        let seen = within(&self.model, [&start.bearings[0], &end.bearings[0]], &boundary);
-        self.see(&course.scripts[0], &course.inputs[0], seen);
+        for (bearing, bound) in self.bearings.iter_mut().zip(&start.bearings) {
+            bearing.state.clone_from(&bound.state);
+        }
+        if let Some(structures) = &mut self.structures {
+            structures.states.clone_from(&start.structures);
+        }
+        self.set_bearing_inputs(course);
+        let loads = self.loads(&course.played, time);
+        let boundaries = self.imposed(&course.scripts, &loads, time);
+        let ends = start.bearings.iter().zip(&end.bearings);
+        let stepped = self.bearings.iter().zip(ends).zip(boundaries);
+        let mut stepped: Vec<_> = stepped
+            .map(|((bearing, (start, end)), boundary)| Stepped {
+                model: &bearing.model,
+                ends: [start, end],
+                boundary,
+            })
+            .collect();
+        let structures = self.structures.as_deref();
+        let steps = structures.map_or(vec![], |all| all.steps(&start.structures, &loads));
+        let joints = structures.map_or(&[][..], |all| &all.joints);
+        let spans = (time - start.time, end.time - start.time);
+        let (bearings, states) = within(&mut stepped, &steps, &end.structures, joints, spans);
+        drop((stepped, steps));
+        if let Some(structures) = &mut self.structures {
+            structures.states = states;
+        }
+        let all = self.bearings.iter_mut().zip(bearings).zip(&course.scripts).zip(&course.inputs);
+        for (((bearing, seen), script), inputs) in all {
+            bearing.see(script, inputs, seen);
+        }
+        self.report();
         course.end = Some(end);
     }
 
-    fn look_up(&mut self, course: &mut Course) {
-        let time = self.state.time;
-        let Some(end) = course.end.take().and_then(|mut end| end.bearings.pop()) else {
-            self.begin_report();
+    pub(super) fn look_up(&mut self, course: &mut Course) {
+        let time = self.time();
+        let Some(Moment { bearings, structures: states, .. }) = course.end.take() else {
+            self.bearings.iter_mut().for_each(Simulation::begin_report);
             return;
         };
-        if let Some(start) = &mut course.start {
-            self.go_back_to(end.state, &mut start.bearings[0].state, time);
+        let starts = course.start.iter_mut().flat_map(|start| &mut start.bearings);
+        for ((bearing, end), start) in self.bearings.iter_mut().zip(bearings).zip(starts) {
+            bearing.go_back_to(end.state, &mut start.state, time);
         }
-        self.show_end(&course.scripts[0], &course.inputs[0]);
+        if let Some(structures) = &mut self.structures {
+            structures.states = states;
+        }
+        self.show(course);
     }
 
-    fn end(&mut self, course: Course, accepted: bool) {
-        if self.model.solver.level == Level::Dynamic {
-            self.inputs = course.inputs[0];
-            self.end_script(&course.scripts[0], accepted);
+    pub(super) fn end(&mut self, course: &Course, accepted: bool) {
+        if !self.is_quasi_static() {
+            self.set_bearing_inputs(course);
+            self.finish((&course.scripts, &course.played), accepted);
             self.take_scripted_inputs();
         }
+    }
+
+    /// Inputs of the bearings as steps have them.
+    fn set_bearing_inputs(&mut self, course: &Course) {
+        self.bearings.iter_mut().zip(&course.inputs).for_each(|(bearing, own)| bearing.inputs = *own);
+    }
+
+    fn moment(&self) -> Moment {
+        let bearings = self.bearings.iter().map(Simulation::bound).collect();
+        let structures = self.structures.as_ref().map_or(vec![], |all| all.states.clone());
+        Moment { time: self.time(), bearings, structures }
+    }
+
+    /// Shows where the last step has ended.
+    fn show(&mut self, course: &Course) {
+        for ((bearing, script), inputs) in self.bearings.iter_mut().zip(&course.scripts).zip(&course.inputs) {
+            bearing.show_inputs(script, inputs);
+            bearing.reach(true);
+        }
+        self.report();
     }
 }
 
 impl Simulation {
-    fn moment(&self) -> Moment {
-        Moment { time: self.state.time, bearings: vec![self.bound()], structures: vec![] }
-    }
-
     /// Where it is, and its contacts there.
-    pub(super) fn bound(&self) -> StepBound {
+    fn bound(&self) -> StepBound {
         StepBound { state: self.state.clone(), contacts: self.contacts_of(&self.point).into_owned() }
-    }
-
-    /// Shows where the last step has ended.
-    pub(super) fn show_end(&mut self, script: &Script, inputs: &Inputs) {
-        self.show_inputs(script, inputs);
-        self.reach(true);
     }
 
     /// From the inputs that steps begin with, those that they follow, and beside them what the script says of those that they do not need.
@@ -143,7 +206,7 @@ impl Simulation {
     }
 
     /// Shows what was seen within the last step.
-    pub(super) fn see(&mut self, script: &Script, inputs: &Inputs, seen: StepBound) {
+    fn see(&mut self, script: &Script, inputs: &Inputs, seen: StepBound) {
         self.state = seen.state;
         self.show_inputs(script, inputs);
         self.point = Point::of_contacts(conditions(&self.inputs, &self.state), seen.contacts);
@@ -162,7 +225,7 @@ impl Simulation {
 
     /// Is at the end of the last step again, after a time \[s] was looked at. What is reported since the last row begins anew there, for the next
     /// row within the same step, too.
-    pub(super) fn go_back_to(&mut self, end: State, start: &mut State, time: f64) {
+    fn go_back_to(&mut self, end: State, start: &mut State, time: f64) {
         let seen = std::mem::replace(&mut self.state, end);
         for state in [&mut self.state, start] {
             if let (Some(heat), Some(then)) = (&mut state.heat, &seen.heat) {

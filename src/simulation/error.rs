@@ -151,6 +151,22 @@ pub enum SimulationError {
         /// Why not.
         why: Box<SimulationError>,
     },
+    /// A race is tilted further than linear structures are valid for.
+    #[error(
+        "at {} s the {race} race is tilted by {tilt:.3} rad: more than {limit} rad, the most that the linear equations of a shaft or a \
+         housing hold for",
+        four(.time)
+    )]
+    Tilted {
+        /// \[s] time.
+        time: f64,
+        /// Inner or outer.
+        race: &'static str,
+        /// \[rad] tilt.
+        tilt: f64,
+        /// \[rad] largest tilt.
+        limit: f64,
+    },
     /// The Newton matrix of a step whose sensitivities were asked for is singular.
     #[error("at {} s the Newton matrix is singular", four(.0))]
     Singular(f64),

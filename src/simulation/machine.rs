@@ -2,9 +2,9 @@
 
 use thiserror::Error;
 
-use super::course::Course;
 use super::play::Scripted;
-use super::system::{System, SystemError, script_changes_within, shaft_follows_time};
+use super::system::{Played, System, SystemError, script_changes_within, shaft_follows_time};
+use super::together::{Stopped, Together};
 use super::{Simulation, SimulationError};
 use crate::model::state::Statistics;
 use crate::scene::machine::MachineScene;
@@ -116,40 +116,40 @@ impl Scripted for Machine {
         Self::time(self)
     }
 
-    fn begin(&mut self, end: f64) -> Result<Course, MachineError> {
-        Ok(match self {
-            Self::Bearing(bearing) => bearing.begin(end)?,
-            Self::Shaft(system) => system.begin(end)?,
-        })
+    fn together(&mut self) -> Together<'_> {
+        match self {
+            Self::Bearing(bearing) => bearing.together(),
+            Self::Shaft(system) => system.together(),
+        }
     }
 
-    fn step(&mut self, course: &mut Course, row: f64) -> Result<(), MachineError> {
+    fn stopped(&self, why: Stopped) -> MachineError {
         match self {
-            Self::Bearing(bearing) => bearing.step(course, row)?,
-            Self::Shaft(system) => system.step(course, row)?,
+            Self::Bearing(bearing) => bearing.stopped(why).into(),
+            Self::Shaft(system) => system.stopped(why).into(),
+        }
+    }
+
+    fn scripts(&self) -> Played {
+        match self {
+            Self::Bearing(bearing) => bearing.scripts(),
+            Self::Shaft(system) => system.scripts(),
+        }
+    }
+
+    fn script_inputs(&mut self) {
+        match self {
+            Self::Bearing(bearing) => bearing.script_inputs(),
+            Self::Shaft(system) => system.script_inputs(),
+        }
+    }
+
+    fn advance_by_script(&mut self, end: f64) -> Result<(), MachineError> {
+        match self {
+            Self::Bearing(bearing) => bearing.advance_by_script(end)?,
+            Self::Shaft(system) => system.advance_by_script(end)?,
         }
         Ok(())
-    }
-
-    fn look_back(&mut self, course: &mut Course, time: f64) {
-        match self {
-            Self::Bearing(bearing) => bearing.look_back(course, time),
-            Self::Shaft(system) => system.look_back(course, time),
-        }
-    }
-
-    fn look_up(&mut self, course: &mut Course) {
-        match self {
-            Self::Bearing(bearing) => bearing.look_up(course),
-            Self::Shaft(system) => system.look_up(course),
-        }
-    }
-
-    fn end(&mut self, course: Course, accepted: bool) {
-        match self {
-            Self::Bearing(bearing) => bearing.end(course, accepted),
-            Self::Shaft(system) => system.end(course, accepted),
-        }
     }
 }
 

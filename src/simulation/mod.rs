@@ -24,12 +24,14 @@ mod start_state;
 mod step_limits;
 mod supported;
 pub mod system;
+mod together;
 
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::auto;
+use crate::dynamics::system::StepBuffers;
 use crate::dynamics::{Boundary, Workspace, make_consistent};
 use crate::effects::growth::Warmth;
 use crate::model::bodies::Race;
@@ -68,6 +70,8 @@ pub struct Simulation {
     paths: InputPaths,
     point: Point,
     workspace: Workspace,
+    /// Buffers of the steps of all bearings that take them together, in the first of these.
+    buffers: StepBuffers,
 }
 
 impl Simulation {
@@ -108,6 +112,7 @@ impl Simulation {
             paths,
             point,
             workspace: Workspace::default(),
+            buffers: StepBuffers::default(),
         };
         simulation.check_room()?;
         simulation.settle();
@@ -276,7 +281,7 @@ impl Simulation {
         script::Script::new(&self.scene, Groups::ALL).changes_within(&self.scene, from, to)
     }
 
-    /// Runs its own steps to exactly `end` \[s], where the last of them ends, by the scene's script, which every step follows exactly. The
+    /// Scripted its own steps to exactly `end` \[s], where the last of them ends, by the scene's script, which every step follows exactly. The
     /// inputs are then those of the time reached.
     ///
     /// # Errors

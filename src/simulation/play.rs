@@ -6,7 +6,8 @@ use std::ops::ControlFlow;
 use super::Simulation;
 use super::course::Course;
 use super::machine::{Machine, MachineError};
-use super::system::System;
+use super::system::{Played, System};
+use super::together::{Stopped, Together};
 use crate::scene::machine::MachineScene;
 
 /// What plays its own script step by step, and shows what it does at any time within the last one.
@@ -17,27 +18,63 @@ pub trait Scripted {
     /// \[s] time.
     fn time(&self) -> f64;
 
+    /// All that takes its steps together.
+    fn together(&mut self) -> Together<'_>;
+
+    /// What is said of a bearing that could not go on.
+    fn stopped(&self, why: Stopped) -> Self::Error;
+
+    /// All scripts.
+    fn scripts(&self) -> Played;
+
+    /// Sets the inputs to what the scripts say now.
+    fn script_inputs(&mut self);
+
+    /// Goes to a time \[s] by its scripts, where a step ends.
+    ///
+    /// # Errors
+    /// If a step cannot be finished, or if there is no equilibrium.
+    fn advance_by_script(&mut self, end: f64) -> Result<(), Self::Error>;
+
     /// Begins a run to `end` \[s] by its script.
     ///
     /// # Errors
     /// If that is no later time.
-    fn begin(&mut self, end: f64) -> Result<Course, Self::Error>;
+    fn begin(&mut self, end: f64) -> Result<Course, Self::Error> {
+        let checked = self.together().check_end(end);
+        checked.map_err(|why| self.stopped(why))?;
+        self.script_inputs();
+        let played = self.scripts();
+        Ok(self.together().begin_course(end, played))
+    }
 
     /// Takes one step, which ends where the motion wants it, whatever `row` \[s] is: only that time may then be looked back
     /// to. What goes from equilibrium to equilibrium goes to that row.
     ///
     /// # Errors
     /// If the step cannot be finished; it is then where the last one ended.
-    fn step(&mut self, course: &mut Course, row: f64) -> Result<(), Self::Error>;
+    fn step(&mut self, course: &mut Course, row: f64) -> Result<(), Self::Error> {
+        if self.together().is_quasi_static() {
+            return self.advance_by_script(row);
+        }
+        let stepped = self.together().step(course, row);
+        stepped.map_err(|why| self.stopped(why))
+    }
 
     /// Shows what it did at a time \[s] within the last step, until it looks up.
-    fn look_back(&mut self, course: &mut Course, time: f64);
+    fn look_back(&mut self, course: &mut Course, time: f64) {
+        self.together().look_back(course, time);
+    }
 
     /// Is where the last step ended again. What is reported since the last row begins anew at the time that was looked at.
-    fn look_up(&mut self, course: &mut Course);
+    fn look_up(&mut self, course: &mut Course) {
+        self.together().look_up(course);
+    }
 
     /// Ends a run; `accepted` where its last step was.
-    fn end(&mut self, course: Course, accepted: bool);
+    fn end(&mut self, course: Course, accepted: bool) {
+        self.together().end(&course, accepted);
+    }
 }
 
 /// What sees the start of a run and every step, not its rows alone.

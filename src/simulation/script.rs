@@ -239,20 +239,9 @@ impl Script {
         self.playing(scene).into_iter().any(|schedule| schedule.changes_within(from, to))
     }
 
-    /// \[s] times within a step at which a schedule has a kink, growing, not closer to one another or to the ends than `least`.
-    pub fn knots(&self, scene: &Scene, from: f64, to: f64, least: f64) -> Vec<f64> {
-        let playing = self.playing(scene);
-        let mut knots: Vec<f64> = playing.into_iter().flat_map(|schedule| schedule.knots(from, to)).collect();
-        knots.sort_by(f64::total_cmp);
-        let mut last = from;
-        knots.retain(|&knot| {
-            let apart = knot - last >= least && to - knot >= least;
-            if apart {
-                last = knot;
-            }
-            apart
-        });
-        knots
+    /// \[s] times within a step at which a schedule has a kink.
+    pub fn knots(&self, scene: &Scene, from: f64, to: f64) -> Vec<f64> {
+        self.playing(scene).into_iter().flat_map(|schedule| schedule.knots(from, to)).collect()
     }
 
     /// Marks where scripted motions begin, and ends those that are none any more.

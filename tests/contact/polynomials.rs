@@ -8,15 +8,14 @@ use roulement::kalker::nonlinear::Kalker;
 use roulement::kalker::scaled_law::{Difference, ScaledKalker};
 use roulement::kalker::table::CreepTable;
 use roulement::kalker::{Patch, ScaledCreepage};
+use roulement::model::Conditions;
 use roulement::model::bodies::Race;
-use roulement::model::{Conditions, Model};
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 
 use crate::scenes::scene;
 
 const THRUST: &str = include_str!("../../scenes/thrust.toml");
-const RADIAL: &str = include_str!("../../scenes/radial.toml");
 
 /// The thrust case with polynomials of a degree, renewed after a change of creepages.
 fn polynomials(degree: usize, epsilon_switch: f64) -> Scene {
@@ -66,43 +65,6 @@ fn invariant_frozen_polynomials_are_the_polynomials() {
     }
     let statistics = simulation.state().statistics;
     assert!(statistics.polynomials >= 20 * statistics.steps && statistics.polynomial_failures == 0);
-}
-
-#[test]
-fn invariant_the_paper_s_switch_ends_with_the_polynomials_whatever_it_begins_with() {
-    // An iteration that begins with another law has the same solution, that of the polynomials alone; and what is frozen for
-    // a step is not far from it.
-    // Under a wrench every step has its own matrix; between prescribed races one is kept, and belongs to the last law.
-    for drive in [&[][..], &[("inner", "{ drive = \"pose\" }")]] {
-        switched_runs_agree(&scene(RADIAL, &[&[("effects.creep", "\"kalker\"")], drive].concat()));
-    }
-}
-
-fn switched_runs_agree(load_zone: &Scene) {
-    let switched = |residual: f64| {
-        let model = Model::switching(load_zone, residual).unwrap();
-        let mut simulation = Simulation::of_model(load_zone, model, 0.0).unwrap();
-        simulation.advance(1e-3).unwrap();
-        simulation
-    };
-    let runs = [1e-3, 1e-1, f64::INFINITY].map(switched);
-    let [early, late, never] = runs.each_ref().map(|simulation| simulation.outputs().friction_power);
-    let frozen = run(load_zone, 1e-3).outputs().friction_power;
-    println!("friction power {early:e}, {late:e}, {never:e} W, frozen {frozen:e} W");
-    assert!((late / early - 1.0).abs() < 1e-5 && (never / early - 1.0).abs() < 1e-5, "{runs:?}");
-    assert!((frozen / early - 1.0).abs() < 1e-2 && frozen != early, "{frozen} {early}");
-    // They differ in the way there: the other law has corrections of its own.
-    let [early, late, never] =
-        runs.each_ref().map(|simulation| simulation.state().statistics.newton.iterations);
-    assert!(early > late && early != never, "{early} {late} {never}");
-    for race in Race::BOTH {
-        let [from_the_last, direct] = forces(&runs[0], 0, race);
-        for k in 0..3 {
-            assert!((from_the_last[k] - direct[k]).abs() < 0.02, "{race:?}: {from_the_last:?} {direct:?}");
-        }
-    }
-    let statistics = runs[0].state().statistics;
-    assert!(statistics.polynomials > statistics.steps && statistics.polynomial_failures == 0);
 }
 
 #[test]

@@ -5,3 +5,5 @@ mod last_correction;
 mod rigid_body;
 #[path = "../common/scenes.rs"]
 mod scenes;
+#[path = "../common/stepping.rs"]
+mod stepping;

@@ -4,7 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{UnitQuaternion, Vector3};
-use roulement::dynamics::{BodyLoad, Boundary, Workspace, make_consistent, try_step};
+use roulement::dynamics::{BodyLoad, Boundary, Workspace, make_consistent};
 use roulement::model::bodies::{Bodies, Constraint, PerRace, Race, RigidBody};
 use roulement::model::energies::{Energies, Powers};
 use roulement::model::state::{BallState, BodyState, KeptMatrix, State, Statistics, Trend};
@@ -15,6 +15,7 @@ use roulement::numerics::step_control::StepControl;
 use roulement::scene::Scene;
 
 use crate::scenes::scene;
+use crate::stepping::step;
 
 const THRUST: &str = include_str!("../../scenes/thrust.toml");
 
@@ -88,7 +89,7 @@ impl Flight {
 
     fn step(&mut self) {
         self.boundary.time += self.h;
-        try_step(&self.model, &mut self.state, &self.boundary, self.h, &mut self.workspace).unwrap();
+        step(&self.model, &mut self.state, &self.boundary, self.h, &mut self.workspace);
     }
 
     fn race(&self) -> &BodyState {

@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use roulement::contact::BallMotion;
-use roulement::dynamics::{BodyLoad, Boundary, Workspace, make_consistent, try_step};
+use roulement::dynamics::{BodyLoad, Boundary, Workspace, make_consistent};
 use roulement::effects::moving_frame::FrameMotion;
 use roulement::model::Model;
 use roulement::model::bodies::{Bodies, Body, PerRace, Race, RigidBody};
@@ -14,6 +14,7 @@ use roulement::simulation::{Simulation, SimulationError};
 
 use crate::energy::open_share;
 use crate::scenes::{self, scene};
+use crate::stepping::step;
 
 type V = Vector3<f64>;
 
@@ -366,7 +367,7 @@ fn flight(density: f64, viscosity: f64, gravity: f64, velocity: V, h: f64, steps
     let mut workspace = Workspace::default();
     for _ in 0..steps {
         boundary.time += h;
-        try_step(&model, &mut state, &boundary, h, &mut workspace).unwrap();
+        step(&model, &mut state, &boundary, h, &mut workspace);
     }
     assert!(state.race(Race::Inner).bearing_wrench.force == V::zeros());
     assert!(state.race(Race::Outer).bearing_wrench.force == V::zeros());

@@ -26,6 +26,8 @@ mod quasi_static;
 mod rating;
 #[path = "../common/scenes.rs"]
 mod scenes;
+#[path = "../common/stepping.rs"]
+mod stepping;
 mod support;
 #[path = "../common/tables.rs"]
 mod tables;

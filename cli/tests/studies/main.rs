@@ -8,7 +8,6 @@ mod cost_reference;
 mod error;
 mod error_bars;
 mod law_comparison;
-mod law_switch;
 #[path = "../../../tests/common/random.rs"]
 mod random;
 mod random_machines;

@@ -1,13 +1,13 @@
-//! One implicit step of a system: several bearings, and structures that carry their races.
+//! One implicit step of bearings together with the structures that carry their races: of a bearing alone, of several on a shaft.
 
 mod dense;
 mod sensitivity;
 mod step;
 mod structure;
 
-use super::accept::{StepEnd, accept, renew_polynomials};
+use super::accept::{accept, renew_polynomials};
 use super::equations::BearingStep;
-use super::{Boundary, StepFailure, Workspace, Worst};
+use super::{Boundary, Counted, StepFailure, Workspace};
 use crate::model::Model;
 use crate::model::state::{State, Statistics};
 use crate::model::structure::{Spin, StructureEnergies, StructureState, Turning};
@@ -21,9 +21,6 @@ pub use sensitivity::{Perturbed, Started, advance_perturbed};
 pub use step::{Joint, StructureStep, SystemStep};
 pub use structure::{Seat, StructureLoad, StructureTrial};
 
-/// [-] damping parameter of a system without bearings.
-const DEFAULT_ALPHA: f64 = 0.05;
-
 /// A bearing of a system in a step.
 pub struct Part<'a> {
     /// Its model.
@@ -36,19 +33,20 @@ pub struct Part<'a> {
     pub workspace: &'a mut Workspace,
 }
 
-/// Buffers of a system's step, kept between steps.
+/// Buffers of a step, beside those of its bearings, kept between steps.
 #[derive(Clone, Debug, Default)]
-pub struct SystemWorkspace {
+pub struct StepBuffers {
     /// Unknowns of the last step.
     pub unknowns: Vec<f64>,
     newton: NewtonBuffers,
 }
 
-/// Tries one step of `h` \[s] of a system. On success states of bearings are the new ones, and those of the structures are returned;
-/// otherwise only statistics, kept matrices and the step control have changed.
+/// Tries one step of `h` \[s] of bearings and the structures that carry their races; a bearing alone has none. On success states of bearings
+/// are the new ones, and those of the structures are returned; otherwise only statistics, step control, kept matrices and differences to
+/// the table have changed.
 ///
 /// # Errors
-/// The index of the bearing where the residual or the local error is largest, and what failed.
+/// The index of the bearing where the residual or the local error is largest, and what failed; the step control has then been told.
 // A function of its own in programs, too: scripts/step-instructions counts what it takes.
 #[inline(never)]
 pub fn try_step(
@@ -57,19 +55,19 @@ pub fn try_step(
     joints: &[Joint],
     h: f64,
     control: &mut StepControl,
-    workspace: &mut SystemWorkspace,
+    workspace: &mut StepBuffers,
 ) -> Result<Vec<StructureState>, (usize, StepFailure)> {
-    for part in &mut *parts {
-        part.workspace.kept = std::mem::take(&mut part.state.matrix);
-        part.workspace.factorised = false;
-        renew_polynomials(part.model, part.state, part.boundary);
+    for Part { model, state, boundary, workspace } in &mut *parts {
+        workspace.kept = std::mem::take(&mut state.matrix);
+        workspace.factorised = false;
+        // Here and not at the end of a step, so that a state keeps those that its forces were computed with.
+        renew_polynomials(model, state, boundary);
     }
-    let SystemWorkspace { unknowns, newton: buffers } = workspace;
+    let StepBuffers { unknowns, newton: buffers } = workspace;
     let mut work = NewtonWork::default();
     let mut second = 0;
-    let steps: Vec<_> = parts.iter_mut().map(|part| part.begin(h)).collect();
-    let step = steps.first().map_or(HhtStep::new(DEFAULT_ALPHA, h), |step| step.step);
-    let mut equations = SystemStep::new(steps, structures, joints, step);
+    let mut equations = SystemStep::of_parts(parts, structures, joints, h);
+    equations.list_near();
     equations.guess(unknowns, false);
     let mut solve = |equations: &mut SystemStep<'_>, unknowns: &mut [f64]| {
         newton::solve(equations, unknowns, buffers, &mut work)?;
@@ -86,85 +84,53 @@ pub fn try_step(
         solved = solve(&mut equations, unknowns);
         second = 1;
     }
-    let worst = equations.worst();
-    let ends: Vec<_> = equations.bearings.iter().map(BearingEnd::of).collect();
-    let trials: Vec<_> = equations.trials.iter().map(|trial| trial.end.clone()).collect();
-    let local = equations.local_error();
+    let tried = match solved {
+        Err(failure) => {
+            control.fail();
+            Err(equations.unsolved(failure))
+        }
+        Ok(()) => {
+            equations.correct_once_more(unknowns);
+            let local = equations.local_error();
+            let ends = equations.bearing_ends();
+            let of_energy = equations.energy_error(&ends);
+            match control.judge(larger(local, of_energy)) {
+                true => Ok(ends),
+                false => Err(equations.too_inaccurate()),
+            }
+        }
+    };
+    let step = equations.step;
+    let trials = std::mem::take(&mut equations.trials);
     drop(equations);
-    let mut energy = 0.0;
-    let mut step_ends = vec![];
-    for (part, end) in parts.iter_mut().zip(&ends) {
-        let Part { model, state, boundary, workspace } = part;
+    for Part { state, workspace, .. } in &mut *parts {
         state.matrix = std::mem::take(&mut workspace.kept);
-        end.count(&mut state.statistics, work, second);
-        if solved.is_ok() {
-            let end = StepEnd::new(model, state, boundary, h, workspace);
-            energy = larger(energy, end.energy_error(model, state, boundary, h, workspace));
-            step_ends.push(end);
+        state.control = *control;
+        count(&mut state.statistics, workspace.counted, work, second);
+        match tried {
+            Err((_, StepFailure::Newton(..))) => state.statistics.rejected_newton += 1,
+            Err((_, StepFailure::Error(_))) => state.statistics.rejected_error += 1,
+            Ok(_) => {}
         }
     }
-    if let Err(failure) = solved {
-        control.fail();
-        parts.iter_mut().for_each(|part| part.state.statistics.rejected_newton += 1);
-        return Err((worst, StepFailure::Newton(failure, ends[worst].residual)));
-    }
-    if !control.judge(larger(local, energy)) {
-        parts.iter_mut().for_each(|part| part.state.statistics.rejected_error += 1);
-        let worst = step::index_of_largest(ends.iter().map(|end| end.local));
-        return Err((worst, StepFailure::Error(ends[worst].error)));
-    }
     let mut rest = &unknowns[..];
-    for (part, end) in parts.iter_mut().zip(&step_ends) {
+    for (part, end) in parts.iter_mut().zip(&tried?) {
         let Part { model, state, boundary, workspace } = part;
         let (own, others) = rest.split_at(BLOCK * state.balls.len() + model.border_size());
         rest = others;
         workspace.follow_trend(model, &mut state.trend, own, h);
         accept(model, state, boundary, &step, (workspace, end));
-        state.control = *control;
     }
-    let ends = structures.iter().zip(trials).map(|(one, end)| finished(one, end, &step));
-    Ok(ends.collect())
+    Ok(structures.iter().zip(trials).map(|(one, trial)| finished(one, trial.end, &step)).collect())
 }
 
-/// What is kept of the equations of a bearing.
-struct BearingEnd {
-    renewals: u64,
-    contact_values: u64,
-    contact_tangents: u64,
-    residual: Worst,
-    error: Worst,
-    local: f64,
-}
-
-impl BearingEnd {
-    fn of(step: &BearingStep<'_>) -> Self {
-        Self {
-            renewals: step.renewals,
-            contact_values: step.contact_values,
-            contact_tangents: step.contact_tangents,
-            residual: step.worst_residual(),
-            error: step.worst_error(),
-            local: step.local_error(),
-        }
-    }
-
-    fn count(&self, statistics: &mut Statistics, work: NewtonWork, second: u64) {
-        statistics.newton.iterations += work.iterations;
-        statistics.newton.factorisations += work.factorisations + self.renewals;
-        statistics.contact_values += self.contact_values;
-        statistics.contact_tangents += self.contact_tangents;
-        statistics.second_guesses += second;
-    }
-}
-
-impl Part<'_> {
-    /// The equations of a step of `h` \[s].
-    fn begin(&mut self, h: f64) -> BearingStep<'_> {
-        let Self { model, state, boundary, workspace } = self;
-        let mut step = BearingStep::new(model, state, boundary, h, workspace);
-        step.list_near();
-        step
-    }
+/// Adds the work of a bearing in a step to what was done before.
+fn count(statistics: &mut Statistics, of: Counted, work: NewtonWork, second: u64) {
+    statistics.newton.iterations += work.iterations;
+    statistics.newton.factorisations += work.factorisations + of.renewals;
+    statistics.contact_values += of.contact_values;
+    statistics.contact_tangents += of.contact_tangents;
+    statistics.second_guesses += second;
 }
 
 /// The state of a structure after a step: its energies summed.

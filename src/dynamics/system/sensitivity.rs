@@ -1,5 +1,9 @@
-//! Sensitivities of a step of a system, as those of a bearing ([`crate::dynamics::advance_perturbed`]): one Newton matrix for all, of which
-//! every perturbation takes the change that it makes.
+//! Sensitivities of a step: where it would have led from a slightly different start or under slightly different
+//! boundaries, to first order.
+//!
+//! The step's equations `R(U, p) = 0` give `dU = -R_U^-1 R_p dp`. `R_U` is the Newton matrix at the solution, factorised
+//! once for all perturbations by eliminating the balls; `R_p dp` is the residual of the perturbed step with the unknowns of
+//! the step itself. What is left is of second order, and even: it cancels between two perturbations of opposite sign.
 
 use super::step::{Joint, StructureStep, SystemStep};
 use super::{BearingStep, finished};
@@ -27,7 +31,7 @@ pub struct Perturbed<'a> {
     /// State of every bearing at the start of the step, then at its end.
     pub states: Vec<&'a mut State>,
     /// What is imposed on each at the end.
-    pub boundaries: Vec<Boundary>,
+    pub boundaries: &'a [Boundary],
     /// Structures at the start, and what acts on them.
     pub structures: Vec<StructureStep<'a>>,
 }
@@ -59,7 +63,7 @@ pub fn advance_perturbed<'a>(
         for (state, bearing) in states.iter_mut().zip(bearings) {
             state.differences.clone_from(&bearing.start.differences);
         }
-        let parts = bearings.iter().zip(&states).zip(&boundaries).zip(aside.iter_mut());
+        let parts = bearings.iter().zip(&states).zip(boundaries).zip(aside.iter_mut());
         let steps = parts.map(|(((bearing, state), boundary), workspace)| {
             let mut own = BearingStep::new(bearing.model, state, boundary, h, workspace);
             // No residual is small enough to be left alone: only its change counts.
@@ -77,7 +81,7 @@ pub fn advance_perturbed<'a>(
         equations.residual(&unknowns, false);
         let trials: Vec<_> = equations.trials.iter().map(|trial| trial.end.clone()).collect();
         drop(equations);
-        let parts = bearings.iter().zip(&mut states).zip(&boundaries).zip(aside.iter_mut());
+        let parts = bearings.iter().zip(&mut states).zip(boundaries).zip(aside.iter_mut());
         for (((bearing, state), boundary), workspace) in parts {
             let end = StepEnd::new(bearing.model, state, boundary, h, workspace);
             accept(bearing.model, state, boundary, &step, (workspace, &end));

@@ -1,18 +1,24 @@
-//! The equations of one trial step of several bearings and the structures that carry their races: one Newton iteration for all.
+//! The equations of one trial step of bearings and the structures that carry their races: one Newton iteration for all.
 //!
 //! Balls are eliminated bearing by bearing. What is left of cages, races that forces move, and structures is the border.
 
 use nalgebra::{DMatrix, DVector, Dyn, LU, OMatrix, U6};
 
+use super::super::StepFailure;
+use super::super::accept::StepEnd;
 use super::super::equations::BearingStep;
+use super::Part;
 use super::structure::{Seat, StructureLoad, StructureTrial};
 use crate::model::bodies::{Body, Race};
 use crate::model::state::KeptMatrix;
 use crate::model::structure::{Structure, StructureState};
 use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::hht::HhtStep;
-use crate::numerics::newton::Equations;
+use crate::numerics::newton::{Equations, NewtonFailure};
 use crate::numerics::size::{larger, largest};
+
+/// [-] damping parameter of a system without bearings.
+const DEFAULT_ALPHA: f64 = 0.05;
 
 /// A race of a bearing on a seat of a structure.
 #[derive(Clone, Debug)]
@@ -49,7 +55,8 @@ pub struct SystemStep<'a> {
     /// Their trials.
     pub trials: Vec<StructureTrial>,
     joints: &'a [Joint],
-    step: HhtStep,
+    /// The scheme.
+    pub step: HhtStep,
     /// First unknown of each bearing, then of each structure, and the end.
     first: Vec<usize>,
     /// First border row of each bearing's own bodies, then of each structure, and the end.
@@ -128,6 +135,22 @@ impl Share<'_> {
 }
 
 impl<'a> SystemStep<'a> {
+    /// The equations of a step of `h` \[s] of bearings in these states.
+    pub fn of_parts(
+        parts: &'a mut [Part<'_>],
+        structures: &'a [StructureStep<'a>],
+        joints: &'a [Joint],
+        h: f64,
+    ) -> Self {
+        let of = |part: &'a mut Part<'_>| {
+            let Part { model, state, boundary, workspace } = part;
+            BearingStep::new(model, state, boundary, h, workspace)
+        };
+        let bearings: Vec<_> = parts.iter_mut().map(of).collect();
+        let step = bearings.first().map_or(HhtStep::new(DEFAULT_ALPHA, h), |bearing| bearing.step);
+        Self::new(bearings, structures, joints, step)
+    }
+
     /// The equations of a step of bearings whose equations are these, with structures.
     pub fn new(
         bearings: Vec<BearingStep<'a>>,
@@ -135,16 +158,6 @@ impl<'a> SystemStep<'a> {
         joints: &'a [Joint],
         step: HhtStep,
     ) -> Self {
-        let own_rows = |bearing: &BearingStep<'_>| bearing.model.border_size() - carried_rows(bearing);
-        let sizes = bearings.iter().map(|bearing| {
-            [BLOCK * bearing.start.balls.len() + bearing.model.border_size(), own_rows(bearing)]
-        });
-        let sizes = sizes.chain(structures.iter().map(|one| [one.model.size(); 2]));
-        let (mut first, mut border) = (vec![0], vec![0]);
-        for [unknowns, rows] in sizes {
-            first.push(first[first.len() - 1] + unknowns);
-            border.push(border[border.len() - 1] + rows);
-        }
         let trials = structures.iter().map(|one| StructureTrial::new(one.start)).collect();
         let mut equations = Self {
             bearings,
@@ -152,15 +165,46 @@ impl<'a> SystemStep<'a> {
             trials,
             joints,
             step,
-            first,
-            border,
+            first: vec![],
+            border: vec![],
             matrix: None,
             assembled: 0,
             norms: vec![],
             shares: vec![],
         };
-        equations.shares = (0..equations.bearings.len()).map(|bearing| equations.share(bearing)).collect();
+        if equations.alone().is_none() {
+            equations.lay_out();
+        }
         equations
+    }
+
+    /// Finds the places of all unknowns and of the rows of the border.
+    fn lay_out(&mut self) {
+        let of_bearing = |bearing: &BearingStep<'_>| {
+            let rows = bearing.model.border_size();
+            [BLOCK * bearing.start.balls.len() + rows, rows - carried_rows(bearing)]
+        };
+        let of_structure = |one: &StructureStep<'_>| [one.model.size(); 2];
+        let sizes = self.bearings.iter().map(of_bearing).chain(self.structures.iter().map(of_structure));
+        (self.first, self.border) = (vec![0], vec![0]);
+        for [unknowns, rows] in sizes {
+            self.first.push(self.first[self.first.len() - 1] + unknowns);
+            self.border.push(self.border[self.border.len() - 1] + rows);
+        }
+        self.shares = (0..self.bearings.len()).map(|bearing| self.share(bearing)).collect();
+    }
+
+    /// A bearing that no structure carries has the equations of the step for itself: they need no border beside its own.
+    fn alone(&mut self) -> Option<&mut BearingStep<'a>> {
+        match &mut self.bearings[..] {
+            [bearing] if self.structures.is_empty() => Some(bearing),
+            _ => None,
+        }
+    }
+
+    /// Lists the pairs of balls that may touch in the step.
+    pub fn list_near(&mut self) {
+        self.bearings.iter_mut().for_each(BearingStep::list_near);
     }
 
     /// Number of unknowns.
@@ -170,17 +214,28 @@ impl<'a> SystemStep<'a> {
 
     /// First guess: everything keeps its acceleration, balls along their orbits; those of bearings change as they did before.
     pub fn guess(&mut self, unknowns: &mut Vec<f64>, steady_velocity: bool) {
+        let of = |bearing: &mut BearingStep<'_>, own: &mut Vec<f64>| match steady_velocity {
+            true => bearing.guess_steady_velocity(own),
+            false => bearing.guess_steady_trend(own),
+        };
+        if let Some(bearing) = self.alone() {
+            return of(bearing, unknowns);
+        }
         unknowns.clear();
         let mut own = vec![];
         for bearing in &mut self.bearings {
-            match steady_velocity {
-                true => bearing.guess_steady_velocity(&mut own),
-                false => bearing.guess_steady_trend(&mut own),
-            }
+            of(bearing, &mut own);
             unknowns.extend(&own);
         }
         for one in self.structures {
             unknowns.extend(one.start.accelerations.iter());
+        }
+    }
+
+    /// Corrects balls once more without evaluation in a step that is solved, where no border joins them.
+    pub fn correct_once_more(&mut self, unknowns: &mut [f64]) {
+        if let Some(bearing) = self.alone() {
+            bearing.correct_once_more(unknowns);
         }
     }
 
@@ -242,7 +297,7 @@ impl<'a> SystemStep<'a> {
                 *by = StructureTrial::unknowns_of(seat, &motion, length);
                 if let Some(Some(trial)) = step.workspace.bodies.get_mut(*race) {
                     trial.carry(&motion);
-                    step.races[*race] = trial.motion_value();
+                    step.workspace.races[*race] = trial.motion_value();
                 }
             }
         }
@@ -302,9 +357,32 @@ impl<'a> SystemStep<'a> {
         self.matrix = Some(matrix.lu());
     }
 
-    /// The bearing whose residual is largest.
-    pub fn worst(&self) -> usize {
-        index_of_largest(self.norms.iter().copied())
+    /// Where the residual is largest after Newton's method gave up.
+    pub fn unsolved(&self, failure: NewtonFailure) -> (usize, StepFailure) {
+        let index = index_of_largest(self.norms.iter().copied());
+        (index, StepFailure::Newton(failure, self.bearings[index].worst_residual()))
+    }
+
+    /// Where the local error is largest in a step that is refused for it.
+    pub fn too_inaccurate(&self) -> (usize, StepFailure) {
+        let index = index_of_largest(self.bearings.iter().map(BearingStep::local_error));
+        (index, StepFailure::Error(self.bearings[index].worst_error()))
+    }
+
+    /// The ends of a solved step.
+    pub fn bearing_ends(&self) -> Vec<StepEnd> {
+        let of = |one: &BearingStep<'_>| {
+            StepEnd::new(one.model, one.start, one.boundary, self.step.h, one.workspace)
+        };
+        self.bearings.iter().map(of).collect()
+    }
+
+    /// [-] error of the step by the energy that its bearings leave unaccounted for, the largest.
+    pub fn energy_error(&self, ends: &[StepEnd]) -> f64 {
+        let of = |(one, end): (&BearingStep<'_>, &StepEnd)| {
+            end.energy_error(one.model, one.start, one.boundary, self.step.h, one.workspace)
+        };
+        self.bearings.iter().zip(ends).map(of).fold(0.0, larger)
     }
 
     /// [-] local error over its tolerance: the largest of all bearings and structures.
@@ -328,7 +406,7 @@ impl<'a> SystemStep<'a> {
 }
 
 /// Index of the largest of some norms; what is not a number is the largest.
-pub fn index_of_largest(norms: impl Iterator<Item = f64>) -> usize {
+fn index_of_largest(norms: impl Iterator<Item = f64>) -> usize {
     let norm = |norm: f64| if norm.is_nan() { f64::INFINITY } else { norm };
     norms.enumerate().max_by(|a, b| norm(a.1).total_cmp(&norm(b.1))).map_or(0, |(index, _)| index)
 }
@@ -340,6 +418,9 @@ fn carried_rows(bearing: &BearingStep<'_>) -> usize {
 
 impl Equations for SystemStep<'_> {
     fn residual(&mut self, unknowns: &[f64], with_tangent: bool) -> f64 {
+        if let Some(bearing) = self.alone() {
+            return bearing.residual(unknowns, with_tangent);
+        }
         let count = self.bearings.len();
         for (index, (one, trial)) in self.structures.iter().zip(&mut self.trials).enumerate() {
             let own = &unknowns[self.first[count + index]..self.first[count + index + 1]];
@@ -360,6 +441,9 @@ impl Equations for SystemStep<'_> {
     }
 
     fn correction(&mut self, correction: &mut [f64]) -> bool {
+        if let Some(bearing) = self.alone() {
+            return bearing.correction(correction);
+        }
         self.bearings.iter_mut().for_each(BearingStep::prepare_correction);
         // Balls that were brought back press differently.
         self.assemble_structures();

@@ -55,6 +55,11 @@ pub struct Played {
 }
 
 impl Played {
+    /// Scripts of a bearing alone.
+    pub fn of_bearing(groups: Groups) -> Self {
+        Self { loads: vec![], gears: vec![], drive: false, bearings: vec![groups] }
+    }
+
     /// No script.
     pub fn none(scene: &SystemScene) -> Self {
         Self {

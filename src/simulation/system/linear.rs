@@ -80,10 +80,10 @@ impl System {
     pub fn linear(&self) -> Result<Linear, SystemError> {
         let mut bearings = self.bearings.clone();
         let of = |index: usize| {
-            let (carrier, spin) = (&self.carriers[index], self.states[index].spin);
+            let (carrier, spin) = (&self.structures.carriers[index], self.structures.states[index].spin);
             StructureLoad { force: DVector::zeros(carrier.structure.size()), spin, axial_moment: 0.0 }
         };
-        let loads: Vec<_> = (0..self.carriers.len()).map(of).collect();
+        let loads: Vec<_> = (0..self.structures.carriers.len()).map(of).collect();
         let condensed = |bearing: &super::Simulation| {
             let supported = bearing.model.supports.iter().any(Option::is_some);
             let of = || Condensed::new(&bearing.model, &bearing.state, &bearing.conditions()).damping;
@@ -92,20 +92,20 @@ impl System {
         };
         let dampers: Vec<_> = self.bearings.iter().map(condensed).collect();
         let mut statics = Statics {
-            scene: &self.scene,
-            time: self.time,
-            carriers: &self.carriers,
-            scales: &self.scales,
+            scene: &self.structures.scene,
+            time: self.time(),
+            carriers: &self.structures.carriers,
+            scales: &self.structures.scales,
             loads: &loads,
-            joints: &self.joints,
+            joints: &self.structures.joints,
             bearings: &mut bearings,
             friction: vec![0.0; dampers.len()],
         };
-        let stiffness = statics.stiffness(&self.states)?;
+        let stiffness = statics.stiffness(&self.structures.states)?;
         let mut damping = statics.spread(&dampers);
         let mut mass = DMatrix::zeros(damping.nrows(), damping.nrows());
         for ((Carrier { structure, .. }, state), from) in
-            self.carriers.iter().zip(&self.states).zip(statics.first())
+            self.structures.carriers.iter().zip(&self.structures.states).zip(statics.first())
         {
             let at = ((from, from), (structure.size(), structure.size()));
             mass.view_mut(at.0, at.1).copy_from(&structure.mass);
@@ -129,7 +129,7 @@ impl System {
         // Displacements at every station of every structure.
         let mut first = 0;
         let mut moved: Vec<(usize, usize, [Complex<f64>; 3])> = vec![];
-        for (index, carrier) in self.carriers.iter().enumerate() {
+        for (index, carrier) in self.structures.carriers.iter().enumerate() {
             let own = mode.shape.rows(first, carrier.structure.size());
             first += own.len();
             for station in 0..carrier.stations.len() {
@@ -146,7 +146,7 @@ impl System {
         let along: f64 = on_shaft().map(|d| d[0].norm_sqr()).sum();
         // From y to z is forwards for a shaft that turns about +x.
         let turn: f64 = on_shaft().map(|d| -2.0 * (d[1].conj() * d[2]).im).sum();
-        let whirl = turn / (all - along) * self.states[0].spin.speed.signum();
+        let whirl = turn / (all - along) * self.structures.states[0].spin.speed.signum();
         let whirl = match whirl {
             _ if along > HALF * all => Whirl::Axial,
             whirl if whirl > HALF => Whirl::Forward,
@@ -160,7 +160,7 @@ impl System {
 
     /// Name of a station of the shaft or a housing.
     fn place(&self, structure: usize, station: usize) -> String {
-        let scene = &self.scene;
+        let scene = &self.structures.scene;
         let named = |names: Vec<String>| names.get(station).cloned();
         let numbered =
             |what: &str, count: usize| (1..=count).map(move |k| format!("{what} {k}")).collect::<Vec<_>>();
@@ -173,7 +173,9 @@ impl System {
                 names.extend(numbered("gear", scene.shaft.gear.len()));
                 named(names).map(|name| format!("the shaft at {name}"))
             }
-            Some(index) if self.carriers[structure].sliding.iter().any(|(at, _)| *at == station) => {
+            Some(index)
+                if self.structures.carriers[structure].sliding.iter().any(|(at, _)| *at == station) =>
+            {
                 let bearing = match index < scene.housings.len() {
                     true => scene.bearings_in(index).nth(station),
                     false => scene.bearings_in_ground().nth(station),

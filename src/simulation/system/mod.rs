@@ -1,7 +1,6 @@
 //! Several bearings on a shaft, in motion together: one implicit step for all.
 
 mod advance;
-mod course;
 mod critical_speeds;
 mod equilibrium;
 mod inputs;
@@ -12,28 +11,26 @@ mod quasi_static;
 mod snapshot;
 mod start;
 mod statics;
+mod structures;
 
 use std::sync::Arc;
 
-use nalgebra::DVector;
 use thiserror::Error;
 
 use super::inputs::Inputs;
 use super::{Simulation, SimulationError, follows_time};
-use crate::dynamics::system::{Joint, SystemWorkspace};
 use crate::model::structure::{Carrier, StructureState};
-use crate::numerics::step_control::StepControl;
 use crate::scene::Scene;
 use crate::scene::system::SystemScene;
 use crate::schema::numbers::four;
 pub use critical_speeds::{Campbell, CampbellRow, CriticalSpeed, campbell, largest_speed};
 pub use equilibrium::{BearingEquilibrium, MachineEquilibrium};
-use inputs::ShaftPaths;
 pub use inputs::{Played, ShaftInputs, drive_is_scripted};
 pub use linear::{Linear, ShaftMode, Whirl};
 pub use loads::script_changes_within;
 pub use outputs::{HousingOutputs, PointOutput, SystemOutputs};
 pub use snapshot::SystemSnapshot;
+pub use structures::Structures;
 
 /// Why a system could not start or go on.
 #[derive(Debug, Error)]
@@ -92,107 +89,61 @@ pub enum SystemError {
         /// \[N] left.
         left: f64,
     },
-    /// A step end that is not a time after the present one.
-    #[error("cannot advance from {from} s to {to} s")]
-    Backwards {
-        /// \[s] present time.
-        from: f64,
-        /// \[s] asked for.
-        to: f64,
-    },
-    /// A bearing is tilted further than linear structures are valid for.
-    #[error(
-        "at {} s the {race} race of bearing \"{name}\" is tilted by {tilt:.3} rad: more than {limit} rad, the most that the linear \
-         equations of a shaft or a housing hold for",
-        four(.time)
-    )]
-    Tilted {
-        /// \[s] time.
-        time: f64,
-        /// The bearing.
-        name: String,
-        /// Its race.
-        race: &'static str,
-        /// \[rad] tilt.
-        tilt: f64,
-        /// \[rad] largest tilt.
-        limit: f64,
-    },
-    /// The step has no derivatives.
-    #[error("at {} s the step has no derivatives: its Newton matrix is singular", four(.0))]
-    Singular(f64),
+    /// All of its bearings together could not.
+    #[error(transparent)]
+    Together(SimulationError),
     /// Inputs of another system.
     #[error("there are too many or too few inputs for this system")]
     OtherInputs,
-    /// So late that a step no longer changes the time.
-    #[error("at {} s a step of {} s is lost in rounding: begin nearer to time 0", four(.time), four(.step))]
-    LostInRounding {
-        /// \[s] time reached.
-        time: f64,
-        /// \[s] step.
-        step: f64,
-    },
 }
 
 /// A shaft on its bearings in motion. Cloning it saves everything; the clone goes on to the same bits.
 #[derive(Clone, Debug)]
 pub struct System {
-    scene: Arc<SystemScene>,
-    /// The shaft, then the housings in the order of the scene.
-    carriers: Arc<Vec<Carrier>>,
-    /// [`crate::model::structure::Structure::scales`] of each.
-    scales: Vec<DVector<f64>>,
     /// The bearings, in the order of the scene.
     bearings: Vec<Simulation>,
-    joints: Arc<Vec<Joint>>,
-    inputs: ShaftInputs,
-    paths: ShaftPaths,
-    /// State of each structure.
-    states: Vec<StructureState>,
-    control: StepControl,
-    time: f64,
-    outputs: SystemOutputs,
-    workspace: SystemWorkspace,
+    /// Shaft and housings.
+    structures: Structures,
 }
 
 impl System {
     /// The scene.
     pub fn scene(&self) -> &SystemScene {
-        &self.scene
+        &self.structures.scene
     }
 
     /// The shaft.
     pub fn shaft(&self) -> &Carrier {
-        &self.carriers[0]
+        &self.structures.carriers[0]
     }
 
     /// \[s] time.
     pub fn time(&self) -> f64 {
-        self.time
+        self.bearings[0].state.time
     }
 
     /// State of the shaft.
     pub fn state(&self) -> &StructureState {
-        &self.states[0]
+        &self.structures.states[0]
     }
 
     /// The bearings with their names, each in axes of its own; their inner races are where the shaft carries them.
     pub fn bearings(&self) -> impl Iterator<Item = (&str, &Simulation)> {
-        self.scene.bearings.iter().map(|mounted| mounted.name.as_str()).zip(&self.bearings)
+        self.structures.scene.bearings.iter().map(|mounted| mounted.name.as_str()).zip(&self.bearings)
     }
 
     /// Inputs of the shaft as set last; those of bearings are [`Simulation::inputs`].
     pub fn inputs(&self) -> &ShaftInputs {
-        &self.inputs
+        &self.structures.inputs
     }
 
     /// Sets the inputs of the next step: loads and drive, and those of every bearing in the order of the scene, where what is said of
     /// races on the shaft or in a housing counts for nothing. False, with nothing changed, if there are too many or too few.
     #[must_use]
     pub fn set_inputs(&mut self, shaft: ShaftInputs, bearings: Vec<Inputs>) -> bool {
-        let fit = shaft.fits(&self.inputs) && bearings.len() == self.bearings.len();
+        let fit = shaft.fits(&self.structures.inputs) && bearings.len() == self.bearings.len();
         if fit {
-            self.inputs = shaft;
+            self.structures.inputs = shaft;
             self.bearings.iter_mut().zip(bearings).for_each(|(bearing, inputs)| bearing.set_inputs(inputs));
         }
         fit
@@ -200,7 +151,7 @@ impl System {
 
     /// Goes on with scenes of its bearings, in their order, that differ in tunable parameters alone.
     pub fn tune(&mut self, scenes: &[Scene]) {
-        let own = Arc::make_mut(&mut self.scene).bearings.iter_mut();
+        let own = Arc::make_mut(&mut self.structures.scene).bearings.iter_mut();
         for ((bearing, mounted), scene) in self.bearings.iter_mut().zip(own).zip(scenes) {
             bearing.tune(scene);
             mounted.scene = scene.clone();
@@ -209,12 +160,7 @@ impl System {
 
     /// What the shaft does.
     pub fn outputs(&self) -> &SystemOutputs {
-        &self.outputs
-    }
-
-    /// An error of one of the bearings.
-    fn of_bearing(&self, index: usize, source: SimulationError) -> SystemError {
-        SystemError::Bearing { name: self.scene.bearings[index].name.clone(), source }
+        &self.structures.outputs
     }
 }
 

@@ -2,56 +2,49 @@
 //! the present inputs.
 
 use super::super::inputs::Inputs;
-use super::inputs::{Given, Played, ShaftInputs};
+use super::super::play::Scripted;
+use super::inputs::Played;
 use super::{System, SystemError};
+use crate::model::state::State;
 
 impl System {
-    /// Goes to the equilibrium at `end` \[s] under the inputs as set and what the scripts give then; also gives the equilibria under
-    /// slightly different inputs.
+    /// Goes to the equilibrium at `end` \[s] under the inputs as set and what the scripts give then; also gives the equilibria that others
+    /// go to under theirs.
     ///
     /// # Errors
     /// If there is no equilibrium; the system then stays where it is.
     pub(super) fn advance_by_equilibria(
         &mut self,
         end: f64,
-        inputs: &[(ShaftInputs, Vec<Inputs>)],
+        others: Vec<Self>,
         played: &Played,
     ) -> Result<Vec<Self>, SystemError> {
-        let beside = |(shaft, bearings): &(ShaftInputs, Vec<Inputs>)| {
-            let mut system = self.clone();
-            if !system.set_inputs(shaft.clone(), bearings.clone()) {
-                return Err(SystemError::OtherInputs);
-            }
-            system.equilibrium_at(end, played)
-        };
-        let perturbed = inputs.iter().map(beside).collect::<Result<_, _>>()?;
-        *self = self.equilibrium_at(end, played)?;
-        Ok(perturbed)
+        let there = |other: Self| other.equilibrium_at(end, played);
+        let others = others.into_iter().map(there).collect::<Result<_, _>>()?;
+        *self = self.clone().equilibrium_at(end, played)?;
+        Ok(others)
     }
 
-    fn equilibrium_at(&self, end: f64, played: &Played) -> Result<Self, SystemError> {
-        let mut there = self.clone();
-        let scripts = there.begin_scripts(end, played);
-        let bearings: Vec<Inputs> = there
-            .bearings
-            .iter()
-            .zip(&scripts)
-            .map(|(bearing, script)| {
-                let mut inputs = bearing.inputs;
-                script.set_inputs(&bearing.scene, &bearing.paths, end, &mut inputs);
-                inputs
-            })
-            .collect();
-        let given = Given { scene: &self.scene, paths: &there.paths, played };
-        let (inputs, paths) = given.reached(&there.inputs, end);
+    fn equilibrium_at(mut self, end: f64, played: &Played) -> Result<Self, SystemError> {
+        let before: Vec<State> = self.bearings.iter().map(|bearing| bearing.state.clone()).collect();
+        let scripts = self.together().begin_scripts(end, played);
+        let inputs = self.bearings.iter().zip(&scripts).map(|(bearing, script)| {
+            let mut inputs = bearing.inputs;
+            script.set_inputs(&bearing.scene, &bearing.paths, end, &mut inputs);
+            inputs
+        });
+        let bearings: Vec<Inputs> = inputs.collect();
+        let given = self.structures.given(played);
+        let (inputs, paths) = given.reached(&self.structures.inputs, end);
         let spin = given.spin(end);
-        let mut next = Self::start(&self.scene, end, Some((&inputs, &bearings)), Some(spin))?;
-        next.paths = paths;
-        for (bearing, before) in next.bearings.iter_mut().zip(&self.bearings) {
-            bearing.go_on_from(&before.state);
+        let mut next = Self::start(&self.structures.scene, end, Some((&inputs, &bearings)), Some(spin))?;
+        next.structures.paths = paths;
+        for (bearing, before) in next.bearings.iter_mut().zip(&before) {
+            bearing.go_on_from(before);
         }
-        next.report();
-        next.check_tilts()?;
+        next.together().report();
+        let checked = next.together().check_tilts();
+        checked.map_err(|why| next.stopped(why))?;
         Ok(next)
     }
 }

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use nalgebra::{DVector, Vector3};
 
 use super::super::inputs::Inputs;
+use super::super::play::Scripted;
 use super::super::{Simulation, SimulationError};
 use super::inputs::{Given, Played, ShaftInputs, ShaftPaths, scripted_spin};
 use super::statics::Statics;
-use super::{System, SystemError, SystemOutputs, loads, places_of_housing, stations};
+use super::{Structures, System, SystemError, SystemOutputs, loads, places_of_housing, stations};
 use crate::dynamics::system::{Joint, Seat, StructureLoad, StructureTrial};
 use crate::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::Model;
@@ -43,7 +44,12 @@ impl System {
     /// See [`SystemError`].
     pub fn initialise(&mut self) -> Result<(), SystemError> {
         let bearings: Vec<Inputs> = self.bearings.iter().map(|bearing| bearing.inputs).collect();
-        *self = Self::start(&self.scene, self.time, Some((&self.inputs, &bearings)), None)?;
+        *self = Self::start(
+            &self.structures.scene,
+            self.time(),
+            Some((&self.structures.inputs, &bearings)),
+            None,
+        )?;
         Ok(())
     }
 
@@ -128,21 +134,18 @@ impl System {
         let solver = scene.solver();
         let control = StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0);
         bearings.iter_mut().for_each(|bearing| bearing.state.control = control);
-        let mut system = Self {
+        let structures = Structures {
             scene: Arc::new(scene.clone()),
             carriers: Arc::new(carriers),
-            scales,
-            bearings,
+            scales: Arc::new(scales),
             joints: Arc::new(joints),
             inputs,
             paths,
             states,
-            control,
-            time,
             outputs: SystemOutputs::default(),
-            workspace: Default::default(),
         };
-        system.report();
+        let mut system = Self { bearings, structures };
+        system.together().report();
         Ok(system)
     }
 }

@@ -1,0 +1,102 @@
+//! Shaft and housings in motion: what carries the races of a system's bearings, and what acts on it.
+
+use std::sync::Arc;
+
+use nalgebra::DVector;
+
+use super::inputs::{Given, Played, ShaftInputs, ShaftPaths};
+use super::{SystemOutputs, loads};
+use crate::dynamics::Boundary;
+use crate::dynamics::system::{Joint, StructureLoad, StructureStep};
+use crate::model::bodies::Race;
+use crate::model::structure::{Carrier, StructureState, Turning};
+use crate::scene::system::SystemScene;
+
+/// Shaft and housings in motion.
+#[derive(Clone, Debug)]
+pub struct Structures {
+    /// The scene.
+    pub scene: Arc<SystemScene>,
+    /// The shaft, then the housings in the order of the scene, then the ground if it has bores.
+    pub carriers: Arc<Vec<Carrier>>,
+    /// [`crate::model::structure::Structure::scales`] of each.
+    pub scales: Arc<Vec<DVector<f64>>>,
+    /// Races on their seats.
+    pub joints: Arc<Vec<Joint>>,
+    /// Inputs as set last.
+    pub inputs: ShaftInputs,
+    /// How they go on.
+    pub paths: ShaftPaths,
+    /// State of each structure.
+    pub states: Vec<StructureState>,
+    /// What they do.
+    pub outputs: SystemOutputs,
+}
+
+impl Structures {
+    /// What acts on them: scripts where they are played, else inputs.
+    pub fn given<'a>(&'a self, played: &'a Played) -> Given<'a> {
+        Given { scene: &self.scene, paths: &self.paths, played }
+    }
+
+    /// \[s] shortest period in which a load swings after a time \[s].
+    pub fn shortest_period(&self, played: &Played, time: f64) -> Option<f64> {
+        loads::shortest_period(&self.given(played), &self.states[0], time)
+    }
+
+    /// \[s] times between two others at which a table of a load or of the drive bends.
+    pub fn knots(&self, played: &Played, from: f64, to: f64) -> Vec<f64> {
+        loads::knots(&self.given(played), from, to)
+    }
+
+    /// What acts on each at the end of a step from one time \[s] to another.
+    pub fn loads(&self, played: &Played, from: f64, to: f64) -> Vec<StructureLoad> {
+        loads::at(&self.given(played), &self.carriers, &self.states[0], from, to)
+    }
+
+    /// Each in these states at the start of a step, and what acts on it at its end.
+    pub fn steps<'a>(
+        &'a self,
+        states: &'a [StructureState],
+        loads: &'a [StructureLoad],
+    ) -> Vec<StructureStep<'a>> {
+        let all = self.carriers.iter().zip(&*self.scales).zip(states.iter().zip(loads));
+        all.map(|((carrier, scales), (start, load))| StructureStep {
+            model: &carrier.structure,
+            scales,
+            start,
+            load,
+        })
+        .collect()
+    }
+
+    /// The inner race of every bearing turns with the shaft at the end of a step.
+    pub fn turn_races(&self, boundaries: &mut [Boundary], loads: &[StructureLoad]) {
+        let speed = match self.carriers[0].structure.turning {
+            Turning::Free => self.states[0].spin.speed,
+            Turning::Given | Turning::Still => loads[0].spin.speed,
+        };
+        for (boundary, bearing) in boundaries.iter_mut().zip(&self.scene.bearings) {
+            boundary.loads[Race::Inner].speed = bearing.mounting.direction.sign() * speed;
+        }
+    }
+
+    /// Loads and drive go linearly to the inputs over a communication step from one time \[s] to another.
+    pub fn head_for_inputs(&mut self, from: f64, to: f64) {
+        self.paths = self.paths.towards(&self.inputs, from, to - from);
+    }
+
+    /// Inputs where a communication step has ended at a time \[s].
+    pub fn end_script(&mut self, played: &Played, time: f64) {
+        (self.inputs, self.paths) = self.given(played).reached(&self.inputs, time);
+    }
+
+    /// Outputs of the states as they are at a time \[s].
+    pub fn report(&mut self, time: f64) {
+        let torque = match self.carriers[0].structure.turning {
+            Turning::Free => self.paths.torque(time),
+            Turning::Given | Turning::Still => self.states[0].torque,
+        };
+        self.outputs = SystemOutputs::of(&self.scene, &self.carriers, &self.states, torque, time);
+    }
+}
