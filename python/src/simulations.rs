@@ -8,7 +8,7 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use roulement::fmi::{FmuState, Instance, Log, Outcome, Status};
-use roulement::interface::variables::{Causality, Kind, SystemVariables, Variable, Variables};
+use roulement::interface::variables::{Causality, Kind, MachineVariables, Variable, Variables};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::system::System;
 
@@ -101,7 +101,7 @@ impl Simulation {
             MachineScene::Bearing(scene) => Variables::new(scene).rows().iter().map(row).collect(),
             MachineScene::Shaft(scene) => {
                 let system = System::new(scene).map_err(runtime)?;
-                SystemVariables::new(&system).rows().iter().map(row).collect()
+                MachineVariables::new(&system).rows().iter().map(row).collect()
             }
         })
     }

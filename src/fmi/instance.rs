@@ -4,15 +4,13 @@ use super::log::Log;
 use super::outcome::{Outcome, Status, error};
 use super::resources;
 use super::state::{Phase, State};
-use super::unit::{BearingUnit, SystemUnit, Unit};
+use super::unit::Unit;
 use crate::analysis::auto;
 use crate::interface::model_description;
 use crate::interface::variables::{Causality, Kind, Offered, Variable};
 use crate::scene::machine::MachineScene;
-use crate::scene::system::SystemScene;
 use crate::scene::{Giver, Scene};
 use crate::schema::numbers::Variability;
-use crate::schema::regular;
 
 /// A slave.
 pub struct Instance {
@@ -60,12 +58,8 @@ impl Instance {
     pub fn new(guid: &str, location: &str, log: Log) -> Outcome<Self> {
         let path = resources::path(location)?.join(resources::SCENE_FILE);
         let failed = |why: String| (Status::Error, why);
-        let text = regular::text(&path).unwrap_or_default();
-        let instance = if SystemScene::is_system(&text) {
-            Self::of_system(&SystemScene::load(&path).map_err(|why| failed(why.to_string()))?, log)?
-        } else {
-            Self::of_scene(Scene::load(&path).map_err(|why| failed(why.to_string()))?, log)?
-        };
+        let scene = MachineScene::load(&path).map_err(|why| failed(why.to_string()))?;
+        let instance = Self::of_machine(scene, log)?;
         let own = &instance.guid;
         if guid != own {
             return error(format!(
@@ -80,11 +74,7 @@ impl Instance {
     /// # Errors
     /// If the scene cannot be started.
     pub fn of_scene(scene: Scene, log: Log) -> Outcome<Self> {
-        let failed = |why: String| (Status::Error, why);
-        let (scene, found_out) = auto::resolve(scene).map_err(|why| failed(why.to_string()))?;
-        found_out.iter().for_each(|note| log.write(Status::Ok, note));
-        let unit = Unit::Bearing(Box::new(BearingUnit::new(&scene)?));
-        Ok(Self::of_unit(unit, &scene.source, log))
+        Self::of_machine(scene.into(), log)
     }
 
     /// A slave of whatever a scene describes, without a package.
@@ -92,19 +82,17 @@ impl Instance {
     /// # Errors
     /// If it cannot be started.
     pub fn of_machine(scene: MachineScene, log: Log) -> Outcome<Self> {
-        match scene {
-            MachineScene::Bearing(scene) => Self::of_scene(*scene, log),
-            MachineScene::Shaft(scene) => Self::of_system(&scene, log),
-        }
-    }
-
-    /// A slave of a shaft with its bearings, without a package.
-    ///
-    /// # Errors
-    /// If it cannot be started.
-    pub fn of_system(scene: &SystemScene, log: Log) -> Outcome<Self> {
-        let unit = Unit::System(Box::new(SystemUnit::new(scene)?));
-        Ok(Self::of_unit(unit, &scene.source, log))
+        let scene = match scene {
+            MachineScene::Bearing(scene) => {
+                let (scene, found_out) =
+                    auto::resolve(*scene).map_err(|why| (Status::Error, why.to_string()))?;
+                found_out.iter().for_each(|note| log.write(Status::Ok, note));
+                MachineScene::from(scene)
+            }
+            scene @ MachineScene::Shaft(_) => scene,
+        };
+        let source = scene.source().to_string();
+        Ok(Self::of_unit(Unit::new(scene)?, &source, log))
     }
 
     fn of_unit(unit: Unit, source: &str, log: Log) -> Self {

@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 use super::instance::Instance;
 use super::outcome::{Outcome, Status, error};
 use super::state::State;
-use super::unit::UnitSnapshot;
+use crate::simulation::driven::MachineSnapshot;
 
 /// First bytes of a serialised state: what it is, and the version of its form.
 const MAGIC: &[u8; 8] = b"rlmtFM15";
@@ -17,7 +17,7 @@ const CHECKSUM: usize = 32;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FmuState {
     state: State,
-    unit: UnitSnapshot,
+    unit: MachineSnapshot,
     /// Identifier of the package that it is of; as bytes it stands before the content.
     #[serde(skip)]
     guid: String,
@@ -49,7 +49,7 @@ impl Instance {
             return error("the FMU state is of another scene");
         }
         // To the bit: derivatives go from one point to the other, however far apart they are said to be.
-        let leads_here = |before: &UnitSnapshot| snapshot.time() - before.time() == state.last_step;
+        let leads_here = |before: &MachineSnapshot| snapshot.time() - before.time() == state.last_step;
         if !state.before.as_ref().is_none_or(leads_here) {
             return error(
                 "the FMU state contradicts itself: its last step does not lead from one point to the other",

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::unit::UnitSnapshot;
+use crate::simulation::driven::MachineSnapshot;
 
 /// Phase of an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,7 +47,7 @@ pub struct State {
     /// Scripts that were played in the last communication step.
     pub played: Vec<bool>,
     /// The communication point before the last; none before the first step.
-    pub before: Option<UnitSnapshot>,
+    pub before: Option<MachineSnapshot>,
 }
 
 impl State {

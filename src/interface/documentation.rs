@@ -2,7 +2,7 @@
 
 use crate::effects::AnyEffect;
 use crate::interface::model_description::{Wanted, is_told};
-use crate::interface::variables::{Causality, Offered, SystemVariables, Variable, Variables};
+use crate::interface::variables::{Causality, MachineVariables, Offered, Variable, Variables};
 use crate::scene::{Dependencies, Drive, Orientation, Scene};
 use crate::schema::numbers::Variability;
 use crate::simulation::system::System;
@@ -88,7 +88,7 @@ pub fn system_page(system: &System) -> String {
 
 /// The same with some of its outputs.
 pub fn system_page_with(system: &System, wanted: Wanted<'_>) -> String {
-    let (scene, variables) = (system.scene(), SystemVariables::new(system));
+    let (scene, variables) = (system.scene(), MachineVariables::new(system));
     let title = if scene.title.is_empty() { "Shaft on ball bearings" } else { &scene.title };
     let against = scene.bearings.iter().filter(|bearing| bearing.mounting.direction.sign() < 0.0);
     let against: Vec<&str> = against.map(|bearing| bearing.name.as_str()).collect();

@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 
 use crate::analysis::condensed::Condensed;
 use crate::interface::variables::{
-    Causality, InputKind, Kind, Offered, Source, SystemVariables, Variable, Variables,
+    Causality, InputKind, Kind, MachineVariables, Offered, Source, Variable, Variables,
 };
 use crate::scene::{Dependencies, Drive};
 use crate::schema::numbers::Variability;
@@ -103,7 +103,7 @@ pub fn render_system_with(
     wanted: Wanted<'_>,
 ) -> std::io::Result<ModelDescription> {
     let scene = system.scene();
-    let variables = SystemVariables::new(system);
+    let variables = MachineVariables::new(system);
     let guid = guid(&scene.source, variables.rows());
     let steps = system.bearings().map(|(_, bearing)| passing_step(bearing));
     let about = About {

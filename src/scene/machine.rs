@@ -67,6 +67,15 @@ impl MachineScene {
         }
     }
 
+    /// Their scenes, to be changed.
+    pub fn bearings_mut(&mut self) -> impl Iterator<Item = &mut Scene> {
+        let (alone, mounted) = match self {
+            Self::Bearing(scene) => (Some(&mut **scene), None),
+            Self::Shaft(scene) => (None, Some(scene.bearings.iter_mut().map(|mounted| &mut mounted.scene))),
+        };
+        alone.into_iter().chain(mounted.into_iter().flatten())
+    }
+
     /// One line for plots and reports.
     pub fn title(&self) -> &str {
         match self {
@@ -125,10 +134,7 @@ impl MachineScene {
 
     /// Changes the scene of every bearing.
     pub fn change(&mut self, change: impl Fn(&mut Scene)) {
-        match self {
-            Self::Bearing(scene) => change(scene),
-            Self::Shaft(scene) => scene.bearings.iter_mut().for_each(|mounted| change(&mut mounted.scene)),
-        }
+        self.bearings_mut().for_each(change);
     }
 
     /// The same with changed scenes of its bearings.

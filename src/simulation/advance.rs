@@ -229,8 +229,8 @@ impl Simulation {
         self.advance_perturbed(end, &[], scripted).map(drop)
     }
 
-    /// Like [`Simulation::advance_with`]; also gives the outputs that slightly different inputs would have led to, in the same
-    /// steps. They are exact to first order: take differences between perturbations of opposite sign.
+    /// Like [`Simulation::advance_with`]; also gives what slightly different inputs would have led to, in the same
+    /// steps. That is exact to first order: take differences between perturbations of opposite sign.
     ///
     /// # Errors
     /// As [`Simulation::advance`], and if the Newton matrix of a step is singular.
@@ -239,21 +239,21 @@ impl Simulation {
         end: f64,
         inputs: &[Inputs],
         scripted: Groups,
-    ) -> Result<Vec<Outputs>, SimulationError> {
-        if self.model.solver.level == Level::Equilibrium {
-            self.alone().check_end(end).map_err(|(_, why)| why)?;
-            return self.advance_by_equilibria(end, inputs, scripted);
-        }
+    ) -> Result<Vec<Self>, SimulationError> {
         let beside = |inputs: &Inputs| {
             let mut bearing = self.beside();
             bearing.set_inputs(*inputs);
             bearing
         };
         let mut others: Vec<_> = inputs.iter().map(beside).collect();
+        if self.model.solver.level == Level::Equilibrium {
+            self.alone().check_end(end).map_err(|(_, why)| why)?;
+            return self.advance_by_equilibria(end, others, scripted);
+        }
         let mut perturbed: Vec<_> = others.iter_mut().map(Self::alone).collect();
         let played = Played::of_bearing(scripted);
         self.alone().advance(end, &played, &mut perturbed).map_err(|(_, why)| why)?;
-        Ok(others.iter().map(|other| other.outputs().clone()).collect())
+        Ok(others)
     }
 
     /// The script of a communication step that begins now, from the inputs as set; where paths lead is left to the caller.

@@ -3,6 +3,7 @@
 mod advance;
 mod cage_start;
 pub mod course;
+pub mod driven;
 mod error;
 mod input_paths;
 pub mod inputs;

@@ -1,7 +1,6 @@
 //! `solver.level = "equilibrium"`: every row and communication point is the equilibrium under the present inputs.
 
 use super::inputs::Inputs;
-use super::outputs::Outputs;
 use super::script::{self, Script};
 use super::{Simulation, SimulationError, start};
 use crate::model::bodies::Race;
@@ -9,29 +8,24 @@ use crate::model::state::State;
 use crate::scene::{Drive, Groups};
 
 impl Simulation {
-    /// Goes to the equilibrium at `end` \[s] under the inputs as set and what the script gives then; also gives the outputs of
-    /// equilibria under slightly different inputs.
+    /// Goes to the equilibrium at `end` \[s] under the inputs as set and what the script gives then; so do others under theirs.
     ///
     /// # Errors
     /// If there is no equilibrium; the simulation then stays where it is.
     pub(super) fn advance_by_equilibria(
         &mut self,
         end: f64,
-        perturbed: &[Inputs],
+        mut others: Vec<Self>,
         scripted: Groups,
-    ) -> Result<Vec<Outputs>, SimulationError> {
+    ) -> Result<Vec<Self>, SimulationError> {
         let script = Script::new(&self.scene, scripted);
         script.begin(&mut self.paths, self.state.time);
-        let outputs = perturbed
-            .iter()
-            .map(|inputs| {
-                let mut other = self.clone();
-                other.go_to_equilibrium(&script, *inputs, end)?;
-                Ok(other.outputs().clone())
-            })
-            .collect::<Result<_, SimulationError>>()?;
+        for other in &mut others {
+            other.paths.clone_from(&self.paths);
+            other.go_to_equilibrium(&script, other.inputs, end)?;
+        }
         self.go_to_equilibrium(&script, self.inputs, end)?;
-        Ok(outputs)
+        Ok(others)
     }
 
     fn go_to_equilibrium(

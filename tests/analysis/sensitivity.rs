@@ -35,7 +35,7 @@ fn changes(name: &str, text: &str, of: impl Fn(&mut Inputs, f64), change: f64) -
     let place = |outputs: &roulement::simulation::outputs::Outputs| {
         [outputs.inner.pose.position, outputs.outer.pose.position]
     };
-    let predicted = [place(&predicted[0]), place(&predicted[1])];
+    let predicted = [place(predicted[0].outputs()), place(predicted[1].outputs())];
     let run = given.map(|inputs| {
         let mut simulation = start();
         simulation.set_inputs(inputs);

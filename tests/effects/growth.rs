@@ -386,7 +386,8 @@ fn invariant_sensitivities_of_a_step_by_temperatures_are_those_of_repeated_steps
     central.set_inputs(base);
     let outputs =
         central.advance_perturbed(1.1e-3, &[warmer(1e-3), warmer(-1e-3)], Groups::default()).unwrap();
-    let linear = (outputs[1].inner.wrench.force.x - outputs[0].inner.wrench.force.x) / 2e-3;
+    let linear =
+        (outputs[1].outputs().inner.wrench.force.x - outputs[0].outputs().inner.wrench.force.x) / 2e-3;
     let repeated = |by: f64| {
         let mut again = simulation.clone();
         again.set_inputs(warmer(by));

@@ -3,7 +3,7 @@
 use std::ptr;
 
 use roulement::fmi::v2::Status;
-use roulement::interface::variables::{Causality, SystemVariables};
+use roulement::interface::variables::{Causality, MachineVariables};
 use roulement::scene::system::SystemScene;
 use roulement::simulation::system::System;
 
@@ -62,7 +62,7 @@ fn outputs(package: &Package, c: Component) -> Vec<u64> {
 }
 
 fn native_outputs(system: &System) -> Vec<u64> {
-    let table = SystemVariables::new(system);
+    let table = MachineVariables::new(system);
     let rows = table.rows().iter().zip(table.values(system));
     rows.filter(|(row, _)| row.causality == Causality::Output).map(|(_, value)| value.to_bits()).collect()
 }

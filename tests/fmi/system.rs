@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use roulement::fmi::v2::Status;
 use roulement::interface::documentation::system_page;
 use roulement::interface::model_description::render_system;
-use roulement::interface::variables::{Causality, Kind, SystemVariables};
+use roulement::interface::variables::{Causality, Kind, MachineVariables};
 use roulement::scene::system::SystemScene;
 use roulement::simulation::system::System;
 
@@ -102,7 +102,7 @@ fn outputs(package: &Package, c: Component) -> Vec<f64> {
 
 /// The same outputs of a native run.
 fn native_outputs(system: &System) -> Vec<f64> {
-    let table = SystemVariables::new(system);
+    let table = MachineVariables::new(system);
     let rows = table.rows().iter().zip(table.values(system));
     rows.filter(|(row, _)| row.causality == Causality::Output).map(|(_, value)| value).collect()
 }
@@ -405,7 +405,7 @@ fn names_units_and_abilities_are_told() {
     let every_ball = "set = { effects = { per_ball_outputs = true } }";
     let scene = scene(&text(SPEED, CONSTANT, every_ball));
     let system = System::new(&scene).unwrap();
-    let table = SystemVariables::new(&system);
+    let table = MachineVariables::new(&system);
     let row =
         |name: &str| table.rows().iter().find(|row| row.name == name).unwrap_or_else(|| panic!("{name}"));
     for (name, unit, causality) in [
@@ -688,4 +688,23 @@ fn invariant_a_parameter_is_that_of_the_changed_file() {
     };
     assert!(of(Some(1e-12)) > 2 * of(None), "{} {}", of(Some(1e-12)), of(None));
     assert_eq!(of(None), of(None));
+}
+
+#[test]
+fn a_package_of_a_shaft_tells_what_would_matter_to_each_bearing_and_what_an_error_goal_means() {
+    let goal = text(SPEED, CONSTANT, "")
+        .replace("gravity = ", "solver = { accuracy = { error = 1e-2 } }\ngravity = ");
+    let package = Package::of_system("system-tells", &goal);
+    let messages = Messages::default();
+    let component = package.instantiate_logging(&messages);
+    initialise(component);
+    // SAFETY: made above.
+    unsafe { fmi2FreeInstance(component) };
+    let told = messages.lock().unwrap();
+    let count = |start: &str| told.iter().filter(|(.., text)| text.starts_with(start)).count();
+    assert_eq!(count("solver.accuracy.error = 1e-2: this package runs once"), 1, "{told:?}");
+    for name in ["left", "right"] {
+        assert_eq!(count(&format!("{name}: effects on")), 1, "{told:?}");
+        assert!(count(&format!("{name}: off, would matter: ")) > 0, "{told:?}");
+    }
 }

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use roulement::fmi::v2::{CallbackFunctions, Status};
 use roulement::interface::model_description::{render, render_system};
-use roulement::interface::variables::{Causality, SystemVariables, Variable, Variables};
+use roulement::interface::variables::{Causality, MachineVariables, Variable, Variables};
 use roulement::scene::Scene;
 use roulement::scene::system::SystemScene;
 use roulement::simulation::Simulation;
@@ -141,7 +141,7 @@ impl Package {
         let scene = SystemScene::parse(text, None, "".as_ref()).unwrap();
         let system = System::new(&scene).unwrap();
         let guid = render_system(&system, "bearing").unwrap().guid;
-        Self::of(name, &scene.source, guid, SystemVariables::new(&system).rows().to_vec())
+        Self::of(name, &scene.source, guid, MachineVariables::new(&system).rows().to_vec())
     }
 
     fn of(name: &str, source: &str, guid: String, rows: Vec<Variable>) -> Self {

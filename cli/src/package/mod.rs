@@ -20,7 +20,7 @@ use roulement::interface::documentation;
 use roulement::interface::model_description::{
     ModelDescription, identifier, render_system_with, render_with,
 };
-use roulement::interface::variables::{Causality, SystemVariables, Variable, Variables};
+use roulement::interface::variables::{Causality, MachineVariables, Variable, Variables};
 use roulement::scene::Scene;
 use roulement::scene::system::SystemScene;
 use roulement::schema::regular::{self, LARGEST_BINARY};
@@ -187,7 +187,7 @@ pub fn write_system_fmu(
 ) -> Result<(), PackageError> {
     let libraries = read_libraries(libraries)?;
     let system = System::new(scene)?;
-    let wanted = wanted(columns, SystemVariables::new(&system).rows())?;
+    let wanted = wanted(columns, MachineVariables::new(&system).rows())?;
     let description = render_system_with(&system, name, &wanted)?;
     let page = documentation::system_page_with(&system, &wanted);
     write(&Content { description, source: &scene.source, page }, name, &libraries, output)

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use roulement::interface::variables::{Source, SystemVariables};
+use roulement::interface::variables::{MachineVariables, Source};
 use roulement::model::bodies::Race;
 use roulement::simulation::Simulation;
 use roulement::simulation::instant::Instant;
@@ -160,14 +160,14 @@ pub fn of_bearing(parts: Parts) -> Vec<Watched> {
 /// What is watched of a shaft and its housings: speed, torque, displacements and tilts, by the names that variables of packages have.
 #[derive(Clone, Debug)]
 pub struct ShaftQuantities {
-    variables: SystemVariables,
+    variables: MachineVariables,
     references: Vec<usize>,
 }
 
 impl ShaftQuantities {
     /// Those of a shaft.
     pub fn of(system: &System) -> Self {
-        let variables = SystemVariables::new(system);
+        let variables = MachineVariables::new(system);
         let rows = variables.rows().iter().enumerate();
         let own = rows.filter(|(_, row)| matches!(row.source, Source::Shaft(_)));
         let own = own.filter(|(_, row)| size_of(&row.name, row.unit.name).is_some());

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use roulement::interface::variables::{Source, SystemVariables, Variables, quoted};
+use roulement::interface::variables::{MachineVariables, Source, Variables, quoted};
 use roulement::scene::Scene;
 use roulement::scene::units::{Quantity, Time};
 use roulement::simulation::Simulation;
@@ -168,7 +168,7 @@ fn named(bearing: &str, column: &str) -> String {
 /// Columns of the one table of a whole machine: of a bearing alone its own; of a shaft those of the shaft and its housings, then those
 /// of every bearing with its name before them, all as variables of packages are named.
 pub struct MachineColumns {
-    shaft: Option<(SystemVariables, Vec<usize>)>,
+    shaft: Option<(MachineVariables, Vec<usize>)>,
     /// By the name of their bearing.
     bearings: Vec<(String, Columns)>,
     window: Window,
@@ -187,7 +187,7 @@ impl MachineColumns {
             let bearings = machine.bearings().map(of).collect::<Result<_, _>>()?;
             return Ok(Self { shaft: None, bearings, window: choice.window });
         };
-        let variables = SystemVariables::new(system);
+        let variables = MachineVariables::new(system);
         let own = variables.rows().iter().enumerate();
         let own = own.filter(|(_, row)| matches!(row.source, Source::Shaft(_)));
         let chosen = own.filter(|(_, row)| choice.wants(&row.name)).map(|(reference, _)| reference).collect();

@@ -1,6 +1,6 @@
 //! Columns that are chosen for the summary, of bearings and of a shaft.
 
-use roulement::interface::variables::{Causality, Source, SystemVariables, Variable};
+use roulement::interface::variables::{Causality, MachineVariables, Source, Variable};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::Simulation;
 use roulement::simulation::machine::Machine;
@@ -52,7 +52,7 @@ pub struct GatheredMachine {
     pub bearings: Vec<Gathered>,
     /// Outputs of the shaft and its housings.
     pub shaft: Vec<OfColumn>,
-    variables: Option<SystemVariables>,
+    variables: Option<MachineVariables>,
     /// Their references.
     references: Vec<usize>,
 }
@@ -70,7 +70,7 @@ impl GatheredMachine {
     ) -> Result<Self, ResultsError> {
         let bearings = machine.bearings().zip(of_bearings(scene, chosen));
         let bearings = bearings.map(|((_, bearing), columns)| Gathered::new(bearing, duration, &columns));
-        let variables = machine.shaft().map(SystemVariables::new);
+        let variables = machine.shaft().map(MachineVariables::new);
         let rows_of = || variables.iter().flat_map(|variables| variables.rows().iter().enumerate());
         let is_output =
             |row: &Variable| matches!(row.source, Source::Shaft(_)) && row.causality == Causality::Output;

@@ -1,13 +1,13 @@
-//! Derivatives of outputs of a bearing, or of a shaft with its bearings, by its inputs, by small changes of these.
+//! Derivatives of outputs of a machine by its inputs, by small changes of these.
 
-use super::{BearingUnit, SystemUnit, UnitSnapshot};
-use crate::fmi::outcome::{Outcome, error};
+use super::Unit;
+use crate::fmi::outcome::{Outcome, Status, error};
 use crate::interface::variables::{Causality, InputKind, Kind, Variable};
-use crate::scene::{Groups, Level};
-use crate::simulation::inputs::Inputs;
-use crate::simulation::outputs::Outputs;
-use crate::simulation::system::{Played, ShaftInputs, SystemError};
-use crate::simulation::{Simulation, SimulationError};
+use crate::scene::Level;
+use crate::simulation::Simulation;
+use crate::simulation::driven::{MachineInputs, MachineSnapshot};
+use crate::simulation::machine::MachineError;
+use crate::simulation::system::Played;
 
 /// Sizes of the changes of inputs whose effects are compared: small against what bends the contact laws (an approach of
 /// some micrometres, slip speeds of millimetres per second), large against rounding.
@@ -84,108 +84,44 @@ fn changes(simulation: &Simulation, duration: Option<f64>) -> Changes {
 ///
 /// # Errors
 /// If they do not exist here.
-pub fn columns(unit: &BearingUnit, before: Option<&UnitSnapshot>, played: Groups) -> Outcome<Vec<Vec<f64>>> {
-    let (variables, simulation) = (&unit.variables, &unit.simulation);
-    let failed = |why: SimulationError| error(format!("no directional derivatives here: {why}"));
-    let base = simulation.inputs();
-    let duration = before.map(|before| simulation.time() - before.time());
+pub fn columns(unit: &Unit, before: Option<&MachineSnapshot>, played: &Played) -> Outcome<Vec<Vec<f64>>> {
+    let Unit { variables, machine, .. } = unit;
+    let failed = |why: MachineError| (Status::Error, format!("no directional derivatives here: {why}"));
     // Equilibria know no duration.
-    let dynamic = simulation.scene().solver.level == Level::Dynamic;
-    let changes = changes(simulation, duration.filter(|_| dynamic));
-    let rows = variables.rows();
-    let inputs = knowns(rows);
-
-    let values = variables.values(base, simulation.outputs());
-    let moved = |index: usize, sign: f64| moved(&rows[index], values[index], sign, &changes);
-    let perturbed = |index: usize, sign: f64| -> Outcome<Inputs> {
-        let mut values = values.clone();
-        values[index] = moved(index, sign);
-        variables.inputs(&values, &variables.rates(base), base).or_else(|why| error(why.to_string()))
-    };
-    let perturbations = both_ways(&inputs, perturbed)?;
-    let mut central = simulation.clone();
-    let outputs: Vec<Outputs> = match before {
-        Some(before) => {
-            let UnitSnapshot::Bearing(before) = before else {
-                return error("the start of the last step is of a system");
-            };
-            if !central.restore(before) {
-                return error("the start of the last step is of another scene");
-            }
-            central.set_inputs(*base);
-            central.advance_perturbed(simulation.time(), &perturbations, played).or_else(failed)?
-        }
-        None => {
-            let start = |inputs: &Inputs| {
-                central.set_inputs(*inputs);
-                central.initialise()?;
-                Ok(central.outputs().clone())
-            };
-            perturbations.iter().map(start).collect::<Result<_, _>>().or_else(failed)?
-        }
-    };
-
-    let of = outputs.iter().map(|outputs| variables.values(base, outputs)).collect::<Vec<_>>();
-    Ok(differences(rows.len(), &inputs, &of, |index| moved(index, 1.0) - moved(index, -1.0)))
-}
-
-/// The same of a shaft with its bearings.
-///
-/// # Errors
-/// If they do not exist here.
-pub fn columns_of_system(
-    unit: &SystemUnit,
-    before: Option<&UnitSnapshot>,
-    played: &Played,
-) -> Outcome<Vec<Vec<f64>>> {
-    let (variables, system) = (&unit.variables, &unit.system);
-    fn failed<T>(why: &SystemError) -> Outcome<T> {
-        error(format!("no directional derivatives here: {why}"))
-    }
-    let duration = before.map(|before| system.time() - before.time());
-    let changes = system.bearings().map(|(_, bearing)| changes(bearing, duration)).reduce(Changes::smaller);
+    let dynamic = unit.scene.solver().level == Level::Dynamic;
+    let duration = before.map(|before| machine.time() - before.time()).filter(|_| dynamic);
+    let changes = machine.bearings().map(|(_, bearing)| changes(bearing, duration)).reduce(Changes::smaller);
     let Some(changes) = changes else { return error("there is no bearing") };
     let rows = variables.rows();
     let inputs = knowns(rows);
-    let values = variables.values(system);
-    let rates = variables.rates(system);
+    let (values, rates) = (variables.values(machine), variables.rates(machine));
     let moved = |index: usize, sign: f64| moved(&rows[index], values[index], sign, &changes);
-    let perturbed = |index: usize, sign: f64| -> Outcome<(ShaftInputs, Vec<Inputs>)> {
+    let perturbed = |index: usize, sign: f64| -> Outcome<MachineInputs> {
         let mut values = values.clone();
         values[index] = moved(index, sign);
-        variables.inputs(&values, &rates, system).or_else(|why| error(why.to_string()))
+        variables.inputs(&values, &rates, machine).or_else(|why| error(why.to_string()))
     };
     let perturbations = both_ways(&inputs, perturbed)?;
-    let outputs: Vec<Vec<f64>> = match before {
+    let ends = match before {
         Some(before) => {
-            let UnitSnapshot::System(before) = before else {
-                return error("the start of the last step is of a bearing");
-            };
-            let mut central = system.clone();
-            if !central.restore(before) {
+            let mut central = machine.clone();
+            if !(central.restore(before) && central.set_inputs(machine.inputs())) {
                 return error("the start of the last step is of another scene");
             }
-            let bearings = system.bearings().map(|(_, bearing)| *bearing.inputs()).collect();
-            if !central.set_inputs(system.inputs().clone(), bearings) {
-                return error("the start of the last step is of another scene");
-            }
-            let ends = central.advance_perturbed(system.time(), &perturbations, played);
-            let ends = ends.or_else(|why| failed(&why))?;
-            ends.iter().map(|system| variables.values(system)).collect()
+            central.advance_perturbed(machine.time(), perturbations, played).map_err(failed)?
         }
         None => {
-            let start = |(shaft, bearings): &(ShaftInputs, Vec<Inputs>)| {
-                let mut central = system.clone();
-                if !central.set_inputs(shaft.clone(), bearings.clone()) {
-                    return Err(SystemError::OtherInputs);
-                }
-                central.initialise()?;
-                Ok(variables.values(&central))
+            let start = |inputs: MachineInputs| {
+                let mut central = machine.clone();
+                let fit = central.set_inputs(inputs);
+                debug_assert!(fit, "they were made for this very machine");
+                central.initialise().map(|()| central)
             };
-            perturbations.iter().map(start).collect::<Result<_, _>>().or_else(|why| failed(&why))?
+            perturbations.into_iter().map(start).collect::<Result<Vec<_>, _>>().map_err(failed)?
         }
     };
-    Ok(differences(rows.len(), &inputs, &outputs, |index| moved(index, 1.0) - moved(index, -1.0)))
+    let of: Vec<_> = ends.iter().map(|end| variables.values(end)).collect();
+    Ok(differences(rows.len(), &inputs, &of, |index| moved(index, 1.0) - moved(index, -1.0)))
 }
 
 /// References of the inputs that there are derivatives by.

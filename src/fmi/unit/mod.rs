@@ -1,169 +1,354 @@
-//! What an instance simulates: a bearing, or a shaft with its bearings. Both are values by reference: some go in, steps are made, others
-//! come out.
+//! What an instance simulates: a machine as values by reference. Some go in, steps are made, others come out. Lists of values have one of
+//! every row, by value reference; those of outputs are ignored where values go in.
+//!
+//! Its scripts are, in this order: those of every bearing, group by group; where there is a shaft, one of each named load, one of each gear,
+//! that of the drive.
 
-mod bearing;
 mod derivatives;
-mod system;
 
-use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
+use strum::VariantArray;
 
 use super::log::Log;
-use super::outcome::Outcome;
+use super::outcome::{Outcome, Status};
+use crate::analysis::estimate;
+use crate::effects::estimate::missed;
 use crate::interface::contradiction::Contradiction;
-use crate::interface::variables::{Causality, Variable};
-use crate::scene::{Giver, Group};
-use crate::simulation::Snapshot;
-use crate::simulation::system::SystemSnapshot;
-pub use bearing::BearingUnit;
-pub use system::SystemUnit;
+use crate::interface::variables::{Causality, MachineGroup, MachineVariables, Variable};
+use crate::model::bodies::Race;
+use crate::scene::machine::MachineScene;
+use crate::scene::{Giver, Group, Groups, Level, Scene, SceneError, Solver};
+use crate::simulation::driven::{MachineInputs, MachineSnapshot};
+use crate::simulation::machine::{Machine, MachineError, follows_time};
+use crate::simulation::system::{Played, drive_is_scripted};
+use crate::simulation::{Simulation, scripted_groups};
 
-/// What an instance simulates.
+/// Scripts of a bearing.
+const GROUPS: usize = Group::VARIANTS.len();
+
+/// What is told of a unit without motion in time.
+const OF_EQUILIBRIA: &str =
+    "solver.level = \"equilibrium\": outputs are those of the equilibrium under the inputs of each step";
+
+/// A machine with its variables.
 #[derive(Clone)]
-pub enum Unit {
-    /// A bearing.
-    Bearing(Box<BearingUnit>),
-    /// A shaft with its bearings.
-    System(Box<SystemUnit>),
+pub struct Unit {
+    variables: Arc<MachineVariables>,
+    scene: Arc<MachineScene>,
+    machine: Machine,
+    /// Inputs of the next step.
+    next: MachineInputs,
 }
 
-/// A point that a unit was at.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub enum UnitSnapshot {
-    /// A bearing.
-    Bearing(Box<Snapshot>),
-    /// A shaft with its bearings.
-    System(Box<SystemSnapshot>),
+/// A refusal for a reason.
+fn refused(why: &impl ToString) -> (Status, String) {
+    (Status::Error, why.to_string())
 }
 
-impl UnitSnapshot {
-    /// \[s] time.
-    pub fn time(&self) -> f64 {
-        match self {
-            Self::Bearing(snapshot) => snapshot.time(),
-            Self::System(snapshot) => snapshot.time(),
-        }
+/// Those of some groups that are marked.
+fn marked(marks: &[bool]) -> Groups {
+    Group::VARIANTS.iter().fold(Groups::default(), |groups, &group| {
+        groups.with(group, marks.get(group as usize).is_some_and(|marked| *marked))
+    })
+}
+
+/// Who gives each group of inputs that a scene has a script for.
+fn givers(scene: &Scene) -> impl Iterator<Item = Option<Giver>> {
+    let scripted = scripted_groups(scene);
+    Group::VARIANTS
+        .iter()
+        .map(move |&group| scripted.contains(group).then(|| scene.interface.inputs.of(group)))
+}
+
+impl Unit {
+    /// A machine of a scene whose effects are found out, started.
+    ///
+    /// # Errors
+    /// If it does not start.
+    pub fn new(scene: MachineScene) -> Outcome<Self> {
+        let machine = Machine::new(&scene).map_err(|why| refused(&why))?;
+        let variables = Arc::new(MachineVariables::new(&machine));
+        Ok(Self { variables, scene: Arc::new(scene), next: machine.inputs(), machine })
     }
-}
 
-/// A unit as an instance sees it. Lists of values have one of every row, by value reference; those of outputs are ignored where values
-/// go in.
-pub trait Simulated {
     /// The variables; the index of a row is its value reference.
-    fn rows(&self) -> &[Variable];
+    pub fn rows(&self) -> &[Variable] {
+        self.variables.rows()
+    }
 
     /// Value references of the inputs.
-    fn inputs(&self) -> &[usize];
+    pub fn inputs(&self) -> &[usize] {
+        self.variables.input_references()
+    }
 
     /// \[s] time.
-    fn time(&self) -> f64;
+    pub fn time(&self) -> f64 {
+        self.machine.time()
+    }
 
     /// Value of a row: an input as set, an output of the last communication point.
-    fn value(&self, reference: usize) -> f64;
+    pub fn value(&self, reference: usize) -> f64 {
+        self.variables.value(reference, &self.machine)
+    }
 
     /// Values of all rows.
-    fn values(&self) -> Vec<f64>;
+    pub fn values(&self) -> Vec<f64> {
+        self.variables.values(&self.machine)
+    }
 
     /// Are all numbers finite that values are computed from?
-    fn is_finite(&self) -> bool;
+    pub fn is_finite(&self) -> bool {
+        self.variables.shaft_values(&self.machine).all(f64::is_finite) && self.machine.is_finite()
+    }
 
     /// Does anything change by itself with time?
-    fn follows_time(&self) -> bool;
+    pub fn follows_time(&self) -> bool {
+        follows_time(&self.scene)
+    }
 
     /// \[s] time that the scene's scripts are written for, from 0.
-    fn duration(&self) -> f64;
+    pub fn duration(&self) -> f64 {
+        self.scene.duration()
+    }
+
+    /// The scene with the parameters among these values.
+    fn scene_with(&self, values: &[f64]) -> Outcome<MachineScene> {
+        let mut scene = MachineScene::clone(&self.scene);
+        self.variables.set_parameters(&mut scene, values);
+        for (name, bearing) in scene.bearings() {
+            let before = if name.is_empty() { String::new() } else { format!("bearing {name}: ") };
+            bearing.check().map_err(|why: SceneError| (Status::Error, format!("{before}{why}")))?;
+        }
+        Ok(scene)
+    }
 
     /// Starts again with the parameters among these values at a time \[s], under what the scripts say then.
     ///
     /// # Errors
     /// If that is not possible.
-    fn start_at(&mut self, time: f64, values: &[f64]) -> Outcome;
+    pub fn start_at(&mut self, time: f64, values: &[f64]) -> Outcome {
+        let scene = self.scene_with(values)?;
+        self.machine = Machine::starting_at(&scene, time).map_err(|why| refused(&why))?;
+        self.scene = Arc::new(scene);
+        Ok(())
+    }
 
     /// Sets the time \[s] of a unit that has not moved yet and does not follow time.
     ///
     /// # Errors
     /// If it does not start there.
-    fn set_start_time(&mut self, time: f64) -> Outcome;
+    pub fn set_start_time(&mut self, time: f64) -> Outcome {
+        self.machine.set_start_time(time).map_err(|why| refused(&why))
+    }
 
     /// Goes on with the tunable parameters among these values.
     ///
     /// # Errors
     /// If they contradict one another.
-    fn tune(&mut self, values: &[f64]) -> Outcome;
+    pub fn tune(&mut self, values: &[f64]) -> Outcome {
+        let scene = self.scene_with(values)?;
+        self.machine.tune(&scene);
+        self.scene = Arc::new(scene);
+        Ok(())
+    }
 
     /// Takes the inputs among these values, and their rates, for the next step or start.
     ///
     /// # Errors
     /// If one is not allowed.
-    fn prepare(&mut self, values: &[f64], rates: &[f64]) -> Outcome;
+    pub fn prepare(&mut self, values: &[f64], rates: &[f64]) -> Outcome {
+        self.next = self.variables.inputs(values, rates, &self.machine).map_err(|why| refused(&why))?;
+        Ok(())
+    }
+
+    fn take_prepared(&mut self) {
+        let taken = self.machine.set_inputs(self.next.clone());
+        debug_assert!(taken, "they were made for this very machine");
+    }
 
     /// Starts again at the present time under the inputs that were prepared.
     ///
     /// # Errors
     /// If there is no equilibrium.
-    fn initialise(&mut self) -> Outcome;
+    pub fn initialise(&mut self) -> Outcome {
+        self.take_prepared();
+        self.machine.initialise().map_err(|why| refused(&why))
+    }
 
     /// Runs to a time \[s] under the inputs that were prepared, some of them given by the scripts that are played.
     ///
     /// # Errors
     /// A discarded step if it cannot be finished.
-    fn advance(&mut self, end: f64, played: &[bool]) -> Outcome;
+    pub fn advance(&mut self, end: f64, played: &[bool]) -> Outcome {
+        self.take_prepared();
+        let played = self.played(played);
+        self.machine
+            .advance_with(end, &played)
+            .map_err(|why: MachineError| (Status::Discard, why.to_string()))
+    }
 
     /// The point that it is at.
-    fn snapshot(&self) -> UnitSnapshot;
+    pub fn snapshot(&self) -> MachineSnapshot {
+        self.machine.snapshot()
+    }
 
     /// Goes to a point; false, with nothing changed, if that is of another unit.
-    fn restore(&mut self, snapshot: &UnitSnapshot) -> bool;
+    #[must_use]
+    pub fn restore(&mut self, snapshot: &MachineSnapshot) -> bool {
+        self.machine.restore(snapshot)
+    }
+
+    /// Numbers of bearings, of named loads and of gears.
+    fn counts(&self) -> [usize; 3] {
+        let shaft = self.scene.shaft();
+        let loads = shaft.map_or(0, |scene| scene.loads().count());
+        [self.next.bearings.len(), loads, shaft.map_or(0, |scene| scene.shaft.gear.len())]
+    }
 
     /// Scripts: who gives what there is one for; none where the scene has no script.
-    fn scripts(&self) -> Vec<Option<Giver>>;
+    pub fn scripts(&self) -> Vec<Option<Giver>> {
+        let mut all: Vec<_> =
+            self.machine.bearings().flat_map(|(_, bearing)| givers(bearing.scene())).collect();
+        if let Some(scene) = self.scene.shaft() {
+            let loads = scene.loads().map(|load| load.is_scripted());
+            let gears = scene.shaft.gear.iter().map(|gear| gear.torque.is_scripted());
+            let of_shaft = loads.chain(gears).chain([drive_is_scripted(scene)]);
+            all.extend(of_shaft.map(|scripted| scripted.then_some(Giver::Scene)));
+        }
+        all
+    }
+
+    /// What a script gives.
+    fn group(&self, script: usize) -> MachineGroup {
+        let [bearings, loads, gears] = self.counts();
+        match script.checked_sub(GROUPS * bearings) {
+            None => MachineGroup::Bearing(script / GROUPS, Group::VARIANTS[script % GROUPS]),
+            Some(load) if load < loads => MachineGroup::Load(load),
+            Some(gear) if gear < loads + gears => MachineGroup::Gear(gear - loads),
+            Some(_) => MachineGroup::Drive,
+        }
+    }
 
     /// What a script gives, in words, and its group.
-    fn script_name(&self, script: usize) -> (String, Group);
+    pub fn script_name(&self, script: usize) -> (String, Group) {
+        let load = |index: usize| self.scene.shaft().and_then(|scene| scene.loads().nth(index));
+        match self.group(script) {
+            MachineGroup::Load(index) => {
+                (load(index).map_or_else(String::new, |load| load.name.into()), Group::Loads)
+            }
+            MachineGroup::Gear(gear) => (format!("the torque of gear {}", gear + 1), Group::Loads),
+            MachineGroup::Drive => ("the shaft's drive".into(), Group::Speeds),
+            MachineGroup::Bearing(index, group) => match self.machine.bearings().nth(index) {
+                Some((name, _)) if !name.is_empty() => (format!("{group} of {name}"), group),
+                _ => (group.to_string(), group),
+            },
+        }
+    }
 
     /// The script that may give an input.
-    fn script_of(&self, reference: usize) -> Option<usize>;
+    pub fn script_of(&self, reference: usize) -> Option<usize> {
+        let [bearings, loads, gears] = self.counts();
+        Some(match self.variables.group(reference, &self.machine)? {
+            MachineGroup::Bearing(index, group) => GROUPS * index + group as usize,
+            MachineGroup::Load(load) => GROUPS * bearings + load,
+            MachineGroup::Gear(gear) => GROUPS * bearings + loads + gear,
+            MachineGroup::Drive => GROUPS * bearings + loads + gears,
+        })
+    }
+
+    /// Scripts that are marked.
+    fn played(&self, marks: &[bool]) -> Played {
+        let [bearings, loads, gears] = self.counts();
+        let (of_bearings, rest) = marks.split_at(GROUPS * bearings);
+        let (of_loads, rest) = rest.split_at(loads);
+        let (of_gears, drive) = rest.split_at(gears);
+        Played {
+            loads: of_loads.to_vec(),
+            gears: of_gears.to_vec(),
+            drive: drive.contains(&true),
+            bearings: of_bearings.chunks(GROUPS).map(marked).collect(),
+        }
+    }
 
     /// A quaternion of zeros among these values: an input that nothing is connected to.
-    fn zero_quaternion(&self, values: &[f64]) -> Option<String>;
+    pub fn zero_quaternion(&self, values: &[f64]) -> Option<String> {
+        let mut bearings = self.variables.bearings().zip(self.machine.bearings());
+        bearings.find_map(|((first, variables), (name, _))| {
+            let race = variables.zero_quaternion(&values[first..])?.name();
+            Some(if name.is_empty() { race.to_string() } else { format!("{name}.{race}") })
+        })
+    }
 
     /// A race whose prepared pose contradicts its twist, over a step \[s] before now.
-    fn contradiction(&self, step: f64, played: &[bool]) -> Option<(String, Contradiction)>;
+    pub fn contradiction(&self, step: f64, played: &[bool]) -> Option<(String, Contradiction)> {
+        let tables = self.variables.bearings().zip(self.machine.bearings());
+        let mut bearings = tables.zip(&self.next.bearings).zip(played.chunks(GROUPS));
+        bearings.find_map(|((((_, variables), (name, bearing)), next), played)| {
+            // A script moves on within a step, and its pose and twist agree.
+            let scripted = marked(played).contains(Group::Tilts);
+            let given = |race: &Race| !scripted && variables.pose_is_given(*race);
+            let before = bearing.inputs();
+            Race::BOTH.into_iter().filter(given).find_map(|race| {
+                let found = Contradiction::between(&before[race], &next[race], step)?;
+                let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
+                Some((format!("the {} race{of}", race.name()), found))
+            })
+        })
+    }
 
-    /// Tells what is simulated.
-    fn announce(&self, log: &Log);
+    /// Is a parameter among these values different?
+    pub fn parameters_differ(&self, one: &[f64], other: &[f64]) -> bool {
+        let pairs = one.iter().zip(other);
+        let mut rows = self.rows().iter().zip(pairs);
+        rows.any(|(row, (one, other))| row.causality == Causality::Parameter && one != other)
+    }
 
     /// Derivatives of all variables by every input, one column per input, of the step since a point, or of the start.
     ///
     /// # Errors
     /// If there are none.
-    fn derivatives(&self, before: Option<&UnitSnapshot>, played: &[bool]) -> Outcome<Vec<Vec<f64>>>;
-
-    /// Is a parameter among these values different?
-    fn parameters_differ(&self, one: &[f64], other: &[f64]) -> bool {
-        let pairs = one.iter().zip(other);
-        let mut rows = self.rows().iter().zip(pairs);
-        rows.any(|(row, (one, other))| row.causality == Causality::Parameter && one != other)
+    pub fn derivatives(&self, before: Option<&MachineSnapshot>, played: &[bool]) -> Outcome<Vec<Vec<f64>>> {
+        derivatives::columns(self, before, &self.played(played))
     }
-}
 
-impl Deref for Unit {
-    type Target = dyn Simulated + Send;
-
-    fn deref(&self) -> &Self::Target {
-        match self {
-            Self::Bearing(unit) => &**unit,
-            Self::System(unit) => &**unit,
+    /// Tells what is simulated.
+    pub fn announce(&self, log: &Log) {
+        let Solver { goal, level, max_step, tolerance, .. } = self.scene.solver();
+        if let Some(goal) = goal {
+            // A single run cannot measure its own error.
+            log.write(
+                Status::Ok,
+                &format!(
+                    "solver.accuracy.error = {:e}: this package runs once, with the settings that runs of the scene begin with \
+                     (max_step {:e} s, tolerance {tolerance:e}), and does not measure its error; \"roulement run\" does",
+                    goal.error, max_step.0
+                ),
+            );
+        }
+        if level == Level::Equilibrium {
+            log.write(Status::Ok, OF_EQUILIBRIA);
+        }
+        // Estimates ask for an equilibrium, which nobody waits for who does not read them.
+        if log.tells(Status::Ok) {
+            self.machine.bearings().for_each(|(name, bearing)| self.announce_effects(name, bearing, log));
         }
     }
-}
 
-impl DerefMut for Unit {
-    fn deref_mut(&mut self) -> &mut Self::Target {
-        match self {
-            Self::Bearing(unit) => &mut **unit,
-            Self::System(unit) => &mut **unit,
+    /// Tells which effects of a bearing are on, and which that are off would matter.
+    fn announce_effects(&self, name: &str, bearing: &Simulation, log: &Log) {
+        let (scene, model) = (bearing.scene(), bearing.model());
+        let verdicts = match &self.machine {
+            Machine::Bearing(_) => estimate::verdicts(scene, model),
+            Machine::Shaft(_) => estimate::verdicts_under(scene, model, &bearing.equilibrium_input()),
+        };
+        let lines = match verdicts {
+            Ok(verdicts) => missed(&verdicts),
+            Err(why) => vec![why.to_string()],
+        };
+        let before = if name.is_empty() { String::new() } else { format!("{name}: ") };
+        for line in [scene.effects.simulated()].iter().chain(&lines) {
+            log.write(Status::Ok, &format!("{before}{line}"));
         }
     }
 }

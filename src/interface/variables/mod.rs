@@ -2,11 +2,11 @@
 //!
 //! Model description, value references, CSV headers and the documentation of a package all derive from it.
 
+mod machine;
 mod race_rows;
 mod race_setting;
 mod rows;
 mod shaft_rows;
-mod system;
 
 use thiserror::Error;
 
@@ -20,11 +20,11 @@ use crate::simulation::Simulation;
 use crate::simulation::inputs::Inputs;
 use crate::simulation::losses::Losses;
 use crate::simulation::outputs::Outputs;
+pub use machine::{MachineGroup, MachineVariables};
 use race_rows::RaceVariable;
 pub use race_setting::InputKind;
 use race_setting::RaceSetting;
 pub use shaft_rows::{ShaftSource, quoted};
-pub use system::{SystemGroup, SystemVariables};
 
 /// FMI causality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -171,7 +171,7 @@ fn invariant_sensitivities_are_those_of_runs_beside() {
     };
     let runs = inputs.map(run);
     let sensitive = simulation.advance_perturbed(end, &inputs, Groups::default()).unwrap();
-    let sensitive = [0, 1].map(|i: usize| force(&sensitive[i]));
+    let sensitive = [0, 1].map(|i: usize| force(sensitive[i].outputs()));
     let difference = |[plus, minus]: &[Vec<Vector3<f64>>; 2]| -> Vec<Vector3<f64>> {
         plus.iter().zip(minus).map(|(plus, minus)| (plus - minus) * 0.5).collect()
     };

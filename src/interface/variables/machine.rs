@@ -1,16 +1,16 @@
-//! The table of a system: rows of its shaft and housings, then those of every bearing with its name before them.
+//! The table of a machine: rows of its shaft and housings, then those of every bearing with its name before them; those of a bearing alone have
+//! no name.
 
 use super::shaft_rows::{self, ShaftSource};
 use super::{InputError, Source, Variable, Variables, references_of_inputs};
 use crate::scene::Group;
-use crate::scene::system::SystemScene;
+use crate::scene::machine::MachineScene;
 use crate::simulation::Simulation;
-use crate::simulation::inputs::Inputs;
-use crate::simulation::system::{ShaftInputs, System};
+use crate::simulation::driven::{MachineInputs, Parts};
 
-/// The table of a system.
+/// The table of a machine.
 #[derive(Clone, Debug)]
-pub struct SystemVariables {
+pub struct MachineVariables {
     rows: Vec<Variable>,
     inputs: Vec<usize>,
     bearings: Vec<Part>,
@@ -25,9 +25,9 @@ struct Part {
     variables: Variables,
 }
 
-/// What an input of a system is given together with: a script gives all of it, or none.
+/// What an input of a machine is given together with: a script gives all of it, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SystemGroup {
+pub enum MachineGroup {
     /// Force and moment at a named load, by its index.
     Load(usize),
     /// Torque of a gear, by its index.
@@ -38,15 +38,26 @@ pub enum SystemGroup {
     Bearing(usize, Group),
 }
 
-impl SystemVariables {
-    /// The variables of a system's package.
-    pub fn new(system: &System) -> Self {
-        let mut rows = shaft_rows::rows(system.scene());
+impl MachineVariables {
+    /// The variables of a machine's package.
+    pub fn new(machine: &impl Parts) -> Self {
+        let shaft = machine.shaft();
+        let mut rows = shaft.map_or(vec![], |system| shaft_rows::rows(system.scene()));
         let mut bearings = vec![];
-        for (name, bearing) in system.bearings() {
-            let variables = Variables::carried(bearing.scene(), |race| bearing.model().is_carried(race));
+        for (name, bearing) in machine.bearings() {
             let first = rows.len();
-            rows.extend(variables.rows().iter().map(|row| of_bearing(row, name)));
+            let variables = match shaft {
+                Some(_) => {
+                    let own = Variables::carried(bearing.scene(), |race| bearing.model().is_carried(race));
+                    rows.extend(own.rows().iter().map(|row| of_bearing(row, name)));
+                    own
+                }
+                None => {
+                    let own = Variables::new(bearing.scene());
+                    rows.extend_from_slice(own.rows());
+                    own
+                }
+            };
             bearings.push(Part { first, variables });
         }
         Self { inputs: references_of_inputs(&rows), rows, bearings }
@@ -70,43 +81,44 @@ impl SystemVariables {
     }
 
     /// Value of a row.
-    pub fn value(&self, reference: usize, system: &System) -> f64 {
+    pub fn value(&self, reference: usize, machine: &impl Parts) -> f64 {
         if let Some((index, own)) = self.part(reference) {
             let variables = &self.bearings[index].variables;
             let value = |bearing: &Simulation| variables.value_of(&variables.rows()[own], bearing);
-            return system.bearings().nth(index).map_or(f64::NAN, |(_, bearing)| value(bearing));
+            return machine.bearings().nth(index).map_or(f64::NAN, |(_, bearing)| value(bearing));
         }
-        shaft_source(&self.rows[reference])
-            .map_or(f64::NAN, |source| source.value(system.inputs(), system.outputs()))
+        let of_shaft = shaft_source(&self.rows[reference]).zip(machine.shaft());
+        of_shaft.map_or(f64::NAN, |(source, system)| source.value(system.inputs(), system.outputs()))
     }
 
-    /// Values of the rows of the shaft.
-    pub fn shaft_values<'a>(&'a self, system: &'a System) -> impl Iterator<Item = f64> + 'a {
+    /// Values of the rows of the shaft; none of a bearing alone.
+    pub fn shaft_values<'a>(&'a self, machine: &'a impl Parts) -> impl Iterator<Item = f64> + 'a {
         let own = self.rows.iter().map_while(shaft_source);
-        own.map(|source| source.value(system.inputs(), system.outputs()))
+        let all =
+            machine.shaft().map(|system| own.map(|source| source.value(system.inputs(), system.outputs())));
+        all.into_iter().flatten()
     }
 
     /// Values of all rows.
-    pub fn values(&self, system: &System) -> Vec<f64> {
-        let mut values: Vec<f64> = self.shaft_values(system).collect();
-        for (part, (_, bearing)) in self.bearings.iter().zip(system.bearings()) {
+    pub fn values(&self, machine: &impl Parts) -> Vec<f64> {
+        let mut values: Vec<f64> = self.shaft_values(machine).collect();
+        for (part, (_, bearing)) in self.bearings.iter().zip(machine.bearings()) {
             values.extend(part.variables.values(bearing.inputs(), bearing.outputs()));
         }
         values
     }
 
     /// Rates of all rows that inputs were given with; loads and drive have none.
-    pub fn rates(&self, system: &System) -> Vec<f64> {
+    pub fn rates(&self, machine: &impl Parts) -> Vec<f64> {
         let mut rates = vec![0.0; self.rows.len()];
-        for (part, (_, bearing)) in self.bearings.iter().zip(system.bearings()) {
+        for (part, (_, bearing)) in self.bearings.iter().zip(machine.bearings()) {
             let own = part.variables.rates(bearing.inputs());
             rates[part.first..part.first + own.len()].copy_from_slice(&own);
         }
         rates
     }
 
-    /// Turns the values of all rows (those of outputs are ignored) and their rates into inputs of shaft and bearings, on top of those
-    /// that a system has.
+    /// Turns the values of all rows (those of outputs are ignored) and their rates into inputs, on top of those that a machine has.
     ///
     /// # Errors
     /// See [`Variables::inputs`].
@@ -114,50 +126,56 @@ impl SystemVariables {
         &self,
         values: &[f64],
         rates: &[f64],
-        system: &System,
-    ) -> Result<(ShaftInputs, Vec<Inputs>), InputError> {
-        let mut shaft = system.inputs().clone();
+        machine: &impl Parts,
+    ) -> Result<MachineInputs, InputError> {
+        let mut shaft = machine.shaft().map(|system| system.inputs().clone());
         for &reference in &self.inputs {
-            if let Some(source) = shaft_source(&self.rows[reference]) {
+            if let (Some(source), Some(shaft)) = (shaft_source(&self.rows[reference]), &mut shaft) {
                 if !values[reference].is_finite() {
                     let name = self.rows[reference].name.clone();
                     return Err(InputError::NotFinite { name, value: values[reference] });
                 }
-                source.set(&mut shaft, values[reference]);
+                source.set(shaft, values[reference]);
             }
         }
+        let alone = shaft.is_none();
         let inputs = |(part, (name, bearing)): (&Part, (&str, &Simulation))| {
             let range = part.first..part.first + part.variables.rows().len();
             let inputs = part.variables.inputs(&values[range.clone()], &rates[range], bearing.inputs());
-            inputs.map_err(|source| InputError::Bearing { name: name.into(), source: Box::new(source) })
+            inputs.map_err(|source| match alone {
+                true => source,
+                false => InputError::Bearing { name: name.into(), source: Box::new(source) },
+            })
         };
-        let bearings = self.bearings.iter().zip(system.bearings()).map(inputs).collect::<Result<_, _>>()?;
-        Ok((shaft, bearings))
+        let bearings = self.bearings.iter().zip(machine.bearings()).map(inputs).collect::<Result<_, _>>()?;
+        Ok(MachineInputs { shaft, bearings })
     }
 
     /// Writes the parameters among the values of all rows into a scene.
-    pub fn set_parameters(&self, scene: &mut SystemScene, values: &[f64]) {
-        for (row, value) in self.rows.iter().zip(values) {
-            if let Some(ShaftSource::Number(parameter)) = shaft_source(row) {
-                parameter.set(scene, *value);
+    pub fn set_parameters(&self, scene: &mut MachineScene, values: &[f64]) {
+        if let MachineScene::Shaft(scene) = scene {
+            for (row, value) in self.rows.iter().zip(values) {
+                if let Some(ShaftSource::Number(parameter)) = shaft_source(row) {
+                    parameter.set(scene, *value);
+                }
             }
         }
-        for (part, mounted) in self.bearings.iter().zip(&mut scene.bearings) {
-            part.variables.set_parameters(&mut mounted.scene, &values[part.first..]);
+        for (part, scene) in self.bearings.iter().zip(scene.bearings_mut()) {
+            part.variables.set_parameters(scene, &values[part.first..]);
         }
     }
 
     /// What an input is given together with; none for other variables.
-    pub fn group(&self, reference: usize, system: &System) -> Option<SystemGroup> {
+    pub fn group(&self, reference: usize, machine: &impl Parts) -> Option<MachineGroup> {
         if let Some((index, own)) = self.part(reference) {
-            let (_, bearing) = system.bearings().nth(index)?;
+            let (_, bearing) = machine.bearings().nth(index)?;
             let group = self.bearings[index].variables.rows()[own].group(bearing.scene())?;
-            return Some(SystemGroup::Bearing(index, group));
+            return Some(MachineGroup::Bearing(index, group));
         }
         match shaft_source(&self.rows[reference])? {
-            ShaftSource::Force(load, _) | ShaftSource::Moment(load, _) => Some(SystemGroup::Load(load)),
-            ShaftSource::Gear(index) => Some(SystemGroup::Gear(index)),
-            ShaftSource::Drive => Some(SystemGroup::Drive),
+            ShaftSource::Force(load, _) | ShaftSource::Moment(load, _) => Some(MachineGroup::Load(load)),
+            ShaftSource::Gear(index) => Some(MachineGroup::Gear(index)),
+            ShaftSource::Drive => Some(MachineGroup::Drive),
             ShaftSource::Number(_)
             | ShaftSource::Whole(_)
             | ShaftSource::Housing(..)
@@ -178,7 +196,7 @@ fn shaft_source(row: &Variable) -> Option<ShaftSource> {
     }
 }
 
-/// A row of a bearing as one of the system.
+/// A row of a bearing as one of a machine with a shaft.
 fn of_bearing(row: &Variable, bearing: &str) -> Variable {
     let name = format!("{}.{}", shaft_rows::quoted(bearing), row.name);
     // Its axes are its own: those of a bearing that is mounted against the shaft's axis are turned by half a turn about z.
