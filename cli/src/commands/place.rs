@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use roulement::analysis::estimate::Verdicts;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::Simulation;
+use roulement::simulation::machine::Machine;
 use roulement::simulation::system::System;
 use roulement_cli::page::record;
 use roulement_cli::report::figures::{Figures, Shown};
@@ -14,7 +15,7 @@ use roulement_cli::report::json;
 use roulement_cli::report::losses::Closed;
 use roulement_cli::report::phases;
 use roulement_cli::report::plots::{title, write_plots};
-use roulement_cli::report::results::{Choice, ResultsError, is_parquet};
+use roulement_cli::report::results::{Choice, Columns, MachineColumns, ResultsError, is_parquet};
 use roulement_cli::report::shaft;
 use roulement_cli::report::spectrum;
 use roulement_cli::report::tables::Tables;
@@ -75,15 +76,14 @@ impl Place {
     ///
     /// # Errors
     /// If a chosen column is not there, or files cannot be written or removed.
-    pub fn begin(&self, scene: &MachineScene) -> Result<(), Box<dyn Error>> {
-        if scene.shaft().is_some() && !self.has_files() {
-            let place = self.output.display();
-            return Err(
-                format!("{place}: a shaft's results are a directory, a table for each bearing").into()
-            );
-        }
+    pub fn begin(&self, scene: &MachineScene, machine: &Machine) -> Result<(), Box<dyn Error>> {
         // Before anything of a former run goes.
-        Tables::check(scene, &self.choice)?;
+        if self.has_files() {
+            let check = |(_, scene)| Columns::new(scene, &self.choice).map(drop);
+            scene.bearings().into_iter().try_for_each(check)?;
+        } else {
+            MachineColumns::new(machine, &self.choice)?;
+        }
         let begin = |directory: &Path| {
             record::begin(directory).map_err(|why| format!("cannot begin in {}: {why}", directory.display()))
         };
@@ -100,9 +100,17 @@ impl Place {
     ///
     /// # Errors
     /// If files cannot be written.
-    pub fn tables(&self, scene: &MachineScene, of_round: bool) -> Result<Tables, ResultsError> {
+    pub fn tables(
+        &self,
+        scene: &MachineScene,
+        machine: &Machine,
+        of_round: bool,
+    ) -> Result<Tables, ResultsError> {
         let of_bearing = |name: &str| self.table(name, of_round);
-        Tables::create(scene, &self.choice, of_bearing, &self.table_of_shaft(of_round))
+        match self.has_files() {
+            true => Tables::each(scene, &self.choice, of_bearing, &self.table_of_shaft(of_round)),
+            false => Tables::whole(machine, &self.choice, &of_bearing("")),
+        }
     }
 
     /// Puts the finished tables of a round in the place of those that are there.
@@ -127,10 +135,14 @@ impl Place {
 
     /// Tables of a round, and where they belong.
     fn rounds(&self, scene: &MachineScene) -> impl Iterator<Item = [PathBuf; 2]> {
-        let bearings =
-            scene.bearings().into_iter().map(|(name, _)| [true, false].map(|round| self.table(name, round)));
-        let shaft = scene.shaft().map(|_| [true, false].map(|round| self.table_of_shaft(round)));
-        bearings.chain(shaft)
+        let names = match self.has_files() {
+            true => scene.bearings().into_iter().map(|(name, _)| name).collect(),
+            false => vec![""],
+        };
+        let shaft = scene.shaft().filter(|_| self.has_files());
+        let shaft = shaft.map(|_| [true, false].map(|round| self.table_of_shaft(round)));
+        let tables = names.into_iter().map(|name| [true, false].map(|round| self.table(name, round)));
+        tables.chain(shaft)
     }
 
     /// Leaves plots, means, summaries and records of a run, and says the summary. Verdicts are those of every bearing; error bars, of
@@ -179,12 +191,17 @@ impl Place {
             (played.machine.shaft(), &played.seen.shaft, shown.split_last())
         {
             text = summary::of_shaft(played, (system, seen), of_shaft, of_bearings) + errors;
-            let plot = self.write_shaft(played, (system, seen), of_shaft, &text)?;
-            listed = format!(
-                "results          {}\nplot             {}\n{listed}",
-                self.table_of_shaft(false).display(),
-                plot.display()
-            );
+            listed = match self.has_files() {
+                true => {
+                    let plot = self.write_shaft(played, (system, seen), of_shaft, &text)?;
+                    format!(
+                        "results          {}\nplot             {}\n{listed}",
+                        self.table_of_shaft(false).display(),
+                        plot.display()
+                    )
+                }
+                false => format!("results          {}\n", self.output.display()),
+            };
         }
         let listed = match self.said {
             Said::Nothing => return Ok(()),

@@ -125,8 +125,8 @@ pub fn simulate(
             announce(name, bearing.scene(), verdicts);
         }
     }
-    place.begin(scene)?;
-    let tables = place.tables(scene, false)?;
+    place.begin(scene, &machine)?;
+    let tables = place.tables(scene, &machine, false)?;
     if wants_error || scene.solver().goal.is_some() {
         return measured(player, scene, (machine, tables), place, &verdicts, rounds);
     }
@@ -172,8 +172,9 @@ fn measured(
         let next = match judgement {
             Judgement::Refine => {
                 let finer = finer(scene, rounds.refinements());
-                let tables = place.tables(&finer, true)?;
-                let mut next = player.play(Machine::new(&finer)?, times, Some(tables), &words)?;
+                let machine = Machine::new(&finer)?;
+                let tables = place.tables(&finer, &machine, true)?;
+                let mut next = player.play(machine, times, Some(tables), &words)?;
                 if matches!(next.end, End::Reached) {
                     place.put_round(scene)?;
                     rounds.push(next.take_comparable());

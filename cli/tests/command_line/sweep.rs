@@ -396,6 +396,46 @@ fn a_run_is_written_as_parquet_and_json_with_the_same_bits() {
 }
 
 #[test]
+fn a_run_of_a_shaft_is_written_as_one_parquet_table_with_the_bits_of_its_bearings() {
+    let scratch = Scratch::new("shaft-parquet");
+    let text = include_str!("../../../scenes/shafts/pinion.toml");
+    let short = text.replace("duration = \"20 ms\"", "duration = \"300 us\"");
+    assert_ne!(text, short);
+    let file = scratch.path("scene.toml");
+    std::fs::write(&file, short).unwrap();
+    let run =
+        |to: &str, columns: &str| roulement(&["run", &file, "-o", &scratch.path(to), "--columns", columns]);
+    good(&run("out", "inner.force.*"));
+    let said = good(&run("table.parquet", "left.inner.force.*,shaft.angle"));
+    assert!(said.contains(&scratch.path("table.parquet")) && !said.contains("plot"), "{said}");
+    let [bearing, shaft] = ["out/left/results.csv", "out/shaft.csv"].map(|path| columns(&scratch.read(path)));
+    let reader =
+        SerializedFileReader::new(std::fs::File::open(scratch.path("table.parquet")).unwrap()).unwrap();
+    let mut rows = 0;
+    for (index, row) in reader.get_row_iter(None).unwrap().enumerate() {
+        let row = row.unwrap();
+        let number = |wanted: &str| {
+            let field = row.get_column_iter().find(|(name, _)| *name == wanted).unwrap().1;
+            let Field::Double(value) = field else { panic!("{wanted}: {field}") };
+            *value
+        };
+        assert_eq!(row.len(), 5);
+        for axis in ["x", "y", "z"] {
+            let own: f64 = bearing[&format!("inner.force.{axis} [N]")][index].parse().unwrap();
+            assert_eq!(number(&format!("left.inner.force.{axis}")).to_bits(), own.to_bits());
+        }
+        assert_eq!(number("time"), bearing["time [s]"][index].parse::<f64>().unwrap());
+        assert!(number("shaft.angle") >= 0.0 && shaft["time [s]"].len() > index);
+        rows += 1;
+    }
+    assert_eq!(rows, bearing["time [s]"].len());
+    let refused = run("other.parquet", "left.inner.farce");
+    assert!(
+        !refused.status.success() && String::from_utf8_lossy(&refused.stderr).contains("left.inner.farce")
+    );
+}
+
+#[test]
 fn consistency_a_kept_run_is_that_of_its_scene_and_stands_on_the_page() {
     let scratch = Scratch::new("sweep-runs");
     // The second case cannot finish a step; the third has no scene.
