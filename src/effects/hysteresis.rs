@@ -1,8 +1,10 @@
 //! Elastic hysteresis of rolling: what the material of ball and race loses as it passes through the contact, dry or oiled.
 
 use super::effect::{Effect, Getter, Info, Row};
+use super::estimate::Estimate;
 use super::keys::keys;
 use super::reports::BallOutput;
+use super::twin::Twin;
 use crate::schema::variable_units::WATT;
 
 keys! {
@@ -31,6 +33,15 @@ impl Effect for Settings {
         price: "24 % of a step (thrust case)",
         example: "[effects]\nhysteresis = true\n",
     };
+
+    const ESTIMATE: &'static str = "settled states with and without it";
+
+    fn twins(&self, _: &Estimate) -> Vec<Twin> {
+        let on = self.on;
+        let twin =
+            Twin::new("effects.hysteresis", "hysteresis", on, move |effects| effects.hysteresis.on = !on);
+        vec![twin.written("[effects] hysteresis = true")]
+    }
 
     fn setting(&self) -> Option<String> {
         self.on.then(|| "on".into())
