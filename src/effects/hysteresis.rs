@@ -24,9 +24,11 @@ impl Settings {
     }
 }
 
+const KEY: &str = "effects.hysteresis";
+
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
-        key: "effects.hysteresis",
+        key: KEY,
         adds: "elastic hysteresis of rolling: a moment against rolling in every contact of balls and races",
         states: "none",
         source: "Houpert 1999; for bearing steel",
@@ -38,13 +40,18 @@ impl Effect for Settings {
 
     fn twins(&self, _: &Estimate) -> Vec<Twin> {
         let on = self.on;
-        let twin =
-            Twin::new("effects.hysteresis", "hysteresis", on, move |effects| effects.hysteresis.on = !on);
-        vec![twin.written("[effects] hysteresis = true")]
+        let twin = Twin::new(KEY, "hysteresis", on, move |effects| effects.hysteresis.on = !on);
+        vec![twin.written("[effects] hysteresis = true").automatic(Some(KEY))]
     }
 
     fn setting(&self) -> Option<String> {
         self.on.then(|| "on".into())
+    }
+
+    fn switch(&mut self, key: &str, on: bool) {
+        if key == KEY {
+            self.on = on;
+        }
     }
 
     fn headlines(&self) -> &'static [&'static str] {

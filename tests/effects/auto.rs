@@ -100,16 +100,18 @@ fn effects_that_matter_are_switched_on_where_the_data_are_there() {
     let (radial, notes) = found_out(RADIAL, table);
     assert!(radial.effects.groove_slip.on);
     assert!(notes.iter().any(|note| note.starts_with("auto: effects.heathcote_slip = true: ")), "{notes:?}");
-    // Under thrust it is next to nothing, and nothing is switched.
+    // Under thrust it is next to nothing; hysteresis is not.
     let (thrust, notes) = found_out(THRUST, table);
     assert!(
         !thrust.effects.groove_slip.on
-            && thrust.effects.each().iter().filter(|e| e.setting().is_some()).count() == 1
+            && thrust.effects.hysteresis.on
+            && thrust.effects.each().iter().filter(|e| e.setting().is_some()).count() == 2
     );
     assert!(
-        notes[0] == "auto: no effect is switched"
-            && notes[1]
-                .ends_with("at hand: waviness, growth by temperature, support, film, rolling resistance"),
+        notes[0].starts_with("auto: effects.hysteresis = true: would change torque +")
+            && notes[1].ends_with(
+                "at hand: rolling resistance, film, growth by temperature, waviness, support, drag"
+            ),
         "{notes:?}"
     );
     // The word alone: the default creep law, without the groove slip that comes with it.
@@ -156,4 +158,28 @@ fn a_word_that_is_not_auto_is_refused() {
     let message = refused("{ auto_threshold = 2 }");
     assert!(message.contains("effects.auto_threshold = 2") && message.contains("(0, 1]"), "{message}");
     assert!(refused("7").contains("effects wants a table of effects or \"auto\""), "{}", refused("7"));
+}
+
+#[test]
+fn what_an_importer_may_set_is_judged_at_the_corners_of_its_ranges() {
+    let importer = |changes: Changes| auto::resolve_for_importer(scene(RADIAL, changes)).unwrap();
+    let auto = ("effects", "\"auto\"");
+    let thrust = ("load.x", "{ force = 300 }");
+    // Nothing is known of what may be set.
+    let (constant, notes) = importer(&[auto, thrust, ("load.y.force", "100")]);
+    assert!(constant.effects.groove_slip.on, "{notes:?}");
+    let alone = found_out(RADIAL, &[auto, thrust, ("load.y.force", "100")]).0;
+    assert!(!alone.effects.groove_slip.on);
+    // Light loads at all corners: what scripts give is what there is.
+    let light = "[[0, 80], [\"10 ms\", 120]]";
+    let (within, notes) = importer(&[auto, thrust, ("load.y.force", light)]);
+    assert!(!within.effects.groove_slip.on, "{notes:?}");
+    // In no instant of the scripts is the radial load large while the thrust is small; they may be set so.
+    let [axial, radial] = ["[[0, 100], [\"10 ms\", 9000]]", "[[0, 100], [\"10 ms\", 3000]]"];
+    let scripts: Changes = &[auto, ("load.x", &format!("{{ force = {axial} }}")), ("load.y.force", radial)];
+    assert!(!found_out(RADIAL, scripts).0.effects.groove_slip.on);
+    let (corners, notes) = importer(scripts);
+    assert!(corners.effects.groove_slip.on, "{notes:?}");
+    // What was found out stands in the text of the package.
+    assert_eq!(Scene::parse(&corners.source).unwrap().effects.auto.found, notes);
 }

@@ -273,11 +273,10 @@ fn losses(scene: &Scene, [from, to]: [f64; 2]) -> f64 {
     (1..=rows).map(|k| row(&mut simulation, k)).sum::<f64>() / rows as f64
 }
 
-/// What takes effects of losses in: mist, hysteresis, slip of grooves, oil.
-const OF_LOSSES: [(&str, &str, &str); 4] = [
+/// What takes effects of losses in: mist, hysteresis, oil.
+const OF_LOSSES: [(&str, &str, &str); 3] = [
     ("drag", "effects.ambient", "{ density = 50, viscosity = 18e-6 }"),
     ("hysteresis", "effects.hysteresis", "true"),
-    ("groove slip", "effects.heathcote_slip", "true"),
     ("film", "film", "{ iso_vg = 68, temperature = \"40 degC\" }"),
 ];
 
@@ -285,15 +284,26 @@ const OF_LOSSES: [(&str, &str, &str); 4] = [
 fn torque_in_runs(names: &[&str], window: [f64; 2]) {
     for name in names {
         let case = CASES.iter().find(|case| case.name == *name).unwrap();
-        let verdicts = judged(&case.with(&[]));
-        let without = losses(&case.with(&[]), window);
-        for (subject, key, on) in OF_LOSSES {
+        // With the slip of grooves: without it a radial load takes next to nothing, and a change of that is of no account.
+        let slips = ("effects.heathcote_slip", "true");
+        let verdicts = judged(&case.with(&[slips]));
+        let without = losses(&case.with(&[slips]), window);
+        let compare = |subject: &str, truth: f64| {
             let said = changes(&verdicts, subject).torque.unwrap();
-            let truth = losses(&case.with(&[(key, on)]), window) / without - 1.0;
             println!("{name:<12} {subject:<12} torque {said:+.4} {truth:+.4}");
+            (said, truth)
+        };
+        for (subject, key, on) in OF_LOSSES {
+            let (said, truth) =
+                compare(subject, losses(&case.with(&[slips, (key, on)]), window) / without - 1.0);
             // A small change of another kind than the effect's own, such as that of slip by which friction carries balls along.
-            assert!((said - truth).abs() < 0.02 + 0.5 * truth.abs(), "{name}, {subject}: {said} for {truth}");
+            assert!((said - truth).abs() < 0.02 + 0.3 * truth.abs(), "{name}, {subject}: {said} for {truth}");
         }
+        let smooth = losses(&case.with(&[("effects.heathcote_slip", "false")]), window);
+        let (said, truth) = compare("groove slip", without / smooth - 1.0);
+        // Shares of the whole.
+        let [said, truth] = [said, truth].map(|change| change / (1.0 + change));
+        assert!((said - truth).abs() < 0.05, "{name}, groove slip: {said} for {truth}");
     }
 }
 

@@ -7,7 +7,7 @@ mod pairs;
 mod report;
 mod run;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use roulement::effects::estimate::Changes;
 use roulement::scene::machine::MachineScene;
@@ -66,10 +66,7 @@ pub fn measure(
     let Pairs { scenes, pairs } = Pairs::of(scene)?;
     let steps = scenes.iter().flat_map(|scene| [scene.clone(), finer(scene, 1)]).collect::<Vec<_>>();
     let runs: Vec<Result<Vec<Taken>, String>> = on_threads(steps.len(), threads, |index| {
-        if interrupted.load(Ordering::Relaxed) {
-            return Err("interrupted".into());
-        }
-        let taken = run(&steps[index]);
+        let taken = run(&steps[index], interrupted);
         done(steps.len());
         taken
     });

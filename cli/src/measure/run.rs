@@ -1,6 +1,7 @@
 //! One run, and what is taken from it.
 
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use cpu_time::ThreadTime;
 use nalgebra::Vector3;
@@ -58,16 +59,18 @@ impl Observer for Largest {
 ///
 /// # Errors
 /// If it does not start, or does not come to its end.
-pub fn run(scene: &MachineScene) -> Result<Vec<Taken>, String> {
+pub fn run(scene: &MachineScene, interrupted: &AtomicBool) -> Result<Vec<Taken>, String> {
     let began = ThreadTime::now();
     let mut machine = Machine::new(scene).map_err(|why| why.to_string())?;
     let mut observers = (Watch::of(&machine), Largest(vec![0.0; machine.bearings().count()]));
     let ended = play_observed(&mut machine, Rows::of_scene(scene), &mut observers, |machine, (watch, _)| {
         watch.push(machine);
-        ControlFlow::<()>::Continue(())
+        if interrupted.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    if let Err(why) = ended {
-        return Err(why.to_string());
+    match ended {
+        Err(why) => return Err(why.to_string()),
+        Ok(ControlFlow::Break(())) => return Err("interrupted".into()),
+        Ok(ControlFlow::Continue(())) => {}
     }
     let cpu = began.elapsed().as_secs_f64();
     let (watch, Largest(largest)) = observers;
