@@ -88,7 +88,8 @@ fn regression_groove_slip_stays_on_where_there_is_a_cage() {
     // It is 0.4 % of the power of the balls, and without it all loses 14 % more: it changes how balls push the cage.
     let (found, notes) = found_out(CAGE, &[("effects.auto", "true")]);
     assert!(found.effects.groove_slip.on, "{notes:?}");
-    let off = scene(CAGE, &[("effects.heathcote_slip", "false")]);
+    let on = if found.effects.hysteresis.on { "true" } else { "false" };
+    let off = scene(CAGE, &[("effects.heathcote_slip", "false"), ("effects.hysteresis", on)]);
     let [with, without] = [power(&found), power(&off)];
     assert!((without / with - 1.0).abs() > 0.05, "{without} {with}");
 }
@@ -162,24 +163,25 @@ fn a_word_that_is_not_auto_is_refused() {
 
 #[test]
 fn what_an_importer_may_set_is_judged_at_the_corners_of_its_ranges() {
-    let importer = |changes: Changes| auto::resolve_for_importer(scene(RADIAL, changes)).unwrap();
-    let auto = ("effects", "\"auto\"");
-    let thrust = ("load.x", "{ force = 300 }");
+    let importer = |changes: Changes| auto::resolve_for_importer(scene(THRUST, changes)).unwrap();
+    let auto = ("effects", "{ auto = true, creep = \"saturated\" }");
     // Nothing is known of what may be set.
-    let (constant, notes) = importer(&[auto, thrust, ("load.y.force", "100")]);
+    let (constant, notes) = importer(&[auto]);
     assert!(constant.effects.groove_slip.on, "{notes:?}");
-    let alone = found_out(RADIAL, &[auto, thrust, ("load.y.force", "100")]).0;
-    assert!(!alone.effects.groove_slip.on);
-    // Light loads at all corners: what scripts give is what there is.
-    let light = "[[0, 80], [\"10 ms\", 120]]";
-    let (within, notes) = importer(&[auto, thrust, ("load.y.force", light)]);
+    assert!(!found_out(THRUST, &[auto]).0.effects.groove_slip.on);
+    // What scripts give is what there is.
+    let (within, notes) = importer(&[auto, ("load.x.force", "[[0, 1500], [\"10 ms\", 2000]]")]);
     assert!(!within.effects.groove_slip.on, "{notes:?}");
     // In no instant of the scripts is the radial load large while the thrust is small; they may be set so.
-    let [axial, radial] = ["[[0, 100], [\"10 ms\", 9000]]", "[[0, 100], [\"10 ms\", 3000]]"];
-    let scripts: Changes = &[auto, ("load.x", &format!("{{ force = {axial} }}")), ("load.y.force", radial)];
-    assert!(!found_out(RADIAL, scripts).0.effects.groove_slip.on);
-    let (corners, notes) = importer(scripts);
+    let together: Changes = &[
+        auto,
+        ("load.x.force", "[[0, 1500], [\"10 ms\", 6000]]"),
+        ("load.y.force", "[[0, 0], [\"10 ms\", 1000]]"),
+    ];
+    assert!(!found_out(THRUST, together).0.effects.groove_slip.on);
+    let (corners, notes) = importer(together);
     assert!(corners.effects.groove_slip.on, "{notes:?}");
+    assert!(notes.iter().any(|note| note.contains("at a corner of the ranges")), "{notes:?}");
     // What was found out stands in the text of the package.
     assert_eq!(Scene::parse(&corners.source).unwrap().effects.auto.found, notes);
 }

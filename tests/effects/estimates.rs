@@ -301,9 +301,13 @@ fn torque_in_runs(names: &[&str], window: [f64; 2]) {
         }
         let smooth = losses(&case.with(&[("effects.heathcote_slip", "false")]), window);
         let (said, truth) = compare("groove slip", without / smooth - 1.0);
-        // Shares of the whole.
+        // Shares of the whole. Below the threshold they are those of spin that takes another part of the power.
         let [said, truth] = [said, truth].map(|change| change / (1.0 + change));
-        assert!((said - truth).abs() < 0.05, "{name}, groove slip: {said} for {truth}");
+        if said > 0.05 {
+            agree(case, "groove slip", said, truth);
+        } else {
+            assert!(truth < 0.05, "{name}, groove slip: {said} for {truth}");
+        }
     }
 }
 
