@@ -57,8 +57,13 @@ const IN_A_PERIOD: u32 = 8;
 /// # Errors
 /// See [`EstimateError`].
 pub fn verdicts(scene: &Scene, model: &Model) -> Verdicts {
+    over_time(scene, model, &[]).map(ranked)
+}
+
+/// The same, but for effects that are known to matter.
+fn over_time(scene: &Scene, model: &Model, known: &[Verdict]) -> Verdicts {
     let fastest = [&scene.load.inner_speed, &scene.load.outer_speed].map(fastest);
-    let judged = |time: f64, speeds: [f64; 2]| {
+    let judged = |time: f64, speeds: [f64; 2], known: [&[Verdict]; 2]| {
         let estimate = at(scene, model, time, speeds)?;
         let start = |switches: &[&Switch]| {
             let mut changed = judged_scene(scene);
@@ -69,9 +74,9 @@ pub fn verdicts(scene: &Scene, model: &Model) -> Verdicts {
             let simulation = Simulation::starting_at(&changed, time).map_err(|why| why.to_string())?;
             Ok(Settled::of(&simulation))
         };
-        judge(&scene.effects, estimate, start)
+        judge(&scene.effects, estimate, known, start)
     };
-    let mut verdicts = judged(first_loaded(scene, model), fastest)?;
+    let mut verdicts = judged(first_loaded(scene, model), fastest, [known, &[]])?;
     let speeds = |time: f64| [&scene.load.inner_speed, &scene.load.outer_speed].map(|speed| speed.at(time));
     // Where a bearing is slow, and what it carries is not what it has to carry when it is fast.
     let slow = times_of([&scene.load.inner_speed, &scene.load.outer_speed], scene.load.duration.0);
@@ -79,10 +84,10 @@ pub fn verdicts(scene: &Scene, model: &Model) -> Verdicts {
     let points = times(scene).into_iter().map(|time| (time, fastest)).chain(slow);
     for (time, speeds) in points.filter(|(_, speeds)| speeds[0] != speeds[1]) {
         // Where there is no equilibrium, the other times tell.
-        let Ok(there) = judged(time, speeds) else { continue };
-        take_what_matters(&mut verdicts, there, time);
+        let Ok(there) = judged(time, speeds, [known, &verdicts]) else { continue };
+        take_what_matters(&mut verdicts, there, &format!("at {} ms", digits(1e3 * time)));
     }
-    Ok(ranked(verdicts))
+    Ok(verdicts)
 }
 
 /// The same, and at all corners of the ranges of what acts on the bearing, which may come together in any way: those of its scripts.
@@ -106,14 +111,11 @@ pub fn verdicts_in_ranges(scene: &Scene) -> Verdicts {
             *schedules[*index] = Schedule::Constant(values.into_iter().reduce(end).unwrap_or(0.0));
         }
         // What cannot be has nothing to say.
-        let judged =
-            Model::new(&there).map_err(EstimateError::from).and_then(|model| self::verdicts(&there, &model));
-        for new in judged.into_iter().flatten().filter(|new| new.matters) {
-            let same = |old: &&mut Verdict| (old.key, old.subject) == (new.key, new.subject);
-            if let Some(old) = verdicts.iter_mut().find(same).filter(|old| !old.matters) {
-                let sentence = format!("{}, at a corner of the ranges of the scripts", new.sentence);
-                *old = Verdict { sentence, ..new };
-            }
+        let judged = Model::new(&there)
+            .map_err(EstimateError::from)
+            .and_then(|model| over_time(&there, &model, &verdicts));
+        if let Ok(there) = judged {
+            take_what_matters(&mut verdicts, there, "at a corner of the ranges of the scripts");
         }
     }
     Ok(verdicts)
@@ -135,7 +137,7 @@ fn acting(scene: &mut Scene) -> Vec<&mut Schedule> {
 /// The same of every bearing of a shaft, where shaft and housings put its races: with the whole shaft in balance again.
 pub fn verdicts_of_shaft(scene: &SystemScene) -> Vec<Verdicts> {
     let of = |index: usize| {
-        let at = |time: f64| {
+        let at = |time: f64, known: &[Verdict]| {
             let start = |switches: &[&Switch]| {
                 let mut changed = scene.clone();
                 let own = &mut changed.bearings[index].scene;
@@ -148,12 +150,15 @@ pub fn verdicts_of_shaft(scene: &SystemScene) -> Vec<Verdicts> {
             let system =
                 System::starting_at(scene, time).map_err(|why| EstimateError::Start(why.to_string()))?;
             let (_, bearing) = system.bearings().nth(index).ok_or(EstimateError::Unloaded)?;
-            judge(&bearing.scene().effects, on_shaft(bearing)?, start)
+            judge(&bearing.scene().effects, on_shaft(bearing)?, [known, &[]], start)
         };
-        let mut verdicts = at(0.0);
+        let mut verdicts = at(0.0, &[]);
         for time in times_of(scene.schedules(), scene.load.duration.0) {
-            match (&mut verdicts, at(time)) {
-                (Ok(verdicts), Ok(there)) => take_what_matters(verdicts, there, time),
+            let there = at(time, verdicts.as_deref().unwrap_or_default());
+            match (&mut verdicts, there) {
+                (Ok(verdicts), Ok(there)) => {
+                    take_what_matters(verdicts, there, &format!("at {} ms", digits(1e3 * time)));
+                }
                 (Err(_), there @ Ok(_)) => verdicts = there,
                 _ => {}
             }
@@ -182,16 +187,21 @@ fn judged_scene(scene: &Scene) -> Scene {
     judged
 }
 
-/// What is said of all effects at one state, by settled states that some switches lead to.
+/// What is said of effects at one state, by settled states that some switches lead to; nothing of twins that are known to matter.
 fn judge(
     effects: &Effects,
     mut estimate: Estimate,
+    known: [&[Verdict]; 2],
     start: impl Fn(&[&Switch]) -> Result<Settled, String>,
 ) -> Verdicts {
     let scene = start(&[]).map_err(EstimateError::Start)?;
     estimate.power = scene.power;
     // What changes contact angles or friction changes how balls push a cage, and that is no part of a settled state.
     let threshold = estimate.threshold * if estimate.caged { CAGED } else { 1.0 };
+    let is_known = |twin: &Twin| {
+        let mut mattering = known.iter().copied().flatten().filter(|verdict| verdict.matters);
+        mattering.any(|verdict| (verdict.key, verdict.subject) == (Some(twin.key), twin.subject))
+    };
     let of = |twin: Twin| {
         let mut changes = Changes::default();
         let mut film = None;
@@ -217,19 +227,22 @@ fn judge(
         });
         Verdict::of_twin(&twin, changes, threshold, &tail)
     };
-    let mut verdicts: Vec<Verdict> =
-        effects.twins(&estimate).into_iter().filter(|twin| !twin.in_runs_alone).map(of).collect();
+    let mut verdicts: Vec<Verdict> = effects
+        .twins(&estimate)
+        .into_iter()
+        .filter(|twin| !twin.in_runs_alone && !is_known(twin))
+        .map(of)
+        .collect();
     verdicts.extend(effects.verdicts(&estimate));
     Ok(verdicts)
 }
 
-/// Puts what matters at another time \[s] in the place of what did not.
-fn take_what_matters(verdicts: &mut [Verdict], there: Vec<Verdict>, time: f64) {
+/// Puts what matters elsewhere in the place of what did not.
+fn take_what_matters(verdicts: &mut [Verdict], there: Vec<Verdict>, place: &str) {
     for new in there.into_iter().filter(|new| new.matters) {
         let same = |old: &&mut Verdict| (old.key, old.subject) == (new.key, new.subject);
         if let Some(old) = verdicts.iter_mut().find(same).filter(|old| !old.matters) {
-            let sentence = format!("{}, at {} ms", new.sentence, digits(1e3 * time));
-            *old = Verdict { sentence, ..new };
+            *old = Verdict { sentence: format!("{}, {place}", new.sentence), ..new };
         }
     }
 }

@@ -28,7 +28,7 @@ const BEARINGS: [&str; 12] = [
 /// A catalogue bearing at a load and a speed, in oil or dry; under thrust, radial load or both, held in directions that are not loaded.
 fn scene(random: &mut Random) -> Option<Scene> {
     let name = random.pick(&BEARINGS);
-    let bearing: Bearing = Request::parse(name).ok()?.bearing().ok()?;
+    let bearing: Bearing = Request::parse(&format!("designation = \"{name}\"")).ok()?.bearing().ok()?;
     let text = bearing.scene(1).ok()?;
     let rating = bearing.dynamic_load_rating;
     let angular = name.starts_with('7');
