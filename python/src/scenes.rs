@@ -111,13 +111,13 @@ impl Scene {
                 scene @ MachineScene::Shaft(_) => scene,
             };
             let machine = Machine::new(&scene).map_err(runtime)?;
-            let of = |(name, bearing): (&str, &roulement::Simulation)| {
-                let input = bearing.equilibrium_input();
-                let verdicts = estimate::verdicts_under(bearing.scene(), bearing.model(), &input);
+            let MachineScene::Shaft(system) = &scene else { return Ok(String::new()) };
+            let all = estimate::verdicts_of_shaft(system);
+            let of = |((name, bearing), verdicts): ((&str, &roulement::Simulation), estimate::Verdicts)| {
                 let report = json::effects(bearing.scene(), &verdicts.map_err(runtime)?).map_err(runtime)?;
                 Ok::<_, PyErr>((name.to_string(), report))
             };
-            let reports = machine.bearings().map(of).collect::<PyResult<Map<_, _>>>()?;
+            let reports = machine.bearings().zip(all).map(of).collect::<PyResult<Map<_, _>>>()?;
             Ok(Value::Object(reports).to_string())
         })
     }

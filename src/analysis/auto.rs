@@ -1,24 +1,53 @@
 //! `effects.auto`: switches on the effects of a scene that matter by their estimates and have all the data they need.
 
-use super::estimate::{self, EstimateError};
+use super::estimate::{self, EstimateError, Verdicts};
 use crate::effects::estimate::{Standing, Verdict};
 use crate::model::Model;
-use crate::scene::Scene;
+use crate::scene::{Group, Scene};
+use crate::simulation::scripted_groups;
 
 /// The scene with its effects found out, as if they had been written so, and what was done, a sentence each; the scene as it is where
 /// it does not ask for that.
 ///
 /// # Errors
 /// If there is no equilibrium to estimate from.
-pub fn resolve(mut scene: Scene) -> Result<(Scene, Vec<String>), EstimateError> {
+pub fn resolve(scene: Scene) -> Result<(Scene, Vec<String>), EstimateError> {
+    resolve_by(scene, |scene| estimate::verdicts(scene, &Model::new(scene)?))
+}
+
+/// The same of a scene whose inputs an importer may set: within the ranges that its scripts give. Where it gives none for loads, poses or
+/// speeds nothing is known of them, and effects that can be switched on are.
+///
+/// # Errors
+/// If there is no equilibrium to estimate from.
+pub fn resolve_for_importer(scene: Scene) -> Result<(Scene, Vec<String>), EstimateError> {
+    resolve_by(scene, |scene| {
+        let mut verdicts = estimate::verdicts_in_ranges(scene)?;
+        let groups = [Group::Loads, Group::Speeds, Group::Tilts];
+        if !groups.into_iter().any(|group| scripted_groups(scene).contains(group)) {
+            for verdict in verdicts.iter_mut().filter(|verdict| verdict.auto.is_some() && !verdict.matters) {
+                verdict.matters = true;
+                verdict.sentence +=
+                    "; an importer may set loads and speeds, of which the scene gives no range";
+            }
+        }
+        Ok(verdicts)
+    })
+}
+
+fn resolve_by(
+    mut scene: Scene,
+    verdicts: impl Fn(&Scene) -> Verdicts,
+) -> Result<(Scene, Vec<String>), EstimateError> {
     if !scene.effects.auto.on {
         return Ok((scene, vec![]));
     }
-    let verdicts = match estimate::verdicts(&scene, &Model::new(&scene)?) {
+    let verdicts = match verdicts(&scene) {
         Ok(verdicts) => verdicts,
         Err(why @ EstimateError::Unloaded) => {
-            scene.settle_effects(&[]);
-            return Ok((scene, vec![format!("auto: nothing is switched: {why}")]));
+            let notes = vec![format!("auto: nothing is switched: {why}")];
+            scene.settle_effects(&[], &notes);
+            return Ok((scene, notes));
         }
         Err(why) => return Err(why),
     };
@@ -49,6 +78,6 @@ pub fn resolve(mut scene: Scene) -> Result<(Scene, Vec<String>), EstimateError> 
         let lacking = lacking.join(", ");
         notes.push(format!("auto: would matter and cannot be switched on with the data at hand: {lacking}"));
     }
-    scene.settle_effects(&switches);
+    scene.settle_effects(&switches, &notes);
     Ok((scene, notes))
 }

@@ -4,5 +4,6 @@ pub mod auto;
 pub mod condensed;
 pub mod estimate;
 pub mod natural_frequency;
+mod settled;
 pub mod single_contact;
 pub mod stick_slip;

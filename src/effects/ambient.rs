@@ -7,9 +7,10 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 
 use super::effect::{Effect, Getter, Info, Row};
-use super::estimate::{Estimate, Verdict, digits, percent};
+use super::estimate::{Estimate, digits};
 use super::keys::keys;
 use super::moving_frame::MovingFrame;
+use super::twin::Twin;
 use crate::contact::BallMotion;
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::{Scalar, constant_vector, cross};
@@ -33,7 +34,7 @@ keys! {
 }
 
 /// A mist of oil, which the estimate is for where the scene gives no medium: its viscosity is that of the air.
-const MIST: Medium = Medium { density: 50.0, viscosity: 18e-6 };
+const MIST: AmbientSection = AmbientSection { density: Density(50.0), viscosity: Viscosity(18e-6) };
 
 /// [-] drag coefficient of a sphere at large Reynolds numbers (Newton's range).
 const NEWTON_RANGE: f64 = 0.44;
@@ -179,7 +180,8 @@ impl Effect for Settings {
         source: "Schiller and Naumann 1935; Kirchhoff 1876; Dennis, Singh and Ingham 1980",
         example: "[effects]\nambient = { density = 1.2, viscosity = 18e-6 }\n",
     };
-    const ESTIMATE: &'static str = "drag on a ball over its friction limit at the least loaded ball; a mist of oil of 50 kg/m3 where it is off";
+    const ESTIMATE: &'static str =
+        "settled states with and without it; a mist of oil of 50 kg/m3 where it is off";
 
     const NUMBERS: &'static [Number<Self>] = &[
         Number::fixed(
@@ -202,22 +204,13 @@ impl Effect for Settings {
         })
     }
 
-    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
-        let medium = self.section.as_ref().map_or(MIST, AmbientSection::medium);
-        let velocity = Vector3::new(estimate.orbital_velocity, 0.0, 0.0);
-        let drag = medium.drag(estimate.ball_radius, &velocity).norm();
-        let [_, least] = estimate.loads;
-        let share = drag / (estimate.friction * least);
-        let sentence = format!(
-            "drag of {} kg/m3 on a ball is {} N: {} of what friction can take at the least loaded ball",
-            digits(medium.density),
-            digits(drag),
-            percent(share)
-        );
-        let value = (share, estimate.threshold);
-        let verdict = Verdict::share("effects.ambient", "drag", self.section.is_some(), value, sentence);
+    fn twins(&self, _: &Estimate) -> Vec<Twin> {
+        let on = self.section.is_some();
+        let medium = if on { None } else { Some(MIST) };
+        let section = self.section.unwrap_or(MIST);
+        let twin = Twin::new("effects.ambient", "drag", on, move |effects| effects.ambient.section = medium);
         vec![
-            verdict.written(
+            twin.taken_as(format!("a medium of {} kg/m3", digits(section.density.0))).written(
                 "[effects] ambient = { density = ..., viscosity = ... }; the medium is not known here",
             ),
         ]

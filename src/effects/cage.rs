@@ -3,9 +3,11 @@
 use serde::Deserialize;
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
+use super::estimate::{Estimate, Standing, Verdict, digits, percent};
 use super::keys::keys;
 use super::per_ball::ball_row;
 use super::reports::{BallOutput, CageOutput, PocketOutput};
+use super::twin::Twin;
 use crate::schema::numbers::{DISSIPATION, Number, POISSON_RATIO, Place, Range, YOUNGS_MODULUS};
 use crate::schema::units::{DissipationFactor, Inertia, Length, Mass, Pressure};
 use crate::schema::variable_units::{
@@ -67,6 +69,30 @@ fn length(settings: &mut Settings, of: fn(&mut CageSection) -> &mut Option<Lengt
     Place::Value(settings.section.as_mut().and_then(|cage| of(cage).as_mut()).map(|length| &mut length.0))
 }
 
+/// [kg/m3] mass of a usual cage over the volume of all balls: 0.6 of that of steel balls.
+const USUAL_MASS: f64 = 0.6 * 7800.0;
+/// [-] diametral clearance of its pockets over the ball diameter.
+const USUAL_CLEARANCE: f64 = 0.02;
+
+/// A cage that runs have where the scene has none.
+fn usual(estimate: &Estimate) -> CageSection {
+    let Estimate { ball_radius, pitch_radius, balls, .. } = *estimate;
+    let mass = USUAL_MASS * balls as f64 * 4.0 / 3.0 * std::f64::consts::PI * ball_radius.powi(3);
+    let polar = mass * pitch_radius * pitch_radius;
+    CageSection {
+        mass: Mass(mass),
+        inertia: [polar, 0.5 * polar, 0.5 * polar].map(Inertia),
+        pocket_clearance: Length(USUAL_CLEARANCE * 2.0 * ball_radius),
+        guided_by: Guidance::Balls,
+        guidance_clearance: None,
+        land_diameter: None,
+        land_width: None,
+        youngs_modulus: None,
+        poisson_ratio: None,
+        damping: None,
+    }
+}
+
 /// [-] smallest diametral clearance of a pocket over the ball diameter.
 const SMALLEST_POCKET_CLEARANCE: f64 = 0.005;
 
@@ -80,6 +106,74 @@ impl Effect for Settings {
         example: "[effects]\ncage = true\n[cage]\nmass = \"20 g\"\ninertia = [1.1e-5, 6e-6, 6e-6]\n\
                   pocket_clearance = \"0.2 mm\"\nguided_by = \"balls\"\n",
     };
+
+    const ESTIMATE: &'static str = "load of the blows of balls that nothing keeps apart, or the power of balls that a cage holds back; what a cage does with weight or with balls without load is not estimated, and taken to matter";
+
+    fn twins(&self, estimate: &Estimate) -> Vec<Twin> {
+        let on = self.on;
+        let section = if on { None } else { Some(usual(estimate)) };
+        let twin = Twin::new("effects.cage", "cage", on, move |effects| {
+            (effects.cage.on, effects.cage.section) = (!on, section);
+        });
+        let words = section.map_or(String::new(), |cage| {
+            let (mass, play) = (cage.mass.0 * 1e3, cage.pocket_clearance.0 * 1e3);
+            format!(
+                "a cage of {} g with {} mm in its pockets, guided by the balls",
+                digits(mass),
+                digits(play)
+            )
+        });
+        vec![Twin { in_runs_alone: true, ..twin }.taken_as(words)]
+    }
+
+    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
+        let Estimate { spacing, loads: [largest, _], power, .. } = *estimate;
+        let clearance =
+            self.section.as_ref().map_or(usual(estimate).pocket_clearance.0, |cage| cage.pocket_clearance.0);
+        let lead = format!(
+            "by themselves balls would lead or lag by {} mm in a revolution",
+            digits(spacing.lead * 1e3)
+        );
+        // Of balls that start from rest those without load stay behind at first.
+        let (speed, why) = if spacing.from_rest {
+            (estimate.orbital_velocity, "from rest, balls without load stay behind those with it".to_string())
+        } else if spacing.falling > spacing.difference {
+            (spacing.falling, "balls that no load holds fall on the next ones".into())
+        } else if spacing.lead > spacing.gap {
+            (spacing.difference, lead.clone())
+        } else {
+            (0.0, lead.clone())
+        };
+        let blow = spacing.blow * speed.powf(1.2);
+        let struck = blow / largest;
+        // A cage holds them back to the common speed.
+        let held = if spacing.lead > clearance { spacing.slipping / power } else { 0.0 };
+        let loose = spacing.loose && !spacing.from_rest;
+        let sentence = match (struck >= held, speed > 0.0) {
+            (true, true) => format!(
+                "{why}; without a cage they strike each other at up to {} m/s: with {} N, {} of the largest load of a ball",
+                digits(speed),
+                digits(blow),
+                percent(struck)
+            ),
+            (false, _) => format!(
+                "{lead}, and a cage with {} mm in its pockets holds them: up to {} W of sliding, {} of all losses without it",
+                digits(clearance * 1e3),
+                digits(spacing.slipping),
+                percent(held)
+            ),
+            _ if loose => format!(
+                "{lead}; what rattles in a cage, by weight or without load, is not estimated: --measure runs it"
+            ),
+            _ => format!("{lead}: less than the {} mm that they have in pockets", digits(clearance * 1e3)),
+        };
+        let quantity = if struck >= held { "largest load" } else { "torque" };
+        let standing = if self.on { Standing::On } else { Standing::Off };
+        let write = "[effects] cage = true with [cage] mass, inertia, pocket_clearance, guided_by";
+        let value = (struck.max(held), estimate.threshold);
+        let verdict = Verdict::new(("cage", quantity), standing, value, sentence, write);
+        vec![Verdict { key: Some("effects.cage"), matters: verdict.matters || loose, ..verdict }]
+    }
 
     const NUMBERS: &'static [Number<Self>] = &[
         Number::fixed("cage.mass", Range::above(0.0, 1e4, "kg"), "mass of the cage", |s| {

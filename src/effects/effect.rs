@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::estimate::{Estimate, Verdict};
 use super::moving_frame::FrameInputs;
 use super::reports::Reports;
+use super::twin::Twin;
 use crate::schema::numbers::{Number, Parameter, Range};
 use crate::schema::variable_units::Unit;
 use crate::schema::{BearingSection, Drive, Friction, Group, SceneError};
@@ -152,7 +153,12 @@ pub trait Effect: Clone + 'static {
         vec![]
     }
 
-    /// Does it matter, as it is set or if it were on? Nothing where there is no estimate.
+    /// How it is taken in and out; nothing where no settled state tells of it.
+    fn twins(&self, _estimate: &Estimate) -> Vec<Twin> {
+        vec![]
+    }
+
+    /// Does it matter, by a closed form, as it is set or if it were on? Nothing where there is none.
     fn matters(&self, _estimate: &Estimate) -> Vec<Verdict> {
         vec![]
     }
@@ -200,6 +206,8 @@ pub trait AnyEffect {
     fn number(&mut self, key: &str) -> Option<&mut f64>;
     /// See [`Effect::inputs`].
     fn inputs(&self) -> Vec<InputRow>;
+    /// See [`Effect::twins`].
+    fn twins(&self, estimate: &Estimate) -> Vec<Twin>;
     /// See [`Effect::matters`].
     fn matters(&self, estimate: &Estimate) -> Vec<Verdict>;
     /// See [`Effect::switch`].
@@ -245,6 +253,10 @@ impl<T: Effect> AnyEffect for T {
 
     fn inputs(&self) -> Vec<InputRow> {
         Effect::inputs(self)
+    }
+
+    fn twins(&self, estimate: &Estimate) -> Vec<Twin> {
+        Effect::twins(self, estimate)
     }
 
     fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {

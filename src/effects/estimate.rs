@@ -1,45 +1,40 @@
-//! What an estimate of an effect may know of a bearing under its load, and what it says: whether the effect matters there.
+//! What an estimate of an effect may know of a bearing under its load, and what it says: what the effect changes there.
 
-use nalgebra::{Matrix2, Vector2};
 use serde::Serialize;
+
+use super::twin::Twin;
 
 /// [-] share above which an effect matters, where the scene gives none (`effects.auto_threshold`).
 pub const THRESHOLD: f64 = 0.05;
 
-/// A ball-race contact under load.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactEstimate {
-    /// Ball, counted from 0.
-    pub ball: usize,
-    /// The inner (0) or outer (1) race.
-    pub race: usize,
-    /// \[N] normal load.
-    pub load: f64,
-    /// \[m] semi-axes along rolling and transverse to it.
-    pub semi_axes: [f64; 2],
-    /// [1/m] curvatures of ball and race together, along rolling and transverse to it.
-    pub curvatures: [f64; 2],
-    /// [1/m] mean transverse curvature of ball and groove over 2.
-    pub bend: f64,
-    /// [rad/s] angular velocity of ball and race against each other along the contact plane: that of rolling.
-    pub rolling: f64,
-    /// [rad/s] angular velocity of ball and race against each other about the normal, all of it on the inner race.
-    pub spin: f64,
-    /// [m/s] speed at which the bottom of the groove passes the contact.
-    pub rolling_speed: f64,
-}
-
 /// A ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RingEstimate {
-    /// [m s2] radial displacement of the bottom of its raceway by rotation, over the square of the speed.
-    pub spun: f64,
     /// \[m] radius of the bottom of its raceway.
     pub bottom: f64,
-    /// [1/K] coefficient of thermal expansion.
-    pub expansion: f64,
     /// [rad/s] largest speed of its script.
     pub speed: f64,
+}
+
+/// What keeps balls apart, or does not, where there is no cage.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spacing {
+    /// \[m] how far balls would lead or lag in a revolution, each at the speed at which it rolls by itself.
+    pub lead: f64,
+    /// \[m] gap between them.
+    pub gap: f64,
+    /// [m/s] largest difference of these speeds.
+    pub difference: f64,
+    /// \[W] power of the friction limit at their differences from the common speed.
+    pub slipping: f64,
+    /// \[N] load of two balls that strike each other at 1 m/s; it grows with the power 6/5 of the speed.
+    pub blow: f64,
+    /// [m/s] speed at which a ball that nothing holds would fall on the next one; 0 where all are held, or have no weight.
+    pub falling: f64,
+    /// Is there weight, or a ball without load?
+    pub loose: bool,
+    /// Does the bearing start from rest?
+    pub from_rest: bool,
 }
 
 /// Outer dimensions of a bearing, none of which its contacts know.
@@ -69,64 +64,25 @@ impl Outline {
     }
 }
 
-/// The ball with the largest approaches, by its contacts with the inner and the outer race.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BallEstimate {
-    /// \[N] loads.
-    pub loads: [f64; 2],
-    /// \[m] approaches.
-    pub approaches: [f64; 2],
-    /// \[rad] contact angles.
-    pub angles: [f64; 2],
-    /// \[m] distances of the ball's centre from the grooves' centres.
-    pub distances: [f64; 2],
-}
-
-impl BallEstimate {
-    /// \[m] changes of its approaches while its races are held and their grooves move away from the axis, to first order: the ball
-    /// goes to where all forces on it are in balance again, its centrifugal force as before.
-    fn approaches_by(&self, outwards: [f64; 2]) -> [f64; 2] {
-        // Towards the contact, axial and radial: inner forces point out of the axis, outer ones into it.
-        let towards = |race: usize| {
-            let (sine, cosine) = self.angles[race].sin_cos();
-            Vector2::new(sine, cosine) * if race == 0 { 1.0 } else { -1.0 }
-        };
-        // A force towards a groove's centre turns with the line to it.
-        let stiffness = |race: usize| {
-            let (n, load) = (towards(race), self.loads[race]);
-            let along = 1.5 * load / self.approaches[race].max(f64::MIN_POSITIVE);
-            let turning = load / self.distances[race];
-            n * n.transpose() * (along - turning) + Matrix2::identity() * turning
-        };
-        let [inner, outer] = [0, 1].map(stiffness);
-        let moved = outwards.map(|outwards| Vector2::new(0.0, outwards));
-        let push = inner * moved[0] + outer * moved[1];
-        let ball = (inner + outer).lu().solve(&push).unwrap_or_else(Vector2::zeros);
-        [0, 1].map(|race| towards(race).dot(&(moved[race] - ball)))
-    }
-}
-
 /// A bearing in the equilibrium under its load, every race at the largest speed of its script.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// [-] share above which an effect matters.
     pub threshold: f64,
-    /// All contacts that carry load.
-    pub contacts: Vec<ContactEstimate>,
     /// \[m] largest sum of a ball's approaches at both races.
     pub deepest: f64,
-    /// The ball that has it.
-    pub deepest_ball: BallEstimate,
-    /// \[N] largest and least load of a ball on the inner race, among those that have one.
+    /// \[N] largest loads of a ball on the inner and the outer race.
     pub loads: [f64; 2],
-    /// \[rad] contact angle of the ball with the largest load at the inner race.
-    pub contact_angle: f64,
-    /// \[N] its centrifugal force.
+    /// \[N] centrifugal force of the ball with the largest load on the inner race.
     pub centrifugal_force: f64,
     /// [N m] its gyroscopic moment.
     pub gyroscopic_moment: f64,
     /// \[m] ball radius.
     pub ball_radius: f64,
+    /// [-] number of balls.
+    pub balls: usize,
+    /// \[m] pitch radius.
+    pub pitch_radius: f64,
     /// [m/s] speed of the ball centres along their orbit.
     pub orbital_velocity: f64,
     /// [-] friction coefficient.
@@ -135,32 +91,28 @@ pub struct Estimate {
     pub saturates: bool,
     /// Is the cage simulated?
     pub caged: bool,
-    /// \[N] load that the bearing carries.
-    pub load: f64,
-    /// \[kg] mass of balls, cage and races under a wrench.
-    pub mass: f64,
-    /// [N/m] largest stiffness of the inner race against the outer one along x, y, z.
-    pub stiffness: f64,
+    /// How balls keep their distance.
+    pub spacing: Spacing,
     /// \[rad] least distance of a contact ellipse from a shoulder; negative where it is cut.
     pub shoulder_margin: f64,
     /// [-] largest share of a load beyond a shoulder.
     pub shoulder_share: f64,
-    /// \[Pa] reduced modulus E' of elastohydrodynamics, 2 over the compliance of both materials.
-    pub modulus: f64,
     /// [Pa s] viscosity of the oil that the rating is for, where that is given.
     pub viscosity: Option<f64>,
     /// \[Pa] Young's modulus of the races.
     pub youngs_modulus: f64,
     /// Inner and outer ring.
     pub rings: [RingEstimate; 2],
+    /// Are both races held by flanges, whose pose is given?
+    pub flanged: [bool; 2],
     /// Outer dimensions; usual ones where the scene has none.
     pub outline: Outline,
-    /// \[m] largest change of the diametral clearance by growth as the scene has it; none where that is not known beforehand.
-    pub clearance_change: Option<f64>,
     /// Is there oil, which may take heat as it flows?
     pub oiled: bool,
     /// [W/K] conductance of rings and balls to the oil, where the scene has it; else 0.
     pub oil_conductance: f64,
+    /// \[W] all losses at a settled state.
+    pub power: f64,
 }
 
 impl Estimate {
@@ -171,19 +123,62 @@ impl Estimate {
         if held > 0.0 { self.gyroscopic_moment.abs() / held } else { 0.0 }
     }
 
-    /// [-] change of the deepest approach over itself while races are held and their grooves move away from the axis \[m], inner first;
-    /// and its closed form, with a ball that stays at its contact angle and is as stiff as the races are far apart.
-    pub fn deepens(&self, outwards: [f64; 2]) -> [f64; 2] {
-        let change: f64 = self.deepest_ball.approaches_by(outwards).into_iter().sum();
-        let [inner, outer] = outwards;
-        [change.abs() / self.deepest, (inner - outer).abs() * self.contact_angle.cos() / self.deepest]
+    /// \[K] warming of the bearing by its losses, which go out through the seats of both rings, and to oil whose conductance is known.
+    pub fn heating(&self) -> f64 {
+        self.power / (self.outline.seats().iter().sum::<f64>() + self.oil_conductance)
+    }
+}
+
+/// What an effect changes of what a user asks for: each quantity with it over that without it, less 1; none of what is not known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Changes {
+    /// [-] friction torque.
+    pub torque: Option<f64>,
+    /// [-] largest load of a ball on the inner race.
+    pub largest_load: Option<f64>,
+    /// [-] reference life.
+    pub life: Option<f64>,
+    /// [-] displacement of the loaded race: size of the difference of both.
+    pub displacement: Option<f64>,
+}
+
+impl Changes {
+    /// All that are known, by the names of their quantities.
+    pub fn known(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let Self { torque, largest_load, life, displacement } = *self;
+        let all = [
+            ("torque", torque),
+            ("largest load", largest_load),
+            ("life", life),
+            ("displacement", displacement),
+        ];
+        all.into_iter().filter_map(|(name, change)| Some((name, change?)))
     }
 
-    /// [-] change of the deepest ball's load on the inner race over itself, by a height \[m] of that race; and its closed form. Loads go
-    /// with the power 3/2 of approaches.
-    pub fn reloads(&self, height: f64) -> [f64; 2] {
-        let [inner, _] = self.deepest_ball.approaches_by([height, 0.0]);
-        [1.5 * inner.abs() / self.deepest_ball.approaches[0], 1.5 * height / self.deepest]
+    /// The largest one; none where none is known.
+    pub fn largest(&self) -> Option<(&'static str, f64)> {
+        self.known().reduce(|most, other| if other.1.abs() > most.1.abs() { other } else { most })
+    }
+
+    /// Of each quantity the larger change of both.
+    #[must_use]
+    pub fn or_larger(self, other: Self) -> Self {
+        let larger = |a: Option<f64>, b: Option<f64>| match (a, b) {
+            (Some(a), Some(b)) => Some(if b.abs() > a.abs() { b } else { a }),
+            (a, b) => a.or(b),
+        };
+        Self {
+            torque: larger(self.torque, other.torque),
+            largest_load: larger(self.largest_load, other.largest_load),
+            life: larger(self.life, other.life),
+            displacement: larger(self.displacement, other.displacement),
+        }
+    }
+
+    /// In words: "torque +29.0 %, life -6.52 %".
+    pub fn words(&self) -> String {
+        let words = |(name, change): (&str, f64)| format!("{name} {}", signed_percent(change));
+        self.known().map(words).collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -210,11 +205,15 @@ pub struct Verdict {
     pub subject: &'static str,
     /// Is it simulated?
     pub standing: Standing,
-    /// Value in `unit`.
+    /// What the value is of: the quantity that changes most.
+    pub quantity: &'static str,
+    /// Value in `unit`: the size of the largest change, where changes are known.
     pub value: f64,
-    /// Its closed form, where the value looks closer: as if balls stayed at their contact angles.
+    /// All changes by the effect, where they are known.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub closed_form: Option<f64>,
+    pub changes: Option<Changes>,
+    /// Where the value is from.
+    pub from: &'static str,
     /// Unit of value and threshold; empty for a share.
     pub unit: &'static str,
     /// Value beyond which it matters.
@@ -230,22 +229,15 @@ pub struct Verdict {
     pub auto: Option<&'static str>,
 }
 
-impl Verdict {
-    /// Of a share that matters beyond a threshold.
-    pub fn share(
-        key: &'static str,
-        subject: &'static str,
-        on: bool,
-        (value, threshold): (f64, f64),
-        sentence: String,
-    ) -> Self {
-        let standing = if on { Standing::On } else { Standing::Off };
-        Self { key: Some(key), ..Self::new(subject, standing, (value, threshold), sentence, "") }
-    }
+/// Where the value of a verdict is from.
+pub const CLOSED_FORM: &str = "closed form";
+/// See [`CLOSED_FORM`].
+pub const TWO_STATES: &str = "two settled states";
 
-    /// A share of no effect's own, which matters above a threshold, and what to write about it.
+impl Verdict {
+    /// A share of something by a closed form, which matters above a threshold, and what to write about it.
     pub fn new(
-        subject: &'static str,
+        (subject, quantity): (&'static str, &'static str),
         standing: Standing,
         (value, threshold): (f64, f64),
         sentence: String,
@@ -255,8 +247,10 @@ impl Verdict {
             key: None,
             subject,
             standing,
+            quantity,
             value,
-            closed_form: None,
+            changes: None,
+            from: CLOSED_FORM,
             unit: "",
             threshold,
             matters: value > threshold,
@@ -266,22 +260,37 @@ impl Verdict {
         }
     }
 
-    /// With the closed form of the value.
-    #[must_use]
-    pub fn closer_than(self, closed_form: f64) -> Self {
-        Self { closed_form: Some(closed_form), ..self }
+    /// Of an effect that both twins are there of: it matters where it changes a quantity by more than the threshold.
+    pub fn of_twin(twin: &Twin, changes: Changes, threshold: f64, tail: &str) -> Self {
+        let (quantity, change) = changes.largest().unwrap_or(("torque", 0.0));
+        let standing = if twin.on { Standing::On } else { Standing::Off };
+        let changed = match (twin.on, changes.words()) {
+            (_, words) if words.is_empty() => "changes nothing that is known".into(),
+            (true, words) => words,
+            (false, words) => format!("would change {words}"),
+        };
+        let setting = if twin.setting.is_empty() { "" } else { ": " };
+        let sentence = format!("{}{setting}{changed}{tail}{}", twin.setting, twin.remark);
+        let threshold = if twin.always_matters { 0.0 } else { threshold };
+        Self {
+            key: Some(twin.key),
+            changes: Some(changes),
+            from: TWO_STATES,
+            matters: change.abs() > threshold || twin.always_matters,
+            auto: twin.auto,
+            ..Self::new((twin.subject, quantity), standing, (change.abs(), threshold), sentence, twin.write)
+        }
     }
 
-    /// With what to write in the scene.
-    #[must_use]
-    pub fn written(self, write: &'static str) -> Self {
-        Self { write, ..self }
-    }
-
-    /// With the key that switches it on, if that is all it needs.
-    #[must_use]
-    pub fn automatic(self, key: Option<&'static str>) -> Self {
-        Self { auto: key, ..self }
+    /// Of an effect whose other twin has no settled state: it decides whether the bearing can run at all.
+    pub fn of_no_state(twin: &Twin, threshold: f64, why: &str) -> Self {
+        let with = if twin.on { "without" } else { "with" };
+        Self {
+            matters: true,
+            changes: None,
+            sentence: format!("no settled state {with} it: {why}"),
+            ..Self::of_twin(twin, Changes::default(), threshold, "")
+        }
     }
 
     /// Is it off, and would matter?
@@ -298,6 +307,13 @@ impl Verdict {
 /// A share in percent, in three digits: 0.0123 is "1.23 %".
 pub fn percent(share: f64) -> String {
     digits(100.0 * share) + " %"
+}
+
+/// The same of a change: "+1.23 %".
+pub fn signed_percent(change: f64) -> String {
+    // Below a thousandth of a percent is what searches leave.
+    let change = if change.abs() < 1e-5 { 0.0 } else { change };
+    format!("{}{}", if change > 0.0 { "+" } else { "" }, percent(change))
 }
 
 /// A number in three digits, never as a power of ten but where it is very small or large.

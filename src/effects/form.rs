@@ -6,9 +6,11 @@ use std::path::Path;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 
+use super::Effects;
 use super::effect::{Effect, Info, Setup};
-use super::estimate::{Estimate, Verdict, digits, percent};
+use super::estimate::{Estimate, digits};
 use super::keys::Keys;
+use super::twin::{Switch, Twin};
 use crate::contact::form::{Form, Wave};
 use crate::schema::numbers::Range;
 use crate::schema::units::{Angle, Length, Quantity};
@@ -277,7 +279,8 @@ impl Effect for Settings {
         price: "39 % of a step, of any number of waves (thrust case), and steps that see every wave",
         example: "[form]\nouter = [{ order = 9, amplitude = \"0.3 um\" }]\n",
     };
-    const ESTIMATE: &'static str = "change of load by its largest height, 1 um where it is off: 1.5 times the height over the deepest approach";
+    const ESTIMATE: &'static str =
+        "settled states with and without waves of its largest height, 1 um where it is off";
 
     fn setting(&self) -> Option<String> {
         let FormSection { inner, outer, balls } = &self.section;
@@ -290,20 +293,23 @@ impl Effect for Settings {
         (!parts.is_empty()).then(|| parts.join("; "))
     }
 
-    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
+    fn twins(&self, estimate: &Estimate) -> Vec<Twin> {
         let on = self.setting().is_some();
         let height = if on { self.section.height() } else { TYPICAL_HEIGHT };
-        let [share, closed] = estimate.reloads(height);
-        let sentence = format!(
-            "{} um of waviness {} loads by {} at held races",
-            digits(height * 1e6),
-            if on { "change" } else { "would change" },
-            percent(share)
-        );
-        let verdict = Verdict::share("form", "waviness", on, (share, estimate.threshold), sentence);
+        // All balls on crests, and every other one in a trough: of a height, which balls meet it is a matter of the instant.
+        let waved = |order: usize| {
+            move |effects: &mut Effects| {
+                let wave = Wave { order, amplitude: height, phase: 0.0, axial: false };
+                effects.form.section =
+                    FormSection { inner: Some(Shape::Waves(vec![wave])), ..FormSection::default() };
+            }
+        };
+        let twin =
+            Twin::new("form", "waviness", on, waved(estimate.balls)).or(waved((estimate.balls / 2).max(1)));
+        let smooth: Switch = Box::new(|effects| effects.form.section = FormSection::default());
         vec![
-            verdict
-                .closer_than(closed)
+            Twin { passing: true, common: Some(smooth), ..twin }
+                .taken_as(format!("{} um on the inner race", digits(height * 1e6)))
                 .written("[form] with waves or profiles; amplitudes are not known here"),
         ]
     }

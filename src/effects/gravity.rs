@@ -2,9 +2,11 @@
 
 use nalgebra::Vector3;
 
+use super::Effects;
 use super::effect::{Effect, Info};
-use super::estimate::{Estimate, Verdict, digits, percent};
+use super::estimate::Estimate;
 use super::keys::keys;
+use super::twin::Twin;
 use crate::schema::Components;
 use crate::schema::numbers::{Number, Place, Range};
 use crate::schema::units::Acceleration;
@@ -13,8 +15,7 @@ const GRAVITY: Range = Range::closed(-1e6, 1e6, "m/s2");
 
 /// [m/s2] standard gravity.
 const STANDARD: f64 = 9.80665;
-/// [-] threshold of other effects over its own: a weight is known exactly, and acts at all times.
-const FINENESS: f64 = 5.0;
+const KEY: &str = "effects.gravity";
 
 keys! {
     /// [m/s2] acceleration of gravity, components along x, y, z, each constant or a table; 0 is off.
@@ -37,14 +38,15 @@ fn is_parameter(settings: &Settings) -> bool {
 
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
-        key: "effects.gravity",
+        key: KEY,
         adds: "weight of the balls, of the cage, and of races that forces move",
         states: "none",
         source: "body force in the equations of motion; Bovet et al. 2013, section 2",
         price: "0.2 % of a step (thrust case)",
         example: "[effects]\ngravity = [0, -9.81, 0]\n",
     };
-    const ESTIMATE: &'static str = "weight of balls, cage and races under a wrench over the load";
+    const ESTIMATE: &'static str =
+        "settled states with and without it; 9.81 m/s2 along each axis where it is off";
 
     const NUMBERS: &'static [Number<Self>] = &[
         Number::tunable_if(
@@ -70,20 +72,24 @@ impl Effect for Settings {
         ),
     ];
 
-    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
-        let largest = self.acceleration.largest();
-        let on = largest != 0.0;
-        let weight = estimate.mass * if on { largest } else { STANDARD };
-        let share = weight / estimate.load;
-        let sentence = format!(
-            "balls, cage and races under a wrench weigh {} N: {} of the load of {} N",
-            digits(weight),
-            percent(share),
-            digits(estimate.load)
-        );
-        let value = (share, estimate.threshold / FINENESS);
-        let verdict = Verdict::share("effects.gravity", "gravity", on, value, sentence);
-        vec![verdict.written("[effects] gravity = [0, -9.81, 0]; its direction is not known here")]
+    fn twins(&self, _: &Estimate) -> Vec<Twin> {
+        let on = self.acceleration.largest() != 0.0;
+        let to = |components: [f64; 3]| {
+            move |effects: &mut Effects| {
+                effects.gravity.acceleration = components.into();
+            }
+        };
+        let twin = match on {
+            true => Twin::new(KEY, "gravity", on, to([0.0; 3])),
+            false => {
+                let [x, y, z] = [[-STANDARD, 0.0, 0.0], [0.0, -STANDARD, 0.0], [0.0, 0.0, -STANDARD]];
+                Twin::new(KEY, "gravity", on, to(x))
+                    .or(to(y))
+                    .or(to(z))
+                    .taken_as("9.81 m/s2 along one of the axes")
+            }
+        };
+        vec![twin.written("[effects] gravity = [0, -9.81, 0]; its direction is not known here")]
     }
 
     fn setting(&self) -> Option<String> {

@@ -1,10 +1,11 @@
 //! Slip of grooves that bend across rolling ([`crate::contact::heathcote`]), with the laws that saturate.
 
+use super::creep::CreepLaw;
 use super::effect::{Effect, Getter, Info, Row, Setup};
-use super::estimate::{Estimate, Verdict, digits, percent};
+use super::estimate::Estimate;
 use super::keys::keys;
 use super::reports::BallOutput;
-use super::sliding::{powers_alone, powers_together};
+use super::twin::Twin;
 use crate::schema::SceneError;
 use crate::schema::variable_units::WATT;
 
@@ -31,8 +32,7 @@ impl Effect for Settings {
         price: "69 % of a step (thrust case)",
         example: "[effects]\nheathcote_slip = true\n",
     };
-    const ESTIMATE: &'static str =
-        "part of the power of complete sliding that it adds, spin and groove slip acting together";
+    const ESTIMATE: &'static str = "settled states with and without it; with a cage it matters always";
 
     fn setting(&self) -> Option<String> {
         self.on.then(|| "on".into())
@@ -56,32 +56,32 @@ impl Effect for Settings {
         }]
     }
 
-    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
-        let [without, with] = powers_together(estimate);
-        let share = if with > 0.0 { ((with - without) / with).max(0.0) } else { 0.0 };
-        let [spin, groove] = powers_alone(estimate);
-        let sentence = format!(
-            "slip of bent grooves makes {}{} of the friction power; alone it would take {} W, and spin {} W{}",
-            // Balls that friction does not hold turn, and lose power by that which is no part of the estimate.
-            if estimate.gyroscopic() > 1.0 { "up to " } else { "" },
-            percent(share),
-            digits(groove),
-            digits(spin),
-            if estimate.caged {
-                "; and it changes how balls push the cage, which has no part in this"
-            } else {
-                ""
-            }
-        );
+    fn twins(&self, estimate: &Estimate) -> Vec<Twin> {
+        let on = self.on;
         let write = if estimate.saturates {
             "[effects] heathcote_slip = true"
         } else {
             "[effects] heathcote_slip = true, with a creep law that saturates"
         };
-        // With a share of 0.4 % scenes/cage.toml loses 62 W, and 72 W without.
-        let threshold = if estimate.caged { 0.0 } else { estimate.threshold };
-        let verdict = Verdict::share(KEY, "groove slip", self.on, (share, threshold), sentence);
-        vec![verdict.written(write).automatic(estimate.saturates.then_some(KEY))]
+        // What does not saturate has none: the twin has the law that does.
+        let saturates = estimate.saturates;
+        let twin = Twin::new(KEY, "groove slip", on, move |effects| {
+            effects.groove_slip.on = !on;
+            if !on && !saturates {
+                effects.creep.law = CreepLaw::default();
+            }
+        });
+        // Changes of 0.4 % leave scenes/cage.toml with 62 W of losses, and 72 W without.
+        let caged = if estimate.caged {
+            "; and it changes how balls push the cage, which has no part in this"
+        } else {
+            ""
+        };
+        vec![
+            Twin { always_matters: estimate.caged, ..twin.remarked(caged) }
+                .written(write)
+                .automatic(estimate.saturates.then_some(KEY)),
+        ]
     }
 
     fn switch(&mut self, key: &str, on: bool) {

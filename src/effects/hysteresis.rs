@@ -1,8 +1,10 @@
 //! Elastic hysteresis of rolling: what the material of ball and race loses as it passes through the contact, dry or oiled.
 
 use super::effect::{Effect, Getter, Info, Row};
+use super::estimate::Estimate;
 use super::keys::keys;
 use super::reports::BallOutput;
+use super::twin::Twin;
 use crate::schema::variable_units::WATT;
 
 keys! {
@@ -22,9 +24,11 @@ impl Settings {
     }
 }
 
+const KEY: &str = "effects.hysteresis";
+
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
-        key: "effects.hysteresis",
+        key: KEY,
         adds: "elastic hysteresis of rolling: a moment against rolling in every contact of balls and races",
         states: "none",
         source: "Houpert 1999; for bearing steel",
@@ -32,8 +36,22 @@ impl Effect for Settings {
         example: "[effects]\nhysteresis = true\n",
     };
 
+    const ESTIMATE: &'static str = "settled states with and without it";
+
+    fn twins(&self, _: &Estimate) -> Vec<Twin> {
+        let on = self.on;
+        let twin = Twin::new(KEY, "hysteresis", on, move |effects| effects.hysteresis.on = !on);
+        vec![twin.written("[effects] hysteresis = true").automatic(Some(KEY))]
+    }
+
     fn setting(&self) -> Option<String> {
         self.on.then(|| "on".into())
+    }
+
+    fn switch(&mut self, key: &str, on: bool) {
+        if key == KEY {
+            self.on = on;
+        }
     }
 
     fn headlines(&self) -> &'static [&'static str] {

@@ -13,8 +13,7 @@ pub fn ring_bending(estimate: &Estimate) -> f64 {
     let Outline { outside, width, .. } = estimate.outline;
     let (inside, outside) = (estimate.rings[1].bottom, 0.5 * outside);
     let inertia = width * (outside - inside).powi(3) / 12.0;
-    let largest = estimate.contacts.iter().filter(|contact| contact.race == 1);
-    let load = largest.map(|contact| contact.load).fold(0.0, f64::max);
+    let [_, load] = estimate.loads;
     let radius = 0.5 * (inside + outside);
     RING * load * radius.powi(3) / (estimate.youngs_modulus * inertia) / estimate.deepest
 }
@@ -35,7 +34,7 @@ pub fn verdicts(estimate: &Estimate) -> Vec<Verdict> {
     let gyroscopic = estimate.gyroscopic();
     let bending = ring_bending(estimate);
     let mut verdicts = vec![always(
-        "centrifugal force",
+        ("centrifugal force", "largest load"),
         centrifugal,
         format!(
             "{} N on the most loaded ball: {} of its load of {} N on the inner race",
@@ -50,11 +49,11 @@ pub fn verdicts(estimate: &Estimate) -> Vec<Verdict> {
             digits(estimate.gyroscopic_moment.abs()),
             percent(gyroscopic)
         );
-        verdicts.push(always("gyroscopic moment", gyroscopic, sentence));
+        verdicts.push(always(("gyroscopic moment", "friction limit"), gyroscopic, sentence));
     }
     if bending.is_finite() {
         verdicts.push(Verdict::new(
-            "bending of the outer ring",
+            ("bending of the outer ring", "deepest approach"),
             Standing::Missing,
             (bending, f64::INFINITY),
             format!(

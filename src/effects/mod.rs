@@ -17,8 +17,8 @@
 //! 6. Add `pub mod NAME;` and the word `NAME` to the list below. Validation, variables, parameters and the page of a
 //!    package come from that list. Value references follow its order: add at the end.
 //! 7. The physics hangs on at most one hook: `Model` takes from `scene.effects.NAME` what a step reads, as an `Option`.
-//! 8. `matters` says from an [`Estimate`] how much it would change, or changes, with `ESTIMATE` in words; `tests/effects/estimates.rs` compares
-//!    that with what switching it on does. `switch` is for effects that `effects.auto` can switch on.
+//! 8. `twins` says how it is taken in and out, with `ESTIMATE` in words: estimates compare settled states of both ([`twin`]), and `tests/effects/estimates.rs`
+//!    compares that with runs. `matters` is for what has no settled state. `switch` is for effects that `effects.auto` can switch on.
 //! 9. Everything that moves the balls must be in the equilibrium too, or a run starts with a bounce.
 
 pub mod ambient;
@@ -48,9 +48,9 @@ pub mod rating;
 pub mod reports;
 pub mod shoulder;
 pub mod since;
-mod sliding;
 pub mod stiffness;
 pub mod support;
+pub mod twin;
 
 use std::fmt;
 use std::sync::LazyLock;
@@ -63,6 +63,7 @@ pub use effect::{AnyEffect, Effect, EffectInputs, Getter, Info, InputRow, Row, S
 use estimate::{Estimate, Verdict};
 use keys::Keys;
 pub use reports::Reports;
+use twin::Twin;
 
 /// Makes [`Effects`] of a list of modules.
 macro_rules! effects {
@@ -142,7 +143,12 @@ impl Effects {
         format!("effects on: {}", if on.is_empty() { "none".into() } else { on.join(", ") })
     }
 
-    /// What estimates say of all effects, in their order, then of what no scene switches.
+    /// Twins of all effects that estimates compare.
+    pub fn twins(&self, estimate: &Estimate) -> Vec<Twin> {
+        self.each().into_iter().flat_map(|effect| effect.twins(estimate)).collect()
+    }
+
+    /// What closed forms say of effects that have no twins, in their order, then of what no scene switches.
     pub fn verdicts(&self, estimate: &Estimate) -> Vec<Verdict> {
         let mut verdicts: Vec<Verdict> =
             self.each().into_iter().flat_map(|effect| effect.matters(estimate)).collect();

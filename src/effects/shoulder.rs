@@ -69,16 +69,16 @@ impl Effect for Settings {
         };
         vec![Verdict {
             key: Some(KEY),
-            subject: SUBJECT,
-            standing: if self.on { Standing::On } else { Standing::Off },
-            value: margin,
-            closed_form: None,
             unit: "rad",
-            threshold: 0.0,
             matters: margin < 0.0,
-            sentence,
-            write: "[effects] shoulder_outputs = true reports it; loads stay those of whole ellipses",
             auto: Some(KEY),
+            ..Verdict::new(
+                (SUBJECT, "margin"),
+                if self.on { Standing::On } else { Standing::Off },
+                (margin, 0.0),
+                sentence,
+                "[effects] shoulder_outputs = true reports it; loads stay those of whole ellipses",
+            )
         }]
     }
 

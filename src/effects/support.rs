@@ -6,17 +6,19 @@
 //! velocity in the flange's axes. A flange that spins takes the axes of K and C with it.
 
 use super::reports::SupportState;
-use nalgebra::{Matrix6, Vector3};
+use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
-use super::estimate::{Estimate, Verdict, digits, percent};
+use super::estimate::Estimate;
 use super::keys::Keys;
+use super::twin::Twin;
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::rotation::{from_quaternion, tangent_inverse_transposed, turn};
 use crate::numerics::scalar::Scalar;
 use crate::schema::numbers::{Number, Place, Range};
+use crate::schema::units::{Inertia, Mass};
 use crate::schema::variable_units::{METRE, RADIAN};
-use crate::schema::{Drive, SceneError, SupportSection};
+use crate::schema::{DirectionMatrix, Drive, SceneError, SupportSection};
 
 const STIFFNESS: Range = Range::above(0.0, 1e15, "N/m or N m/rad");
 const DAMPING: Range = Range::closed(0.0, 1e12, "N s/m or N m s/rad");
@@ -170,8 +172,21 @@ fn diagonal(settings: &Settings, race: usize, of: fn(&SupportSection) -> Vec<f64
 
 const RACES: [&str; 2] = ["inner", "outer"];
 
-/// [N/m] support that the estimate is for, where the scene gives none: a stiff one.
-const TYPICAL_STIFFNESS: f64 = 1e9;
+/// [N/m, N m/rad] support that the estimate is for, where the scene gives none: a stiff one.
+const TYPICAL_STIFFNESS: [f64; 2] = [1e9, 1e7];
+
+fn typical() -> SupportSection {
+    let [force, moment] = TYPICAL_STIFFNESS;
+    let mut stiffness = DirectionMatrix::default();
+    stiffness.0 = Matrix6::from_diagonal(&Vector6::new(force, force, force, moment, moment, moment));
+    // A mass changes nothing at a settled state.
+    SupportSection {
+        stiffness,
+        damping: DirectionMatrix::default(),
+        mass: Mass(1.0),
+        inertia: [Inertia(1e-3); 3],
+    }
+}
 
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
@@ -184,8 +199,7 @@ impl Effect for Settings {
         example: "[effects]\ncreep = \"saturated\"\n[outer.support]\nstiffness = [5e7, 1e8, 1e8, 5e4, 5e4, 5e4]\nmass = 0.12\n\
                   inertia = [5e-5, 3e-5, 3e-5]\n",
     };
-    const ESTIMATE: &'static str =
-        "stiffness of the bearing over that of the support; 1000 N/um where it is off";
+    const ESTIMATE: &'static str = "settled states with and without it; 1000 N/um where it is off";
 
     const NUMBERS: &'static [Number<Self>] = &[
         Number::checked("inner.support.stiffness", STIFFNESS, |s| diagonal(s, 0, |x| x.stiffness.diagonal())),
@@ -257,27 +271,17 @@ impl Effect for Settings {
         Ok(())
     }
 
-    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
-        // Supports of both races yield one after the other.
-        let translations = |section: &SupportSection| {
-            (0..3).map(|i| section.stiffness.0[(i, i)]).fold(f64::INFINITY, f64::min)
-        };
-        let sections: Vec<&SupportSection> = self.sections.iter().flatten().collect();
-        let yielding: f64 = sections.iter().map(|section| 1.0 / translations(section)).sum();
-        let on = !sections.is_empty();
-        let stiffness = if on { 1.0 / yielding } else { TYPICAL_STIFFNESS };
-        let share = estimate.stiffness / stiffness;
-        let sentence = format!(
-            "a support of {} N/um {} by {} of what the bearing of {} N/um does",
-            digits(stiffness * 1e-6),
-            if on { "yields" } else { "would yield" },
-            percent(share),
-            digits(estimate.stiffness * 1e-6)
-        );
-        let verdict = Verdict::share("support", "support", on, (share, estimate.threshold), sentence);
-        vec![verdict.written(
-            "[inner.support] or [outer.support]; the stiffness around the bearing is not known here",
-        )]
+    fn twins(&self, estimate: &Estimate) -> Vec<Twin> {
+        let on = self.sections.iter().any(Option::is_some);
+        let write = "[inner.support] or [outer.support]; the stiffness around the bearing is not known here";
+        // Races that forces move rest on nothing.
+        let Some(race) = [1, 0].into_iter().find(|race| on || estimate.flanged[*race]) else { return vec![] };
+        let twin = Twin::new("support", "support", on, move |effects| match on {
+            true => effects.support.sections = [None, None],
+            false => effects.support.sections[race] = Some(typical()),
+        });
+        let words = if on { "" } else { "a support of 1000 N/um and 10 N m/mrad" };
+        vec![twin.taken_as(words).written(write)]
     }
 
     fn rows(&self) -> Vec<Row> {

@@ -160,6 +160,8 @@ pub fn page_with(scene: &Scene, wanted: Wanted<'_>) -> String {
         }
     };
     let effects: String = scene.effects.each().into_iter().map(effect).collect();
+    let found: String =
+        scene.effects.auto.found.iter().map(|found| format!("<p>{}</p>\n", escape(found))).collect();
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
          <style>{STYLE}</style></head><body>\n<h1>{title}</h1>\n\
@@ -184,7 +186,7 @@ pub fn page_with(scene: &Scene, wanted: Wanted<'_>) -> String {
          group; its other inputs stay at their last values. The log tells which scripts are played. An input that a script \
          gives reads as its value at the communication point, and directional derivatives by it are zero.</p>\n\
          <h2>Effects</h2>\n<table><tr><th>key</th><th>here</th><th>adds</th><th>states</th><th>source</th><th>price</th></tr>\n\
-         {effects}</table>\n\
+         {effects}</table>\n{found}\
          <h2>Limits</h2>\n<ul><li>Rigid rings: the raceways do not bend; they grow by temperatures and fits only as <code>[growth]</code> says. No \
          lubricant film.</li>\n\
          <li>A shaft on the bearing is moved by leapfrog, or at least by velocity first and then position: stable while a \

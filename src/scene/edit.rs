@@ -56,14 +56,15 @@ impl Scene {
         Ok(table.to_string())
     }
 
-    /// Switches effects by their keys, here and in the text, which then asks for nothing to be found out any more.
-    pub(crate) fn settle_effects(&mut self, switches: &[(&'static str, bool)]) {
+    /// Switches effects by their keys, here and in the text, which then asks for nothing to be found out any more, and says what was.
+    pub(crate) fn settle_effects(&mut self, switches: &[(&'static str, bool)], notes: &[String]) {
         for (key, on) in switches {
             for effect in self.effects.each_mut() {
                 effect.switch(key, *on);
             }
         }
         self.effects.auto.on = false;
+        self.effects.auto.found = notes.to_vec();
         let Ok(mut table) = toml::from_str::<Table>(&self.source) else { return };
         let effects = table.entry("effects").or_insert_with(|| Value::Table(Table::new()));
         if !effects.is_table() {
@@ -71,6 +72,8 @@ impl Scene {
         }
         if let Some(section) = effects.as_table_mut() {
             section.remove("auto");
+            let notes = notes.iter().map(|note| Value::from(note.as_str())).collect();
+            section.insert("auto_found".into(), Value::Array(notes));
         }
         for (key, on) in switches {
             // Every key has its section in the scene, or that of effects.

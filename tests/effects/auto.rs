@@ -88,7 +88,8 @@ fn regression_groove_slip_stays_on_where_there_is_a_cage() {
     // It is 0.4 % of the power of the balls, and without it all loses 14 % more: it changes how balls push the cage.
     let (found, notes) = found_out(CAGE, &[("effects.auto", "true")]);
     assert!(found.effects.groove_slip.on, "{notes:?}");
-    let off = scene(CAGE, &[("effects.heathcote_slip", "false")]);
+    let on = if found.effects.hysteresis.on { "true" } else { "false" };
+    let off = scene(CAGE, &[("effects.heathcote_slip", "false"), ("effects.hysteresis", on)]);
     let [with, without] = [power(&found), power(&off)];
     assert!((without / with - 1.0).abs() > 0.05, "{without} {with}");
 }
@@ -100,16 +101,18 @@ fn effects_that_matter_are_switched_on_where_the_data_are_there() {
     let (radial, notes) = found_out(RADIAL, table);
     assert!(radial.effects.groove_slip.on);
     assert!(notes.iter().any(|note| note.starts_with("auto: effects.heathcote_slip = true: ")), "{notes:?}");
-    // Under thrust it is next to nothing, and nothing is switched.
+    // Under thrust it is next to nothing; hysteresis is not.
     let (thrust, notes) = found_out(THRUST, table);
     assert!(
         !thrust.effects.groove_slip.on
-            && thrust.effects.each().iter().filter(|e| e.setting().is_some()).count() == 1
+            && thrust.effects.hysteresis.on
+            && thrust.effects.each().iter().filter(|e| e.setting().is_some()).count() == 2
     );
     assert!(
-        notes[0] == "auto: no effect is switched"
-            && notes[1]
-                .ends_with("at hand: waviness, growth by temperature, support, film, rolling resistance"),
+        notes[0].starts_with("auto: effects.hysteresis = true: would change torque +")
+            && notes[1].ends_with(
+                "at hand: rolling resistance, film, growth by temperature, waviness, support, drag"
+            ),
         "{notes:?}"
     );
     // The word alone: the default creep law, without the groove slip that comes with it.
@@ -156,4 +159,29 @@ fn a_word_that_is_not_auto_is_refused() {
     let message = refused("{ auto_threshold = 2 }");
     assert!(message.contains("effects.auto_threshold = 2") && message.contains("(0, 1]"), "{message}");
     assert!(refused("7").contains("effects wants a table of effects or \"auto\""), "{}", refused("7"));
+}
+
+#[test]
+fn what_an_importer_may_set_is_judged_at_the_corners_of_its_ranges() {
+    let importer = |changes: Changes| auto::resolve_for_importer(scene(THRUST, changes)).unwrap();
+    let auto = ("effects", "{ auto = true, creep = \"saturated\" }");
+    // Nothing is known of what may be set.
+    let (constant, notes) = importer(&[auto]);
+    assert!(constant.effects.groove_slip.on, "{notes:?}");
+    assert!(!found_out(THRUST, &[auto]).0.effects.groove_slip.on);
+    // What scripts give is what there is.
+    let (within, notes) = importer(&[auto, ("load.x.force", "[[0, 1500], [\"10 ms\", 2000]]")]);
+    assert!(!within.effects.groove_slip.on, "{notes:?}");
+    // In no instant of the scripts is the radial load large while the thrust is small; they may be set so.
+    let together: Changes = &[
+        auto,
+        ("load.x.force", "[[0, 1500], [\"10 ms\", 6000]]"),
+        ("load.y.force", "[[0, 0], [\"10 ms\", 1000]]"),
+    ];
+    assert!(!found_out(THRUST, together).0.effects.groove_slip.on);
+    let (corners, notes) = importer(together);
+    assert!(corners.effects.groove_slip.on, "{notes:?}");
+    assert!(notes.iter().any(|note| note.contains("at a corner of the ranges")), "{notes:?}");
+    // What was found out stands in the text of the package.
+    assert_eq!(Scene::parse(&corners.source).unwrap().effects.auto.found, notes);
 }

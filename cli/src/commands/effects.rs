@@ -3,19 +3,23 @@
 use std::error::Error;
 use std::fmt::Write;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
 use roulement::analysis::estimate::{self, Verdicts};
-use roulement::effects::estimate::{Standing, Verdict, digits, missed};
+use roulement::effects::estimate::{Standing, Verdict, digits, missed, percent, signed_percent};
 use roulement::effects::shoulder::SUBJECT as SHOULDERS;
 use roulement::model::Model;
 use roulement::scene::Scene;
 use roulement::scene::machine::MachineScene;
-use roulement::simulation::Simulation;
 use roulement::simulation::machine::Machine;
+use roulement_cli::measure::{self, measure};
 use roulement_cli::report::json;
+use roulement_cli::sweep::all::threads;
 use serde_json::{Map, Value};
 
+use super::run::heeded_interrupt;
 use super::{load, say, tell};
 
 /// Options of `roulement effects`.
@@ -26,6 +30,12 @@ pub struct Options {
     /// Print JSON instead of text.
     #[arg(long)]
     json: bool,
+    /// Run the scene with and without each effect, instead of estimating what that would change.
+    #[arg(long)]
+    measure: bool,
+    /// Runs at a time, of those to measure; as many as there are cores if not given.
+    #[arg(long, value_name = "N", requires = "measure", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
 }
 
 /// Lists the effects of a scene with their estimates.
@@ -33,6 +43,9 @@ pub struct Options {
 /// # Errors
 /// If the scene cannot be read, or there is no equilibrium to estimate from.
 pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    if options.measure {
+        return measured(options);
+    }
     let scene = match load(&options.scene)? {
         MachineScene::Bearing(scene) => {
             let verdicts = estimate::verdicts(&scene, &Model::new(&scene)?)?;
@@ -60,21 +73,47 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     Ok(say(&format!("{}\n", text.trim_end_matches('\n')))?)
 }
 
+/// Runs with and without each effect, with the progress on stderr.
+fn measured(options: &Options) -> Result<(), Box<dyn Error>> {
+    let scene = load(&options.scene)?;
+    let interrupted = heeded_interrupt()?;
+    let bar = ProgressBar::new(0);
+    if let Ok(style) =
+        ProgressStyle::with_template("{pos} of {len} runs [{bar:40}] {elapsed} elapsed, {eta} left")
+    {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let jobs = options.jobs.map_or_else(threads, usize::from);
+    let measured = measure(&scene, jobs, &interrupted, |runs| {
+        bar.set_length(runs as u64);
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    let measured = measured?;
+    let text = match options.json {
+        true => format!("{:#}\n", measure::to_json(&measured)),
+        false => {
+            let heading =
+                "runs of the scene without and with each, and again with half the steps: change +- error bar";
+            format!("{}\n{heading}\n\n{}", scene.title(), measure::to_text(&measured))
+        }
+    };
+    Ok(say(&text)?)
+}
+
 /// What estimates of a bearing alone are of.
 const UNDER_SCRIPTS: &str =
-    "estimates of the equilibrium at the start, every race at the largest speed of its script";
+    "settled states at the start with and without each, every race at the largest speed of its script";
 /// What those of a bearing on a shaft are of.
-const UNDER_SHAFT: &str = "estimates of the equilibrium at the start, where shaft and housings put its races";
+const UNDER_SHAFT: &str = "settled states at the start with and without each, the whole shaft in balance";
 
 /// What estimates say of the effects of every bearing of a machine that was just started.
 pub fn verdicts(machine: &Machine) -> Vec<Verdicts> {
-    let of = |bearing: &Simulation| match machine {
-        Machine::Bearing(_) => estimate::verdicts(bearing.scene(), bearing.model()),
-        Machine::Shaft(_) => {
-            estimate::verdicts_under(bearing.scene(), bearing.model(), &bearing.equilibrium_input())
-        }
-    };
-    machine.bearings().map(|(_, bearing)| of(bearing)).collect()
+    match machine {
+        Machine::Bearing(bearing) => vec![estimate::verdicts(bearing.scene(), bearing.model())],
+        Machine::Shaft(system) => estimate::verdicts_of_shaft(system.scene()),
+    }
 }
 
 /// Says what is on, and what is off and would matter; nothing more where nothing can be estimated but why. The name of a bearing that is
@@ -109,6 +148,23 @@ const GROUPS: [(&str, InGroup); 6] = [
     ("not simulated by any effect yet", |v| v.standing == Standing::Missing),
 ];
 
+/// What an effect costs, in words.
+fn price(scene: &Scene, verdict: &Verdict) -> String {
+    let is_own = |key: &str| verdict.key.is_some_and(|own| own == key || own.starts_with(&format!("{key}.")));
+    let price = scene.effects.each().into_iter().find(|effect| is_own(effect.info().key));
+    price.map_or(String::new(), |effect| format!("; it costs {}", effect.info().price))
+}
+
+/// The largest change with its sign, or what a closed form gives.
+fn value(verdict: &Verdict) -> String {
+    let change = verdict.changes.and_then(|changes| changes.largest());
+    match (change, verdict.unit) {
+        (Some((_, change)), _) => signed_percent(change),
+        (None, "") => percent(verdict.value),
+        (None, unit) => format!("{} {unit}", digits(verdict.value)),
+    }
+}
+
 fn to_text(title: &str, of: &str, scene: &Scene, verdicts: &[Verdict]) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -127,7 +183,11 @@ fn write_text(
         writeln!(out, "{title}")?;
     }
     writeln!(out, "{}", scene.effects.simulated())?;
-    writeln!(out, "{of}")?;
+    writeln!(
+        out,
+        "{of}; what changes a quantity by more than {} matters",
+        percent(scene.effects.auto.threshold())
+    )?;
     for (heading, is_in) in GROUPS {
         let of: Vec<_> = verdicts.iter().filter(|verdict| is_in(verdict)).collect();
         if of.is_empty() {
@@ -135,20 +195,16 @@ fn write_text(
         }
         writeln!(out, "\n{heading}")?;
         for verdict in of {
-            let unit = if verdict.unit.is_empty() { String::new() } else { format!(" {}", verdict.unit) };
-            let value = format!("{}{unit}", digits(verdict.value));
-            let against = if verdict.threshold.is_finite() {
-                format!(
-                    "matters {} {}",
-                    if verdict.unit == "rad" { "under" } else { "over" },
-                    digits(verdict.threshold)
-                )
-            } else {
-                String::new()
-            };
-            writeln!(out, "  {:<25} {value:>9}  {against:<20}  {}", verdict.subject, verdict.sentence)?;
+            writeln!(
+                out,
+                "  {:<25} {:>9}  of {:<16}  {}",
+                verdict.subject,
+                value(verdict),
+                verdict.quantity,
+                verdict.sentence
+            )?;
             if verdict.standing == Standing::Off && verdict.matters {
-                writeln!(out, "  {:<58}  write {}", "", verdict.write)?;
+                writeln!(out, "  {:<58}  write {}{}", "", verdict.write, price(scene, verdict))?;
             }
         }
     }

@@ -319,6 +319,9 @@ fn write_bearing(
     if shown.bars.is_none() {
         write_unmeasured(out)?;
     }
+    for line in &simulation.scene().effects.auto.found {
+        writeln!(out, "found out        {}", line.trim_start_matches("auto: "))?;
+    }
     for line in idle_in(verdicts, limits.over_shoulders != [0.0; 2]) {
         writeln!(out, "did not matter   {line}")?;
     }

@@ -155,7 +155,7 @@ pub fn threads() -> usize {
 }
 
 /// Does work for 0 .. count on some threads and gives the results in this order.
-fn on_threads<T: Send>(count: usize, threads: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+pub(crate) fn on_threads<T: Send>(count: usize, threads: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let of_thread = || {
         let mut results = vec![];

@@ -106,7 +106,7 @@ fn scene(path: &Path, changes: &[(String, String)]) -> Result<(Scene, Vec<String
         scene = Scene::edited(&scene.source, changes).map_err(|why| format!("changes: {why}"))?;
     }
     let mut said: Vec<String> = scene.notes().into_iter().collect();
-    let (scene, found_out) = auto::resolve(scene).map_err(|why| why.to_string())?;
+    let (scene, found_out) = auto::resolve_for_importer(scene).map_err(|why| why.to_string())?;
     said.extend(found_out);
     Ok((scene, said))
 }

@@ -34,10 +34,46 @@ fn effects_are_listed_as_a_table_and_as_json() {
     let of = |subject: &str| estimates.iter().find(|estimate| estimate["subject"] == subject).unwrap();
     let growth = of("growth by temperature");
     assert_eq!((&growth["standing"], &growth["matters"]), (&Value::from("off"), &Value::from(true)));
-    // 0.1927 by the closed form of the reference data.
-    assert!((growth["closed_form"].as_f64().unwrap() / 0.19273 - 1.0).abs() < 1e-3, "{growth}");
+    // By an equilibrium at 10 K: -6.51 % of the life.
+    assert!((growth["changes"]["life"].as_f64().unwrap() / -0.0651 - 1.0).abs() < 1e-2, "{growth}");
+    assert_eq!(
+        (&growth["quantity"], &growth["from"]),
+        (&Value::from("displacement"), &Value::from("two settled states"))
+    );
     assert_eq!(growth["threshold"], 0.05);
-    assert_eq!(of("gravity")["threshold"], 0.01);
+    // Ranked by what they change.
+    let shares: Vec<f64> =
+        estimates.iter().filter(|one| one["unit"] == "").map(|one| one["value"].as_f64().unwrap()).collect();
+    assert!(shares.is_sorted_by(|a, b| a >= b), "{shares:?}");
+}
+
+#[test]
+fn effects_are_measured_by_runs_whatever_runs_at_a_time() {
+    let scratch = Scratch::new("effects-measure");
+    let path = scratch.path("short.toml");
+    std::fs::write(&path, &edited("thrust", &[("load.duration", "\"2 ms\"")]).source).unwrap();
+    let measured = |jobs: &str| -> Value {
+        let output = roulement(&["effects", "--measure", "--json", "--jobs", jobs, &path]);
+        let mut json: Value = serde_json::from_str(&said(&output)).unwrap();
+        // CPU times are of the moment.
+        for one in json["measured"].as_array_mut().unwrap() {
+            assert!(one.as_object_mut().unwrap().remove("cpu").unwrap().is_number());
+        }
+        json
+    };
+    let (one, two) = (measured("1"), measured("2"));
+    assert_eq!(one, two);
+    let all = one["measured"].as_array().unwrap();
+    let of = |subject: &str| all.iter().find(|one| one["subject"] == subject).unwrap();
+    for (one, least, most) in [(of("drag"), 0.04, 0.07), (of("hysteresis"), 0.24, 0.30)] {
+        let torque = |of: &str| one[of]["torque"].as_f64().unwrap();
+        let (change, error) = (torque("changes"), torque("errors"));
+        assert!(change > least && change < most && error < 0.1 * change && one["standing"] == "off", "{one}");
+    }
+    assert_eq!(of("damping")["standing"], "on");
+    assert!(all.iter().any(|one| one["subject"] == "cage"));
+    let refused = roulement(&["effects", "--jobs", "2", &path]);
+    assert!(!refused.status.success());
 }
 
 #[test]

@@ -5,6 +5,7 @@
 mod common;
 mod cost;
 mod cost_reference;
+mod effect_verdicts;
 mod error;
 mod error_bars;
 mod law_comparison;

@@ -5,17 +5,18 @@
 
 pub mod oil;
 mod section;
-mod verdicts;
 
 use super::effect::{Effect, Getter, Info, InputRow, Row, Setup};
-use super::estimate::{Estimate, Outline, Verdict};
+use super::estimate::{Estimate, Outline};
 use super::growth::Warmth;
 use super::keys::Keys;
 use super::per_ball::ball_row;
 use super::reports::{BallOutput, ContactOutput, FilmOutput, Reports};
+use super::twin::{Switch, Twin};
 use crate::contact::film::{Film, Loading, Lubricant, RacewayFilm, Supply};
 use crate::schema::numbers::{Number, four};
 use crate::schema::schedule::Schedule;
+use crate::schema::units::{Celsius, Viscosity};
 use crate::schema::variable_units::{METRE, ONE, PASCAL_SECOND, Unit, WATT};
 use crate::schema::{Group, SceneError};
 use oil::Oil;
@@ -136,7 +137,21 @@ impl Settings {
     }
 }
 
+/// What twins with and without oil are of.
+pub const FILM: &str = "film";
+/// Grade [mm2/s] and temperature \[degC] of the oil that estimates are for where the scene has none: a film is thick where it is cold.
+const USUAL: (f64, f64) = (68.0, 40.0);
+
 impl Section {
+    /// The usual oil, or one of a dynamic viscosity [Pa s] that is known.
+    fn usual(known: Option<f64>) -> Self {
+        let (grade, temperature) = USUAL;
+        match known {
+            Some(viscosity) => Self { viscosity: Some(Viscosity(viscosity)), ..Self::default() },
+            None => Self { iso_vg: Some(grade), temperature: Some(Celsius(temperature)), ..Self::default() },
+        }
+    }
+
     /// \[degC] temperature of the oil where nothing has warmed.
     fn oil_temperature(&self) -> f64 {
         self.temperature.or(self.cold_temperature).map_or(40.0, |temperature| temperature.0)
@@ -208,7 +223,7 @@ impl Effect for Settings {
         price: "35 % of a step with the default law (thrust case; 49 % in scenes/radial.toml), 80 % with saturated",
         example: "[film]\niso_vg = 68\ntemperature = \"70 degC\"\n",
     };
-    const ESTIMATE: &'static str = "least film over the roughness, and power of rolling resistance over that of dry friction; ISO VG 68 at 40 degC where it is off";
+    const ESTIMATE: &'static str = "settled states with and without it; ISO VG 68 at 40 degC where it is off";
 
     const NUMBERS: &'static [Number<Self>] = section::NUMBERS;
 
@@ -249,8 +264,28 @@ impl Effect for Settings {
         self.section.iter().map(|_| input()).collect()
     }
 
-    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
-        verdicts::of(self.section.as_ref(), estimate)
+    fn twins(&self, estimate: &Estimate) -> Vec<Twin> {
+        let write = "[film] with iso_vg and temperature of the oil";
+        let (on, known) = (self.section.is_some(), estimate.viscosity);
+        let oil = self.section.clone().unwrap_or_else(|| Section::usual(known));
+        let name = Oil::of(&oil).name(oil.oil_temperature());
+        let resists = oil.rolling_resistance;
+        let [film, bare] =
+            [true, false].map(|rolling_resistance| Section { rolling_resistance, ..oil.clone() });
+        let other = if on { None } else { Some(film.clone()) };
+        let whole = Twin::new("film", FILM, on, move |effects| effects.film.section.clone_from(&other));
+        // Over the same oil without it.
+        let with = on && resists;
+        let changed = if with { bare.clone() } else { film };
+        let rolling = Twin::new("film", "rolling resistance", with, move |effects| {
+            effects.film.section = Some(changed.clone())
+        });
+        let common: Option<Switch> =
+            if on { None } else { Some(Box::new(move |effects| effects.film.section = Some(bare.clone()))) };
+        vec![
+            whole.taken_as(name.clone()).written(write),
+            Twin { common, ..rolling }.taken_as(format!("{name}, over its film alone")).written(write),
+        ]
     }
 
     fn headlines(&self) -> &'static [&'static str] {

@@ -14,8 +14,9 @@ use crate::effects::reports::GrowthOutput;
 use serde::{Deserialize, Serialize};
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
-use super::estimate::{Estimate, Verdict, digits, percent};
+use super::estimate::{Estimate, Outline, digits};
 use super::keys::Keys;
+use super::twin::Twin;
 use crate::contact::raceway::Raceway;
 use crate::schema::numbers::Number;
 use crate::schema::schedule::Schedule;
@@ -294,63 +295,57 @@ const ROTATION: &str = "growth.rotation";
 const TYPICAL_RISE: f64 = 10.0;
 
 impl Settings {
-    /// What temperatures and fits do to the approach of balls and races that are held where they are.
-    fn by_temperature(&self, estimate: &Estimate) -> Verdict {
+    /// Without and with temperatures and fits.
+    fn by_temperature(&self, estimate: &Estimate) -> Twin {
         let on = self.section.is_some();
-        let ring = &estimate.rings[0];
-        let known = estimate.clearance_change.filter(|_| on);
-        let change = known.map_or(TYPICAL_RISE * ring.expansion * ring.bottom, |change| 0.5 * change);
-        let [share, closed] = estimate.deepens([change, 0.0]);
-        let sentence = if known.is_some() {
-            format!(
-                "temperatures and fits change the clearance by up to {} um: at held races the deepest approach by {}",
-                digits(2e6 * change),
-                percent(share)
-            )
-        } else {
-            // A flow of oil takes most of the heat of fast bearings; only a balance of heat knows how much.
-            let cooled = match (estimate.oil_conductance > 0.0, estimate.oiled) {
-                (true, _) => "through the seats of both rings and to the oil",
-                (false, true) => {
-                    "through the seats of both rings alone: oil that flows takes heat, here unknown how much"
-                }
-                (false, false) => "through the seats of both rings, where no oil flows",
-            };
-            format!(
-                "10 K between the inner ring and the rest change the deepest approach at held races by {}; friction would warm the \
-                 bearing by about {} K {cooled}",
-                percent(share),
-                digits(estimate.heating())
-            )
+        // Rotation is an effect of its own.
+        let cold = self.section.clone().map(|section| Section {
+            inner: Schedule::default(),
+            outer: Schedule::default(),
+            balls: Schedule::default(),
+            shaft: section.shaft.map(Partner::cold),
+            housing: section.housing.map(Partner::cold),
+            ..section
+        });
+        let warm = Section { inner: Schedule::Constant(TYPICAL_RISE), ..Section::default() };
+        let other = if on { cold } else { Some(warm) };
+        // A flow of oil takes most of the heat of fast bearings; only a balance of heat knows how much.
+        let cooled = match (estimate.oil_conductance > 0.0, estimate.oiled) {
+            (true, _) => "through the seats of both rings and to the oil",
+            (false, true) => {
+                "through the seats of both rings alone: oil that flows takes heat, here unknown how much"
+            }
+            (false, false) => "through the seats of both rings, where no oil flows",
         };
-        Verdict::share("growth", "growth by temperature", on, (share, estimate.threshold), sentence)
-            .closer_than(closed)
-            .written("[growth] with inner, outer, balls: rises of temperature in K, not known here")
+        let heating =
+            format!("; friction would warm the bearing by about {} K {cooled}", digits(estimate.heating()));
+        let words = if on { "" } else { "10 K between the inner ring and the rest" };
+        Twin::new("growth", "growth by temperature", on, move |effects| {
+            effects.growth.section.clone_from(&other)
+        })
+        .taken_as(words)
+        .remarked(if on { String::new() } else { heating })
+        .written("[growth] with inner, outer, balls: rises of temperature in K, not known here")
     }
 
-    /// What rotation does to it.
-    fn by_rotation(&self, estimate: &Estimate) -> Verdict {
+    /// Without and with the widening of rings by rotation.
+    fn by_rotation(&self, estimate: &Estimate) -> Twin {
         let on = self.section.as_ref().is_some_and(|section| section.rotation);
-        let [inner, outer] = estimate.rings.each_ref().map(|ring| ring.spun * ring.speed * ring.speed);
-        let [share, closed] = estimate.deepens([inner, outer]);
-        let sentence = format!(
-            "rotation widens the inner raceway by {} um and the outer one by {} um in radius: at held races the deepest approach \
-             changes by {}",
-            digits(inner * 1e6),
-            digits(outer * 1e6),
-            percent(share)
-        );
-        let seats = |section: &Section| {
-            let turns = |index: usize| estimate.rings[index].speed != 0.0;
+        let turns = |index: usize| estimate.rings[index].speed != 0.0;
+        let known = self.section.as_ref().is_some_and(|section| {
             (section.shaft.is_some() || !turns(0)) && (section.housing.is_some() || !turns(1))
-        };
-        let known = self.section.as_ref().is_some_and(seats);
-        Verdict::share(ROTATION, "growth by rotation", on, (share, estimate.threshold), sentence)
-            .closer_than(closed)
-            .written(
-                "[growth] rotation = true, with the diameter of the turning ring's seat in [growth.shaft] or [growth.housing]",
-            )
-            .automatic(known.then_some(ROTATION))
+        });
+        let Outline { bore, outside, .. } = estimate.outline;
+        let twin = Twin::new(ROTATION, "growth by rotation", on, move |effects| {
+            let section = effects.growth.section.get_or_insert_default();
+            section.rotation = !on;
+            section.shaft.get_or_insert_with(|| Partner::of_seat(bore));
+            section.housing.get_or_insert_with(|| Partner::of_seat(outside));
+        });
+        twin.written(
+            "[growth] rotation = true, with the diameter of the turning ring's seat in [growth.shaft] or [growth.housing]",
+        )
+        .automatic(known.then_some(ROTATION))
     }
 }
 
@@ -363,7 +358,8 @@ impl Effect for Settings {
         price: "8 % of a step (thrust case), beside what warm contacts ask of the solver",
         example: "[growth]\ninner = \"50 K\"\nouter = \"30 K\"\nballs = \"40 K\"\n",
     };
-    const ESTIMATE: &'static str = "change of the deepest approach while races are held: by 10 K between the inner ring and the rest where it is off; by rotation";
+    const ESTIMATE: &'static str =
+        "settled states with and without it; 10 K between the inner ring and the rest where it is off";
 
     const NUMBERS: &'static [Number<Self>] = section::NUMBERS;
 
@@ -386,7 +382,7 @@ impl Effect for Settings {
         self.section.as_ref().map_or(Ok(()), |section| section.agree(setup))
     }
 
-    fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
+    fn twins(&self, estimate: &Estimate) -> Vec<Twin> {
         vec![self.by_temperature(estimate), self.by_rotation(estimate)]
     }
 

@@ -60,6 +60,28 @@ pub struct Partner {
     pub rise: Schedule,
 }
 
+impl Partner {
+    /// A solid shaft or a wide housing of steel at a seat of a diameter \[m] that does not hold the ring.
+    pub(super) fn of_seat(diameter: f64) -> Self {
+        Self {
+            interference: None,
+            diameter: Length(diameter),
+            bore: None,
+            outside: None,
+            youngs_modulus: steel_modulus(),
+            poisson_ratio: steel_ratio(),
+            density: steel_density(),
+            thermal_expansion: steel_expansion(),
+            rise: Schedule::default(),
+        }
+    }
+
+    /// The same as cold as it is given, and without a fit.
+    pub(super) fn cold(self) -> Self {
+        Self { interference: None, rise: Schedule::default(), ..self }
+    }
+}
+
 fn steel_modulus() -> Pressure {
     Material::default().youngs_modulus
 }

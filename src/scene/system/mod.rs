@@ -19,8 +19,8 @@ use toml::{Table, Value};
 use super::{Scene, SceneError};
 use crate::schema::units::{Acceleration, Force, Moment, Time};
 use crate::schema::{
-    AxialSeat, Components, HousingSection, Matrices, Mounting, PhaseSection, ShaftSection, Solver, explain,
-    regular,
+    AxialSeat, Components, HousingSection, Matrices, Mounting, PhaseSection, Schedule, ShaftSection, Solver,
+    explain, regular,
 };
 
 /// A shaft with its bearings, as described by a file.
@@ -219,6 +219,16 @@ impl SystemScene {
             force: &load.force,
             moment: &load.moment,
         }))
+    }
+
+    /// Schedules of what acts on the shaft, its housings and bearings.
+    pub fn schedules(&self) -> impl Iterator<Item = &Schedule> {
+        let loads = self.loads().flat_map(|load| load.force.0.iter().chain(&load.moment.0));
+        let drive = self.shaft.speed.iter().chain(&self.shaft.torque);
+        let gears = self.shaft.gear.iter().map(|gear| &gear.torque);
+        let frictions = self.bearings.iter().map(|mounted| &mounted.scene.friction.ball_race);
+        let oils = self.bearings.iter().filter_map(|mounted| mounted.scene.effects.film.schedule());
+        loads.chain(drive).chain(gears).chain(frictions).chain(oils)
     }
 
     /// Housing that the outer race of a bearing sits in, by their indices.
