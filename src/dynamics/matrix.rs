@@ -150,7 +150,8 @@ impl BearingStep<'_> {
         kept.step = self.step.h;
     }
 
-    /// Factorises the rows of the bodies, with what the balls leave in them; the bodies have derivatives.
+    /// Factorises the rows of the bodies, with what the balls leave in them; the bodies have derivatives. Rows of races that are carried
+    /// are left to what carries them, without the others.
     pub(super) fn factorise(&mut self) {
         self.assembled += 1;
         self.assemble_blocks();
@@ -158,7 +159,7 @@ impl BearingStep<'_> {
         let origin = self.races_origin();
         let guide = self.model.cage_guide().map(Body::from);
         let (offsets, rows) = (self.model.border_offsets(), self.model.border_size());
-        let carries = Race::BOTH.into_iter().any(|race| self.model.is_carried(race));
+        let model = self.model;
         let Workspace {
             balls,
             groups,
@@ -171,6 +172,7 @@ impl BearingStep<'_> {
             ring,
             factorised,
             reduced,
+            condensed,
             ..
         } = &mut *self.workspace;
         *factorised = true;
@@ -199,19 +201,17 @@ impl BearingStep<'_> {
         if neighbours.is_empty() {
             let turns = kept.balls.chunks(WIDTH).zip(groups.positions());
             let turns = turns.map(|(kept, positions)| turn_of_lanes(kept, positions, &origin));
-            let blocks = kept.blocks.iter().zip(turns);
-            match carries {
-                true => arrowhead.reduce(blocks, members, border),
-                false => arrowhead.factorise(blocks, members, border),
-            }
+            arrowhead.reduce(kept.blocks.iter().zip(turns), members, border);
         } else {
             let blocks: Vec<&Block> = balls.iter().map(|trial| &trial.block).collect();
             let links: Vec<Link> = neighbours.iter().map(|pair| pair.link).collect();
-            match carries {
-                true => *border = ring.reduce(&blocks, &links, border, offsets),
-                false => ring.factorise(&blocks, &links, border, offsets),
-            }
+            *border = ring.reduce(&blocks, &links, border, offsets);
         }
+        let carried = Race::BOTH.map(|race| {
+            let first = offsets[Body::from(race).index()].filter(|_| model.is_carried(race));
+            first.map(|first| first..first + BLOCK)
+        });
+        condensed.factorise(border, |row| !carried.iter().flatten().any(|rows| rows.contains(&row)));
     }
 
     /// \[m] centre of the outer race, which orbits are about.
@@ -296,17 +296,12 @@ impl BearingStep<'_> {
 
     /// Corrections of balls and bodies at once.
     fn correct_all(&mut self, correction: &mut [f64]) -> bool {
-        self.eliminate_balls() && self.solve_bodies() && self.substitute_bodies(correction)
+        self.eliminate() && self.substitute(correction)
     }
 
-    /// Solves what the balls have left of the rows of the bodies, where these are no part of a larger system; false if that is singular.
-    fn solve_bodies(&mut self) -> bool {
-        let Workspace { neighbours, arrowhead, ring, border_correction: y, .. } = &mut *self.workspace;
-        if neighbours.is_empty() { arrowhead.solve_border(y) } else { ring.solve_border(y) }
-    }
-
-    /// Takes the right-hand sides of balls and bodies, with the balls taken out of those of the bodies. False without a matrix.
-    pub(super) fn eliminate_balls(&mut self) -> bool {
+    /// Takes the right-hand sides of balls and bodies, and solves for them but for races that are carried, whose right-hand sides are
+    /// left without them. False without a matrix, or where that is singular.
+    pub(super) fn eliminate(&mut self) -> bool {
         self.take_right_sides();
         let offsets = self.model.border_offsets();
         let Workspace {
@@ -315,6 +310,7 @@ impl BearingStep<'_> {
             neighbours,
             arrowhead,
             ring,
+            condensed,
             ball_corrections,
             group_corrections: x,
             border_correction: y,
@@ -322,29 +318,29 @@ impl BearingStep<'_> {
         } = &mut *self.workspace;
         if !neighbours.is_empty() {
             ring.eliminate(ball_corrections, y, offsets);
-            return true;
-        }
-        let there = kept.balls.len() == balls.len();
-        if there {
+        } else if kept.balls.len() == balls.len() {
             arrowhead.eliminate(kept.blocks.iter(), x, y);
+        } else {
+            return false;
         }
-        there
+        condensed.eliminate(y)
     }
 
-    /// Writes the correction of balls and bodies from that of the bodies, after [`BearingStep::eliminate_balls`]; false if it is not
-    /// finite.
-    pub(super) fn substitute_bodies(&mut self, correction: &mut [f64]) -> bool {
+    /// Writes the correction of balls and bodies from that of carried races, after [`BearingStep::eliminate`]; false if it is not finite.
+    pub(super) fn substitute(&mut self, correction: &mut [f64]) -> bool {
         let offsets = self.model.border_offsets();
         let Workspace {
             kept,
             neighbours,
             arrowhead,
             ring,
+            condensed,
             ball_corrections,
             group_corrections,
             border_correction: y,
             ..
         } = &mut *self.workspace;
+        condensed.substitute(y);
         let solved = if neighbours.is_empty() {
             arrowhead.substitute(kept.blocks.iter(), group_corrections, y)
         } else {

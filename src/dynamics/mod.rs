@@ -36,6 +36,7 @@ use crate::model::bodies::{Bodies, Body, PerRace, Race};
 use crate::model::state::KeptMatrix;
 use crate::model::{Conditions, Model};
 use crate::numerics::arrowhead::{Arrowhead, Member, Six};
+use crate::numerics::condensed::Condensed;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::motion::{Pose, Twist};
 use crate::numerics::newton::NewtonFailure;
@@ -94,8 +95,10 @@ pub struct Workspace {
     /// Neighbouring balls that may touch in the step.
     neighbours: Vec<NeighbourTrial>,
     arrowhead: Arrowhead,
-    /// The border with what the balls leave in it: of a bearing with a carried race a part of a larger one.
+    /// Rows of the bodies with what the balls leave in them; in those of carried races, what the other bodies leave too.
     reduced: DMatrix<f64>,
+    /// The bodies that nothing carries, eliminated from it.
+    condensed: Condensed,
     /// Is the matrix that of this step's bodies and kept balls?
     factorised: bool,
     /// Bodies that forces move.

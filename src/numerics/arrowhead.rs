@@ -18,7 +18,6 @@
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, SMatrix, Vector6};
 use serde::{Deserialize, Serialize};
 
-use super::kept_lu::KeptLu;
 use super::lanes::{Lanes, WIDTH};
 use super::orbit_turn::OrbitTurn;
 use super::scalar::Scalar;
@@ -210,13 +209,12 @@ fn put(lanes: &mut Square<Lanes>, lane: usize, matrix: &Matrix6<f64>) {
     }
 }
 
-/// The factorised border of a matrix whose blocks are eliminated.
+/// A matrix whose blocks are eliminated.
 #[derive(Clone, Debug, Default)]
 pub struct Arrowhead {
     members: Vec<Member>,
     /// Turns of the blocks since they were eliminated.
     turns: Vec<OrbitTurn<Lanes>>,
-    border: KeptLu,
     /// What all blocks leave in rows and columns of each two members, in world axes, by lane.
     sums: Vec<Square<Lanes>>,
     /// Loads on the members, by lane, and what they do, in world axes.
@@ -224,17 +222,6 @@ pub struct Arrowhead {
 }
 
 impl Arrowhead {
-    /// Adds what the blocks leave to the border's own matrix, and factorises it.
-    pub fn factorise<'a>(
-        &mut self,
-        blocks: impl Iterator<Item = (&'a Eliminated, OrbitTurn<Lanes>)>,
-        members: &[Member],
-        border: &mut DMatrix<f64>,
-    ) {
-        self.reduce(blocks, members, border);
-        self.border.factorise(border);
-    }
-
     /// Adds what the blocks leave to the border's own matrix: what remains when they are eliminated.
     pub fn reduce<'a>(
         &mut self,
@@ -262,11 +249,6 @@ impl Arrowhead {
                 view += rest;
             }
         }
-    }
-
-    /// Solves in place for the right-hand side of the border that the blocks were taken out of; false if its matrix is singular.
-    pub fn solve_border(&mut self, border: &mut DVector<f64>) -> bool {
-        self.border.solve(border.as_mut_slice())
     }
 
     /// Takes the right-hand sides of the blocks out of that of the border.

@@ -10,7 +10,7 @@
 //! Blocks are eliminated one after the other. That fills in couplings of the next block and, where the ring is closed, of
 //! the last one alone, so that the cost grows linearly with the number of blocks.
 
-use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix6, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix6, Vector6};
 
 use super::arrowhead::{BLOCK, Block, Offsets, SLOTS};
 
@@ -39,20 +39,13 @@ struct Factor {
     left: [Matrix6<f64>; SLOTS],
 }
 
-/// The factorised matrix.
+/// The matrix with blocks eliminated.
 #[derive(Clone, Debug, Default)]
 pub struct Ring {
     blocks: Vec<Factor>,
-    border: Option<LU<f64, Dyn, Dyn>>,
 }
 
 impl Ring {
-    /// Factorises blocks, links and border.
-    pub fn factorise(&mut self, blocks: &[&Block], links: &[Link], border: &DMatrix<f64>, offsets: Offsets) {
-        let border = self.reduce(blocks, links, border, offsets);
-        self.border = if border.is_empty() { None } else { Some(border.lu()) };
-    }
-
     /// Factorises blocks and links; gives what they leave of the border.
     pub fn reduce(
         &mut self,
@@ -88,11 +81,6 @@ impl Ring {
             eliminate_block(&mut here[0], later, &mut schur, offsets);
         }
         schur
-    }
-
-    /// Solves in place for the right-hand side of the border that the blocks were taken out of; false if its matrix is singular.
-    pub fn solve_border(&self, border: &mut DVector<f64>) -> bool {
-        self.border.as_ref().is_none_or(|lu| lu.solve_mut(border))
     }
 
     /// Takes the right-hand sides of the blocks out of that of the border.

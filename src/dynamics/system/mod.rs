@@ -1,5 +1,6 @@
 //! One implicit step of bearings together with the structures that carry their races: of a bearing alone, of several on a shaft.
 
+mod border;
 mod dense;
 mod sensitivity;
 mod step;
@@ -16,6 +17,7 @@ use crate::numerics::hht::HhtStep;
 use crate::numerics::newton::{self, NewtonBuffers, NewtonWork};
 use crate::numerics::size::larger;
 use crate::numerics::step_control::StepControl;
+use border::Border;
 pub use dense::{Stepped, within};
 pub use sensitivity::{Perturbed, Started, advance_perturbed};
 pub use step::{Joint, StructureStep, SystemStep};
@@ -39,6 +41,7 @@ pub struct StepBuffers {
     /// Unknowns of the last step.
     pub unknowns: Vec<f64>,
     newton: NewtonBuffers,
+    border: Border,
 }
 
 /// Tries one step of `h` \[s] of bearings and the structures that carry their races; a bearing alone has none. On success states of bearings
@@ -63,10 +66,10 @@ pub fn try_step(
         // Here and not at the end of a step, so that a state keeps those that its forces were computed with.
         renew_polynomials(model, state, boundary);
     }
-    let StepBuffers { unknowns, newton: buffers } = workspace;
+    let StepBuffers { unknowns, newton: buffers, border } = workspace;
     let mut work = NewtonWork::default();
     let mut second = 0;
-    let mut equations = SystemStep::of_parts(parts, structures, joints, h);
+    let mut equations = SystemStep::of_parts(parts, structures, joints, h, border);
     equations.list_near();
     equations.guess(unknowns, false);
     let mut solve = |equations: &mut SystemStep<'_>, unknowns: &mut [f64]| {

@@ -5,6 +5,7 @@
 //! once for all perturbations by eliminating the balls; `R_p dp` is the residual of the perturbed step with the unknowns of
 //! the step itself. What is left is of second order, and even: it cancels between two perturbations of opposite sign.
 
+use super::border::Border;
 use super::step::{Joint, StructureStep, SystemStep};
 use super::{BearingStep, finished};
 use crate::dynamics::accept::{StepEnd, accept};
@@ -55,7 +56,8 @@ pub fn advance_perturbed<'a>(
         .map(|(of, workspace)| BearingStep::new(of.model, of.start, of.boundary, h, workspace))
         .collect();
     let step = steps.first()?.step;
-    SystemStep::new(steps, structures, joints, step).residual(solution, true);
+    let mut border = Border::default();
+    SystemStep::new(steps, structures, joints, step, &mut border).residual(solution, true);
     let mut unknowns = vec![0.0; solution.len()];
     let mut ends = vec![];
     for Perturbed { mut states, boundaries, structures } in perturbed {
@@ -70,7 +72,7 @@ pub fn advance_perturbed<'a>(
             own.force_tolerance = 0.0;
             own
         });
-        let mut equations = SystemStep::new(steps.collect(), &structures, joints, step);
+        let mut equations = SystemStep::new(steps.collect(), &structures, joints, step, &mut border);
         equations.residual(solution, false);
         if !equations.correction(&mut unknowns) {
             return None;

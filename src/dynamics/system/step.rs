@@ -1,15 +1,16 @@
 //! The equations of one trial step of bearings and the structures that carry their races: one Newton iteration for all.
 //!
-//! Balls are eliminated bearing by bearing. What is left of cages, races that forces move, and structures is the border.
+//! Balls, cages and races that nothing carries are eliminated bearing by bearing. What is left are the rows of the structures, the border.
 
-use nalgebra::{DMatrix, DVector, Dyn, LU, OMatrix, U6};
+use nalgebra::DVector;
 
 use super::super::StepFailure;
 use super::super::accept::StepEnd;
 use super::super::equations::BearingStep;
 use super::Part;
+use super::border::{Border, CarriedRace};
 use super::structure::{Seat, StructureLoad, StructureTrial};
-use crate::model::bodies::{Body, Race};
+use crate::model::bodies::Race;
 use crate::model::state::KeptMatrix;
 use crate::model::structure::{Structure, StructureState};
 use crate::numerics::arrowhead::BLOCK;
@@ -59,79 +60,15 @@ pub struct SystemStep<'a> {
     pub step: HhtStep,
     /// First unknown of each bearing, then of each structure, and the end.
     first: Vec<usize>,
-    /// First border row of each bearing's own bodies, then of each structure, and the end.
-    border: Vec<usize>,
-    matrix: Option<LU<f64, Dyn, Dyn>>,
-    /// How often the borders of the bearings that it has were assembled.
-    assembled: u64,
+    /// First border row of each structure, and the end.
+    rows: Vec<usize>,
+    border: &'a mut Border,
+    /// How often the matrices of the bearings whose rows the border has were assembled; none before it has some.
+    assembled: Option<u64>,
     /// [-] residual of each bearing over its tolerance.
     norms: Vec<f64>,
-    /// Where the rows of each bearing's border are in the system's.
-    shares: Vec<Vec<Share<'a>>>,
-}
-
-/// Rows of a bearing's border: those of its own bodies are rows of the system's border, those of a carried race follow from its
-/// structure's.
-#[derive(Debug)]
-struct Share<'a> {
-    /// First row in the bearing's border.
-    from: usize,
-    /// Rows of the system's border.
-    to: Vec<usize>,
-    /// Of a carried race: its joint, and its unknowns by those of the structure.
-    carried: Option<(&'a Joint, OMatrix<f64, U6, Dyn>)>,
-}
-
-impl Share<'_> {
-    /// How many rows of the bearing's border.
-    fn count(&self) -> usize {
-        if self.carried.is_some() { BLOCK } else { self.to.len() }
-    }
-
-    /// Adds right-hand sides of the bearing's rows to those of the system.
-    fn project(&self, own: &DVector<f64>, border: &mut DVector<f64>) {
-        let own = own.rows(self.from, self.count());
-        match &self.carried {
-            None => self.to.iter().zip(own.iter()).for_each(|(k, value)| border[*k] += value),
-            Some((_, by)) => {
-                self.to.iter().zip(by.tr_mul(&own).iter()).for_each(|(k, value)| border[*k] += value);
-            }
-        }
-    }
-
-    /// Unknowns of the bearing's rows from those of the system.
-    fn lift(&self, border: &DVector<f64>, own: &mut DVector<f64>) {
-        let given = DVector::from_iterator(self.to.len(), self.to.iter().map(|k| border[*k]));
-        let mut rows = own.rows_mut(self.from, self.count());
-        match &self.carried {
-            None => rows.copy_from(&given),
-            Some((_, by)) => rows.copy_from(&(by * given)),
-        }
-    }
-
-    /// Adds the block of a bearing's border in these rows and the columns of another share to the system's.
-    fn add_block(&self, columns: &Self, reduced: &DMatrix<f64>, matrix: &mut DMatrix<f64>) {
-        // The ground does not move.
-        if self.to.is_empty() || columns.to.is_empty() {
-            return;
-        }
-        let block = reduced.view((self.from, columns.from), (self.count(), columns.count()));
-        let right = match &columns.carried {
-            None => block.into_owned(),
-            Some((_, by)) => {
-                DMatrix::from_columns(&by.column_iter().map(|one| block * one).collect::<Vec<_>>())
-            }
-        };
-        let whole = match &self.carried {
-            None => right,
-            Some((_, by)) => DMatrix::from_columns(
-                &right.column_iter().map(|one| by.tr_mul(&one)).collect::<Vec<DVector<f64>>>(),
-            ),
-        };
-        for (column, to) in whole.column_iter().zip(&columns.to) {
-            self.to.iter().zip(column.iter()).for_each(|(row, value)| matrix[(*row, *to)] += value);
-        }
-    }
+    /// Carried races of each bearing.
+    carried: Vec<Vec<CarriedRace<'a>>>,
 }
 
 impl<'a> SystemStep<'a> {
@@ -141,6 +78,7 @@ impl<'a> SystemStep<'a> {
         structures: &'a [StructureStep<'a>],
         joints: &'a [Joint],
         h: f64,
+        border: &'a mut Border,
     ) -> Self {
         let of = |part: &'a mut Part<'_>| {
             let Part { model, state, boundary, workspace } = part;
@@ -148,7 +86,7 @@ impl<'a> SystemStep<'a> {
         };
         let bearings: Vec<_> = parts.iter_mut().map(of).collect();
         let step = bearings.first().map_or(HhtStep::new(DEFAULT_ALPHA, h), |bearing| bearing.step);
-        Self::new(bearings, structures, joints, step)
+        Self::new(bearings, structures, joints, step, border)
     }
 
     /// The equations of a step of bearings whose equations are these, with structures.
@@ -157,6 +95,7 @@ impl<'a> SystemStep<'a> {
         structures: &'a [StructureStep<'a>],
         joints: &'a [Joint],
         step: HhtStep,
+        border: &'a mut Border,
     ) -> Self {
         let trials = structures.iter().map(|one| StructureTrial::new(one.start)).collect();
         let mut equations = Self {
@@ -166,11 +105,11 @@ impl<'a> SystemStep<'a> {
             joints,
             step,
             first: vec![],
-            border: vec![],
-            matrix: None,
-            assembled: 0,
+            rows: vec![],
+            border,
+            assembled: None,
             norms: vec![],
-            shares: vec![],
+            carried: vec![],
         };
         if equations.alone().is_none() {
             equations.lay_out();
@@ -180,18 +119,23 @@ impl<'a> SystemStep<'a> {
 
     /// Finds the places of all unknowns and of the rows of the border.
     fn lay_out(&mut self) {
-        let of_bearing = |bearing: &BearingStep<'_>| {
-            let rows = bearing.model.border_size();
-            [BLOCK * bearing.start.balls.len() + rows, rows - carried_rows(bearing)]
+        let ends = |sizes: &mut dyn Iterator<Item = usize>| {
+            let mut end = 0;
+            [0].into_iter()
+                .chain(sizes.map(|size| {
+                    end += size;
+                    end
+                }))
+                .collect::<Vec<_>>()
         };
-        let of_structure = |one: &StructureStep<'_>| [one.model.size(); 2];
-        let sizes = self.bearings.iter().map(of_bearing).chain(self.structures.iter().map(of_structure));
-        (self.first, self.border) = (vec![0], vec![0]);
-        for [unknowns, rows] in sizes {
-            self.first.push(self.first[self.first.len() - 1] + unknowns);
-            self.border.push(self.border[self.border.len() - 1] + rows);
-        }
-        self.shares = (0..self.bearings.len()).map(|bearing| self.share(bearing)).collect();
+        let of_bearing = |step: &BearingStep<'_>| BLOCK * step.start.balls.len() + step.model.border_size();
+        let of_structure = |one: &StructureStep<'_>| one.model.size();
+        let of_structures = self.structures.iter().map(of_structure);
+        self.rows = ends(&mut of_structures.clone());
+        self.first = ends(&mut self.bearings.iter().map(of_bearing).chain(of_structures));
+        let bearings = self.bearings.iter().enumerate();
+        let carried = |(index, step)| CarriedRace::of_bearing(index, step, self.joints, &self.rows);
+        self.carried = bearings.map(carried).collect();
     }
 
     /// A bearing that no structure carries has the equations of the step for itself: they need no border beside its own.
@@ -251,54 +195,13 @@ impl<'a> SystemStep<'a> {
         self.bearings.iter_mut().for_each(|step| step.workspace.kept = KeptMatrix::default());
     }
 
-    /// Where the rows of a bearing's border are.
-    fn share(&self, bearing: usize) -> Vec<Share<'a>> {
-        let model = self.bearings[bearing].model;
-        let mut at = self.border[bearing];
-        let mut shares = vec![];
-        for (body, from) in Body::ALL.into_iter().zip(model.border_offsets()) {
-            let (Some(from), Some(Some(moved))) = (from, model.bodies.get(body)) else {
-                continue;
-            };
-            let joint = self
-                .joints
-                .iter()
-                .find(|joint| moved.carried && joint.bearing == bearing && Body::from(joint.race) == body);
-            let share = match joint {
-                Some(joint) => {
-                    let first = self.border_of(joint.structure);
-                    let to: Vec<_> = joint.seat.coordinates().iter().map(|k| first + k).collect();
-                    let by = OMatrix::<f64, U6, Dyn>::zeros(to.len());
-                    Share { from, to, carried: Some((joint, by)) }
-                }
-                None => {
-                    let to = (at..at + moved.rows()).collect();
-                    at += moved.rows();
-                    Share { from, to, carried: None }
-                }
-            };
-            shares.push(share);
-        }
-        shares
-    }
-
-    /// First border row of a structure.
-    fn border_of(&self, structure: usize) -> usize {
-        self.border[self.bearings.len() + structure]
-    }
-
     /// Sets the races that structures carry to where these are.
     fn carry_races(&mut self) {
-        for (shares, step) in self.shares.iter_mut().zip(&mut self.bearings) {
-            let length = step.model.race_length();
-            for (joint, by) in shares.iter_mut().filter_map(|share| share.carried.as_mut()) {
-                let Joint { race, structure, seat, .. } = *joint;
+        for (carried, step) in self.carried.iter_mut().zip(&mut self.bearings) {
+            for race in carried {
+                let Joint { structure, seat, .. } = race.joint;
                 let motion = self.trials[*structure].seat(self.structures[*structure].model, seat);
-                *by = StructureTrial::unknowns_of(seat, &motion, length);
-                if let Some(Some(trial)) = step.workspace.bodies.get_mut(*race) {
-                    trial.carry(&motion);
-                    step.workspace.races[*race] = trial.motion_value();
-                }
+                race.follow(&motion, step);
             }
         }
     }
@@ -327,10 +230,9 @@ impl<'a> SystemStep<'a> {
 
     /// Assembles and factorises the border.
     fn factorise(&mut self) {
-        let rows = self.border[self.border.len() - 1];
-        let mut matrix = DMatrix::zeros(rows, rows);
-        for (index, (one, trial)) in self.structures.iter().zip(&self.trials).enumerate() {
-            let (at, size) = (self.border_of(index), one.model.size());
+        let matrix = self.border.cleared(self.rows[self.structures.len()]);
+        for ((one, trial), at) in self.structures.iter().zip(&self.trials).zip(&self.rows) {
+            let (at, size) = (*at, one.model.size());
             matrix.view_mut((at, at), (size, size)).copy_from(&trial.tangent(one.model, &self.step));
         }
         for Joint { bearing, race, structure, seat } in self.joints {
@@ -339,7 +241,7 @@ impl<'a> SystemStep<'a> {
             {
                 let moment = &trial.end.bearing_wrench.moment;
                 let turned = self.trials[*structure].turned_moments(seat, motion, moment, &self.step);
-                let at = self.border_of(*structure);
+                let at = self.rows[*structure];
                 for (i, row) in seat.coordinates().iter().enumerate() {
                     for (k, column) in seat.coordinates().iter().enumerate() {
                         matrix[(at + row, at + column)] += turned[(i, k)];
@@ -347,14 +249,12 @@ impl<'a> SystemStep<'a> {
                 }
             }
         }
-        for (step, shares) in self.bearings.iter().zip(&self.shares) {
-            for rows in shares {
-                shares.iter().for_each(|columns| {
-                    rows.add_block(columns, &step.workspace.reduced, &mut matrix);
-                });
+        for (step, carried) in self.bearings.iter().zip(&self.carried) {
+            for rows in carried {
+                carried.iter().for_each(|columns| rows.add_block(columns, &step.workspace.reduced, matrix));
             }
         }
-        self.matrix = Some(matrix.lu());
+        self.border.factorise();
     }
 
     /// Where the residual is largest after Newton's method gave up.
@@ -411,11 +311,6 @@ fn index_of_largest(norms: impl Iterator<Item = f64>) -> usize {
     norms.enumerate().max_by(|a, b| norm(a.1).total_cmp(&norm(b.1))).map_or(0, |(index, _)| index)
 }
 
-/// Border rows of the races that a structure carries.
-fn carried_rows(bearing: &BearingStep<'_>) -> usize {
-    BLOCK * Race::BOTH.into_iter().filter(|race| bearing.model.is_carried(*race)).count()
-}
-
 impl Equations for SystemStep<'_> {
     fn residual(&mut self, unknowns: &[f64], with_tangent: bool) -> f64 {
         if let Some(bearing) = self.alone() {
@@ -447,40 +342,33 @@ impl Equations for SystemStep<'_> {
         self.bearings.iter_mut().for_each(BearingStep::prepare_correction);
         // Balls that were brought back press differently.
         self.assemble_structures();
-        let assembled = self.bearings.iter().map(|step| step.assembled).sum();
-        if self.matrix.is_none() || self.assembled != assembled {
+        let assembled = Some(self.bearings.iter().map(|step| step.assembled).sum());
+        if self.assembled != assembled {
             self.factorise();
             self.assembled = assembled;
         }
-        let mut border = DVector::zeros(self.border[self.border.len() - 1]);
-        for (index, trial) in self.trials.iter().enumerate() {
-            border.rows_mut(self.border_of(index), trial.residual.len()).copy_from(&-&trial.residual);
+        let border = &mut *self.border;
+        border.right.resize_vertically_mut(self.rows[self.structures.len()], 0.0);
+        for (trial, at) in self.trials.iter().zip(&self.rows) {
+            border.right.rows_mut(*at, trial.residual.len()).copy_from(&-&trial.residual);
         }
-        for index in 0..self.bearings.len() {
-            if !self.bearings[index].eliminate_balls() {
+        for (step, carried) in self.bearings.iter_mut().zip(&self.carried) {
+            if !step.eliminate() {
                 return false;
             }
-            let own = &self.bearings[index].workspace.border_correction;
-            self.shares[index].iter().for_each(|share| share.project(own, &mut border));
+            let own = &step.workspace.border_correction;
+            carried.iter().for_each(|race| race.project(own, &mut border.right));
         }
-        let solved = self.matrix.as_ref().is_some_and(|lu| lu.solve_mut(&mut border));
-        if !solved || !border.iter().all(|v| v.is_finite()) {
+        if !border.solve() {
             return false;
         }
         let mut regular = true;
-        for index in 0..self.bearings.len() {
-            let range = self.first[index]..self.first[index + 1];
-            let step = &mut self.bearings[index];
+        for (index, (step, carried)) in self.bearings.iter_mut().zip(&self.carried).enumerate() {
             let own = &mut step.workspace.border_correction;
-            self.shares[index].iter().for_each(|share| share.lift(&border, own));
-            regular &= step.substitute_bodies(&mut correction[range]);
+            carried.iter().for_each(|race| race.lift(&border.right, own));
+            regular &= step.substitute(&mut correction[self.first[index]..self.first[index + 1]]);
         }
-        let count = self.bearings.len();
-        for index in 0..self.structures.len() {
-            let own = border.rows(self.border_of(index), self.structures[index].model.size());
-            correction[self.first[count + index]..self.first[count + index + 1]]
-                .copy_from_slice(own.as_slice());
-        }
+        correction[self.first[self.bearings.len()]..].copy_from_slice(border.right.as_slice());
         debug_assert_eq!(correction.len(), self.size());
         regular
     }

@@ -1,0 +1,108 @@
+//! The border of a system's matrix: rows of the structures, with what bearings leave in them of the races that they carry.
+//!
+//! Balls and bodies that nothing carries are eliminated bearing by bearing: an arrowhead of arrowheads, whose cost grows with the
+//! number of bearings.
+
+use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6};
+
+use super::step::Joint;
+use super::structure::StructureTrial;
+use crate::dynamics::carried::SeatMotion;
+use crate::dynamics::equations::BearingStep;
+use crate::model::bodies::Body;
+use crate::numerics::arrowhead::BLOCK;
+use crate::numerics::kept_lu::KeptLu;
+
+/// Matrix and right-hand side of the border, kept between steps.
+#[derive(Clone, Debug, Default)]
+pub struct Border {
+    matrix: DMatrix<f64>,
+    lu: KeptLu,
+    /// Right-hand side, then solution.
+    pub(super) right: DVector<f64>,
+}
+
+impl Border {
+    /// The matrix, to be assembled: zeros in so many rows.
+    pub(super) fn cleared(&mut self, rows: usize) -> &mut DMatrix<f64> {
+        if self.matrix.nrows() == rows {
+            self.matrix.fill(0.0);
+        } else {
+            self.matrix = DMatrix::zeros(rows, rows);
+        }
+        &mut self.matrix
+    }
+
+    /// Factorises the matrix that was assembled.
+    pub(super) fn factorise(&mut self) {
+        self.lu.factorise(&self.matrix);
+    }
+
+    /// Solves in place for the right-hand side; false if the matrix is singular or the solution is not finite.
+    pub(super) fn solve(&mut self) -> bool {
+        self.lu.solve(self.right.as_mut_slice()) && self.right.iter().all(|v| v.is_finite())
+    }
+}
+
+/// A race of a bearing that a structure carries: its rows among those of the bearing's bodies, and in the border.
+#[derive(Debug)]
+pub(super) struct CarriedRace<'a> {
+    pub(super) joint: &'a Joint,
+    /// First row among those of the bearing's bodies.
+    from: usize,
+    /// Rows of the border.
+    to: Vec<usize>,
+    /// Unknowns of the race by those of the structure.
+    by: OMatrix<f64, U6, Dyn>,
+}
+
+impl<'a> CarriedRace<'a> {
+    /// The carried races of a bearing; with the first border row of each structure.
+    pub(super) fn of_bearing(
+        bearing: usize,
+        step: &BearingStep<'_>,
+        joints: &'a [Joint],
+        first: &[usize],
+    ) -> Vec<Self> {
+        let offsets = step.model.border_offsets();
+        let of = |joint: &'a Joint| {
+            let from = offsets[Body::from(joint.race).index()]?;
+            let to: Vec<_> = joint.seat.coordinates().iter().map(|k| first[joint.structure] + k).collect();
+            let by = OMatrix::<f64, U6, Dyn>::zeros(to.len());
+            Some(Self { joint, from, to, by })
+        };
+        let carried = |joint: &&Joint| joint.bearing == bearing && step.model.is_carried(joint.race);
+        joints.iter().filter(carried).filter_map(of).collect()
+    }
+
+    /// Puts the race where its structure is, in a trial step.
+    pub(super) fn follow(&mut self, motion: &SeatMotion, step: &mut BearingStep<'_>) {
+        let Joint { race, seat, .. } = self.joint;
+        self.by = StructureTrial::unknowns_of(seat, motion, step.model.race_length());
+        if let Some(Some(trial)) = step.workspace.bodies.get_mut(*race) {
+            trial.carry(motion);
+            step.workspace.races[*race] = trial.motion_value();
+        }
+    }
+
+    /// Adds the bearing's right-hand sides to those of the border.
+    pub(super) fn project(&self, own: &DVector<f64>, border: &mut DVector<f64>) {
+        let own = own.fixed_rows::<BLOCK>(self.from);
+        self.to.iter().zip(self.by.tr_mul(&own).iter()).for_each(|(k, value)| border[*k] += value);
+    }
+
+    /// Unknowns of the race from those of the border.
+    pub(super) fn lift(&self, border: &DVector<f64>, own: &mut DVector<f64>) {
+        let given = DVector::from_iterator(self.to.len(), self.to.iter().map(|k| border[*k]));
+        own.fixed_rows_mut::<BLOCK>(self.from).copy_from(&(&self.by * given));
+    }
+
+    /// Adds what the bearing leaves in these rows and the columns of another carried race to the border.
+    pub(super) fn add_block(&self, columns: &Self, reduced: &DMatrix<f64>, border: &mut DMatrix<f64>) {
+        let block = reduced.fixed_view::<BLOCK, BLOCK>(self.from, columns.from);
+        for (one, to) in columns.by.column_iter().zip(&columns.to) {
+            let column = self.by.tr_mul(&(block * one));
+            self.to.iter().zip(column.iter()).for_each(|(row, value)| border[(*row, *to)] += value);
+        }
+    }
+}
