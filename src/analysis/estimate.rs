@@ -18,8 +18,8 @@ use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::scene::system::SystemScene;
 use crate::scene::{Drive, Load, Machine, RaceLoad, Scene, Schedule, Start};
-use crate::simulation::Simulation;
 use crate::simulation::system::System;
+use crate::simulation::{Simulation, machine};
 
 /// Why nothing is estimated.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -132,6 +132,14 @@ fn acting(scene: &mut Scene) -> Vec<&mut Schedule> {
     let along = along.into_iter().flat_map(|one| [one.force.as_mut(), one.displacement.as_mut()]);
     let about = about.into_iter().flat_map(|one| [one.moment.as_mut(), one.rotation.as_mut()]);
     [inner_speed, outer_speed].into_iter().chain(along.flatten()).chain(about.flatten()).collect()
+}
+
+/// What estimates say of the effects of every bearing of a machine.
+pub fn verdicts_of(machine: &machine::Machine) -> Vec<Verdicts> {
+    match machine {
+        machine::Machine::Bearing(bearing) => vec![verdicts(bearing.scene(), bearing.model())],
+        machine::Machine::Shaft(system) => verdicts_of_shaft(system.scene()),
+    }
 }
 
 /// The same of every bearing of a shaft, where shaft and housings put its races: with the whole shaft in balance again.

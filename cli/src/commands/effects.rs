@@ -60,7 +60,7 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let machine = Machine::new(&scene)?;
     let mut values = Map::new();
     let mut text = String::new();
-    for ((name, bearing), verdicts) in machine.bearings().zip(verdicts(&machine)) {
+    for ((name, bearing), verdicts) in machine.bearings().zip(estimate::verdicts_of(&machine)) {
         let (scene, verdicts) =
             (bearing.scene(), verdicts.map_err(|why| format!("bearing \"{name}\": {why}"))?);
         values.insert(name.to_string(), json::effects(scene, &verdicts)?);
@@ -107,14 +107,6 @@ const UNDER_SCRIPTS: &str =
     "settled states at the start with and without each, every race at the largest speed of its script";
 /// What those of a bearing on a shaft are of.
 const UNDER_SHAFT: &str = "settled states at the start with and without each, the whole shaft in balance";
-
-/// What estimates say of the effects of every bearing of a machine that was just started.
-pub fn verdicts(machine: &Machine) -> Vec<Verdicts> {
-    match machine {
-        Machine::Bearing(bearing) => vec![estimate::verdicts(bearing.scene(), bearing.model())],
-        Machine::Shaft(system) => estimate::verdicts_of_shaft(system.scene()),
-    }
-}
 
 /// Says what is on, and what is off and would matter; nothing more where nothing can be estimated but why. The name of a bearing that is
 /// not alone stands before it.

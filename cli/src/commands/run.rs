@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use roulement::analysis::estimate::Verdicts;
+use roulement::analysis::estimate::{self, Verdicts};
 use roulement::scene::machine::MachineScene;
 use roulement::scene::{ErrorGoal, ErrorOf};
 use roulement::simulation::machine::Machine;
@@ -18,7 +18,7 @@ use roulement_cli::report::tables::Tables;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-use super::effects::{announce, verdicts};
+use super::effects::announce;
 use super::place::{Place, Said};
 use super::player::{End, Played, Player};
 use super::{load, tell};
@@ -119,7 +119,7 @@ pub fn simulate(
     end_steps: bool,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let machine = Machine::new(scene)?;
-    let verdicts = verdicts(&machine);
+    let verdicts = estimate::verdicts_of(&machine);
     if place.said != Said::Nothing {
         for ((name, bearing), verdicts) in machine.bearings().zip(&verdicts) {
             announce(name, bearing.scene(), verdicts);

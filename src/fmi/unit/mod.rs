@@ -21,8 +21,8 @@ use crate::scene::machine::MachineScene;
 use crate::scene::{Giver, Group, Groups, Level, Scene, SceneError, Solver};
 use crate::simulation::driven::{MachineInputs, MachineSnapshot};
 use crate::simulation::machine::{Machine, MachineError, follows_time};
+use crate::simulation::scripted_groups;
 use crate::simulation::system::{Played, drive_is_scripted};
-use crate::simulation::{Simulation, scripted_groups};
 
 /// Scripts of a bearing.
 const GROUPS: usize = Group::VARIANTS.len();
@@ -329,26 +329,17 @@ impl Unit {
         if level == Level::Equilibrium {
             log.write(Status::Ok, OF_EQUILIBRIA);
         }
-        // Estimates ask for an equilibrium, which nobody waits for who does not read them.
+        // Estimates ask for equilibria, which nobody waits for who does not read them.
         if log.tells(Status::Ok) {
-            self.machine.bearings().for_each(|(name, bearing)| self.announce_effects(name, bearing, log));
-        }
-    }
-
-    /// Tells which effects of a bearing are on, and which that are off would matter.
-    fn announce_effects(&self, name: &str, bearing: &Simulation, log: &Log) {
-        let (scene, model) = (bearing.scene(), bearing.model());
-        let verdicts = match &self.machine {
-            Machine::Bearing(_) => estimate::verdicts(scene, model),
-            Machine::Shaft(_) => estimate::verdicts_under(scene, model, &bearing.equilibrium_input()),
-        };
-        let lines = match verdicts {
-            Ok(verdicts) => missed(&verdicts),
-            Err(why) => vec![why.to_string()],
-        };
-        let before = if name.is_empty() { String::new() } else { format!("{name}: ") };
-        for line in [scene.effects.simulated()].iter().chain(&lines) {
-            log.write(Status::Ok, &format!("{before}{line}"));
+            let verdicts = estimate::verdicts_of(&self.machine);
+            for ((name, bearing), verdicts) in self.machine.bearings().zip(verdicts) {
+                let before = if name.is_empty() { String::new() } else { format!("{name}: ") };
+                // Which are on, and which that are off would matter.
+                let lines = verdicts.map_or_else(|why| vec![why.to_string()], |verdicts| missed(&verdicts));
+                for line in [bearing.scene().effects.simulated()].iter().chain(&lines) {
+                    log.write(Status::Ok, &format!("{before}{line}"));
+                }
+            }
         }
     }
 }
