@@ -136,6 +136,12 @@ impl<S: Scalar> LinearTheory<S> {
         }
     }
 
+    /// [`Self::forces`] as a function of its own, which takes tens of kilobytes with derivatives, for paths that few contacts go.
+    #[inline(never)]
+    pub(super) fn forces_apart(&self, law: Law<'_>, creepage: &Creepage<S>) -> CreepForces<S> {
+        self.forces(law, creepage)
+    }
+
     /// Does the contact carry nothing, or of several none? Laws that cost much are then not asked. It stands in their arms: asked once before
     /// them, all steps take 2 % more time.
     #[inline(always)]
@@ -186,6 +192,17 @@ impl<S: Scalar> LinearTheory<S> {
         (turned, q)
     }
 
+    /// Linear theory without its coupling over the limits.
+    #[inline(always)]
+    pub(super) fn over_limits(&self, creepage: &Creepage<S>) -> [S; 3] {
+        let (per_force, per_moment) = self.per_limits();
+        [
+            self.longitudinal * creepage.longitudinal * per_force,
+            self.lateral * creepage.lateral * per_force,
+            self.spin * per_moment * creepage.spin,
+        ]
+    }
+
     /// Kalker's nonlinear theory from its table.
     ///
     /// The table rolls one way along x. The coupling of spin and lateral creepage changes its sign with the direction, at
@@ -193,14 +210,8 @@ impl<S: Scalar> LinearTheory<S> {
     /// directions are mixed, so that the coupling goes through zero there as in the other laws.
     #[inline(always)]
     fn tabulated(&self, table: &CreepTable, creepage: &Creepage<S>) -> [S; 3] {
-        let (per_force, per_moment) = self.per_limits();
-        let q = [
-            self.longitudinal * creepage.longitudinal * per_force,
-            self.lateral * creepage.lateral * per_force,
-            self.spin * per_moment * creepage.spin,
-            self.direction(table),
-        ];
-        S::apply(table, q)
+        let [x, y, z] = self.over_limits(creepage);
+        S::apply(table, [x, y, z, self.direction(table)])
     }
 
     /// 1 where the contact rolls along +x, -1 against it, between where it hardly rolls along x: smooth.

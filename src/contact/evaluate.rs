@@ -313,13 +313,16 @@ impl ContactModel<'_> {
         let (theory, film) =
             self.theory::<S, GENERAL>(&shape, curvature, [depth, root], load.total, &rolling.state());
         let oblique = self.across.is_some() && is_oblique(rolling.speed, rolling.speed_across);
-        let mut creep = theory.forces(self.law, &rolling.creepage);
+        let mut creep = match GENERAL {
+            true => theory.forces_apart(self.law, &rolling.creepage),
+            false => theory.forces(self.law, &rolling.creepage),
+        };
         if GENERAL
             && oblique
             && let Some(across) = &self.across
         {
             let sine = rolling.speed_across / rolling.speed;
-            creep = across.mixed(&creep, &theory, sine, &rolling.creepage);
+            creep = across.forces(&creep, &theory, [rolling.cosine, sine], &rolling.creepage);
         }
 
         let mut wrench = surfaces.wrench(&rolling, load.total, &creep);

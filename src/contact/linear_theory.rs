@@ -63,6 +63,15 @@ pub struct CreepForces<S> {
 }
 
 impl<S: Scalar> CreepForces<S> {
+    /// \[N] power that goes into friction at these creepages, over the rolling speed.
+    #[inline(always)]
+    pub(super) fn power(&self, creepage: &Creepage<S>) -> S {
+        let flat = self.longitudinal * creepage.longitudinal
+            + self.lateral * creepage.lateral
+            + self.spin_moment * creepage.spin;
+        creepage.curvature.map_or(flat, |curvature| flat - self.second_moment * curvature)
+    }
+
     /// Number by number from two forces.
     #[inline(always)]
     pub fn zip_with<U: Scalar, T>(

@@ -181,13 +181,7 @@ impl BallRaceContact<f64> {
 
     /// \[W] part of the friction power by its creep forces: all of it where nothing is against rolling.
     pub fn sliding_power(&self) -> f64 {
-        let (creep, creepage) = (&self.creep, &self.creepage);
-        let bent = creepage.curvature.map_or(0.0, |curvature| creep.second_moment * curvature);
-        self.rolling_speed
-            * (creep.longitudinal * creepage.longitudinal
-                + creep.lateral * creepage.lateral
-                + creep.spin_moment * creepage.spin
-                - bent)
+        self.rolling_speed * self.creep.power(&self.creepage)
     }
 }
 

@@ -8,17 +8,20 @@
 //! the axis ratio: in adhesion, where forces go with the way of a particle through the contact, the ratio itself would
 //! be right, in sliding 1. Below 6 degrees there is no share across rolling; it would be 1 % at most. A rolling speed of 1 mm/s,
 //! below which creepages are held finite and a direction has no meaning, counts as along x.
+//!
+//! For the table of the nonlinear theory a net knows what the mixture lacks ([`ObliqueNet`]). It keeps forces within their limits, and takes
+//! at most [`GIVEN_BACK`] of the mixture's power away, so that the sum dissipates as well.
 
 use super::creep::Law;
 use super::linear_theory::{CreepForces, Creepage, LinearTheory};
 use crate::kalker::LinearError;
 use crate::kalker::Patch;
 use crate::kalker::linear::Scales;
-use crate::numerics::scalar::Scalar;
+use crate::kalker::oblique_net::{BEGIN, FULL, ObliqueNet};
+use crate::numerics::scalar::{Scalar, within_limit};
 
-/// [-] squares of the sine of the rolling direction where the share of rolling across begins, and from where it is full.
-const BEGIN: f64 = 0.01;
-const FULL: f64 = 0.04;
+/// [-] largest part of the mixture's power that the correction may take away.
+const GIVEN_BACK: f64 = 0.9;
 
 /// What rolling across the ellipse's x axis has over rolling along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +36,8 @@ pub struct Exchanged {
     spin: f64,
     /// [-] semi-axis along x over the one along y.
     axis_ratio: f64,
+    /// What a mixture of the tables lacks.
+    net: ObliqueNet,
 }
 
 /// Rolling across the x axis: its law.
@@ -63,6 +68,7 @@ impl Exchanged {
             coupling: there.c23 / here.c11,
             spin: there.c33 / here.c33,
             axis_ratio: patch.axis_ratio,
+            net: ObliqueNet::new(patch)?,
         })
     }
 
@@ -77,6 +83,36 @@ impl Exchanged {
             half_width: theory.half_width.scale(self.axis_ratio),
             ..*theory
         }
+    }
+
+    /// Forces of the nonlinear theory from the mixture of its tables.
+    #[inline(always)]
+    fn corrected<S: Scalar>(
+        &self,
+        forces: &CreepForces<S>,
+        theory: &LinearTheory<S>,
+        [cosine, sine]: [S; 2],
+        creepage: &Creepage<S>,
+    ) -> CreepForces<S> {
+        let [x, y, z] = theory.over_limits(creepage);
+        let [x, y, z] = S::apply(&self.net, [x, y, z, cosine, sine]);
+        let (per_force, per_moment) = theory.per_limits();
+        let [x, y] = within_limit(forces.longitudinal * per_force + x, forces.lateral * per_force + y);
+        let z = (forces.spin_moment * per_moment + z).clamp_to(-1.0, 1.0);
+        let full = CreepForces {
+            longitudinal: x * theory.friction_limit,
+            lateral: y * theory.friction_limit,
+            spin_moment: z * theory.moment_limit,
+            ..*forces
+        };
+        // Between two forces within the limits all are, and power is as linear.
+        let (most, taken) = (
+            forces.power(creepage).positive_part().scale(GIVEN_BACK),
+            forces.power(creepage) - full.power(creepage),
+        );
+        let beyond = taken - most;
+        let part = (most / taken.where_positive(beyond, S::one())).where_positive(beyond, S::one());
+        forces.zip_with(&full, |mixed, full| mixed + (full - mixed) * part)
     }
 
     /// [-] share of rolling across in the forces by the square of the sine of the rolling direction: smooth.
@@ -107,9 +143,28 @@ pub(super) fn is_oblique<S: Scalar>(speed: S, across: S) -> bool {
 }
 
 impl Across<'_> {
-    /// Forces of oblique rolling from those of the law along x, by linear theory along x, the sine of the rolling direction and
-    /// the creepages. The slip of a bent groove is part of rolling along x alone. A function of its own, as few contacts roll so.
+    /// Forces of oblique rolling from those of the law along x, by linear theory along x, cosine and sine of the rolling direction and
+    /// the creepages. A function of its own, as few contacts roll so.
     #[inline(never)]
+    pub fn forces<S: Scalar>(
+        &self,
+        along: &CreepForces<S>,
+        theory: &LinearTheory<S>,
+        direction: [S; 2],
+        creepage: &Creepage<S>,
+    ) -> CreepForces<S> {
+        let [_, sine] = direction;
+        let mut forces = self.mixed(along, theory, sine, creepage);
+        if matches!(self.law, Law::Table(_)) {
+            forces = self.exchanged.corrected(&forces, theory, direction, creepage);
+        }
+        // Where rolling across has no share the forces keep their bits.
+        let share = self.exchanged.share(sine.square());
+        along.zip_with(&forces, |along, forces| forces.where_positive(share, along))
+    }
+
+    /// The mixture alone. The slip of a bent groove is part of rolling along x alone.
+    #[inline(always)]
     pub fn mixed<S: Scalar>(
         &self,
         along: &CreepForces<S>,
@@ -124,7 +179,7 @@ impl Across<'_> {
             spin: creepage.spin,
             curvature: None,
         };
-        let forces = self.exchanged.theory(theory, sine).forces(self.law, &turned);
+        let forces = self.exchanged.theory(theory, sine).forces_apart(self.law, &turned);
         let across = CreepForces {
             longitudinal: -forces.lateral,
             lateral: forces.longitudinal,
@@ -133,7 +188,6 @@ impl Across<'_> {
         };
         let share = self.exchanged.share(sine.square());
         let rest = S::one() - share;
-        // Where there is no share the forces keep their bits.
-        along.zip_with(&across, |along, across| (along * rest + across * share).where_positive(share, along))
+        along.zip_with(&across, |along, across| along * rest + across * share)
     }
 }

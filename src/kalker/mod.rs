@@ -17,6 +17,7 @@ mod minimise;
 pub mod nonlinear;
 mod objective;
 mod objective_weights;
+pub mod oblique_net;
 mod patch;
 pub mod scaled_law;
 pub mod solution;

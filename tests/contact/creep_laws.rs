@@ -232,7 +232,8 @@ fn rolling_at(pair: [Law<'_>; 2], exchanged: &Exchanged, [along, across]: [f64; 
     let creepage =
         Creepage { longitudinal: 2e-4 / speed, lateral: -2.2e-4 / speed, spin: 2.0 / speed, curvature: None };
     let forces = theory.forces(pair[0], &creepage);
-    let forces = Across { exchanged, law: pair[1] }.mixed(&forces, &theory, across / speed, &creepage);
+    let direction = [along, across].map(|component| component / speed);
+    let forces = Across { exchanged, law: pair[1] }.forces(&forces, &theory, direction, &creepage);
     [
         forces.longitudinal / theory.friction_limit,
         forces.lateral / theory.friction_limit,

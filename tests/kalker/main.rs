@@ -6,6 +6,7 @@ mod common;
 mod half_space;
 mod linear;
 mod nonlinear;
+mod oblique_net;
 mod printed;
 #[path = "../common/random.rs"]
 mod random;

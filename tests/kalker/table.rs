@@ -20,7 +20,7 @@ fn patch(axis_ratio: f64) -> Patch {
 }
 
 /// Largest spin moment of complete slip over mu Q c: the integral of pressure times distance, by a plain sum.
-fn largest_moment(axis_ratio: f64) -> f64 {
+pub fn largest_moment(axis_ratio: f64) -> f64 {
     let (a, b) = (axis_ratio.sqrt(), 1.0 / axis_ratio.sqrt());
     let n = 4000;
     let mean = (0..n)
@@ -222,16 +222,18 @@ fn oblique_errors(law: Law, count: u32, cells: usize) -> ([f64; 3], [f64; 3]) {
 
 #[test]
 fn regression_oblique_rolling_of_narrow_ellipses() {
+    // Contacts like those that the net was not trained on, on coarse grids: with the mixture alone the means are .037/.020/.015.
     let (mean, worst) = oblique_errors(TABLE, 12, 12);
-    assert!(mean[0].max(mean[1]) < 0.05 && mean[2] < 0.04, "{mean:?} {worst:?}");
-    assert!(worst[0].max(worst[1]) < 0.15 && worst[2] < 0.15, "{mean:?} {worst:?}");
+    assert!(mean[0].max(mean[1]) < 0.01 && mean[2] < 0.008, "{mean:?} {worst:?}");
+    assert!(worst[0].max(worst[1]) < 0.035 && worst[2] < 0.045, "{mean:?} {worst:?}");
 }
 
 #[test]
-#[ignore = "a measurement for docs/rolling-contact.md"]
+#[ignore = "200 solutions of the reference solver"]
 fn regression_error_of_oblique_rolling() {
-    let (mean, worst) = oblique_errors(TABLE, 60, 16);
-    assert!(mean[0].max(mean[1]) < 0.05 && mean[2] < 0.03, "{mean:?} {worst:?}");
+    let (mean, worst) = oblique_errors(TABLE, 200, 24);
+    assert!(mean[0].max(mean[1]) < 0.01 && mean[2] < 0.008, "{mean:?} {worst:?}");
+    assert!(worst[0].max(worst[1]) < 0.035 && worst[2] < 0.045, "{mean:?} {worst:?}");
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn contact_says_what_error_to_expect_where_the_table_rolls_obliquely() {
         let note = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.success(), "{note}");
         assert_eq!(
-            note.contains("1 of these contacts rolls obliquely") && note.contains("0.03"),
+            note.contains("1 of these contacts rolls obliquely") && note.contains("0.007"),
             expected,
             "{note}"
         );
