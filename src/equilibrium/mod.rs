@@ -177,14 +177,19 @@ pub enum EquilibriumError {
     },
     /// A contact lies where no groove is.
     #[error(
-        "ball {ball} would touch the {race} race at a contact angle of {angle:.3} rad: beyond {limit:.3} rad there is no \
-         groove; the load, the displacement or the tilt is too large"
+        "ball {ball} would touch the {race} race with {load:.3e} N at a contact angle of {angle:.3} rad: beyond {limit:.3} rad \
+         there is no groove; {}",
+        why_left(*load, *most)
     )]
     LeftGroove {
         /// Ball, counted from 1.
         ball: usize,
         /// Inner or outer.
         race: &'static str,
+        /// \[N] load on the contact.
+        load: f64,
+        /// \[N] largest load of any contact of the bearing.
+        most: f64,
         /// \[rad] contact angle.
         angle: f64,
         /// \[rad] contact angle that the groove ends at on this side.
@@ -242,6 +247,19 @@ pub enum EquilibriumError {
         /// [m, rad] displacement reached.
         displacement: [f64; 5],
     },
+}
+
+/// [-] load over the largest one below which a ball counts as unloaded in what is said of it.
+const UNLOADED: f64 = 1e-3;
+
+/// Why a ball leaves its groove: one with next to no load stands where the race goes away from it.
+fn why_left(load: f64, most: f64) -> &'static str {
+    if load < UNLOADED * most {
+        "the load moves this race away from a ball that carries next to nothing; more axial load or preload holds that ball in its \
+         groove, or less radial load"
+    } else {
+        "the load, the displacement or the tilt is too large"
+    }
 }
 
 impl EquilibriumError {

@@ -395,7 +395,9 @@ impl<'a> Problem<'a> {
 
     /// Refuses contacts that Hertz's theory does not reach, or that lie where no groove is.
     pub fn check(&self, solution: Equilibrium) -> Result<Equilibrium, EquilibriumError> {
-        let [least, most] = self.model.bearing.contact_angles();
+        let [least, greatest] = self.model.bearing.contact_angles();
+        let loads = solution.balls.iter().map(|ball| ball.report.inner_load.max(ball.report.outer_load));
+        let most = loads.fold(0.0, f64::max);
         for (index, ball) in solution.balls.iter().enumerate() {
             let b = &ball.report;
             let (approach, load) = (b.inner_approach.max(b.outer_approach), b.inner_load.max(b.outer_load));
@@ -408,9 +410,9 @@ impl<'a> Problem<'a> {
                 ("outer", b.outer_load, b.outer_contact_angle),
             ];
             for (race, load, angle) in contacts {
-                if load > 0.0 && !(least..=most).contains(&angle) {
-                    let limit = if angle < least { least } else { most };
-                    return Err(EquilibriumError::LeftGroove { ball: index + 1, race, angle, limit });
+                if load > 0.0 && !(least..=greatest).contains(&angle) {
+                    let (ball, limit) = (index + 1, if angle < least { least } else { greatest });
+                    return Err(EquilibriumError::LeftGroove { ball, race, load, most, angle, limit });
                 }
             }
         }

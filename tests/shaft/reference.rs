@@ -87,13 +87,18 @@ fn the_document_has_the_keys_of_the_sources_and_the_costs_of_the_record() {
             .unwrap();
     let rows: Vec<Vec<&str>> = record.lines().skip(1).map(|line| line.split(',').collect()).collect();
     let mut table = String::from(
-        "| bearings | rigid shaft: thousand instructions per step and bearing | beams: thousand instructions per step and bearing | coordinates of the beams |\n|---|---|---|---|\n",
+        "| bearings | coordinates of the beams | rigid shaft, plain | beams, plain | rigid shaft, caged | beams, caged |\n|---|---|---|---|---|---|\n",
     );
-    for [shaft, bearings, _, cost] in rows.iter().map(|row| <[&str; 4]>::try_from(row.as_slice()).unwrap()) {
-        if shaft == "rigid" {
-            let beams = rows.iter().find(|row| row[0] == "beams" && row[1] == bearings).unwrap();
-            writeln!(table, "| {bearings} | {cost} | {} | {} |", beams[3], beams[2]).unwrap();
+    let row = |shaft: &str, bearing: &str, bearings: &str| {
+        rows.iter().find(|row| row[..3] == [shaft, bearing, bearings]).unwrap()
+    };
+    for bearings in ["2", "5", "10", "20"] {
+        write!(table, "| {bearings} | {} |", row("beams", "plain", bearings)[3]).unwrap();
+        for bearing in ["plain", "caged"] {
+            let [rigid, beams] = ["rigid", "beams"].map(|shaft| row(shaft, bearing, bearings)[4]);
+            write!(table, " {rigid} | {beams} |").unwrap();
         }
+        table.push('\n');
     }
     compare_part("costs", &table, "scripts/shaft-cost");
 }

@@ -76,3 +76,25 @@ fn what_cannot_be_held_is_refused_with_what_is_missing() {
     let refusal = roulement::simulation::system::System::new(&crate::common::scene(&alone)).unwrap_err();
     assert!(refusal.to_string().contains("equilibrium"), "{refusal}");
 }
+
+/// Balls opposite to the load are held by their centrifugal force alone, and the race goes away from them until it ends.
+#[test]
+fn an_unloaded_ball_that_leaves_its_groove_is_told_from_too_large_a_load() {
+    let heavy = |preload: &str| {
+        GEARBOX
+            .replace("[337.8, -475.0, 1260.5]", "[0, 40e3, 0]")
+            .replace("moment = [30.0, 0, -8.04]", "moment = [0, 0, 0]")
+            .replace("position = \"-10 mm\"", "position = 0.0")
+            .replace("6000 rpm", "600 rpm")
+            .replace("preload = { force = \"1500 N\" }", &format!("preload = {{ force = \"{preload} N\" }}"))
+    };
+    let refusal =
+        roulement::simulation::system::System::new(&crate::common::scene(&heavy("500"))).unwrap_err();
+    let said = refusal.to_string();
+    assert!(said.contains("carries next to nothing; more axial load or preload"), "{said}");
+    let held = system(&heavy("2000"));
+    let steepest = held.bearings().flat_map(|(_, bearing)| bearing.outputs().balls.clone());
+    let steepest = steepest.map(|ball| ball.inner.contact_angle.abs()).fold(0.0, f64::max);
+    println!("{steepest} rad");
+    assert!((1.4..std::f64::consts::FRAC_PI_2).contains(&steepest), "{steepest} rad");
+}
