@@ -74,6 +74,11 @@ const USUAL_MASS: f64 = 0.6 * 7800.0;
 /// [-] diametral clearance of its pockets over the ball diameter.
 const USUAL_CLEARANCE: f64 = 0.02;
 
+/// [-] lead of balls over the clearance of their pockets below which they are said to keep their places.
+const STILL: f64 = 1e-3;
+/// [-] gyroscopic moment over what friction can hold below which balls are said to keep their axes.
+const STEADY: f64 = 0.1;
+
 /// A cage that runs have where the scene has none.
 fn usual(estimate: &Estimate) -> CageSection {
     let Estimate { ball_radius, pitch_radius, balls, .. } = *estimate;
@@ -107,7 +112,7 @@ impl Effect for Settings {
                   pocket_clearance = \"0.2 mm\"\nguided_by = \"balls\"\n",
     };
 
-    const ESTIMATE: &'static str = "load of the blows of balls that nothing keeps apart, or the power of balls that a cage holds back; what a cage does with weight or with balls without load is not estimated, and taken to matter";
+    const ESTIMATE: &'static str = "load of the blows of balls that nothing keeps apart, or the power of balls that a cage holds back; what rattles is not estimated, and taken to matter";
 
     fn twins(&self, estimate: &Estimate) -> Vec<Twin> {
         let on = self.on;
@@ -148,7 +153,9 @@ impl Effect for Settings {
         let struck = blow / largest;
         // A cage holds them back to the common speed.
         let held = if spacing.lead > clearance { spacing.slipping / power } else { 0.0 };
-        let loose = spacing.loose && !spacing.from_rest;
+        // Elsewhere runs with a cage differ from those without one where no settled state tells of it.
+        let quiet = !spacing.loose && spacing.lead < STILL * clearance && estimate.gyroscopic() < STEADY;
+        let loose = !quiet && !spacing.from_rest;
         let sentence = match (struck >= held, speed > 0.0) {
             (true, true) => format!(
                 "{why}; without a cage they strike each other at up to {} m/s: with {} N, {} of the largest load of a ball",
@@ -162,9 +169,7 @@ impl Effect for Settings {
                 digits(spacing.slipping),
                 percent(held)
             ),
-            _ if loose => format!(
-                "{lead}; what rattles in a cage, by weight or without load, is not estimated: --measure runs it"
-            ),
+            _ if loose => format!("{lead}; what rattles in a cage is not estimated: --measure runs it"),
             _ => format!("{lead}: less than the {} mm that they have in pockets", digits(clearance * 1e3)),
         };
         let quantity = if struck >= held { "largest load" } else { "torque" };

@@ -159,7 +159,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Cost(options) => return cost::run(options),
         Command::Describe { scene } => {
             let name = name_of(&scene);
-            let description = match load(&scene)? {
+            let description = match load_by(&scene, auto::resolve_for_importer)? {
                 MachineScene::Shaft(scene) => render_system(&System::new(&scene)?, &name)?,
                 MachineScene::Bearing(scene) => render(&Simulation::new(&scene)?, &name)?,
             };
