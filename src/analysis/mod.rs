@@ -1,8 +1,11 @@
-//! Analyses of a model or a state without running it: stiffness and damping, natural frequency, single rolling contacts.
+//! Analyses of a model or a state without running it: stiffness and damping, natural frequency, small motions of all bodies, single
+//! rolling contacts.
 
 pub mod auto;
 pub mod condensed;
 pub mod estimate;
 pub mod natural_frequency;
 pub mod single_contact;
+pub mod small_motions;
 pub mod stick_slip;
+mod tangents;

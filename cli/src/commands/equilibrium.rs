@@ -64,7 +64,7 @@ impl From<GyroscopicChoice> for Gyroscopic {
 
 /// [rad/s] a speed above 0, a number or a text with a unit.
 #[derive(Clone, Copy, Debug)]
-struct Speed(f64);
+pub struct Speed(pub f64);
 
 impl FromStr for Speed {
     type Err = String;
