@@ -287,13 +287,10 @@ impl Rows<'_> {
         // Columns: of what they are, and the first of them.
         let columns: Vec<(usize, DMatrix<f64>)> = match by {
             Side::Given => return,
-            Side::Body(world) => vec![
-                (0, (place * world).rows(0, 6).into_owned()),
-                (self.size, (rate * world).rows(0, 6).into_owned()),
-            ]
-            .into_iter()
-            .map(|(from, block)| (from, DMatrix::from_fn(6, block.ncols(), |i, k| block[(i, k)])))
-            .collect(),
+            Side::Body(world) => {
+                let whole = |block: Map| DMatrix::from_fn(6, block.ncols(), |i, k| block[(i, k)]);
+                vec![(0, whole(place * world)), (self.size, whole(rate * world))]
+            }
             Side::Ball(k) => {
                 let turned = |matrix: &Matrix6<f64>, from: usize| {
                     let block = matrix.fixed_columns::<3>(from) * axes[k];
@@ -410,7 +407,7 @@ fn derivative(count: usize, apart: isize) -> f64 {
     }
     let half = std::f64::consts::PI * apart as f64 / count as f64;
     let sign = if apart % 2 == 0 { 0.5 } else { -0.5 };
-    if count % 2 == 0 { sign / half.tan() } else { sign / half.sin() }
+    if count.is_multiple_of(2) { sign / half.tan() } else { sign / half.sin() }
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Eigenvalues of a matrix that need not be symmetric, with their vectors.
 //!
-//! The matrix is balanced by powers of two (Parlett and Reinsch 1969), so that units and stiff parts do not spoil the small
-//! eigenvalues, and brought to Schur's form `Q T Q^T`, T upper triangular but for 2 x 2 blocks. From there each vector takes one
-//! substitution.
+//! The matrix is balanced by powers of two, so that units and stiff parts do not spoil the small eigenvalues: by Euclid's norms of
+//! whole rows and columns, as sums without the diagonal blow up couplings that are rounding alone (James, Langou and Lowery 2014).
+//! It is brought to Schur's form `Q T Q^T`, T upper triangular but for 2 x 2 blocks. From there each vector takes one substitution.
 
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
@@ -10,6 +10,9 @@ use nalgebra::{Complex, DMatrix, DVector, Schur};
 const ITERATIONS: usize = 100;
 /// Rounds of balancing, at most: two or three do.
 const ROUNDS: usize = 20;
+/// [-] sizes over that of the matrix below which entries beside the diagonal count as 0, tried one after the other where the iteration does not
+/// end with the usual one.
+const SMALL: [f64; 4] = [1e-14, 1e-13, 1e-12, 1e-11];
 /// [-] how much smaller the sum of a row's and a column's size has to become for a round to go on.
 const PROGRESS: f64 = 0.95;
 
@@ -28,9 +31,9 @@ pub fn eigenpairs(matrix: &DMatrix<f64>) -> Option<Vec<Eigenpair>> {
     if matrix.iter().any(|value| !value.is_finite()) {
         return None;
     }
+    let size = matrix.nrows();
     let (balanced, scales) = balance(matrix.clone());
-    let size = balanced.nrows();
-    let (q, t) = Schur::try_new(balanced, f64::EPSILON, ITERATIONS * size.max(1))?.unpack();
+    let (q, t) = schur(&balanced)?;
     let mut found = vec![];
     let mut row = 0;
     while row < size {
@@ -47,6 +50,23 @@ pub fn eigenpairs(matrix: &DMatrix<f64>) -> Option<Vec<Eigenpair>> {
     Some(found)
 }
 
+/// Schur's form: Q and T. nalgebra takes an entry for 0 that is small beside its neighbours on the diagonal. Where these are nearly 0 themselves,
+/// as of balls along their orbits, rounding alone is larger: with a shift of the size of the matrix entries are compared with that.
+fn schur(matrix: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+    let most = ITERATIONS * matrix.nrows().max(1);
+    let shift = matrix.norm();
+    let moved = |by: f64, mut matrix: DMatrix<f64>| {
+        (0..matrix.nrows()).for_each(|i| matrix[(i, i)] += by);
+        matrix
+    };
+    let shifted = |small| {
+        let (q, t) = Schur::try_new(moved(shift, matrix.clone()), small, most)?.unpack();
+        Some((q, moved(-shift, t)))
+    };
+    let usual = Schur::try_new(matrix.clone(), f64::EPSILON, most).map(Schur::unpack);
+    usual.or_else(|| SMALL.into_iter().find_map(shifted))
+}
+
 /// `D^-1 A D` whose rows and columns are of a size, and the diagonal of D.
 fn balance(mut matrix: DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
     let size = matrix.nrows();
@@ -54,14 +74,12 @@ fn balance(mut matrix: DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
     for _ in 0..ROUNDS {
         let mut done = true;
         for i in 0..size {
-            let off = |sum: f64, (k, value): (usize, &f64)| if k == i { sum } else { sum + value.abs() };
-            let column = matrix.column(i).iter().enumerate().fold(0.0, off);
-            let row = matrix.row(i).iter().enumerate().fold(0.0, off);
+            let (column, row) = (matrix.column(i).norm(), matrix.row(i).norm());
             if column == 0.0 || row == 0.0 {
                 continue;
             }
             let factor = (0.5 * (row / column).log2()).round().exp2();
-            if column * factor + row / factor < PROGRESS * (column + row) {
+            if (column * factor).hypot(row / factor) < PROGRESS * column.hypot(row) {
                 done = false;
                 scales[i] *= factor;
                 matrix.column_mut(i).scale_mut(factor);

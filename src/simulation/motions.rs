@@ -18,8 +18,9 @@ const WHIRLS: f64 = 0.5;
 const OF_BALLS: f64 = 0.95;
 /// [-] share of bodies in the kinetic energy below which a motion is one of balls alone.
 const BODIES: f64 = 1e-3;
-/// [-] damping over critical damping beyond which a motion hardly swings.
-const OVERDAMPED: f64 = 0.5;
+/// [-] damping over critical damping, or growth, beyond which a motion hardly swings: so do contacts that are open most of the time, as of a
+/// cage that rattles, and what they do where they just touch lasts no longer than that.
+const HARDLY: f64 = 0.3;
 /// [1/s] growth from which on a motion of bodies is said to grow, and one of balls: nothing holds these along their orbits, and a state
 /// that is not quite steady shows there as growth or decay of some 1/s.
 const GROWS: [f64; 2] = [1.0, 30.0];
@@ -49,18 +50,18 @@ impl Motion {
     }
 }
 
-/// Motions of bodies that swing, and what grows, by their frequency. What balls do alone, each for itself, is left out.
-pub(super) fn worth_telling(found: Vec<SmallMotion>, name: impl Fn(&SmallMotion) -> String) -> Vec<Motion> {
+/// Motions of bodies that swing, by their frequency. What balls do alone, each for itself, is left out.
+pub(super) fn worth_telling(found: &[SmallMotion], name: impl Fn(&SmallMotion) -> String) -> Vec<Motion> {
     let told = |motion: &SmallMotion| Motion {
         frequency: motion.frequency(),
         growth: motion.growth(),
         balls: motion.balls,
         shape: name(motion),
     };
-    let swings =
-        |motion: &Motion| motion.frequency > 0.0 && motion.damping() < OVERDAMPED && motion.balls < OF_BALLS;
+    let swings = |motion: &Motion| motion.frequency > 0.0 && motion.damping().abs() < HARDLY;
+    let is_told = |motion: &Motion| swings(motion) && (motion.balls < OF_BALLS || motion.grows());
     let with_bodies = found.iter().filter(|motion| motion.balls < 1.0 - BODIES).map(told);
-    let mut motions: Vec<Motion> = with_bodies.filter(|motion| swings(motion) || motion.grows()).collect();
+    let mut motions: Vec<Motion> = with_bodies.filter(is_told).collect();
     motions.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     motions
 }
@@ -128,6 +129,11 @@ impl Simulation {
         })
     }
 
+    /// Do forces move none of its bodies?
+    pub fn is_held(&self) -> bool {
+        self.moving_bodies().next().is_none()
+    }
+
     /// [N m] moment that is applied to a body from outside.
     pub(super) fn applied_moment(&self, body: Body) -> Vector3<f64> {
         match body {
@@ -147,13 +153,16 @@ impl Simulation {
         }
     }
 
-    /// Motions of rings and cage about the present state that swing, and what grows, by their frequency. None where eigenvalues are not
+    /// Motions of rings and cage about the present state that swing, by their frequency. None where eigenvalues are not
     /// found, and in a frame that moves, of whose bodies the forces of inertia are not here.
     pub fn motions(&self) -> Option<Vec<Motion>> {
         if self.scene.effects.frame.section.is_some() {
             return None;
         }
         let bodies: Vec<_> = self.moving_bodies().collect();
+        if self.is_held() {
+            return Some(vec![]);
+        }
         let size = bodies.iter().map(|(_, moved, _)| free(moved).len()).sum();
         let mut first = 0;
         let (mut movers, mut seats) = (vec![], vec![]);
@@ -173,7 +182,7 @@ impl Simulation {
             });
             named(&parts.collect::<Vec<_>>())
         };
-        Some(worth_telling(motions, name))
+        Some(worth_telling(&motions, name))
     }
 }
 

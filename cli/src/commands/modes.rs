@@ -2,10 +2,11 @@
 
 use std::error::Error;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use roulement_cli::modes::{Asked, Modes, to_csv, to_json, to_text, write_figure};
+use roulement_cli::modes::{Asked, Modes, to_csv, to_json, to_text, write_figure, write_growths};
+use serde_json::Value;
 
 use super::equilibrium::Speed;
 use super::field::Moment;
@@ -14,9 +15,10 @@ use super::{load, say};
 /// Options of `roulement modes`.
 #[derive(Args)]
 pub struct Options {
-    /// Scene file.
-    scene: PathBuf,
-    /// Directory for modes.csv and campbell.svg, made if missing.
+    /// Scene files.
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Directory for modes.csv and campbell.svg, made if missing; of several scenes one each in 1, 2 and so on, and growth.svg of all.
     #[arg(short, long)]
     output: Option<PathBuf>,
     /// Print JSON instead of text.
@@ -40,25 +42,40 @@ pub struct Options {
 /// Finds them, prints them, and writes table and figure where a directory is given.
 ///
 /// # Errors
-/// If the machine cannot start or run, or files cannot be written.
+/// If a machine cannot start or run, or files cannot be written.
 pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
-    let scene = load(&options.scene)?;
     let asked = Asked {
         time: options.time.0,
         after: options.after.0,
         up_to: options.up_to.map(|Speed(speed)| speed),
         speeds: options.speeds as usize,
     };
-    let modes = Modes::of(&scene, &asked)?;
-    say(&if options.json { format!("{:#}\n", to_json(&modes)) } else { to_text(&modes) })?;
-    if let Some(directory) = &options.output {
-        let failed = |path: &PathBuf, why: &dyn Error| format!("cannot write {}: {why}", path.display());
-        fs::create_dir_all(directory).map_err(|why| failed(directory, &why))?;
-        let table = directory.join("modes.csv");
-        fs::write(&table, to_csv(&modes)?).map_err(|why| failed(&table, &why))?;
+    let of_scene = |path: &PathBuf| -> Result<Modes, Box<dyn Error>> { Ok(Modes::of(&load(path)?, &asked)?) };
+    let all = options.scenes.iter().map(of_scene).collect::<Result<Vec<_>, _>>()?;
+    let text = match (options.json, &all[..]) {
+        (true, [one]) => format!("{:#}\n", to_json(one)),
+        (true, all) => format!("{:#}\n", Value::from(all.iter().map(to_json).collect::<Vec<_>>())),
+        (false, all) => all.iter().map(to_text).collect::<Vec<_>>().join("\n"),
+    };
+    say(&text)?;
+    let Some(directory) = &options.output else {
+        return Ok(());
+    };
+    let failed = |path: &Path, why: &dyn Error| format!("cannot write {}: {why}", path.display());
+    for (index, modes) in all.iter().enumerate() {
+        let own = match all.len() {
+            1 => directory.clone(),
+            _ => directory.join((index + 1).to_string()),
+        };
+        fs::create_dir_all(&own).map_err(|why| failed(&own, &why))?;
+        let table = own.join("modes.csv");
+        fs::write(&table, to_csv(modes)?).map_err(|why| failed(&table, &why))?;
         if !modes.rows.is_empty() {
-            write_figure(&modes, &directory.join("campbell.svg"))?;
+            write_figure(modes, &own.join("campbell.svg"))?;
         }
+    }
+    if all.len() > 1 {
+        write_growths(&all, &directory.join("growth.svg"))?;
     }
     Ok(())
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use plotters::prelude::*;
 
 use super::table::rpm;
-use super::{Modes, Row};
+use super::{Found, Modes, Row};
 use crate::report::fine::{FINE, Key, LINE, MARGIN, axes, headed, picture};
 use crate::report::style::{Area, COLOURS, Drawn, PlotError};
 
@@ -15,8 +15,16 @@ const PANEL: (u32, u32) = (640, 340);
 const NUMBERS: [u32; 2] = [70, 45];
 /// \[unit] radius of a mark.
 const MARK: i32 = 3 * FINE as i32;
-/// [-] of the largest frequency of the turn, what is shown beyond it at least.
+/// [-] of the largest frequency of the turn, what is shown at least.
 const HIGHEST: f64 = 3.0;
+/// [-] decay that is shown over the largest growth.
+const DEEPEST: f64 = 0.3;
+/// Motions at the lowest speed that are shown, from the lowest on.
+const LOW: usize = 4;
+
+const DECAYS: RGBColor = COLOURS[0];
+const GROWS: RGBColor = COLOURS[1];
+const TURN: RGBColor = COLOURS[6];
 
 /// Draws the motions of a machine over its speed.
 ///
@@ -48,23 +56,23 @@ fn marks(modes: &Modes) -> Vec<Mark> {
     let of_row = |row: &Row| {
         let speed = rpm(row.speed);
         let motions = row.motions.as_ref().map_or(&[][..], Vec::as_slice).iter();
-        let mark = move |motion: &roulement::simulation::motions::Motion| Mark {
+        let mark = move |found: &Found| Mark {
             speed,
-            frequency: motion.frequency,
-            growth: motion.growth,
-            grows: motion.grows(),
+            frequency: found.motion.frequency,
+            growth: found.motion.growth,
+            grows: found.grows(),
         };
         motions.map(mark).collect::<Vec<_>>()
     };
     modes.rows.iter().flat_map(of_row).collect()
 }
 
-/// \[Hz] highest frequency that is shown: beyond all that grows, the sixth at the lowest speed, and the turn.
+/// \[Hz] highest frequency that is shown: beyond all that grows, the fourth at the lowest speed, and the turn.
 fn highest(modes: &Modes, marks: &[Mark]) -> f64 {
     let turn = fastest(modes) / 60.0;
     let low = modes.rows.iter().find_map(|row| {
         let motions = row.motions.as_ref().ok()?;
-        motions.iter().take(6).last().map(|motion| motion.frequency)
+        motions.iter().take(LOW).next_back().map(|found| found.motion.frequency)
     });
     let growing = marks.iter().filter(|mark| mark.grows).map(|mark| mark.frequency);
     growing.chain(low).chain([HIGHEST * turn]).fold(1.0, f64::max) * 1.1
@@ -74,10 +82,6 @@ fn highest(modes: &Modes, marks: &[Mark]) -> f64 {
 fn fastest(modes: &Modes) -> f64 {
     modes.rows.last().map_or(1.0, |row| rpm(row.speed))
 }
-
-const DECAYS: RGBColor = COLOURS[0];
-const GROWS: RGBColor = COLOURS[1];
-const TURN: RGBColor = COLOURS[6];
 
 fn frequencies(area: &Area<'_>, modes: &Modes, marks: &[Mark]) -> Drawn {
     let keys = [("decays", Key::Dot, DECAYS), ("grows", Key::Dot, GROWS), ("the turn", Key::Line, TURN)];
@@ -101,28 +105,58 @@ fn frequencies(area: &Area<'_>, modes: &Modes, marks: &[Mark]) -> Drawn {
 
 fn growths(area: &Area<'_>, modes: &Modes, marks: &[Mark]) -> Drawn {
     let rest = headed(area, "growth of what grows fastest", &[])?;
-    let fastest = fastest(modes);
+    growth_chart(&rest, &[(BLACK, fastest_growing(modes, marks))])
+}
+
+/// What grows fastest at each speed, or decays slowest.
+fn fastest_growing(modes: &Modes, marks: &[Mark]) -> Vec<Mark> {
     let of_speed = |row: &Row| {
         let own = marks.iter().filter(|mark| mark.speed == rpm(row.speed));
         own.max_by(|a, b| a.growth.total_cmp(&b.growth)).copied()
     };
-    let largest: Vec<Mark> = modes.rows.iter().filter_map(of_speed).collect();
-    let (least, most) = largest
-        .iter()
-        .fold((0.0f64, 0.0f64), |(least, most), mark| (least.min(mark.growth), most.max(mark.growth)));
+    modes.rows.iter().filter_map(of_speed).collect()
+}
+
+fn growth_chart(area: &Area<'_>, curves: &[(RGBColor, Vec<Mark>)]) -> Drawn {
+    let all = || curves.iter().flat_map(|(_, marks)| marks);
+    let fastest = all().map(|mark| mark.speed).fold(1.0, f64::max);
+    let most = all().map(|mark| mark.growth).fold(0.0, f64::max);
+    let least = all().map(|mark| mark.growth).fold(0.0, f64::min);
+    // What decays fast is at the lower edge: how fast is of no account beside what grows.
+    let least = if most > 0.0 { least.max(-DEEPEST * most) } else { least };
+    let place = |mark: &Mark| (mark.speed, mark.growth.max(least));
     let room = 0.05 * (most - least).max(1.0);
-    let mut chart = ChartBuilder::on(&rest)
+    let mut chart = ChartBuilder::on(area)
         .margin(MARGIN)
         .x_label_area_size(NUMBERS[1] * FINE)
         .y_label_area_size(NUMBERS[0] * FINE)
         .build_cartesian_2d(0.0..1.02 * fastest, least - room..most + room)?;
     axes(&mut chart.configure_mesh(), "speed [rpm]", "growth [1/s]").draw()?;
     chart.draw_series(LineSeries::new([(0.0, 0.0), (1.02 * fastest, 0.0)], TURN.stroke_width(LINE)))?;
-    let points = largest.iter().map(|mark| (mark.speed, mark.growth));
-    chart.draw_series(LineSeries::new(points, BLACK.stroke_width(LINE)))?;
-    chart.draw_series(largest.iter().map(|mark| {
-        let colour = if mark.grows { GROWS } else { DECAYS };
-        Circle::new((mark.speed, mark.growth), MARK, colour.filled())
-    }))?;
+    for (colour, marks) in curves {
+        let points = marks.iter().map(place);
+        chart.draw_series(LineSeries::new(points, colour.stroke_width(LINE)))?;
+        let filled = |mark: &Mark| match curves.len() {
+            1 if mark.grows => GROWS,
+            1 => DECAYS,
+            _ => *colour,
+        };
+        chart.draw_series(marks.iter().map(|mark| Circle::new(place(mark), MARK, filled(mark).filled())))?;
+    }
     Ok(())
+}
+
+/// Draws what grows fastest in several machines over their speed, a curve for each under its title.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_growths(all: &[Modes], path: &Path) -> Result<(), PlotError> {
+    let coloured = || all.iter().zip(COLOURS.iter().cycle());
+    let curves: Vec<_> =
+        coloured().map(|(modes, colour)| (*colour, fastest_growing(modes, &marks(modes)))).collect();
+    let keys: Vec<_> = coloured().map(|(modes, colour)| (modes.title.as_str(), Key::Line, *colour)).collect();
+    picture(path, (PANEL.0 + 160, PANEL.1), "growth of what grows fastest", |body| {
+        let rest = headed(body, "", &keys)?;
+        growth_chart(&rest, &curves)
+    })
 }

@@ -4,10 +4,9 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::io;
 
-use roulement::simulation::motions::Motion;
 use serde_json::{Value, json};
 
-use super::{Modes, Row};
+use super::{Found, Modes, Row};
 
 /// Motions of a row of the text that are shown: those that matter lie low.
 const SHOWN: usize = 6;
@@ -29,20 +28,30 @@ fn write(out: &mut String, modes: &Modes) -> std::fmt::Result {
     if !modes.title.is_empty() {
         writeln!(out, "{}", modes.title)?;
     }
-    let Row { speed, motions } = &modes.own;
-    writeln!(out, "motions at {:.2} rpm, after {} ms", rpm(*speed), 1e3 * modes.after)?;
+    let Row { speed, after, motions } = &modes.own;
+    writeln!(
+        out,
+        "motions at {:.2} rpm, {} to {} ms after the start: frequency, growth (+- half its range there)",
+        rpm(*speed),
+        1e3 * after,
+        2e3 * after
+    )?;
     match motions {
         Err(why) => writeln!(out, "  {why}")?,
         Ok(motions) if motions.is_empty() => writeln!(out, "  none: nothing is free to move")?,
         Ok(motions) => {
-            for motion in motions {
-                let Motion { frequency, growth, balls, shape } = motion;
-                let grows = if motion.grows() { "GROWS" } else { "" };
+            for found in motions {
+                let motion = &found.motion;
+                let grows = if found.grows() { "GROWS" } else { "" };
+                let spread = found.spread.map_or("unsteady".into(), |spread| format!("+-{spread:8.2}"));
                 writeln!(
                     out,
-                    "{frequency:>12.2} Hz {growth:>11.2} 1/s  {grows:<5}  damping {:8.5}, {:5.1} % of balls: {shape}",
+                    "{:>12.2} Hz {:>10.2} {spread} 1/s {grows:<5} damping {:8.5}, {:4.1} % of balls: {}",
+                    motion.frequency,
+                    motion.growth,
                     motion.damping(),
-                    100.0 * balls
+                    100.0 * motion.balls,
+                    motion.shape
                 )?;
             }
         }
@@ -51,20 +60,20 @@ fn write(out: &mut String, modes: &Modes) -> std::fmt::Result {
         return Ok(());
     }
     writeln!(out, "\nspeed [rpm]    frequency [Hz] and growth [1/s]: * grows")?;
-    for Row { speed, motions } in &modes.rows {
+    for Row { speed, motions, .. } in &modes.rows {
         match motions {
             Err(why) => writeln!(out, "{:>11.1}    {why}", rpm(*speed))?,
             Ok(motions) => {
-                let one = |motion: &Motion| {
-                    let mark = if motion.grows() { "*" } else { " " };
-                    format!("{:9.2} {:+9.1}{mark}", motion.frequency, motion.growth)
+                let one = |found: &Found| {
+                    let mark = if found.grows() { "*" } else { " " };
+                    format!("{:9.2} {:+9.1}{mark}", found.motion.frequency, found.motion.growth)
                 };
                 let shown: Vec<String> = motions.iter().take(SHOWN).map(one).collect();
                 writeln!(out, "{:>11.1}    {}", rpm(*speed), shown.join(" "))?;
             }
         }
     }
-    let grows = |row: &&Row| row.motions.as_ref().is_ok_and(|motions| motions.iter().any(Motion::grows));
+    let grows = |row: &&Row| row.motions.as_ref().is_ok_and(|motions| motions.iter().any(Found::grows));
     match modes.rows.iter().find(grows) {
         Some(row) => writeln!(out, "\nfirst growth in this table at {:.1} rpm", rpm(row.speed)),
         None => writeln!(out, "\nnothing grows at any speed of this table"),
@@ -73,26 +82,28 @@ fn write(out: &mut String, modes: &Modes) -> std::fmt::Result {
 
 /// As JSON.
 pub fn to_json(modes: &Modes) -> Value {
-    let row = |Row { speed, motions }: &Row| {
-        let motion = |motion: &Motion| {
+    let row = |Row { speed, after, motions }: &Row| {
+        let motion = |found: &Found| {
+            let motion = &found.motion;
             json!({
                 "frequency": motion.frequency,
                 "growth": motion.growth,
+                "growth_spread": found.spread,
                 "damping": motion.damping(),
                 "balls": motion.balls,
-                "grows": motion.grows(),
+                "grows": found.grows(),
                 "shape": motion.shape,
             })
         };
         json!({
             "speed": speed,
+            "after": after,
             "motions": motions.as_ref().ok().map(|motions| motions.iter().map(motion).collect::<Vec<_>>()),
             "error": motions.as_ref().err(),
         })
     };
     json!({
         "title": modes.title,
-        "after": modes.after,
         "own": row(&modes.own),
         "speeds": modes.rows.iter().map(row).collect::<Vec<_>>(),
     })
@@ -108,20 +119,23 @@ pub fn to_csv(modes: &Modes) -> io::Result<Vec<u8>> {
         "speed [rpm]",
         "frequency [Hz]",
         "growth [1/s]",
+        "spread of growth [1/s]",
         "damping [-]",
         "share of balls [-]",
         "grows",
         "shape",
     ])?;
-    for Row { speed, motions } in std::iter::once(&modes.own).chain(&modes.rows) {
-        for motion in motions.iter().flatten() {
+    for Row { speed, motions, .. } in std::iter::once(&modes.own).chain(&modes.rows) {
+        for found in motions.iter().flatten() {
+            let motion = &found.motion;
             table.write_record([
                 format!("{:?}", rpm(*speed)),
                 format!("{:?}", motion.frequency),
                 format!("{:?}", motion.growth),
+                found.spread.map_or(String::new(), |spread| format!("{spread:?}")),
                 format!("{:?}", motion.damping()),
                 format!("{:?}", motion.balls),
-                motion.grows().to_string(),
+                found.grows().to_string(),
                 motion.shape.clone(),
             ])?;
         }

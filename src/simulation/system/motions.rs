@@ -11,7 +11,7 @@ use crate::numerics::modes::Mode;
 use crate::simulation::motions::{Motion, Part, free, mover, named, seated, worth_telling};
 
 impl System {
-    /// Motions of shaft, housings, rings and cages about the present state that swing, and what grows, by their frequency. None where
+    /// Motions of shaft, housings, rings and cages about the present state that swing, by their frequency. None where
     /// eigenvalues are not found.
     pub fn motions(&self) -> Option<Vec<Motion>> {
         let own: Vec<Vec<_>> =
@@ -69,7 +69,7 @@ impl System {
             let mode = self.describe(&Mode { eigenvalue: motion.value, shape });
             format!("{}, {}", mode.place, mode.whirl.name())
         };
-        Some(worth_telling(motions, name))
+        Some(worth_telling(&motions, name))
     }
 
     /// A race on its seat, by `size` coordinates, of which those of each structure begin at `first`.
