@@ -5,6 +5,7 @@ pub mod cost;
 pub mod error;
 pub mod exact;
 pub mod measure;
+pub mod modes;
 pub mod package;
 pub mod page;
 pub mod report;

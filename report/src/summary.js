@@ -88,6 +88,7 @@ function of(run) {
   const parts = [];
   // That of a shaft stands above its table.
   if (run.record.ended_early && !run.shaft) parts.push(h('p', { class: 'warning' }, `The run ended early: ${run.record.ended_early}`));
+  if (!run.shaft) parts.push(...(run.record.warnings ?? []).map(text => h('p', { class: 'warning' }, text)));
   if (warning) parts.push(h('p', { class: 'warning' }, warning));
   if (run.record.summary.losses) parts.push(...losses(run));
   if (means) {

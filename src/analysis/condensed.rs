@@ -18,6 +18,7 @@
 
 use nalgebra::{Matrix2, Matrix2x6, Matrix4, Matrix4x6, Matrix6, Matrix6x2, Matrix6x4, Vector3, Vector4};
 
+use super::tangents::{Tangents, ball_by_rates, by_first};
 use crate::contact::creep::Law;
 use crate::contact::normal::Damping;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
@@ -25,14 +26,10 @@ pub use crate::effects::reports::Condensed;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::state::{BallState, State};
 use crate::model::{Conditions, Model};
-use crate::numerics::scalar::{Dual, constant_vector};
 
 /// \[s] time in which friction has to be able to change the velocities of a ball so that they follow. Rolling takes
 /// microseconds; a ball that slides freely, or pivots against hardly any friction, does not follow.
 const FOLLOWING_TIME: f64 = 1e-3;
-/// Directions of differentiation, as in steps.
-const DIRECTIONS: usize = 9;
-type D = Dual<DIRECTIONS>;
 
 impl Condensed {
     /// Stiffness and damping in a state. Contacts of a cage and between balls are left out, and so are balls that do not touch both races.
@@ -51,40 +48,6 @@ impl Condensed {
     }
 }
 
-/// Derivatives of force and moment (rows) by translation and rotation, or their rates (columns), of ball and race.
-struct Derivatives {
-    /// Derivatives by the ball's.
-    by_ball: Matrix6<f64>,
-    /// Derivatives by the race's.
-    by_race: Matrix6<f64>,
-}
-
-/// Derivatives of the forces in one contact.
-struct Linear {
-    /// Force and moment on the ball by places; a ball has no orientation.
-    ball_by_place: Derivatives,
-    /// Force and moment on the ball by velocities.
-    ball_by_rate: Derivatives,
-    /// Force and moment on the race by places.
-    race_by_place: Derivatives,
-    /// Force and moment on the race by velocities.
-    race_by_rate: Derivatives,
-}
-
-/// A vector whose components are variables, from this direction on.
-fn variable<const N: usize>(v: &Vector3<f64>, first: usize) -> Vector3<Dual<N>> {
-    Vector3::from_fn(|i, _| Dual::variable(v[i], first + i, 1.0))
-}
-
-/// The motion of a ball by its velocity and angular velocity.
-fn ball_by_rates<const N: usize>(ball: &BallMotion<f64>) -> BallMotion<Dual<N>> {
-    BallMotion {
-        position: constant_vector(&ball.position),
-        velocity: variable(&ball.velocity, 0),
-        angular_velocity: variable(&ball.angular_velocity, 3),
-    }
-}
-
 /// Force and moment on a ball (rows) by its velocity and angular velocity (columns).
 pub(crate) fn ball_by_rate(
     model: &ContactModel<'_>,
@@ -92,68 +55,7 @@ pub(crate) fn ball_by_rate(
     race: &RaceMotion<f64>,
 ) -> Matrix6<f64> {
     let on_ball = model.on_ball(model.path(false), &ball_by_rates(ball), race);
-    by_ball(&on_ball.force, &on_ball.moment)
-}
-
-impl Linear {
-    /// Derivatives of a contact in motion.
-    fn new(model: &ContactModel<'_>, ball: &BallMotion<f64>, race: &RaceMotion<f64>) -> Self {
-        // A vector that turns with the race.
-        let turning = |v: &Vector3<f64>| {
-            let mut turned: Vector3<D> = constant_vector(v);
-            for k in 0..3 {
-                let rate = Vector3::ith(k, 1.0).cross(v);
-                turned.iter_mut().zip(&rate).for_each(|(c, rate)| c.derivatives[6 + k] = *rate);
-            }
-            turned
-        };
-        // Contacts depend on the relative translation alone: directions 0 to 2 serve ball and race.
-        let places = model.differentiated(
-            model.path(false),
-            &BallMotion {
-                position: variable(&ball.position, 0),
-                velocity: constant_vector(&ball.velocity),
-                angular_velocity: constant_vector(&ball.angular_velocity),
-            },
-            &RaceMotion {
-                axis: turning(&race.axis),
-                angular_velocity: turning(&race.angular_velocity),
-                ..race.constant()
-            },
-        );
-        let rates = model.differentiated(
-            model.path(false),
-            &ball_by_rates(ball),
-            &RaceMotion { angular_velocity: variable(&race.angular_velocity, 6), ..race.constant() },
-        );
-        let opposite = |force: &Vector3<D>| -force;
-        Self {
-            ball_by_place: derivatives(&places.force, &places.moment),
-            ball_by_rate: derivatives(&rates.force, &rates.moment),
-            race_by_place: derivatives(&opposite(&places.force), &places.other_moment),
-            race_by_rate: derivatives(&opposite(&rates.force), &rates.other_moment),
-        }
-    }
-}
-
-/// Row i of derivatives of force (0 to 2) and moment (3 to 5).
-#[inline(always)]
-fn row<const N: usize>([force, moment]: [&Vector3<Dual<N>>; 2], i: usize) -> &[f64; N] {
-    if i < 3 { &force[i].derivatives } else { &moment[i - 3].derivatives }
-}
-
-/// Derivatives of force and moment by the ball's motion: the first six directions.
-#[inline(always)]
-fn by_ball<const N: usize>(force: &Vector3<Dual<N>>, moment: &Vector3<Dual<N>>) -> Matrix6<f64> {
-    Matrix6::from_fn(|i, k| row([force, moment], i)[k])
-}
-
-fn derivatives(force: &Vector3<D>, moment: &Vector3<D>) -> Derivatives {
-    let row = |i: usize| row([force, moment], i);
-    Derivatives {
-        by_ball: by_ball(force, moment),
-        by_race: Matrix6::from_fn(|i, k| if k < 3 { -row(i)[k] } else { row(i)[3 + k] }),
-    }
+    by_first(&on_ball.force, &on_ball.moment)
 }
 
 /// Contribution of one ball; none if it does not touch both races.
@@ -168,7 +70,8 @@ fn contribution(
     if !(touches(Race::Inner) && touches(Race::Outer)) {
         return None;
     }
-    let linear = |model: &ContactModel<'_>, race: Race| Linear::new(model, &motion, &races[race]);
+    let linear =
+        |model: &ContactModel<'_>, race: Race| Tangents::of_ball_and_race(model, &motion, &races[race]);
     let [inner, outer] = Race::BOTH.map(|race| linear(&contacts[race], race));
     let smooth = |race: Race| {
         linear(
@@ -190,26 +93,26 @@ fn contribution(
     rolling.fixed_view_mut::<3, 3>(3, 1).scale_mut(1.0 / ball.radius);
 
     // stiffness
-    let by_place = smooth_inner.ball_by_place.by_ball + smooth_outer.ball_by_place.by_ball;
+    let by_place = smooth_inner.place.on_first.first + smooth_outer.place.on_first.first;
     let mut f_q: Matrix2<f64> = plane.transpose() * by_place * plane;
     f_q[(1, 1)] += ball.mass * orbit.speed * orbit.speed;
     let f_q = f_q.lu();
-    let w_q = smooth_inner.race_by_place.by_ball * plane;
-    let follow: Matrix2x6<f64> = f_q.solve(&-(plane.transpose() * smooth_inner.ball_by_place.by_race))?;
-    let stiffness = -(smooth_inner.race_by_place.by_race + w_q * follow);
+    let w_q = smooth_inner.place.on_second.first * plane;
+    let follow: Matrix2x6<f64> = f_q.solve(&-(plane.transpose() * smooth_inner.place.on_first.second))?;
+    let stiffness = -(smooth_inner.place.on_second.second + w_q * follow);
 
     // damping
-    let by_rate = inner.ball_by_rate.by_ball + outer.ball_by_rate.by_ball;
+    let by_rate = inner.rate.on_first.first + outer.rate.on_first.first;
     let (g, f) = (rolling.transpose(), plane.transpose());
     let rotational = ball.inertia / (ball.radius * ball.radius);
     let inertia = Vector4::new(ball.mass, rotational, rotational, rotational) / FOLLOWING_TIME;
     let g_u = g * by_rate * rolling - Matrix4::from_diagonal(&inertia);
-    let by_race = inner.ball_by_rate.by_race + by_rate * plane * follow;
+    let by_race = inner.rate.on_first.second + by_rate * plane * follow;
     let rates: Matrix4x6<f64> = g_u.lu().solve(&-(g * by_race))?;
     // Where the forces have a potential, w_q f_q^-1 is the transpose of -Q: written so, C is a sum of squares.
     let shift = follow.transpose() * (f * (by_race + by_rate * rolling * rates));
-    let w_rate = inner.race_by_rate.by_ball;
-    let damping = -(inner.race_by_rate.by_race + w_rate * (plane * follow + rolling * rates) + shift);
+    let w_rate = inner.rate.on_second.first;
+    let damping = -(inner.rate.on_second.second + w_rate * (plane * follow + rolling * rates) + shift);
     Some(Condensed { stiffness, damping })
 }
 

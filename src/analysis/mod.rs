@@ -1,4 +1,5 @@
-//! Analyses of a model or a state without running it: stiffness and damping, natural frequency, single rolling contacts.
+//! Analyses of a model or a state without running it: stiffness and damping, natural frequency, small motions of all bodies, single
+//! rolling contacts.
 
 pub mod auto;
 pub mod condensed;
@@ -6,4 +7,6 @@ pub mod estimate;
 pub mod natural_frequency;
 mod settled;
 pub mod single_contact;
+pub mod small_motions;
 pub mod stick_slip;
+mod tangents;

@@ -146,6 +146,11 @@ impl Support {
         }
     }
 
+    /// Stiffness and damping along and about the flange's axes.
+    pub fn matrices(&self) -> [&Matrix6<f64>; 2] {
+        [&self.stiffness, &self.damping]
+    }
+
     /// Stiffness along and about the flange's axes, but for the turn about x: order x, y, z, ry, rz.
     pub fn stiffness(&self) -> nalgebra::SMatrix<f64, 5, 5> {
         let place = |i: usize| if i < 3 { i } else { i + 1 };

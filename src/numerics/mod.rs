@@ -2,6 +2,7 @@
 
 pub mod arrowhead;
 pub mod condensed;
+pub mod eigen;
 pub mod elliptic;
 pub mod hermite;
 pub mod hht;

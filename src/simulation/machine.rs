@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::motions::Motion;
 use super::play::Scripted;
 use super::system::{Played, System, SystemError, script_changes_within, shaft_follows_time};
 use super::together::{Stopped, Together};
@@ -86,6 +87,14 @@ impl Machine {
     pub fn script_changes_within(&self, from: f64, to: f64) -> bool {
         let of_bearings = self.bearings().any(|(_, bearing)| bearing.script_changes_within(from, to));
         of_bearings || self.shaft().is_some_and(|system| script_changes_within(system.scene(), from, to))
+    }
+
+    /// Small motions about the present state: [`Simulation::motions`], [`System::motions`].
+    pub fn motions(&self) -> Option<Vec<Motion>> {
+        match self {
+            Self::Bearing(bearing) => bearing.motions(),
+            Self::Shaft(system) => system.motions(),
+        }
     }
 
     /// The shaft with its housings, where there is one.

@@ -8,6 +8,7 @@ mod reference;
 #[path = "../common/scenes.rs"]
 mod scenes;
 mod sensitivity;
+mod small_motions;
 #[path = "../common/statics.rs"]
 mod statics;
 mod stiffness;

@@ -14,6 +14,8 @@ use roulement::scene::system::SystemScene;
 use roulement::scene::units::{AngularVelocity, Quantity};
 use roulement::simulation::system::{MachineEquilibrium, largest_speed};
 
+use roulement_cli::modes::warnings;
+
 use super::field::Moment;
 use super::{load, say, tell};
 
@@ -64,7 +66,7 @@ impl From<GyroscopicChoice> for Gyroscopic {
 
 /// [rad/s] a speed above 0, a number or a text with a unit.
 #[derive(Clone, Copy, Debug)]
-struct Speed(f64);
+pub struct Speed(pub f64);
 
 impl FromStr for Speed {
     type Err = String;
@@ -121,7 +123,13 @@ fn of_shaft(scene: &SystemScene, time: f64, json: bool, up_to: Option<Speed>) ->
                 .map(|note| format!("warning: bearing {}: {}", of.name, bare(note))),
         );
     }
+    tell_growing(&MachineScene::Shaft(Box::new(scene.clone())), time);
     Ok(())
+}
+
+/// Says what grows about it, where something does.
+fn tell_growing(scene: &MachineScene, time: f64) {
+    tell(warnings(scene, time).into_iter().map(|warning| format!("warning: {warning}")));
 }
 
 fn of_bearing(scene: &Scene, time: f64, json: bool, gyroscopic: Gyroscopic) -> Result<(), Box<dyn Error>> {
@@ -136,6 +144,7 @@ fn of_bearing(scene: &Scene, time: f64, json: bool, gyroscopic: Gyroscopic) -> R
     tell(scene.pressure_note(solution.peak_pressure(&model)));
     tell(solution.warning());
     tell(solution.life.and_then(|life| life.warning()));
+    tell_growing(&scene.clone().into(), time);
     if model.supports.iter().any(Option::is_some) {
         tell([SUPPORTS_LEFT_OUT.to_string()]);
     }

@@ -7,6 +7,7 @@ mod effects;
 mod equilibrium;
 mod field;
 mod identify;
+mod modes;
 mod place;
 mod player;
 mod report;
@@ -45,6 +46,8 @@ enum Command {
     Run(run::Options),
     /// Solve the quasi-static equilibrium of a scene; of a shaft also its natural frequencies and critical speeds.
     Equilibrium(equilibrium::Options),
+    /// Find the small motions of rings, shafts and cage about the running state, which grow or decay, over the speed.
+    Modes(modes::Options),
     /// Simulate many cases of a scene on all cores: a table of keys and values, or ranges; resumable.
     Sweep(sweep::Options),
     /// Print what may stand in a scene file: every key, or a JSON schema for editors.
@@ -137,6 +140,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Run(options) => return run::run(options),
         Command::Sweep(options) => return sweep::run(options),
         Command::Equilibrium(options) => equilibrium::run(&options)?,
+        Command::Modes(options) => modes::run(&options)?,
         Command::Fmu { scene, output, library, name, columns } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
             let name = name.unwrap_or_else(|| name_of(&output));

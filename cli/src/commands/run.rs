@@ -13,6 +13,7 @@ use roulement::scene::{ErrorGoal, ErrorOf};
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::Rows;
 use roulement_cli::error::{Judgement, MOST_ROUNDS, Rounds, finer, twin_of_coarser};
+use roulement_cli::modes::warnings;
 use roulement_cli::report::results::{Choice, Window};
 use roulement_cli::report::tables::Tables;
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -125,13 +126,16 @@ pub fn simulate(
             announce(name, bearing.scene(), verdicts);
         }
     }
+    let growing = warnings(scene, 0.0);
+    tell(growing.iter().map(|warning| format!("warning: {warning}")));
     place.begin(scene, &machine)?;
     let tables = place.tables(scene, &machine, false)?;
     if wants_error || scene.solver().goal.is_some() {
-        return measured(player, scene, (machine, tables), place, &verdicts, rounds);
+        return measured(player, scene, (machine, tables), place, (&verdicts, &growing), rounds);
     }
     let rows = Rows { end_steps, ..Rows::of_scene(scene) };
-    let played = player.play(machine, rows, Some(tables), "")?;
+    let mut played = player.play(machine, rows, Some(tables), "")?;
+    played.seen.set_growing(&growing);
     place.leave(&played, &verdicts, None, "")?;
     ended(&played)
 }
@@ -155,7 +159,7 @@ fn measured(
     scene: &MachineScene,
     (machine, tables): (Machine, Tables),
     place: &Place,
-    verdicts: &[Verdicts],
+    (verdicts, growing): (&[Verdicts], &[String]),
     most: u32,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let times = Rows::of_scene(scene);
@@ -198,6 +202,7 @@ fn measured(
         break (judgement, next.end);
     };
     played.seen.set_means(rounds.means());
+    played.seen.set_growing(growing);
     place.leave(&played, verdicts, rounds.bars(), &rounds.report())?;
     let round = rounds.count() + 1;
     match (end, judgement) {

@@ -14,7 +14,7 @@ use roulement_cli::report::losses::Closed;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
 use roulement_cli::report::spectrum::is_wanted;
 use roulement_cli::report::{phases, shaft};
-use roulement_cli::watch::{BearingSeen, Life, ShaftSeen, headlines};
+use roulement_cli::watch::{BearingSeen, Circling, Life, ShaftSeen, headlines};
 
 use super::effects::idle_in;
 use super::player::Played;
@@ -196,6 +196,12 @@ fn write_settled_of_all<'a>(
             "settled?         too few steps to tell: a longer load.duration, or a smaller solver.max_step, has more"
         );
     }
+    if all.iter().any(|(_, means)| means.unstable) {
+        writeln!(
+            out,
+            "NOT SETTLED      a motion grows, or is beyond what loads explain: means are those of this motion"
+        )?;
+    }
     if all.iter().all(|(_, means)| means.settled() == Some(true)) {
         return writeln!(
             out,
@@ -212,7 +218,7 @@ fn write_settled_of_all<'a>(
             )?;
         }
     }
-    if all.iter().any(|(_, means)| means.scripted) {
+    if all.iter().any(|(_, means)| means.scripted || means.unstable) {
         return Ok(());
     }
     let needed = all.iter().try_fold(0.0, |longest, (_, means)| Some(f64::max(longest, means.needed()?)));
@@ -313,7 +319,8 @@ fn write_bearing(
         text("stored", 1.0, 5),
         energy.balance(now)
     )?;
-    if let Some(warning) = energy.warning(simulation) {
+    let circling = seen.circling.as_ref().map(Circling::warning);
+    for warning in seen.growing.iter().cloned().chain(circling).chain(energy.warning(simulation)) {
         writeln!(out, "WARNING          {warning}")?;
     }
     if shown.bars.is_none() {

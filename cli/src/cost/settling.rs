@@ -72,7 +72,10 @@ mod tests {
             error: None,
         };
         let means = trends.into_iter().map(mean).collect();
-        vec![(String::new(), Means { window: [0.01, 0.04], scripted: false, means, largest: [0.0; 3] })]
+        vec![(
+            String::new(),
+            Means { window: [0.01, 0.04], scripted: false, unstable: false, means, largest: [0.0; 3] },
+        )]
     }
 
     fn trend(drift: f64, needed: Option<f64>) -> Option<Trend> {

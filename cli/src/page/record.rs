@@ -70,6 +70,7 @@ impl Run<'_> {
             "title": scene.title,
             "scene": scene.source,
             "ended_early": ended_early,
+            "warnings": seen.warnings(simulation),
             "bearing": bearing::describe(scene, model),
             "summary": json::summary(simulation, seen, shown),
             "summary_text": summary,

@@ -57,6 +57,7 @@ pub fn summary(simulation: &Simulation, seen: &BearingSeen, shown: &Shown) -> Va
         "peak_pressure": seen.limits.peak_pressure,
         "energy_balance": seen.energy.balance(simulation.outputs()),
         "warning": seen.energy.warning(simulation),
+        "warnings": seen.warnings(simulation),
         "steps": {
             "accepted": statistics.steps,
             "rejected_by_error": statistics.rejected_error,

@@ -168,6 +168,8 @@ pub struct Means {
     pub window: [f64; 2],
     /// Does the script come to other values inside the window? Means are then of no state.
     pub scripted: bool,
+    /// Does a motion grow, or is it beyond what loads explain? Means are then those of that motion, and of no state that lasts.
+    pub unstable: bool,
     /// Means of all quantities that are shown.
     pub means: Vec<Mean>,
     /// Largest values of a cage: eccentricity \[m], pocket load \[N], land load \[N].
@@ -348,7 +350,13 @@ impl Blocks {
             let (name, unit) = (quantities[i].name.clone(), quantities[i].unit);
             Mean { name, unit, mean: mean(i), trend, interval, error: None }
         });
-        Some(Means { window: span, scripted: false, means: means.collect(), largest: all.largest })
+        Some(Means {
+            window: span,
+            scripted: false,
+            unstable: false,
+            means: means.collect(),
+            largest: all.largest,
+        })
     }
 }
 
@@ -463,7 +471,7 @@ impl Means {
 
     /// Have all settled? None where that cannot be told.
     pub fn settled(&self) -> Option<bool> {
-        match self.scripted {
+        match self.scripted || self.unstable {
             true => Some(false),
             false => self.can_tell().then(|| self.unsettled().next().is_none()),
         }

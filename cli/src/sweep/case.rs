@@ -233,6 +233,7 @@ fn optional(name: &str, unit: &str, value: Option<f64>) -> (Column, Cell) {
 fn settled(means: &Means) -> &'static str {
     match (means.scripted, means.settled()) {
         (true, _) => "no: the script changes",
+        _ if means.unstable => "no: a motion grows or circles",
         (false, None) => "too few steps to tell",
         (false, Some(true)) => "yes",
         (false, Some(false)) => "no",

@@ -21,6 +21,7 @@ use crate::report::quantities::{Parts, of_bearing, values, weights};
 use crate::report::spectrum::{Recorder, Spectrum};
 use crate::report::thinned::Thinned;
 
+use super::circling::{Circling, CirclingWatch};
 use super::phases::{Now, Phase, PhaseWatch};
 
 /// Gathers while a bearing runs.
@@ -30,6 +31,7 @@ pub struct BearingWatch {
     energy: EnergyWatch,
     limits: Limits,
     losses: LossWatch,
+    circling: CirclingWatch,
     /// Revolutions and loads from step to step, for the life over the window.
     rated: Thinned<(f64, Sums)>,
     samples: Thinned<Sample>,
@@ -52,6 +54,10 @@ pub struct BearingSeen {
     pub life: Option<Life>,
     /// Phases of the run that it came to.
     pub phases: Vec<Phase>,
+    /// A race that moves by more than its loads explain.
+    pub circling: Option<Circling>,
+    /// What grows about where the run starts, a sentence each.
+    pub growing: Vec<String>,
     /// Rows for comparison with other runs.
     samples: Vec<Sample>,
 }
@@ -69,6 +75,7 @@ impl BearingWatch {
             energy: EnergyWatch::default(),
             limits: Limits::default(),
             losses: LossWatch::default(),
+            circling: CirclingWatch::default(),
             rated: Thinned::default(),
             samples: Thinned::default(),
         }
@@ -100,6 +107,7 @@ impl BearingWatch {
             spectrum.push(outputs);
         }
         self.energy.push(outputs);
+        self.circling.push(simulation);
         self.limits.push(outputs);
         self.samples.push(Sample::new(outputs));
     }
@@ -115,6 +123,10 @@ impl BearingWatch {
             .blocks
             .means()
             .map(|means| Means { scripted: changes(means.window[0], means.window[1]), ..means });
+        let from = means.as_ref().map_or(0.0, |means| means.window[0]);
+        let circling = self.circling.finish(simulation, from);
+        let unstable = circling.is_some();
+        let means = means.map(|means| Means { unstable, ..means });
         let rated = self.rated.finish();
         BearingSeen {
             closed: means.as_ref().and_then(|means| self.losses.over(means.window)),
@@ -123,6 +135,8 @@ impl BearingWatch {
             spectrum: self.spectrum.and_then(Recorder::finish),
             energy: self.energy,
             limits: self.limits,
+            circling,
+            growing: vec![],
             samples: self.samples.finish(),
             phases: self
                 .phases
@@ -150,15 +164,18 @@ impl BearingSeen {
             })
         };
         let shoulders = Race::BOTH.into_iter().filter_map(of_race);
-        self.told(simulation).into_iter().chain(shoulders).chain(self.energy.warning(simulation)).collect()
+        let growing = self.growing.iter().cloned();
+        growing.chain(self.told(simulation)).chain(shoulders).chain(self.energy.warning(simulation)).collect()
     }
 
-    /// The same, but for what its summary says: the pressure, and what its life leaves out.
+    /// The same, but for what its summary says and what is said before it runs: the pressure, a race that circles, and what its life leaves
+    /// out.
     pub fn told(&self, simulation: &Simulation) -> Vec<String> {
         let pressure = simulation.scene().pressure_note(self.limits.peak_pressure);
         let life = self.life.and_then(|life| life.life.warning());
         let bare = |note: String| note.trim_start_matches("warning: ").to_string();
-        pressure.into_iter().chain(life).map(bare).collect()
+        let circling = self.circling.as_ref().map(Circling::warning);
+        pressure.into_iter().chain(life).map(bare).chain(circling).collect()
     }
 
     /// What is kept for comparison with other runs, under the name of the bearing; its rows move there.

@@ -1,6 +1,7 @@
 //! What is gathered of a run step by step and row by row, whoever plays it: of every bearing, and of the shaft with its housings where there is one.
 
 mod bearing;
+mod circling;
 mod phases;
 mod shaft;
 
@@ -10,6 +11,7 @@ use roulement::simulation::play::Observer;
 use roulement::simulation::system::System;
 
 pub use bearing::{BearingSeen, BearingWatch, Life, headlines};
+pub use circling::Circling;
 pub use phases::{Extreme, Phase};
 pub use shaft::{ShaftSeen, ShaftWatch};
 
@@ -96,8 +98,10 @@ impl Seen {
             seen.warnings(bearing).into_iter().map(move |warning| format!("{before}{warning}"))
         };
         let bearings = machine.bearings().zip(&self.bearings).flat_map(named);
-        let shaft = self.shaft.as_ref().zip(machine.shaft()).map(|(seen, system)| seen.warnings(system));
-        bearings.chain(shaft.into_iter().flatten()).collect()
+        let shaft = self.shaft.as_ref().zip(machine.shaft());
+        let growing = shaft.map(|(seen, _)| seen.growing.clone());
+        let shaft = shaft.map(|(seen, system)| seen.warnings(system));
+        growing.into_iter().flatten().chain(bearings).chain(shaft.into_iter().flatten()).collect()
     }
 
     /// What is told of a run beside its summary, a sentence each: the same, but for what summaries of bearings say themselves.
@@ -112,11 +116,28 @@ impl Seen {
         bearings.chain(shaft).collect()
     }
 
+    /// Takes what grows about where the run starts, a sentence each: no means have settled then.
+    pub fn set_growing(&mut self, growing: &[String]) {
+        let means = self.bearings.iter_mut().flat_map(|seen| &mut seen.means);
+        let means = means.chain(self.shaft.iter_mut().flat_map(|seen| &mut seen.means));
+        means.for_each(|means| means.unstable |= !growing.is_empty());
+        match (&mut self.shaft, self.bearings.first_mut()) {
+            (Some(shaft), _) => shaft.growing = growing.to_vec(),
+            (None, Some(alone)) => alone.growing = growing.to_vec(),
+            (None, None) => {}
+        }
+    }
+
     /// Puts means with their errors, of every bearing and then of the shaft, in the place of those that it has.
     pub fn set_means(&mut self, means: Vec<Option<Means>>) {
         let mut means = means.into_iter();
-        self.bearings.iter_mut().zip(&mut means).for_each(|(seen, means)| seen.means = means);
-        self.shaft.iter_mut().zip(means).for_each(|(seen, means)| seen.means = means);
+        // Whether a motion grows is known of this run.
+        let put = |own: &mut Option<Means>, means: Option<Means>| {
+            let unstable = own.as_ref().is_some_and(|own| own.unstable);
+            *own = means.map(|means| Means { unstable: means.unstable || unstable, ..means });
+        };
+        self.bearings.iter_mut().zip(&mut means).for_each(|(seen, means)| put(&mut seen.means, means));
+        self.shaft.iter_mut().zip(means).for_each(|(seen, means)| put(&mut seen.means, means));
     }
 
     /// What is kept for comparison with other runs, with the CPU time \[s] of this one; its rows move there.

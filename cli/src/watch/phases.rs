@@ -208,6 +208,7 @@ impl Phase {
     pub fn settled(&self) -> &'static str {
         match (self.means.scripted, self.means.settled()) {
             (true, _) => "NOT SETTLED: the script changes in it",
+            _ if self.means.unstable => "NOT SETTLED: a motion grows, or is beyond what loads explain",
             (false, None) => "too few steps to tell whether it has settled",
             (false, Some(true)) => "settled",
             (false, Some(false)) => "NOT SETTLED: means drift in it",

@@ -37,6 +37,8 @@ pub struct ShaftSeen {
     pub phases: Vec<Phase>,
     /// What closes the losses of the whole machine over the window of the means.
     pub closed: Option<Closed>,
+    /// What grows about where the run starts, a sentence each.
+    pub growing: Vec<String>,
     watched: Vec<Watched>,
     samples: Vec<Sample>,
     largest_load: f64,
@@ -86,6 +88,7 @@ impl ShaftWatch {
             means,
             phases: phases.collect(),
             watched: self.quantities.watched(),
+            growing: vec![],
             samples: self.samples.finish(),
             largest_load: self.largest_load,
         }

@@ -89,6 +89,9 @@ fn workplace(name: &str) -> Scratch {
     }
     let shaft = fs::read_to_string(root().join("scenes/shafts/pinion.toml")).unwrap();
     write("scenes/shafts/pinion.toml", &shaft);
+    for scene in ["whirl/one", "whirl/two"] {
+        write(&format!("scenes/{scene}.toml"), &fs::read_to_string(common::scene(scene)).unwrap());
+    }
     let coupled = fs::read_to_string(root().join("examples/coupling/bearing.toml")).unwrap();
     write("examples/coupling/bearing.toml", &coupled);
     fs::create_dir(scratch.path("build")).unwrap();

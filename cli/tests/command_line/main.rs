@@ -10,6 +10,7 @@ mod documents_run;
 mod effects;
 mod field;
 mod means;
+mod modes;
 mod packages;
 mod phases;
 mod refusals;

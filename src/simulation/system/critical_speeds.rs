@@ -117,7 +117,7 @@ fn crossing(
 }
 
 /// The scene of a shaft that turns at a speed [rad/s], whatever its own drives it by.
-fn at_speed(scene: &SystemScene, speed: f64) -> SystemScene {
+pub fn at_speed(scene: &SystemScene, speed: f64) -> SystemScene {
     let mut scene = scene.clone();
     (scene.shaft.speed, scene.shaft.torque, scene.shaft.start_speed) =
         (Some(Schedule::Constant(speed)), None, None);

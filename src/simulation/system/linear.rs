@@ -125,7 +125,8 @@ impl System {
         Ok(found.map(|modes| modes.iter().map(|mode| self.describe(mode)).collect()))
     }
 
-    fn describe(&self, mode: &Mode) -> ShaftMode {
+    /// What moves in a mode, and how.
+    pub(super) fn describe(&self, mode: &Mode) -> ShaftMode {
         // Displacements at every station of every structure.
         let mut first = 0;
         let mut moved: Vec<(usize, usize, [Complex<f64>; 3])> = vec![];

@@ -1,0 +1,224 @@
+//! Small motions of a machine about its running state, over the speed: which grow, which decay.
+
+mod figure;
+mod table;
+
+use roulement::scene::machine::MachineScene;
+use roulement::scene::{Level, Schedule};
+use roulement::simulation::machine::{Machine, MachineError};
+use roulement::simulation::motions::Motion;
+use roulement::simulation::system::{at_speed, largest_speed};
+
+pub use figure::{write as write_figure, write_growths};
+pub use table::{to_csv, to_json, to_text};
+
+/// [-] largest speed of the scene, that of the table.
+const BEYOND: f64 = 1.5;
+
+/// Moments that motions are looked at, over as long again as the machine ran before the first of them: while a state is not quite steady,
+/// growth changes from one to the next.
+const MOMENTS: usize = 5;
+/// [-] of that time, an earlier look: what grows by more than `e` until then may have moved the state away that was asked about.
+const EARLIER: f64 = 0.1;
+/// Balls of a machine from which on it is looked at once, as it takes a second.
+const MANY_BALLS: usize = 60;
+/// [-] frequencies of one motion at two moments differ by less.
+const SAME: f64 = 0.05;
+
+/// A motion, its growth the mean of some moments.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The motion.
+    pub motion: Motion,
+    /// [1/s] half the range of its growth over these moments; none where it was not there at one of them.
+    pub spread: Option<f64>,
+}
+
+impl Found {
+    /// Does it grow at all of these moments?
+    pub fn grows(&self) -> bool {
+        let least = |spread| Motion { growth: self.motion.growth - spread, ..self.motion.clone() };
+        self.spread.is_some_and(|spread| least(spread).grows())
+    }
+}
+
+/// For how long a machine ran \[s], and its motions, or why there are none.
+type Looked = (f64, Result<Vec<Found>, String>);
+
+/// Motions at a speed.
+pub struct Row {
+    /// [rad/s] speed of the shaft, or of the race that turns fastest.
+    pub speed: f64,
+    /// \[s] how long the machine ran before its motions were looked at first, and again until they were last.
+    pub after: f64,
+    /// By growing frequency; or why there are none.
+    pub motions: Result<Vec<Found>, String>,
+}
+
+/// Motions over the speed.
+pub struct Modes {
+    /// Title of the scene.
+    pub title: String,
+    /// At the speed of the scene.
+    pub own: Row,
+    /// At other speeds, by growing speed; none where nothing turns.
+    pub rows: Vec<Row>,
+}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked {
+    /// \[s] time of the scene's script.
+    pub time: f64,
+    /// \[s] how long it runs before motions are looked at.
+    pub after: f64,
+    /// [rad/s] speed that the table goes up to; 1.5 times that of the scene if not given.
+    pub up_to: Option<f64>,
+    /// Speeds of the table.
+    pub speeds: usize,
+}
+
+impl Modes {
+    /// Those of a scene.
+    ///
+    /// # Errors
+    /// If the machine cannot start or run at its own speed.
+    pub fn of(scene: &MachineScene, asked: &Asked) -> Result<Self, MachineError> {
+        let own = speed_of(scene, asked.time);
+        let (after, motions) = at(scene, asked)?;
+        let up_to = asked.up_to.unwrap_or(match scene {
+            MachineScene::Bearing(_) => BEYOND * own,
+            MachineScene::Shaft(scene) => largest_speed(scene),
+        });
+        let row = |speed: f64| {
+            let found = at(&turning(scene, asked.time, speed), asked);
+            let (after, motions) = found.unwrap_or_else(|why| (0.0, Err(why.to_string())));
+            Row { speed, after, motions }
+        };
+        let speeds = if own > 0.0 { asked.speeds } else { 0 };
+        let rows = (1..=speeds).map(|k| row(up_to * k as f64 / speeds as f64)).collect();
+        let title = match scene {
+            MachineScene::Bearing(scene) => scene.title.clone(),
+            MachineScene::Shaft(scene) => scene.title.clone(),
+        };
+        Ok(Self { title, own: Row { speed: own, after, motions }, rows })
+    }
+}
+
+/// \[s] how long a machine runs before it is judged, at most, and which part of its run.
+const JUDGED_AFTER: (f64, f64) = (2e-3, 0.2);
+
+/// What grows where the script of a scene is at a time \[s], in a sentence: what whoever runs this machine should know. Nothing is said of a
+/// machine that cannot run.
+pub fn warnings(scene: &MachineScene, time: f64) -> Vec<String> {
+    let duration = match scene {
+        MachineScene::Bearing(scene) => scene.load.duration.0,
+        MachineScene::Shaft(scene) => scene.load.duration.0,
+    };
+    if scene.solver().level == Level::Equilibrium {
+        return vec![];
+    }
+    let after = JUDGED_AFTER.0.min(JUDGED_AFTER.1 * duration);
+    let found = at(scene, &Asked { time, after, up_to: None, speeds: 0 });
+    let mut growing: Vec<Found> = found.ok().and_then(|(_, motions)| motions.ok()).unwrap_or_default();
+    growing.retain(Found::grows);
+    growing.sort_by(|a, b| b.motion.growth.total_cmp(&a.motion.growth));
+    let rest = growing.len().saturating_sub(1);
+    let others = if rest > 0 { format!(" (and {rest} more)") } else { String::new() };
+    let sentence = |Found { motion: Motion { frequency, growth, shape, .. }, .. }: &Found| {
+        format!(
+            "a motion grows: {shape}, {frequency:.2} Hz, by {growth:.1} 1/s{others}; `roulement modes` tells more, docs/holding-a-bearing.md \
+             what stops it"
+        )
+    };
+    growing.first().map(sentence).into_iter().collect()
+}
+
+/// Motions of a scene that has run for a while, and for how long \[s] before they were looked at first.
+fn at(scene: &MachineScene, asked: &Asked) -> Result<Looked, MachineError> {
+    let mut machine = Machine::starting_at(scene, asked.time)?;
+    // Nothing is free to move: nothing has to run.
+    if matches!(&machine, Machine::Bearing(bearing) if bearing.is_held()) {
+        return Ok((0.0, Ok(vec![])));
+    }
+    let early = look(&mut machine, asked.time, EARLIER * asked.after)?;
+    if asked.after == 0.0 {
+        return Ok((0.0, early));
+    }
+    let fast = |found: &Found| found.grows() && found.motion.growth * asked.after > 1.0;
+    let grows_fast = early.as_ref().is_ok_and(|early| early.iter().any(fast));
+    let late = look(&mut machine, asked.time, asked.after);
+    let still_grows = matches!(&late, Ok(Ok(late)) if late.iter().any(Found::grows));
+    if grows_fast && !still_grows {
+        return Ok((EARLIER * asked.after, early));
+    }
+    Ok((asked.after, late?))
+}
+
+/// Motions of a machine at moments from `after` \[s] behind a time \[s] on, or why there are none.
+fn look(machine: &mut Machine, time: f64, after: f64) -> Result<Result<Vec<Found>, String>, MachineError> {
+    let balls: usize = machine.bearings().map(|(_, bearing)| bearing.state().balls.len()).sum();
+    let mut moments = vec![];
+    for moment in 0..if after > 0.0 && balls < MANY_BALLS { MOMENTS } else { 1 } {
+        let end = time + after * (1.0 + moment as f64 / (MOMENTS - 1) as f64);
+        match machine {
+            Machine::Bearing(bearing) if end > bearing.time() => bearing.advance_scripted(end)?,
+            Machine::Shaft(system) if end > system.time() => system.advance(end)?,
+            _ => {}
+        }
+        match machine.motions() {
+            Some(motions) => moments.push(motions),
+            None => return Ok(Err("no eigenvalues were found, or the frame of the bearing moves".into())),
+        }
+    }
+    Ok(Ok(joined(&moments)))
+}
+
+/// The motions of the moment in the middle, with their mean growth.
+fn joined(moments: &[Vec<Motion>]) -> Vec<Found> {
+    let join = |motion: &Motion| {
+        let same = |motions: &Vec<Motion>| {
+            let away = |other: &Motion| (other.frequency - motion.frequency).abs();
+            let nearest = motions.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
+            (away(nearest) < SAME * motion.frequency).then_some(nearest.growth)
+        };
+        let growths: Vec<f64> = moments.iter().filter_map(same).collect();
+        let (least, most) =
+            growths.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), growth| {
+                (least.min(*growth), most.max(*growth))
+            });
+        let growth = growths.iter().sum::<f64>() / growths.len().max(1) as f64;
+        let spread = (growths.len() == moments.len()).then_some(0.5 * (most - least));
+        Found { motion: Motion { growth, ..motion.clone() }, spread }
+    };
+    moments[moments.len() / 2].iter().map(join).collect()
+}
+
+/// [rad/s] speed of a machine at a time \[s].
+fn speed_of(scene: &MachineScene, time: f64) -> f64 {
+    match scene {
+        MachineScene::Bearing(scene) => {
+            let load = &scene.load;
+            load.inner_speed.at(time).abs().max(load.outer_speed.at(time).abs())
+        }
+        MachineScene::Shaft(scene) => {
+            let scripted = scene.shaft.speed.as_ref().map(|speed| speed.at(time));
+            scripted.or(scene.shaft.start_speed.map(|speed| speed.0)).unwrap_or(0.0).abs()
+        }
+    }
+}
+
+/// The scene with another speed; both races of a bearing turn as fast against each other as before.
+fn turning(scene: &MachineScene, time: f64, speed: f64) -> MachineScene {
+    match scene {
+        MachineScene::Bearing(own) => {
+            let factor = speed / speed_of(scene, time);
+            let mut scene = own.clone();
+            for race in [&mut scene.load.inner_speed, &mut scene.load.outer_speed] {
+                *race = Schedule::Constant(factor * race.at(time));
+            }
+            MachineScene::Bearing(scene)
+        }
+        MachineScene::Shaft(scene) => MachineScene::Shaft(Box::new(at_speed(scene, speed))),
+    }
+}

@@ -1,0 +1,88 @@
+//! Small motions of a shaft, its housings and its bearings about where they are: which grow, and what moves in them.
+
+use nalgebra::DVector;
+
+use super::System;
+use crate::analysis::small_motions::{Mover, Seated, SmallMotion, SmallMotions};
+use crate::dynamics::system::{Joint, StructureTrial};
+use crate::model::bodies::Body;
+use crate::model::structure::Carrier;
+use crate::numerics::modes::Mode;
+use crate::simulation::motions::{Motion, Part, free, mover, named, seated, worth_telling};
+
+impl System {
+    /// Motions of shaft, housings, rings and cages about the present state that swing, by their frequency. None where
+    /// eigenvalues are not found.
+    pub fn motions(&self) -> Option<Vec<Motion>> {
+        let own: Vec<Vec<_>> =
+            self.bearings.iter().map(|bearing| bearing.moving_bodies().collect()).collect();
+        let of_carriers: usize =
+            self.structures.carriers.iter().map(|carrier| carrier.structure.size()).sum();
+        let of_bodies: usize = own.iter().flatten().map(|(_, moved, _)| free(moved).len()).sum();
+        let size = of_carriers + of_bodies;
+        let mut movers = vec![];
+        let mut first = vec![];
+        let mut next = 0;
+        for (Carrier { structure, .. }, state) in self.structures.carriers.iter().zip(&self.structures.states)
+        {
+            first.push(next);
+            next += structure.size();
+            movers.push(Mover {
+                mass: structure.mass.clone(),
+                damping: &structure.damping + &structure.gyroscopic * state.spin.speed,
+                stiffness: structure.stiffness.clone(),
+            });
+        }
+        let mut parts = vec![];
+        let mut running = vec![];
+        for (index, (bearing, bodies)) in self.bearings.iter().zip(&own).enumerate() {
+            let carried = self.structures.joints.iter().filter(|joint| joint.bearing == index);
+            let mut seats: Vec<Seated> = carried.map(|joint| self.seated(joint, size, &first)).collect();
+            for (body, moved, state) in bodies {
+                movers.push(mover(moved, state.rate.x));
+                seats.push(seated((*body, moved), state, bearing.applied_moment(*body), (next, size)));
+                parts.push((index, (*body, *moved, *state), next));
+                next += free(moved).len();
+            }
+            running.push(bearing.running(seats));
+        }
+        let motions = SmallMotions::new(&movers, &running).motions()?;
+        let structures = movers[..self.structures.carriers.len()].iter().zip(&first);
+        let structures: Vec<_> = structures.collect();
+        let name = |motion: &SmallMotion| {
+            let energy = |(mover, from): &(&Mover, &usize)| {
+                let own = motion.shape.rows(**from, mover.mass.nrows());
+                let part = |own: DVector<f64>| own.dot(&(&mover.mass * &own));
+                part(own.map(|value| value.re)) + part(own.map(|value| value.im))
+            };
+            let of_structures: f64 = structures.iter().map(energy).sum();
+            let told = parts.iter().map(|(index, (body, moved, state), from)| {
+                let own = free(moved);
+                let shape = motion.shape.rows(*from, own.len()).into_owned();
+                let part = Part::new(*body, moved, state.rate.x, (&own, &shape));
+                part.of(&self.structures.scene.bearings[*index].name)
+            });
+            let told: Vec<Part> = told.collect();
+            let of_parts: f64 = told.iter().map(Part::energy).sum();
+            if of_structures < of_parts {
+                return named(&told);
+            }
+            let shape = motion.shape.rows(0, of_carriers).into_owned();
+            let mode = self.describe(&Mode { eigenvalue: motion.value, shape });
+            format!("{}, {}", mode.place, mode.whirl.name())
+        };
+        Some(worth_telling(&motions, name))
+    }
+
+    /// A race on its seat, by `size` coordinates, of which those of each structure begin at `first`.
+    fn seated(&self, joint: &Joint, size: usize, first: &[usize]) -> Seated {
+        let Joint { race, structure, seat, .. } = joint;
+        let carrier = &self.structures.carriers[*structure].structure;
+        Seated {
+            body: Body::Race(*race),
+            map: seat.spread(size, first[*structure]),
+            motion: StructureTrial::new(&self.structures.states[*structure]).seat(carrier, seat),
+            applied: nalgebra::Vector3::zeros(),
+        }
+    }
+}
