@@ -697,6 +697,8 @@ fn a_package_of_a_shaft_tells_what_would_matter_to_each_bearing_and_what_an_erro
     let package = Package::of_system("system-tells", &goal);
     let messages = Messages::default();
     let component = package.instantiate_logging(&messages);
+    // SAFETY: made above.
+    unsafe { assert_eq!(fmi2SetDebugLogging(component, 1, 0, ptr::null()), Status::Ok) };
     initialise(component);
     // SAFETY: made above.
     unsafe { fmi2FreeInstance(component) };

@@ -1,9 +1,9 @@
 //! A system from one communication point to the next.
 
-use super::super::SimulationError;
 use super::super::inputs::Inputs;
 use super::super::play::Scripted;
 use super::super::together::{Stopped, Together};
+use super::super::{Simulation, SimulationError};
 use super::inputs::{Played, ShaftInputs};
 use super::{System, SystemError};
 
@@ -54,7 +54,7 @@ impl System {
 
     /// A copy without buffers, under other inputs.
     fn beside(&self, (shaft, bearings): &(ShaftInputs, Vec<Inputs>)) -> Result<Self, SystemError> {
-        let copies = self.bearings.iter().map(|bearing| bearing.beside()).collect();
+        let copies = self.bearings.iter().map(Simulation::beside).collect();
         let mut system = Self { bearings: copies, structures: self.structures.clone() };
         let fit = system.set_inputs(shaft.clone(), bearings.clone());
         fit.then_some(system).ok_or(SystemError::OtherInputs)
