@@ -278,7 +278,7 @@ impl Effect for Settings {
         let with = on && resists;
         let changed = if with { bare.clone() } else { film };
         let rolling = Twin::new("film", "rolling resistance", with, move |effects| {
-            effects.film.section = Some(changed.clone())
+            effects.film.section = Some(changed.clone());
         });
         let common: Option<Switch> =
             if on { None } else { Some(Box::new(move |effects| effects.film.section = Some(bare.clone()))) };

@@ -321,7 +321,7 @@ impl Settings {
             format!("; friction would warm the bearing by about {} K {cooled}", digits(estimate.heating()));
         let words = if on { "" } else { "10 K between the inner ring and the rest" };
         Twin::new("growth", "growth by temperature", on, move |effects| {
-            effects.growth.section.clone_from(&other)
+            effects.growth.section.clone_from(&other);
         })
         .taken_as(words)
         .remarked(if on { String::new() } else { heating })
