@@ -52,12 +52,12 @@ const MOST_RANGES: usize = 6;
 const IN_A_PERIOD: u32 = 8;
 
 /// What estimates say of all effects in a scene: that of the start, or of the first other time of its scripts at which the effect
-/// matters; ranked, the largest change first.
+/// matters.
 ///
 /// # Errors
 /// See [`EstimateError`].
 pub fn verdicts(scene: &Scene, model: &Model) -> Verdicts {
-    over_time(scene, model, &[]).map(ranked)
+    over_time(scene, model, &[])
 }
 
 /// The same, but for effects that are known to matter.
@@ -74,7 +74,7 @@ fn over_time(scene: &Scene, model: &Model, known: &[Verdict]) -> Verdicts {
             let simulation = Simulation::starting_at(&changed, time).map_err(|why| why.to_string())?;
             Ok(Settled::of(&simulation))
         };
-        judge(&scene.effects, estimate, known, start)
+        judge(&scene.effects, estimate, known, &start)
     };
     let mut verdicts = judged(first_loaded(scene, model), fastest, [known, &[]])?;
     let speeds = |time: f64| [&scene.load.inner_speed, &scene.load.outer_speed].map(|speed| speed.at(time));
@@ -158,7 +158,7 @@ pub fn verdicts_of_shaft(scene: &SystemScene) -> Vec<Verdicts> {
             let system =
                 System::starting_at(scene, time).map_err(|why| EstimateError::Start(why.to_string()))?;
             let (_, bearing) = system.bearings().nth(index).ok_or(EstimateError::Unloaded)?;
-            judge(&bearing.scene().effects, on_shaft(bearing)?, [known, &[]], start)
+            judge(&bearing.scene().effects, on_shaft(bearing)?, [known, &[]], &start)
         };
         let mut verdicts = at(0.0, &[]);
         for time in times_of(scene.schedules(), scene.load.duration.0) {
@@ -171,7 +171,7 @@ pub fn verdicts_of_shaft(scene: &SystemScene) -> Vec<Verdicts> {
                 _ => {}
             }
         }
-        verdicts.map(ranked)
+        verdicts
     };
     (0..scene.bearings.len()).map(of).collect()
 }
@@ -200,7 +200,7 @@ fn judge(
     effects: &Effects,
     mut estimate: Estimate,
     known: [&[Verdict]; 2],
-    start: impl Fn(&[&Switch]) -> Result<Settled, String>,
+    start: &dyn Fn(&[&Switch]) -> Result<Settled, String>,
 ) -> Verdicts {
     let scene = start(&[]).map_err(EstimateError::Start)?;
     estimate.power = scene.power;
@@ -235,12 +235,8 @@ fn judge(
         });
         Verdict::of_twin(&twin, changes, threshold, &tail)
     };
-    let mut verdicts: Vec<Verdict> = effects
-        .twins(&estimate)
-        .into_iter()
-        .filter(|twin| !twin.in_runs_alone && !is_known(twin))
-        .map(of)
-        .collect();
+    let mut verdicts: Vec<Verdict> =
+        effects.twins(&estimate).into_iter().filter(|twin| !is_known(twin)).map(of).collect();
     verdicts.extend(effects.verdicts(&estimate));
     Ok(verdicts)
 }
@@ -253,13 +249,6 @@ fn take_what_matters(verdicts: &mut [Verdict], there: Vec<Verdict>, place: &str)
             *old = Verdict { sentence: format!("{}, {place}", new.sentence), ..new };
         }
     }
-}
-
-/// The largest change first; what is no share of anything last.
-fn ranked(mut verdicts: Vec<Verdict>) -> Vec<Verdict> {
-    let rank = |verdict: &Verdict| if verdict.unit.is_empty() { verdict.value } else { f64::NEG_INFINITY };
-    verdicts.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
-    verdicts
 }
 
 /// \[s] times at which what acts on the bearing has a kink or an extreme value.
@@ -451,14 +440,16 @@ fn spacing(scene: &Scene, model: &Model, input: &EquilibriumInput, solution: &Eq
     let blow = (0.625 * bearing.ball.mass).powf(0.6) * stiffness.powf(0.4);
     let gravity = Vector3::from(scene.effects.gravity.at(0.0)).yz().norm();
     let flies = orbit * solution.cage_speed * solution.cage_speed > gravity;
-    let falls = gravity > 0.0 && !flies && !solution.balls.iter().all(is_held);
+    let unheld = !solution.balls.iter().all(is_held);
+    let falls = gravity > 0.0 && !flies && unheld;
     let starts = [&scene.load.inner_speed, &scene.load.outer_speed].map(|speed| speed.at(0.0));
     let limit = |(ball, speed): (&BallEquilibrium, &f64)| ball.report.inner_load * (speed - mean).abs();
     Spacing {
         lead: (range[1] - range[0]) * orbit,
         gap,
         slipping: input.friction * orbit * solution.balls.iter().zip(&speeds).map(limit).sum::<f64>(),
-        loose: gravity > 0.0 || !solution.balls.iter().all(is_held),
+        unheld,
+        loose: gravity > 0.0 || unheld,
         difference: orbit * (most - least),
         blow,
         falling: if falls { (2.0 * gravity * orbit).sqrt() } else { 0.0 },

@@ -7,7 +7,6 @@ use super::estimate::{Estimate, Standing, Verdict, digits, percent};
 use super::keys::keys;
 use super::per_ball::ball_row;
 use super::reports::{BallOutput, CageOutput, PocketOutput};
-use super::twin::Twin;
 use crate::schema::numbers::{DISSIPATION, Number, POISSON_RATIO, Place, Range, YOUNGS_MODULUS};
 use crate::schema::units::{DissipationFactor, Inertia, Length, Mass, Pressure};
 use crate::schema::variable_units::{
@@ -69,34 +68,13 @@ fn length(settings: &mut Settings, of: fn(&mut CageSection) -> &mut Option<Lengt
     Place::Value(settings.section.as_mut().and_then(|cage| of(cage).as_mut()).map(|length| &mut length.0))
 }
 
-/// [kg/m3] mass of a usual cage over the volume of all balls: 0.6 of that of steel balls.
-const USUAL_MASS: f64 = 0.6 * 7800.0;
-/// [-] diametral clearance of its pockets over the ball diameter.
-const USUAL_CLEARANCE: f64 = 0.02;
+/// [-] diametral clearance of the pockets of a usual cage over the ball diameter.
+pub const USUAL_CLEARANCE: f64 = 0.02;
 
 /// [-] lead of balls over the clearance of their pockets below which they are said to keep their places.
 const STILL: f64 = 1e-3;
 /// [-] gyroscopic moment over what friction can hold below which balls are said to keep their axes.
 const STEADY: f64 = 0.1;
-
-/// A cage that runs have where the scene has none.
-fn usual(estimate: &Estimate) -> CageSection {
-    let Estimate { ball_radius, pitch_radius, balls, .. } = *estimate;
-    let mass = USUAL_MASS * balls as f64 * 4.0 / 3.0 * std::f64::consts::PI * ball_radius.powi(3);
-    let polar = mass * pitch_radius * pitch_radius;
-    CageSection {
-        mass: Mass(mass),
-        inertia: [polar, 0.5 * polar, 0.5 * polar].map(Inertia),
-        pocket_clearance: Length(USUAL_CLEARANCE * 2.0 * ball_radius),
-        guided_by: Guidance::Balls,
-        guidance_clearance: None,
-        land_diameter: None,
-        land_width: None,
-        youngs_modulus: None,
-        poisson_ratio: None,
-        damping: None,
-    }
-}
 
 /// [-] smallest diametral clearance of a pocket over the ball diameter.
 const SMALLEST_POCKET_CLEARANCE: f64 = 0.005;
@@ -114,27 +92,10 @@ impl Effect for Settings {
 
     const ESTIMATE: &'static str = "load of the blows of balls that nothing keeps apart, or the power of balls that a cage holds back; what rattles is not estimated, and taken to matter";
 
-    fn twins(&self, estimate: &Estimate) -> Vec<Twin> {
-        let on = self.on;
-        let section = if on { None } else { Some(usual(estimate)) };
-        let twin = Twin::new("effects.cage", "cage", on, move |effects| {
-            (effects.cage.on, effects.cage.section) = (!on, section);
-        });
-        let words = section.map_or(String::new(), |cage| {
-            let (mass, play) = (cage.mass.0 * 1e3, cage.pocket_clearance.0 * 1e3);
-            format!(
-                "a cage of {} g with {} mm in its pockets, guided by the balls",
-                digits(mass),
-                digits(play)
-            )
-        });
-        vec![Twin { in_runs_alone: true, ..twin }.taken_as(words)]
-    }
-
     fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
         let Estimate { spacing, loads: [largest, _], power, .. } = *estimate;
-        let clearance =
-            self.section.as_ref().map_or(usual(estimate).pocket_clearance.0, |cage| cage.pocket_clearance.0);
+        let usual = USUAL_CLEARANCE * 2.0 * estimate.ball_radius;
+        let clearance = self.section.as_ref().map_or(usual, |cage| cage.pocket_clearance.0);
         let lead = format!(
             "by themselves balls would lead or lag by {} mm in a revolution",
             digits(spacing.lead * 1e3)

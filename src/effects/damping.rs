@@ -8,9 +8,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 
 use super::effect::{Effect, Info};
-use super::estimate::Estimate;
 use super::keys::keys;
-use super::twin::Twin;
 use crate::contact::normal::Damping;
 use crate::schema::numbers::{DISSIPATION, Number, Place, Range};
 use crate::schema::reader::{self, ReadError};
@@ -19,9 +17,6 @@ use crate::schema::units::{DissipationFactor, Time, Velocity};
 const RESTITUTION: Range = Range::closed(0.01, 1.0, "");
 const IMPACT: Range = Range::above(0.0, 100.0, "m/s");
 const RETARDATION: Range = Range::closed(0.0, 1e-3, "s");
-
-/// [s/m] factor that runs have where the scene has none: bouncing of balls ends within about 1 ms.
-const USUAL: f64 = 0.02;
 
 /// How the factor follows from a restitution: exactly, or by a published law.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -207,14 +202,6 @@ impl Effect for Settings {
             },
         ),
     ];
-
-    fn twins(&self, _: &Estimate) -> Vec<Twin> {
-        let on = Effect::setting(self).is_some();
-        let given = Given::Factor(DissipationFactor(if on { 0.0 } else { USUAL }));
-        let twin = Twin::new("effects.damping", "damping", on, move |effects| effects.damping.given = given);
-        let words = if on { String::new() } else { format!("{USUAL} s/m") };
-        vec![Twin { in_runs_alone: true, ..twin }.taken_as(words)]
-    }
 
     fn setting(&self) -> Option<String> {
         match self.given {

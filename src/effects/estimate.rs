@@ -31,7 +31,9 @@ pub struct Spacing {
     pub blow: f64,
     /// [m/s] speed at which a ball that nothing holds would fall on the next one; 0 where all are held, or have no weight.
     pub falling: f64,
-    /// Is there weight, or a ball without load?
+    /// Is there a ball that one race or none holds?
+    pub unheld: bool,
+    /// Is there such a ball, or weight?
     pub loose: bool,
     /// Does the bearing start from rest?
     pub from_rest: bool,

@@ -27,8 +27,6 @@ pub struct Twin {
     pub auto: Option<&'static str>,
     /// More to be said of it.
     pub remark: String,
-    /// Does no settled state tell of it, so that runs alone do?
-    pub in_runs_alone: bool,
     /// Does it matter whatever it changes at a settled state?
     pub always_matters: bool,
 }
@@ -52,7 +50,6 @@ impl Twin {
             write: "",
             auto: None,
             remark: String::new(),
-            in_runs_alone: false,
             always_matters: false,
         }
     }

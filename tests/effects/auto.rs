@@ -111,7 +111,7 @@ fn effects_that_matter_are_switched_on_where_the_data_are_there() {
     assert!(
         notes[0].starts_with("auto: effects.hysteresis = true: would change torque +")
             && notes[1].ends_with(
-                "at hand: rolling resistance, film, growth by temperature, waviness, support, drag"
+                "at hand: waviness, growth by temperature, drag, support, film, rolling resistance"
             ),
         "{notes:?}"
     );

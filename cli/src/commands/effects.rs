@@ -180,8 +180,9 @@ fn write_text(
         "{of}; what changes a quantity by more than {} matters",
         percent(scene.effects.auto.threshold())
     )?;
+    let verdicts = json::ranked(verdicts);
     for (heading, is_in) in GROUPS {
-        let of: Vec<_> = verdicts.iter().filter(|verdict| is_in(verdict)).collect();
+        let of: Vec<_> = verdicts.iter().copied().filter(|verdict| is_in(verdict)).collect();
         if of.is_empty() {
             continue;
         }

@@ -3,6 +3,7 @@
 //! Every scene is run with its own steps and with half of them. What both differ by, and how uncertain means are in the window, is the
 //! error bar.
 
+mod in_runs;
 mod pairs;
 mod report;
 mod run;

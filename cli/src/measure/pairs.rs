@@ -8,6 +8,8 @@ use roulement::scene::Scene;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::system::System;
 
+use super::in_runs;
+
 /// An effect of a bearing, and the two scenes that differ in it.
 #[derive(Clone, Debug)]
 pub struct Pair {
@@ -50,7 +52,8 @@ impl Pairs {
         let mut all = Self { scenes: vec![scene.with(rated)], pairs: vec![] };
         let estimates = estimates(scene).map_err(|why| why.to_string())?;
         for (bearing, ((name, own), estimate)) in scene.bearings().into_iter().zip(&estimates).enumerate() {
-            for twin in own.effects.twins(estimate) {
+            for twin in own.effects.twins(estimate).into_iter().chain(in_runs::twins(&own.effects, estimate))
+            {
                 all.push(bearing, name, &twin);
             }
         }

@@ -169,6 +169,14 @@ pub fn effects(scene: &Scene, verdicts: &[Verdict]) -> Result<Value, serde_json:
     Ok(json!({
         "units": "shares unless unit says more; rad",
         "settings": settings.collect::<Map<_, _>>(),
-        "estimates": serde_json::to_value(verdicts)?,
+        "estimates": serde_json::to_value(ranked(verdicts))?,
     }))
+}
+
+/// The largest change first; what is no share of anything last.
+pub fn ranked(verdicts: &[Verdict]) -> Vec<&Verdict> {
+    let rank = |verdict: &Verdict| if verdict.unit.is_empty() { verdict.value } else { f64::NEG_INFINITY };
+    let mut ranked: Vec<&Verdict> = verdicts.iter().collect();
+    ranked.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
+    ranked
 }
