@@ -19,5 +19,5 @@ export function effects(run) {
   const rows = GROUPS.flatMap(([heading, belongs, tone]) => estimates.filter(belongs).map((v, i) =>
     [i === 0 ? h('span', { class: `mark ${tone}` }, heading) : '', v.subject, value(v), h('span', {}, v.sentence, v.standing === 'off' && v.matters && v.write ? h('span', { class: 'write' }, h('br'), v.write) : null)]));
   return section('effects', 'Effects', simulated ? h('p', {}, simulated) : null, why ? h('p', { class: 'warning' }, why) : null,
-    rows.length ? table(['', 'effect', 'share', 'what it is'], rows, { numbers: [2], caption: 'Estimates of the equilibrium at the start, every race at the largest speed of its script' }) : null);
+    rows.length ? table(['', 'effect', 'share', 'what it is'], rows, { numbers: [2], caption: 'Settled states with and without each effect: the largest change of torque, load, life or displacement' }) : null);
 }
