@@ -10,7 +10,7 @@
 //! below which creepages are held finite and a direction has no meaning, counts as along x.
 //!
 //! For the table of the nonlinear theory a net knows what the mixture lacks ([`ObliqueNet`]). It keeps forces within their limits, and takes
-//! at most [`GIVEN_BACK`] of the mixture's power away, so that the sum dissipates as well.
+//! at most `GIVEN_BACK` of the mixture's power away, so that the sum dissipates as well.
 
 use super::creep::Law;
 use super::linear_theory::{CreepForces, Creepage, LinearTheory};
