@@ -25,12 +25,7 @@ pub struct Scene(pub Arc<MachineScene>);
 impl Scene {
     /// With its effects found out where it asks for that.
     pub fn resolved(&self) -> PyResult<MachineScene> {
-        match &*self.0 {
-            MachineScene::Bearing(scene) => {
-                auto::resolve((**scene).clone()).map(|(scene, _)| scene.into()).map_err(runtime)
-            }
-            shaft @ MachineScene::Shaft(_) => Ok(shaft.clone()),
-        }
+        auto::resolve_machine(MachineScene::clone(&self.0), false).map(|(scene, _)| scene).map_err(runtime)
     }
 }
 

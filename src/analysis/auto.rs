@@ -3,16 +3,26 @@
 use super::estimate::{self, EstimateError, Verdicts};
 use crate::effects::estimate::{Standing, Verdict};
 use crate::model::Model;
-use crate::scene::{Group, Scene};
+use crate::scene::machine::MachineScene;
+use crate::scene::system::{MountedScene, SystemScene};
+use crate::scene::{Group, Scene, Schedule};
 use crate::simulation::scripted_groups;
+
+/// A scene with its effects found out, and what was done, a sentence each.
+pub type FoundOut<S> = Result<(S, Vec<String>), EstimateError>;
 
 /// The scene with its effects found out, as if they had been written so, and what was done, a sentence each; the scene as it is where
 /// it does not ask for that.
 ///
 /// # Errors
 /// If there is no equilibrium to estimate from.
-pub fn resolve(scene: Scene) -> Result<(Scene, Vec<String>), EstimateError> {
-    resolve_by(scene, |scene| estimate::verdicts(scene, &Model::new(scene)?))
+pub fn resolve(mut scene: Scene) -> FoundOut<Scene> {
+    if !scene.effects.auto.on {
+        return Ok((scene, vec![]));
+    }
+    let verdicts = estimate::verdicts(&scene, &Model::new(&scene)?);
+    let notes = settle(&mut scene, verdicts)?;
+    Ok((scene, notes))
 }
 
 /// The same of a scene whose inputs an importer may set: within the ranges that its scripts give. Where it gives none for loads, poses or
@@ -20,34 +30,79 @@ pub fn resolve(scene: Scene) -> Result<(Scene, Vec<String>), EstimateError> {
 ///
 /// # Errors
 /// If there is no equilibrium to estimate from.
-pub fn resolve_for_importer(scene: Scene) -> Result<(Scene, Vec<String>), EstimateError> {
-    resolve_by(scene, |scene| {
-        let mut verdicts = estimate::verdicts_in_ranges(scene)?;
-        let groups = [Group::Loads, Group::Speeds, Group::Tilts];
-        if !groups.into_iter().any(|group| scripted_groups(scene).contains(group)) {
-            for verdict in verdicts.iter_mut().filter(|verdict| verdict.auto.is_some() && !verdict.matters) {
-                verdict.matters = true;
-                verdict.sentence +=
-                    "; an importer may set loads and speeds, of which the scene gives no range";
-            }
-        }
-        Ok(verdicts)
-    })
-}
-
-fn resolve_by(
-    mut scene: Scene,
-    verdicts: impl Fn(&Scene) -> Verdicts,
-) -> Result<(Scene, Vec<String>), EstimateError> {
+pub fn resolve_for_importer(mut scene: Scene) -> FoundOut<Scene> {
     if !scene.effects.auto.on {
         return Ok((scene, vec![]));
     }
-    let verdicts = match verdicts(&scene) {
+    let mut verdicts = estimate::verdicts_in_ranges(&scene);
+    let groups = [Group::Loads, Group::Speeds, Group::Tilts];
+    if !groups.into_iter().any(|group| scripted_groups(&scene).contains(group)) {
+        take_all(&mut verdicts);
+    }
+    let notes = settle(&mut scene, verdicts)?;
+    Ok((scene, notes))
+}
+
+/// The same of the bearings of a shaft that ask for it, by the settled states of the whole shaft; for an importer, who may set loads and
+/// speeds, all that can be switched on where no script gives these.
+///
+/// # Errors
+/// If there is no equilibrium to estimate from.
+pub fn resolve_shaft(mut scene: SystemScene, for_importer: bool) -> FoundOut<SystemScene> {
+    let asks = |mounted: &MountedScene| mounted.scene.effects.auto.on;
+    let mut notes = vec![];
+    if scene.bearings.iter().any(asks) {
+        let mut written = scene.clone();
+        written.bearings.iter_mut().for_each(|mounted| mounted.scene.effects.auto.on = false);
+        let all = estimate::verdicts_of_shaft(&written);
+        let unknown = for_importer && !scene.schedules().any(Schedule::is_scripted);
+        let asking = scene.bearings.iter_mut().zip(all).filter(|(mounted, _)| asks(mounted));
+        for (mounted, mut verdicts) in asking {
+            if unknown {
+                take_all(&mut verdicts);
+            }
+            let own = settle(&mut mounted.scene, verdicts)?;
+            notes.extend(own.into_iter().map(|note| format!("bearing {}: {note}", mounted.name)));
+        }
+        scene.renew_source();
+    }
+    Ok((scene, notes))
+}
+
+/// The same of whatever a scene describes.
+///
+/// # Errors
+/// If there is no equilibrium to estimate from.
+pub fn resolve_machine(scene: MachineScene, for_importer: bool) -> FoundOut<MachineScene> {
+    Ok(match scene {
+        MachineScene::Bearing(scene) => {
+            let (scene, notes) = if for_importer { resolve_for_importer(*scene) } else { resolve(*scene) }?;
+            (scene.into(), notes)
+        }
+        MachineScene::Shaft(scene) => {
+            let (scene, notes) = resolve_shaft(*scene, for_importer)?;
+            (scene.into(), notes)
+        }
+    })
+}
+
+/// All that can be switched on matters: nothing is known of what will act.
+fn take_all(verdicts: &mut Verdicts) {
+    let all = verdicts.iter_mut().flatten();
+    for verdict in all.filter(|verdict| verdict.auto.is_some() && !verdict.matters) {
+        verdict.matters = true;
+        verdict.sentence += "; an importer may set loads and speeds, of which the scene gives no range";
+    }
+}
+
+/// Writes what verdicts say into a scene; what was done, a sentence each.
+fn settle(scene: &mut Scene, verdicts: Verdicts) -> Result<Vec<String>, EstimateError> {
+    let verdicts = match verdicts {
         Ok(verdicts) => verdicts,
         Err(why @ EstimateError::Unloaded) => {
             let notes = vec![format!("auto: nothing is switched: {why}")];
             scene.settle_effects(&[], &notes);
-            return Ok((scene, notes));
+            return Ok(notes);
         }
         Err(why) => return Err(why),
     };
@@ -79,5 +134,5 @@ fn resolve_by(
         notes.push(format!("auto: would matter and cannot be switched on with the data at hand: {lacking}"));
     }
     scene.settle_effects(&switches, &notes);
-    Ok((scene, notes))
+    Ok(notes)
 }

@@ -82,15 +82,9 @@ impl Instance {
     /// # Errors
     /// If it cannot be started.
     pub fn of_machine(scene: MachineScene, log: Log) -> Outcome<Self> {
-        let scene = match scene {
-            MachineScene::Bearing(scene) => {
-                let (scene, found_out) =
-                    auto::resolve(*scene).map_err(|why| (Status::Error, why.to_string()))?;
-                found_out.iter().for_each(|note| log.write(Status::Ok, note));
-                MachineScene::from(scene)
-            }
-            scene @ MachineScene::Shaft(_) => scene,
-        };
+        let found_out = auto::resolve_machine(scene, false);
+        let (scene, notes) = found_out.map_err(|why| (Status::Error, why.to_string()))?;
+        notes.iter().for_each(|note| log.write(Status::Ok, note));
         let source = scene.source().to_string();
         Ok(Self::of_unit(Unit::new(scene)?, &source, log))
     }

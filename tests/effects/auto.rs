@@ -4,6 +4,8 @@ use roulement::Simulation;
 use roulement::analysis::{auto, estimate};
 use roulement::model::Model;
 use roulement::scene::Scene;
+use roulement::scene::system::SystemScene;
+use roulement::simulation::system::System;
 
 use crate::scenes::scene;
 
@@ -184,4 +186,34 @@ fn what_an_importer_may_set_is_judged_at_the_corners_of_its_ranges() {
     assert!(notes.iter().any(|note| note.contains("at a corner of the ranges")), "{notes:?}");
     // What was found out stands in the text of the package.
     assert_eq!(Scene::parse(&corners.source).unwrap().effects.auto.found, notes);
+}
+
+#[test]
+fn bearings_of_a_shaft_have_their_effects_found_out_under_what_the_shaft_carries() {
+    let text = include_str!("../../scenes/shafts/pinion.toml");
+    let asks = "name = \"left\"\nset = { effects.auto = true, effects.damping = \"0.02 s/m\" }";
+    let read = |text: &str| SystemScene::parse(text, None, "".as_ref()).unwrap();
+    let asked = read(&text.replacen("name = \"left\"", asks, 1));
+    assert!(asked.bearings[0].scene.effects.auto.on && !asked.bearings[1].scene.effects.auto.on);
+    let (resolved, notes) = auto::resolve_shaft(asked.clone(), false).unwrap();
+    // What is said of the effect is what is said of it where nothing is to be found out.
+    let plain = read(text);
+    let verdicts = estimate::verdicts_of_shaft(&plain).remove(0).unwrap();
+    let hysteresis = verdicts.iter().find(|verdict| verdict.subject == "hysteresis").unwrap();
+    let told = format!("bearing left: auto: effects.hysteresis = true: {}", hysteresis.sentence);
+    assert!(hysteresis.matters && notes.contains(&told), "{notes:?}");
+    assert!(
+        resolved.bearings[0].scene.effects.hysteresis.on && !resolved.bearings[1].scene.effects.hysteresis.on
+    );
+    // The text has it, and is asked nothing more; a shaft that is started from what was asked does the same.
+    let again = read(&resolved.source);
+    assert!(again.bearings[0].scene.effects.hysteresis.on && !again.bearings[0].scene.effects.auto.on);
+    let started = System::new(&asked).unwrap();
+    let (_, left) = started.bearings().next().unwrap();
+    assert!(left.scene().effects.hysteresis.on && !left.scene().effects.auto.found.is_empty());
+    // Nothing is known of what an importer sets where no script says it.
+    let (unknown, notes) = auto::resolve_shaft(asked, true).unwrap();
+    let all = "an importer may set loads and speeds, of which the scene gives no range";
+    assert!(notes.iter().any(|note| note.ends_with(all)), "{notes:?}");
+    assert!(unknown.bearings[0].scene.effects.groove_slip.on);
 }

@@ -24,9 +24,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use roulement::analysis::auto;
-use roulement::analysis::estimate::EstimateError;
 use roulement::interface::model_description::{render, render_system};
-use roulement::scene::Scene;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::Simulation;
 use roulement::simulation::system::System;
@@ -95,24 +93,16 @@ enum Command {
 
 /// Reads a scene and finds out its effects where it asks for that; what its reader should know goes to standard error.
 fn load(path: &Path) -> Result<MachineScene, Box<dyn Error>> {
-    load_by(path, auto::resolve)
+    load_for(path, false)
 }
 
-/// A scene with its effects found out.
-type FoundOut = Result<(Scene, Vec<String>), EstimateError>;
-
-/// The same, effects being found out in a way that is given.
-fn load_by(path: &Path, resolve: fn(Scene) -> FoundOut) -> Result<MachineScene, Box<dyn Error>> {
+/// The same, for an importer of its package or not.
+fn load_for(path: &Path, importer: bool) -> Result<MachineScene, Box<dyn Error>> {
     let scene = MachineScene::load(path)?;
     tell(scene.notes());
-    match scene {
-        MachineScene::Bearing(scene) => {
-            let (scene, found_out) = resolve(*scene)?;
-            tell(found_out);
-            Ok(scene.into())
-        }
-        scene @ MachineScene::Shaft(_) => Ok(scene),
-    }
+    let (scene, found_out) = auto::resolve_machine(scene, importer)?;
+    tell(found_out);
+    Ok(scene)
 }
 
 /// Notes and warnings.
@@ -144,7 +134,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Fmu { scene, output, library, name, columns } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
             let name = name.unwrap_or_else(|| name_of(&output));
-            match load_by(&scene, auto::resolve_for_importer)? {
+            match load_for(&scene, true)? {
                 MachineScene::Shaft(scene) => {
                     write_system_fmu(&scene, &name, &columns, &libraries, &output)?;
                 }
@@ -163,7 +153,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Cost(options) => return cost::run(options),
         Command::Describe { scene } => {
             let name = name_of(&scene);
-            let description = match load_by(&scene, auto::resolve_for_importer)? {
+            let description = match load_for(&scene, true)? {
                 MachineScene::Shaft(scene) => render_system(&System::new(&scene)?, &name)?,
                 MachineScene::Bearing(scene) => render(&Simulation::new(&scene)?, &name)?,
             };

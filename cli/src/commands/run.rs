@@ -120,6 +120,10 @@ pub fn simulate(
     end_steps: bool,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let machine = Machine::new(scene)?;
+    if machine.shaft().is_some() && place.said != Said::Nothing {
+        // It may take seconds.
+        tell(["effects: the whole shaft in balance with and without each".to_string()]);
+    }
     let verdicts = estimate::verdicts_of(&machine);
     if place.said != Said::Nothing {
         for ((name, bearing), verdicts) in machine.bearings().zip(&verdicts) {

@@ -221,6 +221,14 @@ impl SystemScene {
         }))
     }
 
+    /// Writes the scenes of its bearings into the text, after they were changed.
+    pub(crate) fn renew_source(&mut self) {
+        if let Ok(mut table) = toml::from_str::<Table>(&self.source) {
+            write_bearings(&mut table, &self.bearings, self.gravity != Vector3::zeros());
+            self.source = table.to_string();
+        }
+    }
+
     /// Schedules of what acts on the shaft, its housings and bearings.
     pub fn schedules(&self) -> impl Iterator<Item = &Schedule> {
         let loads = self.loads().flat_map(|load| load.force.0.iter().chain(&load.moment.0));
@@ -281,12 +289,18 @@ fn standing_alone(
             keys.insert("matrices".into(), matrices);
         }
     };
-    let solver = table.contains_key("solver");
     put(table.get_mut("shaft"), of_shaft);
     let housings = table.get_mut("housing").and_then(Value::as_array_mut).into_iter().flatten();
     for (keys, matrices) in housings.zip(of_housings) {
         put(Some(keys), matrices.as_ref());
     }
+    write_bearings(&mut table, bearings, weighs);
+    table.to_string()
+}
+
+/// Puts the scenes of its bearings into the text of a system; `weighs` where the system has gravity.
+fn write_bearings(table: &mut Table, bearings: &[MountedScene], weighs: bool) {
+    let solver = table.contains_key("solver");
     let written = table.get_mut("bearing").and_then(Value::as_array_mut).into_iter().flatten();
     for (keys, bearing) in written.filter_map(Value::as_table_mut).zip(bearings) {
         keys.remove("catalogue");
@@ -301,5 +315,4 @@ fn standing_alone(
         }
         keys.insert("scene".into(), scene.into());
     }
-    table.to_string()
 }

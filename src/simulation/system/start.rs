@@ -10,6 +10,7 @@ use super::super::{Simulation, SimulationError};
 use super::inputs::{Given, Played, ShaftInputs, ShaftPaths, scripted_spin};
 use super::statics::Statics;
 use super::{Structures, System, SystemError, SystemOutputs, loads, places_of_housing, stations};
+use crate::analysis::auto;
 use crate::dynamics::system::{Joint, Seat, StructureLoad, StructureTrial};
 use crate::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::Model;
@@ -35,6 +36,11 @@ impl System {
     /// # Errors
     /// See [`SystemError`].
     pub fn starting_at(scene: &SystemScene, time: f64) -> Result<Self, SystemError> {
+        if scene.bearings.iter().any(|mounted| mounted.scene.effects.auto.on) {
+            let resolved = auto::resolve_shaft(scene.clone(), false);
+            let (scene, _) = resolved.map_err(|why| SystemError::Together(SimulationError::Auto(why)))?;
+            return Self::start(&scene, time, None, None);
+        }
         Self::start(scene, time, None, None)
     }
 
