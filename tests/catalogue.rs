@@ -87,6 +87,31 @@ fn published_number_bearings_that_are_known_are_the_first_candidates() {
 }
 
 #[test]
+fn independent_data_balls_that_other_makers_take_do_not_fit_the_ratings_of_the_table() {
+    // Both were counted in bearings of other makers; the maker's factor f_0, which the estimate does not use, tells that its own differ.
+    for (name, balls, ball, other) in [
+        ("6305", 7, 11.5e-3, "dynamic_load_rating = 22.5e3\nstatic_load_rating = 11.6e3"),
+        ("6209", 9, 12.7e-3, "dynamic_load_rating = 32.5e3\nstatic_load_rating = 20.5e3"),
+    ] {
+        let of = bearing(name);
+        let first = of.candidates().unwrap()[0];
+        let counted = Geometry { balls, ball_diameter: ball, ..first.geometry };
+        let factor = maker(name).0.unwrap();
+        let [near, far] =
+            [&first.geometry, &counted].map(|geometry| (static_factor(geometry) - factor).abs());
+        println!("{name}: {near} {far} {}", counted.dynamic_load_rating() / of.dynamic_load_rating);
+        assert!(first.error() < 0.01 && near < 0.15 && far > 0.3, "{name}: {near} {far}");
+        assert!(counted.dynamic_load_rating() > 1.03 * of.dynamic_load_rating, "{name}");
+        // Ratings of their own give them.
+        let given = Request::parse(&format!("designation = \"{name}\"\n{other}")).unwrap().bearing().unwrap();
+        let found = given.candidates().unwrap()[0].geometry;
+        assert_eq!(found.balls, balls, "{name}");
+        // 29/64 inch is 11.509 mm.
+        assert!((found.ball_diameter - ball).abs() < 0.01e-3, "{name}: {}", found.ball_diameter);
+    }
+}
+
+#[test]
 fn published_number_ratings_factors_and_masses_of_the_whole_table() {
     let (mut ratings, mut factors, mut masses) = (0.0f64, 0.0f64, [f64::INFINITY, 0.0f64]);
     let (mut sizes, mut fills, mut angular) = ([1.0f64, 0.0f64], [360.0f64, 0.0f64], 0.0f64);

@@ -4,6 +4,7 @@
 pub mod cost;
 pub mod error;
 pub mod exact;
+pub mod film;
 pub mod measure;
 pub mod modes;
 pub mod package;

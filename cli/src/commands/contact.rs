@@ -1,4 +1,4 @@
-//! `roulement contact`: single rolling contacts of a table.
+//! `roulement contact`: single rolling contacts of a table; with `--film` those of a scene ([`super::film`]).
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -16,17 +16,18 @@ use roulement_cli::exact::answer;
 use roulement_cli::exact::cache::Cache;
 
 use super::run::{INTERRUPTED, heeded_interrupt};
-use super::tell;
+use super::{film, tell};
 
 /// Options of `roulement contact`.
 #[derive(Args)]
 pub struct Options {
     /// Table of cases: id, poisson_ratio, shear_modulus \[Pa], friction, peak_pressure \[Pa], semi_axis_x \[m],
     /// semi_axis_y \[m], rolling_angle \[rad], creep_x, creep_y, spin [1/m]; other columns are ignored.
-    cases: PathBuf,
+    #[arg(required_unless_present = "film")]
+    cases: Option<PathBuf>,
     /// Creep law.
-    #[arg(long, value_enum)]
-    law: LawChoice,
+    #[arg(long, value_enum, required_unless_present = "film")]
+    law: Option<LawChoice>,
     /// Degree of the traction polynomials of `kalker`, 1 to 7.
     #[arg(long, default_value_t = 5)]
     degree: usize,
@@ -40,6 +41,8 @@ pub struct Options {
     /// With `--exact`: neither read nor write the cache.
     #[arg(long, requires = "exact")]
     no_cache: bool,
+    #[command(flatten)]
+    film: film::Options,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -62,8 +65,8 @@ enum LawChoice {
 }
 
 impl Options {
-    fn law(&self) -> Law {
-        match self.law {
+    fn law(&self, choice: LawChoice) -> Law {
+        match choice {
             LawChoice::Frictionless => Law::Simulated(CreepLaw::Frictionless),
             LawChoice::Linear => Law::Simulated(CreepLaw::Linear),
             LawChoice::Regularised => Law::Simulated(CreepLaw::Regularised),
@@ -80,17 +83,19 @@ impl Options {
 /// # Errors
 /// If a case cannot be read or evaluated.
 pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
-    if options.exact && options.law != LawChoice::KalkerTable {
-        let name =
-            options.law.to_possible_value().map_or(String::new(), |value| value.get_name().to_string());
+    let (Some(cases), Some(choice)) = (&options.cases, options.law) else {
+        return film::run(&options.film);
+    };
+    if options.exact && choice != LawChoice::KalkerTable {
+        let name = choice.to_possible_value().map_or(String::new(), |value| value.get_name().to_string());
         return Err(format!(
             "--exact is an option of --law kalker_table, not of {name}: it puts the nonlinear theory itself in the place of its \
              table"
         )
         .into());
     }
-    let cannot_read = |why: csv::Error| format!("{}: {why}", options.cases.display());
-    let text = regular::text(&options.cases).map_err(|why| cannot_read(why.into()))?;
+    let cannot_read = |why: csv::Error| format!("{}: {why}", cases.display());
+    let text = regular::text(cases).map_err(|why| cannot_read(why.into()))?;
     let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let cases = table.deserialize::<RollingContact>().map(|case| case.map_err(cannot_read));
     let mut answers = csv::Writer::from_writer(std::io::stdout().lock());
@@ -107,7 +112,7 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
         answers.flush()?;
         return Ok(ended());
     }
-    let law = options.law();
+    let law = options.law(choice);
     let mut rough: Option<([f64; 2], u32)> = None;
     for case in cases {
         if interrupted.load(Ordering::Relaxed) {

@@ -130,7 +130,7 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
 }
 
 /// The index of the bearing that is meant.
-fn bearing(scene: &MachineScene, name: Option<&str>) -> Result<usize, String> {
+pub(super) fn bearing(scene: &MachineScene, name: Option<&str>) -> Result<usize, String> {
     let bearings = scene.bearings();
     let names = bearings.iter().map(|(name, _)| *name).collect::<Vec<_>>();
     match name {

@@ -6,10 +6,12 @@ mod cost;
 mod effects;
 mod equilibrium;
 mod field;
+mod film;
 mod identify;
 mod modes;
 mod place;
 mod player;
+mod rating;
 mod report;
 mod run;
 mod scene;
@@ -46,6 +48,8 @@ enum Command {
     Equilibrium(equilibrium::Options),
     /// Find the small motions of rings, shafts and cage about the running state, which grow or decay, over the speed.
     Modes(modes::Options),
+    /// Find the life of bearings under given loads, each with its speed and share of the time; prints CSV.
+    Rating(rating::Options),
     /// Simulate many cases of a scene on all cores: a table of keys and values, or ranges; resumable.
     Sweep(sweep::Options),
     /// Print what may stand in a scene file: every key, or a JSON schema for editors.
@@ -78,7 +82,7 @@ enum Command {
     System(system::Options),
     /// Write where chosen contacts of a run stick and slip at chosen times; CSV.
     Field(field::Options),
-    /// Evaluate single rolling contacts of a CSV table; prints CSV.
+    /// Evaluate single rolling contacts of a CSV table, and print CSV; or the oil film of a scene's contact over slip and speed.
     Contact(contact::Options),
     /// Identify the spin coupling of the regularised creep law against Kalker's nonlinear theory.
     Identify(identify::Options),
@@ -131,6 +135,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Sweep(options) => return sweep::run(options),
         Command::Equilibrium(options) => equilibrium::run(&options)?,
         Command::Modes(options) => modes::run(&options)?,
+        Command::Rating(options) => rating::run(&options)?,
         Command::Fmu { scene, output, library, name, columns } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
             let name = name.unwrap_or_else(|| name_of(&output));

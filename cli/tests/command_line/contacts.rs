@@ -210,3 +210,141 @@ fn interrupted_contacts_are_printed_as_far_as_they_came() {
     assert!(text.ends_with('\n') && text.lines().count() > 1, "{text}");
     assert!(text.lines().all(|line| line.split(',').count() == 6), "{text}");
 }
+
+/// The 6206 of the data in tests/data/effects/ehl_film.csv and ehl_traction.csv: its oil, isothermal.
+const OILED: &str = r#"
+[bearing]
+balls = 9
+ball_diameter = "9.525 mm"
+pitch_diameter = "46 mm"
+diametral_clearance = "10 um"
+[film]
+viscosity = "58.5 mPa s"
+inlet_heating = false
+supply = "flooded"
+[effects]
+hysteresis = true
+heathcote_slip = false
+ambient = { density = 50, viscosity = 5e-4 }
+[load]
+inner_speed = "3000 rpm"
+y = { force = 500 }
+duration = "1 ms"
+output_interval = "1 ms"
+"#;
+
+/// Rows of a table by the names of their columns.
+fn named(text: &str) -> Vec<std::collections::HashMap<String, f64>> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let of = |row: csv::StringRecord| {
+        let cells = header.iter().zip(&row).filter_map(|(name, cell)| {
+            let name = name.split(' ').next().unwrap_or(name);
+            Some((name.to_string(), cell.parse().ok()?))
+        });
+        cells.collect()
+    };
+    reader.records().map(|row| of(row.unwrap())).collect()
+}
+
+#[test]
+fn independent_data_films_of_a_scene_over_load_speed_and_slip() {
+    let scratch = Scratch::new("film-contact");
+    std::fs::write(scratch.path("oiled.toml"), OILED).unwrap();
+    let films = include_str!("../../../tests/data/effects/ehl_film.csv");
+    let rolling = include_str!("../../../tests/data/effects/rolling_resistance.csv");
+    let mut seen = 0;
+    for race in ["inner", "outer"] {
+        let of_race = |text: &str| {
+            let kept: Vec<&str> = text
+                .lines()
+                .enumerate()
+                .filter(|(k, line)| *k == 0 || line.starts_with(race))
+                .map(|l| l.1)
+                .collect();
+            named(&kept.join("\n"))
+        };
+        for row in of_race(films) {
+            let (load, speed) = (row["load_N"], row["speed_m_s"]);
+            let (loads, speeds) = (format!("{load} N"), format!("{speed} m/s"));
+            let film = scratch.path("oiled.toml");
+            let folder = scratch.path("film");
+            let output = roulement(&[
+                "contact",
+                "--film",
+                &film,
+                "--race",
+                race,
+                "--loads",
+                &loads,
+                "--speeds",
+                &speeds,
+                "--slips",
+                "1e-4,0.01,0.3",
+                "-o",
+                &folder,
+            ]);
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            let ours = named(&std::fs::read_to_string(scratch.path("film/film.csv")).unwrap());
+            assert_eq!(ours.len(), 3);
+            // Both have their own Hertz: the ellipse's axis ratio has five digits in common, and the film's power of the load is small.
+            for ours in &ours {
+                for (name, theirs) in [("film_central", "central_film_m"), ("film_minimum", "minimum_film_m")]
+                {
+                    let Some(theirs) = row.get(theirs) else { panic!("{:?}", row.keys()) };
+                    assert!(
+                        (ours[name] / theirs - 1.0).abs() < 1e-3,
+                        "{race} {load} {speed}: {} {theirs}",
+                        ours[name]
+                    );
+                }
+                // Film and steel in series carry less than the film may, and more where they slip more.
+                assert!(ours["traction"] < ours["friction_limit"] && ours["drag"] > 0.0, "{ours:?}");
+                assert!(ours["hysteresis_power"] > 0.0);
+            }
+            assert!(ours[0]["traction"] < ours[1]["traction"]);
+            // Sliding whole, the force is the limit.
+            assert!(ours[2]["traction"] / ours[2]["friction_limit"] > 0.9, "{ours:?}");
+            let power = ours[2]["traction"] * load * 0.3 * speed;
+            assert!((ours[2]["slip_power"] / power - 1.0).abs() < 1e-9, "{ours:?}");
+            let same = |other: &&std::collections::HashMap<String, f64>| {
+                other["load_N"] == load && other["speed_m_s"] == speed
+            };
+            for theirs in of_race(rolling).iter().filter(same) {
+                let ratio = ours[0]["rolling_force"] / theirs["rolling_force_N"];
+                assert!((ratio - 1.0).abs() < 1e-3, "{race} {load} {speed}: {ratio}");
+            }
+            assert!(std::fs::read_to_string(scratch.path("film/film.svg")).unwrap().contains("<svg"));
+            seen += 1;
+        }
+    }
+    assert!(seen >= 6, "{seen}");
+    std::fs::write(
+        scratch.path("dry.toml"),
+        OILED
+            .replace("[film]\nviscosity = \"58.5 mPa s\"\ninlet_heating = false\nsupply = \"flooded\"\n", ""),
+    )
+    .unwrap();
+    for (scene, loads, slips, part) in [
+        ("dry.toml", "100 N", "0.1", "section [film]"),
+        ("oiled.toml", "0 N", "0.1", "a number above 0"),
+        ("oiled.toml", "100 kg", "0.1", "kg"),
+        ("oiled.toml", "100 N", "3", "(0, 2]"),
+    ] {
+        let output = roulement(&[
+            "contact",
+            "--film",
+            &scratch.path(scene),
+            "--loads",
+            loads,
+            "--speeds",
+            "5",
+            "--slips",
+            slips,
+            "-o",
+            &scratch.path("x"),
+        ]);
+        let message = String::from_utf8_lossy(&output.stderr).to_string();
+        assert!(!output.status.success() && message.contains(part), "{message}\nshould have {part}");
+    }
+}

@@ -13,6 +13,7 @@ mod means;
 mod modes;
 mod packages;
 mod phases;
+mod rating;
 mod refusals;
 mod report;
 mod runs;
