@@ -28,9 +28,15 @@ type Get = fn(&FilmPoint) -> f64;
 pub fn write(path: &Path, title: &str, over_slip: &[Curve], over_speed: &[Curve]) -> Result<(), PlotError> {
     picture(path, (2 * PANEL.0, 2 * PANEL.1), title, |body| {
         let areas = body.split_evenly((2, 2));
-        let slip: Get = |point| point.rolling.slide_to_roll;
+        let slip: Get = |point| point.rolling.slide_to_roll.log10();
         let speed: Get = |point| point.rolling.speed;
-        panel(&areas[0], "traction over load [1]", over_slip, ("slide-to-roll ratio", slip), |p| p.traction)?;
+        panel(
+            &areas[0],
+            "traction over load [1]",
+            over_slip,
+            ("slide-to-roll ratio, power of ten", slip),
+            |p| p.traction,
+        )?;
         let over = |area, heading, get| panel(area, heading, over_speed, ("rolling speed [m/s]", speed), get);
         over(&areas[1], "film ratio [1]", |p| p.ratio)?;
         over(&areas[2], "rolling force [N]", |p| p.rolling_force)?;
@@ -57,14 +63,19 @@ fn panel(area: &Area<'_>, heading: &str, curves: &[Curve], (label, x): (&str, Ge
         .margin(MARGIN)
         .x_label_area_size(40 * FINE)
         .y_label_area_size(64 * FINE)
-        .build_cartesian_2d((low..high).log_scale(), 1.05 * least..1.05 * most)?;
+        .build_cartesian_2d(low..high, 1.05 * least..1.05 * most)?;
     axes(&mut chart.configure_mesh(), label, "")
-        .x_label_formatter(&|x| format!("{x}"))
-        .y_label_formatter(&|y| format!("{y}"))
+        .x_label_formatter(&rounded)
+        .y_label_formatter(&rounded)
         .draw()?;
     for (curve, colour) in coloured() {
         let points = curve.points.iter().map(|point| (x(point), y(point)));
         chart.draw_series(LineSeries::new(points, colour.stroke_width(LINE)))?;
     }
     Ok(())
+}
+
+/// A number at an axis, without the digits that binary numbers add.
+fn rounded(value: &f64) -> String {
+    ((value * 1e6).round() / 1e6 + 0.0).to_string()
 }

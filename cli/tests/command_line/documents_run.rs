@@ -89,7 +89,7 @@ fn workplace(name: &str) -> Scratch {
     }
     let shaft = fs::read_to_string(root().join("scenes/shafts/pinion.toml")).unwrap();
     write("scenes/shafts/pinion.toml", &shaft);
-    for scene in ["whirl/one", "whirl/two"] {
+    for scene in ["whirl/one", "whirl/two", "effects/loss_of_lubrication"] {
         write(&format!("scenes/{scene}.toml"), &fs::read_to_string(common::scene(scene)).unwrap());
     }
     let coupled = fs::read_to_string(root().join("examples/coupling/bearing.toml")).unwrap();
@@ -100,6 +100,7 @@ fn workplace(name: &str) -> Scratch {
         "name = \"one\"\nstep = 1e-5\nstop = 1\n[components.bearing]\nscene = \"thrust.toml\"\n",
     );
     write("cases.csv", "friction.ball_race,load.duration\n0.05,0.001\n0.1,0.001\n");
+    write("loads.csv", "share,load.inner_speed [rpm],load.y.force [N]\n0.6,3000,1000\n0.4,6000,2000\n");
     let packaging = fs::read_to_string(root().join("docs/packaging.md")).unwrap();
     let system = blocks(&packaging, "toml").into_iter().find(|block| block.contains("[shaft]")).unwrap();
     write("gear.toml", system);
