@@ -45,6 +45,8 @@ pub struct Form {
     spline: PeriodicSpline<2>,
     /// [-] order of the shortest wave.
     pub order: f64,
+    /// \[rad] turn of the form on the race, from its y axis towards z.
+    turn: f64,
 }
 
 impl Form {
@@ -63,17 +65,23 @@ impl Form {
                 sums
             })
             .collect();
-        Some(Self { spline: PeriodicSpline::through(&values)?, order: order as f64 })
+        Some(Self { spline: PeriodicSpline::through(&values)?, order: order as f64, turn: 0.0 })
     }
 
     /// The form through points at equal distances around the race, the first on its y axis: `[radial, axial]` \[m].
     pub fn of_profile(points: &[[f64; 2]]) -> Option<Self> {
-        Some(Self { spline: PeriodicSpline::through(points)?, order: shortest(points) })
+        Some(Self { spline: PeriodicSpline::through(points)?, order: shortest(points), turn: 0.0 })
+    }
+
+    /// The same, turned on its race by an angle \[rad] from the race's y axis towards z.
+    #[must_use]
+    pub fn turned(self, angle: f64) -> Self {
+        Self { turn: self.turn + angle, ..self }
     }
 
     /// The groove circle at an azimuth \[rad].
     pub fn at(&self, azimuth: f64) -> [f64; 2] {
-        self.spline.at(azimuth).map(|[value, ..]| value)
+        self.spline.at(azimuth - self.turn).map(|[value, ..]| value)
     }
 
     /// The groove circle where a ball is, `offset` \[m] from the race's origin.
@@ -81,7 +89,7 @@ impl Form {
     pub(super) fn under<S: Scalar>(&self, offset: &Vector3<S>, race: &RaceMotion<S>) -> Shift<S> {
         let azimuth = azimuth(offset, race);
         let [radial, radial_slope, axial, axial_slope] = S::map_smooth_many([azimuth], |[azimuth]| {
-            let [w, v] = self.spline.at(azimuth);
+            let [w, v] = self.spline.at(azimuth - self.turn);
             ([w[0], w[1], v[0], v[1]], [w[1], w[2], v[1], v[2]].map(|slope| [slope]))
         });
         Shift { radial, radial_slope, axial, axial_slope }

@@ -137,11 +137,14 @@ impl Model {
         let sizes = |race: Race| larger.iter().map(|larger| size(race, *larger)).collect();
         let sizes = (!larger.is_empty()).then(|| PerRace::new(sizes));
         let whole = PerRace::new(|race| bearing.whole_contact(race, &raceways[race].shape));
+        // What a race carries along its circumference is placed against balls and load by the turn that it starts with.
+        let turn = |race: Race| race.section(scene).turn.map_or(0.0, |turn| turn.0);
         let spalls = PerRace::new(|race| {
-            let on = match race {
+            let mut on = match race {
                 Race::Inner => scene.effects.defects.on(On::Inner, bearing.free_contact_angle),
                 Race::Outer => scene.effects.defects.on(On::Outer, bearing.free_contact_angle),
             };
+            on.iter_mut().for_each(|spall| spall.azimuth += turn(race));
             Spalls::new(on, whole[race])
         });
         let hysteresis = PerRace::new(|race| {
@@ -180,7 +183,10 @@ impl Model {
             epsilon_switch: scene.effects.creep.epsilon_switch,
             hysteresis,
             damping: contact_damping(scene),
-            form: PerRace::new(|race| scene.effects.form.of(race == Race::Inner).and_then(Shape::form)),
+            form: PerRace::new(|race| {
+                let form = scene.effects.form.of(race == Race::Inner).and_then(Shape::form);
+                form.map(|form| form.turned(turn(race)))
+            }),
             spalls,
             damaged,
             sizes,

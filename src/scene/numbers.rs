@@ -59,7 +59,7 @@ static BEARING: [Number<Scene>; 17] = [
 
 /// Cage friction, races, start, time integration and load: those after the effects.
 #[rustfmt::skip]
-static MOTION: [Number<Scene>; 57] = [
+static MOTION: [Number<Scene>; 59] = [
     Number::fixed("friction.ball_cage", FRICTION, "friction coefficient of the balls in their pockets", |s| Place::Value(s.friction.ball_cage.as_mut())),
     Number::fixed("friction.cage_race", FRICTION, "friction coefficient of the cage on the lands", |s| Place::Value(s.friction.cage_race.as_mut())),
     Number::fixed("friction.ball_ball", FRICTION, "friction coefficient of neighbouring balls", |s| Place::Value(s.friction.ball_ball.as_mut())),
@@ -73,6 +73,8 @@ static MOTION: [Number<Scene>; 57] = [
         |s| Place::Value(s.inner.inertia.as_mut().map(|moments| &mut moments[2].0))),
     Number::checked("inner.misalignment.ry", TILT, |s| Place::Schedule(&mut s.inner.misalignment.ry)),
     Number::checked("inner.misalignment.rz", TILT, |s| Place::Schedule(&mut s.inner.misalignment.rz)),
+    Number::fixed("inner.turn", Range::closed(-7.0, 7.0, "rad"), "turn of the inner race about its own axis at the start",
+        |s| Place::Value(s.inner.turn.as_mut().map(|turn| &mut turn.0))),
     Number::fixed("inner.shoulder_height.minus_x", LENGTH, "height over the groove's bottom of the shoulder at the -x side of the inner race",
         |s| Place::Value(s.inner.shoulder_height.as_mut().map(|heights| &mut heights[0].0))),
     Number::fixed("inner.shoulder_height.plus_x", LENGTH, "height over the groove's bottom of the shoulder at the +x side of the inner race",
@@ -93,6 +95,8 @@ static MOTION: [Number<Scene>; 57] = [
         |s| Place::Schedule(&mut s.outer.misalignment.ry)),
     Number::fixed_if("outer.misalignment.rz", TILT, "misalignment of the outer race about z", outer_has_frame,
         |s| Place::Schedule(&mut s.outer.misalignment.rz)),
+    Number::fixed("outer.turn", Range::closed(-7.0, 7.0, "rad"), "turn of the outer race about its own axis at the start",
+        |s| Place::Value(s.outer.turn.as_mut().map(|turn| &mut turn.0))),
     Number::fixed("outer.shoulder_height.minus_x", LENGTH, "height over the groove's bottom of the shoulder at the -x side of the outer race",
         |s| Place::Value(s.outer.shoulder_height.as_mut().map(|heights| &mut heights[0].0))),
     Number::fixed("outer.shoulder_height.plus_x", LENGTH, "height over the groove's bottom of the shoulder at the +x side of the outer race",

@@ -2,6 +2,7 @@
 
 use super::numbers::STEP;
 use super::{BearingSection, Condition, Drive, Giver, Group, Scene, SceneError, Schedule};
+use crate::effects::defects::On;
 use crate::model::bodies::Race;
 use crate::schema::check_phases;
 use crate::schema::numbers::Range;
@@ -87,6 +88,16 @@ fn races(scene: &Scene) -> Result<(), SceneError> {
             for (side, height) in ["minus_x", "plus_x"].into_iter().zip(heights) {
                 range.check(&format!("{key}.{side}"), height.0)?;
             }
+        }
+        let on = if section == "inner" { On::Inner } else { On::Outer };
+        let carries =
+            scene.effects.form.of(on == On::Inner).is_some() || !scene.effects.defects.on(on, 0.0).is_empty();
+        if race.turn.is_some() && !carries {
+            let why = format!(
+                "it places waves and spalls of the race, and there are none: it needs form.{section} or a [[defect]] with \
+                 on = \"{section}\""
+            );
+            return Err(SceneError::conflict(format!("{section}.turn"), why));
         }
         let is_body = matches!(race.drive, Drive::Wrench | Drive::Hinge);
         if is_body && (race.mass.is_none() || race.inertia.is_none()) {

@@ -157,6 +157,8 @@ pub struct RaceSection {
     pub inertia: Option<[Inertia; 3]>,
     /// Misalignment of the frame of a fixed or hinged race; a race under a wrench has no frame.
     pub misalignment: Misalignment,
+    /// \[rad] turn of the race about its own axis at the start, which places its waves and spalls against balls and load.
+    pub turn: Option<Angle>,
     /// \[m] heights of the shoulders over the groove's bottom at the race's -x and +x side; not with `shoulder_angle`.
     pub shoulder_height: Option<[Length; 2]>,
     /// \[rad] contact angles at which the groove ends at the race's -x and +x side; not with `shoulder_height`.

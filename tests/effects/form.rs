@@ -344,3 +344,81 @@ fn a_measured_profile_is_its_waves_and_its_file_goes_into_the_scene() {
         assert!(message.contains("form.outer.profile") && message.contains(why), "{message}");
     }
 }
+
+#[test]
+fn closed_form_a_turned_race_has_its_waves_and_spalls_turned() {
+    let [waves, spall] = ["waviness", "spall"].map(|name| {
+        std::fs::read_to_string(format!("{}/scenes/effects/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
+    });
+    let forces = |text: &str, changes: &[(&str, &str)]| {
+        let scene = Scene::edited(text, changes.iter().copied()).unwrap();
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let mut seen = vec![simulation.outputs().inner.wrench];
+        // Bodies move, and turn, for the first rows.
+        for row in 1..=4 {
+            simulation.advance_scripted(50e-6 * f64::from(row)).unwrap();
+            seen.push(simulation.outputs().inner.wrench);
+        }
+        seen
+    };
+    // cos(n (th - t) - p): every wave has its phase later by n t.
+    let turned = forces(&waves, &[("inner.turn", "0.3"), ("outer.turn", "-0.2")]);
+    let inner = "[{ order = 12, amplitude = \"0.1 um\", phase = 3.6 }, { order = 26, amplitude = \"0.05 um\", direction = \"axial\", phase = 1.5168146928204138 }]";
+    let outer = "[{ order = 2, amplitude = \"2 um\", phase = -0.4 }, { order = 13, amplitude = \"0.1 um\", phase = -2.6 }, \
+                 { order = 14, amplitude = \"0.1 um\", phase = -1.2292036732051034 }]";
+    let phased = forces(&waves, &[("form.inner", inner), ("form.outer", outer)]);
+    let plain = forces(&waves, &[]);
+    for ((turned, phased), plain) in turned.iter().zip(&phased).zip(&plain) {
+        // Splines between 64 points to a wave are right within 3e-7 of it, of forces of up to 20 N.
+        assert!((turned.force - phased.force).norm() < 1e-4, "{turned:?} {phased:?}");
+        assert!((turned.moment - phased.moment).norm() < 1e-5, "{turned:?} {phased:?}");
+        assert!((turned.force - plain.force).norm() > 0.1 || (turned.moment - plain.moment).norm() > 1e-2);
+    }
+    // A spall is where its azimuth and the turn together put it: the same bits.
+    let placed = forces(
+        &spall,
+        &[("defect", "[{ on = \"outer\", azimuth = 0.5, length = 1e-3, width = 3e-3, depth = 1e-4 }]")],
+    );
+    let changes = [
+        ("defect", "[{ on = \"outer\", azimuth = 0.25, length = 1e-3, width = 3e-3, depth = 1e-4 }]"),
+        ("outer.turn", "0.25"),
+    ];
+    assert_eq!(forces(&spall, &changes), placed);
+    // It is a parameter of packages.
+    let scene = Scene::edited(&spall, changes).unwrap();
+    let rows = roulement::interface::variables::Variables::new(&scene);
+    assert!(rows.rows().iter().any(|row| row.name == "outer.turn"));
+    // Nothing is turned in silence that is not there, nor too far.
+    for (key, value, parts) in [
+        ("inner.turn", "0.1", ["inner.turn", "[[defect]]"]),
+        ("outer.turn", "8", ["outer.turn = 8", "[-7, 7] rad"]),
+        ("outer.turn", "\"1 mm\"", ["outer.turn", "mm"]),
+    ] {
+        let message = Scene::edited(&spall, [(key, value)]).unwrap_err().to_string();
+        for part in parts {
+            assert!(message.contains(part), "{message}\nshould have {part}");
+        }
+    }
+}
+
+#[test]
+fn closed_form_a_bearing_of_a_shaft_has_its_spall_turned() {
+    let pinion = include_str!("../../scenes/shafts/pinion.toml");
+    let forces = |keys: &str| {
+        let text =
+            pinion.replacen("catalogue = \"7206 B\"\n", &format!("catalogue = \"7206 B\"\n{keys}\n"), 1);
+        let system = roulement::simulation::system::System::new(
+            &roulement::scene::system::SystemScene::parse(&text, None, std::path::Path::new("")).unwrap(),
+        )
+        .unwrap();
+        system.bearings().map(|(_, bearing)| bearing.outputs().inner.wrench).collect::<Vec<_>>()
+    };
+    let spall = |azimuth: f64, turn: &str| {
+        format!(
+            "set = {{ defect = [{{ on = \"inner\", azimuth = {azimuth}, length = 1e-3, width = 3e-3, depth = 1e-4 }}]{turn} }}"
+        )
+    };
+    let placed = forces(&spall(0.5, ""));
+    assert_eq!(forces(&spall(0.25, ", inner = { turn = 0.25 }")), placed);
+    assert!((forces(&spall(0.25, ""))[0].force - placed[0].force).norm() > 0.1);
+}
