@@ -118,6 +118,30 @@ fn published(&(bearing, radial, axial, speed, viscosity): &Point) -> [f64; 2] {
     [heating * (-starving).exp() * rolling * (viscosity * speed).powf(0.6), friction * sliding]
 }
 
+/// [N mm] moment of Palmgren's model (1959) in an oil bath: that of the speed, and that of the load. Factors as recalled from catalogues of
+/// his time; f_1 of deep groove bearings is the upper one of the range that they give, 0.0006 to 0.0009.
+fn palmgren(&(bearing, radial, axial, speed, viscosity): &Point) -> f64 {
+    let Bearing { angular, mean_diameter: mean, static_rating, .. } = bearing;
+    let (of_speed, of_load, power) = if angular { (3.3, 1e-3, 0.33) } else { (2.0, 9e-4, 0.55) };
+    let (share, load) = if angular {
+        (0.5 * radial + 0.26 * axial, axial - 0.1 * radial)
+    } else {
+        (0.6 * radial + 0.5 * axial, 3.0 * axial - 0.1 * radial)
+    };
+    let (share, load) = (share.max(radial), load.max(radial));
+    // Below 2000 mm2/s rpm it does not depend on the speed.
+    let speed = 1e-7 * of_speed * (viscosity * speed).max(2000.0).powf(2.0 / 3.0) * mean.powi(3);
+    speed + of_load * (share / static_rating).powf(power) * load * mean
+}
+
+#[test]
+fn published_number_torque_by_palmgren() {
+    // By hand: 2e-7 119400^(2/3) 46^3 = 47.2, and 9e-4 (1500/11200)^0.55 1500 46 = 20.6.
+    assert!((palmgren(&(B6206, 1500.0, 0.0, 6000.0, VG68)) - 67.75).abs() < 0.1);
+    // 3.3e-7 96000^(2/3) 46^3 = 67.3, and 1e-3 (260/14000)^0.33 1000 46 = 12.3.
+    assert!((palmgren(&(B7206, 0.0, 1000.0, 3000.0, 32.0)) - 79.7).abs() < 0.1);
+}
+
 /// Our friction torque and the part of it by rolling resistance [N mm]: means over a passage of a ball, after as long.
 fn ours(&(bearing, radial, axial, speed, viscosity): &Point) -> [f64; 2] {
     let text = format!(
@@ -193,13 +217,14 @@ fn published_model_of_friction_torque_in_oil() {
                 assert!((ratio - 1.0).abs() < 0.25, "{radial} N, {axial} N, {speed} rpm: {ratio}");
             }
             let words = format!(
-                "{} | {radial} | {axial} | {speed} | {viscosity} | {rolling:.1} + {sliding:.1}",
-                bearing.name
+                "{} | {radial} | {axial} | {speed} | {viscosity} | {rolling:.1} + {sliding:.1} | {:.1}",
+                bearing.name,
+                palmgren(point)
             );
             row(words, vec![count(film, 1), count(torque, 1), count(ratio, 2)], "")
         })
         .collect();
-    let header = "bearing | radial \\[N] | axial \\[N] | \\[rpm] | \\[mm2/s] | SKF, rolling + sliding \\[N mm] | ours: film's rolling / all \\[N mm] / ratio";
+    let header = "bearing | radial \\[N] | axial \\[N] | \\[rpm] | \\[mm2/s] | SKF, rolling + sliding \\[N mm] | Palmgren \\[N mm] | ours: film's rolling / all \\[N mm] / ratio";
     compare("docs/oil.md", "torque", header, &rows);
 }
 
