@@ -77,7 +77,7 @@ pub fn forces(system: &System) -> Vec<Vector3<f64>> {
 /// \[J] largest imbalance of energy of the shaft, and of its bearings since a moment whose stored energies are given, each over what was
 /// turned over.
 pub fn imbalance(system: &System, stored: &[f64]) -> [f64; 2] {
-    let energies = &system.outputs().energies;
+    let energies = &system.outputs().shafts[0].energies;
     let of_shaft = energies.unaccounted() / (energies.input.abs() + energies.bearings.abs()).max(1e-9);
     let of_bearings = system.bearings().zip(stored).map(|((_, bearing), before)| {
         let outputs = bearing.outputs();

@@ -10,6 +10,7 @@ mod motion;
 mod quasi_static;
 mod reference;
 mod seats;
+mod several;
 #[path = "../scene/reference/sources.rs"]
 #[allow(dead_code)]
 mod sources;

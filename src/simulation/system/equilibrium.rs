@@ -23,7 +23,9 @@ const WEIBULL: f64 = 10.0 / 9.0;
 #[derive(Clone, Debug)]
 pub struct MachineEquilibrium {
     title: String,
-    /// Motion at all points of the shaft and its housings.
+    /// Names of the shafts.
+    shafts: Vec<String>,
+    /// Motion at all points of the shafts and their housings.
     pub outputs: SystemOutputs,
     /// Every bearing.
     pub bearings: Vec<BearingEquilibrium>,
@@ -86,7 +88,15 @@ impl MachineEquilibrium {
             })
         });
         let bearings = bearings.collect::<Result<_, SystemError>>()?;
-        Ok(Self { title: scene.title.clone(), outputs: system.outputs().clone(), bearings, modes, campbell })
+        let shafts = scene.shafts.iter().map(|shaft| shaft.name.clone()).collect();
+        Ok(Self {
+            title: scene.title.clone(),
+            shafts,
+            outputs: system.outputs().clone(),
+            bearings,
+            modes,
+            campbell,
+        })
     }
 
     /// \[h] life of all bearings together, reference and modified; none where one of them has none.
@@ -132,8 +142,11 @@ impl MachineEquilibrium {
             "units": "SI: m, N, N m, rad, rad/s, Hz; life in h and million revolutions. Forces and moments are those on the shaft, in its axes; \
                       stiffness is in the axes of each bearing",
             "time": outputs.time,
-            "speed": outputs.spin.speed,
-            "torque": outputs.torque,
+            "speed": outputs.shafts[0].spin.speed,
+            "torque": outputs.shafts[0].torque,
+            "shafts": self.shafts.iter().zip(&outputs.shafts).map(|(name, own)| {
+                (name.clone(), json!({ "speed": own.spin.speed, "torque": own.torque }))
+            }).collect::<Map<_, _>>(),
             "bearings": self.bearings.iter().enumerate().map(bearing).collect::<Map<_, _>>(),
             "life_of_all_hours": { "L10r": reference, "modified": modified },
             "modes": modes(&self.modes),
@@ -186,12 +199,9 @@ impl fmt::Display for MachineEquilibrium {
         if !self.title.is_empty() {
             writeln!(f, "{}", self.title)?;
         }
-        writeln!(
-            f,
-            "shaft            {:.2} rpm, held by {:.5} N m",
-            rpm(outputs.spin.speed),
-            outputs.torque
-        )?;
+        for (name, own) in self.shafts.iter().zip(&outputs.shafts) {
+            writeln!(f, "{name:<16} {:.2} rpm, held by {:.5} N m", rpm(own.spin.speed), own.torque)?;
+        }
         for (of, seat) in self.bearings.iter().zip(&outputs.seats) {
             self.write_bearing(f, of, seat)?;
         }
@@ -199,7 +209,7 @@ impl fmt::Display for MachineEquilibrium {
             let modified = modified.map_or(String::new(), |hours| format!(", modified {hours:.4e} h"));
             writeln!(f, "life of all      L10r {reference:.4e} h{modified}")?;
         }
-        writeln!(f, "\nnatural frequencies at {:.2} rpm", rpm(outputs.spin.speed))?;
+        writeln!(f, "\nnatural frequencies at {:.2} rpm", rpm(outputs.shafts[0].spin.speed))?;
         for mode in &self.modes {
             writeln!(
                 f,

@@ -1,4 +1,4 @@
-//! Where a system starts: shaft and housings in balance with the bearings under their loads, balls in the quasi-static equilibrium of that.
+//! Where a system starts: shafts and housings in balance with the bearings under their loads, balls in the quasi-static equilibrium of that.
 
 use std::sync::Arc;
 
@@ -21,6 +21,7 @@ use crate::model::structure::{
 use crate::numerics::step_control::StepControl;
 use crate::numerics::tilt;
 use crate::scene::system::{MountedScene, SystemScene};
+use crate::schema::ShaftSection;
 
 impl System {
     /// Prepares a system and starts it at time 0, from the equilibrium under its loads.
@@ -59,12 +60,12 @@ impl System {
         Ok(())
     }
 
-    /// Starts under these inputs of shaft and bearings, or those of the scripts, with this turn of the shaft, or that of its drive.
+    /// Starts under these inputs of shaft and bearings, or those of the scripts, with these turns of the shafts, or those of their drives.
     pub(super) fn start(
         scene: &SystemScene,
         time: f64,
         given: Option<(&ShaftInputs, &[Inputs])>,
-        spin: Option<Spin>,
+        spins: Option<Vec<Spin>>,
     ) -> Result<Self, SystemError> {
         let carriers = carriers(scene)?;
         let inside = |mounted: &MountedScene| {
@@ -83,7 +84,7 @@ impl System {
             let Preloaded { offset, force } = preload(mounted, &bearing.model).map_err(inside(mounted))?;
             asked.push(force);
             let outer = outer_structure(scene, index).map(|structure| (Race::Outer, structure));
-            for (race, structure) in [(Race::Inner, 0)].into_iter().chain(outer) {
+            for (race, structure) in [(Race::Inner, mounted.shaft)].into_iter().chain(outer) {
                 let station = carriers[structure].ring_at(seated[structure]);
                 seated[structure] += 1;
                 let direction = mounted.mounting.direction.sign();
@@ -100,18 +101,16 @@ impl System {
         }
         let scripted = ShaftInputs::scripted(scene, time);
         let inputs = given.map_or(scripted, |(shaft, _)| shaft.clone());
-        let turning = carriers[0].structure.turning;
-        let spin = spin.unwrap_or_else(|| initial_spin(scene, &inputs, turning, time));
-        let mut states: Vec<StructureState> = carriers
-            .iter()
-            .enumerate()
-            .map(|(index, one)| at_rest(&one.structure, if index == 0 { spin } else { Spin::default() }))
-            .collect();
-        let paths = ShaftPaths::steady(&inputs, time, spin.angle);
+        let spins = spins.unwrap_or_else(|| initial_spins(scene, &inputs, &carriers, time));
+        let still = std::iter::repeat(Spin::default());
+        let turning = carriers.iter().zip(spins.iter().copied().chain(still));
+        let mut states: Vec<_> = turning.map(|(one, spin)| at_rest(&one.structure, spin)).collect();
+        let angles: Vec<f64> = spins.iter().map(|spin| spin.angle).collect();
+        let paths = ShaftPaths::steady(&inputs, time, &angles);
         // What scripts say at this time is among the inputs.
         let played = Played::none(scene);
         let loads =
-            loads::at(&Given { scene, paths: &paths, played: &played }, &carriers, &states[0], time, time);
+            loads::at(&Given { scene, paths: &paths, played: &played }, &carriers, &states, time, time);
         let scales: Vec<_> = carriers.iter().map(|one| one.structure.scales()).collect();
         let mut statics = Statics {
             scene,
@@ -156,10 +155,13 @@ impl System {
     }
 }
 
-/// The shaft, then the housings, then the ground if it has bores.
+/// The shafts, then the housings, then the ground if it has bores.
 fn carriers(scene: &SystemScene) -> Result<Vec<Carrier>, SystemError> {
     let named = |name: String| move |why| SystemError::Structure { name, why };
-    let shaft = Carrier::of_shaft(&scene.shaft, &stations(scene)).map_err(named("shaft".into()));
+    let shafts = scene.shafts.iter().enumerate().map(|(index, shaft)| {
+        let name = if scene.shafts.len() == 1 { "shaft".into() } else { format!("shaft \"{}\"", shaft.name) };
+        Carrier::of_shaft(shaft, &stations(scene, index)).map_err(named(name))
+    });
     let housings = scene.housings.iter().enumerate().map(|(index, housing)| {
         let name = format!("housing \"{}\"", housing.name);
         let carrier = Carrier::of_housing(housing, &places_of_housing(scene, index)).map_err(named(name))?;
@@ -167,7 +169,7 @@ fn carriers(scene: &SystemScene) -> Result<Vec<Carrier>, SystemError> {
     });
     let bores = scene.bearings_in_ground().count();
     let ground = || Ok(Carrier::of_ground(bores).with_rings(&sliding(scene, scene.bearings_in_ground())));
-    [shaft].into_iter().chain(housings).chain((bores > 0).then(ground)).collect()
+    shafts.chain(housings).chain((bores > 0).then(ground)).collect()
 }
 
 /// Rings that slide, of the bearings at the first stations of a structure.
@@ -183,19 +185,24 @@ fn sliding(scene: &SystemScene, bearings: impl Iterator<Item = usize>) -> Vec<Ri
 /// The structure that carries the outer race of a bearing, if one does.
 fn outer_structure(scene: &SystemScene, bearing: usize) -> Option<usize> {
     let ground = || scene.bearings[bearing].mounting.seats_outer_ring().then_some(scene.housings.len());
-    scene.housing_of(bearing).or_else(ground).map(|structure| structure + 1)
+    scene.housing_of(bearing).or_else(ground).map(|structure| structure + scene.shafts.len())
 }
 
-/// Turn of a shaft at the start.
-fn initial_spin(scene: &SystemScene, inputs: &ShaftInputs, turning: Turning, time: f64) -> Spin {
+/// Turns of the shafts at the start.
+fn initial_spins(scene: &SystemScene, inputs: &ShaftInputs, carriers: &[Carrier], time: f64) -> Vec<Spin> {
+    let driven = scene.shafts.iter().zip(&inputs.drives).zip(carriers);
+    driven
+        .map(|((shaft, drive), carrier)| initial_spin(shaft, *drive, carrier.structure.turning, time))
+        .collect()
+}
+
+fn initial_spin(shaft: &ShaftSection, drive: f64, turning: Turning, time: f64) -> Spin {
     match turning {
-        Turning::Free => {
-            Spin { speed: scene.shaft.start_speed.map_or(0.0, |speed| speed.0), ..Spin::default() }
-        }
+        Turning::Free => Spin { speed: shaft.start_speed.map_or(0.0, |speed| speed.0), ..Spin::default() },
         Turning::Given | Turning::Still => {
-            let scripted = scripted_spin(scene, time);
-            let acceleration = if inputs.drive == scripted.speed { scripted.acceleration } else { 0.0 };
-            Spin { speed: inputs.drive, acceleration, ..scripted }
+            let scripted = scripted_spin(shaft, time);
+            let acceleration = if drive == scripted.speed { scripted.acceleration } else { 0.0 };
+            Spin { speed: drive, acceleration, ..scripted }
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Shaft and housings at rest with their bearings, which are in quasi-static equilibrium themselves.
+//! Shafts and housings at rest with their bearings, which are in quasi-static equilibrium themselves.
 
 use nalgebra::{DMatrix, DVector, Matrix6, Vector3, Vector6};
 
@@ -89,7 +89,7 @@ impl Statics<'_> {
             for (i, scale) in scales.iter().enumerate() {
                 matrix[(i, i)] += shift * TYPICAL_STIFFNESS * scale * scale;
             }
-            self.hold_turn(&mut matrix);
+            self.hold_turns(&mut matrix);
             let step = matrix.lu().solve(&here.residual).map(|mut step| {
                 let way = step.component_mul(&scales).amax();
                 if way > longest {
@@ -128,12 +128,13 @@ impl Statics<'_> {
             let turned = seat.angles - joint.seat.own_tilt();
             (joint.structure, joint.bearing, turned.y.hypot(turned.z))
         };
-        // The first structure is the shaft, and the ground does not give way.
-        let housings = 1..=self.scene.housings.len();
+        // The first structures are the shafts, and the ground does not give way.
+        let first = self.scene.shafts.len();
+        let housings = first..first + self.scene.housings.len();
         let seats = self.joints.iter().filter(|joint| housings.contains(&joint.structure)).map(tilted);
         let (structure, bearing, tilt) = seats.max_by(|a, b| a.2.total_cmp(&b.2))?;
         (tilt > FAR).then(|| SystemError::GivesWay {
-            housing: self.scene.housings[structure - 1].name.clone(),
+            housing: self.scene.housings[structure - first].name.clone(),
             bearing: self.scene.bearings[bearing].name.clone(),
             tilt,
         })
@@ -156,18 +157,18 @@ impl Statics<'_> {
     }
 
     /// The turn of a shaft is not a matter of statics.
-    fn hold_turn(&self, matrix: &mut DMatrix<f64>) {
-        if let Some(turn) = self.turn() {
+    fn hold_turns(&self, matrix: &mut DMatrix<f64>) {
+        for turn in self.turns() {
             matrix.row_mut(turn).fill(0.0);
             matrix.column_mut(turn).fill(0.0);
             matrix[(turn, turn)] = 1.0;
         }
     }
 
-    /// The coordinate that is the turn of the shaft.
-    fn turn(&self) -> Option<usize> {
-        let shaft = &self.carriers[0].structure;
-        (shaft.turning == Turning::Free).then(|| shaft.size() - 1)
+    /// The coordinates that are turns of shafts.
+    fn turns(&self) -> Vec<usize> {
+        let ends = self.carriers.iter().zip(self.first().into_iter().skip(1));
+        ends.filter(|(one, _)| one.structure.turning == Turning::Free).map(|(_, end)| end - 1).collect()
     }
 
     /// Puts the races of all bearings where the structures are.
@@ -236,7 +237,7 @@ impl Statics<'_> {
             let relative = self.relative(index, &first);
             stiffness += relative.tr_mul(&(whole * &relative));
         }
-        if let Some(turn) = self.turn() {
+        for turn in self.turns() {
             residual[turn] = 0.0;
         }
         Ok(Trial { residual, stiffness, force })
