@@ -109,3 +109,10 @@ pub fn assert_order_two(text: &str, end: f64, step: f64, show: impl Fn(&System) 
         assert!((1.7..2.5).contains(&order), "{errors:?}");
     }
 }
+
+/// Force and moment of every bearing on the shaft in the equilibrium, about the middle of its bore, in the shaft's axes.
+pub fn held(system: &System) -> Vec<[Vector3<f64>; 2]> {
+    let found = roulement::simulation::system::MachineEquilibrium::of(system.scene(), system.time(), 1.0);
+    let found = found.unwrap_or_else(|why| panic!("{why}"));
+    found.bearings.iter().map(|bearing| [bearing.force, bearing.moment]).collect()
+}

@@ -6,6 +6,7 @@ mod common;
 mod equilibrium;
 mod hard;
 mod housing;
+mod mesh;
 mod motion;
 mod quasi_static;
 mod reference;

@@ -69,6 +69,11 @@ impl LossWatch {
             sums.stored += energies.stored;
             sums.lost += energies.damping;
         }
+        for link in &outputs.links {
+            sums.put_in += link.state.taken;
+            sums.stored += link.state.stored;
+            sums.lost += link.state.damped;
+        }
         for of_bearing in bearings {
             sums.put_in += of_bearing.put_in;
             sums.stored += of_bearing.stored;

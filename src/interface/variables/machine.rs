@@ -178,6 +178,7 @@ impl MachineVariables {
             ShaftSource::Drive(shaft) => Some(MachineGroup::Drive(shaft)),
             ShaftSource::Number(_)
             | ShaftSource::Whole(..)
+            | ShaftSource::Link(..)
             | ShaftSource::Housing(..)
             | ShaftSource::Motion(..) => None,
         }

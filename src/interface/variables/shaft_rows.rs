@@ -3,7 +3,9 @@
 use super::{Causality, Kind, Source, Variable};
 use crate::scene::system::{ShaftParameter, SystemScene};
 use crate::schema::variable_units::{self as units, Unit};
-use crate::simulation::system::{HousingOutputs, PointOutput, ShaftInputs, ShaftOutputs, SystemOutputs};
+use crate::simulation::system::{
+    HousingOutputs, LinkOutputs, PointOutput, ShaftInputs, ShaftOutputs, SystemOutputs,
+};
 
 /// Where the value of a variable of the shaft comes from.
 #[derive(Clone, Copy, Debug)]
@@ -20,10 +22,36 @@ pub enum ShaftSource {
     Number(ShaftParameter),
     /// A shaft as a whole, by its index.
     Whole(usize, fn(&ShaftOutputs) -> f64),
+    /// A component of what a mesh or a bearing by its stiffness does, by its index.
+    Link(usize, LinkQuantity),
     /// A housing as a whole, by its index.
     Housing(usize, fn(&HousingOutputs) -> f64),
     /// Motion of a station.
     Motion(Station, PointQuantity, usize),
+}
+
+/// A quantity of a mesh or of a bearing by its stiffness.
+#[derive(Clone, Copy, Debug)]
+pub enum LinkQuantity {
+    /// \[N, N m] a component of force and moment on the first gear or the shaft.
+    Force(usize),
+    /// \[N] normal to the teeth.
+    Normal,
+    /// \[J] stored.
+    Stored,
+    /// \[J] lost since the start.
+    Damped,
+}
+
+impl LinkQuantity {
+    fn read(self, link: &LinkOutputs) -> f64 {
+        match self {
+            Self::Force(component) => link.state.force[component],
+            Self::Normal => link.normal_force,
+            Self::Stored => link.state.stored,
+            Self::Damped => link.state.damped,
+        }
+    }
 }
 
 /// A place on the shaft, or on the housing with this index, by its index among those of its kind.
@@ -111,6 +139,7 @@ impl ShaftSource {
             Self::Drive(shaft) => inputs.drives[shaft],
             Self::Number(parameter) => parameter.start,
             Self::Whole(shaft, get) => get(&outputs.shafts[shaft]),
+            Self::Link(index, quantity) => quantity.read(&outputs.links[index]),
             Self::Housing(index, get) => get(&outputs.housings[index]),
             Self::Motion(station, quantity, axis) => quantity.read(station.of(outputs), axis),
         }
@@ -123,7 +152,7 @@ impl ShaftSource {
             Self::Moment(load, axis) => inputs.loads[load].moment[axis] = value,
             Self::Gear(index) => inputs.gears[index] = value,
             Self::Drive(shaft) => inputs.drives[shaft] = value,
-            Self::Number(_) | Self::Whole(..) | Self::Housing(..) | Self::Motion(..) => {}
+            Self::Number(_) | Self::Whole(..) | Self::Link(..) | Self::Housing(..) | Self::Motion(..) => {}
         }
     }
 }
@@ -200,6 +229,9 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
         let place = format!("the seat of bearing {}", bearing.name);
         motion(&mut rows, Station::Seat(None, index), &prefix, &place);
     }
+    for (index, name) in scene.link_names().enumerate() {
+        link(&mut rows, (index, index < scene.meshes.len()), name);
+    }
     for index in 0..scene.housings.len() {
         housing(scene, index, &mut rows);
     }
@@ -212,6 +244,37 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
         rows.push(row(name, unit, Causality::Parameter, description, source));
     }
     rows
+}
+
+/// Forces and energies of a mesh, or of a bearing by its stiffness.
+fn link(rows: &mut Vec<Variable>, (index, meshes): (usize, bool), name: &str) {
+    let mut add = |key: &str, unit, what: &str, quantity| {
+        let source = ShaftSource::Link(index, quantity);
+        rows.push(row(
+            format!("{}.{key}", quoted(name)),
+            unit,
+            Causality::Output,
+            format!("{what} of {name}"),
+            source,
+        ));
+    };
+    let (newton, joule) = ((units::NEWTON, 1e3), (units::JOULE, 1.0));
+    let on = if meshes { "force on the first gear" } else { "force on the shaft" };
+    for (axis, letter) in AXES.into_iter().enumerate() {
+        let what = format!("{on}, {letter} component, axes of the shaft,");
+        add(&format!("force.{letter}"), newton, &what, LinkQuantity::Force(axis));
+    }
+    if meshes {
+        let what = "force normal to the teeth, positive where the first gear drives as it turns about +x,";
+        add("normal_force", newton, what, LinkQuantity::Normal);
+    } else {
+        for (axis, letter) in [(4, "y"), (5, "z")] {
+            let what = format!("moment on the shaft, {letter} component, axes of the shaft,");
+            add(&format!("moment.{letter}"), (units::NEWTON_METRE, 1.0), &what, LinkQuantity::Force(axis));
+        }
+    }
+    add("energy.stored", joule, "energy stored in the springs", LinkQuantity::Stored);
+    add("energy.dissipated", joule, "energy lost to the damping since the start", LinkQuantity::Damped);
 }
 
 /// Energies and motion of a housing.

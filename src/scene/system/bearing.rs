@@ -6,10 +6,13 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::{Table, Value};
 
+use super::mesh::SceneSpring;
 use super::{MountedScene, SystemLoad};
 use crate::catalogue::Request;
 use crate::scene::{Scene, SceneError};
-use crate::schema::{AxialSeat, Mounting, MountingDirection, explain, regular};
+use crate::schema::{
+    AxialSeat, HousingSection, Mounting, MountingDirection, ShaftSection, StiffnessSection, explain, regular,
+};
 
 /// A bearing as it is written.
 #[derive(Deserialize)]
@@ -21,6 +24,8 @@ pub struct WrittenBearing {
     pub scene: Option<Value>,
     /// Its designation in the catalogue, such as 7206 B.
     pub catalogue: Option<String>,
+    /// Its stiffness, in place of a scene: springs instead of balls.
+    pub stiffness: Option<StiffnessSection>,
     /// Name of the shaft that it sits on; needed where there are several.
     pub shaft: Option<String>,
     /// Where it sits on the shaft.
@@ -45,12 +50,24 @@ pub struct Shared {
 }
 
 impl WrittenBearing {
+    /// The bearing by its stiffness, where it is one.
+    pub fn spring(self, shafts: &[ShaftSection], housings: &[HousingSection]) -> Option<SceneSpring> {
+        let Self { name, stiffness, shaft, mounting, .. } = self;
+        Some(SceneSpring {
+            name,
+            shaft: shafts.iter().position(|own| shaft.as_ref() == Some(&own.name)).unwrap_or(0),
+            position: mounting.position.0,
+            housing: mounting.housing.and_then(|wanted| housings.iter().position(|own| own.name == wanted)),
+            stiffness: stiffness?,
+        })
+    }
+
     /// The bearing with its scene.
     ///
     /// # Errors
     /// With its name and what is wrong.
     pub fn read(self, given: &Shared) -> Result<MountedScene, SceneError> {
-        let Self { name, scene, catalogue, shaft, mounting, set } = self;
+        let Self { name, scene, catalogue, shaft, mounting, set, .. } = self;
         // That there is such a shaft was checked.
         let shaft = given.shafts.iter().position(|(own, _)| shaft.as_ref() == Some(own)).unwrap_or(0);
         let inside =

@@ -1,9 +1,11 @@
 //! What the keys of a system must agree in.
 
 use super::bearing::WrittenBearing;
-use super::{MountedScene, Written, check_housing};
+use super::{MountedScene, Written, check_housing, mesh};
 use crate::schema::numbers::Range;
-use crate::schema::{AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, check_phases};
+use crate::schema::{
+    AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, StiffnessSection, check_phases,
+};
 
 /// Masses of shafts and discs.
 pub const MASS: Range = Range::above(0.0, 1e6, "kg");
@@ -25,13 +27,17 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
     if written.gravity.is_scripted() {
         return Err(SceneError::conflict("gravity", "gravity of a system is constant: give three numbers"));
     }
-    if written.bearing.is_empty() {
-        return Err(SceneError::conflict("bearing", "a shaft needs bearings: give at least one [[bearing]]"));
+    if written.bearing.iter().all(|bearing| bearing.stiffness.is_some()) {
+        return Err(SceneError::conflict(
+            "bearing",
+            "a shaft needs bearings: give at least one [[bearing]] that is simulated",
+        ));
     }
     if written.shaft.0.is_empty() {
         return Err(SceneError::conflict("shaft", "give at least one [[shaft]]"));
     }
     let mut names: Vec<&str> = written.bearing.iter().map(|bearing| bearing.name.as_str()).collect();
+    names.extend(written.mesh.iter().map(|mesh| mesh.name.as_str()));
     let shafts = &written.shaft.0;
     for shaft in shafts {
         names.push(&shaft.name);
@@ -74,6 +80,9 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
             return Err(SceneError::conflict(format!("bearing.mounting.housing = \"{wanted}\""), why));
         }
         bore(mounting)?;
+        if let Some(stiffness) = &bearing.stiffness {
+            by_stiffness(bearing, stiffness)?;
+        }
         on_one_of(shafts, bearing)?;
     }
     for shaft in shafts {
@@ -109,11 +118,39 @@ fn on_one_of(shafts: &[ShaftSection], bearing: &WrittenBearing) -> Result<(), Sc
     }
 }
 
+/// A bearing by its stiffness has nothing of one that is simulated.
+fn by_stiffness(bearing: &WrittenBearing, stiffness: &StiffnessSection) -> Result<(), SceneError> {
+    let inside =
+        |source| SceneError::At { place: format!("bearing \"{}\"", bearing.name), source: Box::new(source) };
+    let mounting = &bearing.mounting;
+    let own = Mounting { housing: None, ..mounting.clone() };
+    let preload = mounting.preload.force.is_some() || mounting.preload.displacement.is_some();
+    let given = [
+        ("bearing.scene", bearing.scene.is_some()),
+        ("bearing.catalogue", bearing.catalogue.is_some()),
+        ("bearing.set", !bearing.set.is_empty()),
+        ("bearing.mounting", own.seats_outer_ring() || preload),
+    ];
+    if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
+        let why = "is for a bearing that is simulated; of one by its stiffness mounting has position and housing alone";
+        return Err(inside(SceneError::conflict(key, why)));
+    }
+    mesh::check_stiffness(stiffness).map_err(inside)
+}
+
+/// Does nothing of a bearing hold its shaft along the axis?
+fn slides(bearing: &WrittenBearing) -> bool {
+    match &bearing.stiffness {
+        Some(stiffness) => stiffness.axial.is_none_or(|axial| axial.0 == 0.0),
+        None => bearing.mounting.axial == AxialSeat::Free,
+    }
+}
+
 /// Something holds a shaft along its axis.
 fn held(shaft: &ShaftSection, written: &Written) -> Result<(), SceneError> {
     let one = written.shaft.0.len() == 1;
     let mut own = written.bearing.iter().filter(|bearing| one || bearing.shaft.as_ref() == Some(&shaft.name));
-    if shaft.matrices.is_none() && own.all(|bearing| bearing.mounting.axial == AxialSeat::Free) {
+    if shaft.matrices.is_none() && own.all(slides) {
         let why = match one {
             true => {
                 "nothing would hold the shaft along its axis: at least one bearing needs axial = \"held\""

@@ -6,11 +6,13 @@
 mod bearing;
 mod check;
 mod check_housing;
+pub mod mesh;
 mod numbers;
 
 use std::path::Path;
 
 use bearing::{Shared, WrittenBearing};
+use mesh::{SceneMesh, SceneSpring};
 use nalgebra::Vector3;
 pub use numbers::{ShaftNumber, ShaftParameter};
 use serde::Deserialize;
@@ -19,8 +21,8 @@ use toml::{Table, Value};
 use super::{Scene, SceneError};
 use crate::schema::units::{Acceleration, Force, Moment, Time};
 use crate::schema::{
-    AxialSeat, Components, GearSection, HousingSection, Matrices, Mounting, PhaseSection, Schedule,
-    ShaftSection, Shafts, Solver, explain, regular,
+    AxialSeat, Components, GearSection, HousingSection, Matrices, MeshSection, Mounting, PhaseSection,
+    Schedule, ShaftSection, Shafts, Solver, explain, regular,
 };
 
 /// A shaft with its bearings, as described by a file.
@@ -32,6 +34,10 @@ pub struct SystemScene {
     pub shafts: Vec<ShaftSection>,
     /// Housings that outer races sit in.
     pub housings: Vec<HousingSection>,
+    /// Gears in mesh.
+    pub meshes: Vec<SceneMesh>,
+    /// Bearings by their stiffness.
+    pub springs: Vec<SceneSpring>,
     /// The bearings.
     pub bearings: Vec<MountedScene>,
     /// [m/s2] acceleration of gravity in the axes of the shaft, constant.
@@ -112,6 +118,9 @@ struct Written {
     /// Housings that outer races sit in.
     #[serde(default)]
     housing: Vec<HousingSection>,
+    /// Gears in mesh.
+    #[serde(default)]
+    mesh: Vec<MeshSection>,
     /// The bearings.
     bearing: Vec<WrittenBearing>,
     /// Simulated time, and distance of rows.
@@ -178,6 +187,7 @@ impl SystemScene {
             title,
             shaft: Shafts(mut shafts),
             mut housing,
+            mesh,
             bearing,
             load,
             phase: phases,
@@ -203,14 +213,34 @@ impl SystemScene {
             housing.read = checked;
             of_housings.push(read);
         }
-        let speed = |shaft: &ShaftSection| shaft.speed.as_ref().map_or(0.0, |speed| speed.at(0.0));
-        let shafts_turn = shafts.iter().map(|shaft| (shaft.name.clone(), speed(shaft))).collect();
+        let meshes = mesh.into_iter().map(|mesh| mesh::read(mesh, &shafts));
+        let meshes = meshes.collect::<Result<Vec<_>, _>>().map_err(placed)?;
+        mesh::check_trains(&shafts, &meshes).map_err(placed)?;
+        let speed = |train: mesh::InTrain| {
+            train.ratio * shafts[train.root].speed.as_ref().map_or(0.0, |speed| speed.at(0.0))
+        };
+        let turning = shafts.iter().zip(mesh::trains(&shafts, &meshes));
+        let shafts_turn = turning.map(|(shaft, train)| (shaft.name.clone(), speed(train))).collect();
         let given = Shared { gravity, shafts: shafts_turn, load, solver, folder: folder.to_path_buf() };
+        let (springs, bearing): (Vec<_>, Vec<_>) =
+            bearing.into_iter().partition(|bearing| bearing.stiffness.is_some());
+        let springs = springs.into_iter().filter_map(|spring| spring.spring(&shafts, &housing)).collect();
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
         let bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
         check::solvers(&bearings, &shafts).map_err(placed)?;
         let source = standing_alone(text, &bearings, &of_shafts, &of_housings, gravity != Vector3::zeros());
-        Ok(Self { title, shafts, housings: housing, bearings, gravity, load, phases, source })
+        Ok(Self {
+            title,
+            shafts,
+            housings: housing,
+            meshes,
+            springs,
+            bearings,
+            gravity,
+            load,
+            phases,
+            source,
+        })
     }
 
     /// What the reader of each bearing's scene should know.
@@ -246,6 +276,12 @@ impl SystemScene {
     /// Meshes `[[shaft.gear]]` of the first shaft, then of the next.
     pub fn gears(&self) -> impl Iterator<Item = &GearSection> {
         self.shafts.iter().flat_map(|shaft| &shaft.gear)
+    }
+
+    /// Names of meshes, then of bearings by their stiffness.
+    pub fn link_names(&self) -> impl Iterator<Item = &str> {
+        let meshes = self.meshes.iter().map(|mesh| mesh.section.name.as_str());
+        meshes.chain(self.springs.iter().map(|spring| spring.name.as_str()))
     }
 
     /// Bearings that sit on a shaft, by their indices.
@@ -332,7 +368,8 @@ fn standing_alone(
 fn write_bearings(table: &mut Table, bearings: &[MountedScene], weighs: bool) {
     let solver = table.contains_key("solver");
     let written = table.get_mut("bearing").and_then(Value::as_array_mut).into_iter().flatten();
-    for (keys, bearing) in written.filter_map(Value::as_table_mut).zip(bearings) {
+    let simulated = written.filter_map(Value::as_table_mut).filter(|keys| !keys.contains_key("stiffness"));
+    for (keys, bearing) in simulated.zip(bearings) {
         keys.remove("catalogue");
         keys.remove("set");
         let mut scene = toml::from_str::<Table>(&bearing.scene.source).unwrap_or_default();

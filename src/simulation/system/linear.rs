@@ -10,7 +10,8 @@
 
 use nalgebra::{Complex, DMatrix, DVector, Matrix6};
 
-use super::statics::Statics;
+use super::links;
+use super::statics::{Statics, of_link};
 use super::{System, SystemError};
 use crate::analysis::condensed::Condensed;
 use crate::dynamics::system::StructureLoad;
@@ -98,11 +99,17 @@ impl System {
             scales: &self.structures.scales,
             loads: &loads,
             joints: &self.structures.joints,
+            links: &self.structures.links,
+            flanks: vec![None; self.structures.links.len()],
             bearings: &mut bearings,
             friction: vec![0.0; dampers.len()],
         };
         let stiffness = statics.stiffness(&self.structures.states)?;
         let mut damping = statics.spread(&dampers);
+        for (link, state) in self.structures.links.iter().zip(&self.structures.link_states) {
+            let map = of_link(link, &statics.first());
+            damping -= map.tr_mul(&(link.force(&state.displacement, &state.rate, None).by_rate * &map));
+        }
         let mut mass = DMatrix::zeros(damping.nrows(), damping.nrows());
         for ((Carrier { structure, .. }, state), from) in
             self.structures.carriers.iter().zip(&self.structures.states).zip(statics.first())
@@ -177,6 +184,7 @@ impl System {
                 names.extend(shaft.point.iter().map(|of| of.name.clone()));
                 names.extend(numbered("disc", shaft.disc.len()));
                 names.extend(numbered("gear", shaft.gear.len()));
+                names.extend(links::names(scene, structure));
                 let which = if scene.shafts.len() == 1 { "the shaft" } else { &shaft.name };
                 named(names).map(|name| format!("{which} at {name}"))
             }
@@ -197,6 +205,8 @@ impl System {
                     scene.bearings_in(index).map(|of| scene.bearings[of].name.clone()).collect();
                 names.extend(housing.load.iter().map(|of| of.name.clone()));
                 names.extend(housing.point.iter().map(|of| of.name.clone()));
+                let springs = scene.springs.iter().filter(|spring| spring.housing == Some(index));
+                names.extend(springs.map(|spring| spring.name.clone()));
                 named(names).map(|name| format!("{} at {name}", housing.name))
             }
         };

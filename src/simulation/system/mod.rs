@@ -5,6 +5,7 @@ mod critical_speeds;
 mod equilibrium;
 mod inputs;
 mod linear;
+mod links;
 mod loads;
 mod motions;
 mod outputs;
@@ -29,7 +30,7 @@ pub use equilibrium::{BearingEquilibrium, MachineEquilibrium};
 pub use inputs::{Played, ShaftInputs, drive_is_scripted};
 pub use linear::{Linear, ShaftMode, Whirl};
 pub use loads::script_changes_within;
-pub use outputs::{HousingOutputs, PointOutput, ShaftOutputs, SystemOutputs};
+pub use outputs::{HousingOutputs, LinkOutputs, PointOutput, ShaftOutputs, SystemOutputs};
 pub use snapshot::SystemSnapshot;
 pub use structures::Structures;
 
@@ -176,7 +177,7 @@ pub fn shaft_follows_time(scene: &SystemScene) -> bool {
 /// Positions of all stations of a shaft along it \[m]: its bearings, then loads, points, discs and gears.
 fn stations(scene: &SystemScene, shaft: usize) -> Vec<f64> {
     let bearings = scene.bearings_on(shaft).map(|bearing| scene.bearings[bearing].mounting.position.0);
-    bearings.chain(scene.shafts[shaft].positions()).collect()
+    bearings.chain(scene.shafts[shaft].positions()).chain(links::positions(scene, shaft)).collect()
 }
 
 /// First station of loads, of points, of discs and of gears of a shaft.
@@ -188,7 +189,7 @@ fn first_stations(scene: &SystemScene, shaft: usize) -> [usize; 4] {
     [loads, points, discs, discs + section.disc.len()]
 }
 
-/// Places of all stations of a housing \[m]: its bearings, then its loads and points.
+/// Places of all stations of a housing \[m]: its bearings, then its loads and points, then its bearings by their stiffness.
 fn places_of_housing(scene: &SystemScene, index: usize) -> Vec<[f64; 3]> {
     let housing = &scene.housings[index];
     let seats = scene.bearings_in(index).map(|bearing| {
@@ -197,7 +198,9 @@ fn places_of_housing(scene: &SystemScene, index: usize) -> Vec<[f64; 3]> {
     });
     let loads = housing.load.iter().map(|load| load.position.map(|length| length.0));
     let points = housing.point.iter().map(|point| point.position.map(|length| length.0));
-    seats.chain(loads).chain(points).collect()
+    let springs = scene.springs.iter().filter(|spring| spring.housing == Some(index));
+    let springs = springs.map(|spring| scene.shafts[spring.shaft].place(spring.position));
+    seats.chain(loads).chain(points).chain(springs).collect()
 }
 
 /// First station of a housing's loads and of its points.

@@ -3,6 +3,7 @@
 use nalgebra::{DVector, Vector3};
 
 use super::{first_stations, housing_stations};
+use crate::model::link::{Law, Link, LinkState};
 use crate::model::structure::{Carrier, Map, Spin, StructureEnergies, StructurePowers, StructureState};
 use crate::scene::system::SystemScene;
 
@@ -45,6 +46,29 @@ pub struct ShaftOutputs {
     pub energies: StructureEnergies,
 }
 
+/// Outputs of a link: a mesh, or a bearing by its stiffness.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LinkOutputs {
+    /// What it does; forces are those on the first gear, or on the shaft.
+    pub state: LinkState,
+    /// \[N] normal force of teeth: positive on the flank that presses where the first gear drives while it turns about +x, negative on the other.
+    pub normal_force: f64,
+}
+
+impl LinkOutputs {
+    /// Of a link in a state.
+    pub fn of(link: &Link, state: &LinkState) -> Self {
+        let normal_force = match &link.law {
+            Law::Mesh(mesh) => {
+                let [one, other] = mesh.flank_forces(&state.displacement, &state.rate);
+                one - other
+            }
+            Law::Spring(_) => 0.0,
+        };
+        Self { state: *state, normal_force }
+    }
+}
+
 /// Outputs of the shafts and the housings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SystemOutputs {
@@ -58,6 +82,8 @@ pub struct SystemOutputs {
     pub loads: Vec<PointOutput>,
     /// Motion at every named point, likewise.
     pub points: Vec<PointOutput>,
+    /// What meshes do, then bearings by their stiffness, in the order of the scene.
+    pub links: Vec<LinkOutputs>,
     /// What the housings do, in the order of the scene.
     pub housings: Vec<HousingOutputs>,
     /// Energies since the start of rings that slide in bores of the ground; none where there are none.
@@ -112,7 +138,7 @@ impl SystemOutputs {
             HousingOutputs {
                 seats: all.by_ref().take(loads).collect(),
                 loads: all.by_ref().take(points - loads).collect(),
-                points: all.collect(),
+                points: all.take(scene.housings[index].point.len()).collect(),
                 powers: state.powers,
                 energies: state.energies,
             }
@@ -123,6 +149,7 @@ impl SystemOutputs {
             seats: seats.collect(),
             loads: each(|[loads, points, ..]| loads..points),
             points: each(|[_, points, discs, _]| points..discs),
+            links: vec![],
             housings: housings.collect(),
             ground: states
                 .get(scene.housings.len() + count)

@@ -9,17 +9,18 @@ use super::super::play::Scripted;
 use super::super::{Simulation, SimulationError};
 use super::inputs::{Given, Played, ShaftInputs, ShaftPaths, scripted_spin};
 use super::statics::Statics;
-use super::{Structures, System, SystemError, SystemOutputs, loads, places_of_housing, stations};
+use super::{Structures, System, SystemError, SystemOutputs, links, loads, places_of_housing, stations};
 use crate::analysis::auto;
-use crate::dynamics::system::{Joint, Seat, StructureLoad, StructureTrial};
+use crate::dynamics::system::{Joined, Joint, Seat, StructureLoad, StructureTrial};
 use crate::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
-use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::model::structure::{
     Carrier, Ring, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
 };
+use crate::model::{Model, link};
 use crate::numerics::step_control::StepControl;
 use crate::numerics::tilt;
+use crate::scene::system::mesh::{InTrain, trains};
 use crate::scene::system::{MountedScene, SystemScene};
 use crate::schema::ShaftSection;
 
@@ -112,6 +113,7 @@ impl System {
         let loads =
             loads::at(&Given { scene, paths: &paths, played: &played }, &carriers, &states, time, time);
         let scales: Vec<_> = carriers.iter().map(|one| one.structure.scales()).collect();
+        let links = links::of(scene, &carriers);
         let mut statics = Statics {
             scene,
             time,
@@ -119,9 +121,12 @@ impl System {
             scales: &scales,
             loads: &loads,
             joints: &joints,
+            links: &links,
+            flanks: vec![None; links.len()],
             bearings: &mut bearings,
             friction: vec![0.0; scene.bearings.len()],
         };
+        statics.turn_into_mesh(&mut states);
         statics.solve(&mut states)?;
         statics.check_preloads(&asked, &states)?;
         statics.initialise(&states)?;
@@ -135,7 +140,9 @@ impl System {
             Arc::make_mut(&mut bearings[joint.bearing].model).carry(joint.race);
         }
         bearings.iter_mut().for_each(Simulation::settle);
-        let states = started(&carriers, &states, &loads, &joints, &bearings);
+        let joined = Joined { joints: &joints, links: &links };
+        let states = started(&carriers, &states, &loads, joined, &bearings);
+        let link_states = links.iter().map(|link| link.started(|structure| &states[structure])).collect();
         let solver = scene.solver();
         let control = StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0);
         bearings.iter_mut().for_each(|bearing| bearing.state.control = control);
@@ -144,6 +151,8 @@ impl System {
             carriers: Arc::new(carriers),
             scales: Arc::new(scales),
             joints: Arc::new(joints),
+            links: Arc::new(links),
+            link_states,
             inputs,
             paths,
             states,
@@ -191,9 +200,19 @@ fn outer_structure(scene: &SystemScene, bearing: usize) -> Option<usize> {
 /// Turns of the shafts at the start.
 fn initial_spins(scene: &SystemScene, inputs: &ShaftInputs, carriers: &[Carrier], time: f64) -> Vec<Spin> {
     let driven = scene.shafts.iter().zip(&inputs.drives).zip(carriers);
-    driven
-        .map(|((shaft, drive), carrier)| initial_spin(shaft, *drive, carrier.structure.turning, time))
-        .collect()
+    let own =
+        driven.map(|((shaft, drive), carrier)| initial_spin(shaft, *drive, carrier.structure.turning, time));
+    let own: Vec<Spin> = own.collect();
+    // Shafts of a train turn as its teeth say.
+    let trains = trains(&scene.shafts, &scene.meshes).into_iter().enumerate();
+    let of_train = |(shaft, InTrain { root, ratio }): (usize, InTrain)| {
+        let Spin { angle, speed, acceleration } = own[root];
+        match shaft == root {
+            true => own[root],
+            false => Spin { angle: angle * ratio, speed: speed * ratio, acceleration: acceleration * ratio },
+        }
+    };
+    trains.map(of_train).collect()
 }
 
 fn initial_spin(shaft: &ShaftSection, drive: f64, turning: Turning, time: f64) -> Spin {
@@ -210,12 +229,13 @@ fn initial_spin(shaft: &ShaftSection, drive: f64, turning: Turning, time: f64) -
 /// A structure that rests but for its spin.
 fn at_rest(structure: &Structure, spin: Spin) -> StructureState {
     let zero = DVector::zeros(structure.size());
-    let mut rates = zero.clone();
+    let (mut coordinates, mut rates) = (zero.clone(), zero.clone());
     if structure.turning == Turning::Free {
+        coordinates[structure.size() - 1] = spin.angle;
         rates[structure.size() - 1] = spin.speed;
     }
     StructureState {
-        coordinates: zero.clone(),
+        coordinates,
         rates,
         accelerations: zero.clone(),
         total: zero.clone(),
@@ -265,13 +285,20 @@ fn started(
     carriers: &[Carrier],
     states: &[StructureState],
     loads: &[StructureLoad],
-    joints: &[Joint],
+    joined: Joined<'_>,
     bearings: &[Simulation],
 ) -> Vec<StructureState> {
     let mut trials: Vec<_> = states.iter().map(StructureTrial::new).collect();
-    for Joint { bearing, race, structure, seat } in joints {
+    for Joint { bearing, race, structure, seat } in joined.joints {
         let motion = trials[*structure].seat(&carriers[*structure].structure, seat);
         trials[*structure].add(seat, &motion, &bearings[*bearing].state.race(*race).bearing_wrench);
+    }
+    for one in joined.links {
+        let [displacement, rate] = one.motion(|structure| &trials[structure].end);
+        let force = one.force(&displacement, &rate, None).force;
+        for (index, end) in one.ends.iter().enumerate() {
+            trials[end.structure].add_link(end, &(force * link::sign(index)));
+        }
     }
     let all = trials.into_iter().zip(carriers.iter().zip(loads));
     all.map(|(trial, (carrier, load))| trial.started(&carrier.structure, load)).collect()

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::inputs::{Given, Played, ShaftInputs, ShaftPaths};
-use super::{SystemOutputs, loads};
+use super::{LinkOutputs, SystemOutputs, loads};
 use crate::dynamics::Boundary;
-use crate::dynamics::system::{Joint, StructureLoad, StructureStep};
+use crate::dynamics::system::{Joined, Joint, StructureLoad, StructureStep};
 use crate::model::bodies::Race;
+use crate::model::link::{Link, LinkState};
 use crate::model::structure::{Carrier, StructureState, Turning};
 use crate::scene::system::SystemScene;
 
@@ -23,6 +24,10 @@ pub struct Structures {
     pub scales: Arc<Vec<DVector<f64>>>,
     /// Races on their seats.
     pub joints: Arc<Vec<Joint>>,
+    /// Links between them: meshes, then bearings by their stiffness.
+    pub links: Arc<Vec<Link>>,
+    /// What these do.
+    pub link_states: Vec<LinkState>,
     /// Inputs as set last.
     pub inputs: ShaftInputs,
     /// How they go on.
@@ -52,6 +57,19 @@ impl Structures {
     /// What acts on each at the end of a step from one time \[s] to another.
     pub fn loads(&self, played: &Played, from: f64, to: f64) -> Vec<StructureLoad> {
         loads::at(&self.given(played), &self.carriers, &self.states, from, to)
+    }
+
+    /// What joins them.
+    pub fn joined(&self) -> Joined<'_> {
+        Joined { joints: &self.joints, links: &self.links }
+    }
+
+    /// Takes the states that a step of `h` \[s] has led to.
+    pub fn reach(&mut self, states: Vec<StructureState>, h: f64) {
+        for (link, state) in self.links.iter().zip(&mut self.link_states) {
+            *state = link.reached(state, h, |structure| &states[structure]);
+        }
+        self.states = states;
     }
 
     /// Each in these states at the start of a step, and what acts on it at its end.
@@ -100,5 +118,7 @@ impl Structures {
         };
         let torques: Vec<_> = (0..self.scene.shafts.len()).map(torque).collect();
         self.outputs = SystemOutputs::of(&self.scene, &self.carriers, &self.states, &torques, time);
+        let links = self.links.iter().zip(&self.link_states);
+        self.outputs.links = links.map(|(link, state)| LinkOutputs::of(link, state)).collect();
     }
 }
