@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut system = System::new(&SystemScene::load(Path::new(scene))?)?;
         system.advance(milliseconds.parse::<f64>()? * 1e-3)?;
         let steps = system.bearings().next().map_or(0, |(_, bearing)| bearing.state().statistics.steps);
-        println!("{steps} {}", system.shaft().structure.size());
+        println!("{steps} {}", system.shafts()[0].structure.size());
         return Ok(());
     }
     let scene = Scene::edited(&text, [("load.duration", format!("\"{milliseconds} ms\""))])?;

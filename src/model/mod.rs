@@ -5,6 +5,7 @@ pub mod bodies;
 pub mod cage;
 pub mod damage;
 pub mod energies;
+pub mod link;
 pub mod raceways;
 pub mod state;
 pub mod structure;

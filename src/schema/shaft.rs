@@ -1,6 +1,8 @@
 //! The sections of a system: a shaft, what is on it, and how its bearings are mounted.
 
 use serde::Deserialize;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::components::Components;
 use super::machine::GearSection;
@@ -13,6 +15,10 @@ use super::units::*;
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ShaftSection {
+    /// Name of one of several shafts: letters, digits, _ and -. A section `[shaft]` alone is called shaft.
+    pub name: String,
+    /// \[m] place x, y, z of the origin of its positions in the axes of all shafts, which are parallel; 0 if not given.
+    pub origin: Option<[Length; 3]>,
     /// [rad/s] speed about the shaft's x axis; not with `torque`.
     #[serde(deserialize_with = "some::<AngularVelocity, _>")]
     pub speed: Option<Schedule>,
@@ -50,6 +56,53 @@ pub struct ShaftSection {
     pub gear: Vec<GearSection>,
     /// Points whose motion is reported.
     pub point: Vec<Point>,
+}
+
+impl ShaftSection {
+    /// \[m] place at a position \[m] along it.
+    pub fn place(&self, position: f64) -> [f64; 3] {
+        let [x, y, z] = self.origin.map_or([0.0; 3], |origin| origin.map(|length| length.0));
+        [x + position, y, z]
+    }
+
+    /// \[m] positions of everything on it: loads, points, discs and gears.
+    pub fn positions(&self) -> impl Iterator<Item = f64> {
+        let loads = self.load.iter().map(|load| load.position.0);
+        let points = self.point.iter().map(|point| point.position.0);
+        let discs = self.disc.iter().map(|disc| disc.position.0);
+        let gears = self.gear.iter().map(|gear| gear.offset.0);
+        loads.chain(points).chain(discs).chain(gears)
+    }
+}
+
+/// The shafts of a file: one as a section `[shaft]`, or several `[[shaft]]`.
+#[derive(Clone, Debug)]
+pub struct Shafts(pub Vec<ShaftSection>);
+
+impl<'de> Deserialize<'de> for Shafts {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct OneOrMore;
+        impl<'de> Visitor<'de> for OneOrMore {
+            type Value = Shafts;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a section [shaft], or several [[shaft]]")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Shafts, A::Error> {
+                let mut shaft = ShaftSection::deserialize(MapAccessDeserializer::new(map))?;
+                if shaft.name.is_empty() {
+                    shaft.name = "shaft".into();
+                }
+                Ok(Shafts(vec![shaft]))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Shafts, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(Shafts)
+            }
+        }
+        deserializer.deserialize_any(OneOrMore)
+    }
 }
 
 /// A beam of one cross-section.

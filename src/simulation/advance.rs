@@ -6,10 +6,10 @@ use super::error::SimulationError;
 use super::inputs::Inputs;
 use super::outputs::Outputs;
 use super::script::{Script, script_motion};
-use super::system::Played;
+use super::system::{Played, Structures};
 use super::together::{Stopped, Together};
 use super::{Simulation, step_limits};
-use crate::dynamics::system::{Part, Perturbed, Started, StructureLoad, advance_perturbed, try_step};
+use crate::dynamics::system::{Joined, Part, Perturbed, Started, StructureLoad, advance_perturbed, try_step};
 use crate::dynamics::{Boundary, StepFailure, Workspace, failure_site};
 use crate::effects::film::Films;
 use crate::model::bodies::Race;
@@ -125,7 +125,7 @@ impl Together<'_> {
                         self.perturb(start, accepted, (scripts, played, next), perturbed, aside)?;
                     }
                     if let Some(structures) = &mut self.structures {
-                        structures.states = ends;
+                        structures.reach(ends, h);
                     }
                     return self.check_step(&boundaries);
                 }
@@ -149,13 +149,13 @@ impl Together<'_> {
         let mut buffers = std::mem::take(&mut self.bearings[0].buffers);
         let structures = self.structures.as_deref();
         let steps = structures.map_or(vec![], |all| all.steps(&all.states, loads));
-        let joints = structures.map_or(&[][..], |all| &all.joints);
+        let joined = structures.map_or(Joined::default(), Structures::joined);
         let of = |(bearing, boundary)| {
             let Simulation { model, state, workspace, .. }: &mut Simulation = bearing;
             Part { model, state, boundary, workspace }
         };
         let mut parts: Vec<Part<'_>> = self.bearings.iter_mut().zip(boundaries).map(of).collect();
-        let tried = try_step(&mut parts, &steps, joints, h, control, &mut buffers);
+        let tried = try_step(&mut parts, &steps, joined, h, control, &mut buffers);
         self.bearings[0].buffers = buffers;
         tried
     }
@@ -197,13 +197,13 @@ impl Together<'_> {
         });
         let structures = self.structures.as_deref();
         let steps = structures.map_or(vec![], |all| all.steps(&all.states, loads));
-        let joints = structures.map_or(&[][..], |all| &all.joints);
+        let joined = structures.map_or(Joined::default(), Structures::joined);
         let accepted = (h, &self.bearings[0].buffers.unknowns[..]);
-        let ends = advance_perturbed(&bearings, &steps, joints, accepted, parts, aside)
+        let ends = advance_perturbed(&bearings, &steps, joined, accepted, parts, aside)
             .ok_or((0, SimulationError::Singular(time)))?;
         for (beside, ends) in perturbed.iter_mut().zip(ends) {
             if let Some(structures) = &mut beside.structures {
-                structures.states = ends;
+                structures.reach(ends, h);
             }
         }
         Ok(())

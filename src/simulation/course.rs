@@ -4,11 +4,12 @@ use super::inputs::Inputs;
 use super::play::Scripted;
 use super::point::Point;
 use super::script::Script;
-use super::system::Played;
+use super::system::{Played, Structures};
 use super::together::{Stopped, Together};
 use super::{Simulation, SimulationError, conditions};
 use crate::dynamics::StepBound;
-use crate::dynamics::system::{Stepped, within};
+use crate::dynamics::system::{Joined, Stepped, within};
+use crate::model::link::LinkState;
 use crate::model::state::State;
 use crate::model::structure::StructureState;
 use crate::scene::{Groups, Level};
@@ -37,8 +38,10 @@ struct Moment {
     time: f64,
     /// Of the bearings.
     bearings: Vec<StepBound>,
-    /// Of the shaft and the housings.
+    /// Of the shafts and the housings.
     structures: Vec<StructureState>,
+    /// Of what links them.
+    links: Vec<LinkState>,
 }
 
 impl Course {
@@ -117,6 +120,7 @@ impl Together<'_> {
         }
         if let Some(structures) = &mut self.structures {
             structures.states.clone_from(&start.structures);
+            structures.link_states.clone_from(&start.links);
         }
         self.set_bearing_inputs(course);
         let loads = self.loads(&course.played, time);
@@ -132,12 +136,12 @@ impl Together<'_> {
             .collect();
         let structures = self.structures.as_deref();
         let steps = structures.map_or(vec![], |all| all.steps(&start.structures, &loads));
-        let joints = structures.map_or(&[][..], |all| &all.joints);
+        let joined = structures.map_or(Joined::default(), Structures::joined);
         let spans = (time - start.time, end.time - start.time);
-        let (bearings, states) = within(&mut stepped, &steps, &end.structures, joints, spans);
+        let (bearings, states) = within(&mut stepped, &steps, &end.structures, joined, spans);
         drop((stepped, steps));
         if let Some(structures) = &mut self.structures {
-            structures.states = states;
+            structures.reach(states, spans.0);
         }
         let all = self.bearings.iter_mut().zip(bearings).zip(&course.scripts).zip(&course.inputs);
         for (((bearing, seen), script), inputs) in all {
@@ -149,7 +153,7 @@ impl Together<'_> {
 
     pub(super) fn look_up(&mut self, course: &mut Course) {
         let time = self.time();
-        let Some(Moment { bearings, structures: states, .. }) = course.end.take() else {
+        let Some(Moment { bearings, structures: states, links, .. }) = course.end.take() else {
             self.bearings.iter_mut().for_each(Simulation::begin_report);
             return;
         };
@@ -158,7 +162,7 @@ impl Together<'_> {
             bearing.go_back_to(end.state, &mut start.state, time);
         }
         if let Some(structures) = &mut self.structures {
-            structures.states = states;
+            (structures.states, structures.link_states) = (states, links);
         }
         self.show(course);
     }
@@ -179,7 +183,8 @@ impl Together<'_> {
     fn moment(&self) -> Moment {
         let bearings = self.bearings.iter().map(Simulation::bound).collect();
         let structures = self.structures.as_ref().map_or(vec![], |all| all.states.clone());
-        Moment { time: self.time(), bearings, structures }
+        let links = self.structures.as_ref().map_or(vec![], |all| all.link_states.clone());
+        Moment { time: self.time(), bearings, structures, links }
     }
 
     /// Shows where the last step has ended.

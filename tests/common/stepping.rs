@@ -1,6 +1,6 @@
 //! Single steps of a bearing alone.
 
-use roulement::dynamics::system::{Part, StepBuffers, try_step};
+use roulement::dynamics::system::{Joined, Part, StepBuffers, try_step};
 use roulement::dynamics::{Boundary, Workspace};
 use roulement::model::Model;
 use roulement::model::state::State;
@@ -9,5 +9,5 @@ use roulement::model::state::State;
 pub fn step(model: &Model, state: &mut State, boundary: &Boundary, h: f64, workspace: &mut Workspace) {
     let mut control = state.control;
     let mut part = [Part { model, state, boundary, workspace }];
-    try_step(&mut part, &[], &[], h, &mut control, &mut StepBuffers::default()).unwrap();
+    try_step(&mut part, &[], Joined::default(), h, &mut control, &mut StepBuffers::default()).unwrap();
 }

@@ -77,7 +77,7 @@ pub fn forces(system: &System) -> Vec<Vector3<f64>> {
 /// \[J] largest imbalance of energy of the shaft, and of its bearings since a moment whose stored energies are given, each over what was
 /// turned over.
 pub fn imbalance(system: &System, stored: &[f64]) -> [f64; 2] {
-    let energies = &system.outputs().energies;
+    let energies = &system.outputs().shafts[0].energies;
     let of_shaft = energies.unaccounted() / (energies.input.abs() + energies.bearings.abs()).max(1e-9);
     let of_bearings = system.bearings().zip(stored).map(|((_, bearing), before)| {
         let outputs = bearing.outputs();
@@ -108,4 +108,11 @@ pub fn assert_order_two(text: &str, end: f64, step: f64, show: impl Fn(&System) 
         // The reference has a sixteenth of the last error, which makes 2.07 of 2; order one and order three are far outside.
         assert!((1.7..2.5).contains(&order), "{errors:?}");
     }
+}
+
+/// Force and moment of every bearing on the shaft in the equilibrium, about the middle of its bore, in the shaft's axes.
+pub fn held(system: &System) -> Vec<[Vector3<f64>; 2]> {
+    let found = roulement::simulation::system::MachineEquilibrium::of(system.scene(), system.time(), 1.0);
+    let found = found.unwrap_or_else(|why| panic!("{why}"));
+    found.bearings.iter().map(|bearing| [bearing.force, bearing.moment]).collect()
 }

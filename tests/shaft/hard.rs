@@ -113,7 +113,7 @@ fn closed_form_a_shaft_passes_its_critical_speed_where_stiffness_over_mass_says(
         .iter()
         .map(|row| {
             let d = row.outputs().loads[0].displacement;
-            [row.outputs().spin.speed, d.y.hypot(d.z)]
+            [row.outputs().shafts[0].spin.speed, d.y.hypot(d.z)]
         })
         .collect();
     let peak = sizes.iter().max_by(|a, b| a[1].total_cmp(&b[1])).unwrap();
@@ -132,11 +132,11 @@ fn regression_the_energy_of_a_shaft_that_is_run_up_and_down_closes() {
         [("14000 rpm", text.to_string()), ("3000 rpm", text.replace("14000 rpm", "3000 rpm"))]
     {
         let system = run(&scene, 0.11);
-        let energies = &system.outputs().energies;
+        let energies = &system.outputs().shafts[0].energies;
         assert!(energies.input > 0.02, "{speed}: {energies:?}");
         assert!(energies.unaccounted().abs() < 1e-3 * energies.input, "{speed}: {energies:?}");
         // The spin goes in and out.
-        let spin = system.shaft().structure.polar_inertia
+        let spin = system.shafts()[0].structure.polar_inertia
             * if speed == "3000 rpm" { 314.16f64 } else { 1466.1 }.powi(2);
         assert!((energies.turned_over() / spin - 1.0).abs() < 0.01, "{} {spin}", energies.turned_over());
     }

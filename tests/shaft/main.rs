@@ -6,10 +6,12 @@ mod common;
 mod equilibrium;
 mod hard;
 mod housing;
+mod mesh;
 mod motion;
 mod quasi_static;
 mod reference;
 mod seats;
+mod several;
 #[path = "../scene/reference/sources.rs"]
 #[allow(dead_code)]
 mod sources;

@@ -52,8 +52,9 @@ fn identity_rows_are_the_equilibria_of_their_times() {
             let system = machine.shaft().unwrap();
             let there = System::starting_at(&scene, system.time()).unwrap();
             assert_alike(system, &there, 1e-7);
-            assert_eq!(system.outputs().spin.speed, there.outputs().spin.speed);
-            let (turned, angle) = (system.outputs().spin.angle, there.outputs().spin.angle);
+            assert_eq!(system.outputs().shafts[0].spin.speed, there.outputs().shafts[0].spin.speed);
+            let (turned, angle) =
+                (system.outputs().shafts[0].spin.angle, there.outputs().shafts[0].spin.angle);
             assert!((turned - angle).abs() < 1e-12 * angle.abs().max(1.0), "{turned} {angle}");
             for (_, bearing) in system.bearings() {
                 let outputs = bearing.outputs();
@@ -81,8 +82,8 @@ fn identity_inputs_lead_to_the_equilibrium_under_them() {
     for (point, (force, speed)) in [(900.0, 628.0), (900.0, 700.0), (-300.0, 700.0)].into_iter().enumerate() {
         let mut inputs = system.inputs().clone();
         inputs.loads[0].force.z = force;
-        angle += 1e-3 * 0.5 * (inputs.drive + speed);
-        inputs.drive = speed;
+        angle += 1e-3 * 0.5 * (inputs.drives[0] + speed);
+        inputs.drives[0] = speed;
         let bearings = || system.bearings().map(|(_, bearing)| *bearing.inputs()).collect::<Vec<_>>();
         // Two slightly different inputs beside it: what they lead to.
         let moved = |by: f64| {
@@ -97,9 +98,9 @@ fn identity_inputs_lead_to_the_equilibrium_under_them() {
         let pair = system.advance_perturbed(1e-3 * (point + 1) as f64, &beside, &none).unwrap();
         assert_alike(&system, &under(force, speed), 1e-6);
         assert!(
-            (system.outputs().spin.angle - angle).abs() < 1e-9,
+            (system.outputs().shafts[0].spin.angle - angle).abs() < 1e-9,
             "{} {angle}",
-            system.outputs().spin.angle
+            system.outputs().shafts[0].spin.angle
         );
         assert_alike(&pair[0], &under(force + 1.0, speed), 1e-6);
         assert_alike(&pair[1], &under(force - 1.0, speed), 1e-6);
@@ -108,7 +109,7 @@ fn identity_inputs_lead_to_the_equilibrium_under_them() {
         let mut other = System::new(&scene(&text)).unwrap();
         assert!(other.restore(&snapshot));
         assert_eq!(numbers(&other), numbers(&system));
-        assert_eq!(other.outputs().spin, system.outputs().spin);
+        assert_eq!(other.outputs().shafts[0].spin, system.outputs().shafts[0].spin);
     }
 }
 

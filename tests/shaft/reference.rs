@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::sources::{Section, Source, sources};
 
 /// Structs, and the section that each is in a file.
-const SECTIONS: [(&str, &str); 17] = [
+const SECTIONS: [(&str, &str); 20] = [
     ("Written", ""),
     ("ShaftSection", "shaft"),
     ("BeamSection", "shaft.section"),
@@ -19,7 +19,10 @@ const SECTIONS: [(&str, &str); 17] = [
     ("Foot", "housing.foot"),
     ("HousingLoad", "housing.load"),
     ("HousingPoint", "housing.point"),
+    ("MeshSection", "mesh"),
+    ("MeshGear", "mesh.gears"),
     ("WrittenBearing", "bearing"),
+    ("StiffnessSection", "bearing.stiffness"),
     ("Mounting", "bearing.mounting"),
     ("BoreTilt", "bearing.mounting.misalignment"),
     ("BoreOffset", "bearing.mounting.offset"),
@@ -33,6 +36,7 @@ fn section<'a>(sources: &'a [Source], name: &str) -> &'a Section {
             "schema/shaft.rs",
             "schema/housing.rs",
             "schema/machine.rs",
+            "schema/mesh.rs",
             "scene/system/mod.rs",
             "scene/system/bearing.rs",
         ]

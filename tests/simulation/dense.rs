@@ -211,7 +211,7 @@ fn invariant_rows_leave_the_motion_of_a_shaft_as_it_is() {
             (machine, seen)
         };
         let ((coarse, of_coarse), (fine, of_fine)) = (play(2.5e-4), play(7.8125e-6));
-        let state = |machine: &Machine| machine.shaft().unwrap().state().clone();
+        let state = |machine: &Machine| machine.shaft().unwrap().states()[0].clone();
         assert_eq!(state(&coarse), state(&fine), "{name}");
         for (one, other) in of_coarse.iter().zip(of_fine.iter().step_by(32)) {
             assert!(one == other, "{name} {}", one.0.time);

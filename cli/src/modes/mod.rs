@@ -202,8 +202,9 @@ fn speed_of(scene: &MachineScene, time: f64) -> f64 {
             load.inner_speed.at(time).abs().max(load.outer_speed.at(time).abs())
         }
         MachineScene::Shaft(scene) => {
-            let scripted = scene.shaft.speed.as_ref().map(|speed| speed.at(time));
-            scripted.or(scene.shaft.start_speed.map(|speed| speed.0)).unwrap_or(0.0).abs()
+            let shaft = &scene.shafts[0];
+            let scripted = shaft.speed.as_ref().map(|speed| speed.at(time));
+            scripted.or(shaft.start_speed.map(|speed| speed.0)).unwrap_or(0.0).abs()
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use roulement::scene::system::SystemScene;
-use roulement::schema::Components;
 use roulement::schema::units::{Force, Length};
+use roulement::schema::{Components, ShaftSection};
 use roulement::simulation::system::{System, SystemOutputs};
 use serde_json::{Value, json};
 
@@ -13,7 +13,10 @@ use crate::report::shaft;
 
 /// All of it; lengths \[m], angles \[rad]. Each bearing has its own dimensions with it: a sweep keeps the record of a shaft alone.
 pub fn describe(system: &System) -> Value {
-    let SystemScene { shaft, housings, bearings, gravity, .. } = system.scene();
+    let SystemScene { shafts, housings, bearings, gravity, .. } = system.scene();
+    // Of several shafts the page shows the bearings alone, by their places along all shafts.
+    let none = ShaftSection::default();
+    let shaft = if let [one] = &shafts[..] { one } else { &none };
     let place = |place: &[Length; 3]| place.map(|length| length.0);
     let force = |force: &Components<Force>| force.0.each_ref().map(schedule);
     json!({
@@ -44,7 +47,8 @@ pub fn describe(system: &System) -> Value {
         "points": shaft.point.iter().map(|point| json!({ "name": point.name, "position": point.position.0 })).collect::<Vec<_>>(),
         "bearings": bearings.iter().zip(system.bearings()).enumerate().map(|(index, (mounted, (_, own)))| json!({
             "name": mounted.name,
-            "position": mounted.mounting.position.0,
+            "position": shafts[mounted.shaft].place(mounted.mounting.position.0)[0],
+            "shaft": shafts[mounted.shaft].name,
             "direction": mounted.mounting.direction.sign(),
             "housing": system.scene().housing_of(index).map(|housing| &housings[housing].name),
             "bearing": bearing::describe(own.scene(), own.model()),
@@ -63,7 +67,7 @@ pub fn describe(system: &System) -> Value {
                 "position": place(&point.position),
             })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
-        "modes": system.shaft().modes,
+        "modes": system.shafts().iter().flat_map(|carrier| &carrier.modes).collect::<Vec<_>>(),
         "gravity": Vector3::from(*gravity).as_slice(),
     })
 }

@@ -62,19 +62,25 @@ impl LossWatch {
     pub fn step_of_shaft(&mut self, system: &System, bearings: impl Iterator<Item = Sums>) {
         let outputs = system.outputs();
         let mut sums = Sums { time: system.time(), ..Sums::default() };
-        for energies in std::iter::once(&outputs.energies).chain(outputs.housings.iter().map(|o| &o.energies))
-        {
+        let shafts = outputs.shafts.iter().map(|o| &o.energies);
+        for energies in shafts.chain(outputs.housings.iter().map(|o| &o.energies)) {
             // What bearings are given is in their own sums.
             sums.put_in += energies.input - energies.bearings;
             sums.stored += energies.stored;
             sums.lost += energies.damping;
+        }
+        for link in &outputs.links {
+            sums.put_in += link.state.taken;
+            sums.stored += link.state.stored;
+            sums.lost += link.state.damped;
         }
         for of_bearing in bearings {
             sums.put_in += of_bearing.put_in;
             sums.stored += of_bearing.stored;
             sums.lost += of_bearing.lost;
         }
-        self.add(sums, outputs.torque * outputs.spin.speed, None);
+        let torque = outputs.shafts.iter().map(|o| o.torque * o.spin.speed).sum();
+        self.add(sums, torque, None);
     }
 
     /// Takes sums, and the powers \[W] that are summed here by the trapezoidal rule, as energies are: of torques, and of losses where their

@@ -194,10 +194,11 @@ impl ShaftQuantities {
 /// What the size of a shaft's variable is measured by; none of what is no quantity with a mean: angle, velocities, energies, and loads,
 /// which are given.
 fn size_of(name: &str, unit: &str) -> Option<Size> {
-    match (name, unit) {
-        ("shaft.speed", _) => Some(Size::Speed),
-        ("shaft.torque", _) => Some(Size::Own),
-        ("shaft.angle", _) => None,
+    let of_whole = name.split_once('.').map_or(name, |(_, key)| key);
+    match (of_whole, unit) {
+        ("speed", _) => Some(Size::Speed),
+        ("torque", _) => Some(Size::Own),
+        ("angle", _) => None,
         (_, "m") => Some(Size::Position),
         (_, "rad") => Some(Size::Tilt),
         _ => None,

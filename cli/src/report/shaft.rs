@@ -8,18 +8,20 @@ use roulement::contact::REGULARISATION_SPEED;
 use roulement::interface::variables::quoted;
 use roulement::scene::system::SystemScene;
 use roulement::simulation::losses::LOSSES;
-use roulement::simulation::system::{HousingOutputs, PointOutput, System, SystemOutputs};
+use roulement::simulation::system::{HousingOutputs, PointOutput, ShaftOutputs, System, SystemOutputs};
 
 use super::figures::Shown;
 use super::plots::{Curve, Panel, figure};
 use super::style::PlotError;
 use crate::watch::Life;
 
-/// Names of all points of a shaft whose motion is known: bearings, loads, points.
+/// Names of all points of shafts whose motion is known, with that of their shaft before them: bearings, loads, points.
 pub fn places(scene: &SystemScene) -> Vec<String> {
-    let bearings = scene.bearings.iter().map(|bearing| &bearing.name);
-    let loads = scene.shaft.load.iter().map(|load| &load.name);
-    bearings.chain(loads).chain(scene.shaft.point.iter().map(|point| &point.name)).cloned().collect()
+    let bearings = scene.bearings.iter().map(|bearing| (&scene.shafts[bearing.shaft], &bearing.name));
+    let loads = scene.shafts.iter().flat_map(|shaft| shaft.load.iter().map(move |load| (shaft, &load.name)));
+    let points =
+        scene.shafts.iter().flat_map(|shaft| shaft.point.iter().map(move |point| (shaft, &point.name)));
+    bearings.chain(loads).chain(points).map(|(shaft, name)| format!("{}.{name}", shaft.name)).collect()
 }
 
 /// Motion at all of these points.
@@ -40,13 +42,16 @@ fn points_of_housing(outputs: &HousingOutputs) -> impl Iterator<Item = &PointOut
     outputs.seats.iter().chain(&outputs.loads).chain(&outputs.points)
 }
 
-/// Names and units of the columns of the table of a shaft and its housings, the time first.
+/// Names and units of the columns of the table of shafts and its housings, the time first.
 pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
-    let own = [("time", "s"), ("shaft.angle", "rad"), ("shaft.speed", "rad/s"), ("shaft.torque", "N m")];
-    let mut columns: Vec<_> = own.map(|(name, unit)| (name.to_string(), unit)).into();
+    let mut columns = vec![("time".to_string(), "s")];
+    for shaft in &scene.shafts {
+        let own = [("angle", "rad"), ("speed", "rad/s"), ("torque", "N m")];
+        columns.extend(own.map(|(quantity, unit)| (format!("{}.{quantity}", shaft.name), unit)));
+    }
     for place in places(scene) {
         let of = [("x", "m"), ("y", "m"), ("z", "m"), ("ry", "rad"), ("rz", "rad")];
-        columns.extend(of.map(|(component, unit)| (format!("shaft.{place}.{component}"), unit)));
+        columns.extend(of.map(|(component, unit)| (format!("{place}.{component}"), unit)));
     }
     for (index, housing) in scene.housings.iter().enumerate() {
         for place in places_of_housing(scene, index) {
@@ -60,7 +65,8 @@ pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
 
 /// Values of these columns.
 pub fn row(outputs: &SystemOutputs) -> Vec<f64> {
-    let mut row = vec![outputs.time, outputs.spin.angle, outputs.spin.speed, outputs.torque];
+    let mut row = vec![outputs.time];
+    row.extend(outputs.shafts.iter().flat_map(|own| [own.spin.angle, own.spin.speed, own.torque]));
     for PointOutput { displacement: d, tilt, .. } in points(outputs) {
         row.extend([d.x, d.y, d.z, tilt.y, tilt.z]);
     }
@@ -102,14 +108,16 @@ pub fn write_plot(
         let points = later.iter().map(|row| (row.seats[k].displacement - mean) * 1e6);
         Curve { name: names[k].to_string(), points: points.map(|d| (d.y, d.z)).collect(), band: vec![] }
     };
-    let of_shaft = |y_label, least, get: fn(&SystemOutputs) -> f64| Panel {
+    let of_shafts = |y_label, least, get: fn(&ShaftOutputs) -> f64| Panel {
         x_label: "time [ms]",
         y_label,
-        curves: vec![Curve {
-            name: "shaft".into(),
-            points: rows.iter().map(|row| (row.time * 1e3, get(row))).collect(),
-            band: vec![],
-        }],
+        curves: (scene.shafts.iter().take(7).enumerate())
+            .map(|(k, shaft)| Curve {
+                name: shaft.name.clone(),
+                points: rows.iter().map(|row| (row.time * 1e3, get(&row.shafts[k]))).collect(),
+                band: vec![],
+            })
+            .collect(),
         least,
     };
     let mut panels = vec![
@@ -124,8 +132,8 @@ pub fn write_plot(
         over_time("displacement z [um]", 1e-3, |point| point.displacement.z * 1e6),
         over_time("tilt about y [urad]", 1e-3, |point| point.tilt.y * 1e6),
         over_time("tilt about z [urad]", 1e-3, |point| point.tilt.z * 1e6),
-        of_shaft("speed [rad/s]", 1e-3, |row| row.spin.speed),
-        of_shaft("torque that drives the shaft [N m]", 1e-3, |row| row.torque),
+        of_shafts("speed [rad/s]", 1e-3, |row| row.spin.speed),
+        of_shafts("torque that drives the shaft [N m]", 1e-3, |row| row.torque),
     ];
     panels.extend(of_housings(scene, rows));
     let path = directory.join("shaft.svg");
@@ -173,8 +181,10 @@ fn of_housings(scene: &SystemScene, rows: &[SystemOutputs]) -> Vec<Panel> {
 
 /// What to say of a shaft that creeps under a torque which its friction holds; nothing of one that moves or is driven by a speed.
 pub fn creeping(system: &System) -> Option<String> {
-    let (spin, torque) = (&system.outputs().spin, system.outputs().torque);
-    system.scene().shaft.torque.as_ref()?;
+    // Of several shafts, one that another drives creeps under no torque of its own.
+    let [ShaftOutputs { spin, torque, .. }] = &system.outputs().shafts[..] else { return None };
+    system.scene().shafts[0].torque.as_ref()?;
+    let torque = *torque;
     let held: f64 = system.bearings().map(|(_, bearing)| bearing.outputs().friction_torque).sum();
     // A ball's centre goes half as fast as the shaft's surface, and rolls as fast on both races.
     let rolling = system.bearings().map(|(_, bearing)| 0.25 * bearing.model().bearing.pitch_diameter);
@@ -211,15 +221,15 @@ fn write_summary(
         writeln!(out, "{}", scene.title)?;
     }
     writeln!(out, "at {:.3} ms", outputs.time * 1e3)?;
-    writeln!(
-        out,
-        "shaft            {} rad/s, driven by {} N m",
-        shaft.text("end shaft.speed", 1.0, 4),
-        shaft.text("end shaft.torque", 1.0, 5)
-    )?;
-    if let ([first, .., last], false) = (system.shaft().modes.as_slice(), system.shaft().modes.is_empty()) {
-        let count = system.shaft().modes.len();
-        writeln!(out, "shaft modes      {count} between held stations, {first:.0} to {last:.0} Hz")?;
+    for (section, carrier) in scene.shafts.iter().zip(system.shafts()) {
+        let name = &section.name;
+        let at_end = |what: &str, digits| shaft.text(&format!("end {}.{what}", quoted(name)), 1.0, digits);
+        let (speed, torque) = (at_end("speed", 4), at_end("torque", 5));
+        writeln!(out, "{name:<16} {speed} rad/s, driven by {torque} N m")?;
+        if let [first, .., last] = carrier.modes.as_slice() {
+            let (modes, count) = (format!("{name} modes"), carrier.modes.len());
+            writeln!(out, "{modes:<16} {count} between held stations, {first:.0} to {last:.0} Hz")?;
+        }
     }
     for ((name, bearing), (shown, life)) in system.bearings().zip(bearings.iter().zip(lives)) {
         let direction = scene.bearings.iter().find(|mounted| mounted.name == name);
@@ -264,7 +274,9 @@ fn write_summary(
         let first = outputs.seats.first().map_or_else(String::new, at);
         writeln!(out, "{:<16} at its first bearing {first}", housing.name)?;
     }
-    let energies = [("energy", &outputs.energies)].into_iter();
+    let one = scene.shafts.len() == 1;
+    let of_shafts = scene.shafts.iter().zip(&outputs.shafts);
+    let energies = of_shafts.map(|(shaft, own)| (if one { "energy" } else { &shaft.name }, &own.energies));
     let of_housings = housings.map(|(housing, o)| (housing.name.as_str(), &o.energies));
     let of_rings = outputs.ground.iter().map(|own| ("sliding rings", own));
     for (name, energies) in energies.chain(of_housings).chain(of_rings) {

@@ -126,7 +126,8 @@ impl ShaftSeen {
             let (left, mut all) = (energies.unaccounted(), energies.turned_over());
             if name == RINGS {
                 // Next to nothing goes through them.
-                all = all.max(system.outputs().energies.turned_over());
+                let shafts = system.outputs().shafts.iter().map(|own| own.energies.turned_over());
+                all = shafts.fold(all, f64::max);
             }
             (left.abs() > (TOLERANCE * all).max(ROUNDING * energies.stored)).then(|| {
                 format!(
@@ -159,13 +160,14 @@ impl ShaftSeen {
 /// Outer rings that slide in the ground.
 const RINGS: &str = "rings that slide";
 
-/// Energies of the shaft, of every housing and of rings in the ground, by name.
+/// Energies of the shafts, of every housing and of rings in the ground, by name.
 fn energies(system: &System) -> impl Iterator<Item = (String, &StructureEnergies)> {
     let outputs = system.outputs();
     let housings = system.scene().housings.iter().zip(&outputs.housings);
     let housings = housings.map(|(housing, own)| (format!("housing {}", housing.name), &own.energies));
     let ground = outputs.ground.iter().map(|own| (RINGS.to_string(), own));
-    [("shaft".to_string(), &outputs.energies)].into_iter().chain(housings).chain(ground)
+    let shafts = system.scene().shafts.iter().zip(&outputs.shafts);
+    shafts.map(|(shaft, own)| (shaft.name.clone(), &own.energies)).chain(housings).chain(ground)
 }
 
 /// Those of the smallest bearing.

@@ -24,18 +24,20 @@ pub struct Border {
 
 impl Border {
     /// The matrix, to be assembled: zeros in so many rows.
-    pub(super) fn cleared(&mut self, rows: usize) -> &mut DMatrix<f64> {
-        if self.matrix.nrows() == rows {
-            self.matrix.fill(0.0);
+    pub(super) fn cleared(&mut self, rows: usize) -> DMatrix<f64> {
+        let mut matrix = std::mem::take(&mut self.matrix);
+        if matrix.nrows() == rows {
+            matrix.fill(0.0);
         } else {
-            self.matrix = DMatrix::zeros(rows, rows);
+            matrix = DMatrix::zeros(rows, rows);
         }
-        &mut self.matrix
+        matrix
     }
 
-    /// Factorises the matrix that was assembled.
-    pub(super) fn factorise(&mut self) {
-        self.lu.factorise(&self.matrix);
+    /// Factorises the matrix that was assembled, and keeps it.
+    pub(super) fn factorise(&mut self, matrix: DMatrix<f64>) {
+        self.lu.factorise(&matrix);
+        self.matrix = matrix;
     }
 
     /// Solves in place for the right-hand side; false if the matrix is singular or the solution is not finite.

@@ -1,10 +1,10 @@
 //! Dense output of a system: bearings and structures at a time within a step that was accepted.
 
 use super::structure::StructureTrial;
-use super::{Joint, StructureStep, finished};
+use super::{Joined, Joint, StructureStep, finished};
 use crate::dynamics::{Boundary, StepBound, dense};
-use crate::model::Model;
 use crate::model::structure::StructureState;
+use crate::model::{Model, link};
 use crate::numerics::hermite::Hermite;
 use crate::numerics::hht::HhtStep;
 
@@ -23,7 +23,7 @@ pub fn within(
     bearings: &mut [Stepped<'_>],
     structures: &[StructureStep<'_>],
     ends: &[StructureState],
-    joints: &[Joint],
+    joined: Joined<'_>,
     (part, h): (f64, f64),
 ) -> (Vec<StepBound>, Vec<StructureState>) {
     let between = Hermite::new(part, h);
@@ -33,15 +33,22 @@ pub fn within(
         .map(|(one, end)| StructureTrial::within(one.model, [one.start, end], between, one.load.spin));
     let mut trials: Vec<_> = moved.collect();
     let mut seats = vec![];
-    for Joint { bearing, race, structure, seat } in joints {
+    for Joint { bearing, race, structure, seat } in joined.joints {
         let motion = trials[*structure].seat(structures[*structure].model, seat);
         bearings[*bearing].boundary.motion[*race] = (motion.pose(), motion.twist());
         seats.push(motion);
     }
     let of_bearing = |of: &Stepped<'_>| dense::within(of.model, of.ends, &of.boundary);
     let bearings: Vec<_> = bearings.iter().map(of_bearing).collect();
-    for (Joint { bearing, race, structure, seat }, motion) in joints.iter().zip(&seats) {
+    for (Joint { bearing, race, structure, seat }, motion) in joined.joints.iter().zip(&seats) {
         trials[*structure].add(seat, motion, &bearings[*bearing].state.race(*race).bearing_wrench);
+    }
+    for one in joined.links {
+        let [displacement, rate] = one.motion(|structure| &trials[structure].end);
+        let force = one.force(&displacement, &rate, None).force;
+        for (index, end) in one.ends.iter().enumerate() {
+            trials[end.structure].add_link(end, &(force * link::sign(index)));
+        }
     }
     let step = HhtStep { h: part, ..HhtStep::new(0.0, h) };
     let settled = trials.into_iter().zip(structures).map(|(trial, one)| {

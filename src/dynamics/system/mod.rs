@@ -20,7 +20,7 @@ use crate::numerics::step_control::StepControl;
 use border::Border;
 pub use dense::{Stepped, within};
 pub use sensitivity::{Perturbed, Started, advance_perturbed};
-pub use step::{Joint, StructureStep, SystemStep};
+pub use step::{Joined, Joint, StructureStep, SystemStep};
 pub use structure::{Seat, StructureLoad, StructureTrial};
 
 /// A bearing of a system in a step.
@@ -55,7 +55,7 @@ pub struct StepBuffers {
 pub fn try_step(
     parts: &mut [Part<'_>],
     structures: &[StructureStep<'_>],
-    joints: &[Joint],
+    joined: Joined<'_>,
     h: f64,
     control: &mut StepControl,
     workspace: &mut StepBuffers,
@@ -69,7 +69,7 @@ pub fn try_step(
     let StepBuffers { unknowns, newton: buffers, border } = workspace;
     let mut work = NewtonWork::default();
     let mut second = 0;
-    let mut equations = SystemStep::of_parts(parts, structures, joints, h, border);
+    let mut equations = SystemStep::of_parts(parts, structures, joined, h, border);
     equations.list_near();
     equations.guess(unknowns, false);
     let mut solve = |equations: &mut SystemStep<'_>, unknowns: &mut [f64]| {

@@ -6,7 +6,7 @@
 //! the step itself. What is left is of second order, and even: it cancels between two perturbations of opposite sign.
 
 use super::border::Border;
-use super::step::{Joint, StructureStep, SystemStep};
+use super::step::{Joined, StructureStep, SystemStep};
 use super::{BearingStep, finished};
 use crate::dynamics::accept::{StepEnd, accept};
 use crate::dynamics::{Boundary, Workspace};
@@ -42,7 +42,7 @@ pub struct Perturbed<'a> {
 pub fn advance_perturbed<'a>(
     bearings: &[Started<'_>],
     structures: &[StructureStep<'_>],
-    joints: &[Joint],
+    joined: Joined<'_>,
     (h, solution): (f64, &[f64]),
     perturbed: impl Iterator<Item = Perturbed<'a>>,
     aside: &mut Vec<Workspace>,
@@ -57,7 +57,7 @@ pub fn advance_perturbed<'a>(
         .collect();
     let step = steps.first()?.step;
     let mut border = Border::default();
-    SystemStep::new(steps, structures, joints, step, &mut border).residual(solution, true);
+    SystemStep::new(steps, structures, joined, step, &mut border).residual(solution, true);
     let mut unknowns = vec![0.0; solution.len()];
     let mut ends = vec![];
     for Perturbed { mut states, boundaries, structures } in perturbed {
@@ -72,7 +72,7 @@ pub fn advance_perturbed<'a>(
             own.force_tolerance = 0.0;
             own
         });
-        let mut equations = SystemStep::new(steps.collect(), &structures, joints, step, &mut border);
+        let mut equations = SystemStep::new(steps.collect(), &structures, joined, step, &mut border);
         equations.residual(solution, false);
         if !equations.correction(&mut unknowns) {
             return None;

@@ -11,6 +11,7 @@ use super::Part;
 use super::border::{Border, CarriedRace};
 use super::structure::{Seat, StructureLoad, StructureTrial};
 use crate::model::bodies::Race;
+use crate::model::link::{self, Link, LinkForce};
 use crate::model::state::KeptMatrix;
 use crate::model::structure::{Structure, StructureState};
 use crate::numerics::arrowhead::BLOCK;
@@ -34,6 +35,15 @@ pub struct Joint {
     pub seat: Seat,
 }
 
+/// What joins the structures of a system: to races of its bearings, and to one another.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Joined<'a> {
+    /// Races on their seats.
+    pub joints: &'a [Joint],
+    /// Links.
+    pub links: &'a [Link],
+}
+
 /// A structure at the start of a step, and what acts on it.
 #[derive(Clone, Copy, Debug)]
 pub struct StructureStep<'a> {
@@ -55,7 +65,7 @@ pub struct SystemStep<'a> {
     structures: &'a [StructureStep<'a>],
     /// Their trials.
     pub trials: Vec<StructureTrial>,
-    joints: &'a [Joint],
+    joined: Joined<'a>,
     /// The scheme.
     pub step: HhtStep,
     /// First unknown of each bearing, then of each structure, and the end.
@@ -76,7 +86,7 @@ impl<'a> SystemStep<'a> {
     pub fn of_parts(
         parts: &'a mut [Part<'_>],
         structures: &'a [StructureStep<'a>],
-        joints: &'a [Joint],
+        joined: Joined<'a>,
         h: f64,
         border: &'a mut Border,
     ) -> Self {
@@ -86,14 +96,14 @@ impl<'a> SystemStep<'a> {
         };
         let bearings: Vec<_> = parts.iter_mut().map(of).collect();
         let step = bearings.first().map_or(HhtStep::new(DEFAULT_ALPHA, h), |bearing| bearing.step);
-        Self::new(bearings, structures, joints, step, border)
+        Self::new(bearings, structures, joined, step, border)
     }
 
     /// The equations of a step of bearings whose equations are these, with structures.
     pub fn new(
         bearings: Vec<BearingStep<'a>>,
         structures: &'a [StructureStep<'a>],
-        joints: &'a [Joint],
+        joined: Joined<'a>,
         step: HhtStep,
         border: &'a mut Border,
     ) -> Self {
@@ -102,7 +112,7 @@ impl<'a> SystemStep<'a> {
             bearings,
             structures,
             trials,
-            joints,
+            joined,
             step,
             first: vec![],
             rows: vec![],
@@ -134,7 +144,7 @@ impl<'a> SystemStep<'a> {
         self.rows = ends(&mut of_structures.clone());
         self.first = ends(&mut self.bearings.iter().map(of_bearing).chain(of_structures));
         let bearings = self.bearings.iter().enumerate();
-        let carried = |(index, step)| CarriedRace::of_bearing(index, step, self.joints, &self.rows);
+        let carried = |(index, step)| CarriedRace::of_bearing(index, step, self.joined.joints, &self.rows);
         self.carried = bearings.map(carried).collect();
     }
 
@@ -210,13 +220,19 @@ impl<'a> SystemStep<'a> {
     fn assemble_structures(&mut self) -> f64 {
         self.trials.iter_mut().for_each(StructureTrial::clear);
         let mut tolerance = f64::INFINITY;
-        for Joint { bearing, race, structure, seat } in self.joints {
+        for Joint { bearing, race, structure, seat } in self.joined.joints {
             let step = &self.bearings[*bearing];
             tolerance = tolerance.min(step.force_tolerance);
             if let Some(trial) = &step.workspace.bodies[*race]
                 && let Some(motion) = trial.seat()
             {
                 self.trials[*structure].add(seat, motion, &trial.end.bearing_wrench);
+            }
+        }
+        for link in self.joined.links {
+            let force = self.link_force(link).force;
+            for (index, end) in link.ends.iter().enumerate() {
+                self.trials[end.structure].add_link(end, &(force * link::sign(index)));
             }
         }
         let mut norm = 0.0;
@@ -228,14 +244,20 @@ impl<'a> SystemStep<'a> {
         norm
     }
 
+    /// Force of a link where the structures are.
+    fn link_force(&self, link: &Link) -> LinkForce {
+        let [displacement, rate] = link.motion(|structure| &self.trials[structure].end);
+        link.force(&displacement, &rate, None)
+    }
+
     /// Assembles and factorises the border.
     fn factorise(&mut self) {
-        let matrix = self.border.cleared(self.rows[self.structures.len()]);
+        let mut matrix = self.border.cleared(self.rows[self.structures.len()]);
         for ((one, trial), at) in self.structures.iter().zip(&self.trials).zip(&self.rows) {
             let (at, size) = (*at, one.model.size());
             matrix.view_mut((at, at), (size, size)).copy_from(&trial.tangent(one.model, &self.step));
         }
-        for Joint { bearing, race, structure, seat } in self.joints {
+        for Joint { bearing, race, structure, seat } in self.joined.joints {
             if let Some(trial) = &self.bearings[*bearing].workspace.bodies[*race]
                 && let Some(motion) = trial.seat()
             {
@@ -249,12 +271,29 @@ impl<'a> SystemStep<'a> {
                 }
             }
         }
-        for (step, carried) in self.bearings.iter().zip(&self.carried) {
-            for rows in carried {
-                carried.iter().for_each(|columns| rows.add_block(columns, &step.workspace.reduced, matrix));
+        for link in self.joined.links {
+            let LinkForce { by_displacement, by_rate, .. } = self.link_force(link);
+            let gains = by_displacement * self.step.position_gain() + by_rate * self.step.velocity_gain();
+            let ends = || link.ends.iter().enumerate();
+            for ((i, row), (k, column)) in ends().flat_map(|row| ends().map(move |column| (row, column))) {
+                let signs = -(1.0 - self.step.alpha_f) * link::sign(i) * link::sign(k);
+                let block = row.map.tr_mul(&(gains * &column.map)) * signs;
+                for (from, place) in row.coordinates.iter().enumerate() {
+                    for (to, other) in column.coordinates.iter().enumerate() {
+                        let at = (self.rows[row.structure] + place, self.rows[column.structure] + other);
+                        matrix[at] += block[(from, to)];
+                    }
+                }
             }
         }
-        self.border.factorise();
+        for (step, carried) in self.bearings.iter().zip(&self.carried) {
+            for rows in carried {
+                carried
+                    .iter()
+                    .for_each(|columns| rows.add_block(columns, &step.workspace.reduced, &mut matrix));
+            }
+        }
+        self.border.factorise(matrix);
     }
 
     /// Where the residual is largest after Newton's method gave up.

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector, DVectorViewMut, Dyn, OMatrix, U6, Vector3, Vector6};
 
 use super::super::carried::SeatMotion;
+use crate::model::link::LinkEnd;
 use crate::model::state::stack;
 use crate::model::structure::{
     Map, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
@@ -123,9 +124,9 @@ pub struct StructureTrial {
     pub end: StructureState,
     /// What is left of the equations of motion.
     pub residual: DVector<f64>,
-    /// Generalised force of its bearings.
+    /// Generalised force of its bearings and links.
     from_bearings: DVector<f64>,
-    /// [N m] moment of its bearings about its axis.
+    /// [N m] moment of them about its axis.
     axial: f64,
 }
 
@@ -162,7 +163,7 @@ impl StructureTrial {
         seat.motion([coordinates, rates, accelerations], given)
     }
 
-    /// Forgets the forces of bearings.
+    /// Forgets the forces of bearings and links.
     pub fn clear(&mut self) {
         self.from_bearings.fill(0.0);
         self.axial = 0.0;
@@ -173,6 +174,13 @@ impl StructureTrial {
         let (moments, _) = motion.generalised(&wrench.moment);
         seat.add_force(&stack(&wrench.force, &moments), &mut self.from_bearings.as_view_mut());
         self.axial += seat.direction * moments.x;
+    }
+
+    /// Adds force and moment on an end of a link.
+    pub fn add_link(&mut self, end: &LinkEnd, force: &Vector6<f64>) {
+        let own = end.map.tr_mul(force);
+        end.coordinates.iter().zip(own.iter()).for_each(|(k, value)| self.from_bearings[*k] += value);
+        self.axial += end.turn.dot(force);
     }
 
     /// Residual under what acts from outside and the bearings.

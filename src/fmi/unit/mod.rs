@@ -1,8 +1,8 @@
 //! What an instance simulates: a machine as values by reference. Some go in, steps are made, others come out. Lists of values have one of
 //! every row, by value reference; those of outputs are ignored where values go in.
 //!
-//! Its scripts are, in this order: those of every bearing, group by group; where there is a shaft, one of each named load, one of each gear,
-//! that of the drive.
+//! Its scripts are, in this order: those of every bearing, group by group; where there are shafts, one of each named load, one of each gear,
+//! that of the drive of each shaft.
 
 mod derivatives;
 
@@ -203,7 +203,7 @@ impl Unit {
     fn counts(&self) -> [usize; 3] {
         let shaft = self.scene.shaft();
         let loads = shaft.map_or(0, |scene| scene.loads().count());
-        [self.next.bearings.len(), loads, shaft.map_or(0, |scene| scene.shaft.gear.len())]
+        [self.next.bearings.len(), loads, shaft.map_or(0, |scene| scene.gears().count())]
     }
 
     /// Scripts: who gives what there is one for; none where the scene has no script.
@@ -212,8 +212,8 @@ impl Unit {
             self.machine.bearings().flat_map(|(_, bearing)| givers(bearing.scene())).collect();
         if let Some(scene) = self.scene.shaft() {
             let loads = scene.loads().map(|load| load.is_scripted());
-            let gears = scene.shaft.gear.iter().map(|gear| gear.torque.is_scripted());
-            let of_shaft = loads.chain(gears).chain([drive_is_scripted(scene)]);
+            let gears = scene.gears().map(|gear| gear.torque.is_scripted());
+            let of_shaft = loads.chain(gears).chain(scene.shafts.iter().map(drive_is_scripted));
             all.extend(of_shaft.map(|scripted| scripted.then_some(Giver::Scene)));
         }
         all
@@ -226,7 +226,7 @@ impl Unit {
             None => MachineGroup::Bearing(script / GROUPS, Group::VARIANTS[script % GROUPS]),
             Some(load) if load < loads => MachineGroup::Load(load),
             Some(gear) if gear < loads + gears => MachineGroup::Gear(gear - loads),
-            Some(_) => MachineGroup::Drive,
+            Some(drive) => MachineGroup::Drive(drive - loads - gears),
         }
     }
 
@@ -238,7 +238,13 @@ impl Unit {
                 (load(index).map_or_else(String::new, |load| load.name.into()), Group::Loads)
             }
             MachineGroup::Gear(gear) => (format!("the torque of gear {}", gear + 1), Group::Loads),
-            MachineGroup::Drive => ("the shaft's drive".into(), Group::Speeds),
+            MachineGroup::Drive(shaft) => {
+                let name = self.scene.shaft().map_or("shaft", |scene| &scene.shafts[shaft].name);
+                (
+                    if name == "shaft" { "the shaft's drive".into() } else { format!("the drive of {name}") },
+                    Group::Speeds,
+                )
+            }
             MachineGroup::Bearing(index, group) => match self.machine.bearings().nth(index) {
                 Some((name, _)) if !name.is_empty() => (format!("{group} of {name}"), group),
                 _ => (group.to_string(), group),
@@ -253,7 +259,7 @@ impl Unit {
             MachineGroup::Bearing(index, group) => GROUPS * index + group as usize,
             MachineGroup::Load(load) => GROUPS * bearings + load,
             MachineGroup::Gear(gear) => GROUPS * bearings + loads + gear,
-            MachineGroup::Drive => GROUPS * bearings + loads + gears,
+            MachineGroup::Drive(shaft) => GROUPS * bearings + loads + gears + shaft,
         })
     }
 
@@ -262,11 +268,11 @@ impl Unit {
         let [bearings, loads, gears] = self.counts();
         let (of_bearings, rest) = marks.split_at(GROUPS * bearings);
         let (of_loads, rest) = rest.split_at(loads);
-        let (of_gears, drive) = rest.split_at(gears);
+        let (of_gears, of_drives) = rest.split_at(gears);
         Played {
             loads: of_loads.to_vec(),
             gears: of_gears.to_vec(),
-            drive: drive.contains(&true),
+            drives: of_drives.to_vec(),
             bearings: of_bearings.chunks(GROUPS).map(marked).collect(),
         }
     }

@@ -32,8 +32,8 @@ pub enum MachineGroup {
     Load(usize),
     /// Torque of a gear, by its index.
     Gear(usize),
-    /// Speed or torque of the shaft.
-    Drive,
+    /// Speed or torque of a shaft, by its index.
+    Drive(usize),
     /// A group of inputs of a bearing, by its index.
     Bearing(usize, Group),
 }
@@ -175,9 +175,10 @@ impl MachineVariables {
         match shaft_source(&self.rows[reference])? {
             ShaftSource::Force(load, _) | ShaftSource::Moment(load, _) => Some(MachineGroup::Load(load)),
             ShaftSource::Gear(index) => Some(MachineGroup::Gear(index)),
-            ShaftSource::Drive => Some(MachineGroup::Drive),
+            ShaftSource::Drive(shaft) => Some(MachineGroup::Drive(shaft)),
             ShaftSource::Number(_)
-            | ShaftSource::Whole(_)
+            | ShaftSource::Whole(..)
+            | ShaftSource::Link(..)
             | ShaftSource::Housing(..)
             | ShaftSource::Motion(..) => None,
         }

@@ -3,7 +3,9 @@
 use super::{Causality, Kind, Source, Variable};
 use crate::scene::system::{ShaftParameter, SystemScene};
 use crate::schema::variable_units::{self as units, Unit};
-use crate::simulation::system::{HousingOutputs, PointOutput, ShaftInputs, SystemOutputs};
+use crate::simulation::system::{
+    HousingOutputs, LinkOutputs, PointOutput, ShaftInputs, ShaftOutputs, SystemOutputs,
+};
 
 /// Where the value of a variable of the shaft comes from.
 #[derive(Clone, Copy, Debug)]
@@ -14,16 +16,42 @@ pub enum ShaftSource {
     Moment(usize, usize),
     /// Torque of a gear.
     Gear(usize),
-    /// Speed or torque, whichever drives the shaft.
-    Drive,
+    /// Speed or torque, whichever drives a shaft.
+    Drive(usize),
     /// A number of the scene.
     Number(ShaftParameter),
-    /// The shaft as a whole.
-    Whole(fn(&SystemOutputs) -> f64),
+    /// A shaft as a whole, by its index.
+    Whole(usize, fn(&ShaftOutputs) -> f64),
+    /// A component of what a mesh or a bearing by its stiffness does, by its index.
+    Link(usize, LinkQuantity),
     /// A housing as a whole, by its index.
     Housing(usize, fn(&HousingOutputs) -> f64),
     /// Motion of a station.
     Motion(Station, PointQuantity, usize),
+}
+
+/// A quantity of a mesh or of a bearing by its stiffness.
+#[derive(Clone, Copy, Debug)]
+pub enum LinkQuantity {
+    /// \[N, N m] a component of force and moment on the first gear or the shaft.
+    Force(usize),
+    /// \[N] normal to the teeth.
+    Normal,
+    /// \[J] stored.
+    Stored,
+    /// \[J] lost since the start.
+    Damped,
+}
+
+impl LinkQuantity {
+    fn read(self, link: &LinkOutputs) -> f64 {
+        match self {
+            Self::Force(component) => link.state.force[component],
+            Self::Normal => link.normal_force,
+            Self::Stored => link.state.stored,
+            Self::Damped => link.state.damped,
+        }
+    }
 }
 
 /// A place on the shaft, or on the housing with this index, by its index among those of its kind.
@@ -108,9 +136,10 @@ impl ShaftSource {
             Self::Force(load, axis) => inputs.loads[load].force[axis],
             Self::Moment(load, axis) => inputs.loads[load].moment[axis],
             Self::Gear(index) => inputs.gears[index],
-            Self::Drive => inputs.drive,
+            Self::Drive(shaft) => inputs.drives[shaft],
             Self::Number(parameter) => parameter.start,
-            Self::Whole(get) => get(outputs),
+            Self::Whole(shaft, get) => get(&outputs.shafts[shaft]),
+            Self::Link(index, quantity) => quantity.read(&outputs.links[index]),
             Self::Housing(index, get) => get(&outputs.housings[index]),
             Self::Motion(station, quantity, axis) => quantity.read(station.of(outputs), axis),
         }
@@ -122,8 +151,8 @@ impl ShaftSource {
             Self::Force(load, axis) => inputs.loads[load].force[axis] = value,
             Self::Moment(load, axis) => inputs.loads[load].moment[axis] = value,
             Self::Gear(index) => inputs.gears[index] = value,
-            Self::Drive => inputs.drive = value,
-            Self::Number(_) | Self::Whole(_) | Self::Housing(..) | Self::Motion(..) => {}
+            Self::Drive(shaft) => inputs.drives[shaft] = value,
+            Self::Number(_) | Self::Whole(..) | Self::Link(..) | Self::Housing(..) | Self::Motion(..) => {}
         }
     }
 }
@@ -160,12 +189,12 @@ fn row(
     }
 }
 
-/// The rows of the shaft and the housings of a scene.
+/// The rows of the shafts and the housings of a scene.
 pub fn rows(scene: &SystemScene) -> Vec<Variable> {
-    let shaft = &scene.shaft;
     let mut rows = vec![];
+    let on_shafts = scene.shafts.iter().map(|shaft| shaft.load.len()).sum();
     for (index, load) in scene.loads().enumerate() {
-        let what = if index < shaft.load.len() { "shaft" } else { "housing" };
+        let what = if index < on_shafts { "shaft" } else { "housing" };
         for (axis, letter) in AXES.into_iter().enumerate() {
             let name = format!("{}.force.{letter}", quoted(load.name));
             let description =
@@ -181,23 +210,27 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
             rows.push(row(name, (units::NEWTON_METRE, 1.0), Causality::Input, description, source));
         }
     }
-    for index in 0..shaft.gear.len() {
-        let name = format!("shaft.gear[{}].torque", index + 1);
-        let description = format!("torque about +x that the mesh of gear {} exerts on the shaft", index + 1);
+    let gears = scene.shafts.iter().flat_map(|shaft| (1..=shaft.gear.len()).map(move |gear| (shaft, gear)));
+    for (index, (shaft, gear)) in gears.enumerate() {
+        let name = format!("{}.gear[{gear}].torque", quoted(&shaft.name));
+        let description = format!("torque about +x that the mesh of gear {gear} exerts on the shaft");
         let unit = (units::NEWTON_METRE, 1.0);
         rows.push(row(name, unit, Causality::Input, description, ShaftSource::Gear(index)));
     }
-    turn(scene, &mut rows);
-    for (index, load) in shaft.load.iter().enumerate() {
+    (0..scene.shafts.len()).for_each(|shaft| turn(scene, shaft, &mut rows));
+    for (index, load) in scene.shafts.iter().flat_map(|shaft| &shaft.load).enumerate() {
         motion(&mut rows, Station::Load(None, index), &quoted(&load.name), &load.name);
     }
-    for (index, point) in shaft.point.iter().enumerate() {
+    for (index, point) in scene.shafts.iter().flat_map(|shaft| &shaft.point).enumerate() {
         motion(&mut rows, Station::Point(None, index), &quoted(&point.name), &point.name);
     }
     for (index, bearing) in scene.bearings.iter().enumerate() {
         let prefix = format!("{}.seat", quoted(&bearing.name));
         let place = format!("the seat of bearing {}", bearing.name);
         motion(&mut rows, Station::Seat(None, index), &prefix, &place);
+    }
+    for (index, name) in scene.link_names().enumerate() {
+        link(&mut rows, (index, index < scene.meshes.len()), name);
     }
     for index in 0..scene.housings.len() {
         housing(scene, index, &mut rows);
@@ -207,16 +240,41 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
         let nominal = if parameter.start == 0.0 { 1.0 } else { parameter.start.abs() };
         let unit = (units::of_parameter(number.range.unit), nominal);
         let (description, source) = (number.description.to_string(), ShaftSource::Number(parameter));
-        let name =
-            name.split_once('.').map_or(name.clone(), |(part, key)| format!("{}.{key}", quoted_part(part)));
+        let name = name.split_once('.').map_or(name.clone(), |(part, key)| format!("{}.{key}", quoted(part)));
         rows.push(row(name, unit, Causality::Parameter, description, source));
     }
     rows
 }
 
-/// The first part of a name: quoted, but for what has an index.
-fn quoted_part(part: &str) -> String {
-    if part == "shaft" || part == "solver" { part.into() } else { quoted(part) }
+/// Forces and energies of a mesh, or of a bearing by its stiffness.
+fn link(rows: &mut Vec<Variable>, (index, meshes): (usize, bool), name: &str) {
+    let mut add = |key: &str, unit, what: &str, quantity| {
+        let source = ShaftSource::Link(index, quantity);
+        rows.push(row(
+            format!("{}.{key}", quoted(name)),
+            unit,
+            Causality::Output,
+            format!("{what} of {name}"),
+            source,
+        ));
+    };
+    let (newton, joule) = ((units::NEWTON, 1e3), (units::JOULE, 1.0));
+    let on = if meshes { "force on the first gear" } else { "force on the shaft" };
+    for (axis, letter) in AXES.into_iter().enumerate() {
+        let what = format!("{on}, {letter} component, axes of the shaft,");
+        add(&format!("force.{letter}"), newton, &what, LinkQuantity::Force(axis));
+    }
+    if meshes {
+        let what = "force normal to the teeth, positive where the first gear drives as it turns about +x,";
+        add("normal_force", newton, what, LinkQuantity::Normal);
+    } else {
+        for (axis, letter) in [(4, "y"), (5, "z")] {
+            let what = format!("moment on the shaft, {letter} component, axes of the shaft,");
+            add(&format!("moment.{letter}"), (units::NEWTON_METRE, 1.0), &what, LinkQuantity::Force(axis));
+        }
+    }
+    add("energy.stored", joule, "energy stored in the springs", LinkQuantity::Stored);
+    add("energy.dissipated", joule, "energy lost to the damping since the start", LinkQuantity::Damped);
 }
 
 /// Energies and motion of a housing.
@@ -246,37 +304,39 @@ fn housing(scene: &SystemScene, index: usize, rows: &mut Vec<Variable>) {
 }
 
 /// Drive, turn and energies.
-fn turn(scene: &SystemScene, rows: &mut Vec<Variable>) {
+fn turn(scene: &SystemScene, shaft: usize, rows: &mut Vec<Variable>) {
+    let section = &scene.shafts[shaft];
+    let prefix = quoted(&section.name);
     let (speed, torque) = ((units::RADIAN_PER_SECOND, 100.0), (units::NEWTON_METRE, 1.0));
-    let drive = (Causality::Input, ShaftSource::Drive);
-    let given_speed = scene.shaft.torque.is_none();
+    let drive = (Causality::Input, ShaftSource::Drive(shaft));
+    let given_speed = section.speed.is_some();
     let speed_from = match given_speed {
         true => drive,
-        false => (Causality::Output, ShaftSource::Whole(|o| o.spin.speed)),
+        false => (Causality::Output, ShaftSource::Whole(shaft, |o| o.spin.speed)),
     };
     let torque_from = match given_speed {
-        true => (Causality::Output, ShaftSource::Whole(|o| o.torque)),
+        true => (Causality::Output, ShaftSource::Whole(shaft, |o| o.torque)),
         false => drive,
     };
     let mut add = |name: &str, unit, (causality, source), description: &str| {
-        rows.push(row(name.into(), unit, causality, description.into(), source));
+        rows.push(row(format!("{prefix}.{name}"), unit, causality, description.into(), source));
     };
-    add("shaft.speed", speed, speed_from, "speed of the shaft about its axis");
-    add("shaft.torque", torque, torque_from, "torque that drives the shaft");
-    let mut output = |name: &str, unit, description: &str, get: fn(&SystemOutputs) -> f64| {
-        let source = ShaftSource::Whole(get);
-        rows.push(row(name.into(), unit, Causality::Output, description.into(), source));
+    add("speed", speed, speed_from, "speed of the shaft about its axis");
+    add("torque", torque, torque_from, "torque that drives the shaft");
+    let mut output = |name: &str, unit, description: &str, get: fn(&ShaftOutputs) -> f64| {
+        let source = ShaftSource::Whole(shaft, get);
+        rows.push(row(format!("{prefix}.{name}"), unit, Causality::Output, description.into(), source));
     };
     let angle = "turn of the shaft since time 0 at a given speed, since the start under a torque";
-    output("shaft.angle", (units::RADIAN, 100.0), angle, |o| o.spin.angle);
+    output("angle", (units::RADIAN, 100.0), angle, |o| o.spin.angle);
     let joule = (units::JOULE, 1.0);
-    output("shaft.energy.stored", joule, "kinetic and elastic energy of the shaft", |o| o.energies.stored);
+    output("energy.stored", joule, "kinetic and elastic energy of the shaft", |o| o.energies.stored);
     let work = "work of loads, weight and drive on the shaft since the start";
-    output("shaft.energy.work", joule, work, |o| o.energies.input);
+    output("energy.work", joule, work, |o| o.energies.input);
     let given = "energy that the shaft gave to its bearings since the start";
-    output("shaft.energy.to_bearings", joule, given, |o| o.energies.bearings);
+    output("energy.to_bearings", joule, given, |o| o.energies.bearings);
     let lost = "energy lost to the damping of the shaft since the start";
-    output("shaft.energy.dissipated", joule, lost, |o| o.energies.damping);
+    output("energy.dissipated", joule, lost, |o| o.energies.damping);
 }
 
 /// Motion of a station.

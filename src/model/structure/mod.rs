@@ -124,7 +124,7 @@ pub struct Spin {
 pub struct StructurePowers {
     /// Put in by loads, weight and drive.
     pub input: f64,
-    /// Taken out by its bearings.
+    /// Taken out by its bearings and links.
     pub bearings: f64,
     /// Lost to its damping.
     pub damping: f64,
@@ -137,7 +137,7 @@ pub struct StructureEnergies {
     pub input: f64,
     /// The same of every step, whether it put in or took out.
     pub worked: f64,
-    /// Given to its bearings.
+    /// Given to its bearings and links.
     pub bearings: f64,
     /// Lost to its damping.
     pub damping: f64,

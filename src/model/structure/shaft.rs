@@ -34,7 +34,7 @@ impl Carrier {
     /// # Errors
     /// A sentence, where a station lies beyond the ends of a flexible shaft, or is none of its matrices.
     pub fn of_shaft(section: &ShaftSection, stations: &[f64]) -> Result<Self, String> {
-        let turning = if section.torque.is_some() { Turning::Free } else { Turning::Given };
+        let turning = if section.speed.is_some() { Turning::Given } else { Turning::Free };
         if let Some(read) = &section.read {
             let map = |x: &f64| read.station([*x, 0.0, 0.0]);
             let maps = stations.iter().map(map).collect::<Result<_, _>>()?;

@@ -6,10 +6,13 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::{Table, Value};
 
+use super::mesh::SceneSpring;
 use super::{MountedScene, SystemLoad};
 use crate::catalogue::Request;
 use crate::scene::{Scene, SceneError};
-use crate::schema::{AxialSeat, Mounting, MountingDirection, explain, regular};
+use crate::schema::{
+    AxialSeat, HousingSection, Mounting, MountingDirection, ShaftSection, StiffnessSection, explain, regular,
+};
 
 /// A bearing as it is written.
 #[derive(Deserialize)]
@@ -21,6 +24,10 @@ pub struct WrittenBearing {
     pub scene: Option<Value>,
     /// Its designation in the catalogue, such as 7206 B.
     pub catalogue: Option<String>,
+    /// Its stiffness, in place of a scene: springs instead of balls.
+    pub stiffness: Option<StiffnessSection>,
+    /// Name of the shaft that it sits on; needed where there are several.
+    pub shaft: Option<String>,
     /// Where it sits on the shaft.
     pub mounting: Mounting,
     /// Keys of its scene that are changed, section by section.
@@ -32,8 +39,8 @@ pub struct WrittenBearing {
 pub struct Shared {
     /// [m/s2] gravity in the axes of the shaft.
     pub gravity: Vector3<f64>,
-    /// [rad/s] speed of the shaft at the start.
-    pub speed: f64,
+    /// Name of every shaft, and its speed [rad/s] at the start.
+    pub shafts: Vec<(String, f64)>,
     /// Simulated time, and distance of rows.
     pub load: SystemLoad,
     /// Keys of the time integration.
@@ -43,12 +50,26 @@ pub struct Shared {
 }
 
 impl WrittenBearing {
+    /// The bearing by its stiffness, where it is one.
+    pub fn spring(self, shafts: &[ShaftSection], housings: &[HousingSection]) -> Option<SceneSpring> {
+        let Self { name, stiffness, shaft, mounting, .. } = self;
+        Some(SceneSpring {
+            name,
+            shaft: shafts.iter().position(|own| shaft.as_ref() == Some(&own.name)).unwrap_or(0),
+            position: mounting.position.0,
+            housing: mounting.housing.and_then(|wanted| housings.iter().position(|own| own.name == wanted)),
+            stiffness: stiffness?,
+        })
+    }
+
     /// The bearing with its scene.
     ///
     /// # Errors
     /// With its name and what is wrong.
     pub fn read(self, given: &Shared) -> Result<MountedScene, SceneError> {
-        let Self { name, scene, catalogue, mounting, set } = self;
+        let Self { name, scene, catalogue, shaft, mounting, set, .. } = self;
+        // That there is such a shaft was checked.
+        let shaft = given.shafts.iter().position(|(own, _)| shaft.as_ref() == Some(own)).unwrap_or(0);
         let inside =
             |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
         let mut estimated_mass = None;
@@ -82,9 +103,9 @@ impl WrittenBearing {
         if mounting.seats_outer_ring() {
             seat_outer_ring(&mut table, &mounting, estimated_mass).map_err(inside)?;
         }
-        mount(&mut table, given, mounting.direction);
+        mount(&mut table, given, given.shafts[shaft].1, mounting.direction);
         let scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
-        Ok(MountedScene { name, mounting, scene })
+        Ok(MountedScene { name, shaft, mounting, scene })
     }
 }
 
@@ -141,7 +162,7 @@ fn seat_outer_ring(
 }
 
 /// Makes a bearing's own scene that of a bearing whose inner race the shaft moves.
-fn mount(table: &mut Table, given: &Shared, direction: MountingDirection) {
+fn mount(table: &mut Table, given: &Shared, speed: f64, direction: MountingDirection) {
     let mut inner = section(table, "inner");
     inner.insert("drive".into(), "pose".into());
     table.insert("inner".into(), inner.into());
@@ -153,7 +174,7 @@ fn mount(table: &mut Table, given: &Shared, direction: MountingDirection) {
     load.extend(outer_speed.map(|speed| ("outer_speed".to_string(), speed)));
     load.insert("duration".into(), given.load.duration.0.into());
     load.insert("output_interval".into(), given.load.output_interval.0.into());
-    load.insert("inner_speed".into(), (direction.sign() * given.speed).into());
+    load.insert("inner_speed".into(), (direction.sign() * speed).into());
     for (direction, key) in [
         ("x", "displacement"),
         ("y", "displacement"),

@@ -1,9 +1,11 @@
 //! What the keys of a system must agree in.
 
 use super::bearing::WrittenBearing;
-use super::{MountedScene, Written, check_housing};
+use super::{MountedScene, Written, check_housing, mesh};
 use crate::schema::numbers::Range;
-use crate::schema::{AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, check_phases};
+use crate::schema::{
+    AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, StiffnessSection, check_phases,
+};
 
 /// Masses of shafts and discs.
 pub const MASS: Range = Range::above(0.0, 1e6, "kg");
@@ -25,13 +27,23 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
     if written.gravity.is_scripted() {
         return Err(SceneError::conflict("gravity", "gravity of a system is constant: give three numbers"));
     }
-    if written.bearing.is_empty() {
-        return Err(SceneError::conflict("bearing", "a shaft needs bearings: give at least one [[bearing]]"));
+    if written.bearing.iter().all(|bearing| bearing.stiffness.is_some()) {
+        return Err(SceneError::conflict(
+            "bearing",
+            "a shaft needs bearings: give at least one [[bearing]] that is simulated",
+        ));
+    }
+    if written.shaft.0.is_empty() {
+        return Err(SceneError::conflict("shaft", "give at least one [[shaft]]"));
     }
     let mut names: Vec<&str> = written.bearing.iter().map(|bearing| bearing.name.as_str()).collect();
-    names.push("shaft");
-    names.extend(written.shaft.load.iter().map(|load| load.name.as_str()));
-    names.extend(written.shaft.point.iter().map(|point| point.name.as_str()));
+    names.extend(written.mesh.iter().map(|mesh| mesh.name.as_str()));
+    let shafts = &written.shaft.0;
+    for shaft in shafts {
+        names.push(&shaft.name);
+        names.extend(shaft.load.iter().map(|load| load.name.as_str()));
+        names.extend(shaft.point.iter().map(|point| point.name.as_str()));
+    }
     for housing in &written.housing {
         names.push(&housing.name);
         names.extend(housing.load.iter().map(|load| load.name.as_str()));
@@ -68,11 +80,13 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
             return Err(SceneError::conflict(format!("bearing.mounting.housing = \"{wanted}\""), why));
         }
         bore(mounting)?;
+        if let Some(stiffness) = &bearing.stiffness {
+            by_stiffness(bearing, stiffness)?;
+        }
+        on_one_of(shafts, bearing)?;
     }
-    let slides = |bearing: &WrittenBearing| bearing.mounting.axial == AxialSeat::Free;
-    if written.shaft.matrices.is_none() && written.bearing.iter().all(slides) {
-        let why = "nothing would hold the shaft along its axis: at least one bearing needs axial = \"held\"";
-        return Err(SceneError::conflict("bearing.mounting.axial = \"free\"", why));
+    for shaft in shafts {
+        held(shaft, written)?;
     }
     for housing in &written.housing {
         check_housing::housing(housing)?;
@@ -81,7 +95,75 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
             return Err(SceneError::conflict(format!("housing \"{}\"", housing.name), why));
         }
     }
-    shaft(&written.shaft)
+    shafts.iter().try_for_each(|one| shaft(one, shafts.len() > 1))
+}
+
+/// A bearing sits on a shaft that there is.
+fn on_one_of(shafts: &[ShaftSection], bearing: &WrittenBearing) -> Result<(), SceneError> {
+    let names = || shafts.iter().map(|shaft| shaft.name.as_str());
+    match &bearing.shaft {
+        Some(wanted) if !names().any(|name| name == wanted) => {
+            let why =
+                format!("there is no such [[shaft]]; there are: {}", names().collect::<Vec<_>>().join(", "));
+            Err(SceneError::conflict(format!("bearing.shaft = \"{wanted}\""), why))
+        }
+        None if shafts.len() > 1 => {
+            let why = format!(
+                "is needed where there are several: one of {}",
+                names().collect::<Vec<_>>().join(", ")
+            );
+            Err(SceneError::conflict(format!("bearing \"{}\": bearing.shaft", bearing.name), why))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A bearing by its stiffness has nothing of one that is simulated.
+fn by_stiffness(bearing: &WrittenBearing, stiffness: &StiffnessSection) -> Result<(), SceneError> {
+    let inside =
+        |source| SceneError::At { place: format!("bearing \"{}\"", bearing.name), source: Box::new(source) };
+    let mounting = &bearing.mounting;
+    let own = Mounting { housing: None, ..mounting.clone() };
+    let preload = mounting.preload.force.is_some() || mounting.preload.displacement.is_some();
+    let given = [
+        ("bearing.scene", bearing.scene.is_some()),
+        ("bearing.catalogue", bearing.catalogue.is_some()),
+        ("bearing.set", !bearing.set.is_empty()),
+        ("bearing.mounting", own.seats_outer_ring() || preload),
+    ];
+    if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
+        let why = "is for a bearing that is simulated; of one by its stiffness mounting has position and housing alone";
+        return Err(inside(SceneError::conflict(key, why)));
+    }
+    mesh::check_stiffness(stiffness).map_err(inside)
+}
+
+/// Does nothing of a bearing hold its shaft along the axis?
+fn slides(bearing: &WrittenBearing) -> bool {
+    match &bearing.stiffness {
+        Some(stiffness) => stiffness.axial.is_none_or(|axial| axial.0 == 0.0),
+        None => bearing.mounting.axial == AxialSeat::Free,
+    }
+}
+
+/// Something holds a shaft along its axis.
+fn held(shaft: &ShaftSection, written: &Written) -> Result<(), SceneError> {
+    let one = written.shaft.0.len() == 1;
+    let mut own = written.bearing.iter().filter(|bearing| one || bearing.shaft.as_ref() == Some(&shaft.name));
+    if shaft.matrices.is_none() && own.all(slides) {
+        let why = match one {
+            true => {
+                "nothing would hold the shaft along its axis: at least one bearing needs axial = \"held\""
+                    .into()
+            }
+            false => format!(
+                "nothing would hold shaft \"{}\" along its axis: at least one bearing on it needs axial = \"held\"",
+                shaft.name
+            ),
+        };
+        return Err(SceneError::conflict("bearing.mounting.axial = \"free\"", why));
+    }
+    Ok(())
 }
 
 /// How an outer ring sits.
@@ -100,11 +182,26 @@ fn bore(mounting: &Mounting) -> Result<(), SceneError> {
     Ok(())
 }
 
-fn shaft(shaft: &ShaftSection) -> Result<(), SceneError> {
+fn shaft(shaft: &ShaftSection, of_several: bool) -> Result<(), SceneError> {
+    if of_several {
+        let inside =
+            |source| SceneError::At { place: format!("shaft \"{}\"", shaft.name), source: Box::new(source) };
+        if shaft.speed.is_some() && shaft.torque.is_some() {
+            return Err(inside(SceneError::conflict("shaft", "give at most one of speed and torque")));
+        }
+        return keys_of_shaft(shaft).map_err(inside);
+    }
     if shaft.speed.is_some() == shaft.torque.is_some() {
         return Err(SceneError::conflict("shaft", "give exactly one of speed and torque"));
     }
-    if shaft.start_speed.is_some() && shaft.torque.is_none() {
+    keys_of_shaft(shaft)
+}
+
+fn keys_of_shaft(shaft: &ShaftSection) -> Result<(), SceneError> {
+    for length in shaft.origin.iter().flatten() {
+        POSITION.check("shaft.origin", length.0)?;
+    }
+    if shaft.start_speed.is_some() && shaft.speed.is_some() {
         return Err(SceneError::conflict(
             "shaft.start_speed",
             "needs torque: a speed says how fast the shaft turns",
@@ -194,9 +291,9 @@ fn sections(shaft: &ShaftSection) -> Result<(), SceneError> {
 }
 
 /// All bearings of a system are integrated together.
-pub fn solvers(bearings: &[MountedScene], shaft: &ShaftSection) -> Result<(), SceneError> {
+pub fn solvers(bearings: &[MountedScene], shafts: &[ShaftSection]) -> Result<(), SceneError> {
     let first = &bearings[0].scene.solver;
-    if first.level == Level::Equilibrium && shaft.torque.is_some() {
+    if first.level == Level::Equilibrium && shafts.iter().any(|shaft| shaft.speed.is_none()) {
         let why =
             "\"equilibrium\" needs a speed of the shaft: what shaft.torque does to it is a motion in time";
         return Err(SceneError::conflict("solver.level", why));

@@ -1,4 +1,4 @@
-//! The file of a system: a shaft, its bearings, and what loads it.
+//! The file of a system: shafts, their bearings, and what loads them.
 //!
 //! It is TOML as the scene of one bearing is. Each `[[bearing]]` has the keys of such a scene by itself (`scene`, a file or the keys
 //! themselves; or `catalogue`, a designation), changed by `[bearing.set]`, and where it sits on the shaft, `[bearing.mounting]`.
@@ -6,11 +6,13 @@
 mod bearing;
 mod check;
 mod check_housing;
+pub mod mesh;
 mod numbers;
 
 use std::path::Path;
 
 use bearing::{Shared, WrittenBearing};
+use mesh::{SceneMesh, SceneSpring};
 use nalgebra::Vector3;
 pub use numbers::{ShaftNumber, ShaftParameter};
 use serde::Deserialize;
@@ -19,8 +21,8 @@ use toml::{Table, Value};
 use super::{Scene, SceneError};
 use crate::schema::units::{Acceleration, Force, Moment, Time};
 use crate::schema::{
-    AxialSeat, Components, HousingSection, Matrices, Mounting, PhaseSection, Schedule, ShaftSection, Solver,
-    explain, regular,
+    AxialSeat, Components, GearSection, HousingSection, Matrices, MeshSection, Mounting, PhaseSection,
+    Schedule, ShaftSection, Shafts, Solver, explain, regular,
 };
 
 /// A shaft with its bearings, as described by a file.
@@ -28,10 +30,14 @@ use crate::schema::{
 pub struct SystemScene {
     /// One line for results.
     pub title: String,
-    /// The shaft.
-    pub shaft: ShaftSection,
+    /// The shafts: one at least.
+    pub shafts: Vec<ShaftSection>,
     /// Housings that outer races sit in.
     pub housings: Vec<HousingSection>,
+    /// Gears in mesh.
+    pub meshes: Vec<SceneMesh>,
+    /// Bearings by their stiffness.
+    pub springs: Vec<SceneSpring>,
     /// The bearings.
     pub bearings: Vec<MountedScene>,
     /// [m/s2] acceleration of gravity in the axes of the shaft, constant.
@@ -49,6 +55,8 @@ pub struct SystemScene {
 pub struct MountedScene {
     /// Its name, which names of its variables begin with.
     pub name: String,
+    /// Index of the shaft that it sits on.
+    pub shaft: usize,
     /// Where it sits.
     pub mounting: Mounting,
     /// The bearing by itself, in axes of its own; its inner race is moved by the shaft.
@@ -105,11 +113,14 @@ struct Written {
     /// One line for plots and results.
     #[serde(default)]
     title: String,
-    /// The shaft.
-    shaft: ShaftSection,
+    /// The shaft, or several of them as `[[shaft]]`.
+    shaft: Shafts,
     /// Housings that outer races sit in.
     #[serde(default)]
     housing: Vec<HousingSection>,
+    /// Gears in mesh.
+    #[serde(default)]
+    mesh: Vec<MeshSection>,
     /// The bearings.
     bearing: Vec<WrittenBearing>,
     /// Simulated time, and distance of rows.
@@ -172,16 +183,29 @@ impl SystemScene {
         let written: Written = explain::read(text).map_err(|(why, spot)| place(why, spot))?;
         let placed = |error| place(error, None);
         check::check(&written).map_err(placed)?;
-        let Written { title, mut shaft, mut housing, bearing, load, phase: phases, gravity, solver } =
-            written;
+        let Written {
+            title,
+            shaft: Shafts(mut shafts),
+            mut housing,
+            mesh,
+            bearing,
+            load,
+            phase: phases,
+            gravity,
+            solver,
+        } = written;
         let gravity = gravity.at(0.0);
         let matrices = |given: &Option<Value>, key: &str| {
             let read = given.as_ref().map(|given| Matrices::of(given, folder, key)).transpose()?;
             let checked = read.as_ref().map(|matrices| matrices.checked(key)).transpose()?;
             Ok((read, checked))
         };
-        let of_shaft;
-        (of_shaft, shaft.read) = matrices(&shaft.matrices, "shaft.matrices").map_err(placed)?;
+        let mut of_shafts = vec![];
+        for shaft in &mut shafts {
+            let (read, checked) = matrices(&shaft.matrices, "shaft.matrices").map_err(placed)?;
+            shaft.read = checked;
+            of_shafts.push(read);
+        }
         let mut of_housings = vec![];
         for housing in &mut housing {
             let key = format!("housing \"{}\": housing.matrices", housing.name);
@@ -189,14 +213,34 @@ impl SystemScene {
             housing.read = checked;
             of_housings.push(read);
         }
-        let speed = shaft.speed.as_ref().map_or(0.0, |speed| speed.at(0.0));
-        let given = Shared { gravity, speed, load, solver, folder: folder.to_path_buf() };
+        let meshes = mesh.into_iter().map(|mesh| mesh::read(mesh, &shafts));
+        let meshes = meshes.collect::<Result<Vec<_>, _>>().map_err(placed)?;
+        mesh::check_trains(&shafts, &meshes).map_err(placed)?;
+        let speed = |train: mesh::InTrain| {
+            train.ratio * shafts[train.root].speed.as_ref().map_or(0.0, |speed| speed.at(0.0))
+        };
+        let turning = shafts.iter().zip(mesh::trains(&shafts, &meshes));
+        let shafts_turn = turning.map(|(shaft, train)| (shaft.name.clone(), speed(train))).collect();
+        let given = Shared { gravity, shafts: shafts_turn, load, solver, folder: folder.to_path_buf() };
+        let (springs, bearing): (Vec<_>, Vec<_>) =
+            bearing.into_iter().partition(|bearing| bearing.stiffness.is_some());
+        let springs = springs.into_iter().filter_map(|spring| spring.spring(&shafts, &housing)).collect();
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
         let bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
-        check::solvers(&bearings, &shaft).map_err(placed)?;
-        let source =
-            standing_alone(text, &bearings, of_shaft.as_ref(), &of_housings, gravity != Vector3::zeros());
-        Ok(Self { title, shaft, housings: housing, bearings, gravity, load, phases, source })
+        check::solvers(&bearings, &shafts).map_err(placed)?;
+        let source = standing_alone(text, &bearings, &of_shafts, &of_housings, gravity != Vector3::zeros());
+        Ok(Self {
+            title,
+            shafts,
+            housings: housing,
+            meshes,
+            springs,
+            bearings,
+            gravity,
+            load,
+            phases,
+            source,
+        })
     }
 
     /// What the reader of each bearing's scene should know.
@@ -208,13 +252,13 @@ impl SystemScene {
         self.bearings.iter().flat_map(of).collect()
     }
 
-    /// Named loads of the shaft, then those of every housing.
+    /// Named loads of the shafts, then those of every housing.
     pub fn loads(&self) -> impl Iterator<Item = NamedLoad<'_>> {
-        let shaft = self.shaft.load.iter();
-        let shaft =
-            shaft.map(|load| NamedLoad { name: &load.name, force: &load.force, moment: &load.moment });
+        let shafts = self.shafts.iter().flat_map(|shaft| &shaft.load);
+        let shafts =
+            shafts.map(|load| NamedLoad { name: &load.name, force: &load.force, moment: &load.moment });
         let housings = self.housings.iter().flat_map(|housing| &housing.load);
-        shaft.chain(housings.map(|load| NamedLoad {
+        shafts.chain(housings.map(|load| NamedLoad {
             name: &load.name,
             force: &load.force,
             moment: &load.moment,
@@ -229,11 +273,27 @@ impl SystemScene {
         }
     }
 
-    /// Schedules of what acts on the shaft, its housings and bearings.
+    /// Meshes `[[shaft.gear]]` of the first shaft, then of the next.
+    pub fn gears(&self) -> impl Iterator<Item = &GearSection> {
+        self.shafts.iter().flat_map(|shaft| &shaft.gear)
+    }
+
+    /// Names of meshes, then of bearings by their stiffness.
+    pub fn link_names(&self) -> impl Iterator<Item = &str> {
+        let meshes = self.meshes.iter().map(|mesh| mesh.section.name.as_str());
+        meshes.chain(self.springs.iter().map(|spring| spring.name.as_str()))
+    }
+
+    /// Bearings that sit on a shaft, by their indices.
+    pub fn bearings_on(&self, shaft: usize) -> impl Iterator<Item = usize> {
+        (0..self.bearings.len()).filter(move |bearing| self.bearings[*bearing].shaft == shaft)
+    }
+
+    /// Schedules of what acts on the shafts, their housings and bearings.
     pub fn schedules(&self) -> impl Iterator<Item = &Schedule> {
         let loads = self.loads().flat_map(|load| load.force.0.iter().chain(&load.moment.0));
-        let drive = self.shaft.speed.iter().chain(&self.shaft.torque);
-        let gears = self.shaft.gear.iter().map(|gear| &gear.torque);
+        let drive = self.shafts.iter().flat_map(|shaft| shaft.speed.iter().chain(&shaft.torque));
+        let gears = self.gears().map(|gear| &gear.torque);
         let frictions = self.bearings.iter().map(|mounted| &mounted.scene.friction.ball_race);
         let oils = self.bearings.iter().filter_map(|mounted| mounted.scene.effects.film.schedule());
         loads.chain(drive).chain(gears).chain(frictions).chain(oils)
@@ -272,11 +332,11 @@ impl SystemScene {
     }
 }
 
-/// The text of a system with the whole scene of every bearing and the matrices of its shaft and housings in it; does gravity act?
+/// The text of a system with the whole scene of every bearing and the matrices of its shafts and housings in it; does gravity act?
 fn standing_alone(
     text: &str,
     bearings: &[MountedScene],
-    of_shaft: Option<&Matrices>,
+    of_shafts: &[Option<Matrices>],
     of_housings: &[Option<Matrices>],
     weighs: bool,
 ) -> String {
@@ -289,7 +349,13 @@ fn standing_alone(
             keys.insert("matrices".into(), matrices);
         }
     };
-    put(table.get_mut("shaft"), of_shaft);
+    let mut shafts: Vec<&mut Value> = match table.get_mut("shaft") {
+        Some(Value::Array(several)) => several.iter_mut().collect(),
+        one => one.into_iter().collect(),
+    };
+    for (keys, matrices) in shafts.iter_mut().zip(of_shafts) {
+        put(Some(keys), matrices.as_ref());
+    }
     let housings = table.get_mut("housing").and_then(Value::as_array_mut).into_iter().flatten();
     for (keys, matrices) in housings.zip(of_housings) {
         put(Some(keys), matrices.as_ref());
@@ -302,7 +368,8 @@ fn standing_alone(
 fn write_bearings(table: &mut Table, bearings: &[MountedScene], weighs: bool) {
     let solver = table.contains_key("solver");
     let written = table.get_mut("bearing").and_then(Value::as_array_mut).into_iter().flatten();
-    for (keys, bearing) in written.filter_map(Value::as_table_mut).zip(bearings) {
+    let simulated = written.filter_map(Value::as_table_mut).filter(|keys| !keys.contains_key("stiffness"));
+    for (keys, bearing) in simulated.zip(bearings) {
         keys.remove("catalogue");
         keys.remove("set");
         let mut scene = toml::from_str::<Table>(&bearing.scene.source).unwrap_or_default();

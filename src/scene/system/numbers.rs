@@ -3,7 +3,7 @@
 use super::SystemScene;
 use super::check::{BORE_OFFSET, BORE_TILT, INERTIA, MASS, POSITION};
 use crate::schema::numbers::{Range, Variability};
-use crate::schema::{AxialSeat, Disc, Mounting};
+use crate::schema::{AxialSeat, Disc, Mounting, ShaftSection};
 
 const SPEED: Range = Range::closed(-1e5, 1e5, "rad/s");
 const UNBALANCE: Range = Range::closed(0.0, 1e3, "kg m");
@@ -44,8 +44,8 @@ const fn number(
     ShaftNumber { key, description, range, variability: Variability::Fixed, names, place, shared: false }
 }
 
-fn of_shaft(_: &SystemScene) -> Vec<String> {
-    vec!["shaft".into()]
+fn of_shafts(scene: &SystemScene) -> Vec<String> {
+    scene.shafts.iter().map(|shaft| shaft.name.clone()).collect()
 }
 
 fn of_solver(_: &SystemScene) -> Vec<String> {
@@ -53,7 +53,11 @@ fn of_solver(_: &SystemScene) -> Vec<String> {
 }
 
 fn of_discs(scene: &SystemScene) -> Vec<String> {
-    (1..=scene.shaft.disc.len()).map(|disc| format!("shaft.disc[{disc}]")).collect()
+    let of = |shaft: &ShaftSection| {
+        let name = shaft.name.clone();
+        (1..=shaft.disc.len()).map(move |disc| format!("{name}.disc[{disc}]"))
+    };
+    scene.shafts.iter().flat_map(of).collect()
 }
 
 fn of_bearings(scene: &SystemScene) -> Vec<String> {
@@ -65,7 +69,7 @@ fn of_housings(scene: &SystemScene) -> Vec<String> {
 }
 
 fn disc(scene: &mut SystemScene, index: usize) -> Option<&mut Disc> {
-    scene.shaft.disc.get_mut(index)
+    scene.shafts.iter_mut().flat_map(|shaft| &mut shaft.disc).nth(index)
 }
 
 fn mounting(scene: &mut SystemScene, index: usize) -> Option<&mut Mounting> {
@@ -85,17 +89,17 @@ const fn solver(
 /// All of them.
 #[rustfmt::skip]
 static NUMBERS: [ShaftNumber; 24] = [
-    number("mass", "mass of the shaft", MASS, of_shaft, |s, _| s.shaft.mass.as_mut().map(|mass| &mut mass.0)),
-    number("polar_inertia", "moment of inertia of the shaft about its axis", INERTIA, of_shaft,
-        |s, _| s.shaft.polar_inertia.as_mut().map(|inertia| &mut inertia.0)),
-    number("transverse_inertia", "moment of inertia of the shaft across its axis, about its centre of mass", INERTIA, of_shaft,
-        |s, _| s.shaft.transverse_inertia.as_mut().map(|inertia| &mut inertia.0)),
-    number("centre", "position of the centre of mass along the shaft", POSITION, of_shaft,
-        |s, _| s.shaft.centre.as_mut().map(|position| &mut position.0)),
-    number("start_speed", "speed of the shaft at the start", SPEED, of_shaft,
-        |s, _| s.shaft.start_speed.as_mut().map(|speed| &mut speed.0)),
-    number("retardation_time", "retardation time of the beams of the shaft", RETARDATION, of_shaft,
-        |s, _| s.shaft.retardation_time.as_mut().map(|time| &mut time.0)),
+    number("mass", "mass of the shaft", MASS, of_shafts, |s, k| s.shafts.get_mut(k)?.mass.as_mut().map(|mass| &mut mass.0)),
+    number("polar_inertia", "moment of inertia of the shaft about its axis", INERTIA, of_shafts,
+        |s, k| s.shafts.get_mut(k)?.polar_inertia.as_mut().map(|inertia| &mut inertia.0)),
+    number("transverse_inertia", "moment of inertia of the shaft across its axis, about its centre of mass", INERTIA, of_shafts,
+        |s, k| s.shafts.get_mut(k)?.transverse_inertia.as_mut().map(|inertia| &mut inertia.0)),
+    number("centre", "position of the centre of mass along the shaft", POSITION, of_shafts,
+        |s, k| s.shafts.get_mut(k)?.centre.as_mut().map(|position| &mut position.0)),
+    number("start_speed", "speed of the shaft at the start", SPEED, of_shafts,
+        |s, k| s.shafts.get_mut(k)?.start_speed.as_mut().map(|speed| &mut speed.0)),
+    number("retardation_time", "retardation time of the beams of the shaft", RETARDATION, of_shafts,
+        |s, k| s.shafts.get_mut(k)?.retardation_time.as_mut().map(|time| &mut time.0)),
     number("mass", "mass of the disc", MASS, of_discs, |s, k| disc(s, k).map(|disc| &mut disc.mass.0)),
     number("polar_inertia", "moment of inertia of the disc about the axis", INERTIA, of_discs,
         |s, k| disc(s, k).map(|disc| &mut disc.polar_inertia.0)),

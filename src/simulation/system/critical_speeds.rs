@@ -1,4 +1,4 @@
-//! Natural frequencies of a shaft on its bearings over its speed, and the speeds at which one of them is that of the turn.
+//! Natural frequencies of shafts on their bearings over the speed of the first, and the speeds at which one of them is that of its turn.
 //!
 //! At every speed the statics are solved anew: bearings change their stiffness with the centrifugal forces of their balls.
 
@@ -6,6 +6,8 @@ use super::linear::{ShaftMode, Whirl};
 use super::{System, SystemError};
 use crate::scene::Schedule;
 use crate::scene::system::SystemScene;
+use crate::schema::ShaftSection;
+use crate::schema::units::AngularVelocity;
 
 /// Speeds of the table.
 const ROWS: usize = 9;
@@ -30,7 +32,7 @@ pub struct Campbell {
 /// Natural frequencies at a speed.
 #[derive(Clone, Debug)]
 pub struct CampbellRow {
-    /// [rad/s] speed of the shaft.
+    /// [rad/s] speed of the first shaft.
     pub speed: f64,
     /// By growing frequency.
     pub modes: Vec<ShaftMode>,
@@ -54,8 +56,9 @@ impl CriticalSpeed {
 
 /// [rad/s] a speed that the table of a scene goes to: beyond the largest of its script.
 pub fn largest_speed(scene: &SystemScene) -> f64 {
-    let scripted = scene.shaft.speed.iter().flat_map(Schedule::values);
-    let start = scene.shaft.start_speed.map(|speed| speed.0);
+    let shaft = &scene.shafts[0];
+    let scripted = shaft.speed.iter().flat_map(Schedule::values);
+    let start = shaft.start_speed.map(|speed| speed.0);
     let largest = scripted.chain(start).map(f64::abs).fold(0.0, f64::max);
     if largest > 0.0 { BEYOND * largest } else { USUAL }
 }
@@ -116,12 +119,34 @@ fn crossing(
     Ok(None)
 }
 
-/// The scene of a shaft that turns at a speed [rad/s], whatever its own drives it by.
+/// [rad/s] speed of a shaft at a time \[s], where the scene gives it.
+fn speed_at(shaft: &ShaftSection, time: f64) -> f64 {
+    let scripted = shaft.speed.as_ref().map(|speed| speed.at(time));
+    scripted.or(shaft.start_speed.map(|speed| speed.0)).unwrap_or(0.0)
+}
+
+/// The scene of a shaft that turns at a speed [rad/s], whatever its own drives it by; of several shafts the first one, and the others faster
+/// and slower with it.
 pub fn at_speed(scene: &SystemScene, speed: f64) -> SystemScene {
     let mut scene = scene.clone();
-    (scene.shaft.speed, scene.shaft.torque, scene.shaft.start_speed) =
-        (Some(Schedule::Constant(speed)), None, None);
+    match &mut scene.shafts[..] {
+        [shaft] => {
+            (shaft.speed, shaft.torque, shaft.start_speed) = (Some(Schedule::Constant(speed)), None, None);
+        }
+        shafts => {
+            let first = speed_at(&shafts[0], 0.0);
+            let factor = if first == 0.0 { 1.0 } else { speed / first };
+            for shaft in shafts {
+                let scaled = speed_at(shaft, 0.0) * factor;
+                match &mut shaft.speed {
+                    Some(given) => *given = Schedule::Constant(scaled),
+                    None => shaft.start_speed = Some(AngularVelocity(scaled)),
+                }
+            }
+        }
+    }
     for bearing in &mut scene.bearings {
+        let speed = speed_at(&scene.shafts[bearing.shaft], 0.0);
         bearing.scene.load.inner_speed = Schedule::Constant(bearing.mounting.direction.sign() * speed);
     }
     scene

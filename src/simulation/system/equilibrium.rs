@@ -23,7 +23,11 @@ const WEIBULL: f64 = 10.0 / 9.0;
 #[derive(Clone, Debug)]
 pub struct MachineEquilibrium {
     title: String,
-    /// Motion at all points of the shaft and its housings.
+    /// Names of meshes, then of bearings by their stiffness; how many are meshes.
+    links: (Vec<String>, usize),
+    /// Names of the shafts.
+    shafts: Vec<String>,
+    /// Motion at all points of the shafts and their housings.
     pub outputs: SystemOutputs,
     /// Every bearing.
     pub bearings: Vec<BearingEquilibrium>,
@@ -86,7 +90,17 @@ impl MachineEquilibrium {
             })
         });
         let bearings = bearings.collect::<Result<_, SystemError>>()?;
-        Ok(Self { title: scene.title.clone(), outputs: system.outputs().clone(), bearings, modes, campbell })
+        let shafts = scene.shafts.iter().map(|shaft| shaft.name.clone()).collect();
+        let links = (scene.link_names().map(String::from).collect(), scene.meshes.len());
+        Ok(Self {
+            title: scene.title.clone(),
+            links,
+            shafts,
+            outputs: system.outputs().clone(),
+            bearings,
+            modes,
+            campbell,
+        })
     }
 
     /// \[h] life of all bearings together, reference and modified; none where one of them has none.
@@ -132,9 +146,20 @@ impl MachineEquilibrium {
             "units": "SI: m, N, N m, rad, rad/s, Hz; life in h and million revolutions. Forces and moments are those on the shaft, in its axes; \
                       stiffness is in the axes of each bearing",
             "time": outputs.time,
-            "speed": outputs.spin.speed,
-            "torque": outputs.torque,
+            "speed": outputs.shafts[0].spin.speed,
+            "torque": outputs.shafts[0].torque,
+            "shafts": self.shafts.iter().zip(&outputs.shafts).map(|(name, own)| {
+                (name.clone(), json!({ "speed": own.spin.speed, "torque": own.torque }))
+            }).collect::<Map<_, _>>(),
             "bearings": self.bearings.iter().enumerate().map(bearing).collect::<Map<_, _>>(),
+            "meshes": self.links.0.iter().zip(&outputs.links).take(self.links.1).map(|(name, link)| {
+                let force = link.state.force.fixed_rows::<3>(0).into_owned();
+                (name.clone(), json!({ "force_on_first_gear": vector(&force), "normal_force": link.normal_force }))
+            }).collect::<Map<_, _>>(),
+            "bearings_by_stiffness": self.links.0.iter().zip(&outputs.links).skip(self.links.1).map(|(name, link)| {
+                let [force, moment] = [0, 3].map(|from| vector(&link.state.force.fixed_rows::<3>(from).into_owned()));
+                (name.clone(), json!({ "force": force, "moment": moment }))
+            }).collect::<Map<_, _>>(),
             "life_of_all_hours": { "L10r": reference, "modified": modified },
             "modes": modes(&self.modes),
             "campbell": self.campbell.rows.iter().map(|row| json!({
@@ -186,20 +211,18 @@ impl fmt::Display for MachineEquilibrium {
         if !self.title.is_empty() {
             writeln!(f, "{}", self.title)?;
         }
-        writeln!(
-            f,
-            "shaft            {:.2} rpm, held by {:.5} N m",
-            rpm(outputs.spin.speed),
-            outputs.torque
-        )?;
+        for (name, own) in self.shafts.iter().zip(&outputs.shafts) {
+            writeln!(f, "{name:<16} {:.2} rpm, held by {:.5} N m", rpm(own.spin.speed), own.torque)?;
+        }
         for (of, seat) in self.bearings.iter().zip(&outputs.seats) {
             self.write_bearing(f, of, seat)?;
         }
+        self.write_links(f)?;
         if let [Some(reference), modified] = self.hours() {
             let modified = modified.map_or(String::new(), |hours| format!(", modified {hours:.4e} h"));
             writeln!(f, "life of all      L10r {reference:.4e} h{modified}")?;
         }
-        writeln!(f, "\nnatural frequencies at {:.2} rpm", rpm(outputs.spin.speed))?;
+        writeln!(f, "\nnatural frequencies at {:.2} rpm", rpm(outputs.shafts[0].spin.speed))?;
         for mode in &self.modes {
             writeln!(
                 f,
@@ -238,6 +261,26 @@ impl fmt::Display for MachineEquilibrium {
 }
 
 impl MachineEquilibrium {
+    fn write_links(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (names, meshes) = &self.links;
+        for (index, (name, link)) in names.iter().zip(&self.outputs.links).enumerate() {
+            let on = &link.state.force;
+            match index < *meshes {
+                true => writeln!(
+                    f,
+                    "\n{name:<16} force on the first gear x {:.4} y {:.4} z {:.4} N, normal to the teeth {:.4} N",
+                    on[0], on[1], on[2], link.normal_force
+                )?,
+                false => writeln!(
+                    f,
+                    "\n{name:<16} force on the shaft x {:.2} y {:.2} z {:.2} N, moment y {:.5} z {:.5} N m (by its stiffness)",
+                    on[0], on[1], on[2], on[4], on[5]
+                )?,
+            }
+        }
+        Ok(())
+    }
+
     fn write_bearing(
         &self,
         f: &mut fmt::Formatter<'_>,

@@ -1,4 +1,4 @@
-//! What is given from outside a system: loads of the shaft and its drive, and how they move within a communication step.
+//! What is given from outside a system: loads of the shafts and their drives, and how they move within a communication step.
 
 use nalgebra::{SVector, Vector6};
 use serde::{Deserialize, Serialize};
@@ -9,16 +9,17 @@ use crate::model::structure::Spin;
 use crate::numerics::motion::Wrench;
 use crate::scene::system::{NamedLoad, SystemScene};
 use crate::scene::{Groups, Schedule};
+use crate::schema::ShaftSection;
 
-/// Inputs of a shaft and housings, valid at the last communication point.
+/// Inputs of shafts and housings, valid at the last communication point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShaftInputs {
     /// Force \[N] and moment [N m] at every named load, in the order of [`SystemScene::loads`], in the shaft's axes.
     pub loads: Vec<Wrench>,
-    /// [N m] torque about +x that the mesh of every gear exerts on the shaft.
+    /// [N m] torque about +x that the mesh of every gear exerts on its shaft, in the order of [`SystemScene::gears`].
     pub gears: Vec<f64>,
-    /// Speed [rad/s] or torque [N m], whichever the scene drives the shaft by.
-    pub drive: f64,
+    /// Speed [rad/s] or torque [N m] of every shaft, whichever the scene drives it by.
+    pub drives: Vec<f64>,
 }
 
 impl ShaftInputs {
@@ -26,14 +27,17 @@ impl ShaftInputs {
     pub fn scripted(scene: &SystemScene, time: f64) -> Self {
         let wrench =
             |load: NamedLoad<'_>| Wrench { force: load.force.at(time), moment: load.moment.at(time) };
-        let drive = drive_of(scene).map_or(0.0, |drive| drive.at(time));
-        let gears = scene.shaft.gear.iter().map(|gear| gear.torque.at(time)).collect();
-        Self { loads: scene.loads().map(wrench).collect(), gears, drive }
+        let drive = |shaft| drive_of(shaft).map_or(0.0, |drive| drive.at(time));
+        let gears = scene.gears().map(|gear| gear.torque.at(time)).collect();
+        let drives = scene.shafts.iter().map(drive).collect();
+        Self { loads: scene.loads().map(wrench).collect(), gears, drives }
     }
 
     /// Are these those of the same system?
     pub fn fits(&self, other: &Self) -> bool {
-        self.loads.len() == other.loads.len() && self.gears.len() == other.gears.len()
+        self.loads.len() == other.loads.len()
+            && self.gears.len() == other.gears.len()
+            && self.drives.len() == other.drives.len()
     }
 
     fn components(&self) -> impl Iterator<Item = Vector6<f64>> {
@@ -48,8 +52,8 @@ pub struct Played {
     pub loads: Vec<bool>,
     /// Torques of gears.
     pub gears: Vec<bool>,
-    /// Speed or torque.
-    pub drive: bool,
+    /// Speed or torque of every shaft.
+    pub drives: Vec<bool>,
     /// Groups of inputs of every bearing.
     pub bearings: Vec<Groups>,
 }
@@ -57,15 +61,15 @@ pub struct Played {
 impl Played {
     /// Scripts of a bearing alone.
     pub fn of_bearing(groups: Groups) -> Self {
-        Self { loads: vec![], gears: vec![], drive: false, bearings: vec![groups] }
+        Self { loads: vec![], gears: vec![], drives: vec![], bearings: vec![groups] }
     }
 
     /// No script.
     pub fn none(scene: &SystemScene) -> Self {
         Self {
             loads: vec![false; scene.loads().count()],
-            gears: vec![false; scene.shaft.gear.len()],
-            drive: false,
+            gears: vec![false; scene.gears().count()],
+            drives: vec![false; scene.shafts.len()],
             bearings: vec![Groups::default(); scene.bearings.len()],
         }
     }
@@ -74,26 +78,26 @@ impl Played {
     pub fn all(scene: &SystemScene) -> Self {
         Self {
             loads: vec![true; scene.loads().count()],
-            gears: vec![true; scene.shaft.gear.len()],
-            drive: true,
+            gears: vec![true; scene.gears().count()],
+            drives: vec![true; scene.shafts.len()],
             bearings: vec![Groups::ALL; scene.bearings.len()],
         }
     }
 }
 
-/// What drives the shaft of a scene.
-fn drive_of(scene: &SystemScene) -> Option<&Schedule> {
-    scene.shaft.speed.as_ref().or(scene.shaft.torque.as_ref())
+/// What drives a shaft.
+fn drive_of(shaft: &ShaftSection) -> Option<&Schedule> {
+    shaft.speed.as_ref().or(shaft.torque.as_ref())
 }
 
 /// Does a table give the speed or the torque of a shaft?
-pub fn drive_is_scripted(scene: &SystemScene) -> bool {
-    drive_of(scene).is_some_and(Schedule::is_scripted)
+pub fn drive_is_scripted(shaft: &ShaftSection) -> bool {
+    drive_of(shaft).is_some_and(Schedule::is_scripted)
 }
 
 /// Turn at a time \[s] of a shaft whose speed the scene gives.
-pub fn scripted_spin(scene: &SystemScene, time: f64) -> Spin {
-    scene.shaft.speed.as_ref().map_or(Spin::default(), |speed| Spin {
+pub fn scripted_spin(shaft: &ShaftSection, time: f64) -> Spin {
+    shaft.speed.as_ref().map_or(Spin::default(), |speed| Spin {
         angle: speed.integral(0.0, time),
         speed: speed.at(time),
         acceleration: speed.slope(time),
@@ -141,23 +145,26 @@ impl TurnPath {
     }
 }
 
-/// Loads and drive of a shaft during a communication step: all change linearly, as applied wrenches of a single bearing do.
+/// Loads and drives of shafts during a communication step: all change linearly, as applied wrenches of a single bearing do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShaftPaths {
     loads: Vec<Ramp<6>>,
     gears: Vec<Ramp<1>>,
-    torque: Ramp<1>,
-    turn: TurnPath,
+    /// Of every shaft, where its torque is given.
+    torques: Vec<Ramp<1>>,
+    /// Of every shaft, where its speed is given.
+    turns: Vec<TurnPath>,
 }
 
 impl ShaftPaths {
-    /// Inputs that stay as they are, from a time \[s] and an angle \[rad] on.
-    pub fn steady(inputs: &ShaftInputs, time: f64, angle: f64) -> Self {
+    /// Inputs that stay as they are, from a time \[s] and an angle \[rad] of every shaft on.
+    pub fn steady(inputs: &ShaftInputs, time: f64, angles: &[f64]) -> Self {
+        let turns = angles.iter().zip(&inputs.drives);
         Self {
             loads: inputs.components().map(Ramp::constant).collect(),
             gears: inputs.gears.iter().map(|torque| Ramp::constant(SVector::from([*torque]))).collect(),
-            torque: Ramp::constant(SVector::from([inputs.drive])),
-            turn: TurnPath::steady(time, angle, inputs.drive),
+            torques: inputs.drives.iter().map(|drive| Ramp::constant(SVector::from([*drive]))).collect(),
+            turns: turns.map(|(angle, drive)| TurnPath::steady(time, *angle, *drive)).collect(),
         }
     }
 
@@ -165,22 +172,26 @@ impl ShaftPaths {
     pub fn towards(&self, inputs: &ShaftInputs, time: f64, duration: f64) -> Self {
         let loads = self.loads.iter().zip(inputs.components());
         let gears = self.gears.iter().zip(&inputs.gears);
+        let torques = self.torques.iter().zip(&inputs.drives);
+        let turns = self.turns.iter().zip(&inputs.drives);
         Self {
             loads: loads.map(|(now, next)| now.towards(time, next, duration)).collect(),
             gears: gears.map(|(now, next)| now.towards(time, SVector::from([*next]), duration)).collect(),
-            torque: self.torque.towards(time, SVector::from([inputs.drive]), duration),
-            turn: self.turn.towards(time, inputs.drive, duration),
+            torques: torques.map(|(now, next)| now.towards(time, SVector::from([*next]), duration)).collect(),
+            turns: turns.map(|(now, next)| now.towards(time, *next, duration)).collect(),
         }
     }
 
-    /// [N m] torque at a time \[s], where that is given.
-    pub fn torque(&self, time: f64) -> f64 {
-        self.torque.at(time)[0]
+    /// [N m] torque of a shaft at a time \[s], where that is given.
+    pub fn torque(&self, shaft: usize, time: f64) -> f64 {
+        self.torques[shaft].at(time)[0]
     }
 
     /// Do they lead to as many loads and torques?
     pub fn fits(&self, inputs: &ShaftInputs) -> bool {
-        self.loads.len() == inputs.loads.len() && self.gears.len() == inputs.gears.len()
+        self.loads.len() == inputs.loads.len()
+            && self.gears.len() == inputs.gears.len()
+            && [self.torques.len(), self.turns.len()] == [inputs.drives.len(); 2]
     }
 }
 
@@ -206,22 +217,25 @@ impl Given<'_> {
 
     /// [N m] torque of a gear at a time \[s].
     pub fn gear(&self, index: usize, time: f64) -> f64 {
-        match self.scene.shaft.gear.get(index) {
+        match self.scene.gears().nth(index) {
             Some(gear) if self.plays_gear(index) => gear.torque.at(time),
             _ => self.paths.gears[index].at(time)[0],
         }
     }
 
-    /// Turn at a time \[s], where the speed is given.
-    pub fn spin(&self, time: f64) -> Spin {
-        if self.plays_drive() { scripted_spin(self.scene, time) } else { self.paths.turn.at(time) }
+    /// Turn of a shaft at a time \[s], where the speed is given.
+    pub fn spin(&self, shaft: usize, time: f64) -> Spin {
+        match self.plays_drive(shaft) {
+            true => scripted_spin(&self.scene.shafts[shaft], time),
+            false => self.paths.turns[shaft].at(time),
+        }
     }
 
-    /// [N m] torque at a time \[s], where that is given.
-    pub fn torque(&self, time: f64) -> f64 {
-        match (&self.scene.shaft.torque, self.plays_drive()) {
+    /// [N m] torque of a shaft at a time \[s], where that is given.
+    pub fn torque(&self, shaft: usize, time: f64) -> f64 {
+        match (&self.scene.shafts[shaft].torque, self.plays_drive(shaft)) {
             (Some(torque), true) => torque.at(time),
-            _ => self.paths.torque(time),
+            _ => self.paths.torque(shaft, time),
         }
     }
 
@@ -232,12 +246,13 @@ impl Given<'_> {
 
     /// Is the torque of a gear that of its table?
     pub fn plays_gear(&self, index: usize) -> bool {
-        self.played.gears[index] && self.scene.shaft.gear[index].torque.is_scripted()
+        self.played.gears[index]
+            && self.scene.gears().nth(index).is_some_and(|gear| gear.torque.is_scripted())
     }
 
-    /// Is speed or torque that of its table?
-    pub fn plays_drive(&self) -> bool {
-        self.played.drive && drive_is_scripted(self.scene)
+    /// Is speed or torque of a shaft that of its table?
+    pub fn plays_drive(&self, shaft: usize) -> bool {
+        self.played.drives[shaft] && drive_is_scripted(&self.scene.shafts[shaft])
     }
 
     /// Inputs and paths where a step ended that led to a time \[s]: those that scripts gave are where these are, and stay so.
@@ -256,10 +271,11 @@ impl Given<'_> {
                 *ramp = Ramp::constant(SVector::from([scripted.gears[index]]));
             }
         }
-        if self.plays_drive() {
-            inputs.drive = scripted.drive;
-            paths.torque = Ramp::constant(SVector::from([inputs.drive]));
-            paths.turn = TurnPath::steady(time, self.spin(time).angle, inputs.drive);
+        for shaft in (0..self.scene.shafts.len()).filter(|shaft| self.plays_drive(*shaft)) {
+            let drive = scripted.drives[shaft];
+            inputs.drives[shaft] = drive;
+            paths.torques[shaft] = Ramp::constant(SVector::from([drive]));
+            paths.turns[shaft] = TurnPath::steady(time, self.spin(shaft, time).angle, drive);
         }
         (inputs, paths)
     }

@@ -10,7 +10,8 @@
 
 use nalgebra::{Complex, DMatrix, DVector, Matrix6};
 
-use super::statics::Statics;
+use super::links;
+use super::statics::{Statics, of_link};
 use super::{System, SystemError};
 use crate::analysis::condensed::Condensed;
 use crate::dynamics::system::StructureLoad;
@@ -98,11 +99,17 @@ impl System {
             scales: &self.structures.scales,
             loads: &loads,
             joints: &self.structures.joints,
+            links: &self.structures.links,
+            flanks: vec![None; self.structures.links.len()],
             bearings: &mut bearings,
             friction: vec![0.0; dampers.len()],
         };
         let stiffness = statics.stiffness(&self.structures.states)?;
         let mut damping = statics.spread(&dampers);
+        for (link, state) in self.structures.links.iter().zip(&self.structures.link_states) {
+            let map = of_link(link, &statics.first());
+            damping -= map.tr_mul(&(link.force(&state.displacement, &state.rate, None).by_rate * &map));
+        }
         let mut mass = DMatrix::zeros(damping.nrows(), damping.nrows());
         for ((Carrier { structure, .. }, state), from) in
             self.structures.carriers.iter().zip(&self.structures.states).zip(statics.first())
@@ -142,12 +149,15 @@ impl System {
             }
         }
         let size = |d: &[Complex<f64>; 3]| d.iter().map(Complex::norm_sqr).sum::<f64>();
-        let on_shaft = || moved.iter().filter(|(structure, ..)| *structure == 0).map(|(.., d)| d);
-        let all: f64 = on_shaft().map(size).sum();
-        let along: f64 = on_shaft().map(|d| d[0].norm_sqr()).sum();
+        let shafts = self.structures.scene.shafts.len();
+        let on_shafts = || moved.iter().filter(|(structure, ..)| *structure < shafts);
+        let all: f64 = on_shafts().map(|(.., d)| size(d)).sum();
+        let along: f64 = on_shafts().map(|(.., d)| d[0].norm_sqr()).sum();
         // From y to z is forwards for a shaft that turns about +x.
-        let turn: f64 = on_shaft().map(|d| -2.0 * (d[1].conj() * d[2]).im).sum();
-        let whirl = turn / (all - along) * self.structures.states[0].spin.speed.signum();
+        let turn = |(shaft, _, d): &(usize, usize, [Complex<f64>; 3])| {
+            -2.0 * (d[1].conj() * d[2]).im * self.structures.states[*shaft].spin.speed.signum()
+        };
+        let whirl = on_shafts().map(turn).sum::<f64>() / (all - along);
         let whirl = match whirl {
             _ if along > HALF * all => Whirl::Axial,
             whirl if whirl > HALF => Whirl::Forward,
@@ -165,14 +175,18 @@ impl System {
         let named = |names: Vec<String>| names.get(station).cloned();
         let numbered =
             |what: &str, count: usize| (1..=count).map(move |k| format!("{what} {k}")).collect::<Vec<_>>();
-        let own = match structure.checked_sub(1) {
+        let own = match structure.checked_sub(scene.shafts.len()) {
             None => {
-                let mut names: Vec<String> = scene.bearings.iter().map(|of| of.name.clone()).collect();
-                names.extend(scene.shaft.load.iter().map(|of| of.name.clone()));
-                names.extend(scene.shaft.point.iter().map(|of| of.name.clone()));
-                names.extend(numbered("disc", scene.shaft.disc.len()));
-                names.extend(numbered("gear", scene.shaft.gear.len()));
-                named(names).map(|name| format!("the shaft at {name}"))
+                let shaft = &scene.shafts[structure];
+                let mut names: Vec<String> =
+                    scene.bearings_on(structure).map(|of| scene.bearings[of].name.clone()).collect();
+                names.extend(shaft.load.iter().map(|of| of.name.clone()));
+                names.extend(shaft.point.iter().map(|of| of.name.clone()));
+                names.extend(numbered("disc", shaft.disc.len()));
+                names.extend(numbered("gear", shaft.gear.len()));
+                names.extend(links::names(scene, structure));
+                let which = if scene.shafts.len() == 1 { "the shaft" } else { &shaft.name };
+                named(names).map(|name| format!("{which} at {name}"))
             }
             Some(index)
                 if self.structures.carriers[structure].sliding.iter().any(|(at, _)| *at == station) =>
@@ -191,6 +205,8 @@ impl System {
                     scene.bearings_in(index).map(|of| scene.bearings[of].name.clone()).collect();
                 names.extend(housing.load.iter().map(|of| of.name.clone()));
                 names.extend(housing.point.iter().map(|of| of.name.clone()));
+                let springs = scene.springs.iter().filter(|spring| spring.housing == Some(index));
+                names.extend(springs.map(|spring| spring.name.clone()));
                 named(names).map(|name| format!("{} at {name}", housing.name))
             }
         };

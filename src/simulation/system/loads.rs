@@ -1,4 +1,4 @@
-//! What acts on the structures of a system at a time: weight, loads at points, unbalance and drive of its shaft.
+//! What acts on the structures of a system at a time: weight, loads at points, unbalance and drive of its shafts.
 
 use std::f64::consts::TAU;
 
@@ -14,17 +14,28 @@ use crate::numerics::motion::Wrench;
 use crate::scene::system::SystemScene;
 use crate::scene::{GearSection, Schedule};
 
-/// Loads of the shaft and the housings at a time \[s]. Where the shaft's turn is a coordinate, the direction of unbalance follows it
-/// from the state it had.
+/// Loads of the shafts, the housings and the ground at a time \[s]. Where the turn of a shaft is a coordinate, the direction of unbalance
+/// follows it from the state it had.
 pub fn at(
     given: &Given<'_>,
     carriers: &[Carrier],
-    state: &StructureState,
+    states: &[StructureState],
     from: f64,
     time: f64,
 ) -> Vec<StructureLoad> {
-    let mut first = given.scene.shaft.load.len();
-    let housings = given.scene.housings.iter().zip(&carriers[1..]).enumerate();
+    let scene = given.scene;
+    let count = scene.shafts.len();
+    // Loads and gears of shafts that went before.
+    let mut before = [0; 2];
+    let of_shafts = carriers.iter().zip(states).take(count).enumerate().map(|(shaft, (carrier, state))| {
+        let load = on_shaft(given, (shaft, before), carrier, state, [from, time]);
+        before[0] += scene.shafts[shaft].load.len();
+        before[1] += scene.shafts[shaft].gear.len();
+        load
+    });
+    let of_shafts: Vec<_> = of_shafts.collect();
+    let mut first = before[0];
+    let housings = given.scene.housings.iter().zip(&carriers[count..]).enumerate();
     let of_housings = housings.map(|(index, (housing, carrier))| {
         let mut force = carrier.structure.weight(&given.scene.gravity);
         let [loads, _] = housing_stations(given.scene, index);
@@ -34,37 +45,38 @@ pub fn at(
         first += housing.load.len();
         StructureLoad { force, spin: Spin::default(), axial_moment: 0.0 }
     });
-    let of_shaft = on_shaft(given, &carriers[0], state, from, time);
-    let ground = carriers.get(given.scene.housings.len() + 1).map(|ground| StructureLoad {
+    let ground = carriers.get(scene.housings.len() + count).map(|ground| StructureLoad {
         force: ground.structure.weight(&given.scene.gravity),
         spin: Spin::default(),
         axial_moment: 0.0,
     });
-    [of_shaft].into_iter().chain(of_housings).chain(ground).collect()
+    of_shafts.into_iter().chain(of_housings).chain(ground).collect()
 }
 
+/// Loads of a shaft, with the loads and gears of shafts that go before it.
 fn on_shaft(
     given: &Given<'_>,
-    shaft: &Carrier,
+    (shaft, [first_load, first_gear]): (usize, [usize; 2]),
+    carrier: &Carrier,
     state: &StructureState,
-    from: f64,
-    time: f64,
+    [from, time]: [f64; 2],
 ) -> StructureLoad {
     let scene = given.scene;
-    let structure = &shaft.structure;
+    let section = &scene.shafts[shaft];
+    let structure = &carrier.structure;
     let free = structure.turning == Turning::Free;
-    let spin = if free { ahead(&state.spin, time - from) } else { given.spin(time) };
-    let [loads, _, discs, gears] = first_stations(scene);
+    let spin = if free { ahead(&state.spin, time - from) } else { given.spin(shaft, time) };
+    let [loads, _, discs, gears] = first_stations(scene, shaft);
     let mut force = structure.weight(&scene.gravity);
     let mut axial_moment = 0.0;
     let mut add = |station: usize, on: Vector6<f64>| {
-        force += shaft.stations[station].tr_mul(&on);
+        force += carrier.stations[station].tr_mul(&on);
         axial_moment += on[3];
     };
-    for index in 0..scene.shaft.load.len() {
-        add(loads + index, given.load(index, time));
+    for index in 0..section.load.len() {
+        add(loads + index, given.load(first_load + index, time));
     }
-    for (index, disc) in scene.shaft.disc.iter().enumerate() {
+    for (index, disc) in section.disc.iter().enumerate() {
         if let Some(unbalance) = disc.unbalance {
             let azimuth = spin.angle + disc.unbalance_azimuth.map_or(0.0, |azimuth| azimuth.0);
             let Wrench { force, moment } =
@@ -72,16 +84,16 @@ fn on_shaft(
             add(discs + index, stack(&force, &moment));
         }
     }
-    for (index, gear) in scene.shaft.gear.iter().enumerate() {
+    for (index, gear) in section.gear.iter().enumerate() {
         // The pitch point is in the plane of its station.
         let mesh = Mesh { offset: 0.0, ..gear.mesh() };
         let factor = gear.ripple().map_or(1.0, |ripple| ripple.factor(spin.angle));
-        let Wrench { force, moment } = mesh.wrench(given.gear(index, time) * factor);
+        let Wrench { force, moment } = mesh.wrench(given.gear(first_gear + index, time) * factor);
         add(gears + index, stack(&force, &moment));
     }
     if free {
         let last = force.len() - 1;
-        force[last] += given.torque(time);
+        force[last] += given.torque(shaft, time);
     }
     StructureLoad { force, spin, axial_moment }
 }
@@ -94,18 +106,20 @@ fn ahead(spin: &Spin, duration: f64) -> Spin {
 
 /// Schedules of named loads and the drive that are played.
 fn schedules<'a>(given: &Given<'a>) -> Vec<&'a Schedule> {
-    let shaft = &given.scene.shaft;
+    let scene = given.scene;
     let played = given.scene.loads().enumerate().filter(|(index, _)| given.plays_load(*index));
     let components = played.flat_map(|(_, load)| load.force.0.iter().chain(&load.moment.0));
-    let drive = [&shaft.speed, &shaft.torque].into_iter().flatten().filter(|_| given.plays_drive());
-    let gears = shaft.gear.iter().enumerate().filter(|(index, _)| given.plays_gear(*index));
+    let driven = scene.shafts.iter().enumerate().filter(|(shaft, _)| given.plays_drive(*shaft));
+    let drive = driven.flat_map(|(_, shaft)| shaft.speed.iter().chain(&shaft.torque));
+    let gears = scene.gears().enumerate().filter(|(index, _)| given.plays_gear(*index));
     components.chain(drive).chain(gears.map(|(_, gear)| &gear.torque)).collect()
 }
 
 /// Does a load or the drive of a scene come to other values within a span \[s] of time?
 pub fn script_changes_within(scene: &SystemScene, from: f64, to: f64) -> bool {
     let inputs = ShaftInputs::scripted(scene, from);
-    let (paths, played) = (ShaftPaths::steady(&inputs, from, 0.0), Played::all(scene));
+    let (paths, played) =
+        (ShaftPaths::steady(&inputs, from, &vec![0.0; scene.shafts.len()]), Played::all(scene));
     let given = Given { scene, paths: &paths, played: &played };
     schedules(&given).into_iter().any(|schedule| schedule.changes_within(from, to))
 }
@@ -115,13 +129,14 @@ pub fn knots(given: &Given<'_>, from: f64, to: f64) -> Vec<f64> {
     schedules(given).into_iter().flat_map(|schedule| schedule.knots(from, to)).collect()
 }
 
-/// \[s] shortest period in which a load swings, from a script or as the shaft turns; none where none does.
-pub fn shortest_period(given: &Given<'_>, state: &StructureState, time: f64) -> Option<f64> {
-    let shaft = &given.scene.shaft;
+/// \[s] shortest period in which a load swings, from a script or as a shaft turns; none where none does.
+pub fn shortest_period(given: &Given<'_>, states: &[StructureState], time: f64) -> Option<f64> {
     let scripted = schedules(given).into_iter().filter_map(|schedule| schedule.shortest_period(time));
-    let per_turn = shaft.disc.iter().filter(|disc| disc.unbalance.is_some()).map(|_| 1.0);
-    let meshes = shaft.gear.iter().filter_map(GearSection::ripple).map(|ripple| ripple.teeth);
-    let speed = state.spin.speed.abs();
-    let turning = per_turn.chain(meshes).filter(|_| speed > 0.0).map(|times| TAU / (times * speed));
+    let turning = given.scene.shafts.iter().zip(states).flat_map(|(shaft, state)| {
+        let per_turn = shaft.disc.iter().filter(|disc| disc.unbalance.is_some()).map(|_| 1.0);
+        let meshes = shaft.gear.iter().filter_map(GearSection::ripple).map(|ripple| ripple.teeth);
+        let speed = state.spin.speed.abs();
+        per_turn.chain(meshes).filter(move |_| speed > 0.0).map(move |times| TAU / (times * speed))
+    });
     scripted.chain(turning).reduce(f64::min)
 }

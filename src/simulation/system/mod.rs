@@ -1,10 +1,11 @@
-//! Several bearings on a shaft, in motion together: one implicit step for all.
+//! Bearings on a shaft or on several, in motion together: one implicit step for all.
 
 mod advance;
 mod critical_speeds;
 mod equilibrium;
 mod inputs;
 mod linear;
+mod links;
 mod loads;
 mod motions;
 mod outputs;
@@ -29,7 +30,7 @@ pub use equilibrium::{BearingEquilibrium, MachineEquilibrium};
 pub use inputs::{Played, ShaftInputs, drive_is_scripted};
 pub use linear::{Linear, ShaftMode, Whirl};
 pub use loads::script_changes_within;
-pub use outputs::{HousingOutputs, PointOutput, SystemOutputs};
+pub use outputs::{HousingOutputs, LinkOutputs, PointOutput, ShaftOutputs, SystemOutputs};
 pub use snapshot::SystemSnapshot;
 pub use structures::Structures;
 
@@ -98,12 +99,12 @@ pub enum SystemError {
     OtherInputs,
 }
 
-/// A shaft on its bearings in motion. Cloning it saves everything; the clone goes on to the same bits.
+/// Shafts on their bearings in motion. Cloning it saves everything; the clone goes on to the same bits.
 #[derive(Clone, Debug)]
 pub struct System {
     /// The bearings, in the order of the scene.
     bearings: Vec<Simulation>,
-    /// Shaft and housings.
+    /// Shafts and housings.
     structures: Structures,
 }
 
@@ -113,9 +114,9 @@ impl System {
         &self.structures.scene
     }
 
-    /// The shaft.
-    pub fn shaft(&self) -> &Carrier {
-        &self.structures.carriers[0]
+    /// The shafts.
+    pub fn shafts(&self) -> &[Carrier] {
+        &self.structures.carriers[..self.structures.scene.shafts.len()]
     }
 
     /// \[s] time.
@@ -123,9 +124,9 @@ impl System {
         self.bearings[0].state.time
     }
 
-    /// State of the shaft.
-    pub fn state(&self) -> &StructureState {
-        &self.structures.states[0]
+    /// States of the shafts.
+    pub fn states(&self) -> &[StructureState] {
+        &self.structures.states[..self.structures.scene.shafts.len()]
     }
 
     /// The bearings with their names, each in axes of its own; their inner races are where the shaft carries them.
@@ -167,39 +168,39 @@ impl System {
 
 /// Does anything change by itself with time?
 pub fn shaft_follows_time(scene: &SystemScene) -> bool {
-    drive_is_scripted(scene)
+    scene.shafts.iter().any(drive_is_scripted)
         || scene.loads().any(|load| load.is_scripted())
-        || scene.shaft.gear.iter().any(|gear| gear.torque.is_scripted())
+        || scene.gears().any(|gear| gear.torque.is_scripted())
         || scene.bearings.iter().any(|bearing| follows_time(&bearing.scene))
 }
 
-/// Positions of all stations of a shaft \[m]: bearings, then loads, points, discs and gears.
-fn stations(scene: &SystemScene) -> Vec<f64> {
-    let shaft = &scene.shaft;
-    let bearings = scene.bearings.iter().map(|bearing| bearing.mounting.position.0);
-    let loads = shaft.load.iter().map(|load| load.position.0);
-    let points = shaft.point.iter().map(|point| point.position.0);
-    let discs = shaft.disc.iter().map(|disc| disc.position.0);
-    let gears = shaft.gear.iter().map(|gear| gear.offset.0);
-    bearings.chain(loads).chain(points).chain(discs).chain(gears).collect()
+/// Positions of all stations of a shaft along it \[m]: its bearings, then loads, points, discs and gears.
+fn stations(scene: &SystemScene, shaft: usize) -> Vec<f64> {
+    let bearings = scene.bearings_on(shaft).map(|bearing| scene.bearings[bearing].mounting.position.0);
+    bearings.chain(scene.shafts[shaft].positions()).chain(links::positions(scene, shaft)).collect()
 }
 
-/// First station of loads, of points, of discs and of gears.
-fn first_stations(scene: &SystemScene) -> [usize; 4] {
-    let loads = scene.bearings.len();
-    let points = loads + scene.shaft.load.len();
-    let discs = points + scene.shaft.point.len();
-    [loads, points, discs, discs + scene.shaft.disc.len()]
+/// First station of loads, of points, of discs and of gears of a shaft.
+fn first_stations(scene: &SystemScene, shaft: usize) -> [usize; 4] {
+    let section = &scene.shafts[shaft];
+    let loads = scene.bearings_on(shaft).count();
+    let points = loads + section.load.len();
+    let discs = points + section.point.len();
+    [loads, points, discs, discs + section.disc.len()]
 }
 
-/// Places of all stations of a housing \[m]: its bearings, then its loads and points.
+/// Places of all stations of a housing \[m]: its bearings, then its loads and points, then its bearings by their stiffness.
 fn places_of_housing(scene: &SystemScene, index: usize) -> Vec<[f64; 3]> {
     let housing = &scene.housings[index];
-    let seats =
-        scene.bearings_in(index).map(|bearing| [scene.bearings[bearing].mounting.position.0, 0.0, 0.0]);
+    let seats = scene.bearings_in(index).map(|bearing| {
+        let mounted = &scene.bearings[bearing];
+        scene.shafts[mounted.shaft].place(mounted.mounting.position.0)
+    });
     let loads = housing.load.iter().map(|load| load.position.map(|length| length.0));
     let points = housing.point.iter().map(|point| point.position.map(|length| length.0));
-    seats.chain(loads).chain(points).collect()
+    let springs = scene.springs.iter().filter(|spring| spring.housing == Some(index));
+    let springs = springs.map(|spring| scene.shafts[spring.shaft].place(spring.position));
+    seats.chain(loads).chain(points).chain(springs).collect()
 }
 
 /// First station of a housing's loads and of its points.

@@ -1,8 +1,9 @@
 //! Small motions of a shaft, its housings and its bearings about where they are: which grow, and what moves in them.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::System;
+use super::statics::of_link;
 use crate::analysis::small_motions::{Mover, Seated, SmallMotion, SmallMotions};
 use crate::dynamics::system::{Joint, StructureTrial};
 use crate::model::bodies::Body;
@@ -33,6 +34,10 @@ impl System {
                 stiffness: structure.stiffness.clone(),
             });
         }
+        let structures = movers.clone();
+        if !self.structures.links.is_empty() {
+            movers = vec![self.linked(&structures, &first)];
+        }
         let mut parts = vec![];
         let mut running = vec![];
         for (index, (bearing, bodies)) in self.bearings.iter().zip(&own).enumerate() {
@@ -47,7 +52,7 @@ impl System {
             running.push(bearing.running(seats));
         }
         let motions = SmallMotions::new(&movers, &running).motions()?;
-        let structures = movers[..self.structures.carriers.len()].iter().zip(&first);
+        let structures = structures.iter().zip(&first);
         let structures: Vec<_> = structures.collect();
         let name = |motion: &SmallMotion| {
             let energy = |(mover, from): &(&Mover, &usize)| {
@@ -72,6 +77,28 @@ impl System {
             format!("{}, {}", mode.place, mode.whirl.name())
         };
         Some(worth_telling(&motions, name))
+    }
+
+    /// All structures with what links them.
+    fn linked(&self, movers: &[Mover], first: &[usize]) -> Mover {
+        let mut ends = first.to_vec();
+        ends.push(movers.iter().map(|mover| mover.mass.nrows()).sum());
+        let size = ends[ends.len() - 1];
+        let zero = || DMatrix::zeros(size, size);
+        let mut whole = Mover { mass: zero(), damping: zero(), stiffness: zero() };
+        for (own, from) in movers.iter().zip(first) {
+            let at = ((*from, *from), (own.mass.nrows(), own.mass.nrows()));
+            whole.mass.view_mut(at.0, at.1).copy_from(&own.mass);
+            whole.damping.view_mut(at.0, at.1).copy_from(&own.damping);
+            whole.stiffness.view_mut(at.0, at.1).copy_from(&own.stiffness);
+        }
+        for (link, state) in self.structures.links.iter().zip(&self.structures.link_states) {
+            let map = of_link(link, &ends);
+            let force = link.force(&state.displacement, &state.rate, None);
+            whole.stiffness -= map.tr_mul(&(force.by_displacement * &map));
+            whole.damping -= map.tr_mul(&(force.by_rate * &map));
+        }
+        whole
     }
 
     /// A race on its seat, by `size` coordinates, of which those of each structure begin at `first`.

@@ -1,8 +1,9 @@
-//! What a shaft on its bearings does, and what their housings do: motion at points, drive, energies.
+//! What shafts on their bearings do, and what their housings do: motion at points, drive, energies.
 
 use nalgebra::{DVector, Vector3};
 
 use super::{first_stations, housing_stations};
+use crate::model::link::{Law, Link, LinkState};
 use crate::model::structure::{Carrier, Map, Spin, StructureEnergies, StructurePowers, StructureState};
 use crate::scene::system::SystemScene;
 
@@ -32,25 +33,57 @@ pub struct HousingOutputs {
     pub energies: StructureEnergies,
 }
 
-/// Outputs of the shaft and the housings.
+/// Outputs of a shaft as a whole.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ShaftOutputs {
+    /// Its turn.
+    pub spin: Spin,
+    /// [N m] torque that drives it.
+    pub torque: f64,
+    /// Powers.
+    pub powers: StructurePowers,
+    /// Energies since the start.
+    pub energies: StructureEnergies,
+}
+
+/// Outputs of a link: a mesh, or a bearing by its stiffness.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LinkOutputs {
+    /// What it does; forces are those on the first gear, or on the shaft.
+    pub state: LinkState,
+    /// \[N] normal force of teeth: positive on the flank that presses where the first gear drives while it turns about +x, negative on the other.
+    pub normal_force: f64,
+}
+
+impl LinkOutputs {
+    /// Of a link in a state.
+    pub fn of(link: &Link, state: &LinkState) -> Self {
+        let normal_force = match &link.law {
+            Law::Mesh(mesh) => {
+                let [one, other] = mesh.flank_forces(&state.displacement, &state.rate);
+                one - other
+            }
+            Law::Spring(_) => 0.0,
+        };
+        Self { state: *state, normal_force }
+    }
+}
+
+/// Outputs of the shafts and the housings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SystemOutputs {
     /// \[s] time.
     pub time: f64,
-    /// Turn of the shaft.
-    pub spin: Spin,
-    /// [N m] torque that drives it.
-    pub torque: f64,
-    /// Motion at every bearing, in the order of the scene.
+    /// Every shaft, in the order of the scene.
+    pub shafts: Vec<ShaftOutputs>,
+    /// Motion of the shafts at every bearing, in the order of the scene.
     pub seats: Vec<PointOutput>,
-    /// Motion at every named load.
+    /// Motion at every named load of the first shaft, then of the next.
     pub loads: Vec<PointOutput>,
-    /// Motion at every named point.
+    /// Motion at every named point, likewise.
     pub points: Vec<PointOutput>,
-    /// Powers of the shaft.
-    pub powers: StructurePowers,
-    /// Its energies since the start.
-    pub energies: StructureEnergies,
+    /// What meshes do, then bearings by their stiffness, in the order of the scene.
+    pub links: Vec<LinkOutputs>,
     /// What the housings do, in the order of the scene.
     pub housings: Vec<HousingOutputs>,
     /// Energies since the start of rings that slide in bores of the ground; none where there are none.
@@ -68,45 +101,58 @@ fn moved(map: &Map, state: &StructureState) -> PointOutput {
 }
 
 impl SystemOutputs {
-    /// Those of states of the shaft and the housings at a time \[s].
+    /// Those of states of the shafts and the housings at a time \[s], with the torque [N m] that drives each shaft.
     pub fn of(
         scene: &SystemScene,
         carriers: &[Carrier],
         states: &[StructureState],
-        torque: f64,
+        torques: &[f64],
         time: f64,
     ) -> Self {
-        let (shaft, state) = (&carriers[0], &states[0]);
-        let [loads, points, discs, _] = first_stations(scene);
-        let on_shaft = |map: &Map| {
-            let PointOutput { displacement, velocity, tilt } = moved(map, state);
+        let count = scene.shafts.len();
+        let on_shaft = |shaft: usize, station: usize| {
+            let PointOutput { displacement, velocity, tilt } =
+                moved(&carriers[shaft].stations[station], &states[shaft]);
             PointOutput { displacement, velocity, tilt: Vector3::new(0.0, tilt.y, tilt.z) }
         };
-        let of = |range: std::ops::Range<usize>| shaft.stations[range].iter().map(on_shaft).collect();
-        let housings = scene.housings.iter().zip(carriers[1..].iter().zip(&states[1..])).enumerate();
+        let each = |range: fn([usize; 4]) -> std::ops::Range<usize>| {
+            let of =
+                move |shaft| range(first_stations(scene, shaft)).map(move |station| on_shaft(shaft, station));
+            (0..count).flat_map(of).collect()
+        };
+        let mut seated = vec![0; count];
+        let seats = scene.bearings.iter().map(|bearing| {
+            seated[bearing.shaft] += 1;
+            on_shaft(bearing.shaft, seated[bearing.shaft] - 1)
+        });
+        let shafts = states.iter().zip(torques).map(|(state, torque)| ShaftOutputs {
+            spin: state.spin,
+            torque: *torque,
+            powers: state.powers,
+            energies: state.energies,
+        });
+        let housings = scene.housings.iter().zip(carriers[count..].iter().zip(&states[count..])).enumerate();
         let housings = housings.map(|(index, (_, (carrier, state)))| {
             let mut all = carrier.stations.iter().map(|map| moved(map, state));
             let [loads, points] = housing_stations(scene, index);
             HousingOutputs {
                 seats: all.by_ref().take(loads).collect(),
                 loads: all.by_ref().take(points - loads).collect(),
-                points: all.collect(),
+                points: all.take(scene.housings[index].point.len()).collect(),
                 powers: state.powers,
                 energies: state.energies,
             }
         });
         Self {
             time,
-            spin: state.spin,
-            torque,
-            seats: of(0..loads),
-            loads: of(loads..points),
-            points: of(points..discs),
-            powers: state.powers,
-            energies: state.energies,
+            shafts: shafts.collect(),
+            seats: seats.collect(),
+            loads: each(|[loads, points, ..]| loads..points),
+            points: each(|[_, points, discs, _]| points..discs),
+            links: vec![],
             housings: housings.collect(),
             ground: states
-                .get(scene.housings.len() + 1)
+                .get(scene.housings.len() + count)
                 .filter(|state| !state.coordinates.is_empty())
                 .map(|state| state.energies),
         }

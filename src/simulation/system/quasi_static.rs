@@ -36,8 +36,8 @@ impl System {
         let bearings: Vec<Inputs> = inputs.collect();
         let given = self.structures.given(played);
         let (inputs, paths) = given.reached(&self.structures.inputs, end);
-        let spin = given.spin(end);
-        let mut next = Self::start(&self.structures.scene, end, Some((&inputs, &bearings)), Some(spin))?;
+        let spins = (0..self.structures.scene.shafts.len()).map(|shaft| given.spin(shaft, end)).collect();
+        let mut next = Self::start(&self.structures.scene, end, Some((&inputs, &bearings)), Some(spins))?;
         next.structures.paths = paths;
         for (bearing, before) in next.bearings.iter_mut().zip(&before) {
             bearing.go_on_from(before);

@@ -6,6 +6,7 @@ use super::super::play::Scripted;
 use super::super::{Simulation, Snapshot};
 use super::System;
 use super::inputs::{ShaftInputs, ShaftPaths};
+use crate::model::link::LinkState;
 use crate::model::structure::StructureState;
 
 /// All that changes in a system: enough to go on from here to the same bits, in any instance of the same scene.
@@ -15,6 +16,8 @@ pub struct SystemSnapshot {
     paths: ShaftPaths,
     /// Of the shaft, and of every housing.
     states: Vec<StructureState>,
+    /// Of what links them.
+    links: Vec<LinkState>,
     bearings: Vec<Snapshot>,
 }
 
@@ -32,6 +35,7 @@ impl System {
             inputs: self.structures.inputs.clone(),
             paths: self.structures.paths.clone(),
             states: self.structures.states.clone(),
+            links: self.structures.link_states.clone(),
             bearings: self.bearings.iter().map(Simulation::snapshot).collect(),
         }
     }
@@ -43,6 +47,7 @@ impl System {
             && self.bearings.iter().zip(&snapshot.bearings).all(|(bearing, snapshot)| bearing.fits(snapshot))
             && snapshot.inputs.fits(&self.structures.inputs)
             && snapshot.paths.fits(&self.structures.inputs)
+            && snapshot.links.len() == self.structures.link_states.len()
             && snapshot.states.len() == self.structures.states.len()
             && self
                 .structures
@@ -55,6 +60,7 @@ impl System {
             self.structures.inputs.clone_from(&snapshot.inputs);
             self.structures.paths.clone_from(&snapshot.paths);
             self.structures.states.clone_from(&snapshot.states);
+            self.structures.link_states.clone_from(&snapshot.links);
             let restored = self.bearings.iter_mut().zip(&snapshot.bearings);
             let all = restored.fold(true, |all, (bearing, snapshot)| bearing.restore(snapshot) && all);
             debug_assert!(all, "they were looked at");

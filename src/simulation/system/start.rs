@@ -1,4 +1,4 @@
-//! Where a system starts: shaft and housings in balance with the bearings under their loads, balls in the quasi-static equilibrium of that.
+//! Where a system starts: shafts and housings in balance with the bearings under their loads, balls in the quasi-static equilibrium of that.
 
 use std::sync::Arc;
 
@@ -9,18 +9,20 @@ use super::super::play::Scripted;
 use super::super::{Simulation, SimulationError};
 use super::inputs::{Given, Played, ShaftInputs, ShaftPaths, scripted_spin};
 use super::statics::Statics;
-use super::{Structures, System, SystemError, SystemOutputs, loads, places_of_housing, stations};
+use super::{Structures, System, SystemError, SystemOutputs, links, loads, places_of_housing, stations};
 use crate::analysis::auto;
-use crate::dynamics::system::{Joint, Seat, StructureLoad, StructureTrial};
+use crate::dynamics::system::{Joined, Joint, Seat, StructureLoad, StructureTrial};
 use crate::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
-use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::model::structure::{
     Carrier, Ring, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
 };
+use crate::model::{Model, link};
 use crate::numerics::step_control::StepControl;
 use crate::numerics::tilt;
+use crate::scene::system::mesh::{InTrain, trains};
 use crate::scene::system::{MountedScene, SystemScene};
+use crate::schema::ShaftSection;
 
 impl System {
     /// Prepares a system and starts it at time 0, from the equilibrium under its loads.
@@ -59,12 +61,12 @@ impl System {
         Ok(())
     }
 
-    /// Starts under these inputs of shaft and bearings, or those of the scripts, with this turn of the shaft, or that of its drive.
+    /// Starts under these inputs of shaft and bearings, or those of the scripts, with these turns of the shafts, or those of their drives.
     pub(super) fn start(
         scene: &SystemScene,
         time: f64,
         given: Option<(&ShaftInputs, &[Inputs])>,
-        spin: Option<Spin>,
+        spins: Option<Vec<Spin>>,
     ) -> Result<Self, SystemError> {
         let carriers = carriers(scene)?;
         let inside = |mounted: &MountedScene| {
@@ -83,7 +85,7 @@ impl System {
             let Preloaded { offset, force } = preload(mounted, &bearing.model).map_err(inside(mounted))?;
             asked.push(force);
             let outer = outer_structure(scene, index).map(|structure| (Race::Outer, structure));
-            for (race, structure) in [(Race::Inner, 0)].into_iter().chain(outer) {
+            for (race, structure) in [(Race::Inner, mounted.shaft)].into_iter().chain(outer) {
                 let station = carriers[structure].ring_at(seated[structure]);
                 seated[structure] += 1;
                 let direction = mounted.mounting.direction.sign();
@@ -100,19 +102,18 @@ impl System {
         }
         let scripted = ShaftInputs::scripted(scene, time);
         let inputs = given.map_or(scripted, |(shaft, _)| shaft.clone());
-        let turning = carriers[0].structure.turning;
-        let spin = spin.unwrap_or_else(|| initial_spin(scene, &inputs, turning, time));
-        let mut states: Vec<StructureState> = carriers
-            .iter()
-            .enumerate()
-            .map(|(index, one)| at_rest(&one.structure, if index == 0 { spin } else { Spin::default() }))
-            .collect();
-        let paths = ShaftPaths::steady(&inputs, time, spin.angle);
+        let spins = spins.unwrap_or_else(|| initial_spins(scene, &inputs, &carriers, time));
+        let still = std::iter::repeat(Spin::default());
+        let turning = carriers.iter().zip(spins.iter().copied().chain(still));
+        let mut states: Vec<_> = turning.map(|(one, spin)| at_rest(&one.structure, spin)).collect();
+        let angles: Vec<f64> = spins.iter().map(|spin| spin.angle).collect();
+        let paths = ShaftPaths::steady(&inputs, time, &angles);
         // What scripts say at this time is among the inputs.
         let played = Played::none(scene);
         let loads =
-            loads::at(&Given { scene, paths: &paths, played: &played }, &carriers, &states[0], time, time);
+            loads::at(&Given { scene, paths: &paths, played: &played }, &carriers, &states, time, time);
         let scales: Vec<_> = carriers.iter().map(|one| one.structure.scales()).collect();
+        let links = links::of(scene, &carriers);
         let mut statics = Statics {
             scene,
             time,
@@ -120,9 +121,12 @@ impl System {
             scales: &scales,
             loads: &loads,
             joints: &joints,
+            links: &links,
+            flanks: vec![None; links.len()],
             bearings: &mut bearings,
             friction: vec![0.0; scene.bearings.len()],
         };
+        statics.turn_into_mesh(&mut states);
         statics.solve(&mut states)?;
         statics.check_preloads(&asked, &states)?;
         statics.initialise(&states)?;
@@ -136,7 +140,9 @@ impl System {
             Arc::make_mut(&mut bearings[joint.bearing].model).carry(joint.race);
         }
         bearings.iter_mut().for_each(Simulation::settle);
-        let states = started(&carriers, &states, &loads, &joints, &bearings);
+        let joined = Joined { joints: &joints, links: &links };
+        let states = started(&carriers, &states, &loads, joined, &bearings);
+        let link_states = links.iter().map(|link| link.started(|structure| &states[structure])).collect();
         let solver = scene.solver();
         let control = StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0);
         bearings.iter_mut().for_each(|bearing| bearing.state.control = control);
@@ -145,6 +151,8 @@ impl System {
             carriers: Arc::new(carriers),
             scales: Arc::new(scales),
             joints: Arc::new(joints),
+            links: Arc::new(links),
+            link_states,
             inputs,
             paths,
             states,
@@ -156,10 +164,13 @@ impl System {
     }
 }
 
-/// The shaft, then the housings, then the ground if it has bores.
+/// The shafts, then the housings, then the ground if it has bores.
 fn carriers(scene: &SystemScene) -> Result<Vec<Carrier>, SystemError> {
     let named = |name: String| move |why| SystemError::Structure { name, why };
-    let shaft = Carrier::of_shaft(&scene.shaft, &stations(scene)).map_err(named("shaft".into()));
+    let shafts = scene.shafts.iter().enumerate().map(|(index, shaft)| {
+        let name = if scene.shafts.len() == 1 { "shaft".into() } else { format!("shaft \"{}\"", shaft.name) };
+        Carrier::of_shaft(shaft, &stations(scene, index)).map_err(named(name))
+    });
     let housings = scene.housings.iter().enumerate().map(|(index, housing)| {
         let name = format!("housing \"{}\"", housing.name);
         let carrier = Carrier::of_housing(housing, &places_of_housing(scene, index)).map_err(named(name))?;
@@ -167,7 +178,7 @@ fn carriers(scene: &SystemScene) -> Result<Vec<Carrier>, SystemError> {
     });
     let bores = scene.bearings_in_ground().count();
     let ground = || Ok(Carrier::of_ground(bores).with_rings(&sliding(scene, scene.bearings_in_ground())));
-    [shaft].into_iter().chain(housings).chain((bores > 0).then(ground)).collect()
+    shafts.chain(housings).chain((bores > 0).then(ground)).collect()
 }
 
 /// Rings that slide, of the bearings at the first stations of a structure.
@@ -183,19 +194,34 @@ fn sliding(scene: &SystemScene, bearings: impl Iterator<Item = usize>) -> Vec<Ri
 /// The structure that carries the outer race of a bearing, if one does.
 fn outer_structure(scene: &SystemScene, bearing: usize) -> Option<usize> {
     let ground = || scene.bearings[bearing].mounting.seats_outer_ring().then_some(scene.housings.len());
-    scene.housing_of(bearing).or_else(ground).map(|structure| structure + 1)
+    scene.housing_of(bearing).or_else(ground).map(|structure| structure + scene.shafts.len())
 }
 
-/// Turn of a shaft at the start.
-fn initial_spin(scene: &SystemScene, inputs: &ShaftInputs, turning: Turning, time: f64) -> Spin {
-    match turning {
-        Turning::Free => {
-            Spin { speed: scene.shaft.start_speed.map_or(0.0, |speed| speed.0), ..Spin::default() }
+/// Turns of the shafts at the start.
+fn initial_spins(scene: &SystemScene, inputs: &ShaftInputs, carriers: &[Carrier], time: f64) -> Vec<Spin> {
+    let driven = scene.shafts.iter().zip(&inputs.drives).zip(carriers);
+    let own =
+        driven.map(|((shaft, drive), carrier)| initial_spin(shaft, *drive, carrier.structure.turning, time));
+    let own: Vec<Spin> = own.collect();
+    // Shafts of a train turn as its teeth say.
+    let trains = trains(&scene.shafts, &scene.meshes).into_iter().enumerate();
+    let of_train = |(shaft, InTrain { root, ratio }): (usize, InTrain)| {
+        let Spin { angle, speed, acceleration } = own[root];
+        match shaft == root {
+            true => own[root],
+            false => Spin { angle: angle * ratio, speed: speed * ratio, acceleration: acceleration * ratio },
         }
+    };
+    trains.map(of_train).collect()
+}
+
+fn initial_spin(shaft: &ShaftSection, drive: f64, turning: Turning, time: f64) -> Spin {
+    match turning {
+        Turning::Free => Spin { speed: shaft.start_speed.map_or(0.0, |speed| speed.0), ..Spin::default() },
         Turning::Given | Turning::Still => {
-            let scripted = scripted_spin(scene, time);
-            let acceleration = if inputs.drive == scripted.speed { scripted.acceleration } else { 0.0 };
-            Spin { speed: inputs.drive, acceleration, ..scripted }
+            let scripted = scripted_spin(shaft, time);
+            let acceleration = if drive == scripted.speed { scripted.acceleration } else { 0.0 };
+            Spin { speed: drive, acceleration, ..scripted }
         }
     }
 }
@@ -203,12 +229,13 @@ fn initial_spin(scene: &SystemScene, inputs: &ShaftInputs, turning: Turning, tim
 /// A structure that rests but for its spin.
 fn at_rest(structure: &Structure, spin: Spin) -> StructureState {
     let zero = DVector::zeros(structure.size());
-    let mut rates = zero.clone();
+    let (mut coordinates, mut rates) = (zero.clone(), zero.clone());
     if structure.turning == Turning::Free {
+        coordinates[structure.size() - 1] = spin.angle;
         rates[structure.size() - 1] = spin.speed;
     }
     StructureState {
-        coordinates: zero.clone(),
+        coordinates,
         rates,
         accelerations: zero.clone(),
         total: zero.clone(),
@@ -258,13 +285,20 @@ fn started(
     carriers: &[Carrier],
     states: &[StructureState],
     loads: &[StructureLoad],
-    joints: &[Joint],
+    joined: Joined<'_>,
     bearings: &[Simulation],
 ) -> Vec<StructureState> {
     let mut trials: Vec<_> = states.iter().map(StructureTrial::new).collect();
-    for Joint { bearing, race, structure, seat } in joints {
+    for Joint { bearing, race, structure, seat } in joined.joints {
         let motion = trials[*structure].seat(&carriers[*structure].structure, seat);
         trials[*structure].add(seat, &motion, &bearings[*bearing].state.race(*race).bearing_wrench);
+    }
+    for one in joined.links {
+        let [displacement, rate] = one.motion(|structure| &trials[structure].end);
+        let force = one.force(&displacement, &rate, None).force;
+        for (index, end) in one.ends.iter().enumerate() {
+            trials[end.structure].add_link(end, &(force * link::sign(index)));
+        }
     }
     let all = trials.into_iter().zip(carriers.iter().zip(loads));
     all.map(|(trial, (carrier, load))| trial.started(&carrier.structure, load)).collect()

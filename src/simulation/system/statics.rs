@@ -1,4 +1,4 @@
-//! Shaft and housings at rest with their bearings, which are in quasi-static equilibrium themselves.
+//! Shafts and housings at rest with their bearings, which are in quasi-static equilibrium themselves.
 
 use nalgebra::{DMatrix, DVector, Matrix6, Vector3, Vector6};
 
@@ -8,9 +8,13 @@ use super::SystemError;
 use crate::dynamics::carried::SeatMotion;
 use crate::dynamics::system::{Joint, StructureLoad, StructureTrial};
 use crate::model::bodies::Race;
+use crate::model::link::one_sided::ROUGH;
+use crate::model::link::tooth_mesh::ToothMesh;
+use crate::model::link::{self, Law, Link, LinkForce};
 use crate::model::state::stack;
 use crate::model::structure::{Carrier, Map, StructureState, Turning};
 use crate::scene::system::SystemScene;
+use crate::scene::system::mesh::trains;
 
 /// [N/m] of a steel bearing's order: what a stiffness is shifted by where a step makes no progress.
 const TYPICAL_STIFFNESS: f64 = 1e7;
@@ -26,6 +30,8 @@ const LONGEST_STEP: f64 = 0.01;
 const VANISHED: f64 = 0.01;
 /// \[rad] tilt of a seat that no housing is meant to have: ball bearings take less than a half of it.
 const FAR: f64 = 0.01;
+/// \[N] normal force below which teeth are not pressed together.
+const NO_FORCE: f64 = 1e-9;
 /// Most steps.
 const MAX_ITERATIONS: u32 = 400;
 
@@ -43,6 +49,10 @@ pub struct Statics<'a> {
     pub loads: &'a [StructureLoad],
     /// Races on their seats.
     pub joints: &'a [Joint],
+    /// Links.
+    pub links: &'a [Link],
+    /// Flank on which the teeth of a link are kept in contact, where they are.
+    pub flanks: Vec<Option<usize>>,
     /// The bearings.
     pub bearings: &'a mut [Simulation],
     /// [N m] moment of each bearing on its outer race about its axis.
@@ -63,9 +73,78 @@ struct Trial {
 }
 
 impl Statics<'_> {
+    /// Sets the coordinates to those in balance: with teeth that are kept in contact first, where a torque presses them together.
+    pub fn solve(&mut self, states: &mut [StructureState]) -> Result<(), SystemError> {
+        if self.flanks.iter().any(Option::is_some) {
+            self.search(states)?;
+            let free = vec![None; self.flanks.len()];
+            let kept = std::mem::replace(&mut self.flanks, free);
+            let found = self.search(states);
+            self.flanks = kept;
+            return found;
+        }
+        self.search(states)
+    }
+
+    /// Turns shafts so far that the torques on them press teeth together, as if nothing else moved.
+    pub fn turn_into_mesh(&mut self, states: &mut [StructureState]) {
+        let turns = self.free_turns();
+        if turns.is_empty() {
+            return;
+        }
+        // Overlap of the first flank by these turns; that of the other is the opposite.
+        let by_turns = |mesh: &ToothMesh, link: &Link| {
+            let mut by = DVector::zeros(turns.len());
+            for (index, end) in link.ends.iter().enumerate() {
+                if let Some(k) = turns.iter().position(|turn| *turn == end.structure)
+                    && end.coordinates.last() == Some(&(states[end.structure].coordinates.len() - 1))
+                {
+                    let column = end.map.column(end.coordinates.len() - 1);
+                    by[k] -= mesh.normals[0].dot(&column.fixed_rows::<3>(0)) * link::sign(index);
+                }
+            }
+            by
+        };
+        let meshes = self.links.iter().enumerate().filter_map(|(index, link)| match &link.law {
+            Law::Mesh(mesh) => Some((index, *mesh, by_turns(mesh, link))),
+            Law::Spring(_) => None,
+        });
+        let meshes: Vec<_> = meshes.collect();
+        let mut torque = DVector::from_fn(turns.len(), |k, _| {
+            let force = &self.loads[turns[k]].force;
+            force[force.len() - 1]
+        });
+        let stiffness = meshes.iter().fold(DMatrix::zeros(turns.len(), turns.len()), |sum, (_, mesh, by)| {
+            sum + by * by.transpose() * mesh.stiffness
+        });
+        let lu = stiffness.lu();
+        let Some(first) = lu.solve(&torque) else { return };
+        for (index, mesh, by) in &meshes {
+            let overlap = by.dot(&first);
+            if (overlap * mesh.stiffness).abs() > NO_FORCE {
+                self.flanks[*index] = Some(usize::from(overlap < 0.0));
+                torque += by * (mesh.stiffness * overlap.signum() * 0.5 * (mesh.backlash + ROUGH));
+            }
+        }
+        let Some(all) = lu.solve(&torque) else { return };
+        for (turn, angle) in turns.iter().zip(all.iter()) {
+            let last = states[*turn].coordinates.len() - 1;
+            states[*turn].coordinates[last] += angle;
+        }
+    }
+
+    /// Shafts whose turn is a matter of statics: those that a mesh holds against one of their train.
+    fn free_turns(&self) -> Vec<usize> {
+        let trains = trains(&self.scene.shafts, &self.scene.meshes).into_iter().enumerate();
+        let free = trains.filter(|(shaft, train)| {
+            train.root != *shaft && self.carriers[*shaft].structure.turning == Turning::Free
+        });
+        free.map(|(shaft, _)| shaft).collect()
+    }
+
     /// Sets the coordinates to those in balance. What is shifted where a step makes no progress is the stiffness; a step is progress
     /// where the unbalanced forces do work in it, as the potential then falls.
-    pub fn solve(&mut self, states: &mut [StructureState]) -> Result<(), SystemError> {
+    fn search(&mut self, states: &mut [StructureState]) -> Result<(), SystemError> {
         let scales = joined(self.scales.iter());
         let smallest = |bearing: &Simulation| 2.0 * bearing.model.bearing.ball.radius;
         let longest = LONGEST_STEP * self.bearings.iter().map(smallest).fold(f64::INFINITY, f64::min);
@@ -89,7 +168,7 @@ impl Statics<'_> {
             for (i, scale) in scales.iter().enumerate() {
                 matrix[(i, i)] += shift * TYPICAL_STIFFNESS * scale * scale;
             }
-            self.hold_turn(&mut matrix);
+            self.hold_turns(&mut matrix);
             let step = matrix.lu().solve(&here.residual).map(|mut step| {
                 let way = step.component_mul(&scales).amax();
                 if way > longest {
@@ -128,12 +207,13 @@ impl Statics<'_> {
             let turned = seat.angles - joint.seat.own_tilt();
             (joint.structure, joint.bearing, turned.y.hypot(turned.z))
         };
-        // The first structure is the shaft, and the ground does not give way.
-        let housings = 1..=self.scene.housings.len();
+        // The first structures are the shafts, and the ground does not give way.
+        let first = self.scene.shafts.len();
+        let housings = first..first + self.scene.housings.len();
         let seats = self.joints.iter().filter(|joint| housings.contains(&joint.structure)).map(tilted);
         let (structure, bearing, tilt) = seats.max_by(|a, b| a.2.total_cmp(&b.2))?;
         (tilt > FAR).then(|| SystemError::GivesWay {
-            housing: self.scene.housings[structure - 1].name.clone(),
+            housing: self.scene.housings[structure - first].name.clone(),
             bearing: self.scene.bearings[bearing].name.clone(),
             tilt,
         })
@@ -156,18 +236,21 @@ impl Statics<'_> {
     }
 
     /// The turn of a shaft is not a matter of statics.
-    fn hold_turn(&self, matrix: &mut DMatrix<f64>) {
-        if let Some(turn) = self.turn() {
+    fn hold_turns(&self, matrix: &mut DMatrix<f64>) {
+        for turn in self.turns() {
             matrix.row_mut(turn).fill(0.0);
             matrix.column_mut(turn).fill(0.0);
             matrix[(turn, turn)] = 1.0;
         }
     }
 
-    /// The coordinate that is the turn of the shaft.
-    fn turn(&self) -> Option<usize> {
-        let shaft = &self.carriers[0].structure;
-        (shaft.turning == Turning::Free).then(|| shaft.size() - 1)
+    /// The coordinates that are turns of shafts which nothing holds.
+    fn turns(&self) -> Vec<usize> {
+        let held = self.free_turns();
+        let ends = self.carriers.iter().zip(self.first().into_iter().skip(1)).enumerate();
+        let free =
+            ends.filter(|(index, (one, _))| one.structure.turning == Turning::Free && !held.contains(index));
+        free.map(|(_, (_, end))| end - 1).collect()
     }
 
     /// Puts the races of all bearings where the structures are.
@@ -236,7 +319,17 @@ impl Statics<'_> {
             let relative = self.relative(index, &first);
             stiffness += relative.tr_mul(&(whole * &relative));
         }
-        if let Some(turn) = self.turn() {
+        for (link, flank) in self.links.iter().zip(&self.flanks) {
+            let [displacement, _] = link.motion(|structure| &states[structure]);
+            // At rest: dampers of teeth that turn in step do nothing.
+            let LinkForce { force: on, by_displacement, .. } =
+                link.force(&displacement, &Vector6::zeros(), *flank);
+            force = force.max(on.fixed_rows::<3>(0).amax());
+            let relative = of_link(link, &first);
+            residual += relative.tr_mul(&on);
+            stiffness -= relative.tr_mul(&(by_displacement * &relative));
+        }
+        for turn in self.turns() {
             residual[turn] = 0.0;
         }
         Ok(Trial { residual, stiffness, force })
@@ -280,6 +373,7 @@ impl Statics<'_> {
             loads: &unloaded,
             bearings: &mut *self.bearings,
             friction: vec![0.0; asked.len()],
+            flanks: vec![None; self.links.len()],
             ..*self
         };
         let mut rest = states.to_vec();
@@ -332,6 +426,18 @@ impl Statics<'_> {
     fn of_bearing(&self, index: usize, source: SimulationError) -> SystemError {
         SystemError::Bearing { name: self.scene.bearings[index].name.clone(), source }
     }
+}
+
+/// Displacement of the first end of a link against the second by all coordinates; with the first one of each structure, and the end.
+pub fn of_link(link: &Link, first: &[usize]) -> Map {
+    let mut map = Map::zeros(first[first.len() - 1]);
+    for (index, end) in link.ends.iter().enumerate() {
+        for (k, column) in end.coordinates.iter().zip(end.map.column_iter()) {
+            let mut whole = map.column_mut(first[end.structure] + k);
+            whole += column * link::sign(index);
+        }
+    }
+    map
 }
 
 /// Vectors of the structures as one.

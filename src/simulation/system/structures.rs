@@ -1,28 +1,33 @@
-//! Shaft and housings in motion: what carries the races of a system's bearings, and what acts on it.
+//! Shafts and housings in motion: what carries the races of a system's bearings, and what acts on it.
 
 use std::sync::Arc;
 
 use nalgebra::DVector;
 
 use super::inputs::{Given, Played, ShaftInputs, ShaftPaths};
-use super::{SystemOutputs, loads};
+use super::{LinkOutputs, SystemOutputs, loads};
 use crate::dynamics::Boundary;
-use crate::dynamics::system::{Joint, StructureLoad, StructureStep};
+use crate::dynamics::system::{Joined, Joint, StructureLoad, StructureStep};
 use crate::model::bodies::Race;
+use crate::model::link::{Link, LinkState};
 use crate::model::structure::{Carrier, StructureState, Turning};
 use crate::scene::system::SystemScene;
 
-/// Shaft and housings in motion.
+/// Shafts and housings in motion.
 #[derive(Clone, Debug)]
 pub struct Structures {
     /// The scene.
     pub scene: Arc<SystemScene>,
-    /// The shaft, then the housings in the order of the scene, then the ground if it has bores.
+    /// The shafts, then the housings in the order of the scene, then the ground if it has bores.
     pub carriers: Arc<Vec<Carrier>>,
     /// [`crate::model::structure::Structure::scales`] of each.
     pub scales: Arc<Vec<DVector<f64>>>,
     /// Races on their seats.
     pub joints: Arc<Vec<Joint>>,
+    /// Links between them: meshes, then bearings by their stiffness.
+    pub links: Arc<Vec<Link>>,
+    /// What these do.
+    pub link_states: Vec<LinkState>,
     /// Inputs as set last.
     pub inputs: ShaftInputs,
     /// How they go on.
@@ -41,7 +46,7 @@ impl Structures {
 
     /// \[s] shortest period in which a load swings after a time \[s].
     pub fn shortest_period(&self, played: &Played, time: f64) -> Option<f64> {
-        loads::shortest_period(&self.given(played), &self.states[0], time)
+        loads::shortest_period(&self.given(played), &self.states, time)
     }
 
     /// \[s] times between two others at which a table of a load or of the drive bends.
@@ -51,7 +56,20 @@ impl Structures {
 
     /// What acts on each at the end of a step from one time \[s] to another.
     pub fn loads(&self, played: &Played, from: f64, to: f64) -> Vec<StructureLoad> {
-        loads::at(&self.given(played), &self.carriers, &self.states[0], from, to)
+        loads::at(&self.given(played), &self.carriers, &self.states, from, to)
+    }
+
+    /// What joins them.
+    pub fn joined(&self) -> Joined<'_> {
+        Joined { joints: &self.joints, links: &self.links }
+    }
+
+    /// Takes the states that a step of `h` \[s] has led to.
+    pub fn reach(&mut self, states: Vec<StructureState>, h: f64) {
+        for (link, state) in self.links.iter().zip(&mut self.link_states) {
+            *state = link.reached(state, h, |structure| &states[structure]);
+        }
+        self.states = states;
     }
 
     /// Each in these states at the start of a step, and what acts on it at its end.
@@ -70,13 +88,14 @@ impl Structures {
         .collect()
     }
 
-    /// The inner race of every bearing turns with the shaft at the end of a step.
+    /// The inner race of every bearing turns with its shaft at the end of a step.
     pub fn turn_races(&self, boundaries: &mut [Boundary], loads: &[StructureLoad]) {
-        let speed = match self.carriers[0].structure.turning {
-            Turning::Free => self.states[0].spin.speed,
-            Turning::Given | Turning::Still => loads[0].spin.speed,
-        };
         for (boundary, bearing) in boundaries.iter_mut().zip(&self.scene.bearings) {
+            let shaft = bearing.shaft;
+            let speed = match self.carriers[shaft].structure.turning {
+                Turning::Free => self.states[shaft].spin.speed,
+                Turning::Given | Turning::Still => loads[shaft].spin.speed,
+            };
             boundary.loads[Race::Inner].speed = bearing.mounting.direction.sign() * speed;
         }
     }
@@ -93,10 +112,13 @@ impl Structures {
 
     /// Outputs of the states as they are at a time \[s].
     pub fn report(&mut self, time: f64) {
-        let torque = match self.carriers[0].structure.turning {
-            Turning::Free => self.paths.torque(time),
-            Turning::Given | Turning::Still => self.states[0].torque,
+        let torque = |shaft: usize| match self.carriers[shaft].structure.turning {
+            Turning::Free => self.paths.torque(shaft, time),
+            Turning::Given | Turning::Still => self.states[shaft].torque,
         };
-        self.outputs = SystemOutputs::of(&self.scene, &self.carriers, &self.states, torque, time);
+        let torques: Vec<_> = (0..self.scene.shafts.len()).map(torque).collect();
+        self.outputs = SystemOutputs::of(&self.scene, &self.carriers, &self.states, &torques, time);
+        let links = self.links.iter().zip(&self.link_states);
+        self.outputs.links = links.map(|(link, state)| LinkOutputs::of(link, state)).collect();
     }
 }

@@ -1,0 +1,179 @@
+//! Links between two structures, or a structure and the ground: forces without mass, by the relative motion at a common place.
+//!
+//! ```text
+//! d = u_1 - u_2          displacement and rotation of both ends at the place: maps of their coordinates
+//! f = f(d, d')           force and moment at the place on the first end, -f on the second
+//! ```
+//! Both act at one place, so that forces and moments of a link are in balance. What is stored is a potential of `d`, what is damped is
+//! never negative.
+
+pub mod gear_pair;
+pub mod one_sided;
+pub mod spring_bearing;
+pub mod tooth_mesh;
+
+use nalgebra::{DVector, Matrix6, Vector3, Vector6};
+use serde::{Deserialize, Serialize};
+
+use super::structure::{Map, Spin, Structure, StructureState, Turning};
+use spring_bearing::SpringBearing;
+use tooth_mesh::ToothMesh;
+
+/// An end of a link on a structure.
+#[derive(Clone, Debug)]
+pub struct LinkEnd {
+    /// Index of the structure.
+    pub structure: usize,
+    /// Coordinates of the structure that move it.
+    pub coordinates: Vec<usize>,
+    /// Displacement and rotation at the place by these.
+    pub map: Map,
+    /// The same by a turn that is given; zero where that is a coordinate.
+    pub turn: Vector6<f64>,
+}
+
+impl LinkEnd {
+    /// At a place that lies `arm` \[m] beside a station of a structure and goes with it.
+    pub fn new(index: usize, structure: &Structure, station: &Map, arm: &Vector3<f64>) -> Self {
+        let mut moved = station.clone();
+        // `u + r x arm`
+        let by_rotation = -arm.cross_matrix() * station.fixed_rows::<3>(3);
+        let mut displacement = moved.fixed_rows_mut::<3>(0);
+        displacement += by_rotation;
+        let coordinates: Vec<usize> = (0..moved.ncols()).filter(|k| moved.column(*k).amax() > 0.0).collect();
+        let map = Map::from_fn(coordinates.len(), |row, k| moved[(row, coordinates[k])]);
+        let turn = match structure.turning {
+            Turning::Given => {
+                let sweep = Vector3::x().cross(arm);
+                Vector6::new(sweep.x, sweep.y, sweep.z, 1.0, 0.0, 0.0)
+            }
+            Turning::Still | Turning::Free => Vector6::zeros(),
+        };
+        Self { structure: index, coordinates, map, turn }
+    }
+
+    fn moved(&self, values: &DVector<f64>, turned: f64) -> Vector6<f64> {
+        let columns = self.coordinates.iter().zip(self.map.column_iter());
+        columns.fold(self.turn * turned, |sum, (k, column)| sum + column * values[*k])
+    }
+
+    /// Displacement and its rate at a state.
+    fn motion(&self, state: &StructureState) -> [Vector6<f64>; 2] {
+        let Spin { angle, speed, .. } = state.spin;
+        [self.moved(&state.coordinates, angle), self.moved(&state.rates, speed)]
+    }
+}
+
+/// What a link does.
+#[derive(Clone, Debug)]
+pub enum Law {
+    /// Teeth in mesh.
+    Mesh(ToothMesh),
+    /// A bearing by its stiffness.
+    Spring(SpringBearing),
+}
+
+/// A link.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// One end, or two; of one, the other is in the ground.
+    pub ends: Vec<LinkEnd>,
+    /// Its law.
+    pub law: Law,
+}
+
+/// Force of a link, with its tangents.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkForce {
+    /// \[N, N m] force and moment on the first end.
+    pub force: Vector6<f64>,
+    /// Its derivative by the displacement.
+    pub by_displacement: Matrix6<f64>,
+    /// Its derivative by the rate.
+    pub by_rate: Matrix6<f64>,
+    /// \[J] energy that is stored.
+    pub stored: f64,
+    /// \[W] power that is lost.
+    pub damped: f64,
+}
+
+/// What a link does now and has done since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LinkState {
+    /// \[m, rad] displacement of the first end against the second.
+    pub displacement: Vector6<f64>,
+    /// [m/s, rad/s] its rate.
+    pub rate: Vector6<f64>,
+    /// \[N, N m] force and moment on the first end.
+    pub force: Vector6<f64>,
+    /// \[W] taken from its ends, and lost.
+    pub powers: [f64; 2],
+    /// \[J] stored.
+    pub stored: f64,
+    /// \[J] that at the start.
+    pub at_start: f64,
+    /// \[J] taken from its ends since the start.
+    pub taken: f64,
+    /// \[J] lost since the start.
+    pub damped: f64,
+}
+
+impl LinkState {
+    /// \[J] taken, but neither lost nor stored.
+    pub fn unaccounted(&self) -> f64 {
+        self.taken - self.damped - (self.stored - self.at_start)
+    }
+}
+
+/// The sign with which an end counts.
+pub fn sign(end: usize) -> f64 {
+    if end == 0 { 1.0 } else { -1.0 }
+}
+
+impl Link {
+    /// Displacement of the first end against the second, and its rate.
+    pub fn motion<'a>(&self, state: impl Fn(usize) -> &'a StructureState) -> [Vector6<f64>; 2] {
+        let zero = [Vector6::zeros(); 2];
+        self.ends.iter().enumerate().fold(zero, |[d, rate], (index, end)| {
+            let [own, own_rate] = end.motion(state(end.structure));
+            [d + own * sign(index), rate + own_rate * sign(index)]
+        })
+    }
+
+    /// Force at a displacement and a rate; of teeth that stay in contact on a flank, if one is named.
+    pub fn force(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>, flank: Option<usize>) -> LinkForce {
+        match &self.law {
+            Law::Mesh(mesh) => mesh.force(displacement, rate, flank),
+            Law::Spring(bearing) => bearing.force(displacement, rate),
+        }
+    }
+
+    /// What it does while its ends are in these states, `h` \[s] after it did something else.
+    pub fn reached<'a>(
+        &self,
+        before: &LinkState,
+        h: f64,
+        state: impl Fn(usize) -> &'a StructureState,
+    ) -> LinkState {
+        let [displacement, rate] = self.motion(state);
+        let LinkForce { force, stored, damped, .. } = self.force(&displacement, &rate, None);
+        let powers = [-force.dot(&rate), damped];
+        let part = |k: usize| 0.5 * h * (before.powers[k] + powers[k]);
+        LinkState {
+            displacement,
+            rate,
+            force,
+            powers,
+            stored,
+            at_start: before.at_start,
+            taken: before.taken + part(0),
+            damped: before.damped + part(1),
+        }
+    }
+
+    /// What it does at the start.
+    pub fn started<'a>(&self, state: impl Fn(usize) -> &'a StructureState) -> LinkState {
+        let start = self.reached(&LinkState::default(), 0.0, state);
+        LinkState { at_start: start.stored, ..start }
+    }
+}

@@ -1,0 +1,248 @@
+//! Meshes of a system as they are read, bearings by their stiffness, and the trains of shafts that meshes make.
+
+use nalgebra::Vector3;
+
+use super::SystemScene;
+use crate::model::link::gear_pair::{Gear, GearPair};
+use crate::schema::numbers::Range;
+use crate::schema::{MeshSection, SceneError, ShaftSection, StiffnessSection};
+
+const MODULE: Range = Range::closed(1e-5, 1.0, "m");
+const PRESSURE_ANGLE: Range = Range::closed(0.1, 0.8, "rad");
+const HELIX_ANGLE: Range = Range::closed(-1.2, 1.2, "rad");
+const TEETH: Range = Range::closed(3.0, 1e4, "");
+const WIDTH: Range = Range::closed(1e-5, 10.0, "m");
+const SHIFT: Range = Range::closed(-3.0, 3.0, "");
+const STIFFNESS: Range = Range::above(0.0, 1e15, "N/m");
+const NO_LESS: Range = Range::closed(0.0, 1e15, "N/m or N m/rad, and as much damping");
+const RATIO: Range = Range::closed(0.0, 10.0, "");
+const PLAY: Range = Range::closed(0.0, 0.1, "m");
+const POSITION: Range = Range::closed(-1e3, 1e3, "m");
+/// [-] of the module: how far a centre distance may be from that at which the teeth touch on both flanks.
+const FITS: f64 = 0.5;
+
+/// A mesh.
+#[derive(Clone, Debug)]
+pub struct SceneMesh {
+    /// Its keys.
+    pub section: MeshSection,
+    /// The shafts of its gears, by their indices.
+    pub shafts: [usize; 2],
+}
+
+/// A bearing by its stiffness.
+#[derive(Clone, Debug)]
+pub struct SceneSpring {
+    /// Its name.
+    pub name: String,
+    /// Index of its shaft.
+    pub shaft: usize,
+    /// \[m] position along that.
+    pub position: f64,
+    /// Index of the housing that it sits in; none in the ground.
+    pub housing: Option<usize>,
+    /// Its keys.
+    pub stiffness: StiffnessSection,
+}
+
+impl SceneMesh {
+    /// From the axis of the first gear towards that of the second, a unit vector across x.
+    pub fn towards(&self, scene: &SystemScene) -> Vector3<f64> {
+        across(&scene.shafts, self.shafts).normalize()
+    }
+
+    /// \[m] the pitch point in the middle of the common face width, in the axes of all shafts.
+    pub fn place(&self, scene: &SystemScene) -> Vector3<f64> {
+        let [from, to] = common_face(&self.section, &scene.shafts, self.shafts);
+        let axis = Vector3::from(scene.shafts[self.shafts[0]].place(0.0));
+        let at = axis + self.towards(scene) * self.pair(scene).pitch_radii()[0];
+        Vector3::new(0.5 * (from + to), at.y, at.z)
+    }
+
+    /// Its geometry.
+    pub fn pair(&self, scene: &SystemScene) -> GearPair {
+        pair(&self.section, &scene.shafts, self.shafts)
+    }
+
+    /// [-] turns of the second gear for one of the first.
+    pub fn ratio(&self) -> f64 {
+        let [one, other] = self.section.gears.each_ref().map(|gear| f64::from(gear.teeth));
+        -one / other
+    }
+}
+
+fn across(shafts: &[ShaftSection], [one, other]: [usize; 2]) -> Vector3<f64> {
+    let [from, to] = [one, other].map(|shaft| Vector3::from(shafts[shaft].place(0.0)));
+    Vector3::new(0.0, to.y - from.y, to.z - from.z)
+}
+
+/// \[m] ends of the common face width along x, in the axes of all shafts.
+fn common_face(section: &MeshSection, shafts: &[ShaftSection], of: [usize; 2]) -> [f64; 2] {
+    let ends = [0, 1].map(|k| {
+        let gear = &section.gears[k];
+        let middle = shafts[of[k]].place(gear.position.0)[0];
+        [middle - 0.5 * gear.face_width.0, middle + 0.5 * gear.face_width.0]
+    });
+    [ends[0][0].max(ends[1][0]), ends[0][1].min(ends[1][1])]
+}
+
+fn pair(section: &MeshSection, shafts: &[ShaftSection], of: [usize; 2]) -> GearPair {
+    let [from, to] = common_face(section, shafts, of);
+    GearPair {
+        module: section.normal_module.0,
+        pressure_angle: section.pressure_angle.map_or(20f64.to_radians(), |angle| angle.0),
+        helix_angle: section.helix_angle.map_or(0.0, |angle| angle.0),
+        gears: section.gears.each_ref().map(|gear| Gear {
+            teeth: f64::from(gear.teeth),
+            profile_shift: gear.profile_shift,
+            tip_diameter: gear.tip_diameter.map(|diameter| diameter.0),
+        }),
+        centre_distance: across(shafts, of).norm(),
+        face_width: to - from,
+    }
+}
+
+/// Reads a mesh between these shafts.
+///
+/// # Errors
+/// Names it, the key, the value and the range.
+pub fn read(section: MeshSection, shafts: &[ShaftSection]) -> Result<SceneMesh, SceneError> {
+    let name = section.name.clone();
+    let inside = |source| SceneError::At { place: format!("mesh \"{name}\""), source: Box::new(source) };
+    check(section, shafts).map_err(inside)
+}
+
+fn check(section: MeshSection, shafts: &[ShaftSection]) -> Result<SceneMesh, SceneError> {
+    MODULE.check("mesh.normal_module", section.normal_module.0)?;
+    PRESSURE_ANGLE.check("mesh.pressure_angle", section.pressure_angle.map_or(0.3, |angle| angle.0))?;
+    HELIX_ANGLE.check("mesh.helix_angle", section.helix_angle.map_or(0.0, |angle| angle.0))?;
+    section.stiffness.iter().try_for_each(|k| STIFFNESS.check("mesh.stiffness", k.0))?;
+    section.damping_ratio.iter().try_for_each(|ratio| RATIO.check("mesh.damping_ratio", *ratio))?;
+    section.backlash.iter().try_for_each(|play| PLAY.check("mesh.backlash", play.0))?;
+    let mut of = [0; 2];
+    for (place, gear) in of.iter_mut().zip(&section.gears) {
+        POSITION.check("mesh.gears.position", gear.position.0)?;
+        TEETH.check("mesh.gears.teeth", f64::from(gear.teeth))?;
+        WIDTH.check("mesh.gears.face_width", gear.face_width.0)?;
+        SHIFT.check("mesh.gears.profile_shift", gear.profile_shift)?;
+        *place = shafts.iter().position(|shaft| shaft.name == gear.shaft).ok_or_else(|| {
+            let names: Vec<&str> = shafts.iter().map(|shaft| shaft.name.as_str()).collect();
+            let why = format!("there is no such [[shaft]]; there are: {}", names.join(", "));
+            SceneError::conflict(format!("mesh.gears.shaft = \"{}\"", gear.shaft), why)
+        })?;
+    }
+    if of[0] == of[1] {
+        return Err(SceneError::conflict(
+            "mesh.gears.shaft",
+            "both gears are on one shaft: each needs its own",
+        ));
+    }
+    let pair = pair(&section, shafts, of);
+    if pair.face_width.is_nan() || pair.face_width <= 0.0 {
+        let why = "the teeth of both gears do not meet: their face widths have nothing in common";
+        return Err(SceneError::conflict("mesh.gears.position", why));
+    }
+    let (distance, play) = (pair.centre_distance, pair.backlash());
+    if play.is_nan() || play.abs() > FITS * pair.module {
+        let why = format!(
+            "the axes are {distance} m apart, which leaves a play of {play:.3e} m between teeth of these profile shifts: allowed is up to \
+             {} m either way",
+            FITS * pair.module
+        );
+        return Err(SceneError::conflict("shaft.origin", why));
+    }
+    if pair.contact_ratio().is_nan() || pair.contact_ratio() <= 0.5 {
+        let why =
+            format!("the contact ratio is {:.3}: the teeth do not reach each other", pair.contact_ratio());
+        return Err(SceneError::conflict("mesh.gears", why));
+    }
+    Ok(SceneMesh { section, shafts: of })
+}
+
+/// Checks the keys of a bearing by its stiffness.
+///
+/// # Errors
+/// Names the key, the value and the range.
+pub fn check_stiffness(of: &StiffnessSection) -> Result<(), SceneError> {
+    STIFFNESS.check("bearing.stiffness.radial", of.radial.0)?;
+    let values = [
+        ("axial", of.axial.map(|k| k.0)),
+        ("tilt", of.tilt.map(|k| k.0)),
+        ("radial_damping", of.radial_damping.map(|c| c.0)),
+        ("axial_damping", of.axial_damping.map(|c| c.0)),
+        ("tilt_damping", of.tilt_damping.map(|c| c.0)),
+    ];
+    for (key, value) in values {
+        NO_LESS.check(&format!("bearing.stiffness.{key}"), value.unwrap_or(0.0))?;
+    }
+    PLAY.check("bearing.stiffness.gap", of.gap.map_or(0.0, |gap| gap.0))
+}
+
+/// The train that each shaft is in: its first shaft, and the turns of this one for one of that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InTrain {
+    /// Index of the shaft that turns the others: one at a given speed, or with a speed at the start, or the first one.
+    pub root: usize,
+    /// [-] turns for one of that.
+    pub ratio: f64,
+}
+
+/// The trains of all shafts.
+pub fn trains(shafts: &[ShaftSection], meshes: &[SceneMesh]) -> Vec<InTrain> {
+    let rank = |shaft: &usize| match &shafts[*shaft] {
+        one if one.speed.is_some() => 0,
+        one if one.start_speed.is_some() => 1,
+        _ => 2,
+    };
+    let mut order: Vec<usize> = (0..shafts.len()).collect();
+    order.sort_by_key(rank);
+    let mut found: Vec<Option<InTrain>> = vec![None; shafts.len()];
+    for root in order {
+        if found[root].is_some() {
+            continue;
+        }
+        found[root] = Some(InTrain { root, ratio: 1.0 });
+        let mut open = vec![root];
+        while let Some(shaft) = open.pop() {
+            let ratio = found[shaft].map_or(1.0, |own| own.ratio);
+            for mesh in meshes {
+                let [one, other] = mesh.shafts;
+                for (from, to, by) in [(one, other, mesh.ratio()), (other, one, 1.0 / mesh.ratio())] {
+                    if from == shaft && found[to].is_none() {
+                        found[to] = Some(InTrain { root, ratio: ratio * by });
+                        open.push(to);
+                    }
+                }
+            }
+        }
+    }
+    found.into_iter().flatten().collect()
+}
+
+/// Refuses speeds that meshes do not allow.
+///
+/// # Errors
+/// Names the shaft.
+pub fn check_trains(shafts: &[ShaftSection], meshes: &[SceneMesh]) -> Result<(), SceneError> {
+    let trains = trains(shafts, meshes);
+    for (shaft, own) in shafts.iter().zip(&trains) {
+        let root = &shafts[own.root];
+        let given = shaft.speed.is_some() || shaft.start_speed.is_some();
+        if given && shaft.name != root.name {
+            let why = format!(
+                "follows from that of \"{}\" by the teeth between them: take it out, or give a torque",
+                root.name
+            );
+            return Err(SceneError::conflict(format!("shaft \"{}\": the speed", shaft.name), why));
+        }
+    }
+    // A mesh closes a ring of others where its ratio has to be theirs.
+    for mesh in meshes {
+        let [one, other] = mesh.shafts.map(|shaft| trains[shaft].ratio);
+        if (one * mesh.ratio() / other - 1.0).abs() > 1e-12 {
+            let why = "its teeth do not allow the turns that the other meshes make";
+            return Err(SceneError::conflict(format!("mesh \"{}\"", mesh.section.name), why));
+        }
+    }
+    Ok(())
+}

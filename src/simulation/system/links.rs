@@ -1,0 +1,95 @@
+//! Links of a system from its scene: meshes, then bearings by their stiffness; and the trains of shafts that meshes make.
+
+use nalgebra::Vector3;
+
+use crate::model::link::spring_bearing::{AxialWay, SpringBearing};
+use crate::model::link::tooth_mesh::ToothMesh;
+use crate::model::link::{Law, Link, LinkEnd};
+use crate::model::structure::Carrier;
+use crate::scene::system::SystemScene;
+use crate::schema::AxialTaken;
+
+/// [-] damping of a mesh over critical damping, where the scene does not say so.
+const DAMPING_RATIO: f64 = 0.05;
+
+/// Positions \[m] of a shaft's stations for its meshes, then for its bearings by their stiffness.
+pub fn positions(scene: &SystemScene, shaft: usize) -> impl Iterator<Item = f64> {
+    let meshes = scene.meshes.iter().flat_map(move |mesh| {
+        let x = mesh.place(scene).x;
+        let own = (0..2).filter(move |gear| mesh.shafts[*gear] == shaft);
+        own.map(move |_| x - scene.shafts[shaft].place(0.0)[0])
+    });
+    let springs = scene.springs.iter().filter(move |spring| spring.shaft == shaft);
+    meshes.chain(springs.map(|spring| spring.position))
+}
+
+/// Names of what is at these stations.
+pub fn names(scene: &SystemScene, shaft: usize) -> impl Iterator<Item = String> {
+    let meshes = scene.meshes.iter().filter(move |mesh| mesh.shafts.contains(&shaft));
+    let springs = scene.springs.iter().filter(move |spring| spring.shaft == shaft);
+    meshes.map(|mesh| mesh.section.name.clone()).chain(springs.map(|spring| spring.name.clone()))
+}
+
+/// The links of a scene between these structures, whose last stations are [`positions`].
+pub fn of(scene: &SystemScene, carriers: &[Carrier]) -> Vec<Link> {
+    let count = |shaft: usize| positions(scene, shaft).count();
+    let first = |shaft: usize| carriers[shaft].stations.len() - count(shaft);
+    let mut next: Vec<usize> = (0..scene.shafts.len()).map(first).collect();
+    let mut end = |shaft: usize, arm: &Vector3<f64>| {
+        let carrier = &carriers[shaft];
+        next[shaft] += 1;
+        LinkEnd::new(shaft, &carrier.structure, &carrier.stations[next[shaft] - 1], arm)
+    };
+    let mut links = vec![];
+    for mesh in &scene.meshes {
+        let pair = mesh.pair(scene);
+        let towards = mesh.towards(scene);
+        let [one, other] = pair.pitch_radii();
+        let ends = vec![end(mesh.shafts[0], &(towards * one)), end(mesh.shafts[1], &(towards * -other))];
+        let stiffness = mesh.section.stiffness.map_or_else(|| pair.mean_stiffness(), |given| given.0);
+        let inertia = mesh.shafts.map(|shaft| carriers[shaft].structure.polar_inertia);
+        let along = pair.base_helix_angle().cos();
+        let mobility: f64 =
+            pair.base_radii().iter().zip(inertia).map(|(radius, own)| (radius * along).powi(2) / own).sum();
+        let ratio = mesh.section.damping_ratio.unwrap_or(DAMPING_RATIO);
+        let law = ToothMesh {
+            normals: pair.normals(&towards),
+            stiffness,
+            damping: 2.0 * ratio * (stiffness / mobility).sqrt(),
+            backlash: mesh.section.backlash.map_or_else(|| pair.backlash().max(0.0), |given| given.0),
+        };
+        links.push(Link { ends, law: Law::Mesh(law) });
+    }
+    for (index, spring) in scene.springs.iter().enumerate() {
+        let mut ends = vec![end(spring.shaft, &Vector3::zeros())];
+        if let Some(housing) = spring.housing {
+            let carrier = &carriers[scene.shafts.len() + housing];
+            let own = scene.springs.iter().enumerate().filter(|(_, other)| other.housing == Some(housing));
+            let after = own.filter(|(other, _)| *other >= index).count();
+            let station = &carrier.stations[carrier.stations.len() - after];
+            ends.push(LinkEnd::new(
+                scene.shafts.len() + housing,
+                &carrier.structure,
+                station,
+                &Vector3::zeros(),
+            ));
+        }
+        let of = &spring.stiffness;
+        let law = SpringBearing {
+            stiffness: [of.radial.0, of.axial.map_or(0.0, |k| k.0), of.tilt.map_or(0.0, |k| k.0)],
+            damping: [
+                of.radial_damping.map_or(0.0, |c| c.0),
+                of.axial_damping.map_or(0.0, |c| c.0),
+                of.tilt_damping.map_or(0.0, |c| c.0),
+            ],
+            gap: of.gap.map_or(0.0, |gap| gap.0),
+            axial: match of.axial_way {
+                AxialTaken::Both => AxialWay::Both,
+                AxialTaken::Along => AxialWay::Along,
+                AxialTaken::Against => AxialWay::Against,
+            },
+        };
+        links.push(Link { ends, law: Law::Spring(law) });
+    }
+    links
+}
