@@ -21,6 +21,11 @@ pub fn least_margin(contacts: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
     loaded.fold(std::f64::consts::FRAC_PI_2, |least, (_, margin)| margin.min(least))
 }
 
+/// \[rad] half angle under which an ellipse is seen from the ball's centre: transverse semi-axis and radius of the ball \[m].
+pub fn half_angle(semi_axis: f64, radius: f64) -> f64 {
+    (semi_axis / radius).min(1.0).asin()
+}
+
 /// Ends of a groove as contact angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shoulders {

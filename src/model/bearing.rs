@@ -11,7 +11,7 @@ use crate::contact::film::{Lubricant, RacewayFilm};
 use crate::contact::materials::Pair;
 use crate::contact::raceway::Raceway;
 use crate::contact::shape::ContactShape;
-use crate::contact::shoulder::{Beyond, SMALL_LOAD, Shoulders};
+use crate::contact::shoulder::{Beyond, SMALL_LOAD, Shoulders, half_angle};
 use crate::contact::spall::Whole;
 use crate::effects::heat_balance::Passing;
 use crate::effects::shoulder::{DEFAULT_HEIGHT, default_ends};
@@ -105,7 +105,7 @@ impl Bearing {
     /// [-] share of a load beyond the shoulders of a race, and \[rad] distance of its ellipse from the nearer end of the groove, negative
     /// where it is cut: contact angle \[rad] towards +x, transverse semi-axis \[m].
     pub fn shoulder(&self, race: Race, towards_x: f64, semi_axis: f64) -> (f64, f64) {
-        let half_angle = (semi_axis / self.ball.radius).min(1.0).asin();
+        let half_angle = half_angle(semi_axis, self.ball.radius);
         let shoulders = &self.shoulders[race];
         (shoulders.share_beyond(towards_x, half_angle), shoulders.margin(towards_x, half_angle))
     }

@@ -117,6 +117,12 @@ impl StepControl {
         self.last_error
     }
 
+    /// [-] place of the present step between the least (0) and the largest (1) allowed, on a logarithmic scale; 0 where these are the same.
+    pub fn margin(&self) -> f64 {
+        let range = (self.max_step / self.min_step).ln();
+        if range > 0.0 { ((self.step() / self.min_step).ln() / range).max(0.0) } else { 0.0 }
+    }
+
     /// Is the present step still allowed?
     pub fn above_minimum(&self) -> bool {
         self.step() >= self.min_step

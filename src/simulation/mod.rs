@@ -11,6 +11,7 @@ pub mod instant;
 mod limits;
 pub mod losses;
 pub mod machine;
+pub mod margins;
 pub mod motions;
 mod orientation;
 pub mod outputs;

@@ -5,6 +5,7 @@ use std::ops::Index;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::losses::Losses;
+use super::margins::Margins;
 use super::slip::RollingOrbit;
 use crate::contact::{BallRaceContact, ContactModel, RaceMotion};
 use crate::effects::Reports;
@@ -93,6 +94,8 @@ pub struct Outputs {
     pub drag_power: f64,
     /// What is lost to what.
     pub losses: Losses,
+    /// How far the bearing is from where its run ends.
+    pub margins: Margins,
     /// \[W] torque times speed of both races about their own axes: what their rotation puts in.
     pub torque_power: f64,
     /// [Pa s] viscosity of the oil at the inner and at the outer race, where there is oil.
@@ -176,7 +179,10 @@ impl Outputs {
         let frequencies = frequencies(model, &balls, [cage_speed, speeds[0], speeds[1]]);
         let [inner, outer] = Race::BOTH.map(|race| RaceOutput::new(state, model, race));
         let losses = Losses::of(model, state, contacts, (&models, &races), &totals);
+        let friction = PerRace::new(|race| models[race].friction);
+        let margins = Margins::of(&balls, model.bearing.ball.radius, friction, &state.control);
         Self {
+            margins,
             time: state.time,
             torque_power: inner.drive_torque * speeds[0] + outer.drive_torque * speeds[1],
             friction_torque: -state.race(Race::Inner).bearing_wrench.moment.dot(&races.inner.axis)

@@ -9,6 +9,7 @@ mod hinge;
 mod instants;
 mod invariance;
 mod load_cases;
+mod margins;
 #[path = "../common/mechanics.rs"]
 mod mechanics;
 mod outer_wrench;

@@ -19,6 +19,7 @@ use crate::schema::variable_units::Unit;
 use crate::simulation::Simulation;
 use crate::simulation::inputs::Inputs;
 use crate::simulation::losses::Losses;
+use crate::simulation::margins::Margins;
 use crate::simulation::outputs::Outputs;
 pub use machine::{MachineGroup, MachineVariables};
 use race_rows::RaceVariable;
@@ -65,6 +66,8 @@ pub enum Source {
     Input(InputRow),
     /// Losses of a bearing.
     Loss(fn(&Losses) -> f64),
+    /// How far a bearing is from where its run ends.
+    Margin(fn(&Margins) -> f64),
     /// What an effect reports.
     Effect(Getter),
     /// A number of the scene.
@@ -216,6 +219,7 @@ impl Variables {
         match &row.source {
             Source::Bearing(get) => get(outputs),
             Source::Loss(get) => get(&outputs.losses),
+            Source::Margin(get) => get(&outputs.margins),
             Source::Effect(getter) => getter.get(reports),
             Source::Race(race, quantity, component) if row.causality != Causality::Input => {
                 (quantity.read)(&outputs[*race], *component)
@@ -252,6 +256,7 @@ impl Variables {
             Source::Race(..)
             | Source::Bearing(_)
             | Source::Loss(_)
+            | Source::Margin(_)
             | Source::Effect(_)
             | Source::Shaft(_) => None,
         }

@@ -10,6 +10,7 @@ use crate::scene::Scene;
 use crate::schema::numbers::FRICTION;
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::losses::LOSSES;
+use crate::simulation::margins::MARGINS;
 
 /// Smallest and largest value that a variable can have.
 fn limits(source: &Source) -> [Option<f64>; 2] {
@@ -18,6 +19,7 @@ fn limits(source: &Source) -> [Option<f64>; 2] {
         Source::Friction => [Some(FRICTION.low), Some(FRICTION.high)],
         Source::Parameter(parameter) => [Some(parameter.range.low), Some(parameter.range.high)],
         Source::Rise(_) => [Some(RISE.low), Some(RISE.high)],
+        Source::Margin(_) => [Some(0.0), Some(1.0)],
         Source::Bearing(_) | Source::Loss(_) | Source::Effect(_) | Source::Input(_) | Source::Shaft(_) => {
             [None; 2]
         }
@@ -139,6 +141,10 @@ impl Variables {
         for part in LOSSES.iter().filter(|part| (part.is_of)(scene)) {
             let (name, description) = (part.name.into(), part.description.into());
             self.add(name, units::WATT, Causality::Output, 1.0, description, Source::Loss(part.get));
+        }
+        for margin in MARGINS.iter().filter(|margin| (margin.is_of)(scene)) {
+            let (name, description) = (margin.name.into(), margin.description.into());
+            self.add(name, units::ONE, Causality::Output, 1.0, description, Source::Margin(margin.get));
         }
         let mut count = |name: &str, description: &str, get: FromOutputs| {
             self.rows.push(Variable {
