@@ -74,7 +74,7 @@ fn friction_in_the_pockets_makes_a_cage_whirl() {
         (lands, "guided_by = \"balls\"\n"),
         ("cage_race = 0.05\n", ""),
         ("ball_cage = 0.05", "ball_cage = 0.3"),
-        ("\"50 ms\"", "\"200 ms\""),
+        ("\"50 ms\"", "\"120 ms\""),
     ];
     let found = motions(&["cage", &symmetric(&scratch, &changes), "--json"]);
     assert_eq!(found[0]["verdict"], "whirls", "{}", found[0]["sentence"]);
