@@ -1,6 +1,7 @@
-//! Parts of the command line: packages, results of runs, their numerical errors, pages that show them, sweeps of many cases, systems of
+//! Parts of the command line: packages, results of runs, their numerical errors, pages that show them, motions of cages, sweeps of many cases, systems of
 //! connected packages, and the study of accuracy against CPU time.
 
+pub mod cage;
 pub mod cost;
 pub mod error;
 pub mod exact;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use indicatif::ProgressBar;
 use pyo3::prelude::*;
@@ -11,9 +12,11 @@ use roulement::interface::model_description::{render, render_system};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement::{Model, scene};
+use roulement_cli::cage;
 use roulement_cli::cost::{Choice, report, study_of};
 use roulement_cli::package::{library_beside as built_with, write_fmu_with, write_system_fmu};
 use roulement_cli::report::json;
+use roulement_cli::sweep::all::threads;
 use serde_json::{Map, Value};
 
 use crate::failures::{file, runtime, scene as refused, value};
@@ -114,6 +117,15 @@ impl Scene {
             };
             let reports = machine.bearings().zip(all).map(of).collect::<PyResult<Map<_, _>>>()?;
             Ok(Value::Object(reports).to_string())
+        })
+    }
+
+    /// Motions of its cages under pushes as JSON.
+    fn cage(&self, py: Python<'_>, jobs: Option<usize>) -> PyResult<String> {
+        py.detach(|| {
+            let never = AtomicBool::new(false);
+            let cages = cage::pushed(&self.resolved()?, jobs.unwrap_or_else(threads), &never, |_| {});
+            Ok(cage::to_json(&cages.map_err(runtime)?).to_string())
         })
     }
 

@@ -57,6 +57,8 @@ def test_consistency_equilibrium_is_that_of_the_command_line(tmp_path):
 def test_consistency_effects_and_model_description(thrust, tmp_path):
     (tmp_path / "scene.toml").write_text(thrust.source)
     assert roulement.effects(thrust) == json.loads(program("effects", tmp_path / "scene.toml", "--json").stdout)
+    with pytest.raises(RuntimeError, match="there is no cage in this scene"):
+        roulement.cage(thrust)
     assert thrust.describe("scene") == program("describe", tmp_path / "scene.toml").stdout
 
 

@@ -73,6 +73,11 @@ impl CageModel {
         Ok(Self { pocket, land, directions: (0..bearing.n_balls).map(direction).collect() })
     }
 
+    /// \[m] how far the cage's centre moves from the middle before its guide holds it: the lands or, without them, the balls.
+    pub fn play(&self) -> f64 {
+        self.land.as_ref().map_or(self.pocket.half_clearance, |(_, land)| land.half_clearance)
+    }
+
     /// The race whose lands guide the cage; none where the balls do.
     pub fn guide(&self) -> Option<Race> {
         self.land.as_ref().map(|(race, _)| *race)

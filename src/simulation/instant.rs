@@ -51,6 +51,8 @@ pub struct Instant {
 pub struct CageInstant {
     /// \[m] its centre off the axis of the race that guides it.
     pub eccentricity: f64,
+    /// \[m] the same across that axis, y and z of the frame that tilts with the race but does not spin.
+    pub centre: [f64; 2],
     /// \[N] largest load in a pocket.
     pub pocket_load: f64,
     /// \[N] largest load on a land.
@@ -78,6 +80,7 @@ impl Instant {
             let off = spin_free_frame(guide).inverse() * (cage.pose.position - guide.pose.position);
             CageInstant {
                 eccentricity: off.yz().norm(),
+                centre: off.yz().into(),
                 pocket_load: pockets().map(|pair| pair.load).fold(0.0, f64::max),
                 land_load: lands().map(|pair| pair.load).fold(0.0, f64::max),
                 pocket_power: pockets().fold(0.0, |sum, pair| sum + pair.friction_power),
@@ -149,6 +152,7 @@ impl From<&Outputs> for Instant {
         let pockets = || o.balls.iter().filter_map(|ball| ball.pocket);
         let cage = o.cage.as_ref().map(|cage| CageInstant {
             eccentricity: cage.eccentricity.yz().norm(),
+            centre: cage.eccentricity.yz().into(),
             pocket_load: pockets().map(|pocket| pocket.load).fold(0.0, f64::max),
             land_load: cage.land_loads[0].max(cage.land_loads[1]),
             pocket_power: cage.pocket_power,

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::cage_push::CagePush;
 use super::motions::Motion;
 use super::play::Scripted;
 use super::system::{Played, System, SystemError, script_changes_within, shaft_follows_time};
@@ -94,6 +95,14 @@ impl Machine {
         match self {
             Self::Bearing(bearing) => bearing.motions(),
             Self::Shaft(system) => system.motions(),
+        }
+    }
+
+    /// Pushes the cage of every bearing that has one ([`Simulation::push_cage`]).
+    pub fn push_cages(&mut self, push: impl Fn(&Simulation) -> CagePush) {
+        match self {
+            Self::Bearing(bearing) => bearing.push_cage(&push(bearing)),
+            Self::Shaft(system) => system.push_cages(push),
         }
     }
 

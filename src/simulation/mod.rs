@@ -1,6 +1,7 @@
 //! A running bearing: model, state, inputs, and the one function that advances it.
 
 mod advance;
+pub mod cage_push;
 mod cage_start;
 pub mod course;
 pub mod driven;

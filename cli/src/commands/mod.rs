@@ -1,6 +1,7 @@
 //! Commands and their options.
 
 mod bearing;
+mod cage;
 mod contact;
 mod cost;
 mod effects;
@@ -50,6 +51,8 @@ enum Command {
     Modes(modes::Options),
     /// Find the life of bearings under given loads, each with its speed and share of the time; prints CSV.
     Rating(rating::Options),
+    /// Push the cage of a scene by its weight, an offset and a kick, and tell whether it is stable, rattles or whirls.
+    Cage(cage::Options),
     /// Simulate many cases of a scene on all cores: a table of keys and values, or ranges; resumable.
     Sweep(sweep::Options),
     /// Print what may stand in a scene file: every key, or a JSON schema for editors.
@@ -136,6 +139,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Equilibrium(options) => equilibrium::run(&options)?,
         Command::Modes(options) => modes::run(&options)?,
         Command::Rating(options) => rating::run(&options)?,
+        Command::Cage(options) => cage::run(&options)?,
         Command::Fmu { scene, output, library, name, columns } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
             let name = name.unwrap_or_else(|| name_of(&output));

@@ -19,6 +19,9 @@ use roulement_cli::watch::{BearingSeen, Circling, Life, ShaftSeen, headlines};
 use super::effects::idle_in;
 use super::player::Played;
 
+/// [-] of its play: a cage whose centre never leaves the axis by more is pushed by rounding alone.
+const CENTRED: f64 = 1e-3;
+
 /// Summary of a bearing in a run, with error bars where figures have them.
 pub fn of_bearing(
     run: &Played,
@@ -298,6 +301,14 @@ fn write_bearing(
             writeln!(out)?;
         }
         write_law(out, simulation.scene())?;
+        if let Some(cage) = &simulation.model().cage
+            && means.largest[0] < CENTRED * cage.play()
+        {
+            writeln!(
+                out,
+                "cage             is pushed by nothing here and stays at the centre, as all is symmetric: `roulement cage` pushes it"
+            )?;
+        }
         write_settled(out, means)?;
     }
     seen.phases.iter().try_for_each(|phase| phases::say(out, phase, shown))?;

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod bearing;
+mod cage;
 #[path = "../common/mod.rs"]
 mod common;
 mod contacts;

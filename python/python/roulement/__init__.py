@@ -16,7 +16,7 @@ from .contacts import LAWS, contact
 from .cost import cost
 from .equilibrium import Equilibrium, equilibrium
 from .results import Results, run
-from .scene import Scene, effects, package
+from .scene import Scene, cage, effects, package
 from .simulation import Simulation
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
     "Results",
     "Scene",
     "Simulation",
+    "cage",
     "catalogue",
     "contact",
     "cost",

@@ -76,6 +76,15 @@ def effects(scene):
     return json.loads(scene._native.effects())
 
 
+def cage(scene, jobs=None):
+    """What the cage of a scene does when it is pushed: a list with a dictionary for each bearing that has a cage, with `verdict` ("stable",
+    "whirls" or "rattles"), its `sentence`, and `pushes`, a list with `motion`, `whirl_ratio`, `pocket_load`, `land_load`, `share` of the
+    losses, the `way` of its centre over its play, and others. `jobs` runs at a time, as many as there are cores if not given.
+
+    Raises RuntimeError if there is no cage."""
+    return json.loads(scene._native.cage(jobs))
+
+
 def find_libraries():
     """The shared libraries of packages: those of the environment variable ROULEMENT_LIBRARY (separated as in PATH), those of this package,
     or that which was built together with the program `roulement`. Raises OSError if it is not there or of another build."""

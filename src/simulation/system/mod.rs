@@ -19,6 +19,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
+use super::cage_push::CagePush;
 use super::inputs::Inputs;
 use super::{Simulation, SimulationError, follows_time};
 use crate::model::structure::{Carrier, StructureState};
@@ -158,6 +159,11 @@ impl System {
             bearing.tune(scene);
             mounted.scene = scene.clone();
         }
+    }
+
+    /// Pushes the cage of every bearing that has one ([`Simulation::push_cage`]).
+    pub fn push_cages(&mut self, push: impl Fn(&Simulation) -> CagePush) {
+        self.bearings.iter_mut().for_each(|bearing| bearing.push_cage(&push(bearing)));
     }
 
     /// What the shaft does.
