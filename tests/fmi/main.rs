@@ -20,4 +20,5 @@ mod reload;
 #[path = "../common/scenes.rs"]
 mod scenes;
 mod scripts;
+mod several;
 mod system;

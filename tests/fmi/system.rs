@@ -12,7 +12,8 @@ use roulement::simulation::system::System;
 
 use crate::fmi2_abi::*;
 
-const STEP: f64 = 2e-5;
+/// \[s] communication step.
+pub const STEP: f64 = 2e-5;
 /// [N] force at the mesh in the file.
 const MESH: [f64; 3] = [337.8, -475.0, 1260.5];
 /// [kg] mass of the shaft.
@@ -64,15 +65,15 @@ fn plain() -> String {
     text(SPEED, CONSTANT, "")
 }
 
-fn scene(text: &str) -> SystemScene {
+pub fn scene(text: &str) -> SystemScene {
     SystemScene::parse(text, None, "".as_ref()).unwrap()
 }
 
-fn set(package: &Package, c: Component, name: &str, value: f64) {
+pub fn set(package: &Package, c: Component, name: &str, value: f64) {
     assert_eq!(unsafe { fmi2SetReal(c, &package.reference(name), 1, &value) }, Status::Ok, "{name}");
 }
 
-fn get(package: &Package, c: Component, name: &str) -> f64 {
+pub fn get(package: &Package, c: Component, name: &str) -> f64 {
     real(c, package.reference(name))
 }
 
@@ -81,18 +82,18 @@ fn vector(package: &Package, c: Component, name: &str) -> Vector3<f64> {
 }
 
 /// Steps from one communication point to another.
-fn run(c: Component, points: std::ops::Range<u32>) {
+pub fn run(c: Component, points: std::ops::Range<u32>) {
     for k in points {
         assert_eq!(unsafe { fmi2DoStep(c, f64::from(k) * STEP, STEP, 0) }, Status::Ok, "{k}");
     }
 }
 
-fn advance(system: &mut System, points: std::ops::Range<u32>) {
+pub fn advance(system: &mut System, points: std::ops::Range<u32>) {
     points.for_each(|k| system.advance(f64::from(k) * STEP + STEP).unwrap());
 }
 
 /// All real outputs.
-fn outputs(package: &Package, c: Component) -> Vec<f64> {
+pub fn outputs(package: &Package, c: Component) -> Vec<f64> {
     let references = package.references(Causality::Output);
     let mut values = vec![f64::NAN; references.len()];
     let status = unsafe { fmi2GetReal(c, references.as_ptr(), references.len(), values.as_mut_ptr()) };
@@ -101,13 +102,13 @@ fn outputs(package: &Package, c: Component) -> Vec<f64> {
 }
 
 /// The same outputs of a native run.
-fn native_outputs(system: &System) -> Vec<f64> {
+pub fn native_outputs(system: &System) -> Vec<f64> {
     let table = MachineVariables::new(system);
     let rows = table.rows().iter().zip(table.values(system));
     rows.filter(|(row, _)| row.causality == Causality::Output).map(|(_, value)| value).collect()
 }
 
-fn bits(values: &[f64]) -> Vec<u64> {
+pub fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 

@@ -16,3 +16,4 @@ mod several;
 #[allow(dead_code)]
 mod sources;
 mod statics;
+mod three_stage;
