@@ -25,6 +25,10 @@ pub struct ShaftSection {
     /// [N m] torque that drives the shaft; not with `speed`.
     #[serde(deserialize_with = "some::<Moment, _>")]
     pub torque: Option<Schedule>,
+    /// \[m] position at which speed or torque drives beams that twist, and that their turn is told of; the end of least position if not given.
+    pub drive_position: Option<Length>,
+    /// Do its beams twist? If not given, those of shafts with a mesh do.
+    pub torsion: Option<bool>,
     /// [rad/s] speed at the start of a shaft under a torque.
     pub start_speed: Option<AngularVelocity>,
     /// \[kg] mass of a rigid shaft; not with `section`.

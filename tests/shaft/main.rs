@@ -17,3 +17,4 @@ mod several;
 mod sources;
 mod statics;
 mod three_stage;
+mod torsion;

@@ -1,11 +1,12 @@
 //! Beams of circular cross-section (Timoshenko), and their reduction to stations (Craig and Bampton 1968).
 //!
-//! Nodes have five coordinates: displacement along x, y, z and tilt about y and z; the shaft is taken as stiff in torsion. Consistent
+//! Nodes have five coordinates: displacement along x, y, z and tilt about y and z; twist is apart ([`super::torsion`]). Consistent
 //! mass with rotary inertia, and gyroscopic matrix, after Friswell, Penny, Garvey and Lees, Dynamics of Rotating Machines (2010).
 
 use nalgebra::{DMatrix, DVector, Dyn, Matrix4, OMatrix, SMatrix, U3};
 
 use super::Map;
+use super::torsion::{ReducedTorsion, Torsion};
 use crate::schema::{BeamSection, Material};
 
 /// Coordinates of a node.
@@ -24,6 +25,8 @@ pub struct Beams {
     polar_inertia: f64,
     /// Node of each station.
     stations: Vec<usize>,
+    /// How it twists, and the node that its turn is taken at, where it does.
+    torsion: Option<(Torsion, usize)>,
 }
 
 /// The same by the coordinates of its stations and the amplitudes of modes between them.
@@ -46,7 +49,7 @@ pub struct Reduced {
 
 impl Beams {
     /// Beams that follow each other, nodes at stations \[m] among them, and discs (position \[m]; mass \[kg], polar and transverse
-    /// moment of inertia [kg m2]).
+    /// moment of inertia [kg m2]). They twist where a place \[m] is given at which the turn is taken.
     ///
     /// # Errors
     /// A sentence, where a station or disc lies beyond the ends.
@@ -55,11 +58,12 @@ impl Beams {
         material: Material,
         stations: &[f64],
         discs: &[(f64, [f64; 3])],
+        turned_at: Option<f64>,
     ) -> Result<Self, String> {
         let ends = sections.iter().flat_map(|section| [section.from.0, section.to.0]);
         let (low, high) =
             ends.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-        let wanted = stations.iter().chain(discs.iter().map(|(position, _)| position));
+        let wanted = stations.iter().chain(discs.iter().map(|(position, _)| position)).chain(&turned_at);
         for position in wanted.clone() {
             if *position < low - SAME || *position > high + SAME {
                 return Err(format!(
@@ -84,6 +88,7 @@ impl Beams {
             gyroscopic: zero(),
             polar_inertia: 0.0,
             stations: stations.iter().map(|position| node_at(&all, *position)).collect(),
+            torsion: turned_at.map(|place| (Torsion::new(all.len()), node_at(&all, place))),
         };
         for (index, pair) in all.windows(2).enumerate() {
             let section = section_at(sections, 0.5 * (pair[0] + pair[1]));
@@ -105,6 +110,9 @@ impl Beams {
         self.gyroscopic[(at + 3, at + 4)] += polar;
         self.gyroscopic[(at + 4, at + 3)] -= polar;
         self.polar_inertia += polar;
+        if let Some((torsion, _)) = &mut self.torsion {
+            torsion.add_disc(at / NODE, polar);
+        }
     }
 
     fn add_element(&mut self, at: usize, length: f64, section: &BeamSection, material: Material) {
@@ -151,6 +159,16 @@ impl Beams {
         let mut view = self.gyroscopic.view_mut((at, at), size);
         view += across - across.transpose();
         self.polar_inertia += 2.0 * density * second_moment * length;
+        if let Some((torsion, _)) = &mut self.torsion {
+            // The polar moment of a circle is twice that about a diameter.
+            let polar = 2.0 * second_moment;
+            torsion.add_rod(at / NODE, density * polar * length, shear_modulus * polar / length);
+        }
+    }
+
+    /// How it twists, by its stations and modes between them up to an angular frequency [rad/s], where it does.
+    pub fn twisting(&self, highest: f64) -> Option<ReducedTorsion> {
+        self.torsion.as_ref().map(|(torsion, at)| torsion.reduced(&self.stations, *at, highest))
     }
 
     /// Reduces the shaft to its stations, with the modes between them while they are held, up to an angular frequency [rad/s].
@@ -216,7 +234,7 @@ impl Beams {
 }
 
 /// Modes of a stiffness and a mass matrix up to an angular frequency, with unit generalised mass, by ascending frequency.
-fn modes(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>, highest: f64) -> (DMatrix<f64>, Vec<f64>) {
+pub(super) fn modes(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>, highest: f64) -> (DMatrix<f64>, Vec<f64>) {
     let none = (DMatrix::zeros(mass.nrows(), 0), vec![]);
     let Some(cholesky) = mass.clone().cholesky() else { return none };
     let lower = cholesky.l();
@@ -306,7 +324,7 @@ mod tests {
             outer_diameter: Length(0.03),
             inner_diameter: Some(Length(inner)),
         };
-        Beams::new(&[section], Material::default(), stations, &[]).unwrap()
+        Beams::new(&[section], Material::default(), stations, &[], Some(0.0)).unwrap()
     }
 
     #[test]
@@ -329,6 +347,28 @@ mod tests {
         for (found, exact) in moved.iter().zip(exact) {
             assert!((found / exact - 1.0).abs() < 1e-8, "{found} {exact}");
         }
+    }
+
+    #[test]
+    fn closed_form_a_rod_twists_as_saint_venant_says_and_swings_as_its_wave_runs() {
+        let beams = shaft(&[0.0, 0.6], 0.01);
+        let all = beams.twisting(1e6).unwrap();
+        // Held at the left end, where the turn is taken.
+        let twist = &all.stations[1];
+        let moved = all.stiffness.clone().lu().solve(twist).unwrap();
+        let polar = std::f64::consts::PI / 32.0 * (0.03f64.powi(4) - 0.01f64.powi(4));
+        let shear = 206e9 / 2.6;
+        assert!((twist.dot(&moved) / (0.6 / (shear * polar)) - 1.0).abs() < 1e-9);
+        assert!(all.stations[0].amax() == 0.0);
+        let whole = 7800.0 * polar * 0.6;
+        // A rigid acceleration of the turn meets half of it at the free end and none at the other, but for modes between.
+        assert!((beams.polar_inertia / whole - 1.0).abs() < 1e-9);
+        // A quarter of a wave: consistent inertia is above by (pi h / (2 L))^2 / 24 of its elements.
+        let (_, found) = modes(&all.stiffness, &all.mass, 1e6);
+        let first = std::f64::consts::PI / 1.2 * (shear / 7800.0f64).sqrt();
+        let elements = (0.6 / (LONGEST * 0.03)).ceil();
+        let above = (std::f64::consts::PI / 2.0 / elements).powi(2) / 24.0;
+        assert!((found[0] / first - 1.0 - above).abs() < 0.1 * above + 1e-9, "{} {first} {above}", found[0]);
     }
 
     #[test]

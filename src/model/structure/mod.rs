@@ -11,6 +11,7 @@ mod beam;
 mod housing;
 mod ring;
 mod shaft;
+mod torsion;
 
 use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6, Vector3};
 pub use ring::Ring;

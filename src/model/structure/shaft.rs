@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector, OMatrix};
 
 use super::beam::Beams;
+use super::torsion::ReducedTorsion;
 use super::{Carrier, Map, Structure, Turning};
 use crate::schema::ShaftSection;
 
@@ -29,11 +30,11 @@ impl RigidSum {
 }
 
 impl Carrier {
-    /// The shaft of a file, with stations at these positions \[m] along it.
+    /// The shaft of a file, with stations at these positions \[m] along it; its beams twist where that is asked for.
     ///
     /// # Errors
     /// A sentence, where a station lies beyond the ends of a flexible shaft, or is none of its matrices.
-    pub fn of_shaft(section: &ShaftSection, stations: &[f64]) -> Result<Self, String> {
+    pub fn of_shaft(section: &ShaftSection, stations: &[f64], twists: bool) -> Result<Self, String> {
         let turning = if section.speed.is_some() { Turning::Given } else { Turning::Free };
         if let Some(read) = &section.read {
             let map = |x: &f64| read.station([*x, 0.0, 0.0]);
@@ -45,6 +46,7 @@ impl Carrier {
                 gyroscopic: read.gyroscopic.clone(),
                 weights: read.weights.clone(),
                 polar_inertia: read.polar_inertia,
+                by_turn: None,
             };
             return Ok(parts.turning(turning, maps, vec![]));
         }
@@ -56,7 +58,9 @@ impl Carrier {
             .iter()
             .map(|disc| (disc.position.0, [disc.mass.0, disc.polar_inertia.0, disc.transverse_inertia.0]))
             .collect();
-        let beams = Beams::new(&section.section, section.material, stations, &discs)?;
+        let left = section.section.iter().map(|beam| beam.from.0).fold(f64::INFINITY, f64::min);
+        let turned_at = twists.then(|| section.drive_position.map_or(left, |position| position.0));
+        let beams = Beams::new(&section.section, section.material, stations, &discs, turned_at)?;
         let highest = section.modes_up_to.map_or(MODES_UP_TO, |frequency| frequency.0);
         let retardation = section.retardation_time.map_or(0.0, |time| time.0);
         let reduced = beams.reduced(std::f64::consts::TAU * highest);
@@ -69,8 +73,12 @@ impl Carrier {
             gyroscopic: reduced.gyroscopic,
             weights: reduced.weights,
             polar_inertia: reduced.polar_inertia,
+            by_turn: None,
         };
-        Ok(parts.turning(turning, maps, modes))
+        Ok(match beams.twisting(std::f64::consts::TAU * highest) {
+            Some(torsion) => parts.twisting(maps, &torsion, retardation, turning, modes),
+            None => parts.turning(turning, maps, modes),
+        })
     }
 }
 
@@ -118,6 +126,7 @@ fn rigid(section: &ShaftSection, stations: &[f64], turning: Turning) -> Carrier 
         gyroscopic,
         weights,
         polar_inertia: polar,
+        by_turn: None,
     };
     parts.turning(turning, stations.iter().map(map).collect(), vec![])
 }
@@ -130,17 +139,62 @@ struct Parts {
     gyroscopic: DMatrix<f64>,
     weights: OMatrix<f64, nalgebra::Dyn, nalgebra::U3>,
     polar_inertia: f64,
+    /// Inertia of the coordinates by an acceleration of the turn; none of a shaft that does not twist.
+    by_turn: Option<DVector<f64>>,
 }
 
 impl Parts {
+    /// The shaft with twist: coordinates of that behind those of bending.
+    fn twisting(
+        self,
+        maps: Vec<Map>,
+        torsion: &ReducedTorsion,
+        retardation: f64,
+        turning: Turning,
+        modes: Vec<f64>,
+    ) -> Carrier {
+        let (n, own) = (self.mass.nrows(), torsion.mass.nrows());
+        let both = |bending: DMatrix<f64>, twist: &DMatrix<f64>| {
+            let mut whole = bending.resize(n + own, n + own, 0.0);
+            whole.view_mut((n, n), (own, own)).copy_from(twist);
+            whole
+        };
+        let with_twist = |(map, twist): (Map, &DVector<f64>)| {
+            let mut map = map.resize_horizontally(n + own, 0.0);
+            map.fixed_rows_mut::<1>(3).columns_mut(n, own).copy_from(&twist.transpose());
+            map
+        };
+        let maps = maps.into_iter().zip(&torsion.stations).map(with_twist).collect();
+        let parts = Self {
+            mass: both(self.mass, &torsion.mass),
+            damping: both(self.damping, &(&torsion.stiffness * retardation)),
+            stiffness: both(self.stiffness, &torsion.stiffness),
+            gyroscopic: self.gyroscopic.resize(n + own, n + own, 0.0),
+            weights: self.weights.resize_vertically(n + own, 0.0),
+            polar_inertia: self.polar_inertia,
+            by_turn: Some(DVector::from_fn(n + own, |i, _| if i < n { 0.0 } else { torsion.by_turn[i - n] })),
+        };
+        parts.turning(turning, maps, modes)
+    }
+
     /// The shaft as it turns: under a torque its angle is one more coordinate.
     fn turning(self, turning: Turning, maps: Vec<Map>, modes: Vec<f64>) -> Carrier {
-        let Self { mass, damping, stiffness, gyroscopic, weights, polar_inertia } = self;
+        let Self { mass, damping, stiffness, gyroscopic, weights, polar_inertia, by_turn } = self;
         let n = mass.nrows();
         let size = if turning == Turning::Free { n + 1 } else { n };
         let wider = |matrix: DMatrix<f64>| matrix.resize(size, size, 0.0);
         let mut mass = wider(mass);
         let mut stations: Vec<Map> = maps.into_iter().map(|map| map.resize_horizontally(size, 0.0)).collect();
+        let mut by_spin = DVector::zeros(size);
+        if let Some(by_turn) = by_turn {
+            match turning {
+                Turning::Free => {
+                    mass.view_mut((0, n), (n, 1)).copy_from(&by_turn);
+                    mass.view_mut((n, 0), (1, n)).copy_from(&by_turn.transpose());
+                }
+                Turning::Given | Turning::Still => by_spin = by_turn,
+            }
+        }
         if turning == Turning::Free {
             mass[(n, n)] = polar_inertia;
             stations.iter_mut().for_each(|map| map[(3, n)] = 1.0);
@@ -151,7 +205,7 @@ impl Parts {
             stiffness: wider(stiffness),
             gyroscopic: wider(gyroscopic),
             polar_inertia,
-            by_spin: DVector::zeros(size),
+            by_spin,
             weights: weights.resize_vertically(size, 0.0),
             turning,
             rings: 0,

@@ -238,6 +238,17 @@ fn keys_of_shaft(shaft: &ShaftSection) -> Result<(), SceneError> {
         let why = "the file has the whole shaft: take [[shaft.section]] and [[shaft.disc]] out";
         return Err(SceneError::conflict("shaft.matrices", why));
     }
+    if shaft.section.is_empty() && (shaft.torsion == Some(true) || shaft.drive_position.is_some()) {
+        let why = "is for beams: give [[shaft.section]]; a shaft without them is stiff about its axis";
+        let key = if shaft.drive_position.is_some() { "shaft.drive_position" } else { "shaft.torsion" };
+        return Err(SceneError::conflict(key, why));
+    }
+    if let Some(position) = shaft.drive_position {
+        let ends = shaft.section.iter().flat_map(|section| [section.from.0, section.to.0]);
+        let [low, high] =
+            ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+        Range::closed(low, high, "m").check("shaft.drive_position", position.0)?;
+    }
     POSITION.check("shaft.centre", shaft.centre.map_or(0.0, |centre| centre.0))?;
     Range::closed(0.0, 1.0, "s")
         .check("shaft.retardation_time", shaft.retardation_time.map_or(0.0, |time| time.0))?;

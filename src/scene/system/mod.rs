@@ -284,6 +284,13 @@ impl SystemScene {
         meshes.chain(self.springs.iter().map(|spring| spring.name.as_str()))
     }
 
+    /// Does a shaft twist? Of beams that carry a torque between gears, if the file does not say so.
+    pub fn twists(&self, shaft: usize) -> bool {
+        let section = &self.shafts[shaft];
+        let meshed = self.meshes.iter().any(|mesh| mesh.shafts.contains(&shaft));
+        !section.section.is_empty() && section.torsion.unwrap_or(meshed)
+    }
+
     /// Bearings that sit on a shaft, by their indices.
     pub fn bearings_on(&self, shaft: usize) -> impl Iterator<Item = usize> {
         (0..self.bearings.len()).filter(move |bearing| self.bearings[*bearing].shaft == shaft)

@@ -169,7 +169,7 @@ fn carriers(scene: &SystemScene) -> Result<Vec<Carrier>, SystemError> {
     let named = |name: String| move |why| SystemError::Structure { name, why };
     let shafts = scene.shafts.iter().enumerate().map(|(index, shaft)| {
         let name = if scene.shafts.len() == 1 { "shaft".into() } else { format!("shaft \"{}\"", shaft.name) };
-        Carrier::of_shaft(shaft, &stations(scene, index)).map_err(named(name))
+        Carrier::of_shaft(shaft, &stations(scene, index), scene.twists(index)).map_err(named(name))
     });
     let housings = scene.housings.iter().enumerate().map(|(index, housing)| {
         let name = format!("housing \"{}\"", housing.name);
