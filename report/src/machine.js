@@ -1,4 +1,4 @@
-// A machine: a shaft and the bearings on it, whose runs follow that of the shaft.
+// A machine: shafts and the bearings on them, whose runs follow that of the shafts.
 
 import { h, section, table } from './dom.js';
 import { figure, settledNote } from './summary.js';
@@ -24,12 +24,17 @@ export function likes(run, runs) {
   return runs.filter(other => Boolean(other.shaft) === Boolean(run.shaft) && other.of?.name === run.of?.name);
 }
 
+/** The shafts of a machine, each with its bearings. */
+export function shaftsOf({ shaft }) {
+  return shaft.shafts.map(own => ({ ...own, bearings: shaft.bearings.filter(bearing => bearing.shaft === own.name) }));
+}
+
 /** The machine in a few words. */
 export function words({ shaft, series }) {
   const count = (list, word) => (list.length ? `${list.length} ${word}${list.length > 1 ? 's' : ''}` : null);
-  const speeds = series.get('shaft.speed').v;
-  const most = speeds.reduce((high, speed) => (Math.abs(speed) > Math.abs(high) ? speed : high), 0);
-  return ['shaft', count(shaft.bearings, 'bearing'), count(shaft.gears, 'gear'), count(shaft.discs, 'disc'), count(shaft.housings, 'housing'), rpm(most)].filter(Boolean);
+  const all = what => shaft.shafts.flatMap(own => own[what]);
+  const speeds = shaft.shafts.map(({ name }) => series.get(`${name}.speed`).v.reduce((high, speed) => (Math.abs(speed) > Math.abs(high) ? speed : high), 0));
+  return [shaft.shafts.length > 1 ? `${shaft.shafts.length} shafts` : 'shaft', count(shaft.bearings, 'bearing'), count(all('gears'), 'gear'), count(all('discs'), 'disc'), count(shaft.housings, 'housing'), speeds.map(rpm).join(', ')].filter(Boolean);
 }
 
 /** What a bearing does to the shaft, in the shaft's axes: along x, and across; means where there are some, else at the end. */
@@ -61,10 +66,12 @@ export function cards(run) {
   const { figures } = run.record.summary;
   const list = [];
   const card = (name, value, note, bad) => list.push(h('div', { class: 'card' }, h('div', { class: 'card-name' }, name), h('div', { class: 'card-value' }, value), h('div', { class: `card-note ${bad ? 'bad' : ''}` }, note)));
-  const speed = figures['shaft.speed'] ?? figures['end shaft.speed'];
-  card('speed of the shaft', rpm(speed), settledNote(run, 'shaft.speed'));
-  const torque = ['shaft.torque', 'end shaft.torque'].find(name => Number.isFinite(figures[name]));
-  if (torque) card('torque that drives it', figure('torque', figures[torque]), settledNote(run, 'shaft.torque'));
+  for (const { name } of run.shaft.shafts) {
+    const [speed, torque] = ['speed', 'torque'].map(what => [`${name}.${what}`, `end ${name}.${what}`].find(key => Number.isFinite(figures[key])));
+    const of = run.shaft.shafts.length > 1 ? name : 'the shaft';
+    card(`speed of ${of}`, rpm(figures[speed]), settledNote(run, `${name}.speed`));
+    if (torque) card(`torque that drives ${of === name ? of : 'it'}`, figure('torque', figures[torque]), settledNote(run, `${name}.torque`));
+  }
   const mounted = [...run.mounted];
   if (mounted.length) {
     const powers = mounted.map(([, own]) => own.record.summary.figures['loss.total']);
@@ -83,11 +90,12 @@ export function machineSection(run, open) {
   const { figures, error_bars: bars } = run.record.summary;
   const mounted = [...run.mounted.values()];
   const lives = [['life.L10r', 'rating life L10r'], ['life.modified', 'modified life']].filter(([name]) => mounted.some(own => own.has(name)));
-  const heads = ['bearing', 'position', 'x points to', 'housing'];
+  const several = run.shaft.shafts.length > 1;
+  const heads = ['bearing', ...(several ? ['shaft'] : []), 'position', 'x points to', 'housing'];
   if (mounted.length) heads.push('force across', 'force along x', 'largest ball load at the end', 'in the run', 'peak pressure', 'losses', 'friction torque', ...lives.map(([, head]) => head));
   const rows = run.shaft.bearings.map(bearing => {
     const own = run.mounted.get(bearing.name);
-    const row = [own ? h('button', { type: 'button', class: 'open', 'aria-label': `Show the bearing ${bearing.name}`, onclick: () => open(own) }, bearing.name) : bearing.name,
+    const row = [own ? h('button', { type: 'button', class: 'open', 'aria-label': `Show the bearing ${bearing.name}`, onclick: () => open(own) }, bearing.name) : bearing.name, ...(several ? [bearing.shaft] : []),
       `${digits(bearing.position * 1e3, 5).replace(/\.0*$|(\.\d*?)0+$/, '$1')}\u202fmm`, bearing.direction > 0 ? '+x' : '\u2212x', bearing.housing ?? '\u2013'];
     if (!own) return row;
     const { figures: f, error_bars: e, peak_pressure: pressure } = own.record.summary;
@@ -97,15 +105,15 @@ export function machineSection(run, open) {
       cell('loss.total', f['loss.total'], e?.['loss.total']), cell('friction torque', f['friction torque'], e?.['friction torque']), ...lives.map(([name]) => life(own, name) ?? '\u2013')];
   });
   const energy = name => ['put in', 'to bearings', 'damped', 'balance'].map(what => cell(`${name} ${what}`, figures[`${name} ${what}`], bars?.[`${name} ${what}`]));
-  const bodies = [['shaft', 'shaft'], ...run.shaft.housings.map(housing => [housing.name, `housing ${housing.name}`])];
-  return section('machine', 'Shaft and bearings',
+  const bodies = [...run.shaft.shafts.map(({ name }) => [name, name]), ...run.shaft.housings.map(housing => [housing.name, `housing ${housing.name}`])];
+  return section('machine', several ? 'Shafts and bearings' : 'Shaft and bearings',
     run.record.ended_early ? h('p', { class: 'warning' }, `The run ended early: ${run.record.ended_early}`) : null, (run.record.warnings ?? []).map(text => h('p', { class: 'warning' }, text)),
-    table(heads, rows, { numbers: heads.map((_, i) => i).filter(i => i === 1 || i > 3) }),
+    table(heads, rows, { numbers: heads.map((_, i) => i).filter(i => heads[i] === 'position' || i > heads.indexOf('housing')) }),
     mounted.length ? h('p', { class: 'note' }, 'Forces are those of the bearings on the shaft, in its axes. Forces, losses and torque are means over the second half, or at the end of a run that is too short for means. \u00b1: numerical error, where \u201c--error\u201d measured it.') : null,
     mounted.length ? null : h('p', { class: 'note' }, 'What the bearings do is in the run of this machine by itself: \u201croulement report\u201d of its folder.'),
     lives.length ? h('p', { class: 'note' }, 'Life under the loads of the second half, their damage summed; hours at its mean speed.') : null,
     h('h3', {}, 'Drive and energy'),
-    h('dl', { class: 'facts' }, [['speed', 'shaft.speed'], ['torque that drives it', 'shaft.torque']].flatMap(([word, name]) => [h('dt', {}, word), h('dd', {}, drive(run, name))])),
+    h('dl', { class: 'facts' }, run.shaft.shafts.flatMap(({ name }) => [['speed', 'speed'], ['torque that drives it', 'torque']].map(([word, what]) => [several ? `${name}, ${word}` : word, `${name}.${what}`])).flatMap(([word, name]) => [h('dt', {}, word), h('dd', {}, drive(run, name))])),
     table(['', 'put in', 'to bearings', 'damped', 'balance'], bodies.map(([word, name]) => [word, ...energy(name)]), { numbers: [1, 2, 3, 4] }));
 }
 
@@ -115,10 +123,10 @@ function cell(name, value, bar) {
   return rest ? [`${amount} ${rest.slice(rest.indexOf(' ') + 1)}`, h('div', { class: 'error' }, `\u00b1 ${rest}`)] : amount;
 }
 
-/** Mean and end of the speed or the torque of the shaft. */
+/** Mean and end of the speed or the torque of a shaft. */
 function drive(run, name) {
   const { figures, error_bars: bars } = run.record.summary;
-  const text = key => (Number.isFinite(figures[key]) ? figure(name, figures[key], bars?.[key]) + (name === 'shaft.speed' ? `, ${rpm(figures[key])}` : '') : null);
+  const text = key => (Number.isFinite(figures[key]) ? figure(name, figures[key], bars?.[key]) + (name.endsWith('.speed') ? `, ${rpm(figures[key])}` : '') : null);
   const [mean, end] = [text(name), text(`end ${name}`)];
   return [mean ? `mean ${mean}` : null, end ? `at the end ${end}` : null].filter(Boolean).join('; ');
 }

@@ -13,7 +13,7 @@ const BOX = `-34 28 ${SIZE + 14} ${SIZE - 30}`;
 const MOST = 4000;
 
 export function orbits(run) {
-  const paths = run.shaft.bearings.map(({ name }) => pathOf(run, name));
+  const paths = run.shaft.bearings.map(bearing => pathOf(run, bearing));
   const holder = h('div', { class: 'orbits' });
   const widest = Math.max(...paths.map(path => path.reach));
   const marks = [];
@@ -24,13 +24,13 @@ export function orbits(run) {
   };
   show('same');
   clock.follow(() => { if (holder.isConnected) follow(run, marks); });
-  return section('orbits', 'Paths of the shaft at its bearings',
+  return section('orbits', run.shaft.shafts.length > 1 ? 'Paths of the shafts at their bearings' : 'Paths of the shaft at its bearings',
     h('p', { class: 'note' }, 'Second half of the run, about the mean there, seen from +x; the dot is at the time of the cursor.'),
     paths.length > 1 ? choice('Scale of the paths', [['same', 'same scale'], ['own', 'each its own']], 'same', show) : null, holder);
 }
 
-function pathOf(run, name) {
-  const [y, z] = ['y', 'z'].map(axis => run.get(`shaft.${name}.${axis}`));
+function pathOf(run, { name, shaft }) {
+  const [y, z] = ['y', 'z'].map(axis => run.get(`${shaft}.${name}.${axis}`));
   const [my, mz] = [y, z].map(series => run.mean(series.name));
   const from = Math.max(y.t.findIndex(t => t >= run.begin + 0.5 * (run.end - run.begin)), 0);
   let reach = 0;
@@ -47,7 +47,7 @@ function picture({ name, y, z, my, mz, from }, top, marks) {
   const points = [];
   for (let i = from; i < y.t.length; i += stride) points.push(point(y.v[i], z.v[i]).map(v => v.toFixed(2)).join(' '));
   const dot = s('circle', { r: 4.5, class: 'polar-dot race-1' });
-  marks.push({ name, dot, point });
+  marks.push({ columns: [y.name, z.name], dot, point });
   const svg = s('svg', { viewBox: BOX, class: 'polar', role: 'img', 'aria-label': `Path of the shaft at ${name}` });
   for (const k of [-1, -0.5, 0, 0.5, 1]) {
     const at = C + k * R;
@@ -61,9 +61,9 @@ function picture({ name, y, z, my, mz, from }, top, marks) {
 
 function follow(run, marks) {
   const later = clock.time >= run.begin + 0.5 * (run.end - run.begin);
-  for (const { name, dot, point } of marks) {
+  for (const { columns, dot, point } of marks) {
     dot.style.display = later ? '' : 'none';
-    const [x, y] = point(run.at(`shaft.${name}.y`, clock.time), run.at(`shaft.${name}.z`, clock.time));
+    const [x, y] = point(...columns.map(name => run.at(name, clock.time)));
     dot.setAttribute('cx', x.toFixed(2));
     dot.setAttribute('cy', y.toFixed(2));
   }

@@ -3,6 +3,7 @@
 import uPlot from 'uplot';
 import { h, section, choice } from './dom.js';
 import { clock } from './clock.js';
+import { shaftsOf } from './machine.js';
 import { css, colour, ballColour, onTheme } from './theme.js';
 import { digits, shown } from './units.js';
 
@@ -30,17 +31,21 @@ function groups(run) {
 }
 
 /** Motion of the shaft at its bearings, then at other places, and of housings; a text is a heading. */
-function ofShaft({ shaft }) {
+function ofShaft(run) {
+  const { shaft } = run;
+  const shafts = shaftsOf(run);
   const axes = [['x', 'Displacement along x'], ['y', 'Displacement along y'], ['z', 'Displacement along z']];
   const turns = [['ry', 'Tilt about y'], ['rz', 'Tilt about z']];
   const at = (body, names, axis) => names.map(name => [`${body}.${name}.${axis}`, name]);
   const names = list => list.map(({ name }) => name);
-  const others = names([...shaft.loads, ...shaft.points]);
   const motion = (body, list, what) => what.map(([axis, title]) => [title, at(body, list, axis)]);
   return [
-    ['Speed of the shaft', [['shaft.speed', 'speed']]], ['Torque that drives the shaft', [['shaft.torque', 'torque']]],
-    'The shaft at its bearings', ...motion('shaft', names(shaft.bearings), [...axes, ...turns]),
-    'The shaft at loads and points', ...motion('shaft', others, axes),
+    ...shafts.flatMap(({ name, bearings, loads, points }) => {
+      const [of, heading] = shafts.length > 1 ? [name, name] : ['the shaft', 'The shaft'];
+      return [[`Speed of ${of}`, [[`${name}.speed`, 'speed']]], [`Torque that drives ${of}`, [[`${name}.torque`, 'torque']]],
+        `${heading} at its bearings`, ...motion(name, names(bearings), [...axes, ...turns]),
+        `${heading} at loads and points`, ...motion(name, names([...loads, ...points]), axes)];
+    }),
     ...shaft.housings.flatMap(housing => [`${housing.name}, at its bearings, loads and points`,
       ...motion(housing.name, [...names(shaft.bearings.filter(bearing => bearing.housing === housing.name)), ...names(housing.loads), ...names(housing.points)], [...axes, ['rx', 'Rotation about x'], ['ry', 'Rotation about y'], ['rz', 'Rotation about z']])]),
   ];
@@ -78,7 +83,7 @@ export function plotsSection(runs, current) {
   if (run.bearing) showBalls('inner');
   const own = h('div', { class: 'plots' });
   const all = [...run.series.keys()].filter(name => run.get(name).t.length > 1).sort();
-  const input = h('input', { list: 'columns', type: 'search', placeholder: `column, such as ${run.shaft ? `shaft.${run.shaft.bearings[0].name}.z` : 'ball[3].outer.load'}`, 'aria-label': 'Column to plot', onchange: () => add() });
+  const input = h('input', { list: 'columns', type: 'search', placeholder: `column, such as ${run.shaft ? `${run.shaft.bearings[0].shaft}.${run.shaft.bearings[0].name}.z` : 'ball[3].outer.load'}`, 'aria-label': 'Column to plot', onchange: () => add() });
   const add = () => {
     const name = input.value.trim();
     const found = all.includes(name) ? [name] : all.filter(column => name.length > 2 && column.includes(name)).slice(0, 24);

@@ -2,6 +2,7 @@
 
 import { s, h, section } from './dom.js';
 import { arrowTo, marker, millimetres, short } from './drawing.js';
+import { shaftsOf } from './machine.js';
 import { ringSections, groovePoint } from './shape.js';
 import { digits, rpm } from './units.js';
 
@@ -14,10 +15,17 @@ const LEAST = 150, MOST = 430;
 const DENSITY = 7850;
 
 export function shaftDrawing(run, open) {
+  const shafts = shaftsOf(run);
+  return section('drawing', shafts.length > 1 ? 'The shafts' : 'The shaft', shafts.map(own => {
+    // A housing is around what is in it of this shaft.
+    const one = { ...run, shaft: { ...run.shaft, ...own } };
+    return [shafts.length > 1 ? h('h3', {}, own.name) : null, figureOf(one, open), facts(run, one.shaft)];
+  }));
+}
+
+function figureOf(run, open) {
   const { picture, stretched } = draw(run, open);
-  return section('drawing', 'The shaft',
-    h('figure', {}, h('div', { class: 'scroll' }, picture), h('figcaption', {}, `Seen along +y, to scale${stretched === 1 ? '' : `; radii and heights are drawn ${digits(stretched, 2)} times as large`}. Red: lines through the contacts, to where they meet the axis. Arrows: forces at named places.${run.shaft.discs.length ? ' Discs are drawn as steel ones of their mass and inertia.' : ''}${run.shaft.gears.length ? ' Gears reach to their pitch circle; their width is not known.' : ''}${run.shaft.housings.length ? ' What housings look like is not known: frames are around their bearings, feet and places.' : ''}`)),
-    facts(run));
+  return h('figure', {}, h('div', { class: 'scroll' }, picture), h('figcaption', {}, `Seen along +y, to scale${stretched === 1 ? '' : `; radii and heights are drawn ${digits(stretched, 2)} times as large`}. Red: lines through the contacts, to where they meet the axis. Arrows: forces at named places.${run.shaft.discs.length ? ' Discs are drawn as steel ones of their mass and inertia.' : ''}${run.shaft.gears.length ? ' Gears reach to their pitch circle; their width is not known.' : ''}${run.shaft.housings.length ? ' What housings look like is not known: frames are around their bearings, feet and places.' : ''}`));
 }
 
 /** All that has a place, [m]: x along the axis, r across it, and a label with a leader to the point (x, r). */
@@ -220,8 +228,7 @@ function gravity({ shaft: { gravity: [x, , z] } }, y) {
 }
 
 /** Words below the drawing. */
-function facts(run) {
-  const { shaft } = run;
+function facts(run, shaft) {
   const vector = force => force.map(given => (given.least === given.most ? short(given.start) : `${short(given.least)} to ${short(given.most)}`)).join(', ') + '\u202fN';
   const loads = [...shaft.loads, ...shaft.housings.flatMap(housing => housing.loads.map(load => ({ ...load, name: `${load.name} on ${housing.name}` })))];
   const size = Math.hypot(...shaft.gravity);
@@ -238,7 +245,7 @@ function facts(run) {
     ['Discs', shaft.discs.map(({ position, mass, unbalance }, i) => `disc ${i + 1}: ${short(mass)}\u202fkg${unbalance ? `, unbalance ${short(unbalance * 1e6, 4)}\u202fg\u202fmm` : ''}, at ${millimetres(position)}`).join('; ')],
     ['Forces along x, y, z', loads.map(({ name, force }) => `${name}: ${vector(force)}`).join('; ')],
     ['Gravity', size > 0 ? `${short(size)}\u202fm/s\u00b2` : null],
-    ['Speed at the end', rpm(run.get('shaft.speed').v.at(-1))],
+    ['Speed at the end', rpm(run.get(`${shaft.name}.speed`).v.at(-1))],
   ];
   return h('dl', { class: 'facts' }, rows.filter(([, value]) => value).flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, value)]));
 }

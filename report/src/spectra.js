@@ -10,10 +10,10 @@ import { digits, shown } from './units.js';
 const NOTHING = 1e-11;
 
 export function spectra(run) {
-  const candidates = [...run.series.values()].filter(s => !s.constant && s.t.length >= 64 && (run.shaft ? s.name !== 'shaft.angle' : /force|moment|position|torque|power|speed|load$|eccentricity|slip|angle/.test(s.name))).map(s => s.name)
+  const candidates = [...run.series.values()].filter(s => !s.constant && s.t.length >= 64 && (run.shaft ? !run.shaft.shafts.some(({ name }) => s.name === `${name}.angle`) : /force|moment|position|torque|power|speed|load$|eccentricity|slip|angle/.test(s.name))).map(s => s.name)
     .filter(name => !run.isNothing(name)).sort((a, b) => a.startsWith('ball[') - b.startsWith('ball[') || a.localeCompare(b));
   if (!candidates.length) return null;
-  const liveliest = ['y', 'z', 'x'].map(axis => (run.shaft ? `shaft.${run.shaft.bearings[0].name}.${axis}` : `${run.bearing.loaded}.force.${axis}`)).filter(name => candidates.includes(name));
+  const liveliest = ['y', 'z', 'x'].map(axis => (run.shaft ? `${run.shaft.bearings[0].shaft}.${run.shaft.bearings[0].name}.${axis}` : `${run.bearing.loaded}.force.${axis}`)).filter(name => candidates.includes(name));
   const state = { name: liveliest[0] ?? candidates[0], axis: 'Hz', scale: 'log' };
   const lines = marked(run);
   const body = h('div', { class: 'plot-body', role: 'img', 'aria-label': 'Amplitude spectrum' });
@@ -60,9 +60,12 @@ export function spectra(run) {
 /** Mean frequencies of cage and damage, and of the shaft; of a machine those of its meshes. */
 function marked(run) {
   if (run.shaft) {
-    const shaft = Math.abs(run.mean('shaft.speed')) / (2 * Math.PI);
-    const meshes = run.shaft.gears.flatMap(({ teeth }, i) => (teeth ? [{ short: `gear ${i + 1}`, long: `${teeth} teeth that mesh`, frequency: teeth * shaft }] : []));
-    return { list: shaft > 0 ? [{ short: 'shaft', long: 'turns of the shaft', frequency: shaft }, ...meshes] : [], shaft };
+    const turns = run.shaft.shafts.map(({ name }) => Math.abs(run.mean(`${name}.speed`)) / (2 * Math.PI));
+    const list = run.shaft.shafts.flatMap(({ name, gears }, i) => [
+      { short: name, long: turns.length > 1 ? `turns of ${name}` : 'turns of the shaft', frequency: turns[i] },
+      ...gears.flatMap(({ teeth }, k) => (teeth ? [{ short: `gear ${k + 1}`, long: `${teeth} teeth that mesh`, frequency: teeth * turns[i] }] : [])),
+    ]);
+    return { list: list.filter(line => line.frequency > 0), shaft: turns[0] };
   }
   const speeds = ['inner', 'outer'].map(race => Math.abs(run.mean(`${race}.speed`)) / (2 * Math.PI));
   const own = run.bearing.loaded === 'inner' ? 0 : 1;

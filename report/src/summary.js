@@ -71,7 +71,7 @@ function phases(run) {
   const mean = (phase, name) => { const own = of(phase, name); return own ? figure(name, own.mean, own.error) : '\u2013'; };
   const span = (phase, name) => { const own = of(phase, name); return own ? `${figure(name, own.least)} to ${figure(name, own.largest)}` : '\u2013'; };
   const state = phase => (phase.script_changes ? h('span', { class: 'mark bad' }, '\u2717 script changes') : mark(phase));
-  const names = run.shaft ? ['shaft.speed', 'shaft.torque'] : ['friction power', 'friction torque', 'cage slip'];
+  const names = run.shaft ? run.shaft.shafts.flatMap(({ name }) => [`${name}.speed`, `${name}.torque`]) : ['friction power', 'friction torque', 'cage slip'];
   const shownNames = names.filter(name => all.some(phase => of(phase, name)));
   const rows = all.map(phase => [phase.name, `${digits(phase.window[0] * 1e3, 5)} to ${digits(phase.window[1] * 1e3, 5)} ms`,
     ...shownNames.flatMap(name => [mean(phase, name), span(phase, name)]), ...(run.shaft ? [] : [`${digits(phase.heat, 4)} J`, lifeOf(phase.life)]), state(phase)]);

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use roulement::scene::system::SystemScene;
+use roulement::schema::Components;
 use roulement::schema::units::{Force, Length};
-use roulement::schema::{Components, ShaftSection};
 use roulement::simulation::system::{System, SystemOutputs};
 use serde_json::{Value, json};
 
@@ -11,40 +11,44 @@ use super::bearing::{self, schedule};
 use super::grid::Grid;
 use crate::report::shaft;
 
-/// All of it; lengths \[m], angles \[rad]. Each bearing has its own dimensions with it: a sweep keeps the record of a shaft alone.
+/// All of it; lengths \[m], angles \[rad], positions along all shafts. Each bearing has its own dimensions with it: a sweep keeps the record of a shaft alone.
 pub fn describe(system: &System) -> Value {
     let SystemScene { shafts, housings, bearings, gravity, .. } = system.scene();
-    // Of several shafts the page shows the bearings alone, by their places along all shafts.
-    let none = ShaftSection::default();
-    let shaft = if let [one] = &shafts[..] { one } else { &none };
     let place = |place: &[Length; 3]| place.map(|length| length.0);
     let force = |force: &Components<Force>| force.0.each_ref().map(schedule);
     json!({
-        "sections": shaft.section.iter().map(|beam| json!({
-            "from": beam.from.0,
-            "to": beam.to.0,
-            "outer_diameter": beam.outer_diameter.0,
-            "inner_diameter": beam.inner_diameter.map_or(0.0, |diameter| diameter.0),
-        })).collect::<Vec<_>>(),
-        "discs": shaft.disc.iter().map(|disc| json!({
-            "position": disc.position.0,
-            "mass": disc.mass.0,
-            "polar_inertia": disc.polar_inertia.0,
-            "unbalance": disc.unbalance.map_or(0.0, |unbalance| unbalance.0),
-        })).collect::<Vec<_>>(),
-        "gears": shaft.gear.iter().map(|gear| json!({
-            "position": gear.offset.0,
-            "pitch_radius": gear.pitch_radius.0,
-            "azimuth": gear.position.0,
-            "helix_angle": gear.helix_angle.0,
-            "teeth": gear.teeth,
-        })).collect::<Vec<_>>(),
-        "loads": shaft.load.iter().map(|load| json!({
-            "name": load.name,
-            "position": load.position.0,
-            "force": force(&load.force),
-        })).collect::<Vec<_>>(),
-        "points": shaft.point.iter().map(|point| json!({ "name": point.name, "position": point.position.0 })).collect::<Vec<_>>(),
+        "shafts": shafts.iter().zip(system.shafts()).map(|(shaft, carrier)| {
+            let along = |position: f64| shaft.place(position)[0];
+            json!({
+                "name": shaft.name,
+                "modes": carrier.modes,
+                "sections": shaft.section.iter().map(|beam| json!({
+                    "from": along(beam.from.0),
+                    "to": along(beam.to.0),
+                    "outer_diameter": beam.outer_diameter.0,
+                    "inner_diameter": beam.inner_diameter.map_or(0.0, |diameter| diameter.0),
+                })).collect::<Vec<_>>(),
+                "discs": shaft.disc.iter().map(|disc| json!({
+                    "position": along(disc.position.0),
+                    "mass": disc.mass.0,
+                    "polar_inertia": disc.polar_inertia.0,
+                    "unbalance": disc.unbalance.map_or(0.0, |unbalance| unbalance.0),
+                })).collect::<Vec<_>>(),
+                "gears": shaft.gear.iter().map(|gear| json!({
+                    "position": along(gear.offset.0),
+                    "pitch_radius": gear.pitch_radius.0,
+                    "azimuth": gear.position.0,
+                    "helix_angle": gear.helix_angle.0,
+                    "teeth": gear.teeth,
+                })).collect::<Vec<_>>(),
+                "loads": shaft.load.iter().map(|load| json!({
+                    "name": load.name,
+                    "position": along(load.position.0),
+                    "force": force(&load.force),
+                })).collect::<Vec<_>>(),
+                "points": shaft.point.iter().map(|point| json!({ "name": point.name, "position": along(point.position.0) })).collect::<Vec<_>>(),
+            })
+        }).collect::<Vec<_>>(),
         "bearings": bearings.iter().zip(system.bearings()).enumerate().map(|(index, (mounted, (_, own)))| json!({
             "name": mounted.name,
             "position": shafts[mounted.shaft].place(mounted.mounting.position.0)[0],
@@ -67,7 +71,6 @@ pub fn describe(system: &System) -> Value {
                 "position": place(&point.position),
             })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
-        "modes": system.shafts().iter().flat_map(|carrier| &carrier.modes).collect::<Vec<_>>(),
         "gravity": Vector3::from(*gravity).as_slice(),
     })
 }
