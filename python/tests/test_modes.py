@@ -39,6 +39,14 @@ def test_independent_data_a_free_ring_whirls_and_on_two_bearings_does_not():
     assert len(two.growth) > 0 and not two.grows.any() and two.growth.max() < 0
 
 
+def test_consistency_runs_say_what_grows_as_the_command_line_does(tmp_path):
+    path = ROOT / "scenes" / "whirl" / "one.toml"
+    printed = json.loads(program("run", path, "-o", tmp_path / "out", "--json").stdout)
+    summary = roulement.run(roulement.Scene.load(path)).summary
+    assert summary["warnings"] == printed["warnings"] and summary["warnings"][0].startswith("a motion grows: inner ring")
+    assert summary["means"]["settled"] is printed["means"]["settled"] is False
+
+
 def test_what_cannot_move_has_no_motions_and_what_cannot_be_is_refused(posed):
     held = roulement.modes(posed, speeds=1)
     assert held.own.shape == [] and held.own.error is None and held.own.growth.shape == (0,)
