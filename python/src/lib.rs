@@ -8,6 +8,7 @@ mod arrays;
 mod catalogues;
 mod contacts;
 mod failures;
+mod modes;
 mod runs;
 mod scenes;
 mod simulations;
@@ -21,6 +22,8 @@ mod _native {
     use crate::catalogues::{catalogue_candidates, catalogue_names, catalogue_scene};
     #[pymodule_export]
     use crate::contacts::contact;
+    #[pymodule_export]
+    use crate::modes::modes;
     #[pymodule_export]
     use crate::runs::{run, write_parquet};
     #[pymodule_export]

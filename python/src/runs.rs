@@ -11,6 +11,7 @@ use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::{Rows, play_observed};
 use roulement_cli::error::{Compared, Refined, Run, refine};
+use roulement_cli::modes::warnings;
 use roulement_cli::report::cells::{Cell, Column};
 use roulement_cli::report::figures::Shown;
 use roulement_cli::report::json;
@@ -59,6 +60,7 @@ pub fn run<'py>(
         if let Some((rounds, _)) = &rounds {
             run.seen.set_means(rounds.means());
         }
+        run.seen.set_growing(&warnings(&scene, 0.0));
         let bars = rounds.as_ref().and_then(|(rounds, _)| rounds.bars()).unwrap_or_default();
         let mut bars = bars.into_iter();
         let figures = run.seen.figures(&run.machine).into_iter();

@@ -21,7 +21,7 @@ use crate::report::quantities::{Parts, of_bearing, values, weights};
 use crate::report::spectrum::{Recorder, Spectrum};
 use crate::report::thinned::Thinned;
 
-use super::circling::{Circling, CirclingWatch};
+use super::circling::{Circling, CirclingWatch, Exciting};
 use super::phases::{Now, Phase, PhaseWatch};
 
 /// Gathers while a bearing runs.
@@ -118,15 +118,20 @@ impl BearingWatch {
     }
 
     /// All of it, at the end. Does a script, of the bearing or of the shaft that carries it, come to other values within a span \[s] of time?
-    pub fn finish(self, simulation: &Simulation, changes: &dyn Fn(f64, f64) -> bool) -> BearingSeen {
+    /// And what acts on that shaft?
+    pub fn finish(
+        self,
+        simulation: &Simulation,
+        changes: &dyn Fn(f64, f64) -> bool,
+        exciting: Exciting,
+    ) -> BearingSeen {
         let means = self
             .blocks
             .means()
             .map(|means| Means { scripted: changes(means.window[0], means.window[1]), ..means });
         let from = means.as_ref().map_or(0.0, |means| means.window[0]);
-        let circling = self.circling.finish(simulation, from);
-        let unstable = circling.is_some();
-        let means = means.map(|means| Means { unstable, ..means });
+        let scripted = means.as_ref().is_some_and(|means| means.scripted);
+        let circling = self.circling.finish(simulation, from, Exciting { scripted, ..exciting });
         let rated = self.rated.finish();
         BearingSeen {
             closed: means.as_ref().and_then(|means| self.losses.over(means.window)),

@@ -1,10 +1,13 @@
 //! Does a race that is free across its axis go round, or swing, by more than its loads explain?
 //!
 //! What accelerates it is the force of the bearing and what is applied to it. In a race that is at rest under its loads both cancel; one
-//! that whirls is accelerated by many times what is applied.
+//! that whirls is accelerated by many times what is applied. Of a race on a shaft that is the force of the bearing but for its mean, which
+//! carries the loads of the shaft, and for what turns with the shaft, as its unbalance does.
 
-use nalgebra::Vector2;
+use nalgebra::{Complex, Matrix3, Vector2, Vector3};
 use roulement::model::bodies::{Constraint, Race, RigidBody};
+use roulement::scene::Schedule;
+use roulement::scene::system::SystemScene;
 use roulement::simulation::Simulation;
 
 use crate::report::thinned::Thinned;
@@ -27,10 +30,39 @@ struct Place {
     velocity: Vector2<f64>,
     /// \[N] force that accelerates it.
     accelerates: Vector2<f64>,
-    /// \[N] what is applied.
+    /// \[N] what is applied; on a shaft the mean of what its bearing carries.
     applied: Vector2<f64>,
+    /// [rad/s] speed of the race.
+    spin: f64,
     /// \[N] the largest of all forces on it.
     largest: f64,
+}
+
+/// What acts on the shafts of a machine beside what is steady.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Exciting {
+    /// Do scripts come to other values?
+    pub scripted: bool,
+    /// Does a load swing?
+    pub swings: bool,
+    /// Is a disc out of balance?
+    pub unbalance: bool,
+}
+
+impl Exciting {
+    /// Of the shafts of a scene.
+    pub fn of(scene: &SystemScene) -> Self {
+        let loads = scene.loads().flat_map(|load| load.force.0.iter().chain(&load.moment.0));
+        let mut shafts = scene.shafts.iter();
+        let drives = shafts.clone().flat_map(|shaft| shaft.speed.iter().chain(&shaft.torque));
+        let gears = scene.gears().map(|gear| &gear.torque);
+        let ripples = scene.gears().any(|gear| gear.ripple().is_some());
+        Self {
+            scripted: false,
+            swings: ripples || loads.chain(drives).chain(gears).any(Schedule::swings),
+            unbalance: shafts.any(|shaft| shaft.disc.iter().any(|disc| disc.unbalance.is_some())),
+        }
+    }
 }
 
 /// Gathers while a bearing runs; nothing of a race that is held across its axis.
@@ -48,27 +80,34 @@ pub struct Circling {
     pub radius: f64,
     /// \[N] largest force that accelerates it across its axis.
     pub force: f64,
-    /// \[N] largest force that is applied there.
+    /// \[N] largest force that is applied there; of a shaft the mean that its bearing carries.
     pub applied: f64,
+    /// Does a shaft carry it?
+    pub carried: bool,
     /// [-] how round the way is: 1 forwards in a circle, -1 backwards, 0 to and fro.
     pub round: f64,
+}
+
+/// The race that is watched: that which a shaft carries, or which loads act on.
+fn watched(simulation: &Simulation) -> Race {
+    if simulation.model().is_carried(Race::Inner) { Race::Inner } else { Race::loaded(simulation.scene()) }
 }
 
 /// Is a race moved by forces across its axis, in both directions?
 fn is_free(moved: &RigidBody) -> bool {
     let held = |constraint: &Constraint| matches!(constraint, Constraint::Position(axis, _) if *axis > 0);
-    !moved.carried && !moved.constraints.iter().any(held)
+    !moved.constraints.iter().any(held)
 }
 
 impl CirclingWatch {
     /// Takes a row.
     pub fn push(&mut self, simulation: &Simulation) {
-        let race = Race::loaded(simulation.scene());
+        let race = watched(simulation);
         let model = simulation.model();
         let Some(moved) = &model.bodies[race] else {
             return;
         };
-        if !is_free(moved) || model.supports[race].is_some() {
+        if !(moved.carried || is_free(moved)) || model.supports[race].is_some() {
             return;
         }
         let output = simulation.race_output(race);
@@ -81,14 +120,23 @@ impl CirclingWatch {
             velocity: across(&output.twist.velocity),
             accelerates: across(&(output.wrench.force + applied)),
             applied: across(&applied),
+            spin: simulation.state().race(race).rate.x,
             largest: applied.norm().max(output.wrench.force.norm()),
         });
     }
 
-    /// What was seen from a time \[s] on, where that is beyond what loads explain.
-    pub fn finish(self, simulation: &Simulation, from: f64) -> Option<Circling> {
-        let places: Vec<Place> =
+    /// What was seen from a time \[s] on, where that is beyond what loads explain. Nothing is known of a shaft whose loads change or
+    /// swing.
+    pub fn finish(self, simulation: &Simulation, from: f64, exciting: Exciting) -> Option<Circling> {
+        let race = watched(simulation);
+        let mut places: Vec<Place> =
             self.places.finish().into_iter().filter(|place| place.time >= from).collect();
+        if simulation.model().is_carried(race) {
+            if exciting.scripted || exciting.swings {
+                return None;
+            }
+            take_explained(&mut places, exciting.unbalance);
+        }
         let most = |of: &dyn Fn(&Place) -> f64| places.iter().map(of).fold(0.0, f64::max);
         let force = most(&|place| place.accelerates.norm());
         let applied = most(&|place| place.applied.norm());
@@ -103,25 +151,65 @@ impl CirclingWatch {
             let offset = from_middle(place);
             (turn + offset.perp(&place.velocity), size + offset.norm() * place.velocity.norm())
         });
-        let race = Race::loaded(simulation.scene());
         let spin = simulation.state().race(race).rate.x.signum();
         let radius = most(&|place| from_middle(place).norm());
-        Some(Circling { race, radius, force, applied, round: spin * turn / size.max(f64::MIN_POSITIVE) })
+        let round = spin * turn / size.max(f64::MIN_POSITIVE);
+        Some(Circling { race, radius, force, applied, carried: simulation.model().is_carried(race), round })
+    }
+}
+
+/// Takes what steady loads and unbalance of a shaft explain out of the forces of its bearing: the mean and, by least squares, what turns
+/// with the shaft, forwards and backwards. The mean is what is applied then.
+fn take_explained(places: &mut [Place], unbalance: bool) {
+    let complex = |v: Vector2<f64>| Complex::new(v.x, v.y);
+    let mut angle = 0.0;
+    let turns = |unbalance: bool, angle: f64| {
+        let turn = if unbalance { Complex::cis(angle) } else { Complex::from(0.0) };
+        Vector3::new(Complex::from(1.0), turn, turn.conj())
+    };
+    let mut rows = Vec::with_capacity(places.len());
+    for (index, place) in places.iter().enumerate() {
+        let before = &places[index.saturating_sub(1)];
+        angle += 0.5 * (before.spin + place.spin) * (place.time - before.time);
+        rows.push(turns(unbalance, angle));
+    }
+    let (mut square, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for (row, place) in rows.iter().zip(&*places) {
+        square += row.conjugate() * row.transpose();
+        right += row.conjugate() * complex(place.accelerates);
+    }
+    if !unbalance {
+        square[(1, 1)] = Complex::from(1.0);
+        square[(2, 2)] = Complex::from(1.0);
+    }
+    // Too few rows to tell them apart: then all of it is explained.
+    let parts = square.lu().solve(&right);
+    for (row, place) in rows.iter().zip(places) {
+        let explained = parts.map_or(complex(place.accelerates), |parts| row.dot(&parts));
+        place.accelerates -= Vector2::new(explained.re, explained.im);
+        place.applied = parts.map_or(Vector2::zeros(), |parts| Vector2::new(parts[0].re, parts[0].im));
     }
 }
 
 impl Circling {
     /// In a sentence.
     pub fn warning(&self) -> String {
-        let Self { race, radius, force, applied, round } = self;
+        let Self { race, radius, force, applied, carried, round } = self;
         let way = match round {
             round if *round > ROUND => "goes round forwards",
             round if *round < -ROUND => "goes round backwards",
             _ => "swings",
         };
+        let beyond = if *carried {
+            format!(
+                "its bearing's force across the axis swings by {force:.1} N about a mean of {applied:.1} N"
+            )
+        } else {
+            format!("{force:.1} N accelerate it across its axis where {applied:.1} N are applied")
+        };
         format!(
-            "the {} race {way} by up to {:.3} um about the middle of its way: {force:.1} N accelerate it across its axis where {applied:.1} N \
-             are applied; its means are those of this motion (docs/holding-a-bearing.md)",
+            "the {} race {way} by up to {:.3} um about the middle of its way: {beyond}; its means are those of this motion \
+             (docs/holding-a-bearing.md)",
             race.name(),
             radius * 1e6
         )

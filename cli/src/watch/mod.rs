@@ -11,7 +11,7 @@ use roulement::simulation::play::Observer;
 use roulement::simulation::system::System;
 
 pub use bearing::{BearingSeen, BearingWatch, Life, headlines};
-pub use circling::Circling;
+pub use circling::{Circling, Exciting};
 pub use phases::{Extreme, Phase};
 pub use shaft::{ShaftSeen, ShaftWatch};
 
@@ -60,10 +60,23 @@ impl Watch {
     pub fn finish(self, machine: &Machine) -> Seen {
         let bearings = self.bearings.into_iter().zip(machine.bearings());
         let changes = |from, to| machine.script_changes_within(from, to);
-        Seen {
-            bearings: bearings.map(|(watch, (_, bearing))| watch.finish(bearing, &changes)).collect(),
+        let exciting = machine.shaft().map_or(Exciting::default(), |system| Exciting::of(system.scene()));
+        let finish = |(watch, (_, bearing)): (BearingWatch, (&str, &Simulation))| {
+            watch.finish(bearing, &changes, exciting)
+        };
+        let mut seen = Seen {
+            bearings: bearings.map(finish).collect(),
             shaft: self.shaft.map(|watch| watch.finish(&changes)),
+        };
+        let means = seen
+            .bearings
+            .iter()
+            .filter(|seen| seen.circling.is_some())
+            .filter_map(|seen| seen.means.as_ref());
+        if let Some(from) = means.map(|means| means.window[0]).reduce(f64::min) {
+            seen.set_unstable(from);
         }
+        seen
     }
 }
 
@@ -116,11 +129,21 @@ impl Seen {
         bearings.chain(shaft).collect()
     }
 
+    /// Nothing has settled of what goes on after a time \[s], in any part of the machine.
+    fn set_unstable(&mut self, from: f64) {
+        let of_bearings = self.bearings.iter_mut().map(|seen| (&mut seen.means, &mut seen.phases));
+        let of_shaft = self.shaft.iter_mut().map(|seen| (&mut seen.means, &mut seen.phases));
+        for (means, phases) in of_bearings.chain(of_shaft) {
+            let all = means.iter_mut().chain(phases.iter_mut().map(|phase| &mut phase.means));
+            all.for_each(|means| means.unstable |= means.window[1] > from);
+        }
+    }
+
     /// Takes what grows about where the run starts, a sentence each: no means have settled then.
     pub fn set_growing(&mut self, growing: &[String]) {
-        let means = self.bearings.iter_mut().flat_map(|seen| &mut seen.means);
-        let means = means.chain(self.shaft.iter_mut().flat_map(|seen| &mut seen.means));
-        means.for_each(|means| means.unstable |= !growing.is_empty());
+        if !growing.is_empty() {
+            self.set_unstable(f64::NEG_INFINITY);
+        }
         match (&mut self.shaft, self.bearings.first_mut()) {
             (Some(shaft), _) => shaft.growing = growing.to_vec(),
             (None, Some(alone)) => alone.growing = growing.to_vec(),

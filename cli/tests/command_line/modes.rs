@@ -95,6 +95,80 @@ fn equilibria_and_runs_say_what_grows_and_call_nothing_settled_that_does() {
     assert!(!notes.contains("warning:"), "{notes}");
 }
 
+/// A shaft of the mass of that ring on the one bearing of `error/high_speed`, or on two of `whirl/one`, with an unbalance.
+fn shaft(scratch: &Scratch, [speed, mass, transverse]: [&str; 3], bearings: &str, rest: &str) -> String {
+    for (from, to) in [("error/high_speed", "high.toml"), ("whirl/one", "one.toml")] {
+        std::fs::copy(scene(from), scratch.path(to)).unwrap();
+    }
+    let text = format!(
+        "[shaft]\nspeed = \"{speed}\"\nmass = \"{mass}\"\npolar_inertia = \"6e-5 kg m^2\"\n\
+         transverse_inertia = \"{transverse}\"\ncentre = 0\n{bearings}\n\
+         [[shaft.disc]]\nposition = 0\nmass = \"1 g\"\npolar_inertia = 1e-8\ntransverse_inertia = 1e-8\n{rest}"
+    );
+    std::fs::write(scratch.path("shaft.toml"), text).unwrap();
+    scratch.path("shaft.toml")
+}
+
+/// The bearing alone is accelerated by 1370 N (above).
+#[test]
+fn a_shaft_that_circles_is_told_and_one_that_its_unbalance_moves_is_not() {
+    let scratch = Scratch::new("modes-shaft");
+    let run = |file: &str| {
+        let output = roulement(&["run", file, "-o", &scratch.path("out")]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    let load = "[[shaft.load]]\nname = \"thrust\"\nposition = 0\nforce = [1500, 100, 0]\n\
+                [load]\nduration = \"5 ms\"\noutput_interval = \"10 us\"\n";
+    let one = "[[bearing]]\nname = \"only\"\nscene = \"high.toml\"\nmounting = { position = 0, direction = \"+x\" }";
+    for unbalance in ["", "unbalance = \"0.05 g mm\"\n"] {
+        let file =
+            shaft(&scratch, ["65217 rpm", "0.2 kg", "4e-5 kg m^2"], one, &format!("{unbalance}{load}"));
+        let (summary, notes) = run(&file);
+        for said in [&summary, &notes] {
+            assert!(said.contains("bearing only: the inner race goes round forwards by up to"), "{said}");
+        }
+        let force = summary.split("swings by ").nth(1).unwrap().split(' ').next().unwrap();
+        let force: f64 = force.parse().unwrap();
+        assert!((force / 1370.0 - 1.0).abs() < 0.05, "{force}");
+        assert!(
+            summary.contains("NOT SETTLED      a motion grows") && !summary.contains("settled   "),
+            "{summary}"
+        );
+    }
+    // 25 N of unbalance near a critical speed: 265 N in each bearing, of no load that stands.
+    let two = ["left", "right"].map(|name| {
+        let (place, direction) = if name == "left" { ("-20 mm", "+x") } else { ("20 mm", "-x") };
+        format!(
+            "[[bearing]]\nname = \"{name}\"\nscene = \"one.toml\"\nmounting = {{ position = \"{place}\", direction = \"{direction}\", \
+             preload = {{ force = \"1500 N\" }} }}"
+        )
+    });
+    let rest = "unbalance = \"2 g mm\"\n[load]\nduration = \"20 ms\"\noutput_interval = \"100 us\"\n";
+    let file = shaft(&scratch, ["34000 rpm", "20 kg", "1e-2 kg m^2"], &two.join("\n"), rest);
+    let (summary, notes) = run(&file);
+    assert!(!summary.contains("WARNING") && !notes.contains("warning"), "{summary}{notes}");
+    let left = scratch.read("out/left/results.csv");
+    let mut lines = left.lines();
+    let column = lines.next().unwrap().split(',').position(|name| name.starts_with("inner.force.y"));
+    let forces =
+        lines.map(|line| line.split(',').nth(column.unwrap()).unwrap().parse::<f64>().unwrap().abs());
+    let largest = forces.fold(0.0, f64::max);
+    assert!(largest > 150.0, "{largest}: too far from the critical speed to tell anything");
+}
+
+#[test]
+fn no_phase_has_settled_while_a_motion_grows() {
+    let scratch = Scratch::new("modes-phase");
+    let text = std::fs::read_to_string(whirl("one")).unwrap();
+    let phase = "[[phase]]\nname = \"all\"\nfrom = 0\nto = \"5 ms\"\n";
+    std::fs::write(scratch.path("scene.toml"), format!("{text}\n{phase}")).unwrap();
+    let output = roulement(&["run", &scratch.path("scene.toml"), "-o", &scratch.path("out")]);
+    let summary = String::from_utf8(output.stdout).unwrap();
+    let line = summary.lines().find(|line| line.starts_with("phase all")).unwrap();
+    assert!(line.ends_with("NOT SETTLED: a motion grows, or is beyond what loads explain"), "{line}");
+}
+
 #[test]
 fn speeds_and_times_that_cannot_be_are_refused() {
     for (option, value, allowed) in [

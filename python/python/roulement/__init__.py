@@ -15,6 +15,7 @@ from . import catalogue, coupling, load_cases, shaft
 from .contacts import LAWS, contact
 from .cost import cost
 from .equilibrium import Equilibrium, equilibrium
+from .modes import Modes, Motions, modes
 from .results import Results, run
 from .scene import Scene, cage, effects, package
 from .simulation import Simulation
@@ -22,6 +23,8 @@ from .simulation import Simulation
 __all__ = [
     "LAWS",
     "Equilibrium",
+    "Modes",
+    "Motions",
     "Results",
     "Scene",
     "Simulation",
@@ -34,6 +37,7 @@ __all__ = [
     "effects",
     "equilibrium",
     "load_cases",
+    "modes",
     "package",
     "run",
     "shaft",
