@@ -5,8 +5,9 @@ use nalgebra::Vector3;
 use super::body::BodyTrial;
 use super::equations::BearingStep;
 use super::failure::Worst;
-use crate::model::bodies::Body;
+use crate::model::bodies::{Body, Race};
 use crate::model::state::BodyState;
+use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::size::largest;
 
 /// A vector at start and end of a step.
@@ -35,44 +36,115 @@ impl BearingStep<'_> {
 
     /// Weighted root mean square of the local error of all positions, over its tolerance.
     pub fn local_error(&self) -> f64 {
-        let squares = self.ball_errors().chain(self.body_errors().map(|(_, square)| square));
+        let allowed = self.allowed();
+        let squares = self.ball_errors(allowed).chain(self.body_errors(allowed).map(|(_, square)| square));
         let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 6.0));
         (sum / count).sqrt()
     }
 
     /// Where the local error is largest.
     pub fn worst_error(&self) -> Worst {
-        Worst::of(self.ball_errors(), self.body_errors())
+        let allowed = self.allowed();
+        Worst::of(self.ball_errors(allowed), self.body_errors(allowed))
+    }
+
+    /// Local error that a step may make.
+    pub fn allowed(&self) -> Allowed {
+        let solver = &self.model.solver;
+        let groups = &self.workspace.groups;
+        let load = |ball: usize| Race::BOTH.map(|race| groups.pressed(ball, race).1);
+        let unresolved = (solver.unresolved > 0.0).then(|| {
+            let loads = (0..self.start.balls.len()).flat_map(load);
+            solver.unresolved * loads.fold(0.0, f64::max)
+        });
+        Allowed { length: solver.tolerance * 2.0 * self.model.bearing.ball.radius, unresolved }
     }
 
     /// Square of the local error of every ball over its tolerance; rotations count as displacements at its surface.
-    fn ball_errors(&self) -> impl Iterator<Item = f64> {
-        let radius = self.model.bearing.ball.radius;
-        self.start.balls.iter().enumerate().map(move |(ball, start)| {
-            let unknowns = self.workspace.groups.unknowns(ball);
-            let acceleration = unknowns.fixed_rows::<3>(0).into_owned();
-            let angular = unknowns.fixed_rows::<3>(3).into_owned();
-            self.square(
-                (&start.acceleration, &acceleration),
-                (&(start.angular_acceleration * radius), &angular),
-            )
+    fn ball_errors(&self, allowed: Allowed) -> impl Iterator<Item = f64> {
+        let ball = &self.model.bearing.ball;
+        let radius = ball.radius;
+        let masses = [ball.mass, ball.inertia / (radius * radius)];
+        self.start.balls.iter().enumerate().map(move |(index, start)| {
+            let unknowns = self.workspace.groups.unknowns(index);
+            let ends = |from: usize| unknowns.fixed_rows::<3>(from).into_owned();
+            let starts = match allowed.unresolved {
+                // What turns with the orbit is followed without error.
+                Some(_) => {
+                    let steady = &self.workspace.steady[BLOCK * index..];
+                    [0, 3].map(|from| Vector3::from_column_slice(&steady[from..from + 3]))
+                }
+                None => [start.acceleration, start.angular_acceleration * radius],
+            };
+            self.square(allowed, [(&starts[0], &ends(0)), (&starts[1], &ends(3))], masses)
         })
     }
 
     /// Square of the local error of every body over its tolerance; rotations count as displacements at the pitch circle.
-    fn body_errors(&self) -> impl Iterator<Item = (Body, f64)> {
+    fn body_errors(&self, allowed: Allowed) -> impl Iterator<Item = (Body, f64)> {
         let length = self.model.race_length();
         self.moved().map(move |(body, start, trial)| {
             let angular = [start, &trial.end].map(|state| state.rate_derivative * length);
-            let linear = (&start.acceleration, &trial.end.acceleration);
-            (body, self.square(linear, (&angular[0], &angular[1])))
+            let ends = [(&start.acceleration, &trial.end.acceleration), (&angular[0], &angular[1])];
+            let masses = match (body, self.model.bodies.get(body)) {
+                (Body::Race(_), Some(Some(race))) => [race.mass, race.inertia.max() / (length * length)],
+                // A cage is light, and what it does to losses is not seen in loads.
+                _ => [f64::INFINITY; 2],
+            };
+            (body, self.square(allowed, ends, masses))
         })
     }
 
-    /// Square of the local error, from linear and angular accelerations [m/s2] at both ends of the step.
-    fn square(&self, linear: Ends<'_>, angular: Ends<'_>) -> f64 {
-        let scale = self.model.solver.tolerance * 2.0 * self.model.bearing.ball.radius;
-        let error = |ends: Ends<'_>| self.step.local_error(ends.0, ends.1).norm_squared();
-        (error(linear) + error(angular)) / (scale * scale)
+    /// Square of the local error over what is allowed, from linear and angular accelerations [m/s2] at both ends of the step, of these
+    /// masses \[kg].
+    fn square(&self, allowed: Allowed, ends: [Ends<'_>; 2], masses: [f64; 2]) -> f64 {
+        let errors = ends.map(|(start, end)| self.step.local_error(start, end).norm_squared());
+        let force = |k: usize| masses[k] * (ends[k].1 - ends[k].0).norm();
+        allowed.square(errors, || [force(0), force(1) / FRICTION])
+    }
+}
+
+/// [-] local error that is allowed of what need not be followed, over that of the rest.
+const LOOSE: f64 = 2e3;
+
+/// [-] what turns bodies, friction, over loads.
+const FRICTION: f64 = 0.1;
+
+/// Local error that a step may make.
+///
+/// Steps that are longer than a swing of a ball in its contacts do not compute that swing; HHT's damping takes it away. That is no loss
+/// where the force that it swings with is small beside the loads, and shows in how much inertia forces change in a step. So a change up to
+/// `unresolved` counts little, and of a larger one the rest. (A local error of positions alone tells nothing of it: where contacts are stiff,
+/// positions follow the loads.)
+#[derive(Clone, Copy, Debug)]
+pub struct Allowed {
+    /// \[m] tolerance.
+    pub length: f64,
+    /// \[N] change of an inertia force that need not be followed; none where all is.
+    pub unresolved: Option<f64>,
+}
+
+impl Allowed {
+    /// The stricter of both.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let unresolved = match (self.unresolved, other.unresolved) {
+            (Some(one), Some(other)) => Some(one.min(other)),
+            _ => None,
+        };
+        Self { length: self.length.min(other.length), unresolved }
+    }
+
+    /// [-] square of local errors \[m2] over what is allowed, in a step that changes inertia forces by these \[N].
+    pub fn square<const N: usize>(&self, errors: [f64; N], forces: impl FnOnce() -> [f64; N]) -> f64 {
+        let square = self.length * self.length;
+        let Some(unresolved) = self.unresolved else {
+            return errors.iter().sum::<f64>() / square;
+        };
+        let followed = |(error, force): (f64, f64)| {
+            let part = (1.0 - unresolved / force).max(0.0);
+            error * (part * part + 1.0 / (LOOSE * LOOSE))
+        };
+        errors.into_iter().zip(forces()).map(followed).sum::<f64>() / square
     }
 }

@@ -20,6 +20,9 @@ pub struct Solver {
     pub alpha_f: f64,
     /// [-] local error of a step over the ball diameter.
     pub tolerance: f64,
+    /// [-] change of an inertia force in a step, over the largest load of a ball, that steps need not follow: [`Solver::follow`] sets it
+    /// where nothing is said. 0 has all followed.
+    pub unresolved: f64,
     /// \[s] first step.
     pub initial_step: Time,
     /// \[s] largest step.
@@ -120,6 +123,7 @@ impl Default for Solver {
         Self {
             alpha_f: 0.05,
             tolerance: 1e-6,
+            unresolved: 0.0,
             initial_step: Time(1e-6),
             max_step: Time(1e-5),
             min_step: Time(0.0),
@@ -139,11 +143,17 @@ pub const USUAL_ENERGY_ERROR: f64 = 8e-3;
 /// [-] smallest step that energy asks for, in periods of a ball between its races: an impact takes half a period.
 const ENERGY_PERIODS: f64 = 0.005;
 
-/// [-] tolerance where nothing is said: the cheapest that kept means within 1 % and histories within 2 % in the scenes of
-/// scenes/error and scenes/cost, but for chaotic ones (`docs/accuracy-cost.md`).
-const USUAL_TOLERANCE: f64 = 1e-8;
+/// [-] tolerance where nothing is said, of what has to be followed: the cheapest that kept means within 1 % and histories but that of the
+/// torque within 2 % in scenes of all kinds, but for chaotic ones (`docs/accuracy-cost.md`).
+const USUAL_TOLERANCE: f64 = 5e-9;
 /// [-] the same over the approach of the most loaded ball, for bearings that carry little: their motions are as small.
-const TOLERANCE_OF_APPROACH: f64 = 1e-4;
+const TOLERANCE_OF_APPROACH: f64 = 5e-5;
+/// [-] change of an inertia force over the largest load that need not be followed where nothing is said: it moves loads by as much at
+/// most. Found with the tolerance.
+const USUAL_UNRESOLVED: f64 = 5e-3;
+/// [-] approach over the ball diameter below which that is less: friction of balls that their own weight and orbit press alone counts more
+/// where the others carry little, too.
+const APPROACH_OF_LOADED: f64 = 1e-3;
 /// [-] largest and first step where nothing is said, in periods of a ball between its races. The tolerance holds steps down where
 /// balls swing; where nothing does, steps beyond some periods are no cheaper.
 const PERIODS: [f64; 2] = [4.0, 0.03];
@@ -177,6 +187,7 @@ impl Solver {
             Follows::All { initial_step: first } => {
                 self.tolerance =
                     USUAL_TOLERANCE.min(TOLERANCE_OF_APPROACH * approach).max(SMALLEST_TOLERANCE);
+                self.unresolved = USUAL_UNRESOLVED * (approach / APPROACH_OF_LOADED).min(1.0);
                 if first {
                     self.initial_step = Time(initial_step.max(self.min_step.0));
                 }
@@ -193,6 +204,7 @@ impl Solver {
         let max_step = Time(self.max_step.0 * part);
         Self {
             tolerance: (self.tolerance * part.powi(3)).max(SMALLEST_TOLERANCE),
+            unresolved: self.unresolved * part,
             initial_step: Time(self.initial_step.0 * part),
             max_step,
             min_step: Time(self.min_step.0.min(self.initial_step.0 * part)),
@@ -338,6 +350,7 @@ impl TryFrom<SolverKeys> for Solver {
         Ok(Self {
             alpha_f: keys.alpha_f.unwrap_or(goal.alpha_f),
             tolerance: keys.tolerance.unwrap_or(goal.tolerance),
+            unresolved: goal.unresolved,
             // A goal's first step gives way to a smaller largest step.
             initial_step: keys.initial_step.unwrap_or(Time(goal.initial_step.si().min(max_step.si()))),
             max_step,

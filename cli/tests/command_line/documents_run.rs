@@ -89,6 +89,8 @@ fn workplace(name: &str) -> Scratch {
     }
     let shaft = fs::read_to_string(root().join("scenes/shafts/pinion.toml")).unwrap();
     write("scenes/shafts/pinion.toml", &shaft);
+    let gearbox = fs::read_to_string(root().join("examples/gearbox/three_stage.toml")).unwrap();
+    write("examples/gearbox/three_stage.toml", &gearbox.replace("\"5 ms\"", "\"0.2 ms\""));
     for scene in ["whirl/one", "whirl/two", "effects/loss_of_lubrication"] {
         write(&format!("scenes/{scene}.toml"), &fs::read_to_string(common::scene(scene)).unwrap());
     }
@@ -149,6 +151,23 @@ fn every_command_of_the_documents_runs() {
     assert!(ran > 15, "{ran}");
 }
 
+/// Shafts with two bearings each and a short run, where they come without any.
+fn with_bearings(part: &str, table: &Table) -> String {
+    let mut text = part.to_string();
+    if let (Some(shafts), None) = (table.get("shaft").and_then(Value::as_array), table.get("bearing")) {
+        for shaft in shafts.iter().filter_map(|shaft| shaft.get("name")?.as_str()) {
+            for (side, position) in [("left", -30), ("right", 30)] {
+                text += &format!(
+                    "\n[[bearing]]\nname = \"{shaft}_{side}\"\nshaft = \"{shaft}\"\ncatalogue = \"6204\"\n\
+                     mounting = {{ position = \"{position} mm\" }}\n"
+                );
+            }
+        }
+        text += "\n[load]\nduration = \"1 ms\"\noutput_interval = \"0.1 ms\"\n";
+    }
+    text
+}
+
 /// Puts a table into another.
 fn merge(into: &mut Table, from: Table) {
     for (key, value) in from {
@@ -185,17 +204,20 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                     read += 1;
                     continue;
                 }
-                if SystemScene::is_system(part) {
-                    SystemScene::parse(part, None, &root())
+                if SystemScene::is_system(part) || table.get("shaft").is_some_and(Value::is_array) {
+                    SystemScene::parse(&with_bearings(part, &table), None, &root())
                         .unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
                     read += 1;
                     continue;
                 }
                 // A housing is added to the shaft that is shipped, bearings take the place of those with their names.
-                let of_shaft = ["housing", "bearing"].map(|key| table.get(key).is_some_and(Value::is_array));
+                let of_shaft =
+                    ["housing", "bearing", "mesh"].map(|key| table.get(key).is_some_and(Value::is_array));
                 if of_shaft.contains(&true) {
-                    let pinion = fs::read_to_string(root().join("scenes/shafts/pinion.toml")).unwrap();
-                    let mut system: Table = pinion.parse().unwrap();
+                    let base =
+                        if of_shaft[2] { "examples/gearbox/three_stage" } else { "scenes/shafts/pinion" };
+                    let base = fs::read_to_string(root().join(format!("{base}.toml"))).unwrap();
+                    let mut system: Table = base.parse().unwrap();
                     for (key, value) in table {
                         match system.get_mut(&key).and_then(Value::as_array_mut) {
                             Some(there) => {

@@ -184,6 +184,10 @@ y = { displacement = 0.0 }
 z = { displacement = 0.0 }
 ry = { rotation = 0.0 }
 rz = { rotation = 0.0 }
+# What is tested are sums, not the error of steps.
+[solver]
+tolerance = 1e-8
+max_step = "60 us"
 "#;
 
 /// The friction power of the contacts is a third of it, and was all that a summary said.

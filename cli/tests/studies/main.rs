@@ -13,3 +13,4 @@ mod law_comparison;
 mod random;
 mod random_machines;
 mod random_scenes;
+mod regret;

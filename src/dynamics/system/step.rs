@@ -7,6 +7,7 @@ use nalgebra::DVector;
 use super::super::StepFailure;
 use super::super::accept::StepEnd;
 use super::super::equations::BearingStep;
+use super::super::local_error::Allowed;
 use super::Part;
 use super::border::{Border, CarriedRace};
 use super::structure::{Seat, StructureLoad, StructureTrial};
@@ -327,20 +328,17 @@ impl<'a> SystemStep<'a> {
     /// [-] local error over its tolerance: the largest of all bearings and structures.
     pub fn local_error(&self) -> f64 {
         let bearings = self.bearings.iter().map(BearingStep::local_error);
+        let allowed = self.bearings.iter().map(BearingStep::allowed).reduce(Allowed::and);
         let structures = self.structures.iter().zip(&self.trials).map(|(one, trial)| {
-            let scale = self.length_tolerance();
-            let change = (&trial.end.accelerations - &one.start.accelerations).component_mul(one.scales);
+            let change = &trial.end.accelerations - &one.start.accelerations;
+            let moved = change.component_mul(one.scales);
             let gain = (self.step.beta - 0.5 * self.step.alpha_f - 1.0 / 6.0) * self.step.h * self.step.h;
-            let count = change.len().max(1) as f64;
-            (change.norm_squared() / count).sqrt() * gain.abs() / scale
+            let error = (moved.norm_squared() / moved.len().max(1) as f64).sqrt() * gain.abs();
+            let force = || [(&one.model.mass * &change).component_div(one.scales).amax()];
+            // A system without bearings has no tolerance.
+            allowed.map_or(0.0, |allowed| allowed.square([error * error], force).sqrt())
         });
         bearings.chain(structures).fold(0.0, larger)
-    }
-
-    /// \[m] local error that is allowed: that of the finest bearing.
-    fn length_tolerance(&self) -> f64 {
-        let of = |step: &BearingStep<'_>| step.model.solver.tolerance * 2.0 * step.model.bearing.ball.radius;
-        self.bearings.iter().map(of).fold(f64::INFINITY, f64::min)
     }
 }
 
