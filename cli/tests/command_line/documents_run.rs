@@ -214,8 +214,11 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                 let of_shaft =
                     ["housing", "bearing", "mesh"].map(|key| table.get(key).is_some_and(Value::is_array));
                 if of_shaft.contains(&true) {
-                    let base =
-                        if of_shaft[2] { "examples/gearbox/three_stage" } else { "scenes/shafts/pinion" };
+                    // Bearings that name their shaft are of a file with several.
+                    let named = |bearings: &Vec<Value>| bearings.iter().any(|one| one.get("shaft").is_some());
+                    let several =
+                        of_shaft[2] || table.get("bearing").and_then(Value::as_array).is_some_and(named);
+                    let base = if several { "examples/gearbox/three_stage" } else { "scenes/shafts/pinion" };
                     let base = fs::read_to_string(root().join(format!("{base}.toml"))).unwrap();
                     let mut system: Table = base.parse().unwrap();
                     for (key, value) in table {
