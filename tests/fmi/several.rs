@@ -1,13 +1,10 @@
 //! Several shafts whose gears mesh in one package, through the C interface.
 
-use std::ptr;
-
-use roulement::fmi::v2::Status;
 use roulement::interface::variables::Causality;
 use roulement::simulation::system::System;
 
 use crate::fmi2_abi::*;
-use crate::system::{STEP, advance, bits, get, native_outputs, outputs, run, scene, set};
+use crate::system::{STEP, advance, bits, get, native_outputs, outputs, replay, run, scene, set};
 
 /// Rigid shafts of 20 and 40 teeth, the first one driven by its speed, the other one braked by a torque.
 fn text(torque: &str) -> String {
@@ -87,30 +84,10 @@ fn invariant_a_state_of_several_shafts_is_replayed_to_the_bit_here_and_elsewhere
     set(&package, c, "slow.torque", 45.0);
     set(&package, c, "fast.speed", 65.0);
     run(c, 10..15);
-    let (mut state, bytes) = (ptr::null_mut(), state_bytes(c));
-    unsafe { assert_eq!(fmi2GetFMUstate(c, &mut state), Status::Ok) };
-    let go_on = |c: Component| {
+    replay(&package, c, |c| {
         run(c, 15..20);
         set(&package, c, "slow.torque", -20.0);
         run(c, 20..30);
-        bits(&outputs(&package, c))
-    };
-    let before = bits(&outputs(&package, c));
-    let there = go_on(c);
-    assert_ne!(there, before);
-    unsafe { assert_eq!(fmi2SetFMUstate(c, state), Status::Ok) };
-    assert_eq!(bits(&outputs(&package, c)), before);
-    assert_eq!(go_on(c), there);
-    let other = package.start();
-    let mut read = ptr::null_mut();
-    unsafe {
-        assert_eq!(fmi2DeSerializeFMUstate(other, bytes.as_ptr(), bytes.len(), &mut read), Status::Ok);
-        assert_eq!(fmi2SetFMUstate(other, read), Status::Ok);
-    }
-    assert_eq!(go_on(other), there);
-    unsafe {
-        assert_eq!(fmi2FreeFMUstate(c, &mut state), Status::Ok);
-        assert_eq!(fmi2FreeFMUstate(c, &mut read), Status::Ok);
-        [c, other].into_iter().for_each(|c| fmi2FreeInstance(c));
-    }
+    });
+    unsafe { fmi2FreeInstance(c) };
 }

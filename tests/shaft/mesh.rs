@@ -269,10 +269,11 @@ fn independent_data_statics_of_the_public_three_stage_gearbox() {
         let sign = if gear == 0 { 1.0 } else { -1.0 };
         (scene.meshes[mesh].place(&scene), system.outputs().links[mesh].state.force.fixed_rows::<3>(0) * sign)
     };
-    for (bearings, teeth) in [
-        ([0, 1], vec![meshed(0, 0)]),
-        ([2, 3], vec![meshed(0, 1), meshed(1, 0)]),
-        ([6, 7], vec![meshed(2, 1)]),
+    // And radial loads of rigid, simple supports, by an independent script (beams, no weight), from the bearings with their moments taken out [N].
+    for (bearings, teeth, script) in [
+        ([0, 1], vec![meshed(0, 0)], [402.00, 786.13]),
+        ([2, 3], vec![meshed(0, 1), meshed(1, 0)], [131.93, 1287.04]),
+        ([6, 7], vec![meshed(2, 1)], [6243.38, 2021.39]),
     ] {
         let mut force = Vector3::zeros();
         let mut moment = Vector3::zeros();
@@ -287,6 +288,14 @@ fn independent_data_statics_of_the_public_three_stage_gearbox() {
         let size = held[bearings[1]][0].norm();
         assert!(force.norm() < 1e-3 * size, "{force} {size}");
         assert!(moment.yz().norm() < 1e-3 * size * 0.1, "{moment} {size}");
+        // A couple of forces across the axis over the distance of both bearings takes the place of their moments.
+        let [left, right] = bearings.map(|bearing| (at(bearing), held[bearing]));
+        let moments = left.1[1] + right.1[1];
+        let couple = Vector3::x().cross(&moments) / (right.0.x - left.0.x);
+        for ((held, sign), expected) in [(left.1, 1.0), (right.1, -1.0)].into_iter().zip(script) {
+            let radial = (held[0] + couple * sign).yz().norm();
+            assert!((radial / expected - 1.0).abs() < 0.01, "{radial} {expected}");
+        }
     }
 }
 

@@ -2,15 +2,13 @@
 
 use std::error::Error;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use roulement_cli::cage::{self, pushed, write_figure};
 use roulement_cli::sweep::all::threads;
 
 use super::run::heeded_interrupt;
-use super::{load, say};
+use super::{load, say, with_count_of_runs};
 
 /// Options of `roulement cage`.
 #[derive(Args)]
@@ -35,20 +33,8 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let scene = load(&options.scene)?;
     let interrupted = heeded_interrupt()?;
-    let bar = ProgressBar::new(0);
-    if let Ok(style) =
-        ProgressStyle::with_template("{pos} of {len} runs [{bar:40}] {elapsed} elapsed, {eta} left")
-    {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar.enable_steady_tick(Duration::from_millis(200));
     let jobs = options.jobs.map_or_else(threads, usize::from);
-    let cages = pushed(&scene, jobs, &interrupted, |runs| {
-        bar.set_length(runs as u64);
-        bar.inc(1);
-    });
-    bar.finish_and_clear();
-    let cages = cages?;
+    let cages = with_count_of_runs(|another| pushed(&scene, jobs, &interrupted, another))?;
     let text = match options.json {
         true => format!("{:#}\n", cage::to_json(&cages)),
         false => {

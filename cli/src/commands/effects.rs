@@ -3,10 +3,8 @@
 use std::error::Error;
 use std::fmt::Write;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use roulement::analysis::estimate::{self, Verdicts};
 use roulement::effects::estimate::{Standing, Verdict, digits, missed, percent, signed_percent};
 use roulement::effects::shoulder::SUBJECT as SHOULDERS;
@@ -20,7 +18,7 @@ use roulement_cli::sweep::all::threads;
 use serde_json::{Map, Value};
 
 use super::run::heeded_interrupt;
-use super::{load, say, tell};
+use super::{load, say, tell, with_count_of_runs};
 
 /// Options of `roulement effects`.
 #[derive(Args)]
@@ -77,20 +75,8 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
 fn measured(options: &Options) -> Result<(), Box<dyn Error>> {
     let scene = load(&options.scene)?;
     let interrupted = heeded_interrupt()?;
-    let bar = ProgressBar::new(0);
-    if let Ok(style) =
-        ProgressStyle::with_template("{pos} of {len} runs [{bar:40}] {elapsed} elapsed, {eta} left")
-    {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar.enable_steady_tick(Duration::from_millis(200));
     let jobs = options.jobs.map_or_else(threads, usize::from);
-    let measured = measure(&scene, jobs, &interrupted, |runs| {
-        bar.set_length(runs as u64);
-        bar.inc(1);
-    });
-    bar.finish_and_clear();
-    let measured = measured?;
+    let measured = with_count_of_runs(|another| measure(&scene, jobs, &interrupted, another))?;
     let text = match options.json {
         true => format!("{:#}\n", measure::to_json(&measured)),
         false => {

@@ -24,8 +24,10 @@ use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::{Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
 use roulement::analysis::auto;
 use roulement::interface::model_description::{render, render_system};
 use roulement::scene::machine::MachineScene;
@@ -126,6 +128,23 @@ fn say(text: &str) -> io::Result<()> {
     out.write_all(text.as_bytes())
         .and_then(|()| out.flush())
         .map_err(|why| io::Error::new(why.kind(), format!("cannot write to the standard output: {why}")))
+}
+
+/// Makes a study of many runs, which tells of another one that has ended, and of how many, and shows them on stderr.
+fn with_count_of_runs<T>(study: impl FnOnce(&(dyn Fn(usize) + Sync)) -> T) -> T {
+    let bar = ProgressBar::new(0);
+    if let Ok(style) =
+        ProgressStyle::with_template("{pos} of {len} runs [{bar:40}] {elapsed} elapsed, {eta} left")
+    {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let made = study(&|runs| {
+        bar.set_length(runs as u64);
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    made
 }
 
 /// Reads the command line and does what it says.

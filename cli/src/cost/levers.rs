@@ -250,6 +250,8 @@ pub fn numerical_settings(scene: &MachineScene) -> Vec<Setting> {
     let tolerances = TOLERANCES.iter().map(|&tolerance| {
         changed(Lever::Tolerance, format!("{tolerance:e}"), &|s| {
             s.solver.tolerance = tolerance;
+            // As where a scene gives one.
+            s.solver.unresolved = 0.0;
             s.solver.max_step = Time(interval);
         })
     });

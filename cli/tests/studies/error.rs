@@ -349,8 +349,8 @@ impl Errors {
 fn invariant_where_nothing_is_said_means_keep_one_and_histories_two_percent() {
     for Errors { name, means, histories, torque, .. } in Errors::quick() {
         assert!(*means < 0.01 && *histories < 0.02, "{name}: {means} {histories}");
-        // The history of the torque has the bounce of unloaded balls in it, which is not promised.
-        assert!(*torque < 0.1, "{name}: {torque}");
+        // The torque after the step of a radial load has the bounce of unloaded balls in it.
+        assert!(*torque < if *name == "load_step" { 0.1 } else { 0.02 }, "{name}: {torque}");
     }
 }
 

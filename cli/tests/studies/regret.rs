@@ -3,6 +3,7 @@
 
 use std::ops::ControlFlow;
 
+use roulement::scene::Solver;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::{Machine, MachineError};
 use roulement::simulation::play::{Rows, play_observed};
@@ -112,15 +113,7 @@ fn scenes() -> Vec<(String, MachineScene)> {
     }
     let mut random = Random::new(31);
     let drawn = std::iter::from_fn(|| Some(machine(&mut random))).flatten();
-    all.extend(drawn.take(24).enumerate().map(|(k, mut scene)| {
-        for bearing in scene.bearings_mut() {
-            let text = bearing.source.clone();
-            if let Ok(plain) = roulement::scene::Scene::edited(&text, [("solver", "{}")]) {
-                bearing.solver = plain.solver;
-            }
-        }
-        (format!("random {}", k + 1), scene)
-    }));
+    all.extend(drawn.take(24).enumerate().map(|(k, scene)| (format!("random {}", k + 1), scene)));
     all
 }
 
@@ -146,7 +139,7 @@ fn invariant_steps_where_nothing_is_said_keep_the_promise_and_cost_little_more_t
         }
         let mut fine = with_tolerance(&scene, 2.0);
         for bearing in fine.bearings_mut() {
-            bearing.solver = roulement::scene::Solver { energy_error: 0.0, ..bearing.solver.refined(2) };
+            bearing.solver = Solver { energy_error: 0.0, ..bearing.solver.refined(2) };
         }
         let Ok((reference, _)) = played(&fine) else {
             println!("| {name} | no reference | | |");
@@ -182,5 +175,6 @@ fn invariant_steps_where_nothing_is_said_keep_the_promise_and_cost_little_more_t
         "{} scenes, regret {mean:.2} in the mean, {most:.2} at most; not kept: {broken:?}; none keeps it in {none}",
         regrets.len()
     );
+    // The mean was 1.6 when this was written, and 3.0 with a tolerance of 1e-8 alone.
     assert!(regrets.len() >= 30 && mean < 1.8 && broken.len() * 20 <= regrets.len(), "{broken:?}");
 }

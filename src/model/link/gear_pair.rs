@@ -104,8 +104,8 @@ impl GearPair {
         length / pitch
     }
 
-    /// [N/m] mean stiffness along the normal of steel gears with solid discs and a basic rack of 1.25 modules: ISO 6336-1: 2006, method B,
-    /// equations 82 to 92, at 100 N/mm or more; that of the standard is in the transverse plane.
+    /// [N/m] mean stiffness along the normal of steel gears with solid discs and a basic rack of 1.25 modules: ISO 6336-1: 2006, method B
+    /// (its coefficients are quoted from memory, no print was at hand), at 100 N/mm or more; that of the standard is in the transverse plane.
     pub fn mean_stiffness(&self) -> f64 {
         let virtual_teeth = self.gears.map(|gear| gear.teeth / self.helix_angle.cos().powi(3));
         let [z1, z2] = virtual_teeth;
