@@ -132,10 +132,10 @@ mod tests {
             (solver.max_step.0, solver.initial_step.0, solver.tolerance)
         };
         // Four periods of a ball, and 3 % of one; a tolerance that is small against its approach.
-        assert_eq!(followed("", 40e3, 1e-3), (1e-4, 0.75e-6, 1e-8));
-        assert_eq!(followed("", 400e3, 1e-5), (1e-5, 0.075e-6, 1e-9));
-        assert_eq!(followed("alpha_f = 0.2\ninitial_step = 2e-6", 40e3, 1e-3), (1e-4, 2e-6, 1e-8));
-        assert_eq!(followed("initial_step = 2e-4", 40e3, 1e-3), (2e-4, 2e-4, 1e-8));
+        assert_eq!(followed("", 40e3, 1e-3), (1e-4, 0.75e-6, 5e-9));
+        assert_eq!(followed("", 400e3, 1e-5), (1e-5, 0.075e-6, 5e-10));
+        assert_eq!(followed("alpha_f = 0.2\ninitial_step = 2e-6", 40e3, 1e-3), (1e-4, 2e-6, 5e-9));
+        assert_eq!(followed("initial_step = 2e-4", 40e3, 1e-3), (2e-4, 2e-4, 5e-9));
         // One limit that is given is enough to be followed alone.
         assert_eq!(followed("max_step = 1e-5", 40e3, 1e-3), (1e-5, 1e-6, 1e-6));
         assert_eq!(followed("tolerance = 1e-5", 40e3, 1e-3), (1e-5, 1e-6, 1e-5));
@@ -143,5 +143,23 @@ mod tests {
         // An error goal begins with no larger steps than the bearing takes.
         assert_eq!(followed("accuracy = { error = 1e-3 }", 400e3, 1e-3), (1e-5, 0.075e-6, 1e-7));
         assert_eq!(followed("accuracy = { error = 1e-3 }\nmax_step = 4e-5", 400e3, 1e-3), (4e-5, 1e-6, 1e-7));
+    }
+    #[test]
+    fn closed_form_what_need_not_be_followed_shrinks_with_the_steps_and_is_nothing_where_they_are_given() {
+        let share = |text: &str, approach: f64, halvings: u32| {
+            let mut solver = parse(text).unwrap();
+            solver.follow(40e3, approach);
+            solver.refined(halvings).unresolved_share()
+        };
+        let near = |share: f64, expected: f64| assert!((share / expected - 1.0).abs() < 1e-12, "{share}");
+        near(share("", 1e-3, 0), 5e-3);
+        near(share("", 1e-3, 3), 5e-3 / 8.0);
+        // A tenth by the approach, and the cube root of a tolerance that is a tenth.
+        near(share("", 1e-5, 0), 5e-5 * 0.1f64.cbrt());
+        for given in
+            ["tolerance = 1e-5", "max_step = 1e-5", "accuracy = \"fast\"", "accuracy = { error = 1e-3 }"]
+        {
+            assert_eq!(share(given, 1e-3, 0), 0.0, "{given}");
+        }
     }
 }
