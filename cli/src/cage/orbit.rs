@@ -101,7 +101,9 @@ impl Orbit {
             parts.sum::<f64>() / (last.time - first.time)
         };
         let most = |of: &dyn Fn(&Place) -> f64| places.iter().map(of).fold(0.0, f64::max);
-        let middle = Vector2::new(mean(&|place| place.centre.x), mean(&|place| place.centre.y));
+        // From the first place on, so that one that stays has no way by rounding.
+        let from = |place: &Place| place.centre - first.centre;
+        let middle = first.centre + Vector2::new(mean(&|place| from(place).x), mean(&|place| from(place).y));
         // What is swept about the middle: twice the area, the most that a circle would sweep with this way, and radius squared over time.
         let (mut swept, mut most_swept, mut squares, mut length) = (0.0, 0.0, 0.0, 0.0);
         for two in places.windows(2) {
