@@ -89,13 +89,23 @@ impl Energies {
         self.stored = stored;
     }
 
+    /// \[J] what a run may leave unaccounted for where a part `allowed` of what it has turned over may be.
+    fn budget(&self, allowed: f64) -> f64 {
+        (allowed * self.turned_over()).max(Self::ROUNDING * self.stored)
+    }
+
+    /// Has a run left well less than that? Three quarters are kept by runs that lose much, and the rest is there for those that lose little.
+    pub fn is_frugal(&self, allowed: f64) -> bool {
+        self.unaccounted.abs() <= 0.75 * self.budget(allowed)
+    }
+
     /// [-] error of a step by its energy, 1 or less where it may be accepted: a budget over the whole run. A part `allowed` of what the
     /// run has turned over may be unaccounted for. A step that would leave more is too long, unless it leaves no
     /// more than half that part of its own losses, or a small part of the kinetic energy that came and went (`exchanged` \[J]),
     /// which even a run that loses nothing need not beat. Where the budget holds the error is 0: steps are those of a run that
     /// does not look at energy.
     pub fn error_since(&self, before: &Self, exchanged: impl FnOnce() -> f64, allowed: f64) -> f64 {
-        let budget = (allowed * self.turned_over()).max(Self::ROUNDING * self.stored);
+        let budget = self.budget(allowed);
         let (left, of_step) = (self.unaccounted.abs(), (self.unaccounted - before.unaccounted).abs());
         if of_step.is_nan() {
             return f64::NAN;
