@@ -9,79 +9,9 @@ use serde::{Deserialize, Serialize};
 use crate::effects::cage::CageSection;
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::Scalar;
-use crate::scene::{Condition, Direction, Drive, Machine, RaceSection, Scene, Schedule};
+use crate::scene::{Condition, Direction, Drive, RaceSection, Scene, Schedule};
+pub use crate::schema::Race;
 use crate::schema::SupportSection;
-
-/// A race.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Race {
-    /// The inner race.
-    Inner,
-    /// The outer race.
-    Outer,
-}
-
-impl Race {
-    /// Both, in the order of every list.
-    pub const BOTH: [Self; 2] = [Self::Inner, Self::Outer];
-
-    /// First part of the names of its variables and of its section in a scene.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Inner => "inner",
-            Self::Outer => "outer",
-        }
-    }
-
-    /// Its section of a scene.
-    pub fn section(self, scene: &Scene) -> &RaceSection {
-        match self {
-            Self::Inner => &scene.inner,
-            Self::Outer => &scene.outer,
-        }
-    }
-
-    /// What a scene gives for its directions x, y, z, ry, rz.
-    pub fn directions(self, scene: &Scene) -> [Direction<'_>; 5] {
-        match self {
-            Self::Inner => scene.load.of_inner(),
-            Self::Outer => scene.load.of_outer(),
-        }
-    }
-
-    /// Its scripted speed [rad/s] in a scene.
-    pub fn scripted_speed(self, scene: &Scene) -> &Schedule {
-        match self {
-            Self::Inner => &scene.load.inner_speed,
-            Self::Outer => &scene.load.outer_speed,
-        }
-    }
-
-    /// Parts of the machine on it, if a scene has some.
-    pub fn machine(self, scene: &Scene) -> Option<Machine<'_>> {
-        let machine = scene.load.machine(self.scripted_speed(scene));
-        (self == Self::loaded(scene) && !machine.is_empty()).then_some(machine)
-    }
-
-    /// \[N, N m] its load at a time \[s] in the directions x, y, z, ry, rz, by parts of the machine too; 0 in a direction that the
-    /// scene holds: there they press on what holds it.
-    pub fn load_at(self, scene: &Scene, time: f64) -> [f64; 5] {
-        let machine = self.machine(scene).map(|machine| machine.at(time)).unwrap_or_default();
-        let Wrench { force, moment } = machine;
-        let added = [force.x, force.y, force.z, moment.y, moment.z];
-        let directions = self.directions(scene);
-        std::array::from_fn(|i| match directions[i].motion {
-            Some(_) => 0.0,
-            None => directions[i].load.map_or(0.0, |load| load.at(time)) + added[i],
-        })
-    }
-
-    /// The race that the loads of a scene are put on: the outer one under a wrench, else the inner one. The other race
-    /// holds the bearing.
-    pub fn loaded(scene: &Scene) -> Self {
-        if scene.outer.drive == Drive::Wrench { Self::Outer } else { Self::Inner }
-    }
-}
 
 /// A body that balls touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

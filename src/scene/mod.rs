@@ -7,6 +7,7 @@ mod edit;
 pub mod machine;
 mod notes;
 mod numbers;
+mod race;
 mod scales;
 pub mod system;
 mod validate;

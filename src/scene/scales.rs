@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 use super::{Condition, Drive, Scene, Schedule};
 use crate::contact::hertz::HertzContact;
 use crate::effects::frame::FrameSection;
-use crate::model::bodies::Race;
+use crate::schema::Race;
 
 /// [-] approach of unloaded balls over their diameter: a bearing that carries next to nothing.
 const LEAST_APPROACH: f64 = 1e-5;

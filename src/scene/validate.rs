@@ -3,9 +3,8 @@
 use super::numbers::STEP;
 use super::{BearingSection, Condition, Drive, Giver, Group, Scene, SceneError, Schedule};
 use crate::effects::defects::On;
-use crate::model::bodies::Race;
-use crate::schema::check_phases;
 use crate::schema::numbers::Range;
+use crate::schema::{Race, check_phases};
 
 /// The directions of a race, in the order of their conditions.
 const DIRECTIONS: [&str; 5] = ["x", "y", "z", "ry", "rz"];
