@@ -3,7 +3,6 @@
 use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
 use roulement::analysis::single_contact::{Law, RollingContact};
-use roulement::scene::CreepLaw;
 
 use crate::arrays::{numbers, write};
 use crate::failures::value;
@@ -13,23 +12,10 @@ const INPUTS: usize = 11;
 /// Outputs of a contact.
 const OUTPUTS: usize = 5;
 
-fn law_of(name: &str, degree: usize, grid: usize) -> PyResult<Law> {
-    Ok(match name {
-        "frictionless" => Law::Simulated(CreepLaw::Frictionless),
-        "linear" => Law::Simulated(CreepLaw::Linear),
-        "regularised" => Law::Simulated(CreepLaw::Regularised),
-        "saturated" => Law::Simulated(CreepLaw::Saturated),
-        "kalker" => Law::Kalker(degree),
-        "kalker_table" => Law::Simulated(CreepLaw::KalkerTable),
-        "reference" => Law::Reference(grid),
-        "exact" => Law::Exact,
-        other => {
-            return Err(value(format!(
-                "law = {other:?} is none of \"frictionless\", \"linear\", \"regularised\", \"saturated\", \"kalker\", \
-                 \"kalker_table\", \"reference\", \"exact\""
-            )));
-        }
-    })
+/// Names of the laws.
+#[pyfunction]
+pub fn laws() -> Vec<&'static str> {
+    Law::names().map(|(name, _)| name).collect()
 }
 
 /// Evaluates contacts: an array of 11 rows in, one of 5 rows out, a column for each contact.
@@ -42,7 +28,10 @@ pub fn contact(
     inputs: PyBuffer<f64>,
     outputs: PyBuffer<f64>,
 ) -> PyResult<()> {
-    let law = law_of(law, degree, grid)?;
+    let law = Law::named(law, degree, grid).ok_or_else(|| {
+        let names: Vec<_> = laws().into_iter().map(|name| format!("{name:?}")).collect();
+        value(format!("law = {law:?} is none of {}", names.join(", ")))
+    })?;
     let inputs = numbers(py, &inputs)?;
     let count = inputs.len() / INPUTS;
     let forces = py.detach(|| {

@@ -21,7 +21,7 @@ mod _native {
     #[pymodule_export]
     use crate::catalogues::{catalogue_candidates, catalogue_names, catalogue_scene};
     #[pymodule_export]
-    use crate::contacts::contact;
+    use crate::contacts::{contact, laws};
     #[pymodule_export]
     use crate::modes::modes;
     #[pymodule_export]

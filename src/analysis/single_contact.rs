@@ -1,7 +1,10 @@
 //! Single rolling contacts, as `roulement contact` evaluates them: a patch, its load and its creepages.
 
+use std::str::FromStr;
+
 use nalgebra::{Matrix3, Rotation2, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
+use strum::{EnumMessage, VariantArray};
 use thiserror::Error;
 
 use crate::contact::creep::{self, CreepForces, Creepage, LinearTheory, saturation};
@@ -78,6 +81,29 @@ pub enum Law {
     Reference(usize),
     /// The half-space reference solver on grids as fine as each contact needs.
     Exact,
+}
+
+impl Law {
+    /// Names of all laws and what each is: those of the simulation from the poorest to the richest, then the half-space solver.
+    pub fn names() -> impl Iterator<Item = (&'static str, &'static str)> {
+        let simulated =
+            CreepLaw::VARIANTS.iter().map(|law| (law.into(), law.get_documentation().unwrap_or_default()));
+        simulated.chain([
+            ("reference", "The half-space reference solver on two grids: slow."),
+            ("exact", "The half-space reference solver on grids as fine as each contact needs: slower."),
+        ])
+    }
+
+    /// The law of one of these names: `kalker` with polynomials of a degree, `reference` with `grid` cells across the ellipse of its
+    /// coarser grid.
+    pub fn named(name: &str, degree: usize, grid: usize) -> Option<Self> {
+        match name {
+            "kalker" => Some(Self::Kalker(degree)),
+            "reference" => Some(Self::Reference(grid)),
+            "exact" => Some(Self::Exact),
+            _ => CreepLaw::from_str(name).ok().map(Self::Simulated),
+        }
+    }
 }
 
 /// A contact in Kalker's scale: what its forces over mu N depend on.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix6, Vector3};
 
-use crate::contact::body::BodyMotion;
+use crate::contact::motion::BodyMotion;
 use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::numerics::scalar::{Dual, constant_vector};

@@ -4,9 +4,9 @@
 //! friction is Coulomb's, against the slip at the middle of the contact. It is made smooth near standstill. What the
 //! balls' pivoting about the common normal costs is left out: they turn alike.
 
-use super::BallMotion;
 use super::hertz::HertzContact;
 use super::materials::Pair;
+use super::motion::BallMotion;
 use super::normal::{Damping, NormalLoad};
 use super::pair::PairForces;
 use crate::numerics::scalar::{Single, cross, dot};

@@ -3,8 +3,8 @@
 
 use nalgebra::Vector3;
 
-use super::BallMotion;
 use super::creep::{CreepForces, Creepage};
+use super::motion::BallMotion;
 use crate::numerics::scalar::{Scalar, cross, dot};
 
 /// [m/s] rolling speed below which creepages are held finite: `V -> sqrt(V^2 + v^2)`. Forces stay linear in the slip

@@ -1,220 +1,30 @@
-//! Contact between a ball and a raceway: geometry, Hertz, creepage, creep laws.
+//! One contact, from motion to forces: what all pairs of bodies share, then a room or file for each kind of pair.
+//!
+//! | room | contents |
+//! |---|---|
+//! | `motion`, `pair` | what goes in and comes out: motions of both bodies, forces between them |
+//! | `hertz`, `materials`, `raceway`, `shape`, `normal`, `kinematics` | load and ellipse of an approach; slip of two surfaces |
+//! | `creep` | forces of rolling and sliding: the creep laws and what they are made of |
+//! | `ball_race` | balls on raceways, with films, form and damage |
+//! | `ball_ball` | neighbouring balls |
+//! | `cage` | pockets and lands of a cage |
 
 pub mod ball_ball;
-pub mod ball_spall;
-pub mod body;
-pub mod cage_film;
-mod compiled;
+mod ball_race;
+mod cage;
 pub mod creep;
-mod evaluate;
-pub mod film;
-pub mod form;
-pub mod geometry;
-pub mod heathcote;
 pub mod hertz;
-pub mod identification;
 pub(crate) mod kinematics;
-pub mod land;
-pub mod linear_theory;
-pub mod many;
 pub mod materials;
+pub mod motion;
 pub mod normal;
-pub mod oblique;
 pub mod pair;
-pub mod pocket;
 pub mod raceway;
-pub mod regularised;
 pub mod shape;
-mod shift;
-pub mod shoulder;
-pub mod spall;
-pub mod surface;
 
-use nalgebra::Vector3;
-
-use crate::contact::surface::Surface;
-use crate::numerics::scalar::{Scalar, Single, constant_vector};
-use creep::{CreepForces, Creepage, Law};
-pub use evaluate::Path;
-use film::Film;
-use geometry::GrooveContact;
+pub use ball_race::{BallRaceContact, ContactModel, HYSTERESIS, Path};
+pub use ball_race::{ball_spall, film, form, geometry, many, shoulder, spall, surface};
+pub use cage::{film as cage_film, land, pocket};
+pub use creep::{heathcote, identification, linear_theory, oblique, regularised};
 pub use kinematics::REGULARISATION_SPEED;
-use kinematics::RollingState;
-use normal::Damping;
-use oblique::Across;
-use shape::ContactShape;
-
-/// [-] exponent of the load in the moment of the hysteresis of rolling (Houpert 1999).
-pub const HYSTERESIS: f64 = 1.33;
-
-/// Motion of a ball, in world axes.
-#[derive(Clone, Copy, Debug)]
-pub struct BallMotion<S: Scalar> {
-    /// \[m] centre.
-    pub position: Vector3<S>,
-    /// [m/s] velocity of the centre.
-    pub velocity: Vector3<S>,
-    /// [rad/s] angular velocity.
-    pub angular_velocity: Vector3<S>,
-}
-
-impl BallMotion<f64> {
-    /// A ball at the origin that does not move.
-    pub fn at_rest() -> Self {
-        Self { position: Vector3::zeros(), velocity: Vector3::zeros(), angular_velocity: Vector3::zeros() }
-    }
-}
-
-/// Motion of a race, in world axes.
-#[derive(Clone, Copy, Debug)]
-pub struct RaceMotion<S: Scalar> {
-    /// \[m] origin of the race frame.
-    pub position: Vector3<S>,
-    /// [-] unit vector of the race's own axis.
-    pub axis: Vector3<S>,
-    /// [-] unit vector of the race's own y axis, which azimuths on it are counted from. Plain numbers: as derivatives it costs
-    /// more than 1 % of a step in every scene, and its turn changes too little within a step for Newton's method to notice.
-    pub across: Vector3<f64>,
-    /// [m/s] velocity of the origin.
-    pub velocity: Vector3<S>,
-    /// [rad/s] angular velocity.
-    pub angular_velocity: Vector3<S>,
-}
-
-impl Default for RaceMotion<f64> {
-    /// At rest at the origin.
-    fn default() -> Self {
-        let zero = Vector3::zeros();
-        Self {
-            position: zero,
-            axis: Vector3::x(),
-            across: Vector3::y(),
-            velocity: zero,
-            angular_velocity: zero,
-        }
-    }
-}
-
-impl<S: Scalar> RaceMotion<S> {
-    /// A race that rests: origin \[m], its own axis and its own y axis.
-    pub fn resting(position: Vector3<S>, axis: Vector3<S>, across: Vector3<f64>) -> Self {
-        let still = Vector3::from_element(S::zero());
-        Self { position, axis, across, velocity: still, angular_velocity: still }
-    }
-}
-
-impl RaceMotion<f64> {
-    /// The same as numbers that could have derivatives, or one for each lane.
-    #[inline(always)]
-    pub fn constant<S: Scalar>(&self) -> RaceMotion<S> {
-        RaceMotion {
-            position: constant_vector(&self.position),
-            axis: constant_vector(&self.axis),
-            across: self.across,
-            velocity: constant_vector(&self.velocity),
-            angular_velocity: constant_vector(&self.angular_velocity),
-        }
-    }
-}
-
-/// Constants of a ball-race contact during a step.
-#[derive(Clone, Copy, Debug)]
-pub struct ContactModel<'a> {
-    /// What the balls roll on, and their size.
-    pub surface: Surface<'a>,
-    /// Shape of its contacts: stiffness, ellipse and creep coefficients over the approach.
-    pub shape: &'a ContactShape,
-    /// [-] Hertz stiffness over that of `shape`, whose dimensions growth has changed since.
-    pub stiffening: f64,
-    /// Creep law of rolling along the circumference.
-    pub law: Law<'a>,
-    /// Rolling across it; none where there is no friction.
-    pub across: Option<Across<'a>>,
-    /// [-] friction coefficient of dry surfaces.
-    pub friction: f64,
-    /// The film between ball and race; none where surfaces are dry.
-    pub film: Option<Film<'a>>,
-    /// [N m/N^1.33] moment of the hysteresis of rolling over the load to the power of [`HYSTERESIS`]; 0 without it.
-    pub hysteresis: f64,
-    /// How energy is lost to the approach rate.
-    pub damping: Damping,
-    /// [1/m] mean transverse curvature `1/(2 R)` of ball and groove where its slip (Heathcote) is simulated.
-    pub groove_bend: Option<f64>,
-}
-
-/// Forces of one ball-race contact and the quantities they came from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BallRaceContact<S: Scalar> {
-    /// Geometry of the contact.
-    pub geometry: GrooveContact<S>,
-    /// \[N] normal load.
-    pub load: S,
-    /// [N/m^1.5] Hertz stiffness.
-    pub stiffness: S,
-    /// [m^0.5] semi-axes of the ellipse along and transverse to rolling over the root of the approach.
-    pub semi_axes: [S; 2],
-    /// [m/s] rolling speed, regularised.
-    pub rolling_speed: S,
-    /// Creepages in the contact frame whose x axis is the circumferential direction of the race.
-    pub creepage: Creepage<S>,
-    /// Creep forces of the ball on the race, same frame.
-    pub creep: CreepForces<S>,
-    /// [-] cosine of the rolling direction against the circumferential direction, near +-1.
-    pub rolling_cosine: S,
-    /// \[N] force on the ball, world axes.
-    pub force: Vector3<S>,
-    /// [N m] moment on the ball about its centre, world axes.
-    pub ball_moment: Vector3<S>,
-    /// [N m] moment on the race about its origin, world axes.
-    pub race_moment: Vector3<S>,
-    /// \[W] power lost to friction.
-    pub friction_power: S,
-    /// \[W] power lost to contact damping.
-    pub damping_power: S,
-}
-
-impl BallRaceContact<f64> {
-    /// How it rolls.
-    fn rolling_state(&self) -> RollingState<f64> {
-        RollingState { speed: self.rolling_speed, cosine: self.rolling_cosine, creepage: self.creepage }
-    }
-
-    /// \[W] part of the friction power by its creep forces: all of it where nothing is against rolling.
-    pub fn sliding_power(&self) -> f64 {
-        self.rolling_speed * self.creep.power(&self.creepage)
-    }
-}
-
-impl<S: Scalar> BallRaceContact<S> {
-    /// Number by number from two contacts.
-    #[inline(always)]
-    pub fn zip_with<U: Scalar, T: Scalar>(
-        &self,
-        other: &BallRaceContact<U>,
-        mut f: impl FnMut(S, U) -> T,
-    ) -> BallRaceContact<T> {
-        BallRaceContact {
-            geometry: self.geometry.zip_with(&other.geometry, &mut f),
-            load: f(self.load, other.load),
-            stiffness: f(self.stiffness, other.stiffness),
-            semi_axes: [0, 1].map(|i: usize| f(self.semi_axes[i], other.semi_axes[i])),
-            rolling_speed: f(self.rolling_speed, other.rolling_speed),
-            creepage: self.creepage.zip_with(&other.creepage, &mut f),
-            creep: self.creep.zip_with(&other.creep, &mut f),
-            rolling_cosine: f(self.rolling_cosine, other.rolling_cosine),
-            force: self.force.zip_map(&other.force, &mut f),
-            ball_moment: self.ball_moment.zip_map(&other.ball_moment, &mut f),
-            race_moment: self.race_moment.zip_map(&other.race_moment, &mut f),
-            friction_power: f(self.friction_power, other.friction_power),
-            damping_power: f(self.damping_power, other.damping_power),
-        }
-    }
-}
-
-impl<S: Single> BallRaceContact<S> {
-    /// Values without derivatives.
-    #[inline(always)]
-    pub fn values(&self) -> BallRaceContact<f64> {
-        self.zip_with(self, |x, _| x.value())
-    }
-}
+pub use motion::{BallMotion, RaceMotion};

@@ -9,7 +9,7 @@ use super::reaction::Reaction;
 use super::step_turn::{Own, StepTurn, as_second};
 use super::support::{Flange, on_race};
 use crate::contact::RaceMotion;
-use crate::contact::body::BodyMotion;
+use crate::contact::motion::BodyMotion;
 use crate::effects::moving_frame::MovingFrame;
 use crate::model::bodies::{Bodies, Constraint, PerRace, Race, RigidBody, tilt_direction};
 use crate::model::state::{BodyState, normalised};

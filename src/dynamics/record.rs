@@ -2,8 +2,8 @@
 
 use crate::effects::heat::ByContact;
 use crate::effects::heat_balance::Heating;
-use crate::effects::means::{Averaged, OfRace};
 use crate::effects::rating::Turning;
+use crate::effects::reports::{Averaged, OfRace};
 use crate::forces::{BallPair, Pairs};
 use crate::model::bodies::{Body, Race};
 use crate::model::energies::Powers;

@@ -1,7 +1,7 @@
 //! Creep law of the ball-race contacts ([`crate::contact::creep`]).
 
 use serde::Deserialize;
-use strum::{IntoStaticStr, VariantArray};
+use strum::{EnumMessage, EnumString, IntoStaticStr, VariantArray};
 
 use super::effect::{Effect, Info, Setup};
 use super::keys::keys;
@@ -9,8 +9,21 @@ use crate::contact::regularised::Parameters;
 use crate::schema::SceneError;
 use crate::schema::numbers::{Number, Place, Range};
 
-/// Creep laws, from the poorest to the richest.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, IntoStaticStr, VariantArray)]
+/// Creep laws, from the poorest to the richest: the one list, of which scenes, the program, Python and cost studies take names and
+/// meanings.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Deserialize,
+    EnumMessage,
+    EnumString,
+    IntoStaticStr,
+    VariantArray,
+)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum CreepLaw {

@@ -9,13 +9,14 @@
 use std::f64::consts::PI;
 
 use nalgebra::{SMatrix, SVector};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::estimate::Outline;
-use super::growth::{PARTS, RISE, Rises};
+use super::growth::RISE;
 use super::heat::ByContact;
 use super::keys::keys;
+use super::reports::{PARTS, Rises, Warm};
 use crate::schema::numbers::{Number, Place, Range};
 use crate::schema::units::TemperatureRise;
 use crate::schema::variable_units::{KELVIN, WATT};
@@ -87,15 +88,6 @@ impl Default for Section {
 keys! {
     /// Heat capacities and conductances; there with the effect only.
     "heat_balance" => section: Option<Section> = None,
-}
-
-/// Temperatures as a run has them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Warm {
-    /// \[K] rises of temperature of all parts.
-    pub rises: Rises,
-    /// \[W] heat that goes out to the surroundings, the oil included.
-    pub out: f64,
 }
 
 /// A passing contact: what heat conducts through it.

@@ -1,39 +1,14 @@
 //! Report of means since the last communication point: over the steps and over time, of what swings faster than an importer asks.
 
-use serde::{Deserialize, Serialize};
-
 use super::effect::{Effect, Getter, Info, Row};
 use super::keys::keys;
+use super::reports::{Averaged, OfRace};
 use super::since::{Numbers, Since};
 use crate::schema::variable_units::{NEWTON, NEWTON_METRE, RADIAN_PER_SECOND, Unit, WATT};
 
 keys! {
     /// Are means since the last communication point reported (`mean.*`)?
     "mean_outputs" => on: bool = false,
-}
-
-/// What has means.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Averaged {
-    /// Of the inner and the outer race.
-    pub races: [OfRace; 2],
-    /// \[W] lost to friction in all contacts.
-    pub friction: f64,
-    /// \[W] all losses.
-    pub lost: f64,
-    /// [rad/s] speed of the cage.
-    pub cage_speed: f64,
-}
-
-/// What has means of a race.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct OfRace {
-    /// \[N] force of the bearing on it.
-    pub force: [f64; 3],
-    /// [N m] moment.
-    pub moment: [f64; 3],
-    /// [N m] torque that keeps it at its speed.
-    pub drive_torque: f64,
 }
 
 impl Numbers for Averaged {

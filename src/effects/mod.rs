@@ -27,8 +27,6 @@ pub mod cage;
 pub mod creep;
 pub mod damping;
 pub mod defects;
-mod effect;
-pub mod estimate;
 pub mod film;
 pub mod form;
 pub mod frame;
@@ -39,18 +37,13 @@ pub mod growth;
 pub mod heat;
 pub mod heat_balance;
 pub mod hysteresis;
-pub mod inherent;
-pub mod keys;
+mod machinery;
 pub mod means;
-pub mod moving_frame;
 pub mod per_ball;
 pub mod rating;
-pub mod reports;
 pub mod shoulder;
-pub mod since;
 pub mod stiffness;
 pub mod support;
-pub mod twin;
 
 use std::fmt;
 use std::sync::LazyLock;
@@ -59,10 +52,11 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 
 use crate::schema::SceneError;
 use crate::schema::numbers::Parameter;
-pub use effect::{AnyEffect, Effect, EffectInputs, Getter, Info, InputRow, Row, Setup};
 use estimate::{Estimate, Verdict};
 use keys::Keys;
-pub use reports::Reports;
+pub use machinery::effect::{AnyEffect, Effect, EffectInputs, Getter, Info, InputRow, Row, Setup};
+pub use machinery::reports::Reports;
+pub use machinery::{effect, estimate, inherent, keys, moving_frame, reports, since, twin};
 use twin::Twin;
 
 /// Makes [`Effects`] of a list of modules.

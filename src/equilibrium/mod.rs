@@ -15,10 +15,11 @@ mod trial;
 use nalgebra::{SMatrix, UnitQuaternion, Vector3};
 use thiserror::Error;
 
-use crate::effects::growth::{Rises, Warmth};
+use crate::effects::growth::Warmth;
 use crate::effects::moving_frame::FrameMotion;
 use crate::effects::reports::GrowthOutput;
 use crate::effects::reports::LifeOutput;
+use crate::effects::reports::Rises;
 use crate::model::bearing::BeyondShoulder;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::{Conditions, Model};

@@ -7,7 +7,6 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::cage::CageSection;
-use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::Scalar;
 use crate::scene::{Condition, Direction, Drive, RaceSection, Scene, Schedule};
 pub use crate::schema::Race;

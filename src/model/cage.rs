@@ -4,9 +4,9 @@
 
 use super::bearing::Bearing;
 use super::bodies::Race;
-use crate::contact::body::BodyMotion;
 use crate::contact::land::{LandModel, Lands};
 use crate::contact::materials::Pair;
+use crate::contact::motion::BodyMotion;
 use crate::contact::pair::PairForces;
 use crate::contact::pocket::PocketModel;
 use crate::contact::{BallMotion, RaceMotion};

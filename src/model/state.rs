@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use super::bodies::{Bodies, Body, Constraint, PerRace, Race, RigidBody};
 use super::energies::{Energies, Powers, Pressed};
-use crate::contact::body::BodyMotion;
+use crate::contact::motion::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::effects::growth::Grown;
-use crate::effects::heat_balance::Warm;
 use crate::effects::reports::SupportState;
+use crate::effects::reports::Warm;
 use crate::effects::{heat, means, rating};
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::arrowhead::Eliminated;

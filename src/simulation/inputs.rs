@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::EffectInputs;
-use crate::effects::growth::Rises;
+use crate::effects::reports::Rises;
 use crate::model::bodies::Race;
 use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 

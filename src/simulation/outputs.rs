@@ -11,14 +11,14 @@ use crate::contact::{BallRaceContact, ContactModel, RaceMotion};
 use crate::effects::Reports;
 use crate::effects::film;
 use crate::effects::heat::by_part;
-use crate::effects::heat_balance::Warm;
-use crate::effects::means::Averaged;
+use crate::effects::reports::Averaged;
 use crate::effects::reports::FilmOutput;
 use crate::effects::reports::Frequencies;
 use crate::effects::reports::GrowthOutput;
 use crate::effects::reports::HeatOutput;
 use crate::effects::reports::LifeOutput;
 use crate::effects::reports::SupportState;
+use crate::effects::reports::Warm;
 pub use crate::effects::reports::{
     BallOutput, CageOutput, Condensed, ContactOutput, NeighboursOutput, PocketOutput,
 };

@@ -1,7 +1,8 @@
 //! Temperatures from the heat of friction: closed forms of the balance, and runs whose heat, growth and oil follow it.
 
 use roulement::effects::heat::ByContact;
-use roulement::effects::heat_balance::{HeatBalance, Heating, Warm};
+use roulement::effects::heat_balance::{HeatBalance, Heating};
+use roulement::effects::reports::Warm;
 use roulement::interface::variables::{Causality, Variables};
 use roulement::model::Model;
 use roulement::scene::Scene;

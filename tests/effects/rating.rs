@@ -2,8 +2,9 @@
 
 use roulement::Model;
 use roulement::effects::rating::standard::{self, Geometry};
-use roulement::effects::rating::{LONGEST, LoadRests, SAFEST, Turning};
+use roulement::effects::rating::{LONGEST, SAFEST, Turning};
 use roulement::effects::reports::LifeOutput;
+use roulement::effects::reports::LoadRests;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::interface::variables::Variables;
 use roulement::scene::Scene;

@@ -3,14 +3,15 @@
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::LazyLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use roulement::analysis::single_contact::{ContactError, Law, RollingContact, RollingForces, ScaledContact};
 use roulement::kalker::half_space::LARGEST_CHANGE;
-use roulement::scene::CreepLaw;
 use roulement::schema::regular;
 use roulement_cli::exact::answer;
 use roulement_cli::exact::cache::Cache;
@@ -45,36 +46,28 @@ pub struct Options {
     film: film::Options,
 }
 
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum LawChoice {
-    /// No tangential force.
-    Frictionless,
-    /// Kalker's linear theory, unbounded.
-    Linear,
-    /// The paper's regularised law with spin coupling.
-    Regularised,
-    /// Linear theory, saturated as a vector.
-    Saturated,
-    /// Kalker's nonlinear theory in polynomials.
-    Kalker,
-    /// Kalker's nonlinear theory as a smooth table.
-    #[value(name = "kalker_table", alias = "kalker-table")]
-    KalkerTable,
-    /// Half-space reference solver: slow.
-    Reference,
+/// A creep law by its name in the one list of laws.
+#[derive(Clone, Copy, PartialEq)]
+struct LawChoice {
+    name: &'static str,
+    what: &'static str,
 }
 
-impl Options {
-    fn law(&self, choice: LawChoice) -> Law {
-        match choice {
-            LawChoice::Frictionless => Law::Simulated(CreepLaw::Frictionless),
-            LawChoice::Linear => Law::Simulated(CreepLaw::Linear),
-            LawChoice::Regularised => Law::Simulated(CreepLaw::Regularised),
-            LawChoice::Saturated => Law::Simulated(CreepLaw::Saturated),
-            LawChoice::Kalker => Law::Kalker(self.degree),
-            LawChoice::KalkerTable => Law::Simulated(CreepLaw::KalkerTable),
-            LawChoice::Reference => Law::Reference(self.grid),
-        }
+/// Name of the law that `--exact` replaces.
+const TABLE: &str = "kalker_table";
+/// All but that of `--exact`, which is an option of its own.
+static CHOICES: LazyLock<Vec<LawChoice>> = LazyLock::new(|| {
+    Law::names().filter(|(name, _)| *name != "exact").map(|(name, what)| LawChoice { name, what }).collect()
+});
+
+impl ValueEnum for LawChoice {
+    fn value_variants<'a>() -> &'a [Self] {
+        &CHOICES
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let value = PossibleValue::new(self.name).help(self.what.trim_end_matches('.'));
+        Some(if self.name == TABLE { value.alias("kalker-table") } else { value })
     }
 }
 
@@ -86,11 +79,11 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let (Some(cases), Some(choice)) = (&options.cases, options.law) else {
         return film::run(&options.film);
     };
-    if options.exact && choice != LawChoice::KalkerTable {
-        let name = choice.to_possible_value().map_or(String::new(), |value| value.get_name().to_string());
+    if options.exact && choice.name != TABLE {
         return Err(format!(
-            "--exact is an option of --law kalker_table, not of {name}: it puts the nonlinear theory itself in the place of its \
-             table"
+            "--exact is an option of --law kalker_table, not of {}: it puts the nonlinear theory itself in the place of its \
+             table",
+            choice.name
         )
         .into());
     }
@@ -112,7 +105,7 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
         answers.flush()?;
         return Ok(ended());
     }
-    let law = options.law(choice);
+    let law = Law::named(choice.name, options.degree, options.grid).ok_or("no such law")?;
     let mut rough: Option<([f64; 2], u32)> = None;
     for case in cases {
         if interrupted.load(Ordering::Relaxed) {

@@ -4,8 +4,8 @@ import numpy as np
 
 from . import _native
 
-LAWS = ("frictionless", "linear", "regularised", "saturated", "kalker", "kalker_table", "reference", "exact")
-"""Names of the creep laws."""
+LAWS = tuple(_native.laws())
+"""Names of the creep laws: those of scenes from the poorest to the richest, then the half-space solver."""
 
 _INPUTS = (
     "poisson_ratio",

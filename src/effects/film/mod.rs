@@ -9,7 +9,6 @@ mod section;
 use super::effect::{Effect, Getter, Info, InputRow, Row, Setup};
 use super::estimate::{Estimate, Outline};
 use super::growth::Warmth;
-use super::keys::Keys;
 use super::per_ball::ball_row;
 use super::reports::{BallOutput, ContactOutput, FilmOutput, Reports};
 use super::twin::{Switch, Twin};
@@ -20,19 +19,10 @@ use crate::schema::units::{Celsius, Viscosity};
 use crate::schema::variable_units::{METRE, ONE, PASCAL_SECOND, Unit, WATT};
 use crate::schema::{Group, SceneError};
 use oil::Oil;
-pub use section::{LUBRICATION, Section, Supplied, USUAL_DENSITY};
+pub use section::{LUBRICATION, Section, Settings, Supplied, USUAL_DENSITY};
 
 /// Geometry constant K_z of SKF's starvation factor: deep groove and angular contact ball bearings.
 const GEOMETRY: [f64; 2] = [3.1, 4.4];
-
-/// The effect as a scene has it: there is a section, or there is none.
-#[derive(Clone, Debug, Default)]
-pub struct Settings {
-    /// The section `[film]`.
-    pub section: Option<Section>,
-}
-
-impl Keys for Settings {}
 
 /// Films of both races, and the oil they are of.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,7 +99,7 @@ impl Settings {
     /// [m2/s] kinematic viscosity of the oil where nothing has warmed; none without a film.
     pub fn kinematic_viscosity(&self) -> Option<f64> {
         let section = self.section.as_ref()?;
-        Some(Oil::of(section).viscosity(section.oil_temperature()) / section.density.0)
+        Some(section.oil().viscosity(section.oil_temperature()) / section.density.0)
     }
 
     /// [-] degree of lubrication at a time \[s]; 0 without a film.
@@ -126,7 +116,7 @@ impl Settings {
         let geometry = GEOMETRY[usize::from(angular)];
         let lengths = (bore + outside) * (geometry / (2.0 * (outside - bore))).sqrt();
         Some(Films {
-            oil: Oil::of(section),
+            oil: section.oil(),
             temperature: section.oil_temperature(),
             warms: section.cold_temperature.is_some(),
             starvation: section.supply.starvation() * lengths,
@@ -159,7 +149,7 @@ impl Section {
 
     /// Oil and surfaces as films need them.
     pub fn lubricant(&self) -> Lubricant {
-        let fall = Oil::of(self).falls(self.oil_temperature());
+        let fall = self.oil().falls(self.oil_temperature());
         Lubricant {
             pressure_viscosity: self.pressure_viscosity.0,
             temperature_viscosity: self.temperature_viscosity.or(fall).unwrap_or(0.035),
@@ -229,7 +219,7 @@ impl Effect for Settings {
 
     fn setting(&self) -> Option<String> {
         let section = self.section.as_ref()?;
-        let (oil, temperature) = (Oil::of(section), section.oil_temperature());
+        let (oil, temperature) = (section.oil(), section.oil_temperature());
         let degree = match section.lubrication.at(0.0) {
             degree if degree >= 1.0 => String::new(),
             degree => format!(", lubrication {degree}"),
@@ -268,7 +258,7 @@ impl Effect for Settings {
         let write = "[film] with iso_vg and temperature of the oil";
         let (on, known) = (self.section.is_some(), estimate.viscosity);
         let oil = self.section.clone().unwrap_or_else(|| Section::usual(known));
-        let name = Oil::of(&oil).name(oil.oil_temperature());
+        let name = oil.oil().name(oil.oil_temperature());
         let resists = oil.rolling_resistance;
         let [film, bare] =
             [true, false].map(|rolling_resistance| Section { rolling_resistance, ..oil.clone() });

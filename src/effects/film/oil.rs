@@ -1,7 +1,5 @@
 //! Viscosity of an oil at its temperature.
 
-use super::section::Section;
-
 /// \[K] absolute temperature of 0 degC.
 const ZERO_CELSIUS: f64 = 273.15;
 /// \[K] temperature of ISO viscosity grades.
@@ -35,14 +33,6 @@ pub enum Oil {
 }
 
 impl Oil {
-    /// The oil of a section, which has either a viscosity or a grade.
-    pub fn of(section: &Section) -> Self {
-        match (section.viscosity, section.iso_vg) {
-            (Some(viscosity), _) => Self::Given(viscosity.0),
-            (None, grade) => Self::Graded(grade.unwrap_or(68.0), section.density.0),
-        }
-    }
-
     /// Its name, at a temperature \[degC].
     pub fn name(&self, temperature: f64) -> String {
         match self {

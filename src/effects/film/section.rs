@@ -2,12 +2,22 @@
 
 use serde::Deserialize;
 
-use super::Settings;
+use super::oil::Oil;
 use crate::effects::effect::Setup;
+use crate::effects::keys::Keys;
 use crate::schema::SceneError;
 use crate::schema::numbers::{Number, Place, Range};
 use crate::schema::schedule::{self, Schedule};
 use crate::schema::units::{Celsius, Density, Length, Pressure, PressureViscosity, Ratio, Viscosity};
+
+/// The effect as a scene has it: there is a section, or there is none.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// The section `[film]`.
+    pub section: Option<Section>,
+}
+
+impl Keys for Settings {}
 
 /// Oil, surfaces, and what of them is simulated.
 #[derive(Clone, Debug, Deserialize)]
@@ -197,6 +207,14 @@ pub(super) const NUMBERS: &[Number<Settings>] = &[
 ];
 
 impl Section {
+    /// The oil, by viscosity or by grade.
+    pub fn oil(&self) -> Oil {
+        match (self.viscosity, self.iso_vg) {
+            (Some(viscosity), _) => Oil::Given(viscosity.0),
+            (None, grade) => Oil::Graded(grade.unwrap_or(68.0), self.density.0),
+        }
+    }
+
     /// Checks keys against one another and against the rest of the scene.
     pub(super) fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {
         let conflict = |key: &str, why: &str| Err(SceneError::conflict(key, why));

@@ -10,12 +10,11 @@ pub mod rings;
 mod section;
 mod stiffening;
 
-use crate::effects::reports::GrowthOutput;
 use serde::{Deserialize, Serialize};
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::estimate::{Estimate, Outline, digits};
-use super::keys::Keys;
+use super::reports::{GrowthOutput, Rises};
 use super::twin::Twin;
 use crate::contact::raceway::Raceway;
 use crate::schema::numbers::Number;
@@ -23,14 +22,8 @@ use crate::schema::schedule::Schedule;
 use crate::schema::variable_units::{METRE, PASCAL, RADIAN, Unit};
 use crate::schema::{BearingSection, Material, SceneError};
 use rings::{Cylinder, Fit, Seated};
-pub use section::{EXPANSION, Partner, RISE, Section};
+pub use section::{EXPANSION, Partner, RISE, Section, Settings};
 use stiffening::Stiffening;
-
-/// Parts that have a temperature, in the order of [`Rises`].
-pub const PARTS: [&str; 5] = ["inner", "outer", "balls", "shaft", "housing"];
-
-/// \[K] rises of temperature of all [`PARTS`].
-pub type Rises = [f64; 5];
 
 /// What growth follows from step to step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -69,15 +62,6 @@ impl Push {
         self.along -= load * axial;
     }
 }
-
-/// The effect as a scene has it: there is a section, or there is none.
-#[derive(Clone, Debug, Default)]
-pub struct Settings {
-    /// The section `[growth]`.
-    pub section: Option<Section>,
-}
-
-impl Keys for Settings {}
 
 impl Settings {
     /// Rises over time of all parts; none where growth is not simulated.

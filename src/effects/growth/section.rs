@@ -2,12 +2,21 @@
 
 use serde::Deserialize;
 
-use super::Settings;
 use crate::effects::effect::Setup;
+use crate::effects::keys::Keys;
 use crate::schema::numbers::{Number, POISSON_RATIO, Place, Range, YOUNGS_MODULUS};
 use crate::schema::schedule::{self, Schedule};
 use crate::schema::units::{Density, Length, Pressure, TemperatureRise, ThermalExpansion};
 use crate::schema::{BearingSection, Material, SceneError};
+
+/// The effect as a scene has it: there is a section, or there is none.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// The section `[growth]`.
+    pub section: Option<Section>,
+}
+
+impl Keys for Settings {}
 
 /// Temperatures over that of the given dimensions, and fits.
 #[derive(Clone, Debug, Default, Deserialize)]

@@ -17,6 +17,7 @@ use std::f64::consts::TAU;
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::keys::Keys;
+use super::reports::LoadRests;
 use crate::contact::materials::Pair;
 use crate::schema::numbers::{Number, Place, Range};
 use crate::schema::units::{Force, KinematicViscosity};
@@ -57,19 +58,6 @@ impl Default for Section {
             load_rests_on: None,
         }
     }
-}
-
-/// The race that the load stands still on; the other one turns against it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum LoadRests {
-    /// The inner race.
-    Inner,
-    /// The outer race.
-    #[default]
-    Outer,
-    /// Neither: both turn against it.
-    Neither,
 }
 
 impl LoadRests {

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
-use roulement::contact::body::BodyMotion;
 use roulement::contact::cage_film::{self, Gap};
 use roulement::contact::land::{LandModel, Lands};
 use roulement::contact::materials::Pair;
+use roulement::contact::motion::BodyMotion;
 use roulement::contact::pair::PairForces;
 use roulement::contact::pocket::PocketModel;
 use roulement::contact::{BallMotion, RaceMotion};

@@ -1,9 +1,10 @@
 //! Contacts with the numbers that this library computes with, in functions that are compiled here: whoever calls
 //! [`ContactModel::evaluate`] from another crate compiles the whole chain from motion to forces once more.
 
-use super::creep::Law;
-use super::pair::PairForces;
-use super::{BallMotion, BallRaceContact, ContactModel, Path, RaceMotion};
+use super::{BallRaceContact, ContactModel, Path};
+use crate::contact::creep::Law;
+use crate::contact::motion::{BallMotion, RaceMotion};
+use crate::contact::pair::PairForces;
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::Dual;
 

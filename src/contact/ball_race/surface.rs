@@ -2,8 +2,8 @@
 
 use super::ball_spall::Damage;
 use super::form::Form;
-use super::raceway::Raceway;
 use super::spall::Spalls;
+use crate::contact::raceway::Raceway;
 use crate::numerics::scalar::Scalar;
 
 /// Size of a ball against that of the bearing.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::RaceMotion;
+use crate::contact::motion::RaceMotion;
 use crate::numerics::scalar::{Scalar, cross, dot};
 
 /// The groove circle at an azimuth.

@@ -2,8 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::exp;
-use super::thickness::Ellipse;
+use super::functions::exp;
 use crate::numerics::scalar::Scalar;
 
 /// What follows from the shape of the ellipse alone.
@@ -47,8 +46,8 @@ impl<S: Scalar> Inlet<S> {
     ///
     /// The form that Balan and others (2015) give of the same work, by the curvatures alone, is within 0.6 % of it (tested).
     #[inline(always)]
-    pub fn rolling_force(&self, ellipse: &Ellipse) -> S {
-        let RollingFactors { rigid, elastic, share, width } = ellipse.rolling;
+    pub fn rolling_force(&self, factors: &RollingFactors) -> S {
+        let RollingFactors { rigid, elastic, share, width } = *factors;
         let power = exp(self.speed.scale(0.75));
         let rigid = exp(self.speed.scale(-1.0 / 12.0)).scale(rigid);
         let elastic = S::constant(elastic);

@@ -8,11 +8,13 @@
 //! its shape that at the free contact angle: between the shapes at 0 and 40 degrees rolling resistance changes by 2.2 %, friction by
 //! 0.3 % (6206, tests/contact/film.rs).
 
+mod functions;
 pub mod rolling;
 pub mod thickness;
 pub mod traction;
 
 use crate::numerics::scalar::{Dual, Scalar, SmoothMap, Values};
+use functions::ln;
 use rolling::Inlet;
 use thickness::Ellipse;
 
@@ -22,8 +24,6 @@ const LEAST_SLIP: f64 = 1e-6;
 /// [-] mean of |t^2 - t0^2| over a Hertzian load along the long axis, at the t0 at which half of it slips forwards: 2 sin 10 degrees.
 /// Where a bent groove rolls freely its force along rolling is zero there (Heathcote 1921; Johnson 1985, section 8.5).
 pub const FREE_ROLLING: f64 = 0.161_142;
-/// [-] load over `E' R^2` below which films do not grow any more: without load they would be infinite.
-const LEAST_LOAD: f64 = 1e-9;
 
 /// An oil, and the surfaces that it parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -213,7 +213,7 @@ impl Film<'_> {
             let heated =
                 if lubricant.inlet_heating { rolling::inlet_factor(logarithms.heat) } else { S::one() };
             let factor = self.supply.lubrication * self.supply.replenishment * modulus;
-            let force = (inlet.rolling_force(ellipse) * heated / curvature.square()).scale(factor);
+            let force = (inlet.rolling_force(&ellipse.rolling) * heated / curvature.square()).scale(factor);
             // Not even that of the area above.
             force.where_positive(load, S::zero())
         } else {
@@ -240,19 +240,4 @@ impl SmoothMap<5, 3> for Film<'_> {
         let y = self.evaluate(std::array::from_fn(|i| Dual::<5>::variable(x[i], i, 1.0)));
         (y.map(|y| y.value), y.map(|y| y.derivatives))
     }
-}
-
-/// Natural logarithm of a number above 0.
-#[inline(always)]
-fn ln<S: Scalar>(x: S) -> S {
-    x.map_smooth(|x| (x.ln(), 1.0 / x))
-}
-
-/// Exponential function.
-#[inline(always)]
-fn exp<S: Scalar>(x: S) -> S {
-    x.map_smooth(|x| {
-        let value = x.exp();
-        (value, value)
-    })
 }

@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::RaceMotion;
 use super::ball_spall::Damage;
 use super::shift::{Shift, azimuth};
 use super::surface::Surface;
+use crate::contact::motion::RaceMotion;
 use crate::numerics::scalar::{Scalar, cross, dot};
 
 /// \[m] distance from the groove centre below which the contact normal fades to zero.

@@ -3,9 +3,6 @@
 use nalgebra::{Matrix6, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::heat_balance::Warm;
-use super::means::Averaged;
-use super::rating::LoadRests;
 use crate::numerics::motion::{Pose, Twist, Wrench};
 
 /// All of it, as the outputs of a state have it; an effect that is off reports nothing.
@@ -226,13 +223,13 @@ pub struct HeatOutput {
 /// Life and safety of a bearing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LifeOutput {
-    /// [million revolutions] reference rating life L_10r; at most [`super::rating::LONGEST`].
+    /// [million revolutions] reference rating life L_10r; at most [`crate::effects::rating::LONGEST`].
     pub reference: f64,
     /// [million revolutions] modified reference rating life L_nmr; none without viscosity and contamination.
     pub modified: Option<f64>,
     /// \[N] dynamic equivalent reference load P_ref.
     pub equivalent_load: f64,
-    /// [-] static safety: load of a ball that would leave a mark over the largest load on the inner race; at most [`super::rating::SAFEST`].
+    /// [-] static safety: load of a ball that would leave a mark over the largest load on the inner race; at most [`crate::effects::rating::SAFEST`].
     pub static_safety: f64,
     /// [-] part of the reference life that was used up since the start.
     pub damage: f64,
@@ -270,4 +267,56 @@ pub struct SupportState {
     pub energy: f64,
     /// \[W] power lost in the dampers.
     pub lost: f64,
+}
+
+/// Parts that have a temperature, in the order of [`Rises`].
+pub const PARTS: [&str; 5] = ["inner", "outer", "balls", "shaft", "housing"];
+
+/// \[K] rises of temperature of all [`PARTS`].
+pub type Rises = [f64; 5];
+
+/// Temperatures as a run has them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Warm {
+    /// \[K] rises of temperature of all parts.
+    pub rises: Rises,
+    /// \[W] heat that goes out to the surroundings, the oil included.
+    pub out: f64,
+}
+
+/// What has means.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Averaged {
+    /// Of the inner and the outer race.
+    pub races: [OfRace; 2],
+    /// \[W] lost to friction in all contacts.
+    pub friction: f64,
+    /// \[W] all losses.
+    pub lost: f64,
+    /// [rad/s] speed of the cage.
+    pub cage_speed: f64,
+}
+
+/// What has means of a race.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct OfRace {
+    /// \[N] force of the bearing on it.
+    pub force: [f64; 3],
+    /// [N m] moment.
+    pub moment: [f64; 3],
+    /// [N m] torque that keeps it at its speed.
+    pub drive_torque: f64,
+}
+
+/// The race that the load stands still on; the other one turns against it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LoadRests {
+    /// The inner race.
+    Inner,
+    /// The outer race.
+    #[default]
+    Outer,
+    /// Neither: both turn against it.
+    Neither,
 }

@@ -2,9 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::creep::Law;
-use super::pair::PairForces;
-use super::{BallMotion, BallRaceContact, ContactModel, Path, RaceMotion};
+use super::{BallRaceContact, ContactModel, Path};
+use crate::contact::creep::Law;
+use crate::contact::motion::{BallMotion, RaceMotion};
+use crate::contact::pair::PairForces;
 use crate::kalker::scaled_law::Difference;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::scalar::Scalar;

@@ -17,15 +17,16 @@ use std::f64::consts::PI;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::creep::{CreepForces, Creepage, Law, LinearTheory};
 use super::film::{FilmForces, Loading, slip_of};
 use super::geometry::{GrooveContact, Lean};
-use super::kinematics::{self, RollingState, Surfaces};
-use super::normal::{Damping, NormalLoad};
-use super::oblique::is_oblique;
-use super::pair::PairForces;
-use super::shape::ShapeAt;
-use super::{BallMotion, BallRaceContact, ContactModel, HYSTERESIS, RaceMotion};
+use super::{BallRaceContact, ContactModel, HYSTERESIS};
+use crate::contact::creep::oblique::is_oblique;
+use crate::contact::creep::{CreepForces, Creepage, Law, LinearTheory};
+use crate::contact::kinematics::{self, RollingState, Surfaces};
+use crate::contact::motion::{BallMotion, RaceMotion};
+use crate::contact::normal::{Damping, NormalLoad};
+use crate::contact::pair::PairForces;
+use crate::contact::shape::ShapeAt;
 use crate::kalker::nonlinear::KalkerError;
 use crate::kalker::scaled_law::{Difference, ScaledKalker};
 use crate::numerics::scalar::{Scalar, cross, dot};

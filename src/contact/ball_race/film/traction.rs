@@ -1,6 +1,7 @@
 //! Shear of a film: an Eyring fluid whose viscosity grows with pressure, up to a limiting shear stress.
 
-use super::{Lubricant, exp, ln};
+use super::Lubricant;
+use super::functions::{exp, ln};
 use crate::numerics::scalar::Scalar;
 
 /// \[Pa] pressure of Roelands' law.

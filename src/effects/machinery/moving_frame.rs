@@ -41,7 +41,7 @@ impl FrameMotion {
         }
     }
 
-    pub(super) fn vector(&self, quantity: usize) -> &Vector3<f64> {
+    pub(in crate::effects) fn vector(&self, quantity: usize) -> &Vector3<f64> {
         match quantity {
             0 => &self.gravity,
             1 => &self.acceleration,
@@ -50,7 +50,7 @@ impl FrameMotion {
         }
     }
 
-    pub(super) fn vector_mut(&mut self, quantity: usize) -> &mut Vector3<f64> {
+    pub(in crate::effects) fn vector_mut(&mut self, quantity: usize) -> &mut Vector3<f64> {
         match quantity {
             0 => &mut self.gravity,
             1 => &mut self.acceleration,

@@ -5,11 +5,11 @@
 
 use nalgebra::Vector3;
 
-use super::body::BodyMotion;
-use super::cage_film::{self, Gap};
-use super::normal::NormalLoad;
-use super::pair::PairForces;
-use crate::contact::RaceMotion;
+use super::film::{self, Gap};
+use crate::contact::motion::BodyMotion;
+use crate::contact::motion::RaceMotion;
+use crate::contact::normal::NormalLoad;
+use crate::contact::pair::PairForces;
 use crate::numerics::scalar::{Scalar, Single, cross, dot};
 
 /// [m/s] sliding speed below which friction fades: `v/sqrt(v^2 + this^2)`. A cage slides on its land at metres per
@@ -116,7 +116,7 @@ impl LandModel {
         let velocity = velocity - race.axis * dot(&race.axis, &velocity);
         let spin = dot(&(cage.angular_velocity - race.angular_velocity), &race.axis);
         let gap = Gap { axis: race.axis, eccentricity: eccentric, velocity, clearance: self.half_clearance };
-        let (force, friction) = cage_film::land(&gap, oil, [self.width, self.radius.abs()], spin);
+        let (force, friction) = film::land(&gap, oil, [self.width, self.radius.abs()], spin);
         let moment = race.axis * friction;
         forces.force += force;
         forces.moment += cross(&cage_arm, &force) + moment;

@@ -1,9 +1,11 @@
 //! Thickness of films in elliptic contacts.
 
+use super::functions::{exp, ln};
 use super::rolling::RollingFactors;
-use super::{LEAST_LOAD, exp, ln};
 use crate::numerics::scalar::Scalar;
 
+/// [-] load over `E' R^2` below which films do not grow any more: without load they would be infinite.
+const LEAST_LOAD: f64 = 1e-9;
 /// [-] largest loss of film by heating, of the numerator, to which the fit of Gupta and others holds; beyond, it comes near to a
 /// whole loss without reaching it.
 const LARGEST_LOSS: f64 = 0.9;
@@ -18,7 +20,7 @@ pub struct Ellipse {
     /// [-] half width over that of a line contact of the same peak pressure, beta.
     pub slenderness: f64,
     /// [-] what rolling resistance takes of both.
-    pub(super) rolling: RollingFactors,
+    pub rolling: RollingFactors,
 }
 
 impl Ellipse {

@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::RaceMotion;
 use super::shift::{Shift, azimuth};
+use crate::contact::motion::RaceMotion;
 use crate::numerics::periodic_spline::PeriodicSpline;
 use crate::numerics::scalar::Scalar;
 

@@ -4,13 +4,19 @@
 //! ball; velocity of the ball minus that of the raceway) and forces of the ball ON THE RACEWAY, which point along the
 //! creepage (paper eq. 14). The force on the ball is the opposite.
 
-use super::heathcote::CurvatureEffect;
-pub use super::linear_theory::{CreepForces, Creepage, LinearTheory};
-use super::regularised::Parameters;
-use super::shape::ShapeAt;
+pub mod heathcote;
+pub mod identification;
+pub mod linear_theory;
+pub mod oblique;
+pub mod regularised;
+
+use crate::contact::shape::ShapeAt;
 use crate::kalker::scaled_law::{PolynomialsFrom, ScaledKalker};
 use crate::kalker::table::CreepTable;
 use crate::numerics::scalar::{Scalar, within_limit};
+use heathcote::CurvatureEffect;
+pub use linear_theory::{CreepForces, Creepage, LinearTheory};
+use regularised::Parameters;
 
 /// A creep law with its tables or parameters; chosen once per step.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +84,7 @@ impl<S: Scalar> LinearTheory<S> {
     }
 
     /// The same with a film between the bodies that shears in series with them; the viscous share is that of
-    /// [`FilmForces`](super::film::FilmForces).
+    /// [`FilmForces`](crate::contact::ball_race::film::FilmForces).
     ///
     /// With the linear force of the bodies `r` times the limit, a viscous film and elastic bodies in series carry `r/(1 + r)` of it. The
     /// cubic of [`saturation`] gives that at an argument of `3 (1 - (1 + r)^(-1/3))`: by that much the bodies seem more compliant. A

@@ -36,7 +36,7 @@ macro_rules! keys {
             }
         }
 
-        impl $crate::effects::keys::Keys for Settings {
+        impl $crate::effects::machinery::keys::Keys for Settings {
             const NAMES: &'static [&'static str] = &[$($key),*];
 
             fn read<'de, A: serde::de::MapAccess<'de>>(
@@ -53,4 +53,4 @@ macro_rules! keys {
         }
     };
 }
-pub(super) use keys;
+pub(in crate::effects) use keys;

@@ -65,7 +65,7 @@ pub struct CreepForces<S> {
 impl<S: Scalar> CreepForces<S> {
     /// \[N] power that goes into friction at these creepages, over the rolling speed.
     #[inline(always)]
-    pub(super) fn power(&self, creepage: &Creepage<S>) -> S {
+    pub(crate) fn power(&self, creepage: &Creepage<S>) -> S {
         let flat = self.longitudinal * creepage.longitudinal
             + self.lateral * creepage.lateral
             + self.spin_moment * creepage.spin;

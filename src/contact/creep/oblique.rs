@@ -12,7 +12,7 @@
 //! For the table of the nonlinear theory a net knows what the mixture lacks ([`ObliqueNet`]). It keeps forces within their limits, and takes
 //! at most `GIVEN_BACK` of the mixture's power away, so that the sum dissipates as well.
 
-use super::creep::Law;
+use super::Law;
 use super::linear_theory::{CreepForces, Creepage, LinearTheory};
 use crate::kalker::LinearError;
 use crate::kalker::Patch;
@@ -138,7 +138,7 @@ impl Exchanged {
 
 /// Has rolling across x a share, by the rolling speed and its component across x? From a little before it has.
 #[inline(always)]
-pub(super) fn is_oblique<S: Scalar>(speed: S, across: S) -> bool {
+pub(crate) fn is_oblique<S: Scalar>(speed: S, across: S) -> bool {
     across.any_beyond(0.999 * BEGIN.sqrt(), speed)
 }
 

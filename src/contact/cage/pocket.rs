@@ -9,16 +9,16 @@
 
 use nalgebra::Vector3;
 
-use super::body::BodyMotion;
-use super::cage_film::{self, Gap};
-use super::creep::{Law, LinearTheory};
-use super::hertz::HertzContact;
-use super::kinematics::Surfaces;
-use super::normal::NormalLoad;
-use super::pair::PairForces;
-use super::shape::ShapeAt;
-use crate::contact::BallMotion;
+use super::film::{self, Gap};
+use crate::contact::creep::{Law, LinearTheory};
+use crate::contact::hertz::HertzContact;
+use crate::contact::kinematics::Surfaces;
 use crate::contact::materials::Pair;
+use crate::contact::motion::BallMotion;
+use crate::contact::motion::BodyMotion;
+use crate::contact::normal::NormalLoad;
+use crate::contact::pair::PairForces;
+use crate::contact::shape::ShapeAt;
 use crate::kalker::LinearError;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::scalar::{Scalar, Single, constant_vector, cross, dot};
@@ -147,7 +147,7 @@ impl PocketModel {
         let velocity = velocity - axis * dot(&axis, &velocity);
         let relative = ball.angular_velocity - cage.angular_velocity;
         let gap = Gap { axis, eccentricity, velocity, clearance: self.half_clearance };
-        let (force, moment) = cage_film::pocket(&gap, oil, self.ball_radius, &relative);
+        let (force, moment) = film::pocket(&gap, oil, self.ball_radius, &relative);
         forces.force += force;
         forces.moment += cross(&ball_arm, &force) + moment;
         forces.other_moment -= cross(&cage_arm, &force) + moment;

@@ -1,6 +1,6 @@
 //! Twins of a scene: the same with an effect taken in or out. What an effect changes is the difference of both.
 
-use super::Effects;
+use crate::effects::Effects;
 
 /// What takes an effect in or out.
 pub type Switch = Box<dyn Fn(&mut Effects)>;

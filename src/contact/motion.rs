@@ -1,0 +1,100 @@
+//! Motions of bodies that touch: of balls, of races, and of bodies with axes, such as the cage.
+
+use nalgebra::Vector3;
+
+use crate::numerics::scalar::{Scalar, constant_vector};
+
+/// Motion of a ball, in world axes.
+#[derive(Clone, Copy, Debug)]
+pub struct BallMotion<S: Scalar> {
+    /// \[m] centre.
+    pub position: Vector3<S>,
+    /// [m/s] velocity of the centre.
+    pub velocity: Vector3<S>,
+    /// [rad/s] angular velocity.
+    pub angular_velocity: Vector3<S>,
+}
+
+impl BallMotion<f64> {
+    /// A ball at the origin that does not move.
+    pub fn at_rest() -> Self {
+        Self { position: Vector3::zeros(), velocity: Vector3::zeros(), angular_velocity: Vector3::zeros() }
+    }
+}
+
+/// Motion of a race, in world axes.
+#[derive(Clone, Copy, Debug)]
+pub struct RaceMotion<S: Scalar> {
+    /// \[m] origin of the race frame.
+    pub position: Vector3<S>,
+    /// [-] unit vector of the race's own axis.
+    pub axis: Vector3<S>,
+    /// [-] unit vector of the race's own y axis, which azimuths on it are counted from. Plain numbers: as derivatives it costs
+    /// more than 1 % of a step in every scene, and its turn changes too little within a step for Newton's method to notice.
+    pub across: Vector3<f64>,
+    /// [m/s] velocity of the origin.
+    pub velocity: Vector3<S>,
+    /// [rad/s] angular velocity.
+    pub angular_velocity: Vector3<S>,
+}
+
+impl Default for RaceMotion<f64> {
+    /// At rest at the origin.
+    fn default() -> Self {
+        let zero = Vector3::zeros();
+        Self {
+            position: zero,
+            axis: Vector3::x(),
+            across: Vector3::y(),
+            velocity: zero,
+            angular_velocity: zero,
+        }
+    }
+}
+
+impl<S: Scalar> RaceMotion<S> {
+    /// A race that rests: origin \[m], its own axis and its own y axis.
+    pub fn resting(position: Vector3<S>, axis: Vector3<S>, across: Vector3<f64>) -> Self {
+        let still = Vector3::from_element(S::zero());
+        Self { position, axis, across, velocity: still, angular_velocity: still }
+    }
+}
+
+impl RaceMotion<f64> {
+    /// The same as numbers that could have derivatives, or one for each lane.
+    #[inline(always)]
+    pub fn constant<S: Scalar>(&self) -> RaceMotion<S> {
+        RaceMotion {
+            position: constant_vector(&self.position),
+            axis: constant_vector(&self.axis),
+            across: self.across,
+            velocity: constant_vector(&self.velocity),
+            angular_velocity: constant_vector(&self.angular_velocity),
+        }
+    }
+}
+
+/// Motion of a rigid body, in world axes.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyMotion<S: Scalar> {
+    /// \[m] origin.
+    pub position: Vector3<S>,
+    /// [-] unit vectors of the body's own axes.
+    pub axes: [Vector3<S>; 3],
+    /// [m/s] velocity of the origin.
+    pub velocity: Vector3<S>,
+    /// [rad/s] angular velocity.
+    pub angular_velocity: Vector3<S>,
+}
+
+impl BodyMotion<f64> {
+    /// The same motion without derivatives, as numbers that could have some.
+    pub fn constant<S: Scalar>(&self) -> BodyMotion<S> {
+        BodyMotion {
+            position: constant_vector(&self.position),
+            axes: self.axes.each_ref().map(constant_vector),
+            velocity: constant_vector(&self.velocity),
+            angular_velocity: constant_vector(&self.angular_velocity),
+        }
+    }
+}
