@@ -22,7 +22,7 @@ pub mod pair;
 pub mod raceway;
 pub mod shape;
 
-pub use ball_race::{BallRaceContact, ContactModel, HYSTERESIS, Path};
+pub use ball_race::{BallRaceContact, ContactModel, Path, Resistance};
 pub use ball_race::{ball_spall, film, form, geometry, many, shoulder, spall, surface};
 pub use cage::{film as cage_film, land, pocket};
 pub use creep::{heathcote, identification, linear_theory, oblique, regularised};

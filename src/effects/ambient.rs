@@ -9,6 +9,7 @@ use serde::Deserialize;
 use super::effect::{Effect, Getter, Info, Row};
 use super::estimate::{Estimate, digits};
 use super::keys::keys;
+use super::losses::Part;
 use super::moving_frame::MovingFrame;
 use super::twin::Twin;
 use crate::contact::BallMotion;
@@ -170,6 +171,15 @@ impl Ambient {
         self.medium.as_ref().map_or(0.0, of)
     }
 }
+
+/// Its part of the losses.
+pub const LOSS: Part = Part {
+    name: "loss.drag",
+    description: "power that the balls lose to the medium around them",
+    words: "drag of the medium",
+    is_of: |effects| effects.ambient.section.is_some(),
+    get: |losses| losses.drag,
+};
 
 impl Effect for Settings {
     const INFO: &'static Info = &Info {

@@ -5,6 +5,7 @@ use serde::Deserialize;
 use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::estimate::{Estimate, Standing, Verdict, digits, percent};
 use super::keys::keys;
+use super::losses::Part;
 use super::per_ball::ball_row;
 use super::reports::{BallOutput, CageOutput, PocketOutput};
 use crate::schema::numbers::{DISSIPATION, Number, POISSON_RATIO, Place, Range, YOUNGS_MODULUS};
@@ -78,6 +79,15 @@ const STEADY: f64 = 0.1;
 
 /// [-] smallest diametral clearance of a pocket over the ball diameter.
 const SMALLEST_POCKET_CLEARANCE: f64 = 0.005;
+
+/// Its part of the losses.
+pub const LOSS: Part = Part {
+    name: "loss.cage",
+    description: "power lost to friction of the cage, in its pockets and on its lands",
+    words: "friction of the cage",
+    is_of: |effects| effects.cage.on,
+    get: |losses| losses.cage,
+};
 
 impl Effect for Settings {
     const INFO: &'static Info = &Info {

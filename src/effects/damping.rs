@@ -7,8 +7,10 @@
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 
+use super::Effects;
 use super::effect::{Effect, Info};
 use super::keys::keys;
+use super::losses::Part;
 use crate::contact::normal::Damping;
 use crate::schema::numbers::{DISSIPATION, Number, Place, Range};
 use crate::schema::reader::{self, ReadError};
@@ -158,6 +160,21 @@ fn restitution(settings: &mut Settings) -> Option<&mut RestitutionSection> {
         _ => None,
     }
 }
+
+/// Do contacts have dampers, those of a cage included?
+fn damps(effects: &Effects) -> bool {
+    let cage = effects.cage.section.as_ref().and_then(|cage| cage.damping);
+    effects.damping.setting().is_some() || cage.is_some_and(|factor| factor.0 > 0.0)
+}
+
+/// Its part of the losses.
+pub const LOSS: Part = Part {
+    name: "loss.damping",
+    description: "power lost to damping of all contacts",
+    words: "damping of contacts",
+    is_of: damps,
+    get: |losses| losses.damping,
+};
 
 impl Effect for Settings {
     const INFO: &'static Info = &Info {

@@ -4,6 +4,7 @@ use super::creep::CreepLaw;
 use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::estimate::Estimate;
 use super::keys::keys;
+use super::losses::ContactPower;
 use super::reports::BallOutput;
 use super::twin::Twin;
 use crate::schema::SceneError;
@@ -22,6 +23,9 @@ impl Settings {
 }
 
 const KEY: &str = "effects.heathcote_slip";
+
+/// Its power in a contact.
+pub const POWER: ContactPower = ContactPower { name: "groove", get: |contact| contact.groove_power };
 
 impl Effect for Settings {
     const INFO: &'static Info = &Info {

@@ -3,8 +3,10 @@
 use super::effect::{Effect, Getter, Info, Row};
 use super::estimate::Estimate;
 use super::keys::keys;
+use super::losses::{ContactPower, Part};
 use super::reports::BallOutput;
 use super::twin::Twin;
+use crate::contact::Resistance;
 use crate::schema::variable_units::WATT;
 
 keys! {
@@ -12,19 +14,35 @@ keys! {
     "hysteresis" => on: bool = false,
 }
 
+/// [-] exponent of the load in the moment (Houpert 1999).
+const EXPONENT: f64 = 1.33;
+
 impl Settings {
-    /// [N m/N^1.33] moment of a contact over its load to the power of [`HYSTERESIS`](crate::contact::HYSTERESIS): radius of a ball \[m], curvatures of ball and race
-    /// together, along and across rolling [1/m] (Houpert 1999, for bearing steel). 0 where it is not simulated.
-    pub fn coefficient(&self, radius: f64, [along, across]: [f64; 2]) -> f64 {
+    /// Moment against rolling of a contact: radius of a ball \[m], curvatures of ball and race together, along and across rolling
+    /// [1/m] (Houpert 1999, for bearing steel). None where it is not simulated.
+    pub fn resistance(&self, radius: f64, [along, across]: [f64; 2]) -> Resistance {
         let slender = (along / across - 1.0).max(0.0);
-        match self.on {
+        let factor = match self.on {
             true => 7.48e-7 * radius.powf(0.33) * (1.0 - 3.519e-3 * slender.powf(0.8063)),
             false => 0.0,
-        }
+        };
+        Resistance { factor, exponent: EXPONENT }
     }
 }
 
 const KEY: &str = "effects.hysteresis";
+
+/// Its power in a contact.
+pub const POWER: ContactPower = ContactPower { name: "hysteresis", get: |contact| contact.resisting_power };
+
+/// Its part of the losses.
+pub const LOSS: Part = Part {
+    name: "loss.hysteresis",
+    description: "power lost to the hysteresis of rolling",
+    words: "hysteresis of rolling",
+    is_of: |effects| effects.hysteresis.on,
+    get: |losses| losses.resisting,
+};
 
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
@@ -59,7 +77,7 @@ impl Effect for Settings {
     }
 
     fn rows(&self) -> Vec<Row> {
-        let power = |ball: &BallOutput| ball.inner.hysteresis_power + ball.outer.hysteresis_power;
+        let power = |ball: &BallOutput| ball.inner.resisting_power + ball.outer.resisting_power;
         let row = || {
             Row {
             name: "power.hysteresis".into(),

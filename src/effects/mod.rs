@@ -54,9 +54,10 @@ use crate::schema::SceneError;
 use crate::schema::numbers::Parameter;
 use estimate::{Estimate, Verdict};
 use keys::Keys;
+use losses::{ContactPower, Part};
 pub use machinery::effect::{AnyEffect, Effect, EffectInputs, Getter, Info, InputRow, Row, Setup};
 pub use machinery::reports::Reports;
-pub use machinery::{effect, estimate, inherent, keys, moving_frame, reports, since, twin};
+pub use machinery::{effect, estimate, inherent, keys, losses, moving_frame, reports, since, twin};
 use twin::Twin;
 
 /// Makes [`Effects`] of a list of modules.
@@ -97,6 +98,22 @@ effects! {
     creep, groove_slip, damping, gravity, stiffness, cage, per_ball, full_complement, shoulder, form, growth, rating, heat, means, defects,
     frame, ambient, support, auto, film, hysteresis, heat_balance,
 }
+
+/// Losses of a bearing: the whole, then its parts.
+pub const LOSSES: [Part; 8] = [
+    losses::TOTAL,
+    losses::SLIDING,
+    cage::LOSS,
+    hysteresis::LOSS,
+    film::LOSS,
+    ambient::LOSS,
+    damping::LOSS,
+    support::LOSS,
+];
+/// Powers of contacts with the races that effects report.
+pub const CONTACT_POWERS: [ContactPower; 3] = [groove_slip::POWER, film::POWER, hysteresis::POWER];
+/// The one of the moment against rolling.
+pub const RESISTING: ContactPower = hysteresis::POWER;
 
 impl Effects {
     /// Checks all numbers against their ranges.

@@ -11,6 +11,7 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::estimate::Estimate;
 use super::keys::Keys;
+use super::losses::Part;
 use super::twin::Twin;
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::rotation::{from_quaternion, tangent_inverse_transposed, turn};
@@ -192,6 +193,15 @@ fn typical() -> SupportSection {
         inertia: [Inertia(1e-3); 3],
     }
 }
+
+/// Its part of the losses.
+pub const LOSS: Part = Part {
+    name: "loss.support",
+    description: "power lost in the dampers of flexible supports",
+    words: "dampers of supports",
+    is_of: |effects| effects.support.sections.iter().any(Option::is_some),
+    get: |losses| losses.support,
+};
 
 impl Effect for Settings {
     const INFO: &'static Info = &Info {

@@ -12,7 +12,6 @@ pub mod structure;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::contact::ContactModel;
 use crate::contact::ball_ball::BallBallModel;
 use crate::contact::ball_spall::Damage;
 use crate::contact::creep::Law;
@@ -20,6 +19,7 @@ use crate::contact::form::Form;
 use crate::contact::normal::Damping;
 use crate::contact::spall::Spalls;
 use crate::contact::surface::{BallSize, Surface};
+use crate::contact::{ContactModel, Resistance};
 use crate::effects::ambient::{Ambient, AmbientSection, Medium};
 use crate::effects::defects::On;
 use crate::effects::film::Films;
@@ -85,8 +85,8 @@ pub struct Model {
     pub mean_outputs: bool,
     /// [-] change of creepages over sliding ones after which Kalker's polynomials are solved anew.
     pub epsilon_switch: f64,
-    /// [N m/N^1.33] coefficients of the hysteresis of rolling; 0 without it.
-    hysteresis: PerRace<f64>,
+    /// Moments against rolling in the material of balls and races.
+    resistance: PerRace<Resistance>,
     /// How contacts of the balls with races and with each other lose energy.
     pub damping: Damping,
     /// Form of the races, where they depart from a torus.
@@ -148,8 +148,8 @@ impl Model {
             on.iter_mut().for_each(|spall| spall.azimuth += turn(race));
             Spalls::new(on, whole[race])
         });
-        let hysteresis = PerRace::new(|race| {
-            scene.effects.hysteresis.coefficient(bearing.ball.radius, whole[race].curvatures)
+        let resistance = PerRace::new(|race| {
+            scene.effects.hysteresis.resistance(bearing.ball.radius, whole[race].curvatures)
         });
         let passing = Race::BOTH.map(|race| bearing.passing(race, &raceways[race].shape));
         let heat_balance =
@@ -182,7 +182,7 @@ impl Model {
             heat_balance,
             bearing,
             epsilon_switch: scene.effects.creep.epsilon_switch,
-            hysteresis,
+            resistance,
             damping: contact_damping(scene),
             form: PerRace::new(|race| {
                 let form = scene.effects.form.of(race == Race::Inner).and_then(Shape::form);
@@ -257,7 +257,7 @@ impl Model {
             across: raceway.across(),
             groove_bend: raceway.groove_bend,
             friction: conditions.friction,
-            hysteresis: self.hysteresis[race],
+            resistance: self.resistance[race],
             film: self.films.as_ref().and_then(|films| {
                 films.film(race as usize, conditions.lubrication, &conditions.warmth, conditions.friction)
             }),

@@ -390,7 +390,7 @@ fn resisted(
 ) -> ContactOutput {
     let loading = model.film_loading(contact);
     let film = model.film.map_or(FilmOutput::default(), |of| film::output(&of, &loading));
-    ContactOutput { film, hysteresis_power: model.hysteresis_power(contact), ..output }
+    ContactOutput { film, resisting_power: model.resisting_power(contact), ..output }
 }
 
 /// A contact as it is reported; where grooves face along the axis, the side of the groove does not tell which race it is.
@@ -436,7 +436,7 @@ fn contact_output(
         semi_axis_transverse: transverse,
         shoulder_share,
         shoulder_margin,
-        hysteresis_power: 0.0,
+        resisting_power: 0.0,
         film: FilmOutput::default(),
         peak_pressure: if area > 0.0 { 1.5 * contact.load / area } else { 0.0 },
     }

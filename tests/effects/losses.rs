@@ -101,7 +101,7 @@ fn invariant_all_losses_are_what_torque_times_speed_brings() {
         assert!((own.iter().sum::<f64>() / total - 1.0).abs() < 1e-12, "{name}");
         for (part, value) in LOSSES[1..].iter().zip(own) {
             assert_eq!(
-                (part.is_of)(&scene),
+                (part.is_of)(&scene.effects),
                 value != 0.0 || part.name == "loss.damping",
                 "{name} {}",
                 part.name
@@ -141,8 +141,8 @@ fn closed_form_drag_and_churning_of_every_ball() {
     };
     let rolling = sum(&|contact| contact.film.rolling_power);
     assert!((outputs.losses.rolling / rolling - 1.0).abs() < 1e-3, "{} {rolling}", outputs.losses.rolling);
-    let lagging = sum(&|contact| contact.hysteresis_power);
-    assert!((outputs.losses.hysteresis / lagging - 1.0).abs() < 1e-12);
+    let lagging = sum(&|contact| contact.resisting_power);
+    assert!((outputs.losses.resisting / lagging - 1.0).abs() < 1e-12);
     let friction = sum(&|contact| contact.power);
     assert!((outputs.losses.sliding / (friction - rolling - lagging) - 1.0).abs() < 1e-2);
 }

@@ -10,7 +10,7 @@ use roulement::effects::rating::standard::STATIC_PRESSURE;
 use roulement::model::bodies::Race;
 use roulement::scene::units::{Force, Quantity, Velocity};
 use roulement_cli::film::figure::{self, Curve};
-use roulement_cli::film::{COLUMNS, FilmContact, FilmPoint, Rolling};
+use roulement_cli::film::{FilmContact, FilmPoint, Rolling, columns};
 
 use super::{load, say, tell};
 
@@ -142,9 +142,11 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let (table, picture) = (options.output.join("film.csv"), options.output.join("film.svg"));
     let cannot_write = |why: csv::Error| format!("{}: {why}", table.display());
     let mut rows = csv::Writer::from_path(&table).map_err(cannot_write)?;
-    rows.write_record(COLUMNS.map(|(name, _)| name)).map_err(cannot_write)?;
+    let columns = columns();
+    rows.write_record(columns.iter().map(|(name, _)| name)).map_err(cannot_write)?;
     for point in over_slip.iter().flat_map(|curve| &curve.points) {
-        let cells = COLUMNS.map(|(_, get)| get(point).map_or(String::new(), |value| value.to_string()));
+        let cells =
+            columns.iter().map(|(_, get)| get(point).map_or(String::new(), |value| value.to_string()));
         rows.write_record(cells).map_err(cannot_write)?;
     }
     rows.flush().map_err(|why| cannot_write(why.into()))?;

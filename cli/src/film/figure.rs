@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use plotters::prelude::*;
+use roulement::effects::RESISTING;
 
 use super::FilmPoint;
 use crate::report::fine::{FINE, Key, LINE, MARGIN, axes, headed, picture};
@@ -46,7 +47,8 @@ pub fn write(path: &Path, title: &str, over_slip: &[Curve], over_speed: &[Curve]
             let speed = ("rolling speed [m/s]", speed);
             return panel(&areas[3], "drag of the ball [N]", first, speed, |p| p.drag.unwrap_or(0.0));
         }
-        over(&areas[3], "rolling and hysteresis power [W]", |p| p.rolling_power + p.hysteresis_power)
+        let heading = format!("rolling and {} power [W]", RESISTING.name);
+        over(&areas[3], &heading, |p| p.rolling_power + p.resisting_power)
     })
 }
 

@@ -4,6 +4,7 @@ pub mod figure;
 
 use nalgebra::Vector3;
 use roulement::contact::{BallMotion, ContactModel, RaceMotion};
+use roulement::effects::RESISTING;
 use roulement::equilibrium::{EquilibriumInput, Gyroscopic};
 use roulement::model::bodies::Race;
 use roulement::model::{Conditions, Model};
@@ -56,8 +57,8 @@ pub struct FilmPoint {
     pub rolling_force: f64,
     /// \[W] power of rolling resistance.
     pub rolling_power: f64,
-    /// \[W] power of hysteresis; 0 without `effects.hysteresis`.
-    pub hysteresis_power: f64,
+    /// \[W] power of the moment against rolling in the material; 0 where nothing resists.
+    pub resisting_power: f64,
     /// \[N] drag of the medium on the ball; none without `effects.ambient`.
     pub drag: Option<f64>,
     /// \[W] its power.
@@ -65,26 +66,30 @@ pub struct FilmPoint {
 }
 
 /// A column: name with its unit, and what stands in it.
-type Column = (&'static str, fn(&FilmPoint) -> Option<f64>);
+type Column = (String, fn(&FilmPoint) -> Option<f64>);
 
 /// Columns of a table of points.
-pub const COLUMNS: [Column; 15] = [
-    ("load [N]", |point| Some(point.rolling.load)),
-    ("speed [m/s]", |point| Some(point.rolling.speed)),
-    ("slide_to_roll [1]", |point| Some(point.rolling.slide_to_roll)),
-    ("peak_pressure [Pa]", |point| Some(point.peak_pressure)),
-    ("film_central [m]", |point| Some(point.films[0])),
-    ("film_minimum [m]", |point| Some(point.films[1])),
-    ("film_ratio [1]", |point| Some(point.ratio)),
-    ("friction_limit [1]", |point| Some(point.limit)),
-    ("traction [1]", |point| Some(point.traction)),
-    ("slip_power [W]", |point| Some(point.slip_power)),
-    ("rolling_force [N]", |point| Some(point.rolling_force)),
-    ("rolling_power [W]", |point| Some(point.rolling_power)),
-    ("hysteresis_power [W]", |point| Some(point.hysteresis_power)),
-    ("drag [N]", |point| point.drag),
-    ("drag_power [W]", |point| point.drag_power),
-];
+pub fn columns() -> Vec<Column> {
+    let resisting = format!("{}_power [W]", RESISTING.name);
+    let columns: [(&str, fn(&FilmPoint) -> Option<f64>); 15] = [
+        ("load [N]", |point| Some(point.rolling.load)),
+        ("speed [m/s]", |point| Some(point.rolling.speed)),
+        ("slide_to_roll [1]", |point| Some(point.rolling.slide_to_roll)),
+        ("peak_pressure [Pa]", |point| Some(point.peak_pressure)),
+        ("film_central [m]", |point| Some(point.films[0])),
+        ("film_minimum [m]", |point| Some(point.films[1])),
+        ("film_ratio [1]", |point| Some(point.ratio)),
+        ("friction_limit [1]", |point| Some(point.limit)),
+        ("traction [1]", |point| Some(point.traction)),
+        ("slip_power [W]", |point| Some(point.slip_power)),
+        ("rolling_force [N]", |point| Some(point.rolling_force)),
+        ("rolling_power [W]", |point| Some(point.rolling_power)),
+        (&resisting, |point| Some(point.resisting_power)),
+        ("drag [N]", |point| point.drag),
+        ("drag_power [W]", |point| point.drag_power),
+    ];
+    columns.map(|(name, get)| (name.to_string(), get)).into()
+}
 
 impl FilmContact {
     /// The contact of a scene on a race.
@@ -143,7 +148,7 @@ impl FilmContact {
             slip_power: evaluated.sliding_power(),
             rolling_force: forces.rolling_force,
             rolling_power: 2.0 * forces.rolling_force * rolling.speed,
-            hysteresis_power: contact.hysteresis_power(&evaluated),
+            resisting_power: contact.resisting_power(&evaluated),
             drag,
             drag_power: drag.map(|drag| drag * velocity.norm()),
         })

@@ -2,6 +2,7 @@
 //! steps, frequencies. Of at most about a thousand rows of a run.
 
 use nalgebra::Vector3;
+use roulement::effects::CONTACT_POWERS;
 use roulement::model::bodies::Race;
 use roulement::numerics::motion::Pose;
 use roulement::simulation::outputs::{BallOutput, ContactOutput, Outputs};
@@ -100,9 +101,9 @@ fn powers(add: &mut Add<'_>, first: &Outputs) {
         };
         of("friction", |c| c.power);
         of("spin", |c| c.spin_power);
-        of("groove", |c| c.groove_power);
-        of("film", |c| c.film.rolling_power);
-        of("hysteresis", |c| c.hysteresis_power);
+        for power in CONTACT_POWERS {
+            of(power.name, power.get);
+        }
     }
     if first.cage.is_some() {
         add("power.pockets", "W", &|o| o.cage.map_or(0.0, |cage| cage.pocket_power));

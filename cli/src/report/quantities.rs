@@ -74,7 +74,7 @@ impl Parts {
         Self {
             cage: simulation.outputs().cage.is_some(),
             moving_outer: Race::loaded(simulation.scene()) == Race::Outer,
-            losses: LOSSES.map(|part| (part.is_of)(simulation.scene())),
+            losses: LOSSES.map(|part| (part.is_of)(&simulation.scene().effects)),
         }
     }
 }

@@ -19,7 +19,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::film::{FilmForces, Loading, slip_of};
 use super::geometry::{GrooveContact, Lean};
-use super::{BallRaceContact, ContactModel, HYSTERESIS};
+use super::{BallRaceContact, ContactModel, Resistance};
 use crate::contact::creep::oblique::is_oblique;
 use crate::contact::creep::{CreepForces, Creepage, Law, LinearTheory};
 use crate::contact::kinematics::{self, RollingState, Surfaces};
@@ -109,7 +109,7 @@ impl ContactModel<'_> {
     /// Is there anything against rolling?
     #[inline(always)]
     pub fn resists(&self) -> bool {
-        self.film.is_some() || self.hysteresis > 0.0
+        self.film.is_some() || self.resistance.factor > 0.0
     }
 
     /// [N/m^1.5] Hertz stiffness of these balls, of that of the shape where the contact is.
@@ -194,20 +194,21 @@ impl ContactModel<'_> {
         (dry(load * forces.friction).in_series(&rolling.creepage, forces.viscous_share), Some(forces))
     }
 
-    /// [N m] moment against rolling by hysteresis, at a load \[N].
+    /// [N m] moment against rolling by the material, at a load \[N].
     #[inline(always)]
-    pub fn hysteresis_moment<S: Scalar>(&self, load: S) -> S {
+    pub fn resisting_moment<S: Scalar>(&self, load: S) -> S {
+        let Resistance { factor, exponent } = self.resistance;
         load.map_smooth(|load| {
-            let slope = load.powf(HYSTERESIS - 1.0);
-            (slope * load, HYSTERESIS * slope)
+            let slope = load.powf(exponent - 1.0);
+            (slope * load, exponent * slope)
         })
-        .scale(self.hysteresis)
+        .scale(factor)
     }
 
-    /// \[W] power that the hysteresis of an evaluated contact takes.
-    pub fn hysteresis_power(&self, contact: &BallRaceContact<f64>) -> f64 {
+    /// \[W] power that this moment takes of an evaluated contact.
+    pub fn resisting_power(&self, contact: &BallRaceContact<f64>) -> f64 {
         let curvature = self.curvature_along(contact.geometry.circumferential_curvature);
-        self.hysteresis_moment(contact.load) * contact.rolling_speed * curvature
+        self.resisting_moment(contact.load) * contact.rolling_speed * curvature
     }
 
     /// What the film of an evaluated contact depends on.
@@ -330,7 +331,7 @@ impl ContactModel<'_> {
         if GENERAL && self.resists() {
             let share = S::constant(1.0 / self.surface.ball_radius) / self.curvature_along(curvature);
             let force = film.map_or(S::zero(), |film| film.rolling_force);
-            surfaces.resist(&mut wrench, &rolling, (force, share), self.hysteresis_moment(load.total));
+            surfaces.resist(&mut wrench, &rolling, (force, share), self.resisting_moment(load.total));
         }
         let mut moments = [wrench.ball_moment, wrench.other_moment];
         if GENERAL {

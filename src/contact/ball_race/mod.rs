@@ -25,8 +25,14 @@ use film::Film;
 use geometry::GrooveContact;
 use surface::Surface;
 
-/// [-] exponent of the load in the moment of the hysteresis of rolling (Houpert 1999).
-pub const HYSTERESIS: f64 = 1.33;
+/// Moment against rolling that the material of both bodies sets: a power of the load.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Resistance {
+    /// [N m/N^exponent] moment over that power of the load; 0 where nothing resists.
+    pub factor: f64,
+    /// [-] exponent of the load.
+    pub exponent: f64,
+}
 
 /// Constants of a ball-race contact during a step.
 #[derive(Clone, Copy, Debug)]
@@ -45,8 +51,8 @@ pub struct ContactModel<'a> {
     pub friction: f64,
     /// The film between ball and race; none where surfaces are dry.
     pub film: Option<Film<'a>>,
-    /// [N m/N^1.33] moment of the hysteresis of rolling over the load to the power of [`HYSTERESIS`]; 0 without it.
-    pub hysteresis: f64,
+    /// Moment against rolling in the material of ball and race.
+    pub resistance: Resistance,
     /// How energy is lost to the approach rate.
     pub damping: Damping,
     /// [1/m] mean transverse curvature `1/(2 R)` of ball and groove where its slip (Heathcote) is simulated.

@@ -9,6 +9,7 @@ mod section;
 use super::effect::{Effect, Getter, Info, InputRow, Row, Setup};
 use super::estimate::{Estimate, Outline};
 use super::growth::Warmth;
+use super::losses::{ContactPower, Part};
 use super::per_ball::ball_row;
 use super::reports::{BallOutput, ContactOutput, FilmOutput, Reports};
 use super::twin::{Switch, Twin};
@@ -202,6 +203,18 @@ fn least_ratio(reports: &Reports<'_>) -> f64 {
     let least = both.map(|film| film.ratio).fold(f64::INFINITY, f64::min);
     if least.is_finite() { least } else { 0.0 }
 }
+
+/// Its power in a contact, beside what it leaves of sliding.
+pub const POWER: ContactPower = ContactPower { name: "film", get: |contact| contact.film.rolling_power };
+
+/// Its part of the losses.
+pub const LOSS: Part = Part {
+    name: "loss.rolling",
+    description: "power lost to rolling resistance of the oil",
+    words: "rolling resistance of the oil",
+    is_of: |effects| effects.film.section.as_ref().is_some_and(|film| film.rolling_resistance),
+    get: |losses| losses.rolling,
+};
 
 impl Effect for Settings {
     const INFO: &'static Info = &Info {

@@ -71,8 +71,8 @@ pub struct ContactOutput {
     pub peak_pressure: f64,
     /// \[rad] distance of the ellipse from the nearer end of the groove; negative where it is cut.
     pub shoulder_margin: f64,
-    /// \[W] power lost to the hysteresis of rolling; 0 where that is not simulated.
-    pub hysteresis_power: f64,
+    /// \[W] power of the moment against rolling in the material; 0 where nothing resists.
+    pub resisting_power: f64,
     /// Its film; all 0 where it is dry.
     pub film: FilmOutput,
 }

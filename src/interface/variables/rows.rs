@@ -139,7 +139,7 @@ impl Variables {
         let slip = "1 - mean orbital speed of the loaded balls over that of rolling without slip on both races, which counts as no less \
                     than half of the former; fades to 0 below 1e-3 m/s at the pitch radius";
         output("balls.slip", units::ONE, 1e-2, slip, |o| o.ball_slip);
-        for part in LOSSES.iter().filter(|part| (part.is_of)(scene)) {
+        for part in LOSSES.iter().filter(|part| (part.is_of)(&scene.effects)) {
             let (name, description) = (part.name.into(), part.description.into());
             self.add(name, units::WATT, Causality::Output, 1.0, description, Source::Loss(part.get));
         }
