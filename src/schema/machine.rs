@@ -7,8 +7,8 @@ use serde::Deserialize;
 
 use super::error::SceneError;
 use super::numbers::Range;
+use super::schedule::some_schedule;
 use super::schedule::{self, Schedule};
-use super::sections::some_schedule;
 use super::units::{Angle, AngularVelocity, Force, Length, Moment, Unbalance};
 use crate::loads::{Mesh, Ripple, radial_force, unbalance};
 use crate::numerics::motion::Wrench;

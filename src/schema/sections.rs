@@ -216,10 +216,10 @@ impl Start {
 #[serde(default, deny_unknown_fields, expecting = "a table { force = ... } or { displacement = ... }")]
 pub struct Translation {
     /// \[N] external force on the race.
-    #[serde(deserialize_with = "some_schedule::<Force, _>")]
+    #[serde(deserialize_with = "schedule::some_schedule::<Force, _>")]
     pub force: Option<Schedule>,
     /// \[m] displacement of the race from the bearing centre.
-    #[serde(deserialize_with = "some_schedule::<Length, _>")]
+    #[serde(deserialize_with = "schedule::some_schedule::<Length, _>")]
     pub displacement: Option<Schedule>,
 }
 
@@ -228,17 +228,11 @@ pub struct Translation {
 #[serde(default, deny_unknown_fields, expecting = "a table { moment = ... } or { rotation = ... }")]
 pub struct Tilt {
     /// [N m] external moment on the race.
-    #[serde(deserialize_with = "some_schedule::<Moment, _>")]
+    #[serde(deserialize_with = "schedule::some_schedule::<Moment, _>")]
     pub moment: Option<Schedule>,
     /// \[rad] component of the rotation vector.
-    #[serde(deserialize_with = "some_schedule::<Angle, _>")]
+    #[serde(deserialize_with = "schedule::some_schedule::<Angle, _>")]
     pub rotation: Option<Schedule>,
-}
-
-pub(super) fn some_schedule<'de, Q: Quantity, D: serde::Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Option<Schedule>, D::Error> {
-    schedule::deserialize::<Q, D>(deserializer).map(Some)
 }
 
 /// Duration, speeds, and the load of the inner race per direction; a direction left out is free of load. Under a wrench on

@@ -7,7 +7,7 @@ use clap::Args;
 use roulement_cli::cage::{self, pushed, write_figure};
 use roulement_cli::sweep::all::threads;
 
-use super::run::heeded_interrupt;
+use super::interrupt::heeded_interrupt;
 use super::{load, say, with_count_of_runs};
 
 /// Options of `roulement cage`.

@@ -16,7 +16,7 @@ use roulement::schema::regular;
 use roulement_cli::exact::answer;
 use roulement_cli::exact::cache::Cache;
 
-use super::run::{INTERRUPTED, heeded_interrupt};
+use super::interrupt::{INTERRUPTED, heeded_interrupt};
 use super::{film, tell};
 
 /// Options of `roulement contact`.

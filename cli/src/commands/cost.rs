@@ -15,7 +15,7 @@ use roulement::scene::machine::MachineScene;
 use roulement_cli::cost::levers::Lever;
 use roulement_cli::cost::{Choice, SCENES, SceneStudy, StudyError, report, study_of};
 
-use super::run::{INTERRUPTED, heeded_interrupt};
+use super::interrupt::{INTERRUPTED, heeded_interrupt};
 use super::{say, tell};
 
 /// Options of `roulement cost`.

@@ -17,7 +17,7 @@ use roulement_cli::report::json;
 use roulement_cli::sweep::all::threads;
 use serde_json::{Map, Value};
 
-use super::run::heeded_interrupt;
+use super::interrupt::heeded_interrupt;
 use super::{load, say, tell, with_count_of_runs};
 
 /// Options of `roulement effects`.

@@ -14,7 +14,7 @@ use roulement::scene::units::{Quantity, Time};
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::Scripted;
 
-use super::run::{INTERRUPTED, heeded_interrupt};
+use super::interrupt::{INTERRUPTED, heeded_interrupt};
 use super::{load, tell};
 
 /// Options of `roulement field`.

@@ -9,6 +9,7 @@ mod equilibrium;
 mod field;
 mod film;
 mod identify;
+mod interrupt;
 mod modes;
 mod place;
 mod player;

@@ -16,16 +16,13 @@ use roulement_cli::error::{Judgement, MOST_ROUNDS, Rounds, finer, twin_of_coarse
 use roulement_cli::modes::warnings;
 use roulement_cli::report::results::{Choice, Window};
 use roulement_cli::report::tables::Tables;
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::flag;
 
 use super::effects::announce;
+use super::interrupt::{INTERRUPTED, heeded_interrupt};
 use super::place::{Place, Said};
 use super::player::{End, Played, Player};
 use super::{load, tell};
 
-/// Exit code of a program that Ctrl-C or SIGTERM ended: 128 and the number of Ctrl-C.
-pub const INTERRUPTED: u8 = 130;
 /// Exit code of a run whose results are there and whose error goal is not met.
 const GOAL_NOT_MET: u8 = 3;
 
@@ -91,19 +88,6 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     }
     let player = Player::new(heeded_interrupt()?);
     simulate(&player, &scene, &place, error.is_some(), rounds, steps_end_at_rows)
-}
-
-/// Set by Ctrl-C, and by SIGTERM, which queues of computing centres send; a second one does not wait for the row.
-///
-/// # Errors
-/// If the system has no such signals.
-pub fn heeded_interrupt() -> std::io::Result<Arc<AtomicBool>> {
-    let interrupted = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM] {
-        flag::register_conditional_shutdown(signal, INTERRUPTED.into(), Arc::clone(&interrupted))?;
-        flag::register(signal, Arc::clone(&interrupted))?;
-    }
-    Ok(interrupted)
 }
 
 /// Simulates a scene into its place: again with smaller steps, `rounds` times at most, where its error is wanted or it has a goal

@@ -19,9 +19,10 @@ use roulement_cli::sweep::case::Wanted;
 use roulement_cli::sweep::cases::{Cases, base_of};
 use roulement_cli::sweep::store::aside;
 
+use super::interrupt::{INTERRUPTED, heeded_interrupt};
 use super::place::{Place, Said};
 use super::player::Player;
-use super::run::{INTERRUPTED, heeded_interrupt, simulate};
+use super::run::simulate;
 use super::{say, tell};
 
 /// Exit code of a sweep whose summary is there, but not a result of every case.

@@ -3,6 +3,7 @@
 //! Every scene is run with its own steps and with half of them. What both differ by, and how uncertain means are in the window, is the
 //! error bar.
 
+mod changed;
 mod in_runs;
 mod pairs;
 mod report;
@@ -10,11 +11,11 @@ mod run;
 
 use std::sync::atomic::AtomicBool;
 
-use roulement::effects::estimate::Changes;
 use roulement::scene::machine::MachineScene;
 
 use crate::error::finer;
 use crate::sweep::all::on_threads;
+pub use changed::Changed;
 pub use pairs::{Pair, Pairs};
 pub use report::{to_json, to_text};
 use run::{Taken, run};
@@ -26,32 +27,6 @@ pub struct Measured {
     pub pair: Pair,
     /// Changes, their error bars, and by what CPU time changes; or why a run did not come to its end.
     pub result: Result<Changed, String>,
-}
-
-/// Changes with their error bars.
-#[derive(Clone, Copy, Debug)]
-pub struct Changed {
-    /// [-] changes of all quantities.
-    pub changes: Changes,
-    /// [-] their error bars.
-    pub bars: Changes,
-    /// [-] change of the CPU time of a run.
-    pub cpu: f64,
-}
-
-impl Changed {
-    /// The quantity that changes most beyond its error bar, its change and its bar; the largest change where none is beyond it.
-    pub fn largest(&self) -> Option<(&'static str, f64, f64)> {
-        let both = self.changes.known().zip(self.bars.known());
-        let all = both.map(|((name, change), (_, bar))| (name, change, bar));
-        let sure = |one: &(&str, f64, f64)| one.1.abs() - one.2;
-        all.reduce(|most, other| if sure(&other) > sure(&most) { other } else { most })
-    }
-
-    /// Is a quantity changed by more than a threshold, whatever the error?
-    pub fn surely_beyond(&self, threshold: f64) -> bool {
-        self.largest().is_some_and(|(_, change, bar)| change.abs() - bar > threshold)
-    }
 }
 
 /// Runs a scene with and without each of its effects on some threads; `done` is told of each run, of so many.

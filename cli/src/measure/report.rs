@@ -3,7 +3,8 @@
 use roulement::effects::estimate::{percent, signed_percent};
 use serde_json::{Value, json};
 
-use super::{Changed, Measured};
+use super::Measured;
+use super::changed::Changed;
 
 /// A line for each effect of each bearing, the largest change first.
 pub fn to_text(measured: &[Measured]) -> String {

@@ -15,7 +15,7 @@ use roulement::simulation::machine::Machine;
 use roulement::simulation::play::{Observer, Rows, play_observed};
 use roulement::simulation::system::System;
 
-use super::Changed;
+use super::changed::Changed;
 use crate::report::means::Mean;
 use crate::watch::{BearingSeen, Watch};
 

@@ -10,8 +10,9 @@ use roulement::scene::machine::MachineScene;
 
 use super::SweepError;
 use super::case::{self, Wanted};
-use super::cases::{Cases, Setting};
+use super::cases::Cases;
 use super::columns;
+use super::setting::Setting;
 use super::store::{Store, aside};
 
 /// A sweep: cases of a scene, what is wanted of them, and where their rows are kept.

@@ -36,6 +36,7 @@ use toml::{Table, Value};
 
 use super::SweepError;
 use super::ranges::{grid, latin_hypercube};
+use super::setting::{Setting, leaves};
 
 /// A column: a key of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,37 +45,6 @@ pub struct Key {
     pub name: String,
     /// Unit of all cells, where the header has one.
     pub unit: Option<String>,
-}
-
-/// A value of a key.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Setting {
-    /// As its reader wrote it; a number without the unit that the column has.
-    pub shown: String,
-    /// As a scene file has it.
-    pub toml: String,
-}
-
-impl Setting {
-    /// A value as a scene file has it.
-    pub fn of_value(value: &Value) -> Self {
-        let toml = value.to_string();
-        let shown = value.as_str().map_or_else(|| toml.clone(), str::to_string);
-        Self { shown, toml }
-    }
-
-    /// A cell of a table: what a scene file could have there; anything else is a text.
-    pub fn of_cell(cell: &str, unit: Option<&str>) -> Self {
-        let text = |text: String| Value::String(text).to_string();
-        let toml = match unit {
-            // Values over time have units of their own.
-            Some(_) if cell.starts_with(['{', '[']) => cell.to_string(),
-            Some(unit) => text(format!("{cell} {unit}")),
-            None if cell.parse::<Value>().is_ok() => cell.to_string(),
-            None => text(cell.to_string()),
-        };
-        Self { shown: cell.to_string(), toml }
-    }
 }
 
 /// A table of cases.
@@ -267,20 +237,4 @@ pub fn base_of(path: &Path) -> Result<(String, Vec<String>), SceneError> {
 /// All keys of a section with their own sections, down to values.
 fn settings(table: &Table) -> Vec<(String, &Value)> {
     leaves(table, &is_block)
-}
-
-/// The same; tables that are values themselves are not gone into.
-pub(super) fn leaves<'a>(table: &'a Table, is_value: &dyn Fn(&Table) -> bool) -> Vec<(String, &'a Value)> {
-    let mut found = vec![];
-    for (name, value) in table {
-        match value {
-            Value::Table(inner) if !is_value(inner) => {
-                found.extend(
-                    leaves(inner, is_value).into_iter().map(|(key, value)| (format!("{name}.{key}"), value)),
-                );
-            }
-            value => found.push((name.clone(), value)),
-        }
-    }
-    found
 }

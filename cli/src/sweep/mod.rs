@@ -3,6 +3,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `cases` | which cases: a table of scene keys, CSV or TOML |
+//! | `setting` | values of keys |
 //! | `ranges` | cases from ranges: grid and Latin hypercube |
 //! | `case` | one case, from its scene to its row of the summary |
 //! | `columns` | columns that are chosen for the summary, of bearings and of a shaft |
@@ -17,6 +18,7 @@ pub mod cases;
 mod columns;
 mod extremes;
 mod ranges;
+mod setting;
 pub mod store;
 pub mod summary;
 

@@ -4,7 +4,7 @@ use roulement::scene::schedule::is_block;
 use roulement::scene::units::split;
 use toml::{Table, Value};
 
-use super::cases::{Setting, leaves};
+use super::setting::{Setting, leaves};
 
 /// Settings of a case: key, unit of its column, value.
 type Row = Vec<(String, Option<String>, Setting)>;

@@ -7,15 +7,17 @@
 //! Both act at one place, so that forces and moments of a link are in balance. What is stored is a potential of `d`, what is damped is
 //! never negative.
 
+mod force;
 pub mod gear_pair;
 pub mod one_sided;
 pub mod spring_bearing;
 pub mod tooth_mesh;
 
-use nalgebra::{DVector, Matrix6, Vector3, Vector6};
+use nalgebra::{DVector, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::structure::{Map, Spin, Structure, StructureState, Turning};
+pub use force::LinkForce;
 use spring_bearing::SpringBearing;
 use tooth_mesh::ToothMesh;
 
@@ -80,21 +82,6 @@ pub struct Link {
     pub ends: Vec<LinkEnd>,
     /// Its law.
     pub law: Law,
-}
-
-/// Force of a link, with its tangents.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinkForce {
-    /// \[N, N m] force and moment on the first end.
-    pub force: Vector6<f64>,
-    /// Its derivative by the displacement.
-    pub by_displacement: Matrix6<f64>,
-    /// Its derivative by the rate.
-    pub by_rate: Matrix6<f64>,
-    /// \[J] energy that is stored.
-    pub stored: f64,
-    /// \[W] power that is lost.
-    pub damped: f64,
 }
 
 /// What a link does now and has done since the start.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Matrix6, Vector2, Vector6};
 
-use super::LinkForce;
+use super::force::LinkForce;
 use super::one_sided::OneSided;
 
 /// Along which directions of its axis a bearing holds the shaft.

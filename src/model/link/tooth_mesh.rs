@@ -9,7 +9,7 @@
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-use super::LinkForce;
+use super::force::LinkForce;
 use super::one_sided::OneSided;
 
 /// A mesh.

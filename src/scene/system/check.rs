@@ -1,22 +1,12 @@
 //! What the keys of a system must agree in.
 
 use super::bearing::WrittenBearing;
+use super::ranges::{BORE_OFFSET, BORE_TILT, INERTIA, MASS, POSITION};
 use super::{MountedScene, Written, check_housing, mesh};
 use crate::schema::numbers::Range;
 use crate::schema::{
     AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, StiffnessSection, check_phases,
 };
-
-/// Masses of shafts and discs.
-pub const MASS: Range = Range::above(0.0, 1e6, "kg");
-/// Their moments of inertia.
-pub const INERTIA: Range = Range::above(0.0, 1e6, "kg m2");
-/// Tilts of bores: what small tilts of structures are added to.
-pub const BORE_TILT: Range = Range::closed(-0.05, 0.05, "rad");
-/// Places of bores beside the axis of the shaft.
-pub const BORE_OFFSET: Range = Range::closed(-0.01, 0.01, "m");
-/// Positions along a shaft.
-pub const POSITION: Range = Range::closed(-1e3, 1e3, "m");
 
 /// Checks every value against its range, and the keys against one another.
 pub fn check(written: &Written) -> Result<(), SceneError> {

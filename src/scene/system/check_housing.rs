@@ -1,6 +1,6 @@
 //! What the keys of a housing must agree in.
 
-use super::check::{INERTIA, MASS, POSITION};
+use super::ranges::{INERTIA, MASS, POSITION};
 use crate::schema::numbers::Range;
 use crate::schema::units::{Length, Quantity};
 use crate::schema::{HousingSection, SceneError};

@@ -8,6 +8,7 @@ mod check;
 mod check_housing;
 pub mod mesh;
 mod numbers;
+mod ranges;
 
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! The numbers of a shaft, its housings and mountings that a package offers as parameters. Those of the bearings are in their own scenes.
 
 use super::SystemScene;
-use super::check::{BORE_OFFSET, BORE_TILT, INERTIA, MASS, POSITION};
+use super::ranges::{BORE_OFFSET, BORE_TILT, INERTIA, MASS, POSITION};
 use crate::schema::numbers::{Range, Variability};
 use crate::schema::{AxialSeat, Disc, Mounting, ShaftSection};
 

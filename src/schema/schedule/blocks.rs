@@ -69,6 +69,16 @@ pub fn deserialize<'de, Q: Quantity, D: Deserializer<'de>>(deserializer: D) -> R
     of_value(Value::deserialize(deserializer)?, &Q::DIMENSION).map_err(D::Error::custom)
 }
 
+/// A schedule that may be left out.
+///
+/// # Errors
+/// As [`deserialize`].
+pub(in crate::schema) fn some_schedule<'de, Q: Quantity, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Schedule>, D::Error> {
+    deserialize::<Q, D>(deserializer).map(Some)
+}
+
 /// The same of a value.
 ///
 /// # Errors

@@ -4,6 +4,7 @@ mod blocks;
 pub mod files;
 mod sine;
 
+pub(in crate::schema) use blocks::some_schedule;
 pub use blocks::{deserialize, is_block, of_value};
 pub use sine::Sine;
 

@@ -1,0 +1,18 @@
+//! Force of a link.
+
+use nalgebra::{Matrix6, Vector6};
+
+/// Force of a link, with its tangents.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkForce {
+    /// \[N, N m] force and moment on the first end.
+    pub force: Vector6<f64>,
+    /// Its derivative by the displacement.
+    pub by_displacement: Matrix6<f64>,
+    /// Its derivative by the rate.
+    pub by_rate: Matrix6<f64>,
+    /// \[J] energy that is stored.
+    pub stored: f64,
+    /// \[W] power that is lost.
+    pub damped: f64,
+}
