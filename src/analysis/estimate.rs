@@ -14,7 +14,7 @@ use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::scene::system::SystemScene;
 use crate::scene::{Load, Machine, RaceLoad, Scene, Schedule, Start};
-use crate::simulation::system::System;
+use crate::simulation::system::InBalance;
 use crate::simulation::{Simulation, machine};
 
 /// Why nothing is estimated.
@@ -140,36 +140,35 @@ pub fn verdicts_of(machine: &machine::Machine) -> Vec<Verdicts> {
 
 /// The same of every bearing of a shaft, where shaft and housings put its races: with the whole shaft in balance again.
 pub fn verdicts_of_shaft(scene: &SystemScene) -> Vec<Verdicts> {
-    let of = |index: usize| {
-        let at = |time: f64, known: &[Verdict]| {
-            let start = |switches: &[&Switch]| {
-                let mut changed = scene.clone();
-                let own = &mut changed.bearings[index].scene;
-                *own = judged_scene(own);
-                switches.iter().for_each(|switch| switch(&mut own.effects));
-                let system = System::starting_at(&changed, time).map_err(|why| why.to_string())?;
-                let bearing = system.bearings().nth(index).ok_or("there is no such bearing")?.1;
-                Ok(Settled::of(bearing))
-            };
-            let system =
-                System::starting_at(scene, time).map_err(|why| EstimateError::Start(why.to_string()))?;
-            let (_, bearing) = system.bearings().nth(index).ok_or(EstimateError::Unloaded)?;
-            judge(&bearing.scene().effects, on_shaft(bearing)?, [known, &[]], &start)
+    let at = |system: &InBalance, index: usize, known: &[Verdict]| {
+        let own = system.scene(index);
+        let start = |switches: &[&Switch]| {
+            let mut changed = judged_scene(own);
+            switches.iter().for_each(|switch| switch(&mut changed.effects));
+            let bearing = system.with(index, &changed).map_err(|why| why.to_string())?;
+            Ok(Settled::of(&bearing))
         };
-        let mut verdicts = at(0.0, &[]);
-        for time in times_of(scene.schedules(), scene.load.duration.0) {
-            let there = at(time, verdicts.as_deref().unwrap_or_default());
-            match (&mut verdicts, there) {
+        let bearing = system.with(index, own).map_err(|why| EstimateError::Start(why.to_string()))?;
+        judge(&own.effects, on_shaft(&bearing)?, [known, &[]], &start)
+    };
+    let first = InBalance::new(scene, 0.0).map_err(|why| EstimateError::Start(why.to_string()));
+    let mut all: Vec<Verdicts> = (0..scene.bearings.len())
+        .map(|index| first.as_ref().map_err(Clone::clone).and_then(|system| at(system, index, &[])))
+        .collect();
+    for time in times_of(scene.schedules(), scene.load.duration.0) {
+        let Ok(system) = InBalance::new(scene, time) else { continue };
+        for (index, verdicts) in all.iter_mut().enumerate() {
+            let there = at(&system, index, verdicts.as_deref().unwrap_or_default());
+            match (verdicts, there) {
                 (Ok(verdicts), Ok(there)) => {
                     take_what_matters(verdicts, there, &format!("at {} ms", digits(1e3 * time)));
                 }
-                (Err(_), there @ Ok(_)) => verdicts = there,
+                (verdicts @ Err(_), there @ Ok(_)) => *verdicts = there,
                 _ => {}
             }
         }
-        verdicts
-    };
-    (0..scene.bearings.len()).map(of).collect()
+    }
+    all
 }
 
 /// What closed forms look at, of a bearing of a shaft that was just started.

@@ -127,13 +127,12 @@ impl CreepTable {
         let piece = steps.floor().min(end - 1.0);
         let (first, u) = ((piece - first) as usize, steps - piece);
         let (w, _) = weights(u, 1.0);
-        let mut nodes = vec![[0.0; 3]; NODES];
+        // Three values a node.
+        let mut nodes = vec![0.0; 3 * NODES];
         for (offset, weight) in w.into_iter().enumerate() {
             let mut add = |ratio: usize, weight: f64| {
-                for (node, stored) in nodes.iter_mut().zip(shipped(ratio).chunks_exact(3)) {
-                    for (value, stored) in node.iter_mut().zip(stored) {
-                        *value += weight * f64::from(*stored);
-                    }
+                for (value, stored) in nodes.iter_mut().zip(shipped(ratio)) {
+                    *value += weight * f64::from(*stored);
                 }
             };
             // Beyond the ends the table goes on straight.
@@ -149,23 +148,19 @@ impl CreepTable {
                 Some(ratio) => add(ratio, weight),
             }
         }
-        Ok(Self::padded(&nodes, &scales, Stretch::new(patch.axis_ratio, &scales)))
+        Ok(Self::padded(nodes, &scales, Stretch::new(patch.axis_ratio, &scales)))
     }
 
-    /// Pads the nodes of one axis ratio; the row at rest is linear theory's own.
-    fn padded(nodes: &[[f64; 3]], scales: &Scales, stretch: Stretch) -> Self {
+    /// Pads the nodes of one axis ratio, three values each; the row at rest is linear theory's own.
+    fn padded(mut stored: Vec<f64>, scales: &Scales, stretch: Stretch) -> Self {
         let coupling = [scales.c23 * scales.moment / scales.c33, -scales.c23 / (scales.c22 * scales.moment)];
-        let (n_t, n_theta, n_phi) = (SHAPE[0] as isize, SHAPE[1] as isize, SHAPE[2] as isize);
-        let at = |i: isize, j: isize, k: isize| -> [f64; 3] {
-            // Mirror about the plane x = 0, and through the x axis: what is stored is even in theta.
-            let j = if j > n_theta { 2 * n_theta - j } else { j.abs() };
-            // half a turn in phi changes the sign of what is odd in (y, spin)
-            let turns = k.div_euclid(n_phi);
-            let sign = if turns.rem_euclid(2) == 1 { -1.0 } else { 1.0 };
-            let k = k.rem_euclid(n_phi);
-            let [x, y, z] = if i == 0 {
+        let [n_t, n_theta, n_phi] = SHAPE;
+        for k in 0..n_phi {
+            let (sin, cos) = (PI * k as f64 / n_phi as f64).sin_cos();
+            let limits = [1.0 / stretch.direction[0], cos, sin / stretch.direction[1]];
+            let forces = linear_forces(scales, &stretch, limits);
+            for j in 0..=n_theta {
                 let theta = FRAC_PI_2 * j as f64 / n_theta as f64;
-                let (sin, cos) = (PI * k as f64 / n_phi as f64).sin_cos();
                 // size that a direction with these components has before it is made a unit vector
                 let raw = [
                     theta.cos() / stretch.direction[0],
@@ -173,22 +168,28 @@ impl CreepTable {
                     theta.sin() * sin / stretch.direction[1],
                 ];
                 let size = raw[0].hypot(raw[1]).hypot(raw[2]);
-                let limits = [1.0 / stretch.direction[0], cos, sin / stretch.direction[1]];
-                linear_forces(scales, &stretch, limits).map(|force| MIDDLE * force / size)
-            } else {
-                nodes[index(i as usize, j as usize, k as usize)]
-            };
-            [x, sign * y, sign * z]
-        };
-        // The stored theta at the ends lies a little inside; the functions are even there, so that nothing is lost.
+                let own = forces.map(|force| MIDDLE * force / size);
+                stored[3 * index(0, j, k)..][..3].copy_from_slice(&own);
+            }
+        }
+        // Half a turn in phi changes the sign of what is odd in (y, spin).
+        let around = [(n_phi - 1, -1.0)].into_iter().chain((0..n_phi).map(|k| (k, 1.0)));
+        let around: Vec<(usize, f64)> = around.chain([(0, -1.0), (1, -1.0)]).collect();
+        // Mirrored about the plane x = 0, and through the x axis: what is stored is even in theta. The stored theta at the ends lies a little
+        // inside; the functions are even there, so that nothing is lost.
+        let across = || [1].into_iter().chain(0..=n_theta).chain([n_theta - 1]);
         let mut nodes = Vec::with_capacity(3 * PADDED.iter().product::<usize>());
-        for i in -1..=n_t + 1 {
-            for j in -1..=n_theta + 1 {
+        for i in 0..PADDED[0] {
+            for j in across() {
                 for c in 0..3 {
-                    nodes.extend((-1..=n_phi + 1).map(|k| match i {
-                        -1 => 2.0 * at(0, j, k)[c] - at(1, j, k)[c],
-                        i if i > n_t => 2.0 * at(n_t, j, k)[c] - at(n_t - 1, j, k)[c],
-                        i => at(i, j, k)[c],
+                    nodes.extend(around.iter().map(|(k, sign)| {
+                        let odd = if c == 0 { 1.0 } else { *sign };
+                        let at = |i: usize| odd * stored[3 * index(i, j, *k) + c];
+                        match i {
+                            0 => 2.0 * at(0) - at(1),
+                            i if i > n_t + 1 => 2.0 * at(n_t) - at(n_t - 1),
+                            i => at(i - 1),
+                        }
                     }));
                 }
             }

@@ -34,13 +34,17 @@ pub fn eigenpairs(matrix: &DMatrix<f64>) -> Option<Vec<Eigenpair>> {
     let size = matrix.nrows();
     let (balanced, scales) = balance(matrix.clone());
     let (q, t) = schur(&balanced)?;
+    // Substitutions go along rows of T.
+    let rows = t.transpose();
     let mut found = vec![];
     let mut row = 0;
+    // What a difference of eigenvalues is at least: eigenvalues that are the same have vectors that are nearly so.
+    let least = f64::EPSILON * t.amax().max(f64::MIN_POSITIVE);
     while row < size {
         let pair = row + 1 < size && t[(row + 1, row)] != 0.0;
         for value in if pair { block_eigenvalues(&t, row) } else { vec![Complex::from(t[(row, row)])] } {
-            let of_t = triangular_vector(&t, (row, pair), value);
-            let part = |of: fn(&Complex<f64>) -> f64| &q * of_t.map(|value| of(&value));
+            let of_t = triangular_vector((&t, &rows, least), (row, pair), value);
+            let part = |of: fn(&Complex<f64>) -> f64| q.columns(0, of_t.len()) * of_t.map(|value| of(&value));
             let (re, im) = (part(|value| value.re), part(|value| value.im));
             let vector = DVector::from_fn(size, |i, _| Complex::new(re[i], im[i]) * scales[i]);
             found.push(Eigenpair { value, vector });
@@ -105,28 +109,28 @@ fn block_eigenvalues(t: &DMatrix<f64>, row: usize) -> Vec<Complex<f64>> {
     vec![Complex::from(mean + root), Complex::from(mean - root)]
 }
 
-/// The vector of an eigenvalue of a matrix in Schur's form whose block begins at a row, and has two rows if it is a `pair`.
+/// The vector of an eigenvalue of a matrix in Schur's form whose block begins at a row, and has two rows if it is a `pair`: what there is of it
+/// up to that block, below which it is 0. With the transposed matrix, and what differences of eigenvalues are at least.
 fn triangular_vector(
-    t: &DMatrix<f64>,
+    (t, rows, least): (&DMatrix<f64>, &DMatrix<f64>, f64),
     (row, pair): (usize, bool),
     value: Complex<f64>,
 ) -> DVector<Complex<f64>> {
-    let size = t.nrows();
-    // What a difference of eigenvalues is at least: eigenvalues that are the same have vectors that are nearly so.
-    let least = f64::EPSILON * t.amax().max(f64::MIN_POSITIVE);
     let apart = |difference: Complex<f64>| {
         if difference.norm() < least { Complex::from(least) } else { difference }
     };
-    let mut vector = DVector::from_element(size, Complex::from(0.0));
+    let last = if pair { row + 1 } else { row };
+    let mut vector = DVector::from_element(last + 1, Complex::from(0.0));
     vector[row] = Complex::from(1.0);
     if pair {
         // The row of the block below: its first entry is not 0.
         vector[row] = (value - t[(row + 1, row + 1)]) / t[(row + 1, row)];
         vector[row + 1] = Complex::from(1.0);
     }
-    let last = if pair { row + 1 } else { row };
     let right_side = |vector: &DVector<Complex<f64>>, i: usize, from: usize| {
-        (from..=last).fold(Complex::from(0.0), |sum, k| sum - vector[k] * t[(i, k)])
+        let entries = rows.view((from, i), (last + 1 - from, 1));
+        let products = vector.rows_range(from..).into_iter().zip(entries.iter());
+        products.fold(Complex::from(0.0), |sum, (entry, of_row)| sum - entry * *of_row)
     };
     let mut i = row;
     while i > 0 {

@@ -102,7 +102,7 @@ impl System {
             links: &self.structures.links,
             flanks: vec![None; self.structures.links.len()],
             bearings: &mut bearings,
-            friction: vec![0.0; dampers.len()],
+            friction: &mut vec![0.0; dampers.len()],
         };
         let stiffness = statics.stiffness(&self.structures.states)?;
         let mut damping = statics.spread(&dampers);

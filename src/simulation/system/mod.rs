@@ -1,6 +1,7 @@
 //! Bearings on a shaft or on several, in motion together: one implicit step for all.
 
 mod advance;
+mod assembly;
 mod critical_speeds;
 mod equilibrium;
 mod inputs;
@@ -26,6 +27,7 @@ use crate::model::structure::{Carrier, StructureState};
 use crate::scene::Scene;
 use crate::scene::system::SystemScene;
 use crate::schema::numbers::four;
+pub use assembly::InBalance;
 pub use critical_speeds::{Campbell, CampbellRow, CriticalSpeed, at_speed, campbell, largest_speed};
 pub use equilibrium::{BearingEquilibrium, MachineEquilibrium};
 pub use inputs::{Played, ShaftInputs, drive_is_scripted};

@@ -56,7 +56,7 @@ pub struct Statics<'a> {
     /// The bearings.
     pub bearings: &'a mut [Simulation],
     /// [N m] moment of each bearing on its outer race about its axis.
-    pub friction: Vec<f64>,
+    pub friction: &'a mut [f64],
 }
 
 /// Puts a race of a bearing on its seat.
@@ -372,7 +372,7 @@ impl Statics<'_> {
         let mut unloaded = Statics {
             loads: &unloaded,
             bearings: &mut *self.bearings,
-            friction: vec![0.0; asked.len()],
+            friction: &mut vec![0.0; asked.len()],
             flanks: vec![None; self.links.len()],
             ..*self
         };
@@ -408,19 +408,20 @@ impl Statics<'_> {
         Ok(None)
     }
 
-    /// Starts the bearings with their races where the structures are.
-    pub fn initialise(&mut self, states: &[StructureState]) -> Result<(), SystemError> {
+    /// Starts some of the bearings with their races where the structures are.
+    pub fn initialise(&mut self, states: &[StructureState], some: &[usize]) -> Result<(), SystemError> {
         self.place_races(states);
-        for index in 0..self.bearings.len() {
+        for &index in some {
             self.bearings[index].initialise().map_err(|source| self.of_bearing(index, source))?;
         }
         Ok(())
     }
 
     /// Takes the friction torques of bearings that were started.
-    pub fn see_friction(&mut self) {
-        let torque = |bearing: &Simulation| bearing.outputs().outer.wrench.moment.x;
-        self.friction = self.bearings.iter().map(torque).collect();
+    pub fn see_friction(&mut self, started: &[usize]) {
+        for &index in started {
+            self.friction[index] = self.bearings[index].outputs().outer.wrench.moment.x;
+        }
     }
 
     fn of_bearing(&self, index: usize, source: SimulationError) -> SystemError {
