@@ -67,7 +67,7 @@ impl Contacts {
 
     /// Evaluates the contacts of a state.
     pub fn new(model: &Model, state: &State, conditions: &Conditions) -> Self {
-        let contacts = model.contacts_facing(conditions, state.orientations.as_ref());
+        let contacts = model.contacts_oriented(conditions, state.orientations.as_ref());
         let races = PerRace::new(|race| state.race(race).motion());
         let cage = model.cage.as_ref().zip(state.cage().map(BodyState::body_motion));
         let oil = model.oil_around_cage(conditions);

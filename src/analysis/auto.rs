@@ -116,11 +116,11 @@ fn settle(scene: &mut Scene, verdicts: Verdicts) -> Result<Vec<String>, Estimate
         (leaves || !on && verdict.matters).then_some((key, verdict.matters))
     };
     let switches: Vec<_> = verdicts.iter().filter_map(switched).collect();
-    let said = verdicts.iter().filter(|verdict| switched(verdict).is_some()).map(|verdict| {
+    let sentences = verdicts.iter().filter(|verdict| switched(verdict).is_some()).map(|verdict| {
         let key = verdict.auto.unwrap_or_default();
         format!("auto: {key} = {}: {}", verdict.matters, verdict.sentence)
     });
-    let mut notes: Vec<String> = said.collect();
+    let mut notes: Vec<String> = sentences.collect();
     if notes.is_empty() {
         notes.push("auto: no effect is switched".into());
     }

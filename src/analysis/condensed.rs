@@ -34,7 +34,7 @@ const FOLLOWING_TIME: f64 = 1e-3;
 impl Condensed {
     /// Stiffness and damping in a state. Contacts of a cage and between balls are left out, and so are balls that do not touch both races.
     pub fn new(model: &Model, state: &State, conditions: &Conditions) -> Self {
-        let contacts = model.contacts_facing(conditions, state.orientations.as_ref());
+        let contacts = model.contacts_oriented(conditions, state.orientations.as_ref());
         let races = PerRace::new(|race| state.race(race).motion());
         let zero = Self { stiffness: Matrix6::zeros(), damping: Matrix6::zeros() };
         let add = |sum: Self, (index, ball): (usize, &BallState)| {

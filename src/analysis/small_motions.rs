@@ -204,7 +204,7 @@ impl Rows<'_> {
             let seat = worlds.iter().find(|(own, _)| *own == body);
             seat.map_or(Side::Given, |(_, world)| Side::Body(world))
         };
-        let contacts = model.contacts_facing(conditions, state.orientations.as_ref());
+        let contacts = model.contacts_oriented(conditions, state.orientations.as_ref());
         let races = PerRace::new(|race| state.race(race).motion());
         let cage = model.cage.as_ref().zip(state.cage().map(BodyState::body_motion));
         let oil = model.oil_around_cage(conditions);

@@ -72,7 +72,7 @@ impl FieldCause {
         (ball, race): (usize, Race),
     ) -> Option<Self> {
         let (motion, race_motion) = (state.balls[ball].motion(), state.race(race).motion());
-        let contacts = model.contact(race, conditions).facing(state.orientations.as_ref());
+        let contacts = model.contact(race, conditions).oriented(state.orientations.as_ref());
         let contacts = contacts.of_ball(ball, state.difference(ball, race));
         let contact = contacts.completed(&contacts.evaluate(&motion, &race_motion), &motion, &race_motion);
         // Of a film its friction coefficient; that it yields before it slides is no part of the half-space.

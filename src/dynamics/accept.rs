@@ -309,7 +309,7 @@ pub fn renew_polynomials(model: &Model, state: &mut State, boundary: &Boundary) 
         let Some(kalker) = model.polynomials(race) else {
             continue;
         };
-        let model_of_race = model.contact(race, &boundary.conditions).facing(orientations.as_ref());
+        let model_of_race = model.contact(race, &boundary.conditions).oriented(orientations.as_ref());
         for (index, (ball, differences)) in balls.iter().zip(&mut *differences).enumerate() {
             let contact = model_of_race.of_ball(index, None).evaluate(&ball.motion(), &bodies[race].motion());
             match model_of_race.renew(kalker, &contact, model.epsilon_switch, &mut differences[race]) {

@@ -23,16 +23,16 @@ pub struct BallEquations<S: Scalar = f64> {
     radius: f64,
     /// Motion at the start.
     start: BallMotion<S>,
-    /// \[m] way over the step at the velocity of the start.
-    way: Vector3<S>,
+    /// \[m] displacement over the step at the velocity of the start.
+    drift: Vector3<S>,
     /// Shares of the accelerations at the start in displacement and velocities.
     pull: Vector3<S>,
     gain: Vector3<S>,
     angular_gain: Vector3<S>,
     /// Share of force and moment at the start in those of the step.
     held: Wrench<S>,
-    /// What the last step left: it is made good here, as of the bodies.
-    owed: Wrench<S>,
+    /// Remainder of the last step, which this one makes good, as that of bodies.
+    carried_over: Wrench<S>,
 }
 
 /// A ball at the start of a step.
@@ -92,7 +92,7 @@ impl<S: Scalar> BallEquations<S> {
             inertia: ball.inertia,
             radius: ball.radius,
             start: start.motion,
-            way: scaled(&start.motion.velocity, step.h),
+            drift: scaled(&start.motion.velocity, step.h),
             pull: scaled(&start.acceleration, 0.5 - step.beta),
             gain: scaled(&start.acceleration, 1.0 - step.gamma),
             angular_gain: scaled(&start.angular_acceleration, 1.0 - step.gamma),
@@ -100,7 +100,7 @@ impl<S: Scalar> BallEquations<S> {
                 force: scaled(&start.total.force, held),
                 moment: scaled(&start.total.moment, held),
             },
-            owed: start.remainder,
+            carried_over: start.remainder,
         }
     }
 
@@ -119,7 +119,7 @@ impl<S: Scalar> BallEquations<S> {
         let [acceleration, angular] = self.accelerations(unknowns);
         let (beta, gamma, h) = (step.beta, step.gamma, step.h);
         let moved = |i: usize| {
-            start.position[i] + (self.way[i] + (self.pull[i] + acceleration[i].scale(beta)).scale(h * h))
+            start.position[i] + (self.drift[i] + (self.pull[i] + acceleration[i].scale(beta)).scale(h * h))
         };
         let faster = |from: S, gain: S, acceleration: S| from + (gain + acceleration.scale(gamma)).scale(h);
         BallMotion {
@@ -134,14 +134,16 @@ impl<S: Scalar> BallEquations<S> {
     pub fn remainder(&self, unknowns: &Six<S>, total: &Wrench<S>) -> Wrench<S> {
         let [acceleration, angular] = self.accelerations(unknowns);
         let fraction = fraction(&self.step);
-        let left = |inertial: S, total: S, held: S, owed: S| inertial - (total.scale(fraction) + held) + owed;
-        let Self { held, owed, .. } = self;
+        let left = |inertial: S, total: S, held: S, carried_over: S| {
+            inertial - (total.scale(fraction) + held) + carried_over
+        };
+        let Self { held, carried_over, .. } = self;
         Wrench {
             force: vector(|i| {
-                left(acceleration[i].scale(self.mass), total.force[i], held.force[i], owed.force[i])
+                left(acceleration[i].scale(self.mass), total.force[i], held.force[i], carried_over.force[i])
             }),
             moment: vector(|i| {
-                left(angular[i].scale(self.inertia), total.moment[i], held.moment[i], owed.moment[i])
+                left(angular[i].scale(self.inertia), total.moment[i], held.moment[i], carried_over.moment[i])
             }),
         }
     }

@@ -214,14 +214,14 @@ impl BodyTrial {
         end.bearing_wrench = *pairs;
 
         // What the last step left of these rows is made good here: added up it would move a body that nothing else holds.
-        let owed = &start.remainder;
+        let carried_over = &start.remainder;
         for i in 0..3 {
             let translation = end.acceleration[i] * body.mass
                 - fraction * sums.force[i]
                 - step.alpha_f * start.total.force[i]
-                + owed.force[i];
+                + carried_over.force[i];
             let rotation = turn.rate_derivative[i].scale(body.inertia[i]) - moment[i].scale(fraction);
-            let rest = rotation - step.alpha_f * start.total.moment[i] + owed.moment[i];
+            let rest = rotation - step.alpha_f * start.total.moment[i] + carried_over.moment[i];
             residual[i] = translation;
             residual[3 + i] = rest / length;
             (end.remainder.force[i], end.remainder.moment[i]) = (translation, rest);

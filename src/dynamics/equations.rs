@@ -57,7 +57,7 @@ impl<'a> BearingStep<'a> {
         if let Some(cage) = &mut workspace.cage {
             cage.oil = model.oil_around_cage(&boundary.conditions);
         }
-        let contacts = model.contacts_facing(&boundary.conditions, boundary.orientations.as_ref());
+        let contacts = model.contacts_oriented(&boundary.conditions, boundary.orientations.as_ref());
         let races = PerRace::new(|race| race_motion(&boundary.motion[race].0, &boundary.motion[race].1));
         let step = HhtStep::new(model.solver.alpha_f, h);
         workspace.groups.begin(&start.balls, (&model.bearing.ball, &step), || {

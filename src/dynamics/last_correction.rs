@@ -57,11 +57,11 @@ impl BearingStep<'_> {
     fn charge_worn(&mut self) {
         let most = WORN * self.force_tolerance;
         let Workspace { balls, groups, kept, .. } = &mut *self.workspace;
-        for (ball, (trial, KeptBlock { wear, .. })) in balls.iter().zip(&mut kept.balls).enumerate() {
+        for (ball, (trial, KeptBlock { renewal, .. })) in balls.iter().zip(&mut kept.balls).enumerate() {
             if trial.before > 1.0 && groups.size(ball) > most * trial.before {
-                wear.price += PRICE;
-                if wear.price >= 1.0 {
-                    wear.due = wear.due.max(1);
+                renewal.price += PRICE;
+                if renewal.price >= 1.0 {
+                    renewal.due = renewal.due.max(1);
                 }
             }
         }

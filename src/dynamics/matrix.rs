@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, Vector3, Vector6};
 use super::Workspace;
 use super::equations::BearingStep;
 use crate::model::bodies::{Body, Race};
-use crate::model::state::{KeptBlock, Wear};
+use crate::model::state::{BlockRenewal, KeptBlock};
 use crate::numerics::arrowhead::{BLOCK, Block, Eliminated, Member, Offsets, Six};
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::orbit_turn::OrbitTurn;
@@ -37,7 +37,7 @@ impl Workspace {
     }
 }
 
-impl Wear {
+impl BlockRenewal {
     /// Shall blocks of a `cost` be new, as one or as many, for what is saved in this step and what was not in earlier ones?
     /// If not, this block has cost some more.
     fn renew(&mut self, cost: f64, saved: f64, lost: f64, more: f64) -> bool {
@@ -47,13 +47,13 @@ impl Wear {
             return false;
         }
         if saved >= cost {
-            self.put_off();
+            self.back_off();
         }
         true
     }
 
     /// Lets the next steps begin with a new one: twice as many as the last time, unless an old one was good since then.
-    fn put_off(&mut self) {
+    fn back_off(&mut self) {
         self.pause = (2 * self.pause + 1).min(LONGEST_PAUSE);
         self.due = self.pause;
     }
@@ -63,13 +63,13 @@ impl BearingStep<'_> {
     /// Marks the balls whose blocks shall be new from the beginning of a step.
     pub(super) fn mark_due(&mut self) {
         let Workspace { balls, kept, .. } = &mut *self.workspace;
-        for (trial, KeptBlock { wear, .. }) in balls.iter_mut().zip(&mut kept.balls) {
-            if !wear.new {
-                wear.pause = 0;
+        for (trial, KeptBlock { renewal, .. }) in balls.iter_mut().zip(&mut kept.balls) {
+            if !renewal.new {
+                renewal.pause = 0;
             }
-            wear.new = false;
-            trial.renewed = wear.due > 0;
-            wear.due = wear.due.saturating_sub(1);
+            renewal.new = false;
+            trial.renewed = renewal.due > 0;
+            renewal.due = renewal.due.saturating_sub(1);
         }
     }
 
@@ -77,9 +77,9 @@ impl BearingStep<'_> {
     pub(super) fn give_up_old(&mut self) {
         let tolerance = self.force_tolerance;
         let Workspace { balls, groups, kept, .. } = &mut *self.workspace;
-        for (ball, (trial, KeptBlock { wear, .. })) in balls.iter().zip(&mut kept.balls).enumerate() {
-            if !wear.new && trial.before > 1.0 && groups.size(ball) > tolerance {
-                wear.put_off();
+        for (ball, (trial, KeptBlock { renewal, .. })) in balls.iter().zip(&mut kept.balls).enumerate() {
+            if !renewal.new && trial.before > 1.0 && groups.size(ball) > tolerance {
+                renewal.back_off();
             }
         }
     }
@@ -88,7 +88,7 @@ impl BearingStep<'_> {
     ///
     /// From how far the last one has come it follows how many more are needed with the blocks there are. New ones lead there
     /// in one more; and what they would have saved in earlier steps counts as well.
-    fn mark_worn(&mut self) -> bool {
+    fn mark_stale(&mut self) -> bool {
         let together = !self.balls_are_independent();
         let tolerance = self.force_tolerance;
         let Workspace { balls, groups, kept, .. } = &mut *self.workspace;
@@ -106,14 +106,14 @@ impl BearingStep<'_> {
             if together {
                 bad += 1.0;
                 most = most.max(more);
-                price += kept.wear.price;
+                price += kept.renewal.price;
             } else {
-                trial.renewed = kept.wear.renew(1.0, ALONE * (more - 1.0), kept.wear.price, ALONE);
+                trial.renewed = kept.renewal.renew(1.0, ALONE * (more - 1.0), kept.renewal.price, ALONE);
             }
         }
         if together {
             for (trial, kept) in balls.iter_mut().zip(&mut kept.balls).filter(|(trial, _)| trial.renewed) {
-                trial.renewed = kept.wear.renew(bad, correction * (most - 1.0), price, correction / bad);
+                trial.renewed = kept.renewal.renew(bad, correction * (most - 1.0), price, correction / bad);
             }
         }
         balls.iter().any(|trial| trial.renewed)
@@ -139,9 +139,9 @@ impl BearingStep<'_> {
                 kept.balls.clear();
                 return;
             }
-            let last = kept.balls.get(index).map(|kept| kept.wear).unwrap_or_default();
-            let wear = Wear { price: 0.0, new: true, ..last };
-            let new = KeptBlock { offset: groups.position(index) - origin, wear };
+            let last = kept.balls.get(index).map(|kept| kept.renewal).unwrap_or_default();
+            let renewal = BlockRenewal { price: 0.0, new: true, ..last };
+            let new = KeptBlock { offset: groups.position(index) - origin, renewal };
             match kept.balls.get_mut(index) {
                 Some(kept) => *kept = new,
                 None => kept.balls.push(new),
@@ -236,7 +236,7 @@ impl BearingStep<'_> {
         let mut renewed = false;
         if self.keeps_matrices() {
             let repaired = !self.balls_are_independent() && self.repair_balls();
-            renewed = self.corrections > 0 && self.mark_worn();
+            renewed = self.corrections > 0 && self.mark_stale();
             if repaired {
                 // Their blocks are for contacts as they were.
                 for trial in self.workspace.balls.iter_mut() {

@@ -79,11 +79,31 @@ struct Counted {
     renewals: u64,
 }
 
-/// Buffers of a step, kept between steps.
+/// Buffers of a bearing in a step, kept between steps so that none is allocated.
+///
+/// Who fills what, in the order of a step ([`system::try_step`]); what follows reads it:
+///
+/// ```text
+/// begin    try_step       kept <- state, factorised         state -> matrices of earlier steps
+///          equations.rs   races, bodies, cage, groups       motion at the start, prescribed motion at the end
+///          neighbours.rs  neighbours                        pairs of balls near each other
+///          guess.rs       steady, expected                  first guess of the unknowns
+/// iterate  equations.rs   groups, balls, bodies, cage,      motion, contacts, forces, residuals of a trial;
+///          neighbours.rs  neighbours                          with derivatives of balls whose blocks are due
+///          matrix.rs      kept, ring                        balls eliminated, alone or as a ring of neighbours
+///                         members, reduced, arrowhead,      rows of the bodies after the balls, factorised
+///                         condensed, factorised
+///                         ball_, group_, border_corrections
+///          repair.rs      balls.repaired                    blocks of single balls computed anew
+/// end      last_correction.rs  last_correction, settled     last correction, without evaluation
+///          local_error.rs, accept.rs                        read groups, balls, bodies, cage, steady
+///          try_step       kept -> state, counted            matrices and counts of work
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
+    /// Trials of the balls one by one: pocket, neighbours, derivatives.
     balls: Vec<BallTrial>,
-    /// Motion, contacts, forces and residuals of the balls.
+    /// Motion, contacts, forces and residuals of the balls, several in the lanes of one.
     groups: Groups,
     /// The state's matrix during a step.
     kept: KeptMatrix,
@@ -91,25 +111,29 @@ pub struct Workspace {
     bodies: Bodies<Option<BodyTrial>>,
     /// Motion of the races at the end of the step.
     races: PerRace<RaceMotion<f64>>,
+    /// Trial of the cage, where there is one.
     cage: Option<CageTrial>,
     /// Neighbouring balls that may touch in the step.
     neighbours: Vec<NeighbourTrial>,
+    /// Factors of the bodies' rows, balls eliminated.
     arrowhead: Arrowhead,
     /// Rows of the bodies with what the balls leave in them; in those of carried races, what the other bodies leave too.
     reduced: DMatrix<f64>,
-    /// The bodies that nothing carries, eliminated from it.
+    /// The bodies that nothing carries, eliminated from `reduced`.
     condensed: Condensed,
     /// Is the matrix that of this step's bodies and kept balls?
     factorised: bool,
-    /// Bodies that forces move.
+    /// Bodies that forces move, by their places in the rows.
     members: Vec<Member>,
     /// The matrix of a step in which neighbouring balls may touch.
     ring: Ring,
+    /// Corrections of the balls one by one, where neighbours may touch.
     ball_corrections: Vec<Vector6<f64>>,
-    /// The same of all groups of balls, where neighbouring balls do not touch.
+    /// Corrections of all groups of balls, where neighbouring balls do not touch.
     group_corrections: Vec<Six<Lanes>>,
+    /// Corrections of the bodies' rows.
     border_correction: DVector<f64>,
-    /// A correction that is not evaluated.
+    /// Correction that is not evaluated.
     last_correction: Vec<f64>,
     /// Has the step that was solved last ended with it?
     settled: bool,
@@ -117,7 +141,7 @@ pub struct Workspace {
     counted: Counted,
     /// Accelerations and multipliers that do not change in the step but for the turn of orbits.
     steady: Vec<f64>,
-    /// How they would change if they went on as in the last step.
+    /// Changes of these, were they to go on as in the last step.
     expected: Vec<f64>,
 }
 

@@ -1,7 +1,7 @@
 //! Contacts of neighbouring balls in a trial step, where no cage keeps them apart.
 //!
 //! Most steps have none: at the start of a step those pairs are listed that may touch before its end, and only these are
-//! looked at. Should another pair have met in the solved step, it joins the list and the step is solved again.
+//! looked at. Should another pair touch in the solved step, it joins the list and the step is solved again.
 
 use nalgebra::{Matrix6, Vector3};
 
@@ -142,22 +142,22 @@ impl BearingStep<'_> {
         self.workspace.list(near(self.model, self.start, self.step.h).into_iter());
     }
 
-    /// Lists pairs too that met in the solved step without being looked at; were there some?
-    pub fn list_met(&mut self) -> bool {
+    /// Lists pairs too that touch in the solved step and were not listed; are there some?
+    pub fn list_touching(&mut self) -> bool {
         let Some(contact) = &self.model.ball_contact else {
             return false;
         };
         let workspace = &mut *self.workspace;
         let is_listed = |first: usize| workspace.neighbours.iter().any(|neighbour| neighbour.first == first);
-        let met = |(first, second): (usize, usize)| {
+        let touching = |(first, second): (usize, usize)| {
             let [first, second] = [first, second].map(|ball| workspace.groups.position(ball));
             (second - first).norm_squared() < contact.diameter * contact.diameter
         };
         let pairs = || neighbours(workspace.balls.len());
-        if !pairs().any(|pair| met(pair) && !is_listed(pair.0)) {
+        if !pairs().any(|pair| touching(pair) && !is_listed(pair.0)) {
             return false;
         }
-        let all: Vec<_> = pairs().filter(|pair| is_listed(pair.0) || met(*pair)).collect();
+        let all: Vec<_> = pairs().filter(|pair| is_listed(pair.0) || touching(*pair)).collect();
         workspace.list(all.into_iter());
         true
     }

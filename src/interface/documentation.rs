@@ -1,7 +1,7 @@
 //! The page that a package brings along: interface, frames, effects, limits, parameters.
 
 use crate::effects::AnyEffect;
-use crate::interface::model_description::{Wanted, is_told};
+use crate::interface::model_description::{Wanted, is_exported};
 use crate::interface::variables::{Causality, MachineVariables, Offered, Variable, Variables};
 use crate::scene::{Dependencies, Drive, Orientation, Scene};
 use crate::schema::numbers::Variability;
@@ -72,7 +72,7 @@ fn table(
 fn interface(rows: &[Variable], wanted: Wanted<'_>) -> String {
     table(
         rows,
-        |row| row.causality != Causality::Parameter && is_told(row, wanted),
+        |row| row.causality != Causality::Parameter && is_exported(row, wanted),
         |row| match row.causality {
             Causality::Input => "input".into(),
             Causality::Local => "local".into(),

@@ -48,7 +48,7 @@ type Xml = Writer<Vec<u8>>;
 pub type Wanted<'a> = &'a dyn Fn(&str) -> bool;
 
 /// Is a row told of by a package with these outputs?
-pub fn is_told(row: &Variable, wanted: Wanted<'_>) -> bool {
+pub fn is_exported(row: &Variable, wanted: Wanted<'_>) -> bool {
     row.causality != Causality::Output || wanted(&row.name)
 }
 
@@ -81,7 +81,7 @@ pub fn render_with(
         step: recommended_step(simulation),
     };
     let starts = variables.values(simulation.inputs(), simulation.outputs());
-    let xml = document(&about, &Told::new(variables.rows(), &starts, wanted))?;
+    let xml = document(&about, &Exported::new(variables.rows(), &starts, wanted))?;
     Ok(ModelDescription { xml, guid })
 }
 
@@ -114,25 +114,25 @@ pub fn render_system_with(
         stop: scene.load.duration.0,
         step: steps.fold(scene.load.output_interval.0, f64::min),
     };
-    let xml = document(&about, &Told::new(variables.rows(), &variables.values(system), wanted))?;
+    let xml = document(&about, &Exported::new(variables.rows(), &variables.values(system), wanted))?;
     Ok(ModelDescription { xml, guid })
 }
 
 /// The variables that a model description has.
-struct Told {
+struct Exported {
     rows: Vec<Variable>,
     /// Value reference of each: its place among all rows.
     references: Vec<usize>,
     starts: Vec<f64>,
 }
 
-impl Told {
+impl Exported {
     fn new(all: &[Variable], starts: &[f64], wanted: Wanted<'_>) -> Self {
-        let told = || (0..all.len()).filter(|index| is_told(&all[*index], wanted));
+        let exported = || (0..all.len()).filter(|index| is_exported(&all[*index], wanted));
         Self {
-            rows: told().map(|index| all[index].clone()).collect(),
-            references: told().collect(),
-            starts: told().map(|index| starts[index]).collect(),
+            rows: exported().map(|index| all[index].clone()).collect(),
+            references: exported().collect(),
+            starts: exported().map(|index| starts[index]).collect(),
         }
     }
 }
@@ -167,8 +167,8 @@ pub fn guid(source: &str, rows: &[Variable]) -> String {
     format!("{{{}-{}-{}-{}-{}}}", &hex[0..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..32])
 }
 
-fn document(about: &About<'_>, told: &Told) -> std::io::Result<String> {
-    let rows = &told.rows;
+fn document(about: &About<'_>, exported: &Exported) -> std::io::Result<String> {
+    let rows = &exported.rows;
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     xml.create_element("fmiModelDescription")
@@ -197,7 +197,9 @@ fn document(about: &About<'_>, told: &Told) -> std::io::Result<String> {
             })?;
             default_experiment(xml, about)?;
             xml.create_element("ModelVariables").write_inner_content(|xml| {
-                for (reference, (row, start)) in told.references.iter().zip(rows.iter().zip(&told.starts)) {
+                for (reference, (row, start)) in
+                    exported.references.iter().zip(rows.iter().zip(&exported.starts))
+                {
                     scalar_variable(xml, *reference, row, *start)?;
                 }
                 Ok(())

@@ -219,7 +219,7 @@ impl Model {
     }
 
     /// Contact model of the balls with a race; Kalker's polynomials give its table, to which each ball's difference is
-    /// added ([`ContactModel::of_ball`]). Damaged balls face as at the start ([`ContactModel::facing`]).
+    /// added ([`ContactModel::of_ball`]). Damaged balls face as at the start ([`ContactModel::oriented`]).
     pub fn contact(&self, race: Race, conditions: &Conditions) -> ContactModel<'_> {
         self.contact_of(&self.raceways[race], race, conditions, None)
     }
@@ -278,7 +278,7 @@ impl Model {
     }
 
     /// The same for damaged balls of these orientations.
-    pub fn contacts_facing<'a>(
+    pub fn contacts_oriented<'a>(
         &'a self,
         conditions: &Conditions,
         orientations: Option<&'a Vec<UnitQuaternion<f64>>>,

@@ -366,13 +366,13 @@ pub struct KeptMatrix {
 pub struct KeptBlock {
     /// \[m] where the ball was, seen from the outer race: the block turns with the orbit of its ball.
     pub offset: Vector3<f64>,
-    /// How good it still is.
-    pub wear: Wear,
+    /// When it is to be computed anew.
+    pub renewal: BlockRenewal,
 }
 
-/// What a kept block has cost.
+/// Costs of a kept block, and the back-off by which steps begin with a new one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Wear {
+pub struct BlockRenewal {
     /// [-] price of the corrections that it was not good enough for, over that of a new one.
     pub price: f64,
     /// Steps to come that begin with a new one, because old ones were no good.

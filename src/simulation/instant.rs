@@ -69,7 +69,7 @@ impl Instant {
         let races = PerRace::new(|race| state.race(race).motion());
         let count = state.balls.len() as f64;
         let totals = Totals::of(contacts, state.balls.len());
-        let models = model.contacts_facing(conditions, state.orientations.as_ref());
+        let models = model.contacts_oriented(conditions, state.orientations.as_ref());
         let rolling = RollingOrbit::mean(model, state, contacts, &races, models.inner.surface.ball_radius);
         let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
         let cage_speed = state.cage_speed();

@@ -78,7 +78,7 @@ impl Simulation {
             return Ok(());
         }
         let orientations = self.state.orientations.as_ref();
-        let contacts = self.model.contacts_facing(&boundary.conditions, orientations);
+        let contacts = self.model.contacts_oriented(&boundary.conditions, orientations);
         for (index, ball) in self.state.balls.iter().enumerate() {
             for race in Race::BOTH {
                 let contact = contacts[race]

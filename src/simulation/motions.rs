@@ -52,16 +52,16 @@ impl Motion {
 
 /// Motions of bodies that swing, by their frequency. What balls do alone, each for itself, is left out.
 pub(super) fn worth_telling(found: &[SmallMotion], name: impl Fn(&SmallMotion) -> String) -> Vec<Motion> {
-    let told = |motion: &SmallMotion| Motion {
+    let described = |motion: &SmallMotion| Motion {
         frequency: motion.frequency(),
         growth: motion.growth(),
         balls: motion.balls,
         shape: name(motion),
     };
     let swings = |motion: &Motion| motion.frequency > 0.0 && motion.damping().abs() < HARDLY;
-    let is_told = |motion: &Motion| swings(motion) && (motion.balls < OF_BALLS || motion.grows());
-    let with_bodies = found.iter().filter(|motion| motion.balls < 1.0 - BODIES).map(told);
-    let mut motions: Vec<Motion> = with_bodies.filter(is_told).collect();
+    let is_listed = |motion: &Motion| swings(motion) && (motion.balls < OF_BALLS || motion.grows());
+    let with_bodies = found.iter().filter(|motion| motion.balls < 1.0 - BODIES).map(described);
+    let mut motions: Vec<Motion> = with_bodies.filter(is_listed).collect();
     motions.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     motions
 }
@@ -241,32 +241,32 @@ impl Part {
     }
 
     /// What it does, where that is a part of the kinetic energy of all.
-    fn told(&self, all: f64) -> Option<String> {
+    fn describe(&self, all: f64) -> Option<String> {
         let [along, across, about, tilt] = self.energies.map(|energy| energy > NAMED * all);
         let turn = |turn: f64| match turn {
             turn if turn > WHIRLS => " forward",
             turn if turn < -WHIRLS => " backward",
             _ => " to and fro",
         };
-        let mut said = vec![];
+        let mut phrases = vec![];
         match (tilt, across) {
             (true, true) if turn(self.turns[0]) == turn(self.turns[1]) => {
-                said.push(format!("tilts and shifts{}", turn(self.turns[0])));
+                phrases.push(format!("tilts and shifts{}", turn(self.turns[0])));
             }
             _ => {
-                said.extend(tilt.then(|| format!("tilts{}", turn(self.turns[1]))));
-                said.extend(across.then(|| format!("shifts{}", turn(self.turns[0]))));
+                phrases.extend(tilt.then(|| format!("tilts{}", turn(self.turns[1]))));
+                phrases.extend(across.then(|| format!("shifts{}", turn(self.turns[0]))));
             }
         }
-        said.extend(along.then(|| "shifts along its axis".to_string()));
-        said.extend(about.then(|| "turns".to_string()));
-        (!said.is_empty()).then(|| format!("{} {}", self.name, said.join(", ")))
+        phrases.extend(along.then(|| "shifts along its axis".to_string()));
+        phrases.extend(about.then(|| "turns".to_string()));
+        (!phrases.is_empty()).then(|| format!("{} {}", self.name, phrases.join(", ")))
     }
 }
 
 /// A motion in words.
 pub(super) fn named(parts: &[Part]) -> String {
     let all: f64 = parts.iter().map(Part::energy).sum();
-    let told: Vec<String> = parts.iter().filter_map(|part| part.told(all)).collect();
-    told.join("; ")
+    let descriptions: Vec<String> = parts.iter().filter_map(|part| part.describe(all)).collect();
+    descriptions.join("; ")
 }

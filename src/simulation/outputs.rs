@@ -130,7 +130,7 @@ impl Outputs {
         let cage = model.cage.as_ref().zip(state.cage());
         let outer = state.race(Race::Outer);
         let races = PerRace::new(|race| state.race(race).motion());
-        let models = model.contacts_facing(conditions, state.orientations.as_ref());
+        let models = model.contacts_oriented(conditions, state.orientations.as_ref());
         let all = contacts;
         let contacts_of_neighbours =
             |ball: usize| all.ball_pairs.iter().filter(move |pair| [pair.first, pair.second].contains(&ball));

@@ -161,7 +161,7 @@ pub fn state(
         let conditions = problem.with_friction();
         let around = Surroundings {
             model,
-            contacts: model.contacts_facing(&conditions, orientations.as_ref()),
+            contacts: model.contacts_oriented(&conditions, orientations.as_ref()),
             ambient: model.ambient(&inputs.effects.frame.motion),
             races: PerRace::new(|race| races[race].motion()),
         };

@@ -196,7 +196,8 @@ impl Places {
         let start = self.model.damaged.as_ref().unwrap().at_start[0];
         let axis = start * Vector3::x();
         let orientation = vec![UnitQuaternion::new(turned) * UnitQuaternion::new(axis * rolled) * start];
-        let contact = self.model.contact(self.race, &Conditions::of_friction(0.0)).facing(Some(&orientation));
+        let contact =
+            self.model.contact(self.race, &Conditions::of_friction(0.0)).oriented(Some(&orientation));
         contact.of_ball(BALL, None).evaluated(ball, race)
     }
 }
@@ -300,7 +301,7 @@ fn invariant_lanes_are_single_balls_to_the_bit() {
         let orientations = simulation.state().orientations.clone();
         for race in Race::BOTH {
             let contact = simulation.model().contact(race, &Conditions::of_friction(0.08));
-            let contact = contact.facing(orientations.as_ref());
+            let contact = contact.oriented(orientations.as_ref());
             let seen = simulation.state().race(race).motion();
             let motions: Vec<_> = simulation.state().balls.iter().map(BallState::motion).collect();
             let alone: Vec<_> =

@@ -304,8 +304,8 @@ fn torque_in_runs(names: &[&str], window: [f64; 2]) {
                 compare(subject, losses(&case.with(&[slips, (key, on)]), window) / without - 1.0);
             // A small change of another kind than the effect's own, such as that of slip by which friction carries balls along.
             let is_near = (said - truth).abs() < 0.02 + 0.3 * truth.abs();
-            let is_told = said.abs() > 0.05 && truth.abs() > 0.05;
-            assert!(is_near || pivots && is_told, "{name}, {subject}: {said} for {truth}");
+            let is_exported = said.abs() > 0.05 && truth.abs() > 0.05;
+            assert!(is_near || pivots && is_exported, "{name}, {subject}: {said} for {truth}");
         }
         let smooth = losses(&case.with(&[("effects.heathcote_slip", "false")]), window);
         let (said, truth) = compare("groove slip", without / smooth - 1.0);

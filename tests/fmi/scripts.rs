@@ -119,7 +119,7 @@ fn invariant_a_package_plays_the_scripts_as_a_native_run_does() {
             assert!((get(c, &package, name) - expected).abs() < 1e-10 * expected, "{name}");
         }
     }
-    // Told once, not at every step.
+    // Exported once, not at every step.
     assert_eq!(messages.lock().unwrap().iter().filter(|(_, text)| text.contains("script")).count(), 3);
     unsafe { fmi2FreeInstance(c) };
 }

@@ -379,7 +379,7 @@ fn residual(end: &Simulation, before: &State) -> f64 {
     let (model, state) = (end.model(), end.state());
     let weight = 1.0 - model.solver.alpha_f;
     let conditions = end.conditions();
-    let contacts = model.contacts_facing(&conditions, state.orientations.as_ref());
+    let contacts = model.contacts_oriented(&conditions, state.orientations.as_ref());
     let races = Race::BOTH.map(|race| state.race(race).motion());
     let ball = &model.bearing.ball;
     let ambient = model.ambient(&end.inputs().effects.frame.motion);

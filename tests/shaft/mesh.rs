@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::{Vector3, Vector6};
-use roulement::model::link::spring_bearing::{AxialWay, SpringBearing};
+use roulement::model::link::spring_bearing::{AxialSupport, SpringBearing};
 use roulement::model::link::tooth_mesh::ToothMesh;
 use roulement::model::link::{Law, Link};
 use roulement::scene::system::SystemScene;
@@ -133,7 +133,7 @@ fn tangents_of_links_are_differences_of_their_forces_and_forces_those_of_a_poten
         stiffness: [3e8, 1e8, 1e3],
         damping: [200.0, 100.0, 0.2],
         gap: 5e-6,
-        axial: AxialWay::Along,
+        axial: AxialSupport::Along,
     };
     for law in [Law::Mesh(mesh), Law::Spring(bearing)] {
         let link = Link { ends: vec![], law };

@@ -208,7 +208,7 @@ impl Place {
             Said::Json => format!("{:#}\n", json::of_machine(&played.machine, &played.seen, &shown)),
             Said::Text => format!("{text}\n{listed}"),
         };
-        tell(played.seen.told(&played.machine));
+        tell(played.seen.remarks(&played.machine));
         let said = say(&listed);
         // Why a run has ended early is said even where nobody reads the summary.
         if matches!(played.end, End::Reached) {

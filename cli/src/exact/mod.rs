@@ -89,7 +89,7 @@ fn compute(
             results[index] = Some(result);
             progress.inc(1);
             if saved.elapsed() > SAVE {
-                // Told at the end, if it fails there too.
+                // Exported at the end, if it fails there too.
                 let _ = cache.save();
                 saved = Instant::now();
             }

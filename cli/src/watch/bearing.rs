@@ -170,12 +170,16 @@ impl BearingSeen {
         };
         let shoulders = Race::BOTH.into_iter().filter_map(of_race);
         let growing = self.growing.iter().cloned();
-        growing.chain(self.told(simulation)).chain(shoulders).chain(self.energy.warning(simulation)).collect()
+        growing
+            .chain(self.remarks(simulation))
+            .chain(shoulders)
+            .chain(self.energy.warning(simulation))
+            .collect()
     }
 
     /// The same, but for what its summary says and what is said before it runs: the pressure, a race that circles, and what its life leaves
     /// out.
-    pub fn told(&self, simulation: &Simulation) -> Vec<String> {
+    pub fn remarks(&self, simulation: &Simulation) -> Vec<String> {
         let pressure = simulation.scene().pressure_note(self.limits.peak_pressure);
         let life = self.life.and_then(|life| life.life.warning());
         let bare = |note: String| note.trim_start_matches("warning: ").to_string();

@@ -118,10 +118,10 @@ impl Seen {
     }
 
     /// What is told of a run beside its summary, a sentence each: the same, but for what summaries of bearings say themselves.
-    pub fn told(&self, machine: &Machine) -> Vec<String> {
+    pub fn remarks(&self, machine: &Machine) -> Vec<String> {
         let named = |((name, bearing), seen): ((&str, &Simulation), &BearingSeen)| {
             let before = if name.is_empty() { String::new() } else { format!("bearing {name}: ") };
-            seen.told(bearing).into_iter().map(move |told| format!("warning: {before}{told}"))
+            seen.remarks(bearing).into_iter().map(move |remark| format!("warning: {before}{remark}"))
         };
         let bearings = machine.bearings().zip(&self.bearings).flat_map(named);
         let shaft = self.shaft.as_ref().zip(machine.shaft()).map(|(seen, system)| seen.warnings(system));

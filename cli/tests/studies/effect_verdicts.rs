@@ -80,7 +80,7 @@ struct Count {
     scenes: usize,
     idle: usize,
     wrong: usize,
-    /// Told to matter, and measured to.
+    /// Exported to matter, and measured to.
     right: usize,
 }
 

@@ -415,7 +415,7 @@ impl ContactModel<'_> {
 
 impl<'a> ContactModel<'a> {
     /// The contact of damaged balls of these orientations, where there are such.
-    pub fn facing(mut self, orientations: Option<&'a Vec<UnitQuaternion<f64>>>) -> Self {
+    pub fn oriented(mut self, orientations: Option<&'a Vec<UnitQuaternion<f64>>>) -> Self {
         if let (Some(damage), Some(orientations)) = (&mut self.surface.damage, orientations) {
             damage.orientations = orientations;
         }

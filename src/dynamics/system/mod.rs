@@ -74,8 +74,8 @@ pub fn try_step(
     equations.guess(unknowns, false);
     let mut solve = |equations: &mut SystemStep<'_>, unknowns: &mut [f64]| {
         newton::solve(equations, unknowns, buffers, &mut work)?;
-        // Each time around another pair of balls has met.
-        while equations.list_met() {
+        // Each time around another pair of balls touches.
+        while equations.list_touching() {
             newton::solve(equations, unknowns, buffers, &mut work)?;
         }
         Ok(())

@@ -194,11 +194,11 @@ impl<'a> SystemStep<'a> {
         }
     }
 
-    /// Lists pairs of balls that met in the solved step without being looked at; were there some?
-    pub fn list_met(&mut self) -> bool {
+    /// Lists pairs of balls that touch in the solved step and were not listed; are there some?
+    pub fn list_touching(&mut self) -> bool {
         // All of them look.
-        let met = self.bearings.iter_mut().filter_map(|step| step.list_met().then_some(()));
-        met.count() > 0
+        let touching = self.bearings.iter_mut().filter_map(|step| step.list_touching().then_some(()));
+        touching.count() > 0
     }
 
     /// Goes on without the matrices of earlier steps.

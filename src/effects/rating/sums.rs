@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// \[rad] turn of the races against each other from which on the turn of the load is that of the run, and not of its first shakes.
-const TOLD: f64 = 1.0;
+const KNOWN_AFTER: f64 = 1.0;
 
 /// How the radial load and both races turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -153,8 +153,8 @@ impl Sums {
         if self.turn > 0.0 {
             let powers = self.powers.map(|of_race| of_race.map(|sum| sum / self.turn));
             let [load, races] = self.turns;
-            let told = self.turn >= TOLD && races > 0.0;
-            let with_inner = if told { Some(load / races) } else { self.now.with_inner };
+            let known = self.turn >= KNOWN_AFTER && races > 0.0;
+            let with_inner = if known { Some(load / races) } else { self.now.with_inner };
             Rates {
                 speed: self.turn / self.duration,
                 powers,

@@ -7,7 +7,7 @@ use super::one_sided::OneSided;
 
 /// Along which directions of its axis a bearing holds the shaft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AxialWay {
+pub enum AxialSupport {
     /// Both.
     Both,
     /// Forces of the shaft along +x.
@@ -26,7 +26,7 @@ pub struct SpringBearing {
     /// \[m] play across the axis: as far as the shaft goes from the middle.
     pub gap: f64,
     /// Which way it holds the shaft.
-    pub axial: AxialWay,
+    pub axial: AxialSupport,
 }
 
 impl SpringBearing {
@@ -41,9 +41,9 @@ impl SpringBearing {
         };
         self.add_radial(displacement, rate, &mut on);
         let ways: &[f64] = match self.axial {
-            AxialWay::Both => &[0.0],
-            AxialWay::Along => &[1.0],
-            AxialWay::Against => &[-1.0],
+            AxialSupport::Both => &[0.0],
+            AxialSupport::Along => &[1.0],
+            AxialSupport::Against => &[-1.0],
         };
         for way in ways {
             let law = match way {

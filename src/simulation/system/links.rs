@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::model::link::spring_bearing::{AxialWay, SpringBearing};
+use crate::model::link::spring_bearing::{AxialSupport, SpringBearing};
 use crate::model::link::tooth_mesh::ToothMesh;
 use crate::model::link::{Law, Link, LinkEnd};
 use crate::model::structure::Carrier;
@@ -84,9 +84,9 @@ pub fn of(scene: &SystemScene, carriers: &[Carrier]) -> Vec<Link> {
             ],
             gap: of.gap.map_or(0.0, |gap| gap.0),
             axial: match of.axial_way {
-                AxialTaken::Both => AxialWay::Both,
-                AxialTaken::Along => AxialWay::Along,
-                AxialTaken::Against => AxialWay::Against,
+                AxialTaken::Both => AxialSupport::Both,
+                AxialTaken::Along => AxialSupport::Along,
+                AxialTaken::Against => AxialSupport::Against,
             },
         };
         links.push(Link { ends, law: Law::Spring(law) });

@@ -61,16 +61,16 @@ impl System {
                 part(own.map(|value| value.re)) + part(own.map(|value| value.im))
             };
             let of_structures: f64 = structures.iter().map(energy).sum();
-            let told = parts.iter().map(|(index, (body, moved, state), from)| {
+            let moving = parts.iter().map(|(index, (body, moved, state), from)| {
                 let own = free(moved);
                 let shape = motion.shape.rows(*from, own.len()).into_owned();
                 let part = Part::new(*body, moved, state.rate.x, (&own, &shape));
                 part.of(&self.structures.scene.bearings[*index].name)
             });
-            let told: Vec<Part> = told.collect();
-            let of_parts: f64 = told.iter().map(Part::energy).sum();
+            let moving: Vec<Part> = moving.collect();
+            let of_parts: f64 = moving.iter().map(Part::energy).sum();
             if of_structures < of_parts {
-                return named(&told);
+                return named(&moving);
             }
             let shape = motion.shape.rows(0, of_carriers).into_owned();
             let mode = self.describe(&Mode { eigenvalue: motion.value, shape });

@@ -161,8 +161,8 @@ impl Statics<'_> {
             if shift > 1e12 {
                 let residual = size(&here);
                 // What a bearing says is the reason, where it is one.
-                let said = refused.unwrap_or(SystemError::NoEquilibrium { iterations, residual });
-                return Err(self.given_way(states).unwrap_or(said));
+                let failure = refused.unwrap_or(SystemError::NoEquilibrium { iterations, residual });
+                return Err(self.given_way(states).unwrap_or(failure));
             }
             let mut matrix = here.stiffness.clone();
             for (i, scale) in scales.iter().enumerate() {
@@ -195,8 +195,8 @@ impl Statics<'_> {
                 }
             }
         }
-        let said = SystemError::NoEquilibrium { iterations: MAX_ITERATIONS, residual: size(&here) };
-        Err(self.given_way(states).unwrap_or(said))
+        let failure = SystemError::NoEquilibrium { iterations: MAX_ITERATIONS, residual: size(&here) };
+        Err(self.given_way(states).unwrap_or(failure))
     }
 
     /// Is it a housing that lets a bearing tilt further than any takes? What the bearing says of its grooves is not the cause then.
