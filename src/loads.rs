@@ -1,4 +1,4 @@
-//! What parts of a machine do to the shaft that they are on: unbalance and meshes of helical gears.
+//! Loads of parts of a machine on their shaft: unbalance and meshes of helical gears.
 //!
 //! Forces act in a plane across the shaft, `offset` from a point of its axis about which moments are taken. x is the shaft's axis,
 //! azimuths and turns count from +y towards +z. Nothing here knows of bearings: all inputs are numbers.

@@ -1,4 +1,4 @@
-//! What estimates of effects look at, of a scene: settled states at time 0, or where its loads have a point at which a ball carries
+//! Estimates of the effects of a scene, from settled states at time 0, or where its loads have a point at which a ball carries
 //! load first, with every race at the largest speed of its script. An effect that does not matter then may do at another time of the
 //! scripts, so that these are looked at, too.
 
@@ -34,7 +34,7 @@ pub enum EstimateError {
     Start(String),
 }
 
-/// What estimates say, or why nothing.
+/// Verdicts of estimates, or why there are none.
 pub type Verdicts = Result<Vec<Verdict>, EstimateError>;
 
 /// [-] threshold with a cage over that without one: in scenes/cage.toml growth by 10 K changes the torque by -9.6 %, and the settled
@@ -47,7 +47,7 @@ const MOST_RANGES: usize = 6;
 /// Times in a period of what swings.
 const IN_A_PERIOD: u32 = 8;
 
-/// What estimates say of all effects in a scene: that of the start, or of the first other time of its scripts at which the effect
+/// Verdicts on all effects in a scene: that of the start, or of the first other time of its scripts at which the effect
 /// matters.
 ///
 /// # Errors
@@ -130,7 +130,7 @@ fn acting(scene: &mut Scene) -> Vec<&mut Schedule> {
     [inner_speed, outer_speed].into_iter().chain(along.flatten()).chain(about.flatten()).collect()
 }
 
-/// What estimates say of the effects of every bearing of a machine.
+/// Verdicts on the effects of every bearing of a machine.
 pub fn verdicts_of(machine: &machine::Machine) -> Vec<Verdicts> {
     match machine {
         machine::Machine::Bearing(bearing) => vec![verdicts(bearing.scene(), bearing.model())],
@@ -171,7 +171,7 @@ pub fn verdicts_of_shaft(scene: &SystemScene) -> Vec<Verdicts> {
     all
 }
 
-/// What closed forms look at, of a bearing of a shaft that was just started.
+/// Input of closed forms, of a bearing of a shaft that was just started.
 ///
 /// # Errors
 /// See [`EstimateError`].
@@ -190,7 +190,7 @@ fn judged_scene(scene: &Scene) -> Scene {
     judged
 }
 
-/// What is said of effects at one state, by settled states that some switches lead to; nothing of twins that are known to matter.
+/// Verdicts on effects at one state, by settled states that some switches lead to; nothing of twins that are known to matter.
 fn judge(
     effects: &Effects,
     mut estimate: Estimate,
@@ -287,7 +287,7 @@ fn schedules(scene: &Scene) -> impl Iterator<Item = &Schedule> {
     given.chain(machine).chain(others.into_iter().flatten())
 }
 
-/// What closed forms look at.
+/// Input of closed forms.
 ///
 /// # Errors
 /// See [`EstimateError`].
@@ -303,7 +303,7 @@ fn first_loaded(scene: &Scene, model: &Model) -> f64 {
     [0.0].into_iter().chain(times(scene)).find(loaded).unwrap_or(0.0)
 }
 
-/// What closed forms look at, at a time \[s] of the scene's loads and speeds [rad/s] of both races.
+/// Input of closed forms at a time \[s] of the scene's loads and speeds [rad/s] of both races.
 fn at(
     scene: &Scene,
     model: &Model,

@@ -1,4 +1,4 @@
-//! What closed forms of effects look at: the equilibrium of a bearing under its load.
+//! Input of closed forms of effects: the equilibrium of a bearing under its load.
 
 use nalgebra::Vector3;
 
@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::scene::{Drive, Scene, Schedule};
 
-/// What they look at, in an equilibrium that depends on how gyroscopic moments are carried.
+/// Input in an equilibrium that depends on how gyroscopic moments are carried.
 pub(super) fn under(
     scene: &Scene,
     model: &Model,

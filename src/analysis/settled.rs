@@ -1,4 +1,4 @@
-//! What a user asks of a bearing, at a settled state: equilibrium with balls that roll, each with its friction in balance.
+//! Quantities that a user asks of a bearing, at a settled state: equilibrium with balls that roll, each with its friction in balance.
 
 use nalgebra::Vector3;
 
@@ -39,7 +39,7 @@ impl Settled {
         }
     }
 
-    /// What is changed in another state, over what it is here.
+    /// Changes of another state, over the quantities here.
     pub fn changes_to(&self, with: &Self) -> Changes {
         let change = |before: f64, after: f64| {
             let size = if before > 0.0 { before } else { after };

@@ -44,7 +44,7 @@ pub struct FieldPoint {
     pub sticks: bool,
 }
 
-/// What the field of a contact that carries load with friction follows from.
+/// Quantities that the field of a contact that carries load with friction follows from.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FieldCause {
     /// \[m] semi-axes of the ellipse along and transverse to rolling.

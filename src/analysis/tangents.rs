@@ -27,9 +27,9 @@ pub(crate) struct ByBoth {
 /// Derivatives of the forces of a pair, about the origin of each body, world axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tangent {
-    /// Of those on the first body.
+    /// Derivatives of those on the first body.
     pub on_first: ByBoth,
-    /// Of those on the second body.
+    /// Derivatives of those on the second body.
     pub on_second: ByBoth,
 }
 
@@ -115,7 +115,7 @@ fn cage(cage: &BodyMotion<f64>, which: usize) -> [BodyMotion<D>; 2] {
 }
 
 impl Tangents {
-    /// Of a ball and a race.
+    /// Tangents of a ball and a race.
     pub fn of_ball_and_race(
         contact: &ContactModel<'_>,
         ball: &BallMotion<f64>,
@@ -126,7 +126,7 @@ impl Tangents {
         Self::of([of(0), of(1)])
     }
 
-    /// Of a ball and the cage, by what evaluates their pocket; none where they do not touch.
+    /// Tangents of a ball and the cage, by what evaluates their pocket; none where they do not touch.
     pub fn of_ball_and_cage(
         pocket: impl Fn(&BallMotion<D>, &BodyMotion<D>) -> Option<PairForces<D>>,
         ball: &BallMotion<f64>,
@@ -136,7 +136,7 @@ impl Tangents {
         Some(Self::of([pocket(&balls[0], &cages[0])?, pocket(&balls[1], &cages[1])?]))
     }
 
-    /// Of the cage and a race, by what evaluates their land; none where they do not touch.
+    /// Tangents of the cage and a race, by what evaluates their land; none where they do not touch.
     pub fn of_cage_and_race(
         land: impl Fn(&BodyMotion<D>, &RaceMotion<D>) -> Option<PairForces<D>>,
         body: &BodyMotion<f64>,
@@ -146,7 +146,7 @@ impl Tangents {
         Some(Self::of([land(&cages[0], &races[0])?, land(&cages[1], &races[1])?]))
     }
 
-    /// Of two balls, by what evaluates their contact; none where they do not touch.
+    /// Tangents of two balls, by what evaluates their contact; none where they do not touch.
     pub fn of_balls(
         contact: impl Fn(&BallMotion<D>, &BallMotion<D>) -> Option<PairForces<D>>,
         [first, second]: [&BallMotion<f64>; 2],

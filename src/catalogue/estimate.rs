@@ -31,7 +31,7 @@ const MOST: usize = 12;
 /// Balls that may be those of a bearing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
-    /// What the ratings depend on.
+    /// Quantities that the ratings depend on.
     pub geometry: Geometry,
     /// \[N] C of these balls by ISO 281.
     pub dynamic_load_rating: f64,

@@ -54,7 +54,7 @@ pub struct Entry {
     pub contact_angle: f64,
 }
 
-/// What a catalogue says of a bearing.
+/// Entry of a catalogue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bearing {
     /// Its name; empty where only numbers are given.
@@ -114,11 +114,11 @@ pub enum CatalogueError {
     /// A value outside its range.
     #[error("{key} = {value} is out of range: allowed is {range}")]
     Range {
-        /// What was given.
+        /// Given value.
         key: &'static str,
         /// Its value, with its unit.
         value: String,
-        /// What is allowed.
+        /// Allowed values.
         range: String,
     },
     /// Things that do not go together.

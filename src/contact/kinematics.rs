@@ -74,7 +74,7 @@ pub(super) struct Rolling<S: Scalar> {
     pub(super) creepage: Creepage<S>,
 }
 
-/// What a film depends on of how a contact rolls.
+/// State of rolling, as far as a film depends on it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RollingState<S: Scalar> {
     /// [m/s] rolling speed, regularised.
@@ -86,7 +86,7 @@ pub(super) struct RollingState<S: Scalar> {
 }
 
 impl<S: Scalar> Rolling<S> {
-    /// What a film depends on.
+    /// State of rolling, as far as a film depends on it.
     #[inline(always)]
     pub(super) fn state(&self) -> RollingState<S> {
         RollingState { speed: self.speed, cosine: self.cosine, creepage: self.creepage }

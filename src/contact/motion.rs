@@ -61,7 +61,7 @@ impl<S: Scalar> RaceMotion<S> {
 }
 
 impl RaceMotion<f64> {
-    /// The same as numbers that could have derivatives, or one for each lane.
+    /// Motion as numbers that could have derivatives, or one for each lane.
     #[inline(always)]
     pub fn constant<S: Scalar>(&self) -> RaceMotion<S> {
         RaceMotion {
@@ -88,7 +88,7 @@ pub struct BodyMotion<S: Scalar> {
 }
 
 impl BodyMotion<f64> {
-    /// The same motion without derivatives, as numbers that could have some.
+    /// Motion without derivatives, as numbers that could have some.
     pub fn constant<S: Scalar>(&self) -> BodyMotion<S> {
         BodyMotion {
             position: constant_vector(&self.position),

@@ -76,7 +76,7 @@ pub struct StepEnd {
 }
 
 impl StepEnd {
-    /// Of the step of `h` \[s] from a state that was solved with this workspace.
+    /// Energies of the step of `h` \[s] from a state that was solved with this workspace.
     pub fn new(model: &Model, state: &State, boundary: &Boundary, h: f64, workspace: &Workspace) -> Self {
         let solved = Solved { workspace, guide: model.cage_guide() };
         let n_balls = workspace.balls.len();
@@ -216,7 +216,7 @@ pub(super) fn grow(
     }
 }
 
-/// What rings and balls have grown by, and what these contacts set against it.
+/// Growth of rings and balls, and the forces that these contacts set against it.
 fn grown(touch: impl Fn(usize, Race) -> Touch, state: &State, boundary: &Boundary) -> Grown {
     let mut grown = Grown { warmth: boundary.conditions.warmth, ..Grown::default() };
     for ball in 0..state.balls.len() {

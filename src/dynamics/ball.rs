@@ -29,7 +29,7 @@ pub struct Surroundings<'a> {
     pub model: &'a Model,
     /// Contact with each race.
     pub contacts: &'a PerRace<ContactModel<'a>>,
-    /// What acts from outside.
+    /// Loads from outside: gravity, frame, medium.
     pub ambient: &'a Ambient,
     /// Differences of Kalker's polynomials from the table, by ball.
     pub differences: &'a [PerRace<Difference>],
@@ -92,7 +92,7 @@ impl<'a> Surroundings<'a> {
     }
 }
 
-/// What pockets and neighbours do to the balls of a group.
+/// Forces of pockets and neighbours on the balls of a group.
 fn by_lane(trials: &[BallTrial]) -> [Wrench<Lanes>; 2] {
     let mut of = [Wrench::<Lanes>::default(); 2];
     for (lane, trial) in trials.iter().enumerate() {
@@ -109,12 +109,12 @@ fn by_lane(trials: &[BallTrial]) -> [Wrench<Lanes>; 2] {
     of
 }
 
-/// What one ball has beside its lane of a group ([`super::group`]).
+/// Trial of one ball, beside its lane of a group ([`super::group`]).
 #[derive(Clone, Debug)]
 pub struct BallTrial {
     /// Contact with the cage's pocket at the end of the step, where they touch.
     pub pocket: Option<PairForces>,
-    /// What its neighbours do to it at the end of the step, where it touches one.
+    /// Push of its neighbours at the end of the step, where it touches one.
     pub pushed: Option<Push>,
     /// Tangent, with its couplings to the bodies.
     pub block: Block,
@@ -128,7 +128,7 @@ pub struct BallTrial {
     reactions: [Option<Reaction>; SLOTS],
 }
 
-/// What the neighbours of a ball do to it in a trial step.
+/// Push of the neighbours of a ball in a trial step.
 #[derive(Clone, Copy, Debug)]
 pub struct Push {
     /// Force and moment.
@@ -325,7 +325,7 @@ fn by_ball_and_race(
     PairTangent::of(&contact.differentiated(contact.path(obliquely), ball, race))
 }
 
-/// What a contact with a race of given motion does to the ball, and its derivatives by the ball's unknowns, alike.
+/// Forces of a contact with a race of given motion on the ball, and their derivatives by the ball's unknowns.
 fn by_ball_alone(
     obliquely: bool,
     contact: &ContactModel<'_>,

@@ -129,7 +129,7 @@ impl<S: Scalar> BallEquations<S> {
         }
     }
 
-    /// What is left of the equations under the total force and moment at the end of the step.
+    /// Remainder of the equations under the total force and moment at the end of the step.
     #[inline(always)]
     pub fn remainder(&self, unknowns: &Six<S>, total: &Wrench<S>) -> Wrench<S> {
         let [acceleration, angular] = self.accelerations(unknowns);

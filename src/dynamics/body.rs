@@ -146,7 +146,7 @@ impl BodyTrial {
         }
     }
 
-    /// The same with derivatives by the rotation, after [`BodyTrial::differentiate`].
+    /// Motion with derivatives by the rotation, after [`BodyTrial::differentiate`].
     pub fn motion(&self) -> RaceMotion<D> {
         match (&self.carried, &self.derived) {
             (Some(carried), _) => *carried,
@@ -339,7 +339,7 @@ impl BodyTrial {
         }
     }
 
-    /// The same with derivatives by the rotation, after [`BodyTrial::differentiate`].
+    /// Motion with derivatives by the rotation, after [`BodyTrial::differentiate`].
     pub fn body_motion(&self) -> Option<BodyMotion<D>> {
         let turn = self.derived.as_ref()?;
         let RaceMotion { position, axis, velocity, angular_velocity, .. } = self.motion();

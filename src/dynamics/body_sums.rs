@@ -1,4 +1,4 @@
-//! What acts on a body in a trial step: its load, its constraints, and their sums, with derivatives or without.
+//! Forces on a body in a trial step: its load, its constraints, and their sums, with derivatives or without.
 
 use nalgebra::Vector3;
 
@@ -33,7 +33,7 @@ pub struct BodyScales {
     pub time: f64,
 }
 
-/// What a body in a trial step is given.
+/// Given quantities of a body in a trial step.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyStep<'a> {
     /// The body.
@@ -48,7 +48,7 @@ pub struct BodyStep<'a> {
     pub moving: Option<&'a MovingFrame>,
     /// The step.
     pub step: &'a HhtStep,
-    /// What its equations are scaled with.
+    /// Scales of its equations.
     pub scales: BodyScales,
 }
 
@@ -105,7 +105,7 @@ pub fn in_moving_frame<S: Scalar>(
 
 /// A constraint at the end of a trial step (paper eq. 3, 4).
 pub struct Held<S: Scalar> {
-    /// What shall be 0 \[m, rad, rad/s].
+    /// Value that shall be 0 \[m, rad, rad/s].
     pub value: S,
     /// Derivative of a coordinate or speed by its acceleration [s2, s].
     pub gain: f64,

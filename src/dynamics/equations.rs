@@ -25,7 +25,7 @@ const CONSTRAINT_TOLERANCE: f64 = 1e-8;
 pub struct BearingStep<'a> {
     pub model: &'a Model,
     pub(super) contacts: PerRace<ContactModel<'a>>,
-    /// What acts from outside at the end of the step.
+    /// Loads from outside at the end of the step.
     pub(super) ambient: Ambient,
     pub start: &'a State,
     pub step: HhtStep,
@@ -190,7 +190,7 @@ impl<'a> BearingStep<'a> {
         sums
     }
 
-    /// What a body that forces move is given in this step.
+    /// Given quantities of a body that forces move in this step.
     fn given<'b>(&'b self, body: Body, model: &'b RigidBody, start: &'b BodyState) -> BodyStep<'b> {
         BodyStep {
             body: model,

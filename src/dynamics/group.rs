@@ -260,7 +260,7 @@ impl Groups {
         wrench_in_lane(&group.balance.total, lane)
     }
 
-    /// What is left of a ball's equations of motion.
+    /// Remainder of a ball's equations of motion.
     #[inline]
     pub fn remainder(&self, ball: usize) -> Wrench {
         let (group, lane) = self.place(ball);
@@ -323,7 +323,7 @@ fn move_lanes(equations: &BallEquations<Lanes>, unknowns: &Six<Lanes>, motion: &
     *motion = equations.motion(unknowns);
 }
 
-/// What acts on balls: from outside, by two contacts, and by pockets and neighbours where some touch.
+/// Forces on balls: from outside, by two contacts, and by pockets and neighbours where some touch.
 type Acts<'a> = (&'a Ambient, [&'a BallRaceContact<Lanes>; 2], Option<&'a [Wrench<Lanes>; 2]>);
 
 /// Sums what acts on balls with these unknowns and this motion, and what it leaves of their equations.

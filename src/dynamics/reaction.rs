@@ -27,12 +27,12 @@ impl Reaction {
     }
 }
 
-/// What the matrix needs of a pair.
+/// Derivatives of a pair that the matrix needs.
 #[derive(Clone, Copy, Debug)]
 pub struct PairTangent {
     /// Derivatives of force and moment (rows) on the first body by its own unknowns.
     pub by_first: Matrix6<f64>,
-    /// The same by the second body's.
+    /// Derivatives by the second body's.
     pub by_second: Matrix6<f64>,
     /// Reaction on the second body.
     pub on_second: Reaction,

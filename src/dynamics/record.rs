@@ -1,4 +1,4 @@
-//! What a run keeps of its steps: heat by contact and powers of loads, for reports, and temperatures, which later steps follow.
+//! Records that a run keeps of its steps: heat by contact and powers of loads, for reports, and temperatures, which later steps follow.
 
 use crate::effects::heat::ByContact;
 use crate::effects::heat_balance::Heating;
@@ -59,7 +59,7 @@ pub fn record(model: &Model, state: &mut State, pairs: &impl Pairs, conditions: 
     }
 }
 
-/// What has means, of a state whose forces and powers are those of this moment.
+/// Quantities that have means, of a state whose forces and powers are those of this moment.
 fn averaged(model: &Model, state: &State) -> Averaged {
     let of_race = |race: Race| {
         let wrench = state.wrench_on(race);

@@ -24,12 +24,12 @@ pub struct StepTurn<S: Scalar> {
     pub angular_velocity: Vector3<S>,
     /// Orientation at the start of the step.
     start: UnitQuaternion<f64>,
-    /// The same as a matrix.
+    /// Orientation at the start of the step, as a matrix.
     start_axes: Matrix3<f64>,
 }
 
 impl StepTurn<f64> {
-    /// The same without derivatives, as numbers that could have some.
+    /// Turn without derivatives, as numbers that could have some.
     pub fn constant<S: Scalar>(&self) -> StepTurn<S> {
         let Self { start, start_axes, .. } = *self;
         let [rotation, rate, rate_derivative, axis, angular_velocity] =

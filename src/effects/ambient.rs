@@ -1,4 +1,4 @@
-//! What acts on balls and bodies from outside of the bearing: weight, the forces of inertia of a moving frame, and the drag of
+//! Loads on balls and bodies from outside of the bearing: weight, the forces of inertia of a moving frame, and the drag of
 //! the medium around the balls. [`Ambient`] is the one place of all of them.
 
 use std::f64::consts::PI;
@@ -134,7 +134,7 @@ impl Ambient {
         Wrench { force: sum.force + steady.force, moment: sum.moment + steady.moment }
     }
 
-    /// What of it acts on the rolling of a ball in a steady orbit: drag, churning, and the moment of a frame that turns.
+    /// Loads on the rolling of a ball in a steady orbit: drag, churning, and the moment of a frame that turns.
     pub fn against_rolling<S: Scalar>(&self, ball: &BallMotion<S>) -> Wrench<S> {
         let mut sum = Wrench::default();
         if let Some(frame) = &self.frame {

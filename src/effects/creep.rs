@@ -48,7 +48,7 @@ impl CreepLaw {
         !matches!(self, Self::Frictionless | Self::Linear)
     }
 
-    /// What this law misses of friction, with or without the slip of bent grooves (docs/creep-laws.md); nothing of the
+    /// Share of friction that this law misses, with or without the slip of bent grooves (docs/creep-laws.md); nothing of the
     /// default.
     pub fn misses(self, groove_slip: bool) -> Option<&'static str> {
         match (self, groove_slip) {

@@ -134,7 +134,7 @@ keys! {
 }
 
 impl Settings {
-    /// What contacts read.
+    /// Law of damping that contacts read.
     pub fn law(&self) -> Damping {
         match self.given {
             Given::Factor(factor) => Damping::HuntCrossley(factor.0),

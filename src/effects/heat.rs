@@ -15,7 +15,7 @@ keys! {
     "heat_outputs" => on: bool = false,
 }
 
-/// What power is lost to: friction on the inner and on the outer race, in pockets, on lands, of balls among themselves; drag.
+/// Powers by what they are lost to: friction on the inner and on the outer race, in pockets, on lands, of balls among themselves; drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ByContact {
     /// Balls on the inner and on the outer race.

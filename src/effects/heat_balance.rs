@@ -119,7 +119,7 @@ pub struct HeatBalance {
     orbit: f64,
 }
 
-/// What of a step the balance needs.
+/// Quantities of a step that the balance needs.
 #[derive(Clone, Copy, Debug)]
 pub struct Heating<'a> {
     /// \[W] powers lost to friction.

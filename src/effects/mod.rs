@@ -13,12 +13,14 @@
 //! 2. `INFO` says what it adds, which states it has, where it is from and what it costs; its `example` must start (`tests/effects/list.rs`).
 //! 3. `NUMBERS` has a row per number: the range stands there alone, and makes it an FMI parameter if a package offers it.
 //! 4. `agree` refuses keys that do not go together. What it has to know of the rest of the scene is in [`Setup`].
-//! 5. `inputs` are what a master sets while it is on; their values join [`EffectInputs`]. `rows` and `ball_rows` are its outputs, empty while it is off; what they read joins [`Reports`].
+//! 5. `inputs` are what a master sets while it is on; their values join [`EffectInputs`]. `rows` and `ball_rows` are its outputs, empty while it is off; what they
+//!    read joins [`Reports`]. A part of the
+//!    losses is its `LOSS`, a power of contacts its `POWER`: named once in [`LOSSES`] and [`CONTACT_POWERS`] below, from which tables, summaries and pages have them.
 //! 6. Add `pub mod NAME;` and the word `NAME` to the list below. Validation, variables, parameters and the page of a
 //!    package come from that list. Value references follow its order: add at the end.
 //! 7. The physics hangs on at most one hook: `Model` takes from `scene.effects.NAME` what a step reads, as an `Option`.
-//! 8. `twins` says how it is taken in and out, with `ESTIMATE` in words: estimates compare settled states of both ([`twin`]), and `tests/effects/estimates.rs`
-//!    compares that with runs. `matters` is for what has no settled state. `switch` is for effects that `effects.auto` can switch on.
+//! 8. `twins` says how it is taken in and out, with `ESTIMATE` in words: estimates compare settled states of both ([`twin`]), and
+//!    `tests/effects/estimates.rs` compares that with runs. `matters` is for what has no settled state. `switch` is for effects that `effects.auto` can switch on.
 //! 9. Everything that moves the balls must be in the equilibrium too, or a run starts with a bounce.
 
 pub mod ambient;
@@ -79,7 +81,7 @@ macro_rules! effects {
                 vec![$(&self.$effect),*]
             }
 
-            /// The same, to be changed.
+            /// All of them, to be changed.
             pub(crate) fn each_mut(&mut self) -> Vec<&mut dyn AnyEffect> {
                 vec![$(&mut self.$effect),*]
             }
@@ -159,7 +161,7 @@ impl Effects {
         self.each().into_iter().flat_map(|effect| effect.twins(estimate)).collect()
     }
 
-    /// What closed forms say of effects that have no twins, in their order, then of what no scene switches.
+    /// Verdicts of closed forms on effects that have no twins, in their order, then of what no scene switches.
     pub fn verdicts(&self, estimate: &Estimate) -> Vec<Verdict> {
         let mut verdicts: Vec<Verdict> =
             self.each().into_iter().flat_map(|effect| effect.matters(estimate)).collect();

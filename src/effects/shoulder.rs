@@ -35,7 +35,7 @@ keys! {
 }
 
 const KEY: &str = "effects.shoulder_outputs";
-/// What its estimate is of.
+/// Subject of its estimate.
 pub const SUBJECT: &str = "shoulders";
 
 type Contact = fn(&BallOutput) -> &ContactOutput;

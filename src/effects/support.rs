@@ -79,7 +79,7 @@ impl Relative<f64> {
     }
 }
 
-/// What a support does to its race, about the race's origin.
+/// Force of a support on its race, about the race's origin.
 #[derive(Clone, Copy, Debug)]
 pub struct Held<S: Scalar> {
     /// \[N] force, world axes.
@@ -105,7 +105,7 @@ fn product<S: Scalar>(matrix: &Matrix6<f64>, first: &Vector3<S>, second: &Vector
 }
 
 impl Support {
-    /// What it does to its race.
+    /// Force on its race.
     pub fn holds<S: Scalar>(&self, flange: &Pose, relative: &Relative<S>) -> Held<S> {
         let to_flange = flange.orientation.inverse();
         let seen = |v: &Vector3<S>| turn(&to_flange, v);

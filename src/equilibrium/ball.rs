@@ -47,7 +47,7 @@ pub struct Shared<S: Scalar = D> {
 }
 
 impl Shared {
-    /// The same as numbers of which it is independent.
+    /// Place as numbers that it does not depend on.
     pub fn fixed<S: Scalar>(&self) -> Shared<S> {
         let fixed = |v: &Vector3<D>| v.map(|c| S::constant(c.value));
         Shared {
@@ -120,7 +120,7 @@ pub fn balance(
     balance_at(model, contacts, input, shared, index, place)
 }
 
-/// What settling a ball needs of its balance: derivatives by the ball's own coordinates alone.
+/// Balance of a ball as far as settling it needs: derivatives by the ball's own coordinates alone.
 #[derive(Clone, Copy)]
 struct OwnBalance {
     /// \[N] unbalanced force along the two coordinates of [`Place`].

@@ -20,7 +20,7 @@ use crate::model::bodies::{PerRace, Race};
 
 /// [-] residual that a guess is good for, where it does not get to its tolerance.
 const USEFUL: f64 = 1e-6;
-/// What a guess may take; a typical one takes 6 to 10 iterations. Its tolerance is below that of the whole search, which then has
+/// Budget of a guess; a typical one takes 6 to 10 iterations. Its tolerance is below that of the whole search, which then has
 /// nothing left to do: its last step would cost as much as five here.
 const EFFORT: Effort = Effort { tolerance: 1e-12, enough: USEFUL, iterations: 40 };
 

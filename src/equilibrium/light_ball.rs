@@ -15,7 +15,7 @@ const LONGEST: f64 = 0.04;
 /// Iterations of one ball.
 const ITERATIONS: u32 = 40;
 
-/// What stays of a ball near its place.
+/// Quantities of a ball that stay near its place.
 #[derive(Clone, Copy, Debug)]
 pub struct Stays {
     /// [N/m^1.5] Hertz stiffness, what spalls take off included.
@@ -138,7 +138,7 @@ impl<'a> LightBall<'a> {
         (slope * depth, 1.5 * slope)
     }
 
-    /// What stays of the whole balance near a place.
+    /// Quantities of the whole balance that stay near a place.
     pub fn stays(&self, place: &Place, whole: &BallBalance<f64>) -> Stays {
         let (at, along, away) = self.position(place);
         let (inner_approach, ..) = self.inner_approach(&at);

@@ -92,7 +92,7 @@ impl EquilibriumInput {
         Conditions { friction: 0.0, warmth, lubrication: 0.0 }
     }
 
-    /// The same with friction, dry or oiled.
+    /// Conditions with friction, dry or oiled.
     pub fn with_friction(&self) -> Conditions {
         Conditions { friction: self.friction, lubrication: self.lubrication, ..self.surroundings() }
     }

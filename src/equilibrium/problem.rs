@@ -51,7 +51,7 @@ pub struct Found<B = BallBalance> {
     pub converged: bool,
 }
 
-/// What a search may spend, and what it is after.
+/// Budget and goal of a search.
 #[derive(Clone, Copy)]
 pub struct Effort {
     /// [-] residual over the size of the forces at work that is enough.

@@ -65,9 +65,9 @@ impl<B> Trial<B> {
 
 /// Axes of the outer race in the bearing frame, those that balls are looked at in.
 pub enum OuterAxes {
-    /// Of a race that rests.
+    /// Axes of a race that rests.
     Resting(UnitQuaternion<f64>),
-    /// Of a race that moves: conformal vector of its rotation.
+    /// Axes of a race that moves: conformal vector of its rotation.
     Moving(Vector3<D>),
 }
 

@@ -20,7 +20,7 @@ pub struct Instance {
     pub guid: String,
     /// Start of everything, for a reset.
     fresh: Unit,
-    /// What is simulated.
+    /// Unit that is simulated.
     pub(super) unit: Unit,
     /// State of the interface, beside that of what is simulated.
     pub state: State,
@@ -32,7 +32,7 @@ pub struct Instance {
     pub previous: Option<Vec<f64>>,
     /// Derivatives of outputs by inputs at this point, if they were asked for.
     pub columns: Option<Vec<Vec<f64>>>,
-    /// What was warned of.
+    /// Warnings that were given.
     warned: Warned,
 }
 
@@ -109,7 +109,7 @@ impl Instance {
         self.unit.rows()
     }
 
-    /// The same slave once more, at the same point; its messages go elsewhere.
+    /// Copy of the slave at the same point; its messages go elsewhere.
     pub fn copy(&self, log: Log) -> Self {
         Self {
             log,

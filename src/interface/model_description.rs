@@ -137,7 +137,7 @@ impl Exported {
     }
 }
 
-/// What a model description says of the whole package.
+/// Attributes of the whole package in a model description.
 struct About<'a> {
     title: &'a str,
     name: &'a str,

@@ -1,4 +1,4 @@
-//! What the nonlinear theory of rolling obliquely has over a mixture of rolling along both axes of the ellipse.
+//! Difference of the nonlinear theory of rolling obliquely from a mixture of rolling along both axes of the ellipse.
 //!
 //! A net of two layers, trained on contacts of the half-space solver. Its arguments are those of the table, linear theory's forces without
 //! coupling over their limits, `q = (F_x/(mu Q), F_y/(mu Q), M_z/M_max)`, and the direction of rolling; its results are forces over
@@ -33,13 +33,13 @@ const UNITS: usize = 24;
 
 /// Weights of the net.
 struct Weights {
-    /// Of the first layer, by argument and unit, and its constants.
+    /// Weights of the first layer, by argument and unit, and its constants.
     first: [[f32; UNITS]; ODD + EVEN],
     first_constant: [f32; UNITS],
-    /// Of the second layer, by unit of the first and own unit, and its constants.
+    /// Weights of the second layer, by unit of the first and own unit, and its constants.
     second: [[f32; UNITS]; UNITS],
     second_constant: [f32; UNITS],
-    /// Of the results, by result and unit.
+    /// Weights of the results, by result and unit.
     last: [[f32; UNITS]; 3],
 }
 
@@ -90,7 +90,7 @@ pub struct ObliqueNet {
     across: [f64; 3],
 }
 
-/// What the net sees of a contact.
+/// Arguments of the net of a contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Features<S> {
     /// Arguments that change their sign with the creepages.
@@ -104,7 +104,7 @@ pub struct Features<S> {
 }
 
 impl ObliqueNet {
-    /// Of a patch, whatever its direction of rolling.
+    /// Net of a patch, whatever its direction of rolling.
     ///
     /// # Errors
     /// If the patch is out of range.
@@ -119,7 +119,7 @@ impl ObliqueNet {
         Ok(Self { long, ratio, along, across })
     }
 
-    /// What the net sees of a contact, by q, cosine and sine of the rolling direction.
+    /// Arguments of the net by q, cosine and sine of the rolling direction.
     #[inline(always)]
     pub fn features<S: Scalar>(&self, [x, y, z, cosine, sine]: [S; 5]) -> Features<S> {
         let (one, tiny) = (S::one(), S::constant(f64::MIN_POSITIVE));

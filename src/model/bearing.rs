@@ -182,7 +182,7 @@ impl Bearing {
         RacewayFilm::new(lubricant, modulus, ellipse)
     }
 
-    /// What heat passes through on a race, of contacts of the shape that they have at the free contact angle.
+    /// Passing contacts of a race, which conduct heat, of contacts of the shape that they have at the free contact angle.
     pub fn passing(&self, race: Race, shape: &ContactShape) -> Passing {
         let at = shape.at(self.circumferential_curvature(race));
         // Of a load of 1 N.

@@ -21,7 +21,7 @@ pub struct DamagedBalls {
 }
 
 impl DamagedBalls {
-    /// Of spalls, each with its ball; none without any. `whole` is a contact of the balls with each race.
+    /// Damage by spalls, each with its ball; none without any. `whole` is a contact of the balls with each race.
     pub fn new(spalls: &[(usize, Spall)], bearing: &Bearing, whole: &PerRace<Whole>) -> Option<Self> {
         let mut balls: Vec<usize> = spalls.iter().map(|(ball, _)| *ball).collect();
         balls.sort_unstable();

@@ -1,4 +1,4 @@
-//! What a run puts in, loses and stores, and what a step leaves of it unaccounted for.
+//! Energies that a run puts in, loses and stores, and what a step leaves of it unaccounted for.
 
 use serde::{Deserialize, Serialize};
 
@@ -128,7 +128,7 @@ pub struct Pressed {
 }
 
 impl Pressed {
-    /// Of a contact as it is now.
+    /// Energies of a contact as it is now.
     pub fn new(contact: &PairForces) -> Self {
         let approach = contact.approach.max(0.0);
         Self { stiffness: contact.stiffness, depth: approach * approach * approach.sqrt() }

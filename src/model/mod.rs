@@ -277,7 +277,7 @@ impl Model {
         PerRace::new(|race| self.contact(race, conditions))
     }
 
-    /// The same for damaged balls of these orientations.
+    /// Contact models of both races for damaged balls of these orientations.
     pub fn contacts_oriented<'a>(
         &'a self,
         conditions: &Conditions,
@@ -286,7 +286,7 @@ impl Model {
         PerRace::new(|race| self.contact_of(&self.raceways[race], race, conditions, orientations))
     }
 
-    /// What acts on balls and bodies from outside, in a frame of this motion.
+    /// Loads on balls and bodies from outside, in a frame of this motion.
     pub fn ambient(&self, frame: &FrameMotion) -> Ambient {
         let Ball { mass, inertia, radius } = self.bearing.ball;
         let moving = self.frame_arm.map(|arm| MovingFrame::new(frame, arm));

@@ -32,7 +32,7 @@ pub struct BallState {
     pub angular_acceleration: Vector3<f64>,
     /// Total force and moment about the centre, the `g` of the HHT scheme.
     pub total: Wrench,
-    /// What the last step left of the equations of motion, within their tolerance.
+    /// Remainder of the equations of motion that the last step left, within their tolerance.
     pub remainder: Wrench,
     /// How it is pressed on the races.
     pub pressed: PerRace<Pressed>,
@@ -72,7 +72,7 @@ pub struct BodyState {
     pub rate_derivative: Vector3<f64>,
     /// Total force (spatial) and moment (material), the `g` of the HHT scheme; 0 where the motion is prescribed.
     pub total: Wrench,
-    /// What the last step left of the equations of motion, within their tolerance: force (spatial) and moment (material).
+    /// Remainder of the equations of motion that the last step left, within their tolerance: force (spatial) and moment (material).
     pub remainder: Wrench,
     /// Lagrange multipliers of its constraints [N, N m].
     pub multipliers: Vec<f64>,
@@ -247,7 +247,7 @@ pub struct State {
     pub energies: Energies,
     /// Work since the start.
     pub statistics: Statistics,
-    /// What rings and balls have grown by; none where growth is not simulated.
+    /// Growth of rings and balls; none where growth is not simulated.
     pub grown: Option<Grown>,
     /// Loads since the start as life counts them; none where it is not asked for.
     pub rating: Option<rating::Sums>,
@@ -350,7 +350,7 @@ pub struct Trend {
     pub smooth: Vec<bool>,
 }
 
-/// What steps share of their Newton matrices: the balls, eliminated. It is part of the state, as many steps use it.
+/// Newton matrix as far as steps share it: the balls, eliminated. It is part of the state, as many steps use it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct KeptMatrix {
     /// \[s] size of the steps that it is for.
@@ -361,7 +361,7 @@ pub struct KeptMatrix {
     pub blocks: Vec<Eliminated>,
 }
 
-/// What is known of the eliminated block of one ball.
+/// Age and place of the eliminated block of one ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KeptBlock {
     /// \[m] where the ball was, seen from the outer race: the block turns with the orbit of its ball.

@@ -46,7 +46,7 @@ pub struct Block {
     pub right: [Matrix6<f64>; SLOTS],
     /// Border rows, own columns.
     pub left: [Matrix6<f64>; SLOTS],
-    /// What the block adds to rows and columns of a member of the border.
+    /// Additions of the block to rows and columns of a member of the border.
     pub own: [Matrix6<f64>; SLOTS],
 }
 
@@ -137,7 +137,7 @@ struct Coupling {
     right: Square<Lanes>,
     /// `L`.
     left: Square<Lanes>,
-    /// What is left in rows of this member, columns of each: `-L A^-1 R`, with what the block adds to the member's own.
+    /// Remainder in rows of this member, columns of each: `-L A^-1 R`, with what the block adds to the member's own.
     rest: Vec<Square<Lanes>>,
 }
 
@@ -215,7 +215,7 @@ pub struct Arrowhead {
     members: Vec<Member>,
     /// Turns of the blocks since they were eliminated.
     turns: Vec<OrbitTurn<Lanes>>,
-    /// What all blocks leave in rows and columns of each two members, in world axes, by lane.
+    /// Remainders of all blocks in rows and columns of each two members, in world axes, by lane.
     sums: Vec<Square<Lanes>>,
     /// Loads on the members, by lane, and what they do, in world axes.
     worlds: Vec<Six<Lanes>>,

@@ -6,7 +6,7 @@ use super::system::SystemScene;
 use super::{Scene, SceneError, Solver};
 use crate::schema::{PhaseSection, regular};
 
-/// What a scene file describes.
+/// Machine that a scene file describes.
 #[derive(Clone, Debug)]
 pub enum MachineScene {
     /// One bearing, whose races are given.
@@ -92,7 +92,7 @@ impl MachineScene {
         }
     }
 
-    /// What its reader should know, a sentence each.
+    /// Notes for its reader, a sentence each.
     pub fn notes(&self) -> Vec<String> {
         match self {
             Self::Bearing(scene) => scene.notes(),
@@ -137,7 +137,7 @@ impl MachineScene {
         self.bearings_mut().for_each(change);
     }
 
-    /// The same with changed scenes of its bearings.
+    /// Machine with changed scenes of its bearings.
     #[must_use]
     pub fn with(&self, change: impl Fn(&mut Scene)) -> Self {
         let mut scene = self.clone();

@@ -186,7 +186,7 @@ impl Scene {
         FrameMotion { gravity: self.effects.gravity.at(time), ..motion }
     }
 
-    /// What effects may have to agree with.
+    /// Setup that effects may have to agree with.
     fn setup(&self) -> effects::Setup<'_> {
         let saturates = self.effects.creep.law.saturates();
         let cage = self.effects.cage.on;

@@ -1,4 +1,4 @@
-//! What a reader of a scene's results should know: defaults that were taken, and numbers that are allowed but make no sense
+//! Notes for the reader of a scene's results: defaults that were taken, and numbers that are allowed but make no sense
 //! for a ball bearing.
 
 use toml::Table;

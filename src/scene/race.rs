@@ -1,4 +1,4 @@
-//! What a scene gives for a race.
+//! Sections, loads and speeds of a race in a scene.
 
 use super::{Direction, Drive, Machine, RaceSection, Scene, Schedule};
 use crate::numerics::motion::Wrench;
@@ -13,7 +13,7 @@ impl Race {
         }
     }
 
-    /// What a scene gives for its directions x, y, z, ry, rz.
+    /// Loads or motions of a scene for its directions x, y, z, ry, rz.
     pub fn directions(self, scene: &Scene) -> [Direction<'_>; 5] {
         match self {
             Self::Inner => scene.load.of_inner(),

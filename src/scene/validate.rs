@@ -1,4 +1,4 @@
-//! What the keys of a scene must agree in; ranges of single numbers stand in their table.
+//! Checks of the keys of a scene against each other; ranges of single numbers stand in their table.
 
 use super::numbers::STEP;
 use super::{BearingSection, Condition, Drive, Giver, Group, Scene, SceneError, Schedule};

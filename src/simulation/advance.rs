@@ -277,7 +277,7 @@ impl Simulation {
         }
     }
 
-    /// What is imposed on the bearing where a step ends that goes to a time \[s].
+    /// Boundary of the bearing where a step ends that goes to a time \[s].
     pub(super) fn imposed(&self, script: &Script, time: f64) -> Boundary {
         let mut boundary = self.boundary(time);
         script.impose(&self.scene, &self.paths, &mut boundary);

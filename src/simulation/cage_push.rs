@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::Simulation;
 use crate::model::bodies::Body;
 
-/// What a cage is given beside the motion that it has.
+/// Push of a cage, beside the motion that it has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CagePush {
     /// \[m] displacement of its centre, world axes.

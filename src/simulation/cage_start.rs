@@ -19,7 +19,7 @@ const OVERLAP: f64 = 0.01;
 /// [-] step of differences over the smallest clearance: distances are nearly linear in the pose.
 const DIFFERENCE: f64 = 1e-3;
 
-/// What the cage is placed among.
+/// Bodies that the cage is placed among.
 struct Surroundings<'a> {
     cage: &'a CageModel,
     balls: &'a [BallState],

@@ -14,12 +14,12 @@ use crate::model::state::State;
 use crate::model::structure::StructureState;
 use crate::scene::{Groups, Level};
 
-/// What a run needs between its steps.
+/// Course of a run: data that it needs between its steps.
 #[derive(Debug)]
 pub struct Course {
     /// Scripts of the bearings.
     scripts: Vec<Script>,
-    /// What scripts give.
+    /// Groups of inputs that scripts give.
     played: Played,
     /// \[s] times at which a step ends, the next one last.
     stops: Vec<f64>,
@@ -36,11 +36,11 @@ pub struct Course {
 struct Moment {
     /// \[s] time.
     time: f64,
-    /// Of the bearings.
+    /// States of the bearings.
     bearings: Vec<StepBound>,
-    /// Of the shafts and the housings.
+    /// States of the shafts and the housings.
     structures: Vec<StructureState>,
-    /// Of what links them.
+    /// States of what links them.
     links: Vec<LinkState>,
 }
 
@@ -217,7 +217,7 @@ impl Simulation {
         self.point = Point::of_contacts(conditions(&self.inputs, &self.state), seen.contacts);
     }
 
-    /// What is reported since the last row begins anew.
+    /// Begins anew what is reported since the last row.
     pub(super) fn begin_report(&mut self) {
         let time = self.state.time;
         if let Some(heat) = &mut self.state.heat {

@@ -11,9 +11,9 @@ use crate::scene::machine::MachineScene;
 /// Inputs of a machine, valid at the last communication point.
 #[derive(Clone, Debug)]
 pub struct MachineInputs {
-    /// Of the shaft and its housings; none of a bearing alone.
+    /// Inputs of the shaft and its housings; none of a bearing alone.
     pub shaft: Option<ShaftInputs>,
-    /// Of every bearing.
+    /// Inputs of every bearing.
     pub bearings: Vec<Inputs>,
 }
 
@@ -158,7 +158,7 @@ impl Machine {
     }
 }
 
-/// What the values of a table of variables are read from.
+/// Source of the values of a table of variables.
 pub trait Parts {
     /// The shaft with its housings, where there is one.
     fn shaft(&self) -> Option<&System>;

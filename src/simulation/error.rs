@@ -52,7 +52,7 @@ pub enum SimulationError {
         inner_load: f64,
         /// \[N] its load on the outer race.
         outer_load: f64,
-        /// What is to be said of the oil, where it hardly flows.
+        /// Remark about the oil, where it hardly flows.
         oil: Option<String>,
     },
     /// A contact is deeper than Hertz's theory reaches.

@@ -1,4 +1,4 @@
-//! What a bearing does at an instant, as far as means of a run are made of it: less than all outputs, for every step.
+//! State of a bearing at an instant, as far as means of a run are made of it: less than all outputs, for every step.
 
 use super::Simulation;
 use super::losses::Losses;

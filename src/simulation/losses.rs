@@ -1,4 +1,4 @@
-//! What a bearing loses, by what it is lost to: together the power that its races have to bring.
+//! Losses of a bearing by part: together the power that its races have to bring.
 //!
 //! Powers of contacts are those of the forces that act: what a contact loses beside the sliding of its creep forces is rolling
 //! resistance and what the material resists, so that all parts together are the whole to the last digits.
@@ -14,7 +14,7 @@ use crate::model::bodies::{PerRace, Race};
 use crate::model::state::{BallState, State};
 
 impl Losses {
-    /// Of a state with these contacts, their models, motion of the races and sums.
+    /// Losses of a state with these contacts, their models, motion of the races and sums.
     pub(super) fn of(
         model: &Model,
         state: &State,

@@ -20,9 +20,9 @@ use crate::scene::{Level, Scene};
 pub struct Margins {
     /// Least of all loaded contacts, to the end of their groove.
     pub shoulder: f64,
-    /// Of the race that has least, to gross sliding.
+    /// Margin to gross sliding of the race that has least.
     pub friction: f64,
-    /// Of the step, to the least that is allowed.
+    /// Margin of the step to the least that is allowed.
     pub step: f64,
 }
 
@@ -67,7 +67,7 @@ pub const MARGINS: [Margin; 3] = [
 ];
 
 impl Margins {
-    /// Of balls of a radius \[m] with a friction coefficient on each race, and of a step.
+    /// Margins of balls of a radius \[m] with a friction coefficient on each race, and of a step.
     pub(super) fn of(
         balls: &[BallOutput],
         radius: f64,

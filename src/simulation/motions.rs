@@ -34,7 +34,7 @@ pub struct Motion {
     pub growth: f64,
     /// [-] share of the balls in its kinetic energy, but for that of their spins.
     pub balls: f64,
-    /// What moves, and how.
+    /// Moving parts, in words.
     pub shape: String,
 }
 
@@ -186,7 +186,7 @@ impl Simulation {
     }
 }
 
-/// What a body does in a motion.
+/// Motion of a body.
 pub(super) struct Part {
     name: String,
     /// Kinetic energy along the axis, across it, about it, and of tilts, over that of a unit amplitude of the rates.
@@ -230,7 +230,7 @@ impl Part {
         }
     }
 
-    /// The same of a bearing with a name.
+    /// Body of a bearing with a name.
     pub fn of(self, bearing: &str) -> Self {
         Self { name: format!("{} of {bearing}", self.name), ..self }
     }
@@ -240,7 +240,7 @@ impl Part {
         self.energies.iter().sum()
     }
 
-    /// What it does, where that is a part of the kinetic energy of all.
+    /// Description of its motion, where that is a part of the kinetic energy of all.
     fn describe(&self, all: f64) -> Option<String> {
         let [along, across, about, tilt] = self.energies.map(|energy| energy > NAMED * all);
         let turn = |turn: f64| match turn {

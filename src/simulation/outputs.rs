@@ -92,7 +92,7 @@ pub struct Outputs {
     pub damping_power: f64,
     /// \[W] power that the balls lose to the medium around them.
     pub drag_power: f64,
-    /// What is lost to what.
+    /// Losses by part.
     pub losses: Losses,
     /// How far the bearing is from where its run ends.
     pub margins: Margins,
@@ -233,7 +233,7 @@ impl Outputs {
         self.balls.iter().map(of_ball).fold(0.0, |sum, power| sum + power)
     }
 
-    /// What effects report.
+    /// Reports of effects.
     pub fn reports(&self) -> Reports<'_> {
         Reports {
             balls: &self.balls,
@@ -347,7 +347,7 @@ pub(super) fn spin_free_frame(race: &BodyState) -> UnitQuaternion<f64> {
 }
 
 impl RaceOutput {
-    /// What a race does, from the state alone.
+    /// Output of a race, from the state alone.
     pub(super) fn new(state: &State, model: &Model, race: Race) -> Self {
         let moved = model.bodies[race].as_ref();
         let (wrench, drive_torque) = (state.wrench_on(race), state.drive_torque(moved, race));
@@ -382,7 +382,7 @@ pub(super) fn towards_x(normal: &Vector3<f64>, radial: &Vector3<f64>, axis: &Vec
     normal.dot(axis).atan2(normal.dot(radial).abs())
 }
 
-/// The same with what acts against rolling.
+/// Output with power against rolling and film.
 fn resisted(
     model: &ContactModel<'_>,
     contact: &BallRaceContact<f64>,

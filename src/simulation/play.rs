@@ -10,7 +10,7 @@ use super::system::{Played, System};
 use super::together::{Stopped, Together};
 use crate::scene::machine::MachineScene;
 
-/// What plays its own script step by step, and shows what it does at any time within the last one.
+/// Simulation that plays its own script step by step, and shows its motion at any time within the last one.
 pub trait Scripted {
     /// Why it could not go on.
     type Error;
@@ -21,7 +21,7 @@ pub trait Scripted {
     /// All that takes its steps together.
     fn together(&mut self) -> Together<'_>;
 
-    /// What is said of a bearing that could not go on.
+    /// Message about a bearing that could not go on.
     fn stopped(&self, why: Stopped) -> Self::Error;
 
     /// All scripts.
@@ -77,7 +77,7 @@ pub trait Scripted {
     }
 }
 
-/// What sees the start of a run and every step, not its rows alone.
+/// Observer of the start of a run and of every step, not of its rows alone.
 pub trait Observer {
     /// A bearing alone, where a step has ended.
     fn bearing(&mut self, bearing: &Simulation);
@@ -139,7 +139,7 @@ impl Rows {
     }
 }
 
-/// What is seen of a run.
+/// Occasion at which a run is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Seen {
     /// The start, or where a step has ended.

@@ -10,7 +10,7 @@ use crate::forces::Contacts;
 use crate::model::Conditions;
 use crate::model::bodies::Race;
 
-/// What is known of contacts.
+/// Contacts, as far as they are known.
 #[derive(Clone, Debug)]
 enum Known {
     /// Nothing: they have to be evaluated.
@@ -21,12 +21,12 @@ enum Known {
     All(Box<Contacts>),
 }
 
-/// What the outputs of a communication point depend on, beside model and state.
+/// Quantities that the outputs of a communication point depend on, beside model and state.
 #[derive(Clone, Debug)]
 pub(super) struct Point {
     /// Conditions there: inputs that are set later are those of the next step.
     conditions: Conditions,
-    /// What is known of its contacts.
+    /// Its contacts, as far as they are known.
     contacts: Known,
     /// The outputs, once they were asked for.
     outputs: OnceLock<Outputs>,
@@ -44,7 +44,7 @@ impl Point {
         Self { conditions, contacts: Known::All(Box::new(contacts)), outputs: OnceLock::new() }
     }
 
-    /// What the bearing does there.
+    /// Outputs of the bearing there.
     pub fn instant(&self, simulation: &Simulation) -> Instant {
         match self.outputs.get() {
             Some(outputs) => outputs.into(),

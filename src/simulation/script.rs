@@ -15,7 +15,7 @@ use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 use crate::numerics::tilt;
 use crate::scene::{Drive, Group, Groups, Machine, RaceSection, Scene, Schedule};
 
-/// What the script of a scene gives in a step.
+/// Inputs that the script of a scene gives in a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Script {
     /// Wrenches on races that forces move.
@@ -135,7 +135,7 @@ fn has_scripted_load(scene: &Scene, race: Race) -> bool {
 }
 
 impl Script {
-    /// What the script gives where it may give these groups of inputs. A race that is fixed in its frame or hinged to it
+    /// Inputs that the script gives where it may give these groups. A race that is fixed in its frame or hinged to it
     /// has no inputs: the script moves it anyway.
     pub fn new(scene: &Scene, groups: Groups) -> Self {
         let given = |group| groups.contains(group) && scripted_groups(scene).contains(group);

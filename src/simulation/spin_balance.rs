@@ -40,7 +40,7 @@ pub struct Surroundings<'a> {
     pub contacts: PerRace<ContactModel<'a>>,
     /// Motion of each race.
     pub races: PerRace<RaceMotion<f64>>,
-    /// What acts from outside: drag, and the moment of a frame that turns.
+    /// Loads from outside: drag, and the moment of a frame that turns.
     pub ambient: Ambient,
 }
 

@@ -18,7 +18,7 @@ pub type Stopped = (usize, SimulationError);
 pub struct Together<'a> {
     /// One at least.
     pub(super) bearings: &'a mut [Simulation],
-    /// What carries their races; nothing where a bearing is alone.
+    /// Structures that carry their races; nothing where a bearing is alone.
     pub(super) structures: Option<&'a mut Structures>,
 }
 
@@ -84,13 +84,13 @@ impl Together<'_> {
         }
     }
 
-    /// What acts on the structures at the end of a step \[s].
+    /// Loads on the structures at the end of a step \[s].
     pub fn loads(&self, played: &Played, next: f64) -> Vec<StructureLoad> {
         let of = |structures: &&mut Structures| structures.loads(played, self.time(), next);
         self.structures.as_ref().map_or(vec![], of)
     }
 
-    /// What is imposed on the bearings there.
+    /// Boundaries of the bearings there.
     pub fn imposed(&self, scripts: &[Script], loads: &[StructureLoad], next: f64) -> Vec<Boundary> {
         let of = |(bearing, script): (&Simulation, _)| bearing.imposed(script, next);
         let mut boundaries: Vec<_> = self.bearings.iter().zip(scripts).map(of).collect();

@@ -57,7 +57,7 @@ impl ContactModel<'_> {
         self.rolling_any(ball, race)
     }
 
-    /// What an evaluated contact does, for less than the whole of it: with derivatives.
+    /// Forces and moments of an evaluated contact alone, which cost less than the whole of it; with derivatives.
     #[inline(never)]
     pub fn forces<S: Scalar>(&self, ball: &BallMotion<S>, race: &RaceMotion<S>) -> PairForces<S> {
         match self.law {
@@ -66,7 +66,7 @@ impl ContactModel<'_> {
         }
     }
 
-    /// The same by the plain path, where [`Self::path`] says so; none where the contact turns out to need the general one.
+    /// Forces and moments by the plain path, where [`Self::path`] says so; none where the contact turns out to need the general one.
     #[inline(never)]
     pub fn plain_forces<S: Scalar>(
         &self,
@@ -211,7 +211,7 @@ impl ContactModel<'_> {
         self.resisting_moment(contact.load) * contact.rolling_speed * curvature
     }
 
-    /// What the film of an evaluated contact depends on.
+    /// Load, speed, slip and size that the film of an evaluated contact depends on.
     pub fn film_loading(&self, contact: &BallRaceContact<f64>) -> Loading<f64> {
         let of_race = contact.geometry.circumferential_curvature;
         let depth = contact.geometry.approach.max(0.0);
@@ -423,7 +423,7 @@ impl<'a> ContactModel<'a> {
     }
 }
 
-/// What the film of a contact depends on: its shape, the sum of the curvatures along rolling [1/m], depth \[m] and load \[N].
+/// Quantities that the film of a contact depends on, from its shape, the sum of the curvatures along rolling [1/m], depth \[m] and load \[N].
 #[inline(always)]
 fn loading<S: Scalar>(
     shape: &ShapeAt<S>,

@@ -73,7 +73,7 @@ impl Form {
         Some(Self { spline: PeriodicSpline::through(points)?, order: shortest(points), turn: 0.0 })
     }
 
-    /// The same, turned on its race by an angle \[rad] from the race's y axis towards z.
+    /// Form turned on its race by an angle \[rad] from the race's y axis towards z.
     #[must_use]
     pub fn turned(self, angle: f64) -> Self {
         Self { turn: self.turn + angle, ..self }

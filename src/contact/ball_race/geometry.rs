@@ -91,13 +91,13 @@ impl<S: Scalar> GrooveContact<S> {
         (contact, lean)
     }
 
-    /// The same as a function of its own, where most of what is done is more than this.
+    /// Geometry by the general path, as a function of its own where a caller does much more than this.
     #[inline(never)]
     pub fn apart(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> (Self, Lean<S>) {
         Self::new(surface, offset, race)
     }
 
-    /// The same with a torus under balls that are alike, for less.
+    /// Geometry by the plain path: a torus under balls that are alike.
     #[inline(always)]
     pub(super) fn plain(surface: &Surface<'_>, offset: &Vector3<S>, race: &RaceMotion<S>) -> Self {
         Self::on(surface, offset, race, None)

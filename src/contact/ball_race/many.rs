@@ -35,7 +35,7 @@ impl<S: Scalar> BallRaceContact<S> {
         }
     }
 
-    /// What the contact does, number by number.
+    /// Forces and moments of a contact, number by number.
     ///
     /// By reference: a lane picked from a copy would need the whole copy in memory.
     #[inline(always)]

@@ -37,7 +37,7 @@ pub struct Resistance {
 /// Constants of a ball-race contact during a step.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactModel<'a> {
-    /// What the balls roll on, and their size.
+    /// Surface that the balls roll on, and their size.
     pub surface: Surface<'a>,
     /// Shape of its contacts: stiffness, ellipse and creep coefficients over the approach.
     pub shape: &'a ContactShape,

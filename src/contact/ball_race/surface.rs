@@ -1,4 +1,4 @@
-//! What a ball rolls on: the raceway as it is at the moment, its form, and the balls that it fits.
+//! Surface that a ball rolls on: the raceway as it is at the moment, its form, and the balls that it fits.
 
 use super::ball_spall::Damage;
 use super::form::Form;

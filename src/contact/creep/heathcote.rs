@@ -241,7 +241,7 @@ fn sums(q: &[Lanes; 4], sums: &mut [Lanes; 4]) {
     *sums = sum;
 }
 
-/// The same with derivatives of the strips of the bent groove and of those of a flat one.
+/// Sums with derivatives of the strips of the bent groove and of those of a flat one.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn sums_with_slopes(q: &[Lanes; 4], sums: &mut [Lanes; 4], slopes: &mut [Slopes; 2]) {
     let (halves, mut sum) = (halves(*q), [ZERO; 4]);

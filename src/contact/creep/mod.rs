@@ -33,7 +33,7 @@ pub enum Law<'a> {
     Table(&'a CreepTable),
     /// Kalker's nonlinear theory in polynomials.
     Kalker(&'a ScaledKalker),
-    /// The same, its minimum sought from the coefficients of a solution at nearby creepages.
+    /// Nonlinear theory whose minimum is sought from the coefficients of a solution at nearby creepages.
     Continued(&'a ScaledKalker, &'a [f64]),
     /// Kalker's nonlinear theory in polynomials as simulations use it: the table plus a difference that is frozen in a step.
     Frozen(&'a CreepTable, &'a [f64; 4]),
@@ -83,7 +83,7 @@ impl<S: Scalar> LinearTheory<S> {
         }
     }
 
-    /// The same with a film between the bodies that shears in series with them; the viscous share is that of
+    /// Linear theory with a film between the bodies that shears in series with them; the viscous share is that of
     /// [`FilmForces`](crate::contact::ball_race::film::FilmForces).
     ///
     /// With the linear force of the bodies `r` times the limit, a viscous film and elastic bodies in series carry `r/(1 + r)` of it. The

@@ -23,7 +23,7 @@ use crate::numerics::scalar::{Scalar, within_limit};
 /// [-] largest part of the mixture's power that the correction may take away.
 const GIVEN_BACK: f64 = 0.9;
 
-/// What rolling across the ellipse's x axis has over rolling along it.
+/// Constants of rolling across the ellipse's x axis, beside those of rolling along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exchanged {
     /// [-] `C11/C22` of the exchanged ellipse over the one in hand: coefficients of the same forces.
@@ -36,7 +36,7 @@ pub struct Exchanged {
     spin: f64,
     /// [-] semi-axis along x over the one along y.
     axis_ratio: f64,
-    /// What a mixture of the tables lacks.
+    /// Difference of the theory from a mixture of the tables.
     net: ObliqueNet,
 }
 
@@ -55,7 +55,7 @@ pub fn exchanged(patch: &Patch) -> Patch {
 }
 
 impl Exchanged {
-    /// Of a patch.
+    /// Constants of a patch.
     ///
     /// # Errors
     /// If the patch is out of range.

@@ -14,7 +14,7 @@ pub struct Stepped<'a> {
     pub model: &'a Model,
     /// States where the step began and ended.
     pub ends: [&'a StepBound; 2],
-    /// What is imposed at the time that is asked for.
+    /// Boundary at the time that is asked for.
     pub boundary: Boundary,
 }
 

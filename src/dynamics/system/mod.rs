@@ -29,7 +29,7 @@ pub struct Part<'a> {
     pub model: &'a Model,
     /// Its state.
     pub state: &'a mut State,
-    /// What is imposed on it at the end of the step.
+    /// Boundary of it at the end of the step.
     pub boundary: &'a Boundary,
     /// Its buffers.
     pub workspace: &'a mut Workspace,

@@ -21,7 +21,7 @@ pub struct Started<'a> {
     pub model: &'a Model,
     /// Its state at the start.
     pub start: &'a State,
-    /// What was imposed.
+    /// Boundary that was imposed.
     pub boundary: &'a Boundary,
     /// Its buffers as the accepted step left them.
     pub accepted: &'a Workspace,
@@ -31,7 +31,7 @@ pub struct Started<'a> {
 pub struct Perturbed<'a> {
     /// State of every bearing at the start of the step, then at its end.
     pub states: Vec<&'a mut State>,
-    /// What is imposed on each at the end.
+    /// Boundary of each at the end.
     pub boundaries: &'a [Boundary],
     /// Structures at the start, and what acts on them.
     pub structures: Vec<StructureStep<'a>>,

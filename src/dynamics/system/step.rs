@@ -36,7 +36,7 @@ pub struct Joint {
     pub seat: Seat,
 }
 
-/// What joins the structures of a system: to races of its bearings, and to one another.
+/// Joints of the structures of a system: to races of its bearings, and to one another.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Joined<'a> {
     /// Races on their seats.
@@ -54,7 +54,7 @@ pub struct StructureStep<'a> {
     pub scales: &'a DVector<f64>,
     /// State at the start.
     pub start: &'a StructureState,
-    /// What acts from outside at the end.
+    /// Loads from outside at the end.
     pub load: &'a StructureLoad,
 }
 

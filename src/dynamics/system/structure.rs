@@ -12,7 +12,7 @@ use crate::numerics::hermite::Hermite;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
 
-/// What acts on a structure from outside at the end of a step.
+/// Loads on a structure from outside at the end of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StructureLoad {
     /// Generalised force of loads and weight, the torque that drives it included where the turn is a coordinate.
@@ -24,7 +24,7 @@ pub struct StructureLoad {
 }
 
 impl StructureLoad {
-    /// The same without what acts from outside.
+    /// Load without forces from outside.
     #[must_use]
     pub fn without_force(&self) -> Self {
         Self { force: DVector::zeros(self.force.len()), axial_moment: 0.0, ..self.clone() }
@@ -57,7 +57,7 @@ impl Seat {
         Self { coordinates, map, offset: Vector3::new(offset, 0.0, 0.0), tilt: Vector3::zeros(), direction }
     }
 
-    /// The same seat at another place across the axis \[m] and with a tilt [0, ry, rz] \[rad] of its own, in the axes of the structure.
+    /// Seat at another place across the axis \[m] and with a tilt [0, ry, rz] \[rad] of its own, in the axes of the structure.
     #[must_use]
     pub fn lying_off(mut self, place: Vector3<f64>, tilt: Vector3<f64>) -> Self {
         let signs = Vector3::new(self.direction, self.direction, 1.0);
@@ -122,7 +122,7 @@ impl Seat {
 pub struct StructureTrial {
     /// State at the end of the step.
     pub end: StructureState,
-    /// What is left of the equations of motion.
+    /// Remainder of the equations of motion.
     pub residual: DVector<f64>,
     /// Generalised force of its bearings and links.
     from_bearings: DVector<f64>,
@@ -236,7 +236,7 @@ impl StructureTrial {
         trial
     }
 
-    /// The same after the forces of its bearings.
+    /// State at the end, with the forces of its bearings.
     pub fn settled(mut self, model: &Structure, load: &StructureLoad) -> StructureState {
         self.sum_forces(model, load);
         self.account(model, load);

@@ -63,7 +63,7 @@ impl Films {
         })
     }
 
-    /// What is to be said of an oil that is thicker than the model is meant for, and that steps may not be solved with; nothing of others.
+    /// Remark about an oil that is thicker than the model is meant for, and that steps may not be solved with; nothing of others.
     pub fn stiff_oil(&self, lubrication: f64, warmth: &Warmth) -> Option<String> {
         let viscosity = [0, 1].map(|race| self.supply(race, lubrication, warmth).viscosity);
         let [inner, outer] = viscosity;
@@ -128,7 +128,7 @@ impl Settings {
     }
 }
 
-/// What twins with and without oil are of.
+/// Subject of twins with and without oil.
 pub const FILM: &str = "film";
 /// Grade [mm2/s] and temperature \[degC] of the oil that estimates are for where the scene has none: a film is thick where it is cold.
 const USUAL: (f64, f64) = (68.0, 40.0);
@@ -164,7 +164,7 @@ impl Section {
     }
 }
 
-/// What is reported of the film of a contact.
+/// Report of the film of a contact.
 pub fn output(film: &Film<'_>, loading: &Loading<f64>) -> FilmOutput {
     if loading.load <= 0.0 {
         return FilmOutput::default();

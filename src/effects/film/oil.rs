@@ -26,9 +26,9 @@ const SLOPES: [(f64, f64); 14] = [
 /// An oil.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Oil {
-    /// Of one viscosity [Pa s].
+    /// Oil of one viscosity [Pa s].
     Given(f64),
-    /// Of an ISO viscosity grade [mm2/s] and a density [kg/m3], by Walther's law (ASTM D341).
+    /// Oil of an ISO viscosity grade [mm2/s] and a density [kg/m3], by Walther's law (ASTM D341).
     Graded(f64, f64),
 }
 

@@ -25,7 +25,7 @@ use rings::{Cylinder, Fit, Seated};
 pub use section::{EXPANSION, Partner, RISE, Section, Settings};
 use stiffening::Stiffening;
 
-/// What growth follows from step to step.
+/// Quantities that growth follows from step to step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Warmth {
     /// \[K] rises of temperature.
@@ -37,9 +37,9 @@ pub struct Warmth {
 /// State of growth: where it has come to, and what it works against.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Grown {
-    /// What rings and balls have grown by.
+    /// Growth of rings and balls.
     pub warmth: Warmth,
-    /// What the contacts of the inner and the outer race set against growth.
+    /// Forces of the contacts of the inner and the outer race against growth.
     pub pushes: [Push; 2],
 }
 
@@ -252,7 +252,7 @@ impl Growth {
         0.5 * (of_race(0) + of_race(1))
     }
 
-    /// What is reported.
+    /// Report of the growth.
     pub fn output(&self, warmth: &Warmth) -> GrowthOutput {
         let [inner, outer] = [0, 1].map(|index| self.raceway(index, warmth));
         let diameter = 2.0 * self.ball_radius(warmth);

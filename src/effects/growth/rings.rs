@@ -46,7 +46,7 @@ pub struct Fit {
     pub outer: Cylinder,
 }
 
-/// What a fit is in operation.
+/// Fit in operation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seated {
     /// \[m] diametral interference; negative is a gap.

@@ -1,4 +1,4 @@
-//! What an effect is: its keys, what is told about it, its numbers, checks and variables.
+//! Interface of an effect: its keys, description, numbers, checks and variables.
 
 use std::fmt;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use crate::schema::numbers::{Number, Parameter, Range};
 use crate::schema::variable_units::Unit;
 use crate::schema::{BearingSection, Drive, Friction, Group, SceneError};
 
-/// What is told about an effect.
+/// Description of an effect.
 #[derive(Clone, Copy, Debug)]
 pub struct Info {
     /// Key that switches it, with its section.
@@ -30,7 +30,7 @@ pub struct Info {
     pub example: &'static str,
 }
 
-/// What the keys of an effect may have to agree with.
+/// Setup that the keys of an effect may have to agree with.
 #[derive(Clone, Copy, Debug)]
 pub struct Setup<'a> {
     /// Internal geometry.
@@ -114,7 +114,7 @@ pub struct InputRow {
     pub change: f64,
     /// One sentence.
     pub description: String,
-    /// What it is given together with.
+    /// Group that it is given with.
     pub group: Group,
     /// Allowed values, where not every number is.
     pub range: Option<Range>,
@@ -130,11 +130,11 @@ pub struct InputRow {
 
 /// An effect, by the struct of its keys; by default without numbers, checks and variables.
 pub trait Effect: Clone + 'static {
-    /// What is told about it.
+    /// Description of it.
     const INFO: &'static Info;
     /// Numbers among its keys.
     const NUMBERS: &'static [Number<Self>] = &[];
-    /// What is estimated to tell whether it matters; empty where nothing is.
+    /// Quantity that is estimated to tell whether it matters; empty where nothing is.
     const ESTIMATE: &'static str = "";
 
     /// How it is set, such as "0.02 s/m"; none if it is off.

@@ -1,4 +1,4 @@
-//! What an estimate of an effect may know of a bearing under its load, and what it says: what the effect changes there.
+//! Input of estimates of effects, a bearing under its load, and their verdicts: what the effect changes there.
 
 use serde::Serialize;
 
@@ -131,7 +131,7 @@ impl Estimate {
     }
 }
 
-/// What an effect changes of what a user asks for: each quantity with it over that without it, less 1; none of what is not known.
+/// Changes by an effect of what a user asks for: each quantity with it over that without it, less 1; none of what is not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Changes {
     /// [-] friction torque.
@@ -162,7 +162,7 @@ impl Changes {
         self.known().reduce(|most, other| if other.1.abs() > most.1.abs() { other } else { most })
     }
 
-    /// Of each quantity the larger change of both.
+    /// Larger change of both, of each quantity.
     #[must_use]
     pub fn or_larger(self, other: Self) -> Self {
         let larger = |a: Option<f64>, b: Option<f64>| match (a, b) {
@@ -198,16 +198,16 @@ pub enum Standing {
     Missing,
 }
 
-/// What an estimate says of an effect.
+/// Verdict of an estimate on an effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verdict {
     /// Key of the effect; none of what cannot be switched.
     pub key: Option<&'static str>,
-    /// What it is of, in a few words.
+    /// Subject in a few words.
     pub subject: &'static str,
     /// Is it simulated?
     pub standing: Standing,
-    /// What the value is of: the quantity that changes most.
+    /// Quantity of the value: the quantity that changes most.
     pub quantity: &'static str,
     /// Value in `unit`: the size of the largest change, where changes are known.
     pub value: f64,
@@ -224,7 +224,7 @@ pub struct Verdict {
     pub matters: bool,
     /// Value and what it is a share of, in a sentence with units.
     pub sentence: String,
-    /// What to write in the scene to switch it on, or what that needs.
+    /// Text to write in the scene to switch it on, or what that needs.
     pub write: &'static str,
     /// Key that switches it on, where the scene has all it needs: what `effects = "auto"` sets.
     #[serde(skip)]
@@ -331,7 +331,7 @@ pub fn digits(value: f64) -> String {
     }
 }
 
-/// What is off and would matter, a line each; nothing of what does not.
+/// Effects that are off and would matter, a line each; nothing of what does not.
 pub fn missed(verdicts: &[Verdict]) -> Vec<String> {
     let line = |verdict: &Verdict| {
         let Verdict { subject, sentence, write, .. } = verdict;

@@ -1,4 +1,4 @@
-//! What every simulation has, and what none has: forces of the balls' own motion, and the bending of rings.
+//! Verdicts on what every simulation has, and on what none has: forces of the balls' own motion, and the bending of rings.
 
 use std::f64::consts::PI;
 
@@ -18,7 +18,7 @@ pub fn ring_bending(estimate: &Estimate) -> f64 {
     RING * load * radius.powi(3) / (estimate.youngs_modulus * inertia) / estimate.deepest
 }
 
-/// What it says.
+/// Its verdicts.
 pub fn verdicts(estimate: &Estimate) -> Vec<Verdict> {
     let always = |subject, value: f64, sentence| {
         Verdict::new(

@@ -27,7 +27,7 @@ pub struct Losses {
 pub struct Part {
     /// Name of its variable.
     pub name: &'static str,
-    /// What it is.
+    /// Description in one sentence.
     pub description: &'static str,
     /// The part in a few words.
     pub words: &'static str,
@@ -55,7 +55,7 @@ pub const TOTAL: Part = Part {
     get: Losses::total,
 };
 
-/// What is lost whatever is simulated.
+/// Part that is lost whatever is simulated.
 pub const SLIDING: Part = Part {
     name: "loss.sliding",
     description: "power lost to sliding and spin where balls touch races and one another",

@@ -1,4 +1,4 @@
-//! What the effects are made with: what an effect is, its keys, its reports, and how it is estimated.
+//! Machinery that the effects share: what an effect is, its keys, its reports, and how it is estimated.
 
 pub mod effect;
 pub mod estimate;

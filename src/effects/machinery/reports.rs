@@ -1,4 +1,4 @@
-//! What effects report of a state, beside the races and the totals of every bearing.
+//! Reports of effects on a state, beside the races and the totals of every bearing.
 
 use nalgebra::{Matrix6, Vector3};
 use serde::{Deserialize, Serialize};
@@ -167,7 +167,7 @@ pub struct BallOutput {
     pub neighbours_force: Vector3<f64>,
 }
 
-/// What an external load on the inner race has to overcome, by components: rows force x, y, z and moment x, y, z,
+/// Stiffness or damping that an external load on the inner race has to overcome, by components: rows force x, y, z and moment x, y, z,
 /// columns translation x, y, z and rotation x, y, z of the inner race relative to the outer one; world axes, about the
 /// inner race's origin. The race's own rotation turns with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -284,10 +284,10 @@ pub struct Warm {
     pub out: f64,
 }
 
-/// What has means.
+/// Quantities that have means.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Averaged {
-    /// Of the inner and the outer race.
+    /// Means of the inner and the outer race.
     pub races: [OfRace; 2],
     /// \[W] lost to friction in all contacts.
     pub friction: f64,
@@ -297,7 +297,7 @@ pub struct Averaged {
     pub cage_speed: f64,
 }
 
-/// What has means of a race.
+/// Quantities of a race that have means.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OfRace {
     /// \[N] force of the bearing on it.

@@ -40,7 +40,7 @@ impl<T: Numbers> Since<T> {
         (self.marked, self.at) = (self.sums, time);
     }
 
-    /// The same from where others were at a time \[s] before this.
+    /// Marks the place where others were at a time \[s] before this.
     pub fn mark_as(&mut self, then: &Self, time: f64) {
         (self.marked, self.at) = (then.sums, time);
     }

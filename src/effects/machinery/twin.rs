@@ -2,14 +2,14 @@
 
 use crate::effects::Effects;
 
-/// What takes an effect in or out.
+/// Switch that takes an effect in or out.
 pub type Switch = Box<dyn Fn(&mut Effects)>;
 
 /// A scene without an effect and the same with it: one of them is the scene itself.
 pub struct Twin {
     /// Key of the effect.
     pub key: &'static str,
-    /// What it is of, in a few words.
+    /// Subject in a few words.
     pub subject: &'static str,
     /// Is it in the scene?
     pub on: bool,
@@ -17,11 +17,11 @@ pub struct Twin {
     pub setting: String,
     /// Takes out what is in the scene or takes in what is not. There are several where data are not known: the largest change counts.
     pub switches: Vec<Switch>,
-    /// What both twins have in common and the scene does not.
+    /// Change that both twins have in common and the scene does not have.
     pub common: Option<Switch>,
     /// Are changes those of an instant alone, which a turn takes away from means: from torque and life?
     pub passing: bool,
-    /// What to write in the scene to switch it on, or what that needs.
+    /// Text to write in the scene to switch it on, or what that needs.
     pub write: &'static str,
     /// Key that switches it on, where the scene has all it needs: what `effects = "auto"` sets.
     pub auto: Option<&'static str>,
@@ -32,7 +32,7 @@ pub struct Twin {
 }
 
 impl Twin {
-    /// Of an effect that a function switches.
+    /// Twin of an effect that a function switches.
     pub fn new(
         key: &'static str,
         subject: &'static str,

@@ -183,7 +183,7 @@ impl Settings {
 }
 
 impl Rating {
-    /// What loads \[N] of all balls on both races come to while load and races turn so.
+    /// Rates and sums under loads \[N] of all balls on both races while load and races turn so.
     pub fn at(&self, loads: impl Iterator<Item = [f64; 2]>, turning: Turning) -> Instant {
         let relative = turning.relative();
         let (mut rates, mut count, mut sum) = (Rates { speed: relative.abs(), ..Rates::default() }, 0.0, 0.0);

@@ -7,7 +7,7 @@
 
 use crate::contact::hertz::HertzContact;
 
-/// What load ratings depend on.
+/// Quantities that load ratings depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geometry {
     /// [-] number of balls Z.

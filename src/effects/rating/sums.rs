@@ -1,4 +1,4 @@
-//! What the loads of a run come to: powers of loads over the turn of the races, turn of the load, used life.
+//! Sums over the loads of a run: powers of loads over the turn of the races, turn of the load, used life.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +23,7 @@ impl Turning {
     }
 }
 
-/// What the loads of a step, or of all steps, come to.
+/// Means over the loads of a step, or of all steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Rates {
     /// [rad/s] speed of the races against each other.
@@ -40,7 +40,7 @@ pub struct Rates {
     pub ageing: [f64; 3],
 }
 
-/// What a run has seen.
+/// Record of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sums {
     /// \[s] duration.
@@ -103,7 +103,7 @@ impl Sums {
         self.add(Instant { rates: end.now, turning: end.turning }, h);
     }
 
-    /// What was seen since an earlier time of the same run. The largest load is that of the whole run.
+    /// Record since an earlier time of the same run. The largest load is that of the whole run.
     #[must_use]
     pub fn since(&self, earlier: &Self) -> Self {
         let mut since = *self;
@@ -117,7 +117,7 @@ impl Sums {
         since
     }
 
-    /// What was seen up to a share of a step that ends with later sums: they grow evenly in it. The largest load is that of the step's end.
+    /// Record up to a share of a step that ends with later sums: they grow evenly in it. The largest load is that of the step's end.
     #[must_use]
     pub fn within_step(&self, end: &Self, share: f64) -> Self {
         let mut here = *end;

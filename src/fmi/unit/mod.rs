@@ -1,4 +1,4 @@
-//! What an instance simulates: a machine as values by reference. Some go in, steps are made, others come out. Lists of values have one of
+//! Unit of an instance: a machine as values by reference. Some go in, steps are made, others come out. Lists of values have one of
 //! every row, by value reference; those of outputs are ignored where values go in.
 //!
 //! Its scripts are, in this order: those of every bearing, group by group; where there are shafts, one of each named load, one of each gear,
@@ -27,7 +27,7 @@ use crate::simulation::system::{Played, drive_is_scripted};
 /// Scripts of a bearing.
 const GROUPS: usize = Group::VARIANTS.len();
 
-/// What is told of a unit without motion in time.
+/// Message about a unit without motion in time.
 const OF_EQUILIBRIA: &str =
     "solver.level = \"equilibrium\": outputs are those of the equilibrium under the inputs of each step";
 
@@ -219,7 +219,7 @@ impl Unit {
         all
     }
 
-    /// What a script gives.
+    /// Group of inputs that a script gives.
     fn group(&self, script: usize) -> MachineGroup {
         let [bearings, loads, gears] = self.counts();
         match script.checked_sub(GROUPS * bearings) {
@@ -230,7 +230,7 @@ impl Unit {
         }
     }
 
-    /// What a script gives, in words, and its group.
+    /// Name of what a script gives, in words, and its group.
     pub fn script_name(&self, script: usize) -> (String, Group) {
         let load = |index: usize| self.scene.shaft().and_then(|scene| scene.loads().nth(index));
         match self.group(script) {

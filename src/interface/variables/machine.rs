@@ -25,7 +25,7 @@ struct Part {
     variables: Variables,
 }
 
-/// What an input of a machine is given together with: a script gives all of it, or none.
+/// Group that an input of a machine is given with: a script gives all of it, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MachineGroup {
     /// Force and moment at a named load, by its index.
@@ -165,7 +165,7 @@ impl MachineVariables {
         }
     }
 
-    /// What an input is given together with; none for other variables.
+    /// Group that an input is given with; none for other variables.
     pub fn group(&self, reference: usize, machine: &impl Parts) -> Option<MachineGroup> {
         if let Some((index, own)) = self.part(reference) {
             let (_, bearing) = machine.bearings().nth(index)?;

@@ -68,7 +68,7 @@ pub enum Source {
     Loss(fn(&Losses) -> f64),
     /// How far a bearing is from where its run ends.
     Margin(fn(&Margins) -> f64),
-    /// What an effect reports.
+    /// Value that an effect reports.
     Effect(Getter),
     /// A number of the scene.
     Parameter(Parameter),
@@ -126,7 +126,7 @@ pub enum InputError {
         name: String,
         /// Value.
         value: f64,
-        /// What is allowed.
+        /// Allowed values.
         range: Range,
     },
     /// An input of a bearing of a system.
@@ -134,7 +134,7 @@ pub enum InputError {
     Bearing {
         /// The bearing.
         name: String,
-        /// What is wrong with its input.
+        /// Fault of its input.
         source: Box<InputError>,
     },
     /// A rise of temperature that no bearing stands.
@@ -348,7 +348,7 @@ impl Variables {
     }
 }
 
-/// What may be said of a parameter.
+/// Range, variability and start of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offered {
     /// Allowed values.
@@ -360,7 +360,7 @@ pub struct Offered {
 }
 
 impl Variable {
-    /// What a parameter is offered as; none of other variables.
+    /// Range, variability and start of a parameter; none of other variables.
     pub fn offered(&self) -> Option<Offered> {
         let (range, variability, start) = match &self.source {
             Source::Parameter(own) => (own.range, own.variability, own.start),
@@ -398,7 +398,7 @@ impl Variable {
         }
     }
 
-    /// What an input is given together with in a scene; none for other variables.
+    /// Group that an input is given with in a scene; none for other variables.
     pub fn group(&self, scene: &Scene) -> Option<Group> {
         match &self.source {
             _ if self.causality != Causality::Input => None,

@@ -8,7 +8,7 @@ use crate::numerics::tilt;
 use crate::scene::{Drive, Group, Orientation};
 use crate::simulation::inputs::{AxisInput, RaceInput};
 
-/// What the scene says of the motion of a race.
+/// Setting of the motion of a race by the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct RaceMotion {
     /// How it gets its motion.
@@ -68,7 +68,7 @@ pub struct InputAccess {
     pub rate: fn(&RaceInput, usize) -> f64,
     /// Kind of the quantity.
     pub kind: InputKind,
-    /// What it is given together with.
+    /// Group that it is given with.
     pub group: Group,
 }
 

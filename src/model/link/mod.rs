@@ -30,7 +30,7 @@ pub struct LinkEnd {
     pub coordinates: Vec<usize>,
     /// Displacement and rotation at the place by these.
     pub map: Map,
-    /// The same by a turn that is given; zero where that is a coordinate.
+    /// Displacement and rotation by a turn that is given; zero where that is a coordinate.
     pub turn: Vector6<f64>,
 }
 
@@ -66,7 +66,7 @@ impl LinkEnd {
     }
 }
 
-/// What a link does.
+/// Force law of a link.
 #[derive(Clone, Debug)]
 pub enum Law {
     /// Teeth in mesh.
@@ -84,7 +84,7 @@ pub struct Link {
     pub law: Law,
 }
 
-/// What a link does now and has done since the start.
+/// State of a link: its motion and force now, its energies since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LinkState {
     /// \[m, rad] displacement of the first end against the second.
@@ -135,7 +135,7 @@ impl Link {
         }
     }
 
-    /// What it does while its ends are in these states, `h` \[s] after it did something else.
+    /// State of the link while its ends are in these states, `h` \[s] after it did something else.
     pub fn reached<'a>(
         &self,
         before: &LinkState,
@@ -158,7 +158,7 @@ impl Link {
         }
     }
 
-    /// What it does at the start.
+    /// State of the link at the start.
     pub fn started<'a>(&self, state: impl Fn(usize) -> &'a StructureState) -> LinkState {
         let start = self.reached(&LinkState::default(), 0.0, state);
         LinkState { at_start: start.stored, ..start }

@@ -13,7 +13,7 @@ fn moved_with(arm: &Vector3<f64>) -> Matrix6<f64> {
     map
 }
 
-/// What some springs (or dampers) along x, y, z at feet do at the centre.
+/// Matrix at the centre of springs (or dampers) along x, y, z at feet.
 fn of_feet(feet: &[Foot], centre: &Vector3<f64>, along: fn(&Foot) -> [f64; 3]) -> Matrix6<f64> {
     feet.iter().fold(Matrix6::zeros(), |sum, foot| {
         let place = Vector3::from(foot.position.map(|length| length.0));

@@ -96,7 +96,7 @@ pub struct StructureState {
     /// Total generalised force, the `g` of the HHT scheme.
     #[serde(with = "list")]
     pub total: DVector<f64>,
-    /// What the last step left of the equations of motion, within their tolerance.
+    /// Remainder of the equations of motion that the last step left, within their tolerance.
     #[serde(with = "list")]
     pub remainder: DVector<f64>,
     /// Turn and its rates.

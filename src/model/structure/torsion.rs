@@ -29,7 +29,7 @@ pub struct ReducedTorsion {
 }
 
 impl Torsion {
-    /// Of so many nodes.
+    /// Torsion of so many nodes.
     pub fn new(nodes: usize) -> Self {
         Self { mass: DMatrix::zeros(nodes, nodes), stiffness: DMatrix::zeros(nodes, nodes) }
     }

@@ -35,7 +35,7 @@ pub struct WrittenBearing {
     pub set: Table,
 }
 
-/// What all bearings of a system are given.
+/// Data that all bearings of a system share.
 pub struct Shared {
     /// [m/s2] gravity in the axes of the shaft.
     pub gravity: Vector3<f64>,

@@ -1,4 +1,4 @@
-//! What the keys of a system must agree in.
+//! Checks of the keys of a system.
 
 use super::bearing::WrittenBearing;
 use super::ranges::{BORE_OFFSET, BORE_TILT, INERTIA, MASS, POSITION};

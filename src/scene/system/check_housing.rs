@@ -1,4 +1,4 @@
-//! What the keys of a housing must agree in.
+//! Checks of the keys of a housing.
 
 use super::ranges::{INERTIA, MASS, POSITION};
 use crate::schema::numbers::Range;

@@ -244,7 +244,7 @@ impl SystemScene {
         })
     }
 
-    /// What the reader of each bearing's scene should know.
+    /// Notes for the reader of each bearing's scene.
     pub fn notes(&self) -> Vec<String> {
         let of = |mounted: &MountedScene| {
             let name = mounted.name.clone();

@@ -43,7 +43,7 @@ pub struct CampbellRow {
 pub struct CriticalSpeed {
     /// [rad/s] speed of the shaft.
     pub speed: f64,
-    /// What swings there.
+    /// Mode that swings there.
     pub mode: ShaftMode,
 }
 

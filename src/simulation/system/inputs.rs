@@ -1,4 +1,4 @@
-//! What is given from outside a system: loads of the shafts and their drives, and how they move within a communication step.
+//! Inputs from outside a system: loads of the shafts and their drives, and how they move within a communication step.
 
 use nalgebra::{SVector, Vector6};
 use serde::{Deserialize, Serialize};
@@ -85,7 +85,7 @@ impl Played {
     }
 }
 
-/// What drives a shaft.
+/// Drive of a shaft.
 fn drive_of(shaft: &ShaftSection) -> Option<&Schedule> {
     shaft.speed.as_ref().or(shaft.torque.as_ref())
 }
@@ -150,9 +150,9 @@ impl TurnPath {
 pub struct ShaftPaths {
     loads: Vec<Ramp<6>>,
     gears: Vec<Ramp<1>>,
-    /// Of every shaft, where its torque is given.
+    /// Torque of every shaft, where that is given.
     torques: Vec<Ramp<1>>,
-    /// Of every shaft, where its speed is given.
+    /// Speed of every shaft, where that is given.
     turns: Vec<TurnPath>,
 }
 
@@ -195,14 +195,14 @@ impl ShaftPaths {
     }
 }
 
-/// What acts on a shaft in a communication step: scripts where they are played, else inputs.
+/// Loads on a shaft in a communication step: scripts where they are played, else inputs.
 #[derive(Clone, Copy, Debug)]
 pub struct Given<'a> {
     /// The scene.
     pub scene: &'a SystemScene,
     /// Paths of the inputs.
     pub paths: &'a ShaftPaths,
-    /// What the scripts give instead.
+    /// Inputs that the scripts give instead.
     pub played: &'a Played,
 }
 

@@ -132,7 +132,7 @@ impl System {
         Ok(found.map(|modes| modes.iter().map(|mode| self.describe(mode)).collect()))
     }
 
-    /// What moves in a mode, and how.
+    /// Moving parts of a mode, in words.
     pub(super) fn describe(&self, mode: &Mode) -> ShaftMode {
         // Displacements at every station of every structure.
         let mut first = 0;

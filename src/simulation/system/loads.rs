@@ -1,4 +1,4 @@
-//! What acts on the structures of a system at a time: weight, loads at points, unbalance and drive of its shafts.
+//! Loads on the structures of a system at a time: weight, loads at points, unbalance and drive of its shafts.
 
 use std::f64::consts::TAU;
 

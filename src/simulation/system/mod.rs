@@ -168,7 +168,7 @@ impl System {
         self.bearings.iter_mut().for_each(|bearing| bearing.push_cage(&push(bearing)));
     }
 
-    /// What the shaft does.
+    /// Outputs of the shaft.
     pub fn outputs(&self) -> &SystemOutputs {
         &self.structures.outputs
     }

@@ -1,4 +1,4 @@
-//! What shafts on their bearings do, and what their housings do: motion at points, drive, energies.
+//! Outputs of shafts on their bearings and of their housings: motion at points, drive, energies.
 
 use nalgebra::{DVector, Vector3};
 
@@ -56,7 +56,7 @@ pub struct LinkOutputs {
 }
 
 impl LinkOutputs {
-    /// Of a link in a state.
+    /// Outputs of a link in a state.
     pub fn of(link: &Link, state: &LinkState) -> Self {
         let normal_force = match &link.law {
             Law::Mesh(mesh) => {
@@ -82,9 +82,9 @@ pub struct SystemOutputs {
     pub loads: Vec<PointOutput>,
     /// Motion at every named point, likewise.
     pub points: Vec<PointOutput>,
-    /// What meshes do, then bearings by their stiffness, in the order of the scene.
+    /// Outputs of meshes, then of bearings by their stiffness, in the order of the scene.
     pub links: Vec<LinkOutputs>,
-    /// What the housings do, in the order of the scene.
+    /// Outputs of the housings, in the order of the scene.
     pub housings: Vec<HousingOutputs>,
     /// Energies since the start of rings that slide in bores of the ground; none where there are none.
     pub ground: Option<StructureEnergies>,

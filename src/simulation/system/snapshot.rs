@@ -14,9 +14,9 @@ use crate::model::structure::StructureState;
 pub struct SystemSnapshot {
     inputs: ShaftInputs,
     paths: ShaftPaths,
-    /// Of the shaft, and of every housing.
+    /// States of the shaft, and of every housing.
     states: Vec<StructureState>,
-    /// Of what links them.
+    /// States of what links them.
     links: Vec<LinkState>,
     bearings: Vec<Snapshot>,
 }

@@ -43,9 +43,9 @@ pub struct Statics<'a> {
     pub time: f64,
     /// The structures.
     pub carriers: &'a [Carrier],
-    /// Of each structure.
+    /// Scales of the equations of each structure.
     pub scales: &'a [DVector<f64>],
-    /// What acts on each from outside.
+    /// Loads on each from outside.
     pub loads: &'a [StructureLoad],
     /// Races on their seats.
     pub joints: &'a [Joint],

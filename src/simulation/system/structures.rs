@@ -26,7 +26,7 @@ pub struct Structures {
     pub joints: Arc<Vec<Joint>>,
     /// Links between them: meshes, then bearings by their stiffness.
     pub links: Arc<Vec<Link>>,
-    /// What these do.
+    /// States of these.
     pub link_states: Vec<LinkState>,
     /// Inputs as set last.
     pub inputs: ShaftInputs,
@@ -34,12 +34,12 @@ pub struct Structures {
     pub paths: ShaftPaths,
     /// State of each structure.
     pub states: Vec<StructureState>,
-    /// What they do.
+    /// Their outputs.
     pub outputs: SystemOutputs,
 }
 
 impl Structures {
-    /// What acts on them: scripts where they are played, else inputs.
+    /// Loads on them: scripts where they are played, else inputs.
     pub fn given<'a>(&'a self, played: &'a Played) -> Given<'a> {
         Given { scene: &self.scene, paths: &self.paths, played }
     }
@@ -54,12 +54,12 @@ impl Structures {
         loads::knots(&self.given(played), from, to)
     }
 
-    /// What acts on each at the end of a step from one time \[s] to another.
+    /// Loads on each at the end of a step from one time \[s] to another.
     pub fn loads(&self, played: &Played, from: f64, to: f64) -> Vec<StructureLoad> {
         loads::at(&self.given(played), &self.carriers, &self.states, from, to)
     }
 
-    /// What joins them.
+    /// Joints between them.
     pub fn joined(&self) -> Joined<'_> {
         Joined { joints: &self.joints, links: &self.links }
     }

@@ -69,9 +69,9 @@ impl RacewayFilm {
 /// Logarithms that several powers are computed from.
 #[derive(Clone, Copy, Debug)]
 struct Logarithms<S> {
-    /// Of `eta0 u/(E' Rx)`.
+    /// Logarithm of `eta0 u/(E' Rx)`.
     speed: S,
-    /// Of the thermal loading of the inlet, `eta0 beta u^2/k`.
+    /// Logarithm of the thermal loading of the inlet, `eta0 beta u^2/k`.
     heat: S,
 }
 
@@ -89,7 +89,7 @@ pub struct Supply {
 /// The film of a raceway during a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Film<'a> {
-    /// What stays the same.
+    /// Constants of the run.
     pub raceway: &'a RacewayFilm,
     /// The oil.
     pub supply: Supply,
@@ -99,7 +99,7 @@ pub struct Film<'a> {
     logarithms: [f64; 2],
 }
 
-/// What a film depends on.
+/// Quantities that a film depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loading<S> {
     /// \[N] normal load.
@@ -114,7 +114,7 @@ pub struct Loading<S> {
     pub area: S,
 }
 
-/// What a film does.
+/// Friction and rolling resistance of a film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmForces<S> {
     /// [-] friction coefficient.
@@ -146,7 +146,7 @@ impl<'a> Film<'a> {
 }
 
 impl Film<'_> {
-    /// What the film does.
+    /// Friction and rolling resistance.
     #[inline(always)]
     pub fn forces<S: Scalar>(&self, loading: &Loading<S>) -> FilmForces<S> {
         let Loading { load, speed, slip, curvature, area } = *loading;
@@ -172,7 +172,7 @@ impl Film<'_> {
         films.map(|film| film * factor)
     }
 
-    /// What powers of the speed are computed from.
+    /// Logarithms that powers of the speed are computed from.
     #[inline(always)]
     fn logarithms<S: Scalar>(&self, loading: &Loading<S>) -> Logarithms<S> {
         let [of_speed, of_heat] = self.logarithms.map(S::constant);

@@ -5,14 +5,14 @@ use std::f64::consts::PI;
 use super::functions::exp;
 use crate::numerics::scalar::Scalar;
 
-/// What follows from the shape of the ellipse alone.
+/// Factors that follow from the shape of the ellipse alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RollingFactors {
-    /// Of a rigid, isoviscous inlet.
+    /// Factor of a rigid, isoviscous inlet.
     rigid: f64,
-    /// Of an elastic, piezoviscous one.
+    /// Factor of an elastic, piezoviscous one.
     elastic: f64,
-    /// Of the load that decides between both.
+    /// Factor of the load that decides between both.
     share: f64,
     /// Width across rolling over the root of the area.
     width: f64,

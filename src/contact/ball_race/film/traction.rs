@@ -11,7 +11,7 @@ const ROELANDS_POLE: f64 = 9.67;
 /// [-] largest logarithm of the viscosity over that without pressure: 1e87 times, far beyond what limits the shear.
 const LARGEST_GROWTH: f64 = 200.0;
 
-/// What the shear of a film gives.
+/// Friction by the shear of a film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shear<S> {
     /// [-] shear stress over pressure.
