@@ -66,12 +66,14 @@ pub struct FilmPoint {
 }
 
 /// A column: name with its unit, and what stands in it.
-type Column = (String, fn(&FilmPoint) -> Option<f64>);
+type Column = (String, Get);
+/// What stands in a column; nothing where the scene has none of it.
+type Get = fn(&FilmPoint) -> Option<f64>;
 
 /// Columns of a table of points.
 pub fn columns() -> Vec<Column> {
     let resisting = format!("{}_power [W]", RESISTING.name);
-    let columns: [(&str, fn(&FilmPoint) -> Option<f64>); 15] = [
+    let columns: [(&str, Get); 15] = [
         ("load [N]", |point| Some(point.rolling.load)),
         ("speed [m/s]", |point| Some(point.rolling.speed)),
         ("slide_to_roll [1]", |point| Some(point.rolling.slide_to_roll)),
