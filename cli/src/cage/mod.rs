@@ -28,13 +28,13 @@ use run::run;
 pub struct Cage {
     /// Name of the bearing; empty of a bearing alone.
     pub bearing: String,
-    /// What guides it.
+    /// Its guidance.
     pub guided_by: Guidance,
     /// \[m] how far its centre moves from the middle before it is held, by lands or, without them, by the balls.
     pub play: f64,
     /// \[kg] its mass.
     pub mass: f64,
-    /// What it does under each push, or why that run did not come to its end.
+    /// Its motion under each push, or why that run did not come to its end.
     pub pushed: Vec<(Push, Result<Orbit, String>)>,
 }
 

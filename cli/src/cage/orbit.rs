@@ -1,4 +1,4 @@
-//! What the centre of a cage does, and what kind of motion that is.
+//! Motion of the centre of a cage, and its kind.
 //!
 //! Schwarz, Grillenberger and Tremmel (2020) sort motions of cages into unstable, stable and circling, by an indicator of their own and limits
 //! fitted to thousands of simulations. The kinds here are theirs, told by three ratios without anything fitted: how far the centre goes
@@ -57,7 +57,7 @@ impl Kind {
     }
 }
 
-/// What the centre of a cage does over a time.
+/// Motion of the centre of a cage over a time.
 #[derive(Clone, Debug)]
 pub struct Orbit {
     /// Kind of motion.

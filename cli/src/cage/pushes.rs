@@ -1,4 +1,4 @@
-//! What pushes a cage.
+//! Push of a cage.
 
 use roulement::scene::machine::MachineScene;
 use roulement::scene::{Scene, Schedule};

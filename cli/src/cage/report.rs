@@ -1,4 +1,4 @@
-//! What cages do under pushes, as text and as JSON.
+//! Motions of cages under pushes, as text and as JSON.
 
 use std::fmt::Write;
 

@@ -81,7 +81,7 @@ pub fn run(scene: &MachineScene, push: Push, interrupted: &AtomicBool) -> Result
     Ok(places.all.into_iter().zip(models).map(|(places, model)| Orbit::of(&places, play(model))).collect())
 }
 
-/// What a cage is given at the start.
+/// Push of a cage at the start.
 fn start(bearing: &Simulation, push: Push) -> CagePush {
     let model = bearing.model();
     let Some(cage) = &model.cage else { return CagePush::default() };

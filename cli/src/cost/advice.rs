@@ -1,4 +1,4 @@
-//! What to take for a scene: the cheapest creep law and step together that keep an error, run once to be sure.
+//! Advice for a scene: the cheapest creep law and step together that keep an error, run once to be sure.
 
 use super::levers::{CreepModel, Lever, ReferenceKind, Setting};
 use super::norms::{Errors, Norm};

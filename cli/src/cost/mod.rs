@@ -102,7 +102,7 @@ pub struct SceneStudy {
     /// Whether the windows of the references have settled, a sentence for each: drift against noise, and how long the scene
     /// should run.
     pub settled: Vec<String>,
-    /// What to take, a sentence for each quantity that is asked for.
+    /// Advice, a sentence for each quantity that is asked for.
     pub advice: Vec<String>,
 }
 
@@ -162,7 +162,7 @@ pub enum StudyError {
     Interrupted,
 }
 
-/// What of a study is run, and how.
+/// Extent of a study, and how it is run.
 #[derive(Clone, Debug)]
 pub struct Choice {
     /// Levers; empty is all.

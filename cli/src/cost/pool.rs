@@ -43,7 +43,7 @@ impl Job<'_> {
     }
 }
 
-/// What came of a job; none if it was not begun.
+/// Result of a job; none if it was not begun.
 pub type Outcome = Option<Result<Record, StudyError>>;
 
 /// Runs all jobs on some threads. A job that was not begun, because a needed one failed or all were interrupted, has no result.

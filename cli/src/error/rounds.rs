@@ -28,7 +28,7 @@ const ALONE: f64 = 2.0;
 /// [-] the same at most, where differences hardly fall: then smaller steps, or chaos, have to tell.
 const MOST: f64 = 3.0;
 
-/// What to do next.
+/// Next thing to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judgement {
     /// Run with half the steps.
@@ -220,7 +220,7 @@ impl Rounds {
         })
     }
 
-    /// What to do next.
+    /// Next thing to do.
     pub fn judge(&self) -> Judgement {
         if self.differences.is_empty() {
             return Judgement::Refine;
@@ -293,7 +293,7 @@ impl Rounds {
         self.rounds.iter().map(|round| round.cpu).sum()
     }
 
-    /// What was found, for the summary.
+    /// Findings for the summary.
     pub fn report(&self) -> String {
         let mut text = String::new();
         // Writing to a string cannot fail.

@@ -1,4 +1,4 @@
-//! What is kept of a run for comparison with another one.
+//! Sample of a run, for comparison with another one.
 
 use roulement::scene::Solver;
 use roulement::simulation::losses::LOSSES;
@@ -43,7 +43,7 @@ pub struct Run {
 pub struct Course {
     /// Its name, which stands before the names of its quantities; none of a bearing alone and of a shaft.
     pub name: String,
-    /// What was watched.
+    /// Quantities that were watched.
     pub quantities: Vec<Watched>,
     /// Rows, an even selection of a bounded number.
     pub samples: Vec<Sample>,

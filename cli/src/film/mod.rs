@@ -24,7 +24,7 @@ pub struct FilmContact {
     pub race: Race,
 }
 
-/// What the contact rolls with.
+/// Load, speed and slip of a contact that rolls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rolling {
     /// \[N] normal load.
@@ -35,10 +35,10 @@ pub struct Rolling {
     pub slide_to_roll: f64,
 }
 
-/// What the contact does.
+/// Film and forces of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmPoint {
-    /// What it rolls with.
+    /// Load, speed and slip.
     pub rolling: Rolling,
     /// \[Pa] largest pressure.
     pub peak_pressure: f64,
@@ -67,7 +67,7 @@ pub struct FilmPoint {
 
 /// A column: name with its unit, and what stands in it.
 type Column = (String, Get);
-/// What stands in a column; nothing where the scene has none of it.
+/// Value of a column; nothing where the scene has none of it.
 type Get = fn(&FilmPoint) -> Option<f64>;
 
 /// Columns of a table of points.
@@ -121,7 +121,7 @@ impl FilmContact {
         2.0 * bearing.ball.radius * bearing.free_contact_angle.cos() / bearing.pitch_diameter
     }
 
-    /// What the contact does, without spin.
+    /// Film and forces of the contact, without spin.
     ///
     /// # Errors
     /// If no approach gives the load.

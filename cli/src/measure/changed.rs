@@ -1,4 +1,4 @@
-//! What an effect changes, with error bars.
+//! Changes by an effect, with error bars.
 
 use roulement::effects::estimate::Changes;
 

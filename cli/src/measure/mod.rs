@@ -1,4 +1,4 @@
-//! What effects change in runs (`roulement effects --measure`): the scene without each effect against the scene with it.
+//! Changes by effects in runs (`roulement effects --measure`): the scene without each effect against the scene with it.
 //!
 //! Every scene is run with its own steps and with half of them. What both differ by, and how uncertain means are in the window, is the
 //! error bar.
@@ -20,7 +20,7 @@ pub use pairs::{Pair, Pairs};
 pub use report::{to_json, to_text};
 use run::{Taken, run};
 
-/// What an effect changes.
+/// Changes by an effect.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// The effect and its runs.

@@ -19,7 +19,7 @@ pub struct Pair {
     pub name: String,
     /// Key of the effect.
     pub key: &'static str,
-    /// What it is of, in a few words.
+    /// Subject in a few words.
     pub subject: &'static str,
     /// Is it in the scene?
     pub on: bool,

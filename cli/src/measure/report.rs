@@ -1,4 +1,4 @@
-//! What was measured, as text and as JSON.
+//! Measured changes, as text and as JSON.
 
 use roulement::effects::estimate::{percent, signed_percent};
 use serde_json::{Value, json};

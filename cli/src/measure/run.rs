@@ -19,7 +19,7 @@ use super::changed::Changed;
 use crate::report::means::Mean;
 use crate::watch::{BearingSeen, Watch};
 
-/// What is taken of a bearing in a run.
+/// Quantities taken of a bearing in a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Taken {
     /// \[W] mean of all losses over the second half, which are the torque times the speed, and half of its interval at 95 %.
@@ -97,7 +97,7 @@ impl Taken {
         }
     }
 
-    /// What is changed from runs at the scene's steps and at half of them to others: values are those of the finer ones.
+    /// Changes from runs at the scene's steps and at half of them to others: values are those of the finer ones.
     pub fn change(without: &[Self; 2], with: &[Self; 2]) -> Changed {
         // Both values with their error bars.
         let relative = |get: &dyn Fn(&Self) -> [f64; 2]| {

@@ -120,7 +120,7 @@ pub fn name_of(file: &Path) -> String {
     file.file_stem().map_or_else(|| "bearing".into(), |stem| stem.to_string_lossy().into_owned())
 }
 
-/// What is in a package beside its libraries.
+/// Contents of a package beside its libraries.
 struct Content<'a> {
     description: ModelDescription,
     /// The text that its library reads.

@@ -1,4 +1,4 @@
-//! What a library needs to run, without what linkers leave beside it: symbols and debug data.
+//! Parts that a library needs to run, without what linkers leave beside it: symbols and debug data.
 
 use std::mem::size_of;
 

@@ -26,11 +26,11 @@ impl Column {
 /// A cell of a row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// Of a column of numbers.
+    /// Cells of a column of numbers.
     Number(f64),
-    /// Of a column of texts.
+    /// Cells of a column of texts.
     Text(String),
-    /// Of any column.
+    /// Cells of any column.
     Empty,
 }
 

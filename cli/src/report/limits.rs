@@ -1,4 +1,4 @@
-//! What a run met of the limits of a bearing: pressure, shoulders, neighbouring balls.
+//! Limits of a bearing that a run met: pressure, shoulders, neighbouring balls.
 
 use roulement::contact::shoulder::largest_share;
 use roulement::simulation::instant::Instant;

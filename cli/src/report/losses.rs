@@ -37,7 +37,7 @@ pub struct Closed {
     pub torque: f64,
     /// All other work that is put in: of forces, weight, moving frames, growth.
     pub other: f64,
-    /// What goes into motion and springs.
+    /// Power into motion and springs.
     pub stored: f64,
     /// Losses.
     pub lost: f64,

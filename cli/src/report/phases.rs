@@ -1,4 +1,4 @@
-//! What is said and written of the phases of a run.
+//! Words and tables of the phases of a run.
 
 use std::fmt::{self, Write};
 use std::io;

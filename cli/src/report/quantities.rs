@@ -30,7 +30,7 @@ pub enum Size {
     Losses,
 }
 
-/// What is watched of a bearing or a shaft.
+/// Quantity that is watched of a bearing or a shaft.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Watched {
     /// Name.
@@ -157,7 +157,7 @@ pub fn of_bearing(parts: Parts) -> Vec<Watched> {
     QUANTITIES.iter().map(watched).collect()
 }
 
-/// What is watched of a shaft and its housings: speed, torque, displacements and tilts, by the names that variables of packages have.
+/// Quantities that are watched of a shaft and its housings: speed, torque, displacements and tilts, by the names that variables of packages have.
 #[derive(Clone, Debug)]
 pub struct ShaftQuantities {
     variables: MachineVariables,

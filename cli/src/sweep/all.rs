@@ -21,7 +21,7 @@ pub struct Sweep {
     pub cases: Cases,
     /// Text of the base scene.
     pub base: String,
-    /// What is wanted of every case.
+    /// Wanted results of every case.
     pub wanted: Wanted,
     /// Rows that are there.
     pub store: Store,

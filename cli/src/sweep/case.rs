@@ -20,7 +20,7 @@ use crate::report::quantities::QUANTITIES;
 use crate::report::results::{Choice, MachineColumns, ResultsError, TableWriter};
 use crate::watch::{BearingSeen, Life, Phase, Seen, Watch};
 
-/// What is wanted of every case.
+/// Wanted results of every case.
 #[derive(Clone, Debug, Default)]
 pub struct Wanted {
     /// Variables whose mean, least, largest and last value the summary has, and whole tables have: names with `*` for any
@@ -172,7 +172,7 @@ fn played(
     Ok(Done { machine, seen, gathered })
 }
 
-/// What came of a machine: of a shaft its own columns, then those of every bearing with its name before them.
+/// Results of a machine: of a shaft its own columns, then those of every bearing with its name before them.
 fn of_machine(done: &Done, goal: Option<&'static str>) -> Row {
     let Done { machine, seen, gathered } = done;
     let mut row = vec![];
@@ -240,7 +240,7 @@ fn settled(means: &Means) -> &'static str {
     }
 }
 
-/// What came of a phase; `key` gives the name of a quantity.
+/// Results of a phase; `key` gives the name of a quantity.
 fn of_phase(phase: &Phase, key: impl Fn(&str) -> String) -> Row {
     let of = |what: &str| format!("phase.{}.{what}", phase.name);
     let mut row = vec![(Column::text(&of("settled")), Cell::Text(settled(&phase.means).to_string()))];
@@ -267,7 +267,7 @@ fn of_phase(phase: &Phase, key: impl Fn(&str) -> String) -> Row {
     row
 }
 
-/// What came of a bearing.
+/// Results of a bearing.
 fn summary(
     simulation: &Simulation,
     seen: &BearingSeen,

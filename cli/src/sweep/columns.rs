@@ -46,7 +46,7 @@ pub fn check(scene: &MachineScene, chosen: &[String]) -> Result<(), ResultsError
     }
 }
 
-/// What is gathered of chosen columns of a machine: those of bearings, and all of a shaft.
+/// Chosen columns of a machine: those of bearings, and all of a shaft.
 pub struct GatheredMachine {
     /// Of every bearing.
     pub bearings: Vec<Gathered>,

@@ -164,7 +164,7 @@ fn connect(from: End, to: End, components: &[Component]) -> Result<Connection, S
     Ok(Connection { from, to, kind: input.kind, factor: sign * factor, offset: sign * offset + 0.0 })
 }
 
-/// What a reader should know of a connection.
+/// Notes on a connection for its reader.
 enum Said {
     Nothing,
     /// The end that has no unit, where the other one has.

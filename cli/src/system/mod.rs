@@ -87,7 +87,7 @@ pub struct Written {
     pub ssp: PathBuf,
     /// The folder for libcosim.
     pub osp: PathBuf,
-    /// What the reader should know.
+    /// Notes for the reader.
     pub notes: Vec<String>,
 }
 

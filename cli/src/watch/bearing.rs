@@ -1,4 +1,4 @@
-//! What is gathered of a bearing in a run: means, spectrum, energy, limits, and what its error is told from.
+//! Gatherer of a bearing in a run: means, spectrum, energy, limits, and what its error is told from.
 
 use std::f64::consts::TAU;
 
@@ -38,7 +38,7 @@ pub struct BearingWatch {
     phases: Vec<PhaseWatch>,
 }
 
-/// What was gathered of a bearing.
+/// Gathered figures of a bearing.
 pub struct BearingSeen {
     /// Means over the second half.
     pub means: Option<Means>,
@@ -56,7 +56,7 @@ pub struct BearingSeen {
     pub phases: Vec<Phase>,
     /// A race that moves by more than its loads explain.
     pub circling: Option<Circling>,
-    /// What grows about where the run starts, a sentence each.
+    /// Motions that grow about where the run starts, a sentence each.
     pub growing: Vec<String>,
     /// Rows for comparison with other runs.
     samples: Vec<Sample>,
@@ -160,7 +160,7 @@ impl BearingSeen {
         figures
     }
 
-    /// What whoever reads results of this run should know, a sentence each: its summary and its notes say the same.
+    /// Warnings for whoever reads results of this run, a sentence each: its summary and its notes say the same.
     pub fn warnings(&self, simulation: &Simulation) -> Vec<String> {
         let of_race = |race: Race| {
             let share = self.limits.over_shoulders[race as usize];
@@ -177,7 +177,7 @@ impl BearingSeen {
             .collect()
     }
 
-    /// The same, but for what its summary says and what is said before it runs: the pressure, a race that circles, and what its life leaves
+    /// Warnings but for what its summary says and what is said before it runs: the pressure, a race that circles, and what its life leaves
     /// out.
     pub fn remarks(&self, simulation: &Simulation) -> Vec<String> {
         let pressure = simulation.scene().pressure_note(self.limits.peak_pressure);
@@ -187,7 +187,7 @@ impl BearingSeen {
         pressure.into_iter().chain(life).map(bare).chain(circling).collect()
     }
 
-    /// What is kept for comparison with other runs, under the name of the bearing; its rows move there.
+    /// Sample for comparison with other runs, under the name of the bearing; its rows move there.
     pub fn take_course(&mut self, name: &str, simulation: &Simulation) -> Course {
         let quantities = of_bearing(Parts::of(simulation));
         let samples = std::mem::take(&mut self.samples);

@@ -1,4 +1,4 @@
-//! What is gathered of a run step by step and row by row, whoever plays it: of every bearing, and of the shaft with its housings where there is one.
+//! Gatherer of a run step by step and row by row, whoever plays it: of every bearing, and of the shaft with its housings where there is one.
 
 mod bearing;
 mod circling;
@@ -25,7 +25,7 @@ pub struct Watch {
     shaft: Option<ShaftWatch>,
 }
 
-/// What was gathered of a run.
+/// Gathered figures of a run.
 pub struct Seen {
     /// Of every bearing.
     pub bearings: Vec<BearingSeen>,
@@ -104,7 +104,7 @@ impl Seen {
         bearings.chain(shaft).collect()
     }
 
-    /// What whoever reads results of this run should know, a sentence each, with the name of the bearing before it.
+    /// Warnings for whoever reads results of this run, a sentence each, with the name of the bearing before it.
     pub fn warnings(&self, machine: &Machine) -> Vec<String> {
         let named = |((name, bearing), seen): ((&str, &Simulation), &BearingSeen)| {
             let before = if name.is_empty() { String::new() } else { format!("bearing {name}: ") };
@@ -117,7 +117,7 @@ impl Seen {
         growing.into_iter().flatten().chain(bearings).chain(shaft.into_iter().flatten()).collect()
     }
 
-    /// What is told of a run beside its summary, a sentence each: the same, but for what summaries of bearings say themselves.
+    /// Remarks on a run beside its summary, a sentence each: warnings, but for what summaries of bearings say themselves.
     pub fn remarks(&self, machine: &Machine) -> Vec<String> {
         let named = |((name, bearing), seen): ((&str, &Simulation), &BearingSeen)| {
             let before = if name.is_empty() { String::new() } else { format!("bearing {name}: ") };
@@ -163,7 +163,7 @@ impl Seen {
         self.shaft.iter_mut().zip(means).for_each(|(seen, means)| put(&mut seen.means, means));
     }
 
-    /// What is kept for comparison with other runs, with the CPU time \[s] of this one; its rows move there.
+    /// Sample for comparison with other runs, with the CPU time \[s] of this one; its rows move there.
     pub fn take_comparable(&mut self, machine: &Machine, cpu: f64) -> Run {
         let bearings = machine.bearings().zip(&mut self.bearings);
         let mut parts: Vec<_> =

@@ -1,4 +1,4 @@
-//! What is gathered of the phases of a run: means, least and largest values, heat and life of each, from the steps in it. A step that
+//! Gatherer of the phases of a run: means, least and largest values, heat and life of each, from the steps in it. A step that
 //! begins or ends outside counts with the part that is inside, along which values go straight.
 
 use std::borrow::Cow;

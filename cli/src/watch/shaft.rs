@@ -1,4 +1,4 @@
-//! What is gathered of a shaft with its housings in a run: means, energy, and rows that its error is told from.
+//! Gatherer of a shaft with its housings in a run: means, energy, and rows that its error is told from.
 
 use roulement::model::structure::StructureEnergies;
 use roulement::simulation::losses::LOSSES;
@@ -29,15 +29,15 @@ pub struct ShaftWatch {
     phases: Vec<PhaseWatch>,
 }
 
-/// What was gathered of a shaft.
+/// Gathered figures of a shaft.
 pub struct ShaftSeen {
     /// Means over the second half.
     pub means: Option<Means>,
     /// Phases of the run that it came to.
     pub phases: Vec<Phase>,
-    /// What closes the losses of the whole machine over the window of the means.
+    /// Powers that close the losses of the whole machine over the window of the means.
     pub closed: Option<Closed>,
-    /// What grows about where the run starts, a sentence each.
+    /// Motions that grow about where the run starts, a sentence each.
     pub growing: Vec<String>,
     watched: Vec<Watched>,
     samples: Vec<Sample>,
@@ -120,7 +120,7 @@ impl ShaftSeen {
         figures
     }
 
-    /// What whoever reads results of this run should know, a sentence each.
+    /// Warnings for whoever reads results of this run, a sentence each.
     pub fn warnings(&self, system: &System) -> Vec<String> {
         let unaccounted = |(name, energies): (String, &StructureEnergies)| {
             let (left, mut all) = (energies.unaccounted(), energies.turned_over());
@@ -141,7 +141,7 @@ impl ShaftSeen {
         creeping(system).into_iter().chain(energies(system).filter_map(unaccounted)).collect()
     }
 
-    /// What is kept for comparison with other runs; its rows move there.
+    /// Sample for comparison with other runs; its rows move there.
     pub fn take_course(&mut self, system: &System) -> Course {
         let samples = std::mem::take(&mut self.samples);
         let lengths = lengths_of(system);

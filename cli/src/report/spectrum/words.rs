@@ -1,4 +1,4 @@
-//! What a summary says of a spectrum.
+//! Words of a summary on a spectrum.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -52,7 +52,7 @@ impl Display for Spectrum {
 }
 
 impl Spectrum {
-    /// What the lines cannot tell.
+    /// Limits of the lines.
     fn warn(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let says = "                 ";
         let fastest = self.marked.iter().map(|line| line.1).fold(0.0, f64::max);
