@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
+use roulement::kalker::packed::packed;
 use roulement::kalker::table::{RATIOS, axis_ratio};
 use roulement::kalker::table_nodes::build;
 
@@ -47,10 +48,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         let handles: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
         handles.into_iter().try_for_each(|handle| handle.join().map_err(|_| "a thread failed".to_string())?)
     })?;
-    let mut bytes = vec![];
+    let mut numbers = vec![];
     for index in 0..=RATIOS {
-        bytes.extend(fs::read(part(&file, index))?);
+        let bytes = fs::read(part(&file, index))?;
+        numbers.extend(bytes.chunks_exact(4).map(|one| f32::from_le_bytes([one[0], one[1], one[2], one[3]])));
     }
+    let bytes = packed(&numbers);
     fs::write(&file, &bytes)?;
     for index in 0..=RATIOS {
         fs::remove_file(part(&file, index))?;

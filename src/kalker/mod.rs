@@ -18,6 +18,7 @@ pub mod nonlinear;
 mod objective;
 mod objective_weights;
 pub mod oblique_net;
+pub mod packed;
 mod patch;
 pub mod scaled_law;
 pub mod solution;

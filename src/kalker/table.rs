@@ -18,6 +18,7 @@ use std::sync::OnceLock;
 
 use super::Patch;
 use super::linear::Scales;
+use super::packed::unpacked;
 use super::patch::LinearError;
 use super::table_pieces::{COUNT, weights};
 
@@ -32,24 +33,23 @@ const BEYOND: usize = 2;
 pub const POISSON: f64 = 0.3;
 /// [-] size |q| in the middle between rest and sliding.
 pub(super) const MIDDLE: f64 = 1.5;
-/// The shipped table: `cargo run --release --example kalker_table` makes it.
+/// The shipped table, packed: `cargo run --release --example kalker_table` makes it.
 const SHIPPED: &[u8] = include_bytes!("table.bin");
 
-/// Nodes of one axis ratio.
-pub const NODES: usize = (SHAPE[0] + 1) * (SHAPE[1] + 1) * SHAPE[2];
+/// Nodes of one axis ratio at one t.
+const AROUND: usize = (SHAPE[1] + 1) * SHAPE[2];
+/// Nodes of one axis ratio: behind rest, where linear theory holds.
+pub const NODES: usize = SHAPE[0] * AROUND;
 
-const _: () = assert!(SHIPPED.len() == (RATIOS + 1) * NODES * 12);
-
-/// Number of a node of one axis ratio, by t, theta and phi.
+/// Number of a node of one axis ratio behind rest, by t (from 1 on), theta and phi.
 pub fn index(i: usize, j: usize, k: usize) -> usize {
-    (i * (SHAPE[1] + 1) + j) * SHAPE[2] + k
+    ((i - 1) * (SHAPE[1] + 1) + j) * SHAPE[2] + k
 }
 
 /// Shipped values of all nodes of one tabulated axis ratio, three a node.
 pub fn shipped(ratio: usize) -> &'static [f32] {
     static PARSED: OnceLock<Vec<f32>> = OnceLock::new();
-    let number = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-    let values = PARSED.get_or_init(|| SHIPPED.chunks_exact(4).map(number).collect());
+    let values = PARSED.get_or_init(|| unpacked(SHIPPED, (RATIOS + 1) * NODES * 3));
     &values[ratio * NODES * 3..(ratio + 1) * NODES * 3]
 }
 
@@ -148,13 +148,14 @@ impl CreepTable {
                 Some(ratio) => add(ratio, weight),
             }
         }
-        Ok(Self::padded(nodes, &scales, Stretch::new(patch.axis_ratio, &scales)))
+        Ok(Self::padded(&nodes, &scales, Stretch::new(patch.axis_ratio, &scales)))
     }
 
     /// Pads the nodes of one axis ratio, three values each; the row at rest is linear theory's own.
-    fn padded(mut stored: Vec<f64>, scales: &Scales, stretch: Stretch) -> Self {
+    fn padded(stored: &[f64], scales: &Scales, stretch: Stretch) -> Self {
         let coupling = [scales.c23 * scales.moment / scales.c33, -scales.c23 / (scales.c22 * scales.moment)];
         let [n_t, n_theta, n_phi] = SHAPE;
+        let mut rest = vec![[0.0; 3]; AROUND];
         for k in 0..n_phi {
             let (sin, cos) = (PI * k as f64 / n_phi as f64).sin_cos();
             let limits = [1.0 / stretch.direction[0], cos, sin / stretch.direction[1]];
@@ -168,8 +169,7 @@ impl CreepTable {
                     theta.sin() * sin / stretch.direction[1],
                 ];
                 let size = raw[0].hypot(raw[1]).hypot(raw[2]);
-                let own = forces.map(|force| MIDDLE * force / size);
-                stored[3 * index(0, j, k)..][..3].copy_from_slice(&own);
+                rest[j * n_phi + k] = forces.map(|force| MIDDLE * force / size);
             }
         }
         // Half a turn in phi changes the sign of what is odd in (y, spin).
@@ -184,7 +184,10 @@ impl CreepTable {
                 for c in 0..3 {
                     nodes.extend(around.iter().map(|(k, sign)| {
                         let odd = if c == 0 { 1.0 } else { *sign };
-                        let at = |i: usize| odd * stored[3 * index(i, j, *k) + c];
+                        let at = |i: usize| match i {
+                            0 => odd * rest[j * n_phi + k][c],
+                            i => odd * stored[3 * index(i, j, *k) + c],
+                        };
                         match i {
                             0 => 2.0 * at(0) - at(1),
                             i if i > n_t + 1 => 2.0 * at(n_t) - at(n_t - 1),

@@ -99,7 +99,7 @@ impl NodeSolver {
     }
 }
 
-/// Stored values of all nodes of one axis ratio, t slowest, phi fastest.
+/// Stored values of all nodes of one axis ratio behind rest, t slowest, phi fastest.
 ///
 /// # Errors
 /// If the reference solver has no answer at a node.
@@ -110,7 +110,7 @@ pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
     let (along, across) = (solver.from_rest_to_sliding(0, 0)?, solver.from_rest_to_sliding(0, SHAPE[2] / 2)?);
     for k in 0..SHAPE[2] {
         let (sin, cos) = (PI * k as f64 / SHAPE[2] as f64).sin_cos();
-        for (i, (along, across)) in along.iter().zip(&across).enumerate() {
+        for (i, (along, across)) in along.iter().zip(&across).enumerate().skip(1) {
             nodes[index(i, 0, k)] = [
                 0.5 * (along[0] + across[0]),
                 along[1] * cos + across[1] * sin,
@@ -118,7 +118,7 @@ pub fn build(axis_ratio: f64) -> Result<Vec<[f64; 3]>, HalfSpaceError> {
             ];
         }
         for j in 1..=SHAPE[1] {
-            for (i, value) in solver.from_rest_to_sliding(j, k)?.into_iter().enumerate() {
+            for (i, value) in solver.from_rest_to_sliding(j, k)?.into_iter().enumerate().skip(1) {
                 nodes[index(i, j, k)] = value;
             }
         }
