@@ -27,7 +27,6 @@ use crate::scene::system::{MountedScene, SystemScene};
 use crate::schema::ShaftSection;
 
 /// The parts of a system at a time.
-#[derive(Clone)]
 pub(super) struct Assembly {
     time: f64,
     pub carriers: Vec<Carrier>,
@@ -111,9 +110,9 @@ impl Assembly {
         })
     }
 
-    /// Their statics, and the states that it sets.
-    fn statics<'a>(&'a mut self, scene: &'a SystemScene) -> (Statics<'a>, &'a mut Vec<StructureState>) {
-        let statics = Statics {
+    /// Brings structures and bearings into balance.
+    pub fn balance(&mut self, scene: &SystemScene) -> Result<(), SystemError> {
+        let mut statics = Statics {
             scene,
             time: self.time,
             carriers: &self.carriers,
@@ -125,16 +124,9 @@ impl Assembly {
             bearings: &mut self.bearings,
             friction: &mut self.friction,
         };
-        (statics, &mut self.states)
-    }
-
-    /// Brings structures and bearings into balance.
-    pub fn balance(&mut self, scene: &SystemScene) -> Result<(), SystemError> {
-        let asked = self.asked.clone();
-        let all: Vec<usize> = (0..self.bearings.len()).collect();
-        let (mut statics, states) = self.statics(scene);
-        statics.turn_into_mesh(states);
-        balance(&mut statics, states, &asked, &all)
+        statics.turn_into_mesh(&mut self.states);
+        let all: Vec<usize> = (0..self.asked.len()).collect();
+        balance(&mut statics, &mut self.states, &self.asked, &all)
     }
 }
 
@@ -195,23 +187,35 @@ impl InBalance {
     }
 
     fn near(&self, bearing: usize, mounted: &MountedScene) -> Result<Simulation, SystemError> {
-        let mut there = self.assembly.clone();
-        let (started, Preloaded { offset, force }) = preloaded(mounted, there.time)?;
-        there.bearings[bearing] = started;
-        there.asked[bearing] = force;
-        for index in 0..there.joints.len() {
-            let Joint { bearing: of, race, structure, .. } = there.joints[index];
+        let Assembly {
+            time, carriers, scales, loads, links, joints, bearings, asked, friction, states, ..
+        } = &self.assembly;
+        let (mut joints, mut bearings, mut asked) = (joints.clone(), bearings.clone(), asked.clone());
+        let (started, Preloaded { offset, force }) = preloaded(mounted, *time)?;
+        bearings[bearing] = started;
+        asked[bearing] = force;
+        for index in 0..joints.len() {
+            let Joint { bearing: of, race, structure, .. } = joints[index];
             if of == bearing {
-                let before = there.joints[..index].iter().filter(|joint| joint.structure == structure);
-                let station = there.carriers[structure].ring_at(before.count());
-                there.joints[index].seat = seat(mounted, race, station, offset);
+                let before = joints[..index].iter().filter(|joint| joint.structure == structure).count();
+                joints[index].seat = seat(mounted, race, carriers[structure].ring_at(before), offset);
             }
         }
-        let asked = there.asked.clone();
-        let (mut statics, states) = there.statics(&self.scene);
-        balance(&mut statics, states, &asked, &[bearing])?;
-        let mut found = there.bearings.swap_remove(bearing);
-        for joint in there.joints.iter().filter(|joint| joint.bearing == bearing) {
+        let mut statics = Statics {
+            scene: &self.scene,
+            time: *time,
+            carriers,
+            scales,
+            loads,
+            joints: &joints,
+            links,
+            flanks: vec![None; links.len()],
+            bearings: &mut bearings,
+            friction: &mut friction.clone(),
+        };
+        balance(&mut statics, &mut states.clone(), &asked, &[bearing])?;
+        let mut found = bearings.swap_remove(bearing);
+        for joint in joints.iter().filter(|joint| joint.bearing == bearing) {
             Arc::make_mut(&mut found.model).carry(joint.race);
         }
         found.settle();
