@@ -249,6 +249,12 @@ impl Totals {
         self.damping_power += pair.damping_power;
     }
 
+    /// Adds what no pair does to a body.
+    pub fn add(&mut self, body: Body, wrench: Wrench) {
+        let sum = &mut self.bodies[body.index()];
+        *sum = sum.plus(wrench);
+    }
+
     /// Force and moment of all its pairs on a body, about its origin, world axes.
     pub fn on(&self, body: Body) -> Wrench {
         self.bodies[body.index()]

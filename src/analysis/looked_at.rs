@@ -50,7 +50,7 @@ pub(super) fn under(
         orbital_velocity: 0.5 * bearing.pitch_diameter * solution.cage_speed.abs(),
         friction: input.friction,
         saturates: scene.effects.creep.law.saturates(),
-        caged: scene.effects.cage.on,
+        caged: scene.effects.cage.is_body(),
         spacing: spacing(scene, model, &input, &solution),
         shoulder_margin: margin(&inner).min(margin(&outer)),
         shoulder_share: share(&inner).max(share(&outer)),

@@ -11,6 +11,8 @@
 //!
 //! `lambda u + (1/T) D u + W [x] u`,   `D u` the derivative of that polynomial, `W = 2 pi/(Z T)` the orbital speed.
 //!
+//! Where an ideal cage keeps balls apart, all are at one place along the orbit: `u` there is the same of all, and so is its rate.
+//!
 //! Under a thrust this is exact: seen from the balls nothing changes with time. Under other loads the balls are taken where they stand,
 //! and what changes while one of them passes is left out.
 
@@ -28,6 +30,9 @@ use crate::numerics::eigen::eigenpairs;
 
 /// Unknowns of a ball: place, velocity, angular velocity.
 const OF_BALL: usize = 9;
+/// Which of its places are along the radius and along the orbit.
+const RADIAL: usize = 1;
+const ALONG: usize = 2;
 /// [-] eigenvalues whose imaginary part is a smaller part of their size do not swing.
 const SWINGS: f64 = 1e-6;
 
@@ -74,6 +79,8 @@ pub struct Running<'a> {
 #[derive(Clone, Debug)]
 pub struct SmallMotions {
     matrix: DMatrix<f64>,
+    /// All unknowns by those of the matrix, where ideal cages keep balls apart.
+    lift: Option<DMatrix<f64>>,
     /// Mass matrix of the coordinates.
     mass: DMatrix<f64>,
     /// \[kg] mass of each ball.
@@ -135,7 +142,8 @@ impl SmallMotions {
         let accelerations = accelerations.unwrap_or_else(|| forces * f64::NAN);
         matrix.rows_mut(size, size).copy_from(&accelerations);
         matrix.view_mut((0, size), (size, size)).fill_with_identity();
-        Self { matrix, mass, balls }
+        let (matrix, lift) = kept_apart(matrix, 2 * size, bearings);
+        Self { matrix, mass, balls, lift }
     }
 
     /// All motions, the fastest growing first; one of each conjugate pair. None where eigenvalues are not found.
@@ -144,15 +152,19 @@ impl SmallMotions {
         let mut found: Vec<SmallMotion> = eigenpairs(&self.matrix)?
             .into_iter()
             .map(|pair| {
-                let rates = pair.vector.rows(size, size);
+                let vector = match &self.lift {
+                    Some(lift) => lift.map(Complex::from) * &pair.vector,
+                    None => pair.vector,
+                };
+                let rates = vector.rows(size, size);
                 let of_bodies = self.energy_of_bodies(&rates);
-                let of_balls = self.energy_of_balls(&pair.vector.rows_range(2 * size..));
+                let of_balls = self.energy_of_balls(&vector.rows_range(2 * size..));
                 let value = match pair.value {
                     value if value.im.abs() > SWINGS * value.norm() => value,
                     value => Complex::from(value.re),
                 };
                 let balls = of_balls / (of_bodies + of_balls).max(f64::MIN_POSITIVE);
-                SmallMotion { value, shape: pair.vector.rows(0, size).into_owned(), balls }
+                SmallMotion { value, shape: vector.rows(0, size).into_owned(), balls }
             })
             .collect();
         found.sort_by(|a, b| b.value.re.total_cmp(&a.value.re));
@@ -380,6 +392,54 @@ impl Seated {
         world.fixed_rows_mut::<3>(3).copy_from(&turned);
         world
     }
+}
+
+/// Equations of balls that ideal cages keep apart, from those of free ones, and all unknowns by those that are left. Pockets act on the rates
+/// along the orbit, and their sum is nothing.
+fn kept_apart(
+    free: DMatrix<f64>,
+    first: usize,
+    bearings: &[Running<'_>],
+) -> (DMatrix<f64>, Option<DMatrix<f64>>) {
+    let ideal: usize =
+        bearings.iter().filter(|of| of.model.spacing.is_some()).map(|of| of.state.balls.len() - 1).sum();
+    if ideal == 0 {
+        return (free, None);
+    }
+    let left = free.nrows() - 2 * ideal;
+    let (mut lift, mut fall) = (DMatrix::zeros(free.nrows(), left), DMatrix::zeros(left, free.nrows()));
+    let [mut from, mut to] = [first; 2];
+    for k in 0..first {
+        (lift[(k, k)], fall[(k, k)]) = (1.0, 1.0);
+    }
+    for bearing in bearings {
+        let (count, apart) = (bearing.state.balls.len(), bearing.model.spacing.is_some());
+        // In an ideal cage all have `u_along = s` and `v_along = s' + W u_radial`: s and s' take the places of those of the first ball.
+        let (speed, share, common) = (mean_orbital_speed(bearing.state), 1.0 / count as f64, to);
+        for ball in 0..count {
+            let mut radial = 0;
+            for k in 0..OF_BALL {
+                if !apart || ball == 0 || (k != ALONG && k != 3 + ALONG) {
+                    if k == RADIAL {
+                        radial = to;
+                    }
+                    let own = apart && (k == ALONG || k == 3 + ALONG);
+                    (lift[(from + k, to)], fall[(to, from + k)]) =
+                        if own { (1.0, share) } else { (1.0, 1.0) };
+                    to += 1;
+                } else {
+                    let shared = common + k;
+                    (lift[(from + k, shared)], fall[(shared, from + k)]) = (1.0, share);
+                }
+            }
+            if apart {
+                lift[(from + 3 + ALONG, radial)] = speed;
+                fall[(common + 3 + ALONG, from + RADIAL)] = -share * speed;
+            }
+            from += OF_BALL;
+        }
+    }
+    (&fall * free * &lift, Some(lift))
 }
 
 /// Axes of each ball as columns: axial, radial, along the orbit.

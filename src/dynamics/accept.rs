@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::group::Groups;
 use super::neighbours::NeighbourTrial;
 use super::record::record;
+use super::spacing;
 use super::support::supports_of;
 use super::{Boundary, Workspace, body};
 use crate::contact::BallMotion;
@@ -80,7 +81,13 @@ impl StepEnd {
     pub fn new(model: &Model, state: &State, boundary: &Boundary, h: f64, workspace: &Workspace) -> Self {
         let solved = Solved { workspace, guide: model.cage_guide() };
         let n_balls = workspace.balls.len();
-        let totals = Totals::of(&solved, n_balls);
+        let mut totals = Totals::of(&solved, n_balls);
+        if let (Some(spacing), Some(trial), None) =
+            (&model.spacing, &workspace.spacing, &model.bodies[Race::Outer])
+        {
+            let places = (0..n_balls).map(|ball| workspace.groups.position(ball));
+            totals.add(Race::Outer.into(), spacing::on_guide(spacing, &trial.end, places));
+        }
         let motions = || (0..n_balls).map(|ball| workspace.groups.motion(ball));
         let ambient = model.ambient(&boundary.frame);
         let mut powers = Powers {
@@ -159,7 +166,7 @@ pub fn accept(
     step: &HhtStep,
     (workspace, end): (&Workspace, &StepEnd),
 ) {
-    let error = workspace.groups.force_of_error(&state.balls, &model.bearing.ball, step);
+    let error = workspace.force_of_error(&state.balls, &model.bearing.ball, step);
     state.time = boundary.time;
     state.statistics.steps += 1;
     for (index, ball) in state.balls.iter_mut().enumerate() {
@@ -190,6 +197,7 @@ pub fn accept(
         }
         state.count_turn(turned, 0.5 * step.h * (spin + state.rate.x));
     }
+    state.spacing = workspace.spacing.as_ref().map(|trial| trial.end.clone());
     state.orientations.clone_from(&boundary.orientations);
     state.supports = end.supports;
     state.energies = end.energies;
@@ -271,22 +279,28 @@ fn force_tolerance(pairs: &impl Pairs, balls: usize, reach: f64, error: f64) -> 
     FORCE_TOLERANCE.max(of_load).max(round_off)
 }
 
-impl Groups {
+impl Workspace {
     /// \[N] force on a ball that would move it by the local error of a step (root mean square of all balls; rotations count at the surface):
     /// `m (a1 - a0) (beta - alpha_f/2 - 1/6)/beta`.
     fn force_of_error(&self, start: &[BallState], ball: &Ball, step: &HhtStep) -> f64 {
         let square = |(index, state): (usize, &BallState)| {
-            let unknowns = self.unknowns(index);
+            let unknowns = self.groups.unknowns(index);
             let change = |from: usize, before: Vector3<f64>| {
                 let after = unknowns.fixed_rows::<3>(from).into_owned();
                 step.local_error(&before, &after).norm_squared()
             };
-            change(0, state.acceleration) + change(3, state.angular_acceleration * ball.radius)
+            let along = self.spacing.as_ref().zip(self.groups.apart(index)).map_or(0.0, |(trial, apart)| {
+                let [before, after] = trial.accelerations().map(|turn| apart.along_orbit(&unknowns) * turn);
+                step.local_error(&before, &after).norm_squared()
+            });
+            change(0, state.acceleration) + change(3, state.angular_acceleration * ball.radius) + along
         };
         let sum = start.iter().enumerate().map(square).fold(0.0, |sum, square| sum + square);
         ball.mass * (sum / start.len() as f64).sqrt() / step.position_gain()
     }
+}
 
+impl Groups {
     /// Writes the state of a ball at the end of the step.
     fn end(&self, ball: usize, radius: f64, state: &mut BallState) {
         let (motion, unknowns) = (self.motion(ball), self.unknowns(ball));
@@ -347,7 +361,14 @@ pub(super) fn take_forces(model: &Model, state: &mut State, boundary: &Boundary,
         ball.acceleration = ball.total.force / ball_model.mass;
         ball.angular_acceleration = ball.total.moment / ball_model.inertia;
     }
-    let totals = Totals::of(contacts, state.balls.len());
+    let mut totals = Totals::of(contacts, state.balls.len());
+    if let Some(spacing) = &model.spacing {
+        spacing::make_consistent(spacing, model, state, boundary);
+        if let (Some(turn), None) = (&state.spacing, &model.bodies[Race::Outer]) {
+            let places = state.balls.iter().map(|ball| ball.position);
+            totals.add(Race::Outer.into(), spacing::on_guide(spacing, turn, places));
+        }
+    }
     let mut powers = Powers {
         input: power_into_balls(&ambient, state.balls.iter().map(BallState::motion)),
         friction: totals.friction_power,

@@ -8,6 +8,7 @@ use super::cage::CageTrial;
 use super::directions::{D, by_first, scale_moments, seed};
 use super::group::{BallGroup, Groups};
 use super::reaction::{PairTangent, Reaction};
+use super::spacing::Apart;
 use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, ContactModel, RaceMotion};
 use crate::effects::ambient::Ambient;
@@ -251,17 +252,20 @@ pub struct BallAlone {
 }
 
 impl BallAlone {
-    /// The ball `index` with these unknowns; `obliquely`: on which races did it roll so when it was evaluated last?
+    /// The ball `index` with these unknowns, `apart` where an ideal cage keeps it; `obliquely`: on which races did it roll so when it was evaluated last?
     pub fn new(
         index: usize,
-        (equations, unknowns): (&BallEquations, &Vector6<f64>),
+        ((equations, apart), unknowns): ((&BallEquations, Option<&Apart<f64>>), &Vector6<f64>),
         obliquely: &PerRace<bool>,
         around: &Surroundings<'_>,
         step: &HhtStep,
     ) -> Self {
         let Surroundings { model, ambient, races, cage, .. } = around;
         let unknowns: [f64; BLOCK] = (*unknowns).into();
-        let motion = equations.motion(&unknowns);
+        let mut motion = equations.motion(&unknowns);
+        if let Some(apart) = apart {
+            apart.move_to(&unknowns, &mut motion);
+        }
         let radius = model.bearing.ball.radius;
         let (mut tangent, mut touching) = (Matrix6::zeros(), 0);
         let mut total = ambient.on_ball(&motion);
@@ -285,8 +289,14 @@ impl BallAlone {
                 tangent += by_first(&forces.force, &forces.moment);
             }
         }
-        let residual = equations.residual(&equations.remainder(&unknowns, &total)).into();
-        Self { residual, tangent: around.tangent_of_residual(tangent, &motion, step), touching }
+        let mut remainder = equations.remainder(&unknowns, &total);
+        let mut residual = equations.residual(&remainder);
+        let mut tangent = around.tangent_of_residual(tangent, &motion, step);
+        if let Some(apart) = apart {
+            apart.balance(&unknowns, &mut total, &mut remainder, &mut residual);
+            tangent = apart.tangent_alone(tangent);
+        }
+        Self { residual: residual.into(), tangent, touching }
     }
 }
 

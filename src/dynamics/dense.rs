@@ -42,6 +42,11 @@ pub fn within(model: &Model, ends: [&StepBound; 2], boundary: &Boundary) -> Step
     for (state, end) in state.balls.iter_mut().zip(&end.balls) {
         move_ball(state, end, between);
     }
+    if let (Some(spacing), Some(before), Some(after)) = (&model.spacing, &start.spacing, &end.spacing) {
+        let turn = before.within(after, between);
+        turn.place(spacing, &mut state.balls);
+        state.spacing = Some(turn);
+    }
     let bodies = state.bodies.iter_mut().zip(end.bodies.iter()).zip(model.bodies.iter());
     for (((body, state), (_, end)), (_, moved)) in bodies {
         let (turned, spin) = ((state.turned, state.turned_rest), state.rate.x);

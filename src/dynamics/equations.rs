@@ -4,6 +4,7 @@ use super::ball::{BallTrial, Surroundings};
 use super::body::{BodyTrial, RaceSeen};
 use super::body_sums::{BodyLoad, BodyScales, BodyStep};
 use super::cage::CageTrial;
+use super::spacing::SpacingTrial;
 use super::{Boundary, Counted, Workspace};
 use crate::contact::many::ContactGroup;
 use crate::contact::{ContactModel, RaceMotion};
@@ -65,6 +66,12 @@ impl<'a> BearingStep<'a> {
             PerRace::new(|race| ContactGroup::filled(&contacts[race].evaluate(&motion, &races[race])))
         });
         workspace.races = races;
+        workspace.spacing =
+            start.spacing.as_ref().map(|turn| SpacingTrial::new(turn, model, boundary, &step));
+        if let (Some(spacing), Some(trial)) = (&model.spacing, &workspace.spacing) {
+            let ball = (&model.bearing.ball, &step);
+            workspace.groups.keep_apart(&start.balls, &spacing.azimuths, trial, ball);
+        }
         Self {
             model,
             contacts,
@@ -85,9 +92,9 @@ impl<'a> BearingStep<'a> {
         self.model.solver.matrix_reuse > 0.0 && self.workspace.neighbours.is_empty()
     }
 
-    /// Are the balls independent of each other, because no body has unknowns and no two balls may touch?
+    /// Are the balls independent of each other, because no body has unknowns, no two balls may touch, and no ideal cage keeps them apart?
     pub fn balls_are_independent(&self) -> bool {
-        self.model.border_offsets() == [None; SLOTS] && self.workspace.neighbours.is_empty()
+        self.model.border_size() == 0 && self.workspace.neighbours.is_empty()
     }
 
     /// Motion of the outer race at the end of the step.
@@ -101,7 +108,11 @@ impl<'a> BearingStep<'a> {
         let length = self.model.race_length();
         let offsets = self.model.border_offsets();
         let border = &unknowns[BLOCK * self.start.balls.len()..];
-        let Workspace { bodies, races, cage, .. } = &mut *self.workspace;
+        let Workspace { bodies, races, cage, spacing, groups, .. } = &mut *self.workspace;
+        if let (Some(trial), Some(row)) = (spacing, self.model.spacing_row()) {
+            moved |= trial.move_to(border[row], &self.step, length);
+            groups.turn(&trial.turn());
+        }
         for ((body, trial), (_, start)) in bodies.iter_mut().zip(self.start.bodies.iter()) {
             if let (Some(trial), Some(from)) = (trial, offsets[body.index()]) {
                 if trial.is_carried() {
@@ -159,6 +170,9 @@ impl<'a> BearingStep<'a> {
                     trial.couple_body(slot, body, &self.step, length);
                 }
             }
+            if let Some(apart) = workspace.groups.apart(index) {
+                apart.share(&mut trial.block, &workspace.groups.unknowns(index), length);
+            }
         }
     }
 
@@ -207,7 +221,7 @@ impl<'a> BearingStep<'a> {
         }
     }
 
-    /// Residuals of the bodies under these forces; returns the largest norm.
+    /// Residuals of the bodies under these forces, and of the turn of an ideal cage; returns the largest norm.
     pub(super) fn assemble_bodies(&mut self, sums: &[Wrench; SLOTS]) -> f64 {
         let mut norm = 0.0;
         let mut trials = std::mem::take(&mut self.workspace.bodies);
@@ -220,6 +234,11 @@ impl<'a> BearingStep<'a> {
             }
         }
         self.workspace.bodies = trials;
+        let Workspace { spacing, groups, .. } = &mut *self.workspace;
+        if let Some(trial) = spacing {
+            trial.assemble(groups, &self.step, self.model.race_length());
+            norm = larger(norm, trial.residual.abs() / self.force_tolerance);
+        }
         norm
     }
 

@@ -5,6 +5,7 @@
 use nalgebra::{Vector3, Vector6};
 
 use super::ball_equations::BallEquations;
+use super::spacing::{Apart, Share, SpacingTrial, Turn};
 use crate::contact::many::{ContactGroup, Touch};
 use crate::contact::pair::PairForces;
 use crate::contact::{BallMotion, BallRaceContact, ContactModel, RaceMotion};
@@ -29,6 +30,8 @@ pub struct BallGroup {
     /// Which balls are to be evaluated, as they have moved since then?
     pub moved: [bool; WIDTH],
     balance: Balance,
+    /// Where an ideal cage keeps them, and what they add to its turn.
+    apart: Option<(Apart<Lanes>, Share<Lanes>)>,
 }
 
 /// Forces on balls, and what is left of their equations.
@@ -59,14 +62,18 @@ impl BallGroup {
             contacts: contacts.clone(),
             moved: [true; WIDTH],
             balance,
+            apart: None,
         }
     }
 
     /// Moves its balls to the end of the step: `unknowns` are those of all its balls. Notes which moved, or that `all` count as moved.
     fn move_to(&mut self, unknowns: &[f64], all: bool) {
         let balls = unknowns.len() / BLOCK;
-        let Self { equations, unknowns: own, motion, moved, .. } = self;
+        let Self { equations, unknowns: own, motion, moved, apart, .. } = self;
         let changed = move_to_lanes(equations, unknowns, own, motion);
+        if let Some((apart, _)) = apart {
+            keep_apart_lanes(apart, own, motion);
+        }
         *moved = std::array::from_fn(|lane| lane < balls && (all || moved[lane] || changed[lane]));
     }
 
@@ -97,6 +104,9 @@ impl BallGroup {
         let contacts = [Race::Inner, Race::Outer].map(|race| self.contacts[race].lanes());
         let at = (&self.unknowns, &self.motion);
         balance_lanes(&self.equations, at, (ambient, contacts, touched), &mut self.balance);
+        if let Some((apart, share)) = &mut self.apart {
+            balance_apart_lanes(apart, &self.unknowns, &mut self.balance, share);
+        }
     }
 
     /// Motion of its balls.
@@ -139,6 +149,44 @@ impl Groups {
         }
     }
 
+    /// Begins the step of these balls where an ideal cage keeps them apart: by the azimuths of all where its turn is 0.
+    pub fn keep_apart(
+        &mut self,
+        balls: &[BallState],
+        azimuths: &[[f64; 2]],
+        trial: &SpacingTrial,
+        (ball, step): (&Ball, &HhtStep),
+    ) {
+        let of_groups = balls.chunks(WIDTH).zip(azimuths.chunks(WIDTH));
+        for (group, (balls, azimuths)) in self.0.iter_mut().zip(of_groups) {
+            let lane = |lane: usize| (lane_of(balls, lane), *lane_of(azimuths, lane));
+            let zero = Lanes::constant(0.0);
+            let share = Share { inertia: zero, moment: zero, radius: zero };
+            group.apart = Some((Apart::of_lanes(lane, trial, ball.mass, step), share));
+        }
+    }
+
+    /// Turns the balls that an ideal cage keeps apart; they move there with their unknowns.
+    pub fn turn(&mut self, turn: &Turn) {
+        self.0.iter_mut().filter_map(|group| group.apart.as_mut()).for_each(|(apart, _)| apart.follow(turn));
+    }
+
+    /// Where an ideal cage keeps a ball.
+    pub fn apart(&self, ball: usize) -> Option<Apart<f64>> {
+        let (group, lane) = self.place(ball);
+        group.apart.as_ref().map(|(apart, _)| apart.in_lane(lane))
+    }
+
+    /// What a ball adds to the turn of an ideal cage.
+    pub fn share(&self, ball: usize) -> Option<Share<f64>> {
+        let (group, lane) = self.place(ball);
+        let of = |Share { inertia, moment, radius }: &Share<Lanes>| {
+            let [inertia, moment, radius] = [inertia, moment, radius].map(|of| of.0[lane]);
+            Share { inertia, moment, radius }
+        };
+        group.apart.as_ref().map(|(_, share)| of(share))
+    }
+
     /// Moves one ball somewhere else.
     pub fn put(&mut self, ball: usize, unknowns: &Vector6<f64>) {
         let (group, lane) = (&mut self.0[ball / WIDTH], ball % WIDTH);
@@ -147,6 +195,9 @@ impl Groups {
         }
         group.moved[lane] = true;
         move_lanes(&group.equations, &group.unknowns, &mut group.motion);
+        if let Some((apart, _)) = &group.apart {
+            keep_apart_lanes(apart, &group.unknowns, &mut group.motion);
+        }
     }
 
     /// Moves the balls to the end of the step; `all` count as moved, or those whose unknowns have changed.
@@ -321,6 +372,25 @@ fn move_to_lanes(
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn move_lanes(equations: &BallEquations<Lanes>, unknowns: &Six<Lanes>, motion: &mut BallMotion<Lanes>) {
     *motion = equations.motion(unknowns);
+}
+
+/// Puts balls where an ideal cage keeps them.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn keep_apart_lanes(apart: &Apart<Lanes>, unknowns: &Six<Lanes>, motion: &mut BallMotion<Lanes>) {
+    apart.move_to(unknowns, motion);
+}
+
+/// What the forces on balls that an ideal cage keeps apart leave of their equations.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn balance_apart_lanes(
+    apart: &Apart<Lanes>,
+    unknowns: &Six<Lanes>,
+    balance: &mut Balance,
+    share: &mut Share<Lanes>,
+) {
+    let Balance { total, remainder, residual, size } = balance;
+    *share = apart.balance(unknowns, total, remainder, residual);
+    *size = residual.iter().fold(Lanes::constant(0.0), |size, x| size.larger_size(*x));
 }
 
 /// Forces on balls: from outside, by two contacts, and by pockets and neighbours where some touch.

@@ -64,6 +64,7 @@ impl BearingStep<'_> {
                 unknowns.extend(state.multipliers.iter().zip(scales).map(|(m, scale)| m / scale));
             }
         }
+        unknowns.extend(self.start.spacing.as_ref().map(|turn| turn.acceleration * length));
     }
 
     /// Second guess, where Newton's method failed from the first: everything keeps its velocity over the step, except for
@@ -76,6 +77,9 @@ impl BearingStep<'_> {
         let back = -(1.0 - self.step.gamma) / self.step.gamma;
         let (balls, border) = unknowns.split_at_mut(BLOCK * self.start.balls.len());
         balls.iter_mut().for_each(|a| *a *= back);
+        if let Some(row) = self.model.spacing_row() {
+            border[row] *= back;
+        }
         for (body, offset) in Body::ALL.into_iter().zip(self.model.border_offsets()) {
             if let Some(offset) = offset {
                 border[offset..offset + BLOCK].iter_mut().for_each(|a| *a *= back);

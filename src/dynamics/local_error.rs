@@ -82,8 +82,8 @@ impl BearingStep<'_> {
         let masses = [ball.mass, ball.inertia / (radius * radius)];
         self.start.balls.iter().enumerate().map(move |(index, start)| {
             let unknowns = self.workspace.groups.unknowns(index);
-            let ends = |from: usize| unknowns.fixed_rows::<3>(from).into_owned();
-            let starts = match allowed.unresolved {
+            let mut ends = [0, 3].map(|from| unknowns.fixed_rows::<3>(from).into_owned());
+            let mut starts = match allowed.unresolved {
                 // What turns with the orbit is followed without error.
                 Some(_) => {
                     let steady = &self.workspace.steady[BLOCK * index..];
@@ -91,7 +91,14 @@ impl BearingStep<'_> {
                 }
                 None => [start.acceleration, start.angular_acceleration * radius],
             };
-            self.square(allowed, [(&starts[0], &ends(0)), (&starts[1], &ends(3))], masses)
+            if let (Some(trial), Some(apart)) = (&self.workspace.spacing, self.workspace.groups.apart(index))
+            {
+                // Its share of the turn.
+                let (along, [before, after]) = (apart.along_orbit(&unknowns), trial.accelerations());
+                starts[0] += along * before;
+                ends[0] += along * after;
+            }
+            self.square(allowed, [(&starts[0], &ends[0]), (&starts[1], &ends[1])], masses)
         })
     }
 

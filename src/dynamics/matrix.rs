@@ -132,7 +132,8 @@ impl BearingStep<'_> {
             kept.balls.clear();
         }
         let groups_of_balls = balls.len().div_ceil(WIDTH);
-        kept.blocks.resize_with(groups_of_balls, || Eliminated::none(members.len()));
+        let shares = self.model.spacing.is_some();
+        kept.blocks.resize_with(groups_of_balls, || Eliminated::none(members.len(), shares));
         for (index, trial) in balls.iter().enumerate().filter(|(_, trial)| trial.renewed) {
             *factorised = false;
             if !kept.blocks[index / WIDTH].put(index % WIDTH, &trial.block, members) {
@@ -201,7 +202,7 @@ impl BearingStep<'_> {
         if neighbours.is_empty() {
             let turns = kept.balls.chunks(WIDTH).zip(groups.positions());
             let turns = turns.map(|(kept, positions)| turn_of_lanes(kept, positions, &origin));
-            arrowhead.reduce(kept.blocks.iter().zip(turns), members, border);
+            arrowhead.reduce(kept.blocks.iter().zip(turns), (members, model.spacing_row()), border);
         } else {
             let blocks: Vec<&Block> = balls.iter().map(|trial| &trial.block).collect();
             let links: Vec<Link> = neighbours.iter().map(|pair| pair.link).collect();
@@ -214,9 +215,9 @@ impl BearingStep<'_> {
         condensed.factorise(border, |row| !carried.iter().flatten().any(|rows| rows.contains(&row)));
     }
 
-    /// \[m] centre of the outer race, which orbits are about.
+    /// \[m] what orbits are about: the centre of the outer race, or of an ideal cage.
     fn races_origin(&self) -> Vector3<f64> {
-        self.outer().position
+        self.workspace.spacing.as_ref().map_or(self.outer().position, |trial| trial.end.centre)
     }
 
     /// Writes the Newton correction of the present residual; false if the matrix is singular.
@@ -359,6 +360,7 @@ impl BearingStep<'_> {
             bodies,
             members,
             neighbours,
+            spacing,
             ball_corrections,
             group_corrections,
             border_correction: y,
@@ -373,6 +375,9 @@ impl BearingStep<'_> {
         }
         if y.len() != rows {
             y.resize_vertically_mut(rows, 0.0);
+        }
+        if let (Some(trial), Some(row)) = (spacing, self.model.spacing_row()) {
+            y[row] = -trial.residual;
         }
         for member in members.iter() {
             if let Some(trial) = Body::ALL.get(member.slot).and_then(|body| bodies.get(*body)?.as_ref()) {

@@ -21,6 +21,7 @@ mod neighbours;
 mod reaction;
 mod record;
 mod repair;
+mod spacing;
 mod step_turn;
 mod support;
 pub mod system;
@@ -50,6 +51,7 @@ pub use dense::StepBound;
 pub use failure::{FailureSite, Worst, failure_site};
 use group::Groups;
 use neighbours::NeighbourTrial;
+use spacing::SpacingTrial;
 
 /// Motions, loads and conditions imposed at the end of a step.
 #[derive(Clone, Debug)]
@@ -113,6 +115,8 @@ pub struct Workspace {
     races: PerRace<RaceMotion<f64>>,
     /// Trial of the cage, where there is one.
     cage: Option<CageTrial>,
+    /// Turn of balls that an ideal cage keeps apart.
+    spacing: Option<SpacingTrial>,
     /// Neighbouring balls that may touch in the step.
     neighbours: Vec<NeighbourTrial>,
     /// Factors of the bodies' rows, balls eliminated.

@@ -47,9 +47,11 @@ impl BearingStep<'_> {
         for (index, (trial, start)) in balls.iter_mut().zip(&self.start.balls).enumerate() {
             if is_thrown(index, groups) {
                 let equations = BallEquations::new(start, ball, &self.step);
+                let apart = groups.apart(index);
                 let obliquely = PerRace::new(|race| groups.rolled_obliquely(index, race));
                 let alone = |unknowns: &Vector6<f64>| {
-                    let here = BallAlone::new(index, (&equations, unknowns), &obliquely, &around, &self.step);
+                    let equations = (&equations, apart.as_ref());
+                    let here = BallAlone::new(index, (equations, unknowns), &obliquely, &around, &self.step);
                     counted.contact_tangents += here.touching;
                     here
                 };

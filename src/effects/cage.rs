@@ -1,6 +1,7 @@
-//! The cage: a rigid body with pockets, and lands of a race that guide it ([`crate::model::cage`]).
+//! The cage: a rigid body with pockets, and lands of a race that guide it ([`crate::model::cage`]); or an ideal one ([`crate::model::spacing`]).
 
-use serde::Deserialize;
+use serde::de::{Error, Visitor};
+use serde::{Deserialize, Deserializer};
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::estimate::{Estimate, Standing, Verdict, digits, percent};
@@ -14,6 +15,44 @@ use crate::schema::variable_units::{
     METRE, METRE_PER_SECOND, NEWTON, ONE, RADIAN, RADIAN_PER_SECOND, Unit, WATT,
 };
 use crate::schema::{BearingSection, SceneError};
+
+/// What keeps the balls apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CageKind {
+    /// Nothing: they touch where they meet.
+    #[default]
+    None,
+    /// A cage without mass, play and friction: they are at even spacing ([`crate::model::spacing`]).
+    Ideal,
+    /// The cage of a section `[cage]`.
+    Body,
+}
+
+impl<'de> Deserialize<'de> for CageKind {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Word;
+        impl Visitor<'_> for Word {
+            type Value = CageKind;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("\"ideal\", \"none\", true or false")
+            }
+
+            fn visit_bool<E: Error>(self, is: bool) -> Result<CageKind, E> {
+                Ok(if is { CageKind::Body } else { CageKind::None })
+            }
+
+            fn visit_str<E: Error>(self, word: &str) -> Result<CageKind, E> {
+                match word {
+                    "ideal" => Ok(CageKind::Ideal),
+                    "none" => Ok(CageKind::None),
+                    _ => Err(E::invalid_value(serde::de::Unexpected::Str(word), &self)),
+                }
+            }
+        }
+        deserializer.deserialize_any(Word)
+    }
+}
 
 /// What guides the cage radially.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -54,11 +93,23 @@ pub struct CageSection {
 }
 
 keys! {
-    /// Is there a cage?
-    "cage" => on: bool = false,
+    /// What keeps the balls apart: `true` is the cage of `[cage]`, `"ideal"` one without mass, play and friction, `false` or `"none"` nothing.
+    "cage" => kind: CageKind = CageKind::None,
     ;
     /// The section `[cage]`: there with the effect only.
     section: Option<CageSection> = None,
+}
+
+impl Settings {
+    /// Is there a cage that is a body?
+    pub fn is_body(&self) -> bool {
+        self.kind == CageKind::Body
+    }
+
+    /// Does an ideal cage keep the balls apart?
+    pub fn is_ideal(&self) -> bool {
+        self.kind == CageKind::Ideal
+    }
 }
 
 const INERTIA: Range = Range::above(0.0, 1e4, "kg m2");
@@ -85,15 +136,15 @@ pub const LOSS: Part = Part {
     name: "loss.cage",
     description: "power lost to friction of the cage, in its pockets and on its lands",
     words: "friction of the cage",
-    is_of: |effects| effects.cage.on,
+    is_of: |effects| effects.cage.is_body(),
     get: |losses| losses.cage,
 };
 
 impl Effect for Settings {
     const INFO: &'static Info = &Info {
         key: "effects.cage",
-        adds: "a rigid cage that the balls touch in its pockets, guided by lands of a race or by the balls",
-        states: "pose, velocity and angular velocity of the cage",
+        adds: "a rigid cage that the balls touch in its pockets, guided by lands of a race or by the balls; or an ideal one: balls at even spacing",
+        states: "pose, velocity and angular velocity of the cage; of an ideal one its turn",
         source: "Bovet et al. 2013, section 4.2; lands after Gupta 1984 and Lundberg",
         price: "167 % of a step of 10 balls (thrust case against scenes/cage.toml)",
         example: "[effects]\ncage = true\n[cage]\nmass = \"20 g\"\ninertia = [1.1e-5, 6e-6, 6e-6]\n\
@@ -144,8 +195,8 @@ impl Effect for Settings {
             _ => format!("{lead}: less than the {} mm that they have in pockets", digits(clearance * 1e3)),
         };
         let quantity = if struck >= held { "largest load" } else { "torque" };
-        let standing = if self.on { Standing::On } else { Standing::Off };
-        let write = "[effects] cage = true with [cage] mass, inertia, pocket_clearance, guided_by";
+        let standing = if self.kind != CageKind::None { Standing::On } else { Standing::Off };
+        let write = "[effects] cage = \"ideal\", or cage = true with [cage] mass, inertia, pocket_clearance, guided_by";
         let value = (struck.max(held), estimate.threshold);
         let verdict = Verdict::new(("cage", quantity), standing, value, sentence, write);
         vec![Verdict { key: Some("effects.cage"), matters: verdict.matters || loose, ..verdict }]
@@ -193,22 +244,23 @@ impl Effect for Settings {
     ];
 
     fn setting(&self) -> Option<String> {
-        self.section.map(|section| match section.guided_by {
+        let guided = |section: CageSection| match section.guided_by {
             Guidance::Inner => "guided by the inner race".into(),
             Guidance::Outer => "guided by the outer race".into(),
             Guidance::Balls => "guided by the balls".into(),
-        })
+        };
+        if self.is_ideal() { Some("ideal: balls at even spacing".into()) } else { self.section.map(guided) }
     }
 
     fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {
         let friction = [("ball_cage", setup.friction.ball_cage), ("cage_race", setup.friction.cage_race)];
-        match (self.on, &self.section) {
+        match (self.is_body(), &self.section) {
             (true, Some(cage)) => {
                 pockets(cage, setup.bearing)?;
                 lands(cage, setup.friction.cage_race.is_some(), setup.bearing)
             }
             (true, None) => {
-                let why = "give the cage's mass, inertia and clearances in [cage]";
+                let why = "give the cage's mass, inertia and clearances in [cage], or write effects.cage = \"ideal\"";
                 Err(SceneError::conflict("effects.cage", why))
             }
             (false, Some(_)) => Err(SceneError::conflict("cage", "allowed with effects.cage = true only")),
@@ -227,7 +279,11 @@ impl Effect for Settings {
     }
 
     fn ball_rows(&self, ball: usize) -> Vec<Row> {
-        if self.on { pocket_rows(ball) } else { vec![] }
+        match self.kind {
+            CageKind::None => vec![],
+            CageKind::Ideal => pocket_rows(ball).drain(..4).collect(),
+            CageKind::Body => pocket_rows(ball),
+        }
     }
 }
 

@@ -7,6 +7,7 @@ pub mod damage;
 pub mod energies;
 pub mod link;
 pub mod raceways;
+pub mod spacing;
 pub mod state;
 pub mod structure;
 
@@ -39,6 +40,7 @@ use bodies::{Bodies, PerRace, Race, RigidBody};
 use cage::CageModel;
 use damage::DamagedBalls;
 use raceways::RacewayContacts;
+use spacing::Spacing;
 
 /// Conditions that may change from step to step and are the same in every contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -69,6 +71,8 @@ pub struct Model {
     raceways: PerRace<RacewayContacts>,
     /// Balls against the cage's pockets and the cage against a race's lands, where a cage is simulated.
     pub cage: Option<CageModel>,
+    /// Even spacing of the balls, where an ideal cage keeps them apart.
+    pub spacing: Option<Spacing>,
     /// Neighbouring balls against each other, where no cage keeps them apart.
     pub ball_contact: Option<BallBallModel>,
     /// Growth of rings and balls, where it is simulated.
@@ -160,16 +164,18 @@ impl Model {
             let sizes = [bearing.pitch_diameter, 2.0 * bearing.ball.radius];
             scene.effects.film.films(races, sizes, scene.bearing.contact_angle.is_some())
         });
+        let spacing = scene.effects.cage.is_ideal().then(|| Spacing::new(&bearing));
         let damaged = DamagedBalls::new(&scene.effects.defects.on_balls(), &bearing, &whole);
         Ok(Self {
             bodies: Bodies::new(races, section.map(|section| Some(RigidBody::cage(section)))),
             raceways,
-            ball_contact: cage.is_none().then(|| {
+            ball_contact: (cage.is_none() && spacing.is_none()).then(|| {
                 let material = (scene.ball.youngs_modulus.0, scene.ball.poisson_ratio);
                 let friction = scene.friction.ball_ball.unwrap_or(scene.friction.ball_race.at(0.0));
                 BallBallModel::new(bearing.ball.radius, material, friction)
             }),
             cage,
+            spacing,
             rating: scene.effects.rating.rating(
                 &scene.bearing,
                 &bearing.materials,
@@ -331,8 +337,17 @@ impl Model {
         self.bodies.iter().filter(|(_, body)| body.is_some()).count()
     }
 
-    /// [-] border rows of all bodies.
+    /// [-] border rows of all bodies, and that of an ideal cage's turn.
     pub fn border_size(&self) -> usize {
+        self.rows_of_bodies() + usize::from(self.spacing.is_some())
+    }
+
+    /// Border row of an ideal cage's turn, where there is one: the last.
+    pub fn spacing_row(&self) -> Option<usize> {
+        self.spacing.as_ref().map(|_| self.rows_of_bodies())
+    }
+
+    fn rows_of_bodies(&self) -> usize {
         self.bodies.iter().filter_map(|(_, body)| body.as_ref()).map(RigidBody::rows).sum()
     }
 

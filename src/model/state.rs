@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bodies::{Bodies, Body, Constraint, PerRace, Race, RigidBody};
 use super::energies::{Energies, Powers, Pressed};
+use super::spacing::CommonTurn;
 use crate::contact::motion::BodyMotion;
 use crate::contact::{BallMotion, RaceMotion};
 use crate::effects::growth::Grown;
@@ -26,11 +27,12 @@ pub struct BallState {
     pub velocity: Vector3<f64>,
     /// [rad/s] angular velocity.
     pub angular_velocity: Vector3<f64>,
-    /// [m/s2] acceleration of the centre.
+    /// [m/s2] acceleration of the centre; of a ball that an ideal cage keeps apart, those of its place along the axis and of its distance
+    /// from that.
     pub acceleration: Vector3<f64>,
     /// [rad/s2] angular acceleration.
     pub angular_acceleration: Vector3<f64>,
-    /// Total force and moment about the centre, the `g` of the HHT scheme.
+    /// Total force and moment about the centre, the `g` of the HHT scheme: of what `acceleration` is of.
     pub total: Wrench,
     /// Remainder of the equations of motion that the last step left, within their tolerance.
     pub remainder: Wrench,
@@ -228,6 +230,8 @@ pub struct State {
     pub balls: Vec<BallState>,
     /// Races, and the cage where it is simulated.
     pub bodies: Bodies<BodyState>,
+    /// The turn of balls that an ideal cage keeps apart.
+    pub spacing: Option<CommonTurn>,
     /// Flexible supports of the races, where they rest on some.
     pub supports: PerRace<Option<SupportState>>,
     /// By ball, the differences of Kalker's polynomials from the table at its contacts with the races; empty where they
@@ -280,6 +284,9 @@ impl State {
 
     /// [rad/s] spin of the cage about its own axis; without a cage, mean orbital speed of the balls.
     pub fn cage_speed(&self) -> f64 {
+        if let Some(turn) = &self.spacing {
+            return turn.speed;
+        }
         let outer = self.race(Race::Outer);
         let orbits =
             || self.balls.iter().map(|ball| ball.orbital_speed(outer)).sum::<f64>() / self.balls.len() as f64;
@@ -328,7 +335,8 @@ impl State {
         // A sum of numbers of which one is not finite is not finite.
         let sum = self.balls.iter().map(of_ball).sum::<f64>()
             + self.bodies.iter().map(of_body).sum::<f64>()
-            + self.supports.iter().flatten().map(of_support).sum::<f64>();
+            + self.supports.iter().flatten().map(of_support).sum::<f64>()
+            + self.spacing.as_ref().map_or(0.0, CommonTurn::sum);
         (sum + self.time + input + friction + damping + around + energies + warm).is_finite()
     }
 

@@ -13,6 +13,8 @@
 //! An eliminated block turns about the x axis with its ball: in a frame that turns along it hardly changes, and serves many
 //! matrices. Border rows have three forces in world axes and three moments in the axes of their member.
 //!
+//! Blocks may share one more unknown, a number without direction ([`Shared`]): its row and column are the border's, too.
+//!
 //! Four blocks at a time are worked with, in the lanes of vectors.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, SMatrix, Vector6};
@@ -48,13 +50,31 @@ pub struct Block {
     pub left: [Matrix6<f64>; SLOTS],
     /// Additions of the block to rows and columns of a member of the border.
     pub own: [Matrix6<f64>; SLOTS],
+    /// Couplings to the unknown that all blocks share; not used where there is none.
+    pub shared: Shared,
 }
 
 impl Default for Block {
     fn default() -> Self {
         let zero = Matrix6::zeros();
-        Self { diagonal: zero, right: [zero; SLOTS], left: [zero; SLOTS], own: [zero; SLOTS] }
+        let shared = Shared::default();
+        Self { diagonal: zero, right: [zero; SLOTS], left: [zero; SLOTS], own: [zero; SLOTS], shared }
     }
+}
+
+/// Couplings of a block to the unknown that all blocks share.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Shared {
+    /// Own rows, its column.
+    pub column: Vector6<f64>,
+    /// Its row, own columns.
+    pub row: Vector6<f64>,
+    /// What the block adds to its row and column.
+    pub own: f64,
+    /// What the block adds to its row, columns of each member of the border.
+    pub right: [Vector6<f64>; SLOTS],
+    /// What the block adds to rows of each member, its column.
+    pub left: [Vector6<f64>; SLOTS],
 }
 
 /// A member of the border.
@@ -128,6 +148,21 @@ pub struct Eliminated {
     inverse: Square<Lanes>,
     /// Their couplings to each member of the border.
     couplings: Vec<Coupling>,
+    /// Their couplings to the unknown that they share, where there is one.
+    shared: Option<SharedCoupling>,
+}
+
+/// Eliminated blocks and the unknown that they share.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct SharedCoupling {
+    /// `A^-1` times its column.
+    column: Six<Lanes>,
+    /// Its row.
+    row: Six<Lanes>,
+    /// What is left in its row and column.
+    rest: Lanes,
+    /// What is left in its row and the columns of each member, and in the rows of that and its column.
+    members: Vec<[Six<Lanes>; 2]>,
 }
 
 /// Eliminated blocks and a member of the border.
@@ -145,10 +180,17 @@ struct Coupling {
 const NO_BLOCKS: Square<Lanes> = [[Lanes([0.0; WIDTH]); BLOCK]; BLOCK];
 
 impl Eliminated {
-    /// No blocks yet, for so many members of the border.
-    pub fn none(members: usize) -> Self {
+    /// No blocks yet, for so many members of the border; is there an unknown that they share?
+    pub fn none(members: usize, shared: bool) -> Self {
         let none = Coupling { right: NO_BLOCKS, left: NO_BLOCKS, rest: vec![NO_BLOCKS; members] };
-        Self { inverse: NO_BLOCKS, couplings: vec![none; members] }
+        let zero = NO_BLOCKS[0];
+        let shared = shared.then(|| SharedCoupling {
+            column: zero,
+            row: zero,
+            rest: zero[0],
+            members: vec![[zero; 2]; members],
+        });
+        Self { inverse: NO_BLOCKS, couplings: vec![none; members], shared }
     }
 
     /// Eliminates a block and puts it into a lane; false if it is singular.
@@ -160,6 +202,9 @@ impl Eliminated {
         };
         put(&mut self.inverse, lane, &inverse);
         put_couplings(&mut self.couplings, lane, (block, &inverse), members);
+        if let Some(shared) = &mut self.shared {
+            shared.put(lane, (block, &inverse), members);
+        }
         true
     }
 
@@ -168,10 +213,39 @@ impl Eliminated {
         solve_alone(self, turn, x);
     }
 
-    /// Are its blocks coupled to so many members? A check for blocks that come from outside.
-    pub fn fits(&self, members: usize) -> bool {
+    /// Are its blocks coupled to so many members, and to an unknown that they share or to none? A check for blocks that come from outside.
+    pub fn fits(&self, members: usize, shared: bool) -> bool {
         let fits = |coupling: &Coupling| coupling.rest.len() == members;
-        self.couplings.len() == members && self.couplings.iter().all(fits)
+        let shares = self.shared.as_ref().is_none_or(|shared| shared.members.len() == members);
+        self.couplings.len() == members
+            && self.couplings.iter().all(fits)
+            && shares
+            && self.shared.is_some() == shared
+    }
+}
+
+impl SharedCoupling {
+    /// Puts the couplings of an eliminated block into a lane.
+    fn put(&mut self, lane: usize, (block, inverse): (&Block, &Matrix6<f64>), members: &[Member]) {
+        let Shared { column, row, own, right, left } = &block.shared;
+        let follows = inverse * column;
+        put_six(&mut self.column, lane, &follows);
+        put_six(&mut self.row, lane, row);
+        self.rest.0[lane] = own - row.dot(&follows);
+        // `row A^-1` takes the place of the row in what it leaves in columns of the members.
+        let taken = inverse.tr_mul(row);
+        for (member, [in_row, in_column]) in members.iter().zip(&mut self.members) {
+            let slot = member.slot;
+            put_six(in_row, lane, &member.world(&(right[slot] - block.right[slot].tr_mul(&taken))));
+            put_six(in_column, lane, &member.world(&(left[slot] - block.left[slot] * follows)));
+        }
+    }
+}
+
+/// Puts a vector into a lane.
+fn put_six(lanes: &mut Six<Lanes>, lane: usize, vector: &Vector6<f64>) {
+    for (lanes, number) in lanes.iter_mut().zip(vector) {
+        lanes.0[lane] = *number;
     }
 }
 
@@ -219,16 +293,25 @@ pub struct Arrowhead {
     sums: Vec<Square<Lanes>>,
     /// Loads on the members, by lane, and what they do, in world axes.
     worlds: Vec<Six<Lanes>>,
+    /// Border row of the unknown that the blocks share, where there is one.
+    shared: Option<usize>,
+    /// What all blocks leave in its row and the columns of each member, and in the rows of that and its column, in world axes, by lane.
+    shared_sums: Vec<[Six<Lanes>; 2]>,
 }
 
 impl Arrowhead {
-    /// Adds what the blocks leave to the border's own matrix: what remains when they are eliminated.
+    /// Adds what the blocks leave to the border's own matrix: what remains when they are eliminated. `shared` is the border row of the
+    /// unknown that they share.
     pub fn reduce<'a>(
         &mut self,
         blocks: impl Iterator<Item = (&'a Eliminated, OrbitTurn<Lanes>)>,
-        members: &[Member],
+        (members, shared): (&[Member], Option<usize>),
         border: &mut DMatrix<f64>,
     ) {
+        self.shared = shared;
+        self.shared_sums.clear();
+        self.shared_sums.resize(shared.map_or(0, |_| members.len()), [NO_BLOCKS[0]; 2]);
+        let mut rest = NO_BLOCKS[0][0];
         self.members.clear();
         self.members.extend(members);
         self.turns.clear();
@@ -239,6 +322,10 @@ impl Arrowhead {
         for (blocks, turn) in blocks {
             self.turns.push(turn);
             add_rest(blocks, &turn, sums);
+            if let Some(shared) = &blocks.shared {
+                rest += shared.rest;
+                add_shared_rest(shared, &turn, &mut self.shared_sums);
+            }
         }
         for (row, a) in members.iter().enumerate() {
             for (column, b) in members.iter().enumerate() {
@@ -247,6 +334,17 @@ impl Arrowhead {
                 let rest = a.own(&b.own_rows(&sum));
                 let mut view = border.fixed_view_mut::<BLOCK, BLOCK>(a.from, b.from);
                 view += rest;
+            }
+        }
+        if let Some(place) = shared {
+            border[(place, place)] += sum_of_lanes(&rest);
+            for (member, sums) in members.iter().zip(&self.shared_sums) {
+                let [in_row, in_column] =
+                    sums.map(|six| member.own(&Vector6::from_fn(|i, _| sum_of_lanes(&six[i]))));
+                let mut row = border.fixed_view_mut::<1, BLOCK>(place, member.from);
+                row += in_row.transpose();
+                let mut column = border.fixed_view_mut::<BLOCK, 1>(member.from, place);
+                column += in_column;
             }
         }
     }
@@ -260,8 +358,15 @@ impl Arrowhead {
     ) {
         self.worlds.clear();
         self.worlds.resize(self.members.len(), NO_BLOCKS[0]);
+        let mut taken = NO_BLOCKS[0][0];
         for ((blocks, turn), x) in blocks.zip(&self.turns).zip(&mut *x) {
             eliminate(blocks, turn, x, &mut self.worlds);
+            if let Some(shared) = &blocks.shared {
+                shared.row.iter().zip(&*x).for_each(|(row, x)| taken += *row * *x);
+            }
+        }
+        if let Some(place) = self.shared {
+            border[place] -= sum_of_lanes(&taken);
         }
         for (member, load) in self.members.iter().zip(&self.worlds) {
             let mut rows = border.fixed_rows_mut::<BLOCK>(member.from);
@@ -282,7 +387,11 @@ impl Arrowhead {
                 world[i] = Lanes::constant(moved[i]);
             }
         }
+        let common = self.shared.map(|place| Lanes::constant(border[place]));
         for ((blocks, turn), x) in blocks.zip(&self.turns).zip(&mut *x) {
+            if let (Some(common), Some(shared)) = (common, &blocks.shared) {
+                x.iter_mut().zip(&shared.column).for_each(|(x, column)| *x -= *column * common);
+            }
             substitute(blocks, turn, x, &self.worlds);
         }
         let finite = |lanes: &Lanes| lanes.0.iter().all(|v| v.is_finite());
@@ -360,5 +469,18 @@ fn add_rest(blocks: &Eliminated, turn: &OrbitTurn<Lanes>, sums: &mut [Square<Lan
     let of_blocks = blocks.couplings.iter().flat_map(|coupling| &coupling.rest);
     for (sum, rest) in sums.iter_mut().zip(of_blocks) {
         turn.add_matrix(rest, sum);
+    }
+}
+
+/// Adds what blocks leave in the row of the unknown that they share and the columns of each member, and in the rows of that and its column.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn add_shared_rest(shared: &SharedCoupling, turn: &OrbitTurn<Lanes>, sums: &mut [[Six<Lanes>; 2]]) {
+    for (sums, rests) in sums.iter_mut().zip(&shared.members) {
+        for (sum, rest) in sums.iter_mut().zip(rests) {
+            let turned = turn.stacked(rest);
+            for i in 0..BLOCK {
+                sum[i] += turned[i];
+            }
+        }
     }
 }

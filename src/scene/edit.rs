@@ -193,7 +193,7 @@ mod tests {
     fn an_empty_value_takes_a_key_or_a_section_out() {
         let keys = ["cage", "effects.cage", "friction.ball_cage", "friction.cage_race", "load.z"];
         let scene = Scene::edited(CAGE, keys.map(|key| (key, ""))).unwrap();
-        assert!(!scene.effects.cage.on);
+        assert!(!scene.effects.cage.is_body());
         assert_eq!(scene.load.conditions()[2], Scene::parse(THRUST).unwrap().load.conditions()[2]);
         let scene =
             Scene::edited(THRUST, [("bearing.contact_angle", ""), ("bearing.diametral_clearance", "1e-5")]);

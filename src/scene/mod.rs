@@ -189,7 +189,7 @@ impl Scene {
     /// Setup that effects may have to agree with.
     fn setup(&self) -> effects::Setup<'_> {
         let saturates = self.effects.creep.law.saturates();
-        let cage = self.effects.cage.on;
+        let cage = self.effects.cage.kind;
         let turns = |race: &RaceSection, speed: &Schedule| {
             race.drive == Drive::Pose || speed.values().into_iter().any(|speed| speed != 0.0)
         };

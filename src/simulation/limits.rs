@@ -18,18 +18,20 @@ const START_OVERLAP: f64 = 1e-4;
 impl Simulation {
     /// Refuses more balls than fit on the orbit that the equilibrium gives them. It knows nothing of their contacts.
     pub(super) fn check_room(&self) -> Result<(), SimulationError> {
-        let (Some(contact), bearing) = (&self.model.ball_contact, &self.model.bearing) else {
-            return Ok(());
-        };
-        let approach = |(first, second): (usize, usize)| {
-            contact.approach(&self.state.balls[first].motion(), &self.state.balls[second].motion())
-        };
-        let overlap = neighbours(self.state.balls.len()).map(approach).fold(f64::NEG_INFINITY, f64::max);
-        if overlap <= START_OVERLAP * contact.diameter {
+        if self.model.cage.is_some() {
             return Ok(());
         }
-        let orbit = (contact.diameter - overlap) / (PI / bearing.n_balls as f64).sin();
-        let fit = BearingSection::most_balls(contact.diameter, orbit);
+        let bearing = &self.model.bearing;
+        let diameter = 2.0 * bearing.ball.radius;
+        let approach = |(first, second): (usize, usize)| {
+            diameter - (self.state.balls[second].position - self.state.balls[first].position).norm()
+        };
+        let overlap = neighbours(self.state.balls.len()).map(approach).fold(f64::NEG_INFINITY, f64::max);
+        if overlap <= START_OVERLAP * diameter {
+            return Ok(());
+        }
+        let orbit = (diameter - overlap) / (PI / bearing.n_balls as f64).sin();
+        let fit = BearingSection::most_balls(diameter, orbit);
         Err(SimulationError::TooManyBalls { balls: bearing.n_balls, fit, overlap })
     }
 

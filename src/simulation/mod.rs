@@ -233,13 +233,15 @@ impl Simulation {
         let constraints = |state: &State| -> Vec<usize> {
             state.bodies.iter().map(|(_, body)| body.multipliers.len()).collect()
         };
+        let shares = self.model.spacing.is_some();
+        let pockets = |state: &State| state.spacing.as_ref().map(|turn| turn.pockets.len());
         let damaged = |state: &State| state.orientations.as_ref().map(Vec::len);
         snapshot.state.balls.len() == self.state.balls.len()
             && constraints(&snapshot.state) == constraints(&self.state)
             && snapshot.state.control.fits(&self.state.control)
             && [0, self.state.balls.len()].contains(&snapshot.state.matrix.balls.len())
             && snapshot.state.matrix.blocks.len() >= snapshot.state.matrix.balls.len().div_ceil(WIDTH)
-            && snapshot.state.matrix.blocks.iter().all(|block| block.fits(self.model.moved_bodies()))
+            && snapshot.state.matrix.blocks.iter().all(|block| block.fits(self.model.moved_bodies(), shares))
             && snapshot.state.differences.len() == self.state.differences.len()
             && snapshot.state.differences.iter().all(|of_ball| {
                 Race::BOTH.into_iter().all(|race| of_ball[race].fits(self.model.polynomials(race)))
@@ -250,6 +252,7 @@ impl Simulation {
             && snapshot.state.heat.is_some() == self.state.heat.is_some()
             && snapshot.state.means.is_some() == self.state.means.is_some()
             && snapshot.state.warm.is_some() == self.state.warm.is_some()
+            && pockets(&snapshot.state) == pockets(&self.state)
             && damaged(&snapshot.state) == damaged(&self.state)
             && snapshot.inputs.rises.is_some() == self.inputs.rises.is_some()
     }

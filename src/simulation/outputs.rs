@@ -128,6 +128,7 @@ impl Outputs {
     pub fn of(model: &Model, state: &State, contacts: &Contacts, conditions: &Conditions) -> Self {
         let totals = Totals::of(contacts, state.balls.len());
         let cage = model.cage.as_ref().zip(state.cage());
+        let apart = model.spacing.as_ref().zip(state.spacing.as_ref());
         let outer = state.race(Race::Outer);
         let races = PerRace::new(|race| state.race(race).motion());
         let models = model.contacts_oriented(conditions, state.orientations.as_ref());
@@ -138,6 +139,10 @@ impl Outputs {
         let of_ball = |(index, (ball, contacts)): (usize, (&BallState, &BallContacts))| {
             let offset = ball.position - outer.pose.position;
             let seen = to_outer * offset;
+            let held = apart.map(|(spacing, turn)| {
+                let force = turn.directions(spacing.azimuths[index]).tangential * turn.pockets[index];
+                PocketOutput { load: turn.pockets[index].abs(), force, approach: 0.0, power: 0.0 }
+            });
             let pocket = cage.map(|(model, state)| {
                 let approach = model.pocket_approach(index, &ball.motion(), &state.body_motion());
                 PocketOutput {
@@ -164,7 +169,7 @@ impl Outputs {
                 spin: along_orbit(&races.outer, &offset, &ball.angular_velocity),
                 inner: output(Race::Inner),
                 outer: output(Race::Outer),
-                pocket,
+                pocket: pocket.or(held),
                 neighbours_load: contacts_of_neighbours(index)
                     .fold(0.0, |load, pair| pair.forces.load.max(load)),
                 neighbours_force: all.neighbours_on(index).map(|wrench| wrench.force).sum(),
@@ -173,7 +178,8 @@ impl Outputs {
         let balls: Vec<_> = state.balls.iter().zip(&contacts.balls).enumerate().map(of_ball).collect();
         let cage_output = cage.map(|(model, cage)| CageOutput::new(model, state, &balls, contacts, cage));
         let mean_orbit = balls.iter().map(|ball| ball.orbital_speed).sum::<f64>() / balls.len() as f64;
-        let cage_speed = cage.map_or(mean_orbit, |(_, state)| state.rate.x);
+        let of_turn = apart.map_or(mean_orbit, |(_, turn)| turn.speed);
+        let cage_speed = cage.map_or(of_turn, |(_, state)| state.rate.x);
         let speeds = Race::BOTH.map(|race| state.race(race).rate.x);
         let rolling = RollingOrbit::mean(model, state, contacts, &races, models.inner.surface.ball_radius);
         let frequencies = frequencies(model, &balls, [cage_speed, speeds[0], speeds[1]]);

@@ -18,6 +18,7 @@ use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{Bodies, PerRace, Race};
 use crate::model::energies::{Energies, Powers};
+use crate::model::spacing::CommonTurn;
 use crate::model::state::{BallState, BodyState, KeptMatrix, State, Statistics, Trend};
 use crate::numerics::motion::{FrameInput, Pose, Twist, Wrench};
 use crate::numerics::step_control::StepControl;
@@ -153,6 +154,14 @@ pub fn state(
             }
         })
         .collect();
+    let keep_apart = |balls: &mut [BallState]| {
+        let spacing = model.spacing.as_ref()?;
+        let velocity = model.bodies[Race::Outer].as_ref().map_or(outer.velocity, |_| Vector3::zeros());
+        let turn = CommonTurn::of_balls(spacing, balls, outer.pose.position, velocity);
+        turn.place(spacing, balls);
+        Some(turn)
+    };
+    keep_apart(&mut balls);
     let orientations = model
         .damaged
         .as_ref()
@@ -171,6 +180,7 @@ pub fn state(
             (ball.velocity, ball.angular_velocity) = (motion.velocity, motion.angular_velocity);
         }
     }
+    let spacing = keep_apart(&mut balls);
     let cage = match &model.cage {
         Some(cage) => {
             let centred = among(&balls, outer.pose.position, frame);
@@ -184,6 +194,7 @@ pub fn state(
         time: 0.0,
         bodies: Bodies::new(races, cage),
         supports,
+        spacing,
         differences: if model.polynomials(Race::Inner).is_some() {
             vec![Default::default(); balls.len()]
         } else {

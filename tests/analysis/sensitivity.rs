@@ -77,3 +77,10 @@ fn invariant_tangents_of_a_race_in_a_carrier_are_differences_of_runs() {
     let push = |inputs: &mut Inputs, by: f64| inputs.outer.applied.force.z += by;
     assert_same(changes("carrier", PLANET_CARRIER, push, 1.0), 1e-6);
 }
+
+#[test]
+fn invariant_tangents_of_balls_kept_apart_are_differences_of_runs() {
+    let push = |inputs: &mut Inputs, by: f64| inputs.inner.applied.force.y += by;
+    let scene = SOFT_HOUSING.replace("[effects]\n", "[effects]\ncage = \"ideal\"\n");
+    assert_same(changes("ideal cage", &scene, push, 1.0), 1e-5);
+}

@@ -215,6 +215,25 @@ fn invariant_growth_under_thrust_is_that_of_kicked_runs() {
     shaft("rotor", ROTOR, "150 mm", 20e-3, 200).assert_growth(&[-162.5, 167.5, -540.0, 750.0], 0.0, 0.2);
 }
 
+/// Balls that an ideal cage keeps apart cannot go along the orbit with a ring that shifts.
+#[test]
+fn invariant_growth_of_balls_kept_apart_is_that_of_kicked_runs() {
+    let text = THRUST.replace("creep = \"saturated\"", "cage = \"ideal\"");
+    for (mass, rpm, after) in [("0.2 kg", "\"6000 rpm\"", 40e-3), ("2 kg", "\"24000 rpm\"", 20e-3)] {
+        let quoted = format!("\"{mass}\"");
+        let edits = [("load.inner_speed", rpm), ("inner.mass", &quoted)];
+        let case = bearing(&format!("ideal cage, {mass} at {rpm}"), &text, &edits, after, 200);
+        for motion in case.motions[0].iter().take(8) {
+            println!("{:.2} Hz {:.2} 1/s", motion.frequency, motion.growth);
+        }
+        for found in &case.found {
+            println!("run {:.2} Hz {:.2} 1/s, {:e} m", found.frequency, found.growth, found.amplitude);
+        }
+        let [first, second] = if mass == "2 kg" { [-399.0, 482.0] } else { [-939.0, 1042.0] };
+        case.assert_growth(&[first, second], 0.02, 1.0);
+    }
+}
+
 /// Here something is left out: what changes while a ball passes, and while balls come to their speeds.
 #[test]
 fn invariant_growth_of_rings_is_that_of_kicked_runs() {

@@ -40,6 +40,7 @@ impl Flight {
         let mut state = State {
             differences: vec![],
             supports: PerRace::default(),
+            spacing: None,
             time: 0.0,
             balls,
             bodies: Bodies::new(

@@ -37,8 +37,16 @@ fn closed_form_agrees_with_the_dense_solution() {
     let mut numbers = Random::new(1);
     let mut random = || numbers.symmetric();
     // Blocks are eliminated in one place and used in another, by members that have turned since.
-    for (n_balls, offsets) in [(5, vec![0, 7, 13]), (3, vec![0]), (4, vec![])] {
-        let n_border = if offsets.is_empty() { 0 } else { 19 };
+    // The last border row may be that of an unknown that all blocks share.
+    for (n_balls, offsets, shares) in [
+        (5, vec![0, 7, 13], false),
+        (3, vec![0], false),
+        (4, vec![], false),
+        (5, vec![0, 7, 13], true),
+        (6, vec![], true),
+    ] {
+        let n_border = if offsets.is_empty() { usize::from(shares) } else { 20 };
+        let shared = shares.then(|| n_border - 1);
         let border_start = BLOCK * n_balls;
         let size = border_start + n_border;
         let mut dense = DMatrix::<f64>::zeros(size, size);
@@ -53,7 +61,7 @@ fn closed_form_agrees_with_the_dense_solution() {
         let mut border = DMatrix::from_fn(n_border, n_border, |_, _| random());
         dense.view_mut((border_start, border_start), (n_border, n_border)).copy_from(&border);
         let groups = n_balls.div_ceil(WIDTH);
-        let mut blocks = vec![Eliminated::none(offsets.len()); groups];
+        let mut blocks = vec![Eliminated::none(offsets.len(), shares); groups];
         let mut ends = vec![Vector3::y(); WIDTH * groups];
         for j in 0..n_balls {
             let mut block = Block::default();
@@ -79,10 +87,30 @@ fn closed_form_agrees_with_the_dense_solution() {
                 let mut rows = dense.fixed_view_mut::<BLOCK, BLOCK>(at, at);
                 rows += own;
             }
+            if let Some(place) = shared {
+                let at = border_start + place;
+                let mut vector = || Vector6::from_fn(|_, _| random());
+                let (column, row) = (vector(), vector());
+                (block.shared.column, block.shared.row, block.shared.own) = (column, row, column[0] * row[1]);
+                dense.fixed_view_mut::<BLOCK, 1>(BLOCK * j, at).copy_from(&(turn * column));
+                dense.fixed_view_mut::<1, BLOCK>(at, BLOCK * j).copy_from(&(turn * row).transpose());
+                dense[(at, at)] += block.shared.own;
+                for (then, now) in then.iter().zip(&now) {
+                    let (right, left) = (vector(), vector());
+                    block.shared.right[then.slot] = turned(&then.axes) * right;
+                    block.shared.left[then.slot] = turned(&then.axes) * left;
+                    let (axes, from) = (turned(&now.axes), border_start + now.from);
+                    let mut columns = dense.fixed_view_mut::<1, BLOCK>(at, from);
+                    columns += (axes * turn * right).transpose();
+                    let mut rows = dense.fixed_view_mut::<BLOCK, 1>(from, at);
+                    rows += axes * turn * left;
+                }
+            }
             ends[j] = Vector3::new(0.0, angle.cos(), angle.sin());
             assert!(blocks[j / WIDTH].put(j % WIDTH, &block, &then));
         }
-        assert!(blocks.iter().all(|group| group.fits(offsets.len()) && !group.fits(offsets.len() + 1)));
+        assert!(blocks.iter().all(|group| group.fits(offsets.len(), shares)));
+        assert!(!blocks[0].fits(offsets.len() + 1, shares) && !blocks[0].fits(offsets.len(), !shares));
         let turn = |group: usize| {
             OrbitTurn::between(
                 &Vector3::y().map(Lanes::constant),
@@ -94,7 +122,7 @@ fn closed_form_agrees_with_the_dense_solution() {
 
         let mut arrowhead = Arrowhead::default();
         let turned = blocks.iter().enumerate().map(|(group, blocks)| (blocks, turn(group)));
-        arrowhead.reduce(turned, &now, &mut border);
+        arrowhead.reduce(turned, (&now, shared), &mut border);
         // lanes without a block have no right-hand side
         let lane = |j: usize, k: usize| if j < n_balls { rhs[BLOCK * j + k] } else { 0.0 };
         let mut balls: Vec<Six<Lanes>> = (0..groups)
@@ -109,7 +137,7 @@ fn closed_form_agrees_with_the_dense_solution() {
             assert!((x - exact.fixed_rows::<BLOCK>(BLOCK * j)).norm() < 1e-11 * exact.norm());
         }
         // Without a border a block is solved alone.
-        for (group, mut x) in alone.into_iter().enumerate().filter(|_| offsets.is_empty()) {
+        for (group, mut x) in alone.into_iter().enumerate().filter(|_| n_border == 0) {
             blocks[group].solve(&turn(group), &mut x);
             assert_eq!(x, balls[group]);
         }
@@ -119,7 +147,7 @@ fn closed_form_agrees_with_the_dense_solution() {
 
 #[test]
 fn a_singular_block_is_refused() {
-    assert!(!Eliminated::none(0).put(0, &Block::default(), &[]));
+    assert!(!Eliminated::none(0, false).put(0, &Block::default(), &[]));
 }
 
 #[test]

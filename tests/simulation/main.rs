@@ -6,6 +6,7 @@ mod dense;
 #[path = "../common/evidence.rs"]
 mod evidence;
 mod hinge;
+mod ideal_cage;
 mod instants;
 mod invariance;
 mod load_cases;

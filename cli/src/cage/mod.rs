@@ -91,7 +91,7 @@ pub fn pushed(
 
 /// Is there a cage, in motion?
 fn check(scene: &MachineScene) -> Result<(), String> {
-    if !scene.bearings().iter().any(|(_, own)| own.effects.cage.on) {
+    if !scene.bearings().iter().any(|(_, own)| own.effects.cage.is_body()) {
         return Err("there is no cage in this scene: write [effects] cage = true, and [cage] with mass, inertia, pocket_clearance and \
                     guided_by (`roulement scene --keys cage` explains them)"
             .into());

@@ -1,6 +1,6 @@
 //! Effects that runs alone tell of, no settled state: cage and damping.
 
-use roulement::effects::cage::{CageSection, Guidance, USUAL_CLEARANCE};
+use roulement::effects::cage::{CageKind, CageSection, Guidance, USUAL_CLEARANCE};
 use roulement::effects::damping::Given;
 use roulement::effects::estimate::{Estimate, digits};
 use roulement::effects::twin::Twin;
@@ -18,11 +18,11 @@ pub fn twins(effects: &Effects, estimate: &Estimate) -> [Twin; 2] {
 }
 
 fn cage(effects: &Effects, estimate: &Estimate) -> Twin {
-    let on = effects.cage.on;
+    let on = effects.cage.kind != CageKind::None;
     let usual = usual(estimate);
-    let section = if on { None } else { Some(usual) };
+    let other = if on { (CageKind::None, None) } else { (CageKind::Body, Some(usual)) };
     let twin = Twin::new("effects.cage", "cage", on, move |effects| {
-        (effects.cage.on, effects.cage.section) = (!on, section);
+        (effects.cage.kind, effects.cage.section) = other;
     });
     let (mass, play) = (usual.mass.0 * 1e3, usual.pocket_clearance.0 * 1e3);
     let words =

@@ -46,7 +46,7 @@ pub fn describe(scene: &Scene, model: &Model) -> Value {
             "width": outline.width,
             "usual": outline == usual,
         },
-        "cage": scene.effects.cage.section.as_ref().filter(|_| scene.effects.cage.on).map(|cage| json!({
+        "cage": scene.effects.cage.section.as_ref().filter(|_| scene.effects.cage.is_body()).map(|cage| json!({
             "mass": cage.mass.0,
             "pocket_clearance": cage.pocket_clearance.0,
             "guided_by": guide(cage.guided_by),

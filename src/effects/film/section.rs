@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use super::oil::Oil;
+use crate::effects::cage::CageKind;
 use crate::effects::effect::Setup;
 use crate::effects::keys::Keys;
 use crate::schema::SceneError;
@@ -245,7 +246,7 @@ impl Section {
         {
             return conflict("film.bore", "it must be smaller than film.outside");
         }
-        if self.cage && !setup.cage {
+        if self.cage && setup.cage != CageKind::Body {
             return conflict("film.cage", "it needs a cage: effects.cage = true with a section [cage]");
         }
         if !setup.saturates {

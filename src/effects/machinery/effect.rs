@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::cage;
 use super::estimate::{Estimate, Verdict};
 use super::moving_frame::FrameInputs;
 use super::reports::Reports;
@@ -43,8 +44,8 @@ pub struct Setup<'a> {
     pub grows: bool,
     /// Does a table give one of its temperatures?
     pub rises_follow_time: bool,
-    /// Is there a cage?
-    pub cage: bool,
+    /// What keeps the balls apart.
+    pub cage: cage::CageKind,
     /// Is there the oil of a film?
     pub oiled: bool,
     /// How both races get their motion, inner first.

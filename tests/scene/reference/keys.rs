@@ -14,7 +14,7 @@ pub const THRUST: &str = include_str!("../../../scenes/thrust.toml");
 const UNIONS: [(&str, &[&str]); 2] =
     [("Given", &["RestitutionSection", "RetardationSection"]), ("Shape", &["WaveSection"])];
 /// Values of types that have a way of their own to be written.
-const VALUES: [(&str, &str); 5] = [
+const VALUES: [(&str, &str); 6] = [
     ("Given", "s/m, or text: `\"0.02 s/m\"`, or a table, below"),
     (
         "Shape",
@@ -23,6 +23,7 @@ const VALUES: [(&str, &str); 5] = [
     ("Parameters", "table of `eta`, `beta`, `alpha`: `roulement identify` writes it"),
     ("DirectionMatrix", "six numbers, or six rows of six"),
     ("Goal", "text or table"),
+    ("CageKind", "`true`, `false`, `\"ideal\"`, `\"none\"`"),
 ];
 /// Keys of such types.
 pub const UNION_KEYS: [&str; 3] = ["effects.damping", "form.inner", "form.outer"];
@@ -232,6 +233,7 @@ impl Reference {
             choices.map(|(_, variants)| variants.into_iter().map(|(name, _)| name).collect::<Vec<_>>());
         let mut schema = match (kind.name.as_str(), names) {
             ("bool", _) => json!({ "type": "boolean" }),
+            ("CageKind", _) => json!({ "enum": [true, false, "ideal", "none"] }),
             ("String", _) => json!({ "type": "string" }),
             (_, Some(names)) => json!({ "enum": names }),
             ("usize" | "u32", _) => json!({ "type": "integer" }),
