@@ -1,6 +1,5 @@
 //! Report of the contacts of neighbouring balls ([`crate::contact::ball_ball`]), which act wherever there is no cage.
 
-use super::cage::CageKind;
 use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::keys::keys;
 use super::per_ball::ball_row;
@@ -35,7 +34,7 @@ impl Effect for Settings {
             ("effects.full_complement", self.on),
             ("friction.ball_ball", setup.friction.ball_ball.is_some()),
         ];
-        match given.into_iter().find(|(_, given)| *given && setup.cage != CageKind::None) {
+        match given.into_iter().find(|(_, given)| *given && setup.kept_apart) {
             Some((key, _)) => {
                 let why = "allowed without effects.cage only: a cage keeps the balls apart";
                 Err(SceneError::conflict(key, why))

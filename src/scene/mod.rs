@@ -189,7 +189,6 @@ impl Scene {
     /// Setup that effects may have to agree with.
     fn setup(&self) -> effects::Setup<'_> {
         let saturates = self.effects.creep.law.saturates();
-        let cage = self.effects.cage.kind;
         let turns = |race: &RaceSection, speed: &Schedule| {
             race.drive == Drive::Pose || speed.values().into_iter().any(|speed| speed != 0.0)
         };
@@ -199,7 +198,8 @@ impl Scene {
             saturates,
             grows: self.effects.growth.section.is_some(),
             rises_follow_time: self.effects.growth.follows_time(),
-            cage,
+            cage: self.effects.cage.is_body(),
+            kept_apart: self.effects.cage.is_body() || self.effects.cage.is_ideal(),
             oiled: self.effects.film.section.is_some(),
             drives: [self.inner.drive, self.outer.drive],
             turning: [turns(&self.inner, &self.load.inner_speed), turns(&self.outer, &self.load.outer_speed)],

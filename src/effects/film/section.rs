@@ -3,7 +3,6 @@
 use serde::Deserialize;
 
 use super::oil::Oil;
-use crate::effects::cage::CageKind;
 use crate::effects::effect::Setup;
 use crate::effects::keys::Keys;
 use crate::schema::SceneError;
@@ -246,7 +245,7 @@ impl Section {
         {
             return conflict("film.bore", "it must be smaller than film.outside");
         }
-        if self.cage && setup.cage != CageKind::Body {
+        if self.cage && !setup.cage {
             return conflict("film.cage", "it needs a cage: effects.cage = true with a section [cage]");
         }
         if !setup.saturates {

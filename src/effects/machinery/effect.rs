@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::cage;
 use super::estimate::{Estimate, Verdict};
 use super::moving_frame::FrameInputs;
 use super::reports::Reports;
@@ -44,8 +43,10 @@ pub struct Setup<'a> {
     pub grows: bool,
     /// Does a table give one of its temperatures?
     pub rises_follow_time: bool,
-    /// What keeps the balls apart.
-    pub cage: cage::CageKind,
+    /// Is there a cage that is a body?
+    pub cage: bool,
+    /// Does a cage, that or an ideal one, keep the balls apart?
+    pub kept_apart: bool,
     /// Is there the oil of a film?
     pub oiled: bool,
     /// How both races get their motion, inner first.
