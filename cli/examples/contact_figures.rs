@@ -125,6 +125,28 @@ fn strip_theory(creepage: f64) -> f64 {
     1.5 * (0..STRIPS).map(strip).sum::<f64>() / f64::from(STRIPS)
 }
 
+/// Force over mu F_n where the whole ellipse slides and nothing deforms (complete slip, Johnson 1985): traction mu p against the rigid
+/// slip of creepages and spin, summed over rings and directions of the ellipse.
+fn complete_slip(contact: &RollingContact) -> [f64; 2] {
+    const RINGS: u32 = 200;
+    const DIRECTIONS: u32 = 400;
+    let mut force = [0.0; 2];
+    for ring in 0..RINGS {
+        let r = (f64::from(ring) + 0.5) / f64::from(RINGS);
+        // Part of the load on this ring's share of a direction.
+        let load = 3.0 * r * (1.0 - r * r).sqrt() / f64::from(RINGS * DIRECTIONS);
+        for direction in 0..DIRECTIONS {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS)).sin_cos();
+            let (x, y) = (contact.semi_axis_x * r * cos, contact.semi_axis_y * r * sin);
+            let slip = [contact.creep_x - contact.spin * y, contact.creep_y + contact.spin * x];
+            let size = slip[0].hypot(slip[1]).max(f64::MIN_POSITIVE);
+            force[0] += load * slip[0] / size;
+            force[1] += load * slip[1] / size;
+        }
+    }
+    force
+}
+
 /// Light where nothing is used of the friction limit, dark where all is.
 fn shade(fraction: f64) -> RGBColor {
     let mix = |light: f64, dark: f64| (light + (dark - light) * fraction.min(1.0)) as u8;
@@ -215,6 +237,25 @@ fn compare(
         });
     }
     Ok(Panel { title: title.into(), x: label, y: "force over mu Q", curves })
+}
+
+/// Forces of complete slip over the spin.
+fn sliding(cases: &[Case], (_, place, set): Axis) -> [Curve; 2] {
+    let last = cases.iter().map(place).fold(0.0, f64::max);
+    let forces: Vec<(f64, [f64; 2])> = (0..=60)
+        .map(|step| {
+            let at = last * f64::from(step) / 60.0;
+            let mut contact = cases[0].contact.clone();
+            set(&mut contact, at);
+            (at, complete_slip(&contact))
+        })
+        .collect();
+    [("F_x", 0), ("F_y", 1)].map(|(name, k)| Curve {
+        name: format!("{name} complete slip"),
+        points: forces.iter().map(|(at, force)| (*at, force[k])).collect(),
+        data: false,
+        colour: COLOURS[4 + k],
+    })
 }
 
 /// A function of the spin coupling: theory and fit, data as points.
@@ -317,6 +358,8 @@ fn main() -> Drawn {
     let mut first =
         compare("1a  net traction, longitudinal creepage", &fig1, by_x, &[fx], &[kalker3, kalker5, linear])?;
     first.curves.push(strips(&fig1));
+    let mut fourth = compare("4  growing spin", &fig4, by_spin, &[fx, fy], &[kalker5, regularised])?;
+    fourth.curves.extend(sliding(&fig4, by_spin));
     let panels = [
         first,
         compare(
@@ -327,7 +370,7 @@ fn main() -> Drawn {
             &[table_law, regularised, saturated],
         )?,
         compare("3  growing lateral creepage", &fig3, by_y, &[fx, fy], &[kalker5, regularised, linear])?,
-        compare("4  growing spin", &fig4, by_spin, &[fx, fy], &[kalker5, regularised])?,
+        fourth,
         compare("4  growing spin: moment", &fig4, by_spin, &[mz], &[kalker5, regularised, table_law])?,
         fitted(
             "8  phi_yz: lateral force by spin, axis ratio 1",

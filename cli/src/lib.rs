@@ -5,6 +5,7 @@ pub mod cage;
 pub mod cost;
 pub mod error;
 pub mod exact;
+pub mod field;
 pub mod film;
 pub mod measure;
 pub mod modes;

@@ -74,11 +74,14 @@ impl Scene {
     fn equilibrium(&self, py: Python<'_>, gyroscopic: &str) -> PyResult<String> {
         let gyroscopic = match gyroscopic {
             "outer-race-control" => Gyroscopic::OuterRaceControl,
+            "inner-race-control" => Gyroscopic::InnerRaceControl,
+            "least-heat" => Gyroscopic::LeastHeat,
             "none" => Gyroscopic::None,
             "friction" => Gyroscopic::Friction,
             other => {
                 return Err(value(format!(
-                    "gyroscopic = {other:?} is none of \"outer-race-control\", \"none\", \"friction\""
+                    "gyroscopic = {other:?} is none of \"outer-race-control\", \"inner-race-control\", \"least-heat\", \
+                     \"none\", \"friction\""
                 )));
             }
         };

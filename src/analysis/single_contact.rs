@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use strum::{EnumMessage, VariantArray};
 use thiserror::Error;
 
+use super::stick_slip::FieldCause;
 use crate::contact::creep::{self, CreepForces, Creepage, LinearTheory, saturation};
 use crate::contact::identification::identify_by_table;
 use crate::contact::oblique::{Across, Exchanged, exchanged};
@@ -215,6 +216,24 @@ impl RollingContact {
         let power = self.creep_x * fx + self.creep_y * fy + self.spin * c * mz
             - self.curvature * c * c * second_moment;
         RollingForces { id: self.id.clone(), fx, fy, mz, power, stick: None }
+    }
+
+    /// What its field follows from ([`FieldCause::field`]), at a rolling speed of 1 m/s: slip is that over the rolling speed.
+    ///
+    /// # Errors
+    /// If a number is out of range.
+    pub fn field_cause(&self) -> Result<FieldCause, ContactError> {
+        let ScaledCreepage { x, y, spin, curvature } = self.scaled()?.creepage;
+        Ok(FieldCause {
+            semi_axes: [self.semi_axis_x, self.semi_axis_y],
+            pressure: self.peak_pressure,
+            friction: self.friction,
+            creepage: [x, y, spin, curvature],
+            poisson_ratio: self.poisson_ratio,
+            shear_modulus: self.shear_modulus,
+            rolling_speed: 1.0,
+            rolling_angle: self.rolling_angle,
+        })
     }
 
     /// \[m] `c = sqrt(a b)`.

@@ -14,10 +14,10 @@ use crate::model::bodies::Race;
 use crate::model::state::State;
 use crate::model::{Conditions, Model};
 
-/// The field of one contact, in frame C: x along rolling, y transverse.
+/// The field of one contact, in frame C (x along rolling, y transverse), or in the axes of its ellipse where it rolls obliquely to them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    /// \[m] semi-axes of the ellipse along and transverse to rolling.
+    /// \[m] semi-axes of the ellipse along x and y.
     pub semi_axes: [f64; 2],
     /// [-] forces of the ball on the race over mu Q, spin moment over mu Q c, by these tractions.
     pub forces: ScaledForces,
@@ -47,13 +47,13 @@ pub struct FieldPoint {
 /// Quantities that the field of a contact that carries load with friction follows from.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FieldCause {
-    /// \[m] semi-axes of the ellipse along and transverse to rolling.
+    /// \[m] semi-axes of the ellipse along x and y.
     pub semi_axes: [f64; 2],
     /// \[Pa] largest pressure.
     pub pressure: f64,
     /// [-] friction coefficient.
     pub friction: f64,
-    /// [-] creepage along rolling and across it, of spin, and by the curvature of the groove, scaled as in [`crate::kalker`].
+    /// [-] creepage along x and y, of spin, and by the curvature of the groove, scaled as in [`crate::kalker`].
     pub creepage: [f64; 4],
     /// [-] Poisson's ratio.
     pub poisson_ratio: f64,
@@ -61,6 +61,9 @@ pub struct FieldCause {
     pub shear_modulus: f64,
     /// [m/s] speed of rolling.
     pub rolling_speed: f64,
+    /// \[rad] direction of rolling from the first semi-axis; 0 in frame C.
+    #[serde(default)]
+    pub rolling_angle: f64,
 }
 
 impl FieldCause {
@@ -99,7 +102,8 @@ impl FieldCause {
             along * contact.creepage.curvature.unwrap_or(0.0) * mean * mean * scale,
         ];
         let rolling_speed = contact.rolling_speed;
-        Self { semi_axes, pressure, friction, creepage, poisson_ratio, shear_modulus, rolling_speed }
+        let rolling_angle = 0.0;
+        Self { semi_axes, pressure, friction, creepage, poisson_ratio, shear_modulus, rolling_speed, rolling_angle }
     }
 
     /// The field on about `n` times `n` cells.
@@ -107,12 +111,12 @@ impl FieldCause {
     /// # Errors
     /// See [`HalfSpaceError`].
     pub fn field(&self, n: usize) -> Result<Field, HalfSpaceError> {
-        let Self { semi_axes, pressure, friction, poisson_ratio, .. } = *self;
+        let Self { semi_axes, pressure, friction, poisson_ratio, rolling_angle, .. } = *self;
         let ([a, b], [x, y, spin, curvature]) = (semi_axes, self.creepage);
         let mean = (a * b).sqrt();
         let scale = self.shear_modulus / (friction * pressure);
         let creepage = ScaledCreepage { x, y, spin, curvature };
-        let patch = Patch { axis_ratio: a / b, poisson_ratio, rolling_angle: 0.0 };
+        let patch = Patch { axis_ratio: a / b, poisson_ratio, rolling_angle };
         let grid = HalfSpace::with_cells(&patch, cells(&patch, n))?;
         let solution = grid.solve(&creepage, None)?;
         let point = |cell: CellState| FieldPoint {

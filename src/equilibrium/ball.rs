@@ -79,7 +79,7 @@ pub struct BallBalance<S: Scalar = D> {
     pub inner_load: S,
     /// \[N] load on the outer race.
     pub outer_load: S,
-    /// [rad/s] orbital speed that this ball alone would take (outer race control).
+    /// [rad/s] orbital speed that this ball alone would take.
     pub own_orbital_speed: S,
     /// Inner contact.
     pub inner: GrooveContact<S>,
@@ -207,16 +207,28 @@ fn balance_at<S: Single>(
     let inner_load = load(&inner, inner_lean.gain, stiffness.inner);
     let outer_load = load(&outer, outer_lean.gain, stiffness.outer);
 
-    // rolling without slip at both contacts and without spin at the outer one (Jones's outer race control)
+    // rolling without slip at both contacts and without spin at the one that controls the ball (Jones)
     let (inner_cos, inner_sin) = (-dot(&inner.normal, &inner.radial), -dot(&inner.normal, &shared.axis));
     let (outer_cos, outer_sin) = (dot(&outer.normal, &outer.radial), outer.normal.x);
     let g = S::constant(ball_radius) / radius;
-    let ratio =
-        (S::one_minus(g * inner_cos)) / (S::constant(1.0) + inner_cos * outer_cos + inner_sin * outer_sin);
+    let control = input.control(index);
+    let apart = inner_cos * outer_cos + inner_sin * outer_sin;
+    let ratio = match control {
+        Race::Outer => S::one_minus(g * inner_cos),
+        Race::Inner => apart - g * outer_cos,
+    } / (S::constant(1.0) + apart);
     let own_orbital_speed =
         ratio.scale(input.inner_speed - input.outer_speed) + S::constant(input.outer_speed);
-    let roll = (shared.cage_speed - S::constant(input.outer_speed)) / g;
-    let spin = [S::constant(input.outer_speed) - roll * outer_cos, roll * outer_sin];
+    let spin = match control {
+        Race::Outer => {
+            let roll = (shared.cage_speed - S::constant(input.outer_speed)) / g;
+            [S::constant(input.outer_speed) - roll * outer_cos, roll * outer_sin]
+        }
+        Race::Inner => {
+            let roll = (shared.cage_speed - S::constant(input.inner_speed)) / g;
+            [S::constant(input.inner_speed) + roll * inner_cos, -(roll * inner_sin)]
+        }
+    };
 
     // inertia
     let centrifugal_force = (radius * shared.cage_speed.square()).scale(ball.mass);
@@ -234,7 +246,10 @@ fn balance_at<S: Single>(
     let needed = gyroscopic_moment.scale(1.0 / ball_radius);
     let [inner_friction, outer_friction] = match input.gyroscopic {
         Gyroscopic::None => [S::constant(0.0); 2],
-        Gyroscopic::OuterRaceControl => [S::constant(0.0), needed],
+        Gyroscopic::OuterRaceControl | Gyroscopic::InnerRaceControl | Gyroscopic::LeastHeat => match control {
+            Race::Outer => [S::constant(0.0), needed],
+            Race::Inner => [needed, S::constant(0.0)],
+        },
         Gyroscopic::Friction => {
             let total = inner_load + outer_load + S::constant(f64::MIN_POSITIVE);
             // Shared in proportion to the loads; beyond the friction limit the ball pivots and the force stays there.

@@ -7,6 +7,7 @@
 
 mod ball;
 mod guess;
+mod least_heat;
 mod light_ball;
 mod problem;
 mod report;
@@ -36,6 +37,11 @@ pub const MAX_APPROACH: f64 = 0.02;
 pub enum Gyroscopic {
     /// By friction at the outer race alone (Jones's outer race control), whatever it takes.
     OuterRaceControl,
+    /// By friction at the inner race alone, on which balls do not spin then, whatever it takes.
+    InnerRaceControl,
+    /// By friction at the race where spin would cost more, for each ball: it spins on the other one (least heat; Harris's criterion of race
+    /// control).
+    LeastHeat,
     /// Ignored.
     None,
     /// By friction at both races in proportion to their loads, at most the friction limit: beyond, the ball pivots.
@@ -70,6 +76,8 @@ pub struct EquilibriumInput {
     pub turned: PerRace<f64>,
     /// How the gyroscopic moment is carried.
     pub gyroscopic: Gyroscopic,
+    /// Race on which each ball does not spin, for [`Gyroscopic::LeastHeat`], which finds them where there are none.
+    pub controls: Vec<Race>,
     /// [-] friction coefficient, for [`Gyroscopic::Friction`].
     pub friction: f64,
     /// [-] degree of lubrication, for the same.
@@ -86,6 +94,15 @@ pub struct EquilibriumInput {
 }
 
 impl EquilibriumInput {
+    /// Race on which a ball (0 is the first) does not spin.
+    fn control(&self, ball: usize) -> Race {
+        match self.gyroscopic {
+            Gyroscopic::InnerRaceControl => Race::Inner,
+            Gyroscopic::LeastHeat => self.controls.get(ball).copied().unwrap_or(Race::Outer),
+            Gyroscopic::OuterRaceControl | Gyroscopic::None | Gyroscopic::Friction => Race::Outer,
+        }
+    }
+
     /// Conditions of every contact, without friction.
     pub fn surroundings(&self) -> Conditions {
         let warmth = Warmth { rises: self.rises, spins: [self.inner_speed, self.outer_speed] };
@@ -132,6 +149,7 @@ impl EquilibriumInput {
             resting: Pose { position, orientation },
             turned: PerRace::default(),
             gyroscopic,
+            controls: vec![],
             friction: scene.friction.ball_race.at(time),
             lubrication: scene.effects.film.lubrication(time),
             rises: scene.effects.growth.rises(time).unwrap_or_default(),
@@ -321,6 +339,9 @@ pub struct Equilibrium {
 /// # Errors
 /// See [`EquilibriumError`]; an unconverged result is never returned.
 pub fn solve(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, EquilibriumError> {
+    if input.gyroscopic == Gyroscopic::LeastHeat && input.controls.is_empty() {
+        return least_heat::solve_by_least_heat(model, input);
+    }
     let problem = Problem::new(model, input);
     from_guess(&problem).map_or_else(|| from_centre(&problem), Ok)
 }

@@ -1,7 +1,7 @@
-//! `roulement contact`: single rolling contacts of a table; with `--film` those of a scene ([`super::film`]).
+//! `roulement contact`: single rolling contacts of a table, their forces or with `--field` their tractions; with `--film` those of a scene ([`super::film`]).
 
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,6 +15,7 @@ use roulement::kalker::half_space::LARGEST_CHANGE;
 use roulement::schema::regular;
 use roulement_cli::exact::answer;
 use roulement_cli::exact::cache::Cache;
+use roulement_cli::field::{figure, write_cells, write_head};
 
 use super::interrupt::{INTERRUPTED, heeded_interrupt};
 use super::{film, tell};
@@ -27,7 +28,7 @@ pub struct Options {
     #[arg(required_unless_present = "film")]
     cases: Option<PathBuf>,
     /// Creep law.
-    #[arg(long, value_enum, required_unless_present = "film")]
+    #[arg(long, value_enum, required_unless_present_any = ["film", "field"])]
     law: Option<LawChoice>,
     /// Degree of the traction polynomials of `kalker`, 1 to 7.
     #[arg(long, default_value_t = 5)]
@@ -42,6 +43,13 @@ pub struct Options {
     /// With `--exact`: neither read nor write the cache.
     #[arg(long, requires = "exact")]
     no_cache: bool,
+    /// Writes where each contact of the table sticks and slips, by the half-space solver: `field.csv` and `field.svg` in this folder,
+    /// slip over the speed of rolling.
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["film", "law", "degree", "grid", "exact"])]
+    field: Option<PathBuf>,
+    /// With `--field`: cells across the ellipse, 8 to 128.
+    #[arg(long, default_value_t = 32, requires = "field", value_parser = clap::value_parser!(u16).range(8..=128))]
+    cells: u16,
     #[command(flatten)]
     film: film::Options,
 }
@@ -76,8 +84,16 @@ impl ValueEnum for LawChoice {
 /// # Errors
 /// If a case cannot be read or evaluated.
 pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
-    let (Some(cases), Some(choice)) = (&options.cases, options.law) else {
-        return film::run(&options.film);
+    let Some(cases) = &options.cases else { return film::run(&options.film) };
+    let cannot_read = |why: csv::Error| format!("{}: {why}", cases.display());
+    let text = regular::text(cases).map_err(|why| cannot_read(why.into()))?;
+    let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let cases = table.deserialize::<RollingContact>().map(|case| case.map_err(cannot_read));
+    let Some(choice) = options.law else {
+        return match &options.field {
+            Some(folder) => fields(&cases.collect::<Result<Vec<_>, _>>()?, folder, options.cells.into()),
+            None => Err("--law says by what the contacts of the table are computed".into()),
+        };
     };
     if options.exact && choice.name != TABLE {
         return Err(format!(
@@ -87,10 +103,6 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
         )
         .into());
     }
-    let cannot_read = |why: csv::Error| format!("{}: {why}", cases.display());
-    let text = regular::text(cases).map_err(|why| cannot_read(why.into()))?;
-    let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let cases = table.deserialize::<RollingContact>().map(|case| case.map_err(cannot_read));
     let mut answers = csv::Writer::from_writer(std::io::stdout().lock());
     let interrupted = heeded_interrupt()?;
     let ended = || {
@@ -126,6 +138,46 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
         )
     }));
     Ok(ended())
+}
+
+/// Writes the fields of contacts, and prints the forces that their tractions have; at Ctrl-C those that are there.
+fn fields(cases: &[RollingContact], folder: &Path, cells: usize) -> Result<ExitCode, Box<dyn Error>> {
+    // Whatever is out of range is told before anything is computed.
+    let causes = cases.iter().map(RollingContact::field_cause).collect::<Result<Vec<_>, _>>()?;
+    if cases.is_empty() {
+        return Err("the table has no contact".into());
+    }
+    let interrupted = heeded_interrupt()?;
+    let mut answers = csv::Writer::from_writer(std::io::stdout().lock());
+    let mut drawn = vec![];
+    let progress = progress_bar();
+    progress.set_length(cases.len() as u64);
+    std::fs::create_dir_all(folder).map_err(|why| format!("cannot make {}: {why}", folder.display()))?;
+    let (path, picture) = (folder.join("field.csv"), folder.join("field.svg"));
+    let cannot_write = |why: csv::Error| format!("{}: {why}", path.display());
+    let mut table = csv::Writer::from_path(&path).map_err(cannot_write)?;
+    write_head(&mut table, &["id"], false).map_err(cannot_write)?;
+    for (case, cause) in cases.iter().zip(&causes) {
+        if interrupted.load(Ordering::Relaxed) {
+            break;
+        }
+        let field = cause.field(cells).map_err(|why| ContactError::Reference(case.id.clone(), why))?;
+        write_cells(&mut table, std::slice::from_ref(&case.id), &field).map_err(cannot_write)?;
+        answers.serialize(RollingForces { stick: Some(field.stick), ..case.with_forces(&field.forces) })?;
+        if drawn.len() < figure::MOST {
+            drawn.push((case.id.clone(), case.friction, field));
+        }
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    table.flush().map_err(|why| cannot_write(why.into()))?;
+    answers.flush()?;
+    figure::write(&picture, "Tractions and slip over the contact ellipse", &drawn)?;
+    tell([format!("{} and {}", path.display(), picture.display())]);
+    tell((cases.len() > figure::MOST).then(|| format!("the picture has the first {} contacts", figure::MOST)));
+    let ended = interrupted.load(Ordering::Relaxed);
+    tell(ended.then(|| "interrupted: the fields that were computed are written".to_string()));
+    Ok(if ended { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
 }
 
 /// Forces of contacts by the half-space solver, from the cache where it has them.

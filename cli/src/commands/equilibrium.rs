@@ -48,6 +48,10 @@ pub struct Options {
 enum GyroscopicChoice {
     /// By friction at the outer race alone, whatever it takes (Jones).
     OuterRaceControl,
+    /// By friction at the inner race alone, whatever it takes.
+    InnerRaceControl,
+    /// By friction at the race where spin would cost more, for each ball.
+    LeastHeat,
     /// Ignored.
     None,
     /// By friction at both races, at most the friction limit.
@@ -58,6 +62,8 @@ impl From<GyroscopicChoice> for Gyroscopic {
     fn from(choice: GyroscopicChoice) -> Self {
         match choice {
             GyroscopicChoice::OuterRaceControl => Self::OuterRaceControl,
+            GyroscopicChoice::InnerRaceControl => Self::InnerRaceControl,
+            GyroscopicChoice::LeastHeat => Self::LeastHeat,
             GyroscopicChoice::None => Self::None,
             GyroscopicChoice::Friction => Self::Friction,
         }

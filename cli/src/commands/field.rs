@@ -7,12 +7,13 @@ use std::str::FromStr;
 use std::sync::atomic::Ordering;
 
 use clap::Args;
-use roulement::analysis::stick_slip::{Field, field};
+use roulement::analysis::stick_slip::field;
 use roulement::model::bodies::Race;
 use roulement::scene::machine::MachineScene;
 use roulement::scene::units::{Quantity, Time};
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::Scripted;
+use roulement_cli::field::{write_cells, write_head};
 
 use super::interrupt::{INTERRUPTED, heeded_interrupt};
 use super::{load, tell};
@@ -92,9 +93,7 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let mut machine = Machine::new(&scene)?;
     let cannot_write = |why: csv::Error| format!("{}: {why}", options.output.display());
     let mut table = csv::Writer::from_path(&options.output).map_err(cannot_write)?;
-    let header = "time [s],ball [1],race,x [m],y [m],area [m2],pressure [Pa],traction.x [Pa],traction.y [Pa],slip.x [m/s],\
-                  slip.y [m/s],sticks [1]";
-    table.write_record(header.split(',')).map_err(cannot_write)?;
+    write_head(&mut table, &["time [s]", "ball [1]", "race"], true).map_err(cannot_write)?;
     let interrupted = heeded_interrupt()?;
     // The steps are those of a whole run.
     let end = times.iter().copied().fold(scene.duration(), f64::max);
@@ -119,7 +118,8 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
                 tell([format!("{what}: no load, or no friction")]);
                 continue;
             };
-            write(&mut table, simulation.time(), *ball, *race, &field).map_err(cannot_write)?;
+            let whose = [simulation.time().to_string(), ball.to_string(), race.name().to_string()];
+            write_cells(&mut table, &whose, &field).map_err(cannot_write)?;
             let [a, b] = field.semi_axes.map(|axis| axis * 1e6);
             tell([format!("{what}: {:.1} % sticks, ellipse {a:.1} x {b:.1} um", 100.0 * field.stick)]);
         }
@@ -143,23 +143,4 @@ pub(super) fn bearing(scene: &MachineScene, name: Option<&str>) -> Result<usize,
             }
         }),
     }
-}
-
-fn write(
-    table: &mut csv::Writer<std::fs::File>,
-    time: f64,
-    ball: usize,
-    race: Race,
-    field: &Field,
-) -> Result<(), csv::Error> {
-    for point in &field.points {
-        let ([x, y], [tx, ty], [sx, sy]) = (point.place, point.traction, point.slip);
-        let sticks = f64::from(u8::from(point.sticks));
-        let mut record = vec![time.to_string(), ball.to_string(), race.name().to_string()];
-        record.extend(
-            [x, y, point.area, point.pressure, tx, ty, sx, sy, sticks].map(|value| value.to_string()),
-        );
-        table.write_record(record)?;
-    }
-    Ok(())
 }

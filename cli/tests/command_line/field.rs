@@ -64,6 +64,51 @@ fn what_is_no_contact_of_the_bearing_is_refused() {
     }
 }
 
+#[test]
+fn independent_data_fields_of_a_table_sum_up_to_the_forces_of_boundary_elements() {
+    let scratch = Scratch::new("fields");
+    let data = include_str!("../../../tests/data/contact/random.csv");
+    let head = data.lines().next().unwrap();
+    // One that rolls along an axis, and one that rolls obliquely.
+    let oblique = column(data, "rolling_angle").iter().position(|angle| *angle != 0.0).unwrap() + 1;
+    let rows: Vec<&str> = [2, oblique].iter().map(|line| data.lines().nth(*line).unwrap()).collect();
+    std::fs::write(scratch.path("cases.csv"), format!("{head}\n{}\n{}\n", rows[0], rows[1])).unwrap();
+    let folder = scratch.path("fields");
+    let output =
+        roulement(&["contact", &scratch.path("cases.csv"), "--field", &folder, "--cells", "32"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let printed = String::from_utf8(output.stdout).unwrap();
+    let cases = scratch.read("cases.csv");
+    let of_case = |name: &str, k: usize| column(&cases, name)[k];
+    let table = scratch.read("fields/field.csv");
+    assert!(table.starts_with("id,x [m],y [m],area [m2],pressure [Pa],traction.x [Pa],traction.y [Pa],slip.x [1],"));
+    for (k, row) in rows.iter().enumerate() {
+        let id = row.split(',').next().unwrap();
+        let cells: Vec<&str> = table.lines().skip(1).filter(|line| line.starts_with(id)).collect();
+        let text = format!("{}\n{}", table.lines().next().unwrap(), cells.join("\n"));
+        // The ids are no numbers.
+        let text: String = text.lines().map(|line| format!("{}\n", line.split_once(',').unwrap().1)).collect();
+        let (area, x, y) =
+            (column(&text, "area [m2]"), column(&text, "traction.x [Pa]"), column(&text, "traction.y [Pa]"));
+        let load = 2.0 / 3.0
+            * std::f64::consts::PI
+            * of_case("semi_axis_x", k)
+            * of_case("semi_axis_y", k)
+            * of_case("peak_pressure", k);
+        let limit = of_case("friction", k) * load;
+        let sum = |traction: &[f64]| area.iter().zip(traction).map(|(a, t)| a * t).sum::<f64>() / limit;
+        for (name, traction) in [("fx", &x), ("fy", &y)] {
+            let wanted = of_case(name, k);
+            assert!((sum(traction) - wanted).abs() < 0.01, "{id} {name}: {} {wanted}", sum(traction));
+            let line = printed.lines().nth(k + 1).unwrap().split_once(',').unwrap().1;
+            let head = printed.lines().next().unwrap().split_once(',').unwrap().1;
+            let said = column(&format!("{head}\n{line}\n"), name)[0];
+            assert!((said - sum(traction)).abs() < 1e-6, "{id} {name}: {said}");
+        }
+    }
+    assert_eq!(scratch.read("fields/field.svg").matches("traction over its bound").count(), 2);
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupted_field_keeps_the_times_that_were_reached() {

@@ -38,7 +38,8 @@ def equilibrium(scene, gyroscopic="outer-race-control"):
     """Solves the quasi-static equilibrium of a scene at time 0.
 
     `gyroscopic` says how the gyroscopic moment of the balls is carried: by friction at the outer race alone
-    ("outer-race-control"), not at all ("none"), or by friction at both races ("friction"). Raises RuntimeError if there is
+    ("outer-race-control"), at the inner one alone ("inner-race-control"), for each ball at the one where spin would cost more
+    ("least-heat"), not at all ("none"), or by friction at both races ("friction"). Raises RuntimeError if there is
     none.
     """
     report = json.loads(scene._native.equilibrium(gyroscopic))
