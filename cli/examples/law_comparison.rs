@@ -15,12 +15,14 @@ const WINDOW: f64 = 0.06;
 /// [s] between rows.
 const INTERVAL: f64 = 1e-4;
 /// Laws, and whether grooves slip; `kalker` has its default degree.
-pub const LAWS: [(&str, bool); 9] = [
+pub const LAWS: [(&str, bool); 11] = [
     ("linear", false),
+    ("uncoupled", false),
     ("regularised", false),
     ("saturated", false),
     ("kalker", false),
     ("kalker_table", false),
+    ("uncoupled", true),
     ("regularised", true),
     ("saturated", true),
     ("kalker", true),

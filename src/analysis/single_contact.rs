@@ -11,6 +11,7 @@ use super::stick_slip::FieldCause;
 use crate::contact::creep::{self, CreepForces, Creepage, LinearTheory, saturation};
 use crate::contact::identification::identify_by_table;
 use crate::contact::oblique::{Across, Exchanged, exchanged};
+use crate::contact::regularised::Parameters;
 use crate::kalker::LinearError;
 use crate::kalker::half_space::{HalfSpaceError, Refined, extrapolated, refined};
 use crate::kalker::linear::creep_matrix;
@@ -150,6 +151,12 @@ pub enum ContactError {
     /// The nonlinear theory has no answer.
     #[error("case {0}: {1}")]
     Kalker(String, KalkerError),
+}
+
+/// Parameters of the regularised law, with or without its coupling.
+fn parameters_of(law: CreepLaw, patch: &Patch) -> Result<Parameters, LinearError> {
+    let parameters = identify_by_table(patch)?.parameters;
+    Ok(if law == CreepLaw::Uncoupled { parameters.uncoupled() } else { parameters })
 }
 
 /// Is an ellipse slender enough to be seen along its axes where it rolls obliquely?
@@ -308,7 +315,7 @@ impl RollingContact {
                 [forces.x, forces.y, forces.z, 0.0]
             }
             CreepLaw::KalkerTable => self.along_axes(law, patch, limit, limit * c * moment_limit)?,
-            CreepLaw::Regularised if is_slender(patch) => {
+            CreepLaw::Regularised | CreepLaw::Uncoupled if is_slender(patch) => {
                 self.along_axes(law, patch, limit, limit * c * moment_limit)?
             }
             _ => self.along_rolling(law, patch, &matrix, limit, limit * c * moment_limit)?,
@@ -353,8 +360,8 @@ impl RollingContact {
             curvature: (self.curvature != 0.0).then_some(self.curvature),
         };
         let forces = match law {
-            CreepLaw::Regularised => {
-                let parameters = identify_by_table(&seen).map_err(failed)?.parameters;
+            CreepLaw::Regularised | CreepLaw::Uncoupled => {
+                let parameters = parameters_of(law, &seen).map_err(failed)?;
                 theory.forces(creep::Law::Regularised(&parameters), &creepage)
             }
             _ => theory.forces(creep::Law::Saturated, &creepage),
@@ -401,9 +408,9 @@ impl RollingContact {
             Ok(Across { exchanged: &exchanged, law: across }.forces(&forces, &theory, [cos, sin], &creepage))
         };
         let forces = match law {
-            CreepLaw::Regularised => {
-                let [along, across] = sides.map(|patch| identify_by_table(&patch));
-                let parameters = [along.map_err(failed)?.parameters, across.map_err(failed)?.parameters];
+            CreepLaw::Regularised | CreepLaw::Uncoupled => {
+                let [along, across] = sides.map(|patch| parameters_of(law, &patch));
+                let parameters = [along.map_err(failed)?, across.map_err(failed)?];
                 mixed(parameters.each_ref().map(creep::Law::Regularised))
             }
             _ => {

@@ -103,7 +103,16 @@ impl FieldCause {
         ];
         let rolling_speed = contact.rolling_speed;
         let rolling_angle = 0.0;
-        Self { semi_axes, pressure, friction, creepage, poisson_ratio, shear_modulus, rolling_speed, rolling_angle }
+        Self {
+            semi_axes,
+            pressure,
+            friction,
+            creepage,
+            poisson_ratio,
+            shear_modulus,
+            rolling_speed,
+            rolling_angle,
+        }
     }
 
     /// The field on about `n` times `n` cells.

@@ -33,6 +33,8 @@ pub enum CreepLaw {
     Linear,
     /// The paper's regularised law with spin coupling.
     Regularised,
+    /// The regularised law without that coupling, with which the paper's run starts.
+    Uncoupled,
     /// Linear theory, saturated as a vector.
     Saturated,
     /// Kalker's nonlinear theory in polynomials of degree `kalker_degree`: slow.
@@ -61,6 +63,12 @@ impl CreepLaw {
             ),
             (Self::KalkerTable | Self::Kalker, false) => Some(
                 "misses the slip of bent grooves: a percent of the friction power under thrust, nearly all of it under a radial load",
+            ),
+            (Self::Uncoupled, true) => {
+                Some("misses the lateral force of spin, and a sixth of the friction power under thrust")
+            }
+            (Self::Uncoupled, false) => Some(
+                "misses the lateral force of spin, and a sixth of the friction power under thrust, nearly all of it under a radial load",
             ),
             (Self::Regularised | Self::Saturated, true) => {
                 Some("has the friction power within 6 %, that of inner and outer race may be exchanged")
@@ -143,7 +151,7 @@ impl Effect for Settings {
 
     fn agree(&self, _: &Setup<'_>) -> Result<(), SceneError> {
         for (race, parameters) in [("inner", self.regularised.inner), ("outer", self.regularised.outer)] {
-            let Some(Parameters { eta, beta, alpha }) = parameters else { continue };
+            let Some(Parameters { eta, beta, alpha, .. }) = parameters else { continue };
             // Denominators without a zero at positive arguments, so that every creepage has a force.
             let positive = |linear: f64, square: f64| square > 0.0 && linear > -2.0 * square.sqrt();
             if !(positive(eta[1], eta[2]) && positive(beta[1], beta[0]) && positive(alpha[1], alpha[2])) {

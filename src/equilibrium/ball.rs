@@ -246,10 +246,12 @@ fn balance_at<S: Single>(
     let needed = gyroscopic_moment.scale(1.0 / ball_radius);
     let [inner_friction, outer_friction] = match input.gyroscopic {
         Gyroscopic::None => [S::constant(0.0); 2],
-        Gyroscopic::OuterRaceControl | Gyroscopic::InnerRaceControl | Gyroscopic::LeastHeat => match control {
-            Race::Outer => [S::constant(0.0), needed],
-            Race::Inner => [needed, S::constant(0.0)],
-        },
+        Gyroscopic::OuterRaceControl | Gyroscopic::InnerRaceControl | Gyroscopic::LeastHeat => {
+            match control {
+                Race::Outer => [S::constant(0.0), needed],
+                Race::Inner => [needed, S::constant(0.0)],
+            }
+        }
         Gyroscopic::Friction => {
             let total = inner_load + outer_load + S::constant(f64::MIN_POSITIVE);
             // Shared in proportion to the loads; beyond the friction limit the ball pivots and the force stays there.

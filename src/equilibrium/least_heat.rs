@@ -11,10 +11,7 @@ use crate::numerics::elliptic::complete_elliptic_integrals;
 /// At each ball both ways are compared at the place that it has: complete sliding has the spin moment 3/8 mu Q a E (Jones 1959), a the
 /// longer semi-axis; friction is the same on both races and drops out. A ball that would go back to its first race has nearly the same
 /// heat either way and stays, so that the search ends.
-pub fn solve_by_least_heat(
-    model: &Model,
-    input: &EquilibriumInput,
-) -> Result<Equilibrium, EquilibriumError> {
+pub fn solve_by_least_heat(model: &Model, input: &EquilibriumInput) -> Result<Equilibrium, EquilibriumError> {
     let balls = model.bearing.n_balls;
     let mut trial = EquilibriumInput { controls: vec![Race::Outer; balls], ..input.clone() };
     let mut changed = vec![false; balls];

@@ -35,10 +35,14 @@ impl RacewayLaw {
         Ok(match law {
             CreepLaw::Frictionless => Self::Frictionless,
             CreepLaw::Linear => Self::Linear,
-            CreepLaw::Regularised => Self::Regularised(match given {
-                Some(parameters) => parameters,
-                None => identify_by_table(patch)?.parameters,
-            }),
+            CreepLaw::Regularised | CreepLaw::Uncoupled => {
+                let parameters = match given {
+                    Some(parameters) => parameters,
+                    None => identify_by_table(patch)?.parameters,
+                };
+                let coupled = law == CreepLaw::Regularised;
+                Self::Regularised(if coupled { parameters } else { parameters.uncoupled() })
+            }
             CreepLaw::Saturated => Self::Saturated,
             CreepLaw::KalkerTable => Self::Table(CreepTable::new(patch)?),
             CreepLaw::Kalker => {

@@ -163,6 +163,31 @@ fn closed_form_regularised_couplings_are_equations_a4_to_a6() {
 }
 
 #[test]
+fn closed_form_the_uncoupled_law_has_each_force_by_its_own_creepage() {
+    let theory = theory();
+    let coupled = Laws::new().parameters;
+    let parameters = coupled.uncoupled();
+    let forces = |parameters, longitudinal, lateral, spin| {
+        let creepage = Creepage { longitudinal, lateral, spin, curvature: None };
+        theory.forces(Law::Regularised(parameters), &creepage)
+    };
+    let (force, moment) = (theory.friction_limit, theory.moment_limit);
+    for size in [-2.0f64, -0.5, 0.1, 0.9] {
+        let (lateral, spin) = (size * 2.0 * force / theory.lateral, size * moment / theory.spin);
+        // Lateral creepage alone has its force and no moment, spin alone its moment and no force.
+        let across = forces(&parameters, 0.0, lateral, 0.0);
+        let phi = if size.abs() < 1.0 { (2.0 - size.abs()) * size.abs() } else { 1.0 };
+        assert!((across.lateral / (size.signum() * force * phi) - 1.0).abs() < 1e-6, "{}", across.lateral);
+        assert_eq!(across.spin_moment, 0.0);
+        let spun = forces(&parameters, 0.0, 0.0, spin);
+        let own = size.signum() * moment * moment_by_spin(parameters.beta, size.abs());
+        assert!((spun.spin_moment / own - 1.0).abs() < 1e-6, "{}", spun.spin_moment);
+        assert_eq!((spun.lateral, spun.longitudinal), (0.0, 0.0));
+        assert!(forces(&coupled, 0.0, 0.0, spin).lateral != 0.0);
+    }
+}
+
+#[test]
 fn invariant_frozen_differences_never_leave_coulombs_limits() {
     let (theory, laws) = (theory(), Laws::new());
     for sign in [-1.0, 1.0] {

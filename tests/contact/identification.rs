@@ -56,6 +56,7 @@ fn independent_data_parameters_of_a_circle() {
         eta: [0.20748, -0.74104, 4.6443],
         beta: [0.38646, 1.0293],
         alpha: [0.74558, 1.6009, 2.9051],
+        coupling: 1.0,
     };
     let pairs = ours.eta.into_iter().zip(theirs.eta).chain(ours.beta.into_iter().zip(theirs.beta));
     for (mine, other) in pairs.chain(ours.alpha.into_iter().zip(theirs.alpha)) {

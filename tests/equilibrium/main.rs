@@ -4,6 +4,7 @@
 #[path = "../common/equilibria.rs"]
 mod equilibria;
 mod guess;
+mod gyroscopic;
 #[path = "../common/mechanics.rs"]
 mod mechanics;
 #[path = "../common/reference.rs"]

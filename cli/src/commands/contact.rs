@@ -174,7 +174,9 @@ fn fields(cases: &[RollingContact], folder: &Path, cells: usize) -> Result<ExitC
     answers.flush()?;
     figure::write(&picture, "Tractions and slip over the contact ellipse", &drawn)?;
     tell([format!("{} and {}", path.display(), picture.display())]);
-    tell((cases.len() > figure::MOST).then(|| format!("the picture has the first {} contacts", figure::MOST)));
+    tell(
+        (cases.len() > figure::MOST).then(|| format!("the picture has the first {} contacts", figure::MOST)),
+    );
     let ended = interrupted.load(Ordering::Relaxed);
     tell(ended.then(|| "interrupted: the fields that were computed are written".to_string()));
     Ok(if ended { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })

@@ -155,6 +155,7 @@ impl Look {
             (_, CreepLaw::Frictionless) => (Shape::Circle, COLOURS[6]),
             (_, CreepLaw::Linear) => (Shape::Circle, COLOURS[5]),
             (_, CreepLaw::Regularised) => (Shape::Circle, COLOURS[4]),
+            (_, CreepLaw::Uncoupled) => (Shape::Circle, COLOURS[3]),
             (_, CreepLaw::Saturated) => (Shape::Circle, COLOURS[1]),
             (_, CreepLaw::Kalker) => {
                 (Shape::Triangle, COLOURS[[0, 2, 3, 5][model.degree.unwrap_or(1) / 2 % 4]])

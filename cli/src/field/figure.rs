@@ -6,7 +6,7 @@ use plotters::prelude::*;
 use roulement::analysis::stick_slip::{Field, FieldPoint};
 
 use crate::report::fine::{FINE, LABEL, MARGIN, axes, headed, picture};
-use crate::report::style::{Area, Drawn, PlotError};
+use crate::report::style::{Area, COLOURS, Drawn, PlotError};
 
 /// \[pixel] size of a panel.
 const PANEL: (u32, u32) = (620, 400);
@@ -68,11 +68,13 @@ fn map(
         .y_label_area_size(labels.1)
         .build_cartesian_2d(-x..x, -y..y)?;
     axes(&mut chart.configure_mesh(), "x [um]", "y [um]").disable_mesh().draw()?;
+    let wide = width_of_cells(field);
     let shade_of = |value: f64| shade(if most > 0.0 { value / most } else { 0.0 });
     chart.draw_series(field.points.iter().map(|point| {
         let [x, y] = point.place.map(|place| 1e6 * place);
-        let half = 0.5e6 * point.area.sqrt();
-        Rectangle::new([(x - half, y - half), (x + half, y + half)], shade_of(size(vector(point))).filled())
+        let (along, across) = (0.5 * wide, 0.5e12 * point.area / wide);
+        let corners = [(x - along, y - across), (x + along, y + across)];
+        Rectangle::new(corners, shade_of(size(vector(point))).filled())
     }))?;
     // Every so many cells one arrow, from the cell on; that of the largest vector is as long as arrows are apart.
     let apart = 2.0 * a.max(b) / ARROWS;
@@ -92,7 +94,7 @@ fn map(
             (tip.0 + 0.3 * (cos * dx - sin * dy), tip.1 + 0.3 * (sin * dx + cos * dy))
         };
         let line = vec![(from[0], from[1]), tip, barb(2.6), tip, barb(-2.6)];
-        chart.draw_series([PathElement::new(line, BLACK.stroke_width(FINE))])?;
+        chart.draw_series([PathElement::new(line, COLOURS[1].stroke_width(FINE))])?;
     }
     let edge = (0..=180).map(|k| {
         let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 180.0).sin_cos();
@@ -110,9 +112,23 @@ fn map(
     Ok(())
 }
 
+/// \[um] width of the cells of a field, which stand in a regular grid.
+fn width_of_cells(field: &Field) -> f64 {
+    let mut places: Vec<f64> = field.points.iter().map(|point| 1e6 * point.place[0]).collect();
+    places.sort_by(f64::total_cmp);
+    let steps = places.windows(2).map(|pair| pair[1] - pair[0]);
+    let least = steps.filter(|step| *step > 1e-6 * field.semi_axes[0] * 1e6).fold(f64::INFINITY, f64::min);
+    // A single column is as wide as the ellipse.
+    if least.is_finite() { least } else { 2e6 * field.semi_axes[0] }
+}
+
 /// A number of three digits beside a scale.
 fn rounded(value: f64) -> String {
-    if value == 0.0 || (0.01..1000.0).contains(&value) { format!("{value:.3}") } else { format!("{value:.2e}") }
+    if value == 0.0 || (0.01..1000.0).contains(&value) {
+        format!("{value:.3}")
+    } else {
+        format!("{value:.2e}")
+    }
 }
 
 /// From light at 0 to dark at 1.

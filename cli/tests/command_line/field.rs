@@ -74,20 +74,24 @@ fn independent_data_fields_of_a_table_sum_up_to_the_forces_of_boundary_elements(
     let rows: Vec<&str> = [2, oblique].iter().map(|line| data.lines().nth(*line).unwrap()).collect();
     std::fs::write(scratch.path("cases.csv"), format!("{head}\n{}\n{}\n", rows[0], rows[1])).unwrap();
     let folder = scratch.path("fields");
-    let output =
-        roulement(&["contact", &scratch.path("cases.csv"), "--field", &folder, "--cells", "32"]);
+    let output = roulement(&["contact", &scratch.path("cases.csv"), "--field", &folder, "--cells", "32"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let printed = String::from_utf8(output.stdout).unwrap();
     let cases = scratch.read("cases.csv");
     let of_case = |name: &str, k: usize| column(&cases, name)[k];
     let table = scratch.read("fields/field.csv");
-    assert!(table.starts_with("id,x [m],y [m],area [m2],pressure [Pa],traction.x [Pa],traction.y [Pa],slip.x [1],"));
+    assert!(
+        table.starts_with(
+            "id,x [m],y [m],area [m2],pressure [Pa],traction.x [Pa],traction.y [Pa],slip.x [1],"
+        )
+    );
     for (k, row) in rows.iter().enumerate() {
         let id = row.split(',').next().unwrap();
         let cells: Vec<&str> = table.lines().skip(1).filter(|line| line.starts_with(id)).collect();
         let text = format!("{}\n{}", table.lines().next().unwrap(), cells.join("\n"));
         // The ids are no numbers.
-        let text: String = text.lines().map(|line| format!("{}\n", line.split_once(',').unwrap().1)).collect();
+        let text: String =
+            text.lines().map(|line| format!("{}\n", line.split_once(',').unwrap().1)).collect();
         let (area, x, y) =
             (column(&text, "area [m2]"), column(&text, "traction.x [Pa]"), column(&text, "traction.y [Pa]"));
         let load = 2.0 / 3.0

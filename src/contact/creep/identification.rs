@@ -64,7 +64,10 @@ pub fn identify<E: From<LinearError>>(
     let (eta, first) = fit([0.2, 0.5, 5.0], &by_spin, lateral_by_spin);
     let (beta, second) = fit([0.8, 1.0], &own, moment_by_spin);
     let (alpha, third) = fit([0.8, 5.0, 5.0], &by_lateral, moment_by_lateral);
-    Ok(Identification { parameters: Parameters { eta, beta, alpha }, samples: [first, second, third] })
+    Ok(Identification {
+        parameters: Parameters { eta, beta, alpha, coupling: 1.0 },
+        samples: [first, second, third],
+    })
 }
 
 /// Identifies the parameters of a patch against the table of the nonlinear theory.

@@ -29,6 +29,20 @@ pub struct Parameters {
     pub beta: [f64; 2],
     /// [-] alpha_0, alpha_1, alpha_2 of A.6: spin moment by lateral creepage.
     pub alpha: [f64; 3],
+    /// [-] part of the coupling that there is: 1, or 0 for the law `uncoupled`.
+    #[serde(skip, default = "whole")]
+    pub coupling: f64,
+}
+
+fn whole() -> f64 {
+    1.0
+}
+
+impl Parameters {
+    /// The same without coupling of spin and lateral creepage (phi_yz = phi_zy = 0, section 3.1.3).
+    pub fn uncoupled(self) -> Self {
+        Self { coupling: 0.0, ..self }
+    }
 }
 
 /// phi_yz of A.4: lateral force over mu Q at the spin x = |phi|/eps_yz.
@@ -70,7 +84,7 @@ impl<S: Scalar> LinearTheory<S> {
         };
         // The coupling changes its sign with the direction of rolling.
         let sign = S::one().where_positive(self.coupling, -S::one());
-        let coupling = sign * self.coupling;
+        let coupling = (sign * self.coupling).scale(parameters.coupling);
         let by_spin = lateral_by_spin(
             parameters.eta.map(S::constant),
             (magnitude(creepage.spin) * coupling * per_force).scale(0.5),
