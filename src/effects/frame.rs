@@ -12,7 +12,7 @@ use crate::schema::units::{Acceleration, AngularAcceleration, AngularVelocity, L
 use crate::schema::variable_units::{
     METRE_PER_SECOND_SQUARED, RADIAN_PER_SECOND, RADIAN_PER_SECOND_SQUARED, Unit,
 };
-use crate::schema::{Components, Group, Schedule};
+use crate::schema::{Components, Group, SceneError, Schedule};
 
 const ACCELERATION: Range = Range::closed(-1e6, 1e6, "m/s2");
 const ANGULAR_VELOCITY: Range = Range::closed(-1e5, 1e5, "rad/s");
@@ -55,6 +55,58 @@ impl FrameSection {
                 None => self.angular_velocity.slope(time),
             },
         }
+    }
+
+    /// The same motion as a bearing of a machine sees it, at a place \[m] in the machine's axes; its x axis points along theirs (1), or
+    /// against it (-1, by half a turn about z).
+    #[must_use]
+    pub fn at_bearing(&self, place: &Vector3<f64>, direction: f64) -> Self {
+        let arm = self.arm() + place;
+        let signs = [direction, direction, 1.0];
+        let arm = [0, 1, 2].map(|i| Some(Length(signs[i] * arm[i])));
+        if direction > 0.0 {
+            return Self { arm, ..self.clone() };
+        }
+        Self {
+            angular_velocity: self.angular_velocity.half_turned(),
+            angular_acceleration: self.angular_acceleration.as_ref().map(Components::half_turned),
+            acceleration: self.acceleration.half_turned(),
+            arm,
+        }
+    }
+
+    /// Does it turn, or may it by a table?
+    pub fn turns(&self) -> bool {
+        self.angular_velocity.largest() > 0.0
+            || self.angular_acceleration.as_ref().is_some_and(|given| given.largest() > 0.0)
+    }
+
+    /// Checks the section of a machine, under a key of its own, as the numbers of a bearing's are.
+    ///
+    /// # Errors
+    /// Names the key, the value and the range.
+    pub fn check(&self, key: &str) -> Result<(), SceneError> {
+        let each = |name: &str, range: Range, schedules: &[Schedule; 3]| {
+            let mut axes = schedules.iter().zip(["x", "y", "z"]);
+            axes.try_for_each(|(schedule, axis)| {
+                let key = format!("{key}.{name}.{axis}");
+                schedule.values().into_iter().try_for_each(|value| range.check(&key, value))
+            })
+        };
+        each("angular_velocity", ANGULAR_VELOCITY, &self.angular_velocity.0)?;
+        each("acceleration", ACCELERATION, &self.acceleration.0)?;
+        if let Some(given) = &self.angular_acceleration {
+            each("angular_acceleration", ANGULAR_ACCELERATION, &given.0)?;
+        }
+        self.arm().iter().try_for_each(|length| ARM.check(&format!("{key}.arm"), *length))
+    }
+
+    /// Quantities of it that are inputs: gravity, acceleration, angular velocity and, where it is given, angular acceleration; each with its
+    /// name, unit, typical size, and what it is.
+    pub fn inputs(&self) -> impl Iterator<Item = (usize, &'static str, Unit, f64, &'static str)> + use<> {
+        let quantities = if self.angular_acceleration.is_some() { 4 } else { 3 };
+        let row = |(quantity, (name, unit, nominal, _, what))| (quantity, name, unit, nominal, what);
+        INPUTS.into_iter().enumerate().take(quantities).map(row)
     }
 
     /// All components that may change with time.

@@ -28,6 +28,13 @@ impl<Q> Components<Q> {
         self.0.iter().any(Schedule::is_scripted)
     }
 
+    /// The vector in axes that are turned by half a turn about z.
+    #[must_use]
+    pub fn half_turned(&self) -> Self {
+        let [x, y, z] = &self.0;
+        Self([x.negated(), y.negated(), z.clone()], PhantomData)
+    }
+
     /// Bound of the vector's length at all times.
     pub fn largest(&self) -> f64 {
         let largest =

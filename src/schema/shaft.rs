@@ -178,6 +178,9 @@ pub struct Mounting {
     pub direction: MountingDirection,
     /// Name of the housing that its outer race sits in; what its scene says of the outer race if not given.
     pub housing: Option<String>,
+    /// Name of the shaft that its outer ring is a part of: a hub, a gear or a roller that turns on its bearings, or an outer shaft around an
+    /// inner one. Not with `housing`, `axial`, `misalignment` or `offset`.
+    pub outer_shaft: Option<String>,
     /// Does the seat hold the outer ring along the bore (`"held"`), or does the ring slide there without friction (`"free"`: a floating
     /// bearing, which takes no axial force)? The mass of a ring that slides is `outer.mass` of its scene, of a catalogue bearing an estimate.
     #[serde(default)]
@@ -194,12 +197,16 @@ pub struct Mounting {
 }
 
 impl Mounting {
-    /// Does it say how the outer ring sits, in a housing or not?
+    /// Does it say how the outer ring sits, in a housing, on a shaft or in the ground?
     pub fn seats_outer_ring(&self) -> bool {
-        let Self { housing, axial, misalignment, offset, .. } = self;
-        let lies_off =
-            misalignment.values().into_iter().chain(offset.values()).any(|(_, value)| value.is_some());
-        housing.is_some() || *axial == AxialSeat::Free || lies_off
+        self.housing.is_some() || self.outer_shaft.is_some() || self.has_bore()
+    }
+
+    /// Does it say that the ring slides in its bore, or that the bore is tilted or lies off?
+    pub fn has_bore(&self) -> bool {
+        let Self { axial, misalignment, offset, .. } = self;
+        let mut values = misalignment.values().into_iter().chain(offset.values());
+        *axial == AxialSeat::Free || values.any(|(_, value)| value.is_some())
     }
 }
 

@@ -116,9 +116,9 @@ impl InputPaths {
     }
 }
 
-/// Motion of the bearing's frame during a communication step: all components change linearly.
+/// Motion of the frame of a bearing or a machine during a communication step: all components change linearly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct FramePath {
+pub struct FramePath {
     components: Ramp<12>,
     /// Is the angular acceleration that by which the angular velocity changes?
     derived: bool,
@@ -126,17 +126,18 @@ struct FramePath {
 
 impl FramePath {
     /// A motion that stays as it is.
-    fn steady(inputs: &FrameInputs) -> Self {
+    pub fn steady(inputs: &FrameInputs) -> Self {
         Self { components: Ramp::constant(inputs.motion.components()), derived: false }
     }
 
-    fn towards(&self, time: f64, inputs: &FrameInputs, duration: f64) -> Self {
+    /// From where this path is at a time \[s] to the inputs after `duration` \[s].
+    pub fn towards(&self, time: f64, inputs: &FrameInputs, duration: f64) -> Self {
         let target = inputs.motion.components() + inputs.rate.components() * duration;
         Self { components: self.components.towards(time, target, duration), derived: !inputs.accelerates }
     }
 
     /// Motion at a time \[s].
-    fn at(&self, time: f64) -> FrameMotion {
+    pub fn at(&self, time: f64) -> FrameMotion {
         let motion = FrameMotion::of_components(&self.components.at(time));
         match self.derived {
             true => FrameMotion {

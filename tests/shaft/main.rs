@@ -4,8 +4,10 @@
 mod caged;
 mod common;
 mod equilibrium;
+mod frame;
 mod hard;
 mod housing;
+mod hub;
 mod mesh;
 mod motion;
 mod quasi_static;

@@ -3,10 +3,11 @@
 use nalgebra::{DMatrix, DVector, DVectorViewMut, Dyn, OMatrix, U6, Vector3, Vector6};
 
 use super::super::carried::SeatMotion;
+use crate::effects::moving_frame::MovingFrame;
 use crate::model::link::LinkEnd;
 use crate::model::state::stack;
 use crate::model::structure::{
-    Map, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
+    FrameForce, Map, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
 };
 use crate::numerics::hermite::Hermite;
 use crate::numerics::hht::HhtStep;
@@ -21,13 +22,15 @@ pub struct StructureLoad {
     pub spin: Spin,
     /// [N m] axial moment of the loads, where the turn is given: the drive holds it.
     pub axial_moment: f64,
+    /// The frame that turns, about the origin of the machine's axes; what its origin's acceleration does is in the force.
+    pub frame: Option<MovingFrame>,
 }
 
 impl StructureLoad {
     /// Load without forces from outside.
     #[must_use]
     pub fn without_force(&self) -> Self {
-        Self { force: DVector::zeros(self.force.len()), axial_moment: 0.0, ..self.clone() }
+        Self { force: DVector::zeros(self.force.len()), axial_moment: 0.0, frame: None, ..self.clone() }
     }
 }
 
@@ -128,13 +131,15 @@ pub struct StructureTrial {
     from_bearings: DVector<f64>,
     /// [N m] moment of them about its axis.
     axial: f64,
+    /// What a frame that turns does.
+    from_frame: Option<FrameForce>,
 }
 
 impl StructureTrial {
     /// Buffers, as at the start of a step.
     pub fn new(start: &StructureState) -> Self {
         let zero = DVector::zeros(start.coordinates.len());
-        Self { end: start.clone(), residual: zero.clone(), from_bearings: zero, axial: 0.0 }
+        Self { end: start.clone(), residual: zero.clone(), from_bearings: zero, axial: 0.0, from_frame: None }
     }
 
     /// Moves the structure to the end of the step.
@@ -248,6 +253,11 @@ impl StructureTrial {
         let end = &mut self.end;
         let own = model.own_forces(&end.coordinates, &end.rates, &end.spin);
         end.total = &load.force + &self.from_bearings + own;
+        let turned = |frame| model.frame_force(frame, [&end.coordinates, &end.rates], &end.spin);
+        self.from_frame = load.frame.as_ref().map(turned);
+        if let Some(frame) = &self.from_frame {
+            end.total += &frame.force;
+        }
         if model.turning == Turning::Free {
             let last = model.size() - 1;
             let lag = model.spin_torque(&end.coordinates, &end.accelerations, &Spin::default());
@@ -259,24 +269,27 @@ impl StructureTrial {
     fn account(&mut self, model: &Structure, load: &StructureLoad) {
         let end = &mut self.end;
         let turns = model.turning == Turning::Given;
+        let mut outside = load.axial_moment;
+        let mut power = load.force.dot(&end.rates);
+        if let Some(frame) = &self.from_frame {
+            outside += frame.axial;
+            power += frame.force.dot(&end.rates);
+        }
         end.torque = match turns {
-            true => {
-                model.spin_torque(&end.coordinates, &end.accelerations, &end.spin)
-                    - self.axial
-                    - load.axial_moment
-            }
+            true => model.spin_torque(&end.coordinates, &end.accelerations, &end.spin) - self.axial - outside,
             false => 0.0,
         };
-        let drive = if turns { (end.torque + load.axial_moment) * end.spin.speed } else { 0.0 };
+        let drive = if turns { (end.torque + outside) * end.spin.speed } else { 0.0 };
         let of_spin = if turns { self.axial * end.spin.speed } else { 0.0 };
         end.powers = StructurePowers {
-            input: load.force.dot(&end.rates) + drive,
+            input: power + drive,
             bearings: -(self.from_bearings.dot(&end.rates) + of_spin),
             damping: end.rates.dot(&(&model.damping * &end.rates)),
         };
     }
 
-    /// Tangent of the residual by the accelerations, without that of the bearings.
+    /// Tangent of the residual by the accelerations, without that of the bearings, and without a frame that turns: its part is the way
+    /// that the frame turns by in a step.
     pub fn tangent(&self, model: &Structure, step: &HhtStep) -> DMatrix<f64> {
         let fraction = 1.0 - step.alpha_f;
         let (position, velocity) = (step.position_gain(), step.velocity_gain());

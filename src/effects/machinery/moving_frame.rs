@@ -24,6 +24,19 @@ pub struct FrameMotion {
 }
 
 impl FrameMotion {
+    /// The same motion in axes that point along these (1), or are turned by half a turn about z (-1).
+    #[must_use]
+    pub fn seen_along(&self, direction: f64) -> Self {
+        let signs = Vector3::new(direction, direction, 1.0);
+        let seen = |vector: &Vector3<f64>| vector.component_mul(&signs);
+        Self {
+            gravity: seen(&self.gravity),
+            acceleration: seen(&self.acceleration),
+            angular_velocity: seen(&self.angular_velocity),
+            angular_acceleration: seen(&self.angular_acceleration),
+        }
+    }
+
     /// All components as one vector, in the order of the fields.
     pub fn components(&self) -> SVector<f64, 12> {
         let vectors = [self.gravity, self.acceleration, self.angular_velocity, self.angular_acceleration];
@@ -41,7 +54,8 @@ impl FrameMotion {
         }
     }
 
-    pub(in crate::effects) fn vector(&self, quantity: usize) -> &Vector3<f64> {
+    /// Gravity, acceleration, angular velocity or angular acceleration, by its place among these.
+    pub fn vector(&self, quantity: usize) -> &Vector3<f64> {
         match quantity {
             0 => &self.gravity,
             1 => &self.acceleration,
@@ -50,7 +64,8 @@ impl FrameMotion {
         }
     }
 
-    pub(in crate::effects) fn vector_mut(&mut self, quantity: usize) -> &mut Vector3<f64> {
+    /// The same, to be set.
+    pub fn vector_mut(&mut self, quantity: usize) -> &mut Vector3<f64> {
         match quantity {
             0 => &mut self.gravity,
             1 => &mut self.acceleration,
@@ -69,6 +84,15 @@ pub struct FrameInputs {
     pub rate: FrameMotion,
     /// Is the angular acceleration given? If not, it is that by which the angular velocity changes.
     pub accelerates: bool,
+}
+
+impl FrameInputs {
+    /// The same inputs in axes that point along these (1), or are turned by half a turn about z (-1).
+    #[must_use]
+    pub fn seen_along(&self, direction: f64) -> Self {
+        let [motion, rate] = [&self.motion, &self.rate].map(|of| of.seen_along(direction));
+        Self { motion, rate, ..*self }
+    }
 }
 
 /// A frame that moves, as forces need it, in any axes.
@@ -99,6 +123,12 @@ impl MovingFrame {
     pub fn new(motion: &FrameMotion, arm: Vector3<f64>) -> Self {
         let FrameMotion { acceleration, angular_velocity, angular_acceleration, .. } = *motion;
         Self { arm, acceleration, turn: angular_velocity, change: angular_acceleration }
+    }
+
+    /// What of it acts beside the acceleration of the point that places are counted from; none where it does not turn.
+    pub fn about_origin(&self) -> Option<Self> {
+        let turns = self.turn != Vector3::zeros() || self.change != Vector3::zeros();
+        turns.then_some(Self { arm: Vector3::zeros(), acceleration: Vector3::zeros(), ..*self })
     }
 
     /// The same with each vector seen otherwise: in other axes, or as numbers that have derivatives.

@@ -14,6 +14,7 @@ use super::log::Log;
 use super::outcome::{Outcome, Status};
 use crate::analysis::estimate;
 use crate::effects::estimate::missed;
+use crate::effects::frame::FrameSection;
 use crate::interface::contradiction::Contradiction;
 use crate::interface::variables::{Causality, MachineGroup, MachineVariables, Variable};
 use crate::model::bodies::Race;
@@ -206,6 +207,11 @@ impl Unit {
         [self.next.bearings.len(), loads, shaft.map_or(0, |scene| scene.gears().count())]
     }
 
+    /// Number of drives.
+    fn drives(&self) -> usize {
+        self.scene.shaft().map_or(0, |scene| scene.shafts.len())
+    }
+
     /// Scripts: who gives what there is one for; none where the scene has no script.
     pub fn scripts(&self) -> Vec<Option<Giver>> {
         let mut all: Vec<_> =
@@ -213,7 +219,9 @@ impl Unit {
         if let Some(scene) = self.scene.shaft() {
             let loads = scene.loads().map(|load| load.is_scripted());
             let gears = scene.gears().map(|gear| gear.torque.is_scripted());
-            let of_shaft = loads.chain(gears).chain(scene.shafts.iter().map(drive_is_scripted));
+            let drives = scene.shafts.iter().map(drive_is_scripted);
+            let frame = scene.frame.iter().map(FrameSection::is_scripted);
+            let of_shaft = loads.chain(gears).chain(drives).chain(frame);
             all.extend(of_shaft.map(|scripted| scripted.then_some(Giver::Scene)));
         }
         all
@@ -226,7 +234,10 @@ impl Unit {
             None => MachineGroup::Bearing(script / GROUPS, Group::VARIANTS[script % GROUPS]),
             Some(load) if load < loads => MachineGroup::Load(load),
             Some(gear) if gear < loads + gears => MachineGroup::Gear(gear - loads),
-            Some(drive) => MachineGroup::Drive(drive - loads - gears),
+            Some(drive) if drive < loads + gears + self.drives() => {
+                MachineGroup::Drive(drive - loads - gears)
+            }
+            Some(_) => MachineGroup::Frame,
         }
     }
 
@@ -245,6 +256,7 @@ impl Unit {
                     Group::Speeds,
                 )
             }
+            MachineGroup::Frame => (Group::Frame.to_string(), Group::Frame),
             MachineGroup::Bearing(index, group) => match self.machine.bearings().nth(index) {
                 Some((name, _)) if !name.is_empty() => (format!("{group} of {name}"), group),
                 _ => (group.to_string(), group),
@@ -260,6 +272,7 @@ impl Unit {
             MachineGroup::Load(load) => GROUPS * bearings + load,
             MachineGroup::Gear(gear) => GROUPS * bearings + loads + gear,
             MachineGroup::Drive(shaft) => GROUPS * bearings + loads + gears + shaft,
+            MachineGroup::Frame => GROUPS * bearings + loads + gears + self.drives(),
         })
     }
 
@@ -268,12 +281,19 @@ impl Unit {
         let [bearings, loads, gears] = self.counts();
         let (of_bearings, rest) = marks.split_at(GROUPS * bearings);
         let (of_loads, rest) = rest.split_at(loads);
-        let (of_gears, of_drives) = rest.split_at(gears);
+        let (of_gears, rest) = rest.split_at(gears);
+        let (of_drives, of_frame) = rest.split_at(self.drives());
+        // The frame of every bearing is that of the machine.
+        let of_bearing = |marks| match of_frame.first() {
+            Some(frame) => marked(marks).with(Group::Frame, *frame),
+            None => marked(marks),
+        };
         Played {
             loads: of_loads.to_vec(),
             gears: of_gears.to_vec(),
             drives: of_drives.to_vec(),
-            bearings: of_bearings.chunks(GROUPS).map(marked).collect(),
+            frame: of_frame.first().is_some_and(|frame| *frame),
+            bearings: of_bearings.chunks(GROUPS).map(of_bearing).collect(),
         }
     }
 

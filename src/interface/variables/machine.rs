@@ -34,6 +34,8 @@ pub enum MachineGroup {
     Gear(usize),
     /// Speed or torque of a shaft, by its index.
     Drive(usize),
+    /// Motion of the machine's frame.
+    Frame,
     /// A group of inputs of a bearing, by its index.
     Bearing(usize, Group),
 }
@@ -176,6 +178,7 @@ impl MachineVariables {
             ShaftSource::Force(load, _) | ShaftSource::Moment(load, _) => Some(MachineGroup::Load(load)),
             ShaftSource::Gear(index) => Some(MachineGroup::Gear(index)),
             ShaftSource::Drive(shaft) => Some(MachineGroup::Drive(shaft)),
+            ShaftSource::Frame(..) => Some(MachineGroup::Frame),
             ShaftSource::Number(_)
             | ShaftSource::Whole(..)
             | ShaftSource::Link(..)

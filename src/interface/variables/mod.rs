@@ -174,12 +174,14 @@ impl Variables {
         Self::of_bearing(scene, per_ball, |_| false)
     }
 
-    /// The variables of a bearing of a system: structures carry its inner race, perhaps its outer one. Numbers of the integration are
-    /// those of the system.
+    /// The variables of a bearing of a system: structures carry its inner race, perhaps its outer one. Numbers of the integration and the
+    /// motion of the frame are those of the system.
     pub fn carried(scene: &Scene, carried: impl Fn(Race) -> bool) -> Self {
         let mut table = Self::of_bearing(scene, scene.effects.per_ball.on, carried);
         table.add_parameters(scene);
-        table.rows.retain(|row| !row.name.starts_with("solver."));
+        let shared = ["solver.", "frame.", "effects.frame."];
+        table.rows.retain(|row| !shared.iter().any(|prefix| row.name.starts_with(prefix)));
+        table.inputs = references_of_inputs(&table.rows);
         table
     }
 

@@ -1,6 +1,7 @@
 //! The rows of a system's shaft and housings: loads and drive, turn, energies, and the motion of stations.
 
 use super::{Causality, Kind, Source, Variable};
+use crate::effects::frame::FrameSection;
 use crate::scene::system::{ShaftParameter, SystemScene};
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::system::{
@@ -18,6 +19,8 @@ pub enum ShaftSource {
     Gear(usize),
     /// Speed or torque, whichever drives a shaft.
     Drive(usize),
+    /// A component of the motion of the frame: which quantity ([`crate::scene::FrameMotion::vector`]), which component.
+    Frame(usize, usize),
     /// A number of the scene.
     Number(ShaftParameter),
     /// A shaft as a whole, by its index.
@@ -137,6 +140,9 @@ impl ShaftSource {
             Self::Moment(load, axis) => inputs.loads[load].moment[axis],
             Self::Gear(index) => inputs.gears[index],
             Self::Drive(shaft) => inputs.drives[shaft],
+            Self::Frame(quantity, axis) => {
+                inputs.frame.map_or(0.0, |frame| frame.motion.vector(quantity)[axis])
+            }
             Self::Number(parameter) => parameter.start,
             Self::Whole(shaft, get) => get(&outputs.shafts[shaft]),
             Self::Link(index, quantity) => quantity.read(&outputs.links[index]),
@@ -152,6 +158,11 @@ impl ShaftSource {
             Self::Moment(load, axis) => inputs.loads[load].moment[axis] = value,
             Self::Gear(index) => inputs.gears[index] = value,
             Self::Drive(shaft) => inputs.drives[shaft] = value,
+            Self::Frame(quantity, axis) => {
+                if let Some(frame) = &mut inputs.frame {
+                    frame.motion.vector_mut(quantity)[axis] = value;
+                }
+            }
             Self::Number(_) | Self::Whole(..) | Self::Link(..) | Self::Housing(..) | Self::Motion(..) => {}
         }
     }
@@ -216,6 +227,25 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
         let description = format!("torque about +x that the mesh of gear {gear} exerts on the shaft");
         let unit = (units::NEWTON_METRE, 1.0);
         rows.push(row(name, unit, Causality::Input, description, ShaftSource::Gear(index)));
+    }
+    // Where the mass of a structure is not known, a frame cannot turn.
+    let turns = scene.shafts.iter().all(|shaft| shaft.matrices.is_none())
+        && scene.housings.iter().all(|housing| housing.matrices.is_none());
+    let quantities =
+        scene.frame.iter().flat_map(FrameSection::inputs).filter(|(quantity, ..)| turns || *quantity < 2);
+    for (quantity, name, unit, nominal, what) in quantities {
+        for (axis, letter) in AXES.into_iter().enumerate() {
+            let what = what.replace("the bearing's frame", "the machine's frame");
+            let description = format!("{what}, {letter} component along the frame's own axes");
+            let source = ShaftSource::Frame(quantity, axis);
+            rows.push(row(
+                format!("frame.{name}.{letter}"),
+                (unit, nominal),
+                Causality::Input,
+                description,
+                source,
+            ));
+        }
     }
     (0..scene.shafts.len()).for_each(|shaft| turn(scene, shaft, &mut rows));
     for (index, load) in scene.shafts.iter().flat_map(|shaft| &shaft.load).enumerate() {

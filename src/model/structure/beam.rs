@@ -3,10 +3,10 @@
 //! Nodes have five coordinates: displacement along x, y, z and tilt about y and z; twist is apart ([`super::torsion`]). Consistent
 //! mass with rotary inertia, and gyroscopic matrix, after Friswell, Penny, Garvey and Lees, Dynamics of Rotating Machines (2010).
 
-use nalgebra::{DMatrix, DVector, Dyn, Matrix4, OMatrix, SMatrix, U3};
+use nalgebra::{DMatrix, DVector, Dyn, Matrix4, OMatrix, SMatrix, U3, Vector3};
 
-use super::Map;
 use super::torsion::{ReducedTorsion, Torsion};
+use super::{Lump, Map};
 use crate::schema::{BeamSection, Material};
 
 /// Coordinates of a node.
@@ -23,6 +23,11 @@ pub struct Beams {
     gyroscopic: DMatrix<f64>,
     /// [kg m2].
     polar_inertia: f64,
+    /// \[m] position of each node.
+    nodes: Vec<f64>,
+    /// Mass at each node \[kg], and its polar and transverse moment of inertia [kg m2]: together the mass, its centre and the moments of
+    /// inertia of beams and discs.
+    at_nodes: Vec<[f64; 3]>,
     /// Node of each station.
     stations: Vec<usize>,
     /// How it twists, and the node that its turn is taken at, where it does.
@@ -43,6 +48,8 @@ pub struct Reduced {
     pub polar_inertia: f64,
     /// Displacement and rotation at each station.
     pub stations: Vec<Map>,
+    /// Masses of the nodes, places along the x axis.
+    pub lumps: Vec<Lump>,
     /// [rad/s] angular frequencies of the modes that are kept.
     pub frequencies: Vec<f64>,
 }
@@ -87,8 +94,10 @@ impl Beams {
             stiffness: zero(),
             gyroscopic: zero(),
             polar_inertia: 0.0,
+            at_nodes: vec![[0.0; 3]; all.len()],
             stations: stations.iter().map(|position| node_at(&all, *position)).collect(),
             torsion: turned_at.map(|place| (Torsion::new(all.len()), node_at(&all, place))),
+            nodes: all.clone(),
         };
         for (index, pair) in all.windows(2).enumerate() {
             let section = section_at(sections, 0.5 * (pair[0] + pair[1]));
@@ -110,9 +119,14 @@ impl Beams {
         self.gyroscopic[(at + 3, at + 4)] += polar;
         self.gyroscopic[(at + 4, at + 3)] -= polar;
         self.polar_inertia += polar;
+        self.add_at_node(at / NODE, [mass, polar, transverse]);
         if let Some((torsion, _)) = &mut self.torsion {
             torsion.add_disc(at / NODE, polar);
         }
+    }
+
+    fn add_at_node(&mut self, node: usize, own: [f64; 3]) {
+        self.at_nodes[node].iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
     }
 
     fn add_element(&mut self, at: usize, length: f64, section: &BeamSection, material: Material) {
@@ -159,6 +173,12 @@ impl Beams {
         let mut view = self.gyroscopic.view_mut((at, at), size);
         view += across - across.transpose();
         self.polar_inertia += 2.0 * density * second_moment * length;
+        // Half of its mass at either end has a sixth of mass times length squared too much across the axis.
+        let half = 0.5 * density * length;
+        let across = half * (second_moment - area * length * length / 6.0);
+        for node in [at / NODE, at / NODE + 1] {
+            self.add_at_node(node, [half * area, half * 2.0 * second_moment, across]);
+        }
         if let Some((torsion, _)) = &mut self.torsion {
             // The polar moment of a circle is twice that about a diameter.
             let polar = 2.0 * second_moment;
@@ -227,9 +247,26 @@ impl Beams {
             gyroscopic: reduce(&self.gyroscopic),
             weights: OMatrix::from_fn_generic(Dyn(n), U3, |i, k| weights[(i, k)]),
             polar_inertia: self.polar_inertia,
+            lumps: self.lumps(&shapes),
             stations: self.stations.iter().map(station).collect(),
             frequencies,
         }
+    }
+}
+
+impl Beams {
+    /// Masses of the nodes, which move by the coordinates as these shapes say.
+    fn lumps(&self, shapes: &DMatrix<f64>) -> Vec<Lump> {
+        let lump = |(node, (x, [mass, polar, transverse])): (usize, (&f64, &[f64; 3]))| {
+            let rows = [0, 1, 2, 4, 5];
+            let mut map = Map::zeros(shapes.ncols());
+            for (i, row) in rows.into_iter().enumerate() {
+                map.row_mut(row).copy_from(&shapes.row(NODE * node + i));
+            }
+            let inertia = Vector3::new(*polar, *transverse, *transverse);
+            Lump { place: Vector3::new(*x, 0.0, 0.0), mass: *mass, inertia, map }
+        };
+        self.nodes.iter().zip(&self.at_nodes).enumerate().map(lump).collect()
     }
 }
 

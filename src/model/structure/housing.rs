@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, Matrix6, OMatrix, U3, Vector3};
 
-use super::{Carrier, Map, Structure, Turning};
+use super::{Carrier, Lump, Map, Structure, Turning};
 use crate::schema::{Foot, HousingSection};
 
 /// Displacement and rotation at a place of a rigid body by those of its centre, from there \[m].
@@ -33,7 +33,7 @@ impl Carrier {
                 let maps = stations.iter().map(|place| read.station(*place)).collect::<Result<_, _>>()?;
                 let [mass, damping, stiffness] =
                     [&read.mass, &read.damping, &read.stiffness].map(Clone::clone);
-                still([mass, damping, stiffness], read.weights.clone(), maps)
+                still([mass, damping, stiffness], read.weights.clone(), vec![], maps)
             }
             None => rigid(section, stations),
         };
@@ -64,13 +64,15 @@ fn rigid(section: &HousingSection, stations: &[[f64; 3]]) -> Carrier {
         Map::from_fn(6, |i, k| map[(i, k)])
     };
     let matrices = [DMatrix::from_diagonal(&diagonal), dynamic(damping), dynamic(stiffness)];
-    still(matrices, weights, stations.iter().map(map).collect())
+    let whole = Lump { place: centre, mass, inertia: Vector3::from(inertia), map: Map::identity(6) };
+    still(matrices, weights, vec![whole], stations.iter().map(map).collect())
 }
 
 /// A structure that does not turn: mass, damping and stiffness.
 fn still(
     [mass, damping, stiffness]: [DMatrix<f64>; 3],
     weights: OMatrix<f64, Dyn, U3>,
+    lumps: Vec<Lump>,
     stations: Vec<Map>,
 ) -> Carrier {
     let size = mass.nrows();
@@ -82,6 +84,7 @@ fn still(
         polar_inertia: 0.0,
         by_spin: DVector::zeros(size),
         weights,
+        lumps,
         turning: Turning::Still,
         rings: 0,
     };

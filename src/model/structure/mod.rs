@@ -9,10 +9,12 @@
 
 mod beam;
 mod housing;
+mod lump;
 mod ring;
 mod shaft;
 mod torsion;
 
+pub use lump::{FrameForce, Lump};
 use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6, Vector3};
 pub use ring::Ring;
 use serde::{Deserialize, Serialize};
@@ -62,6 +64,8 @@ pub struct Structure {
     pub by_spin: DVector<f64>,
     /// Generalised force of an acceleration of 1 m/s2 of the frame along x, y, z, by column: weights.
     pub weights: OMatrix<f64, Dyn, nalgebra::U3>,
+    /// Rigid parts that have its mass; none of one by matrices, which do not say where it is.
+    pub lumps: Vec<Lump>,
     /// How it turns.
     pub turning: Turning,
     /// How many of its last coordinates are displacements of rings that slide along their bores.

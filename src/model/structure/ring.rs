@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U3, Vector3};
 
-use super::{Carrier, Map, Structure, Turning};
+use super::{Carrier, Lump, Map, Structure, Turning};
 
 /// An outer ring that slides.
 #[derive(Clone, Copy, Debug)]
@@ -15,6 +15,8 @@ pub struct Ring {
     pub station: usize,
     /// \[kg] mass.
     pub mass: f64,
+    /// \[m] its place in the axes of the machine.
+    pub place: Vector3<f64>,
     /// Axis of the bore.
     pub axis: Vector3<f64>,
 }
@@ -31,6 +33,7 @@ impl Carrier {
             polar_inertia: 0.0,
             by_spin: DVector::zeros(0),
             weights: OMatrix::zeros_generic(Dyn(0), U3),
+            lumps: vec![],
             turning: Turning::Still,
             rings: 0,
         };
@@ -51,8 +54,9 @@ impl Carrier {
         let mut weights = structure.weights.clone().resize_vertically(size, 0.0);
         let stations: Vec<Map> = stations.into_iter().map(|map| map.resize_horizontally(size, 0.0)).collect();
         let mut sliding = vec![];
-        for (place, Ring { station, mass: own, axis }) in rings.iter().enumerate() {
-            let coordinate = first + place;
+        let mut lumps: Vec<Lump> = structure.lumps.iter().cloned().map(|lump| lump.widened(size)).collect();
+        for (index, Ring { station, mass: own, place, axis }) in rings.iter().enumerate() {
+            let coordinate = first + index;
             mass[(coordinate, coordinate)] = *own;
             weights.row_mut(coordinate).copy_from(&(axis.transpose() * *own));
             let mut map = stations[*station].clone();
@@ -61,6 +65,9 @@ impl Carrier {
             across -= axis * (axis.transpose() * &bore);
             map.fixed_view_mut::<3, 1>(0, coordinate).copy_from(axis);
             sliding.push((*station, map));
+            let mut along = Map::zeros(size);
+            along.fixed_view_mut::<3, 1>(0, coordinate).copy_from(axis);
+            lumps.push(Lump { place: *place, mass: *own, inertia: Vector3::zeros(), map: along });
         }
         let structure = Structure {
             mass,
@@ -69,6 +76,7 @@ impl Carrier {
             gyroscopic: wider(&structure.gyroscopic),
             by_spin: structure.by_spin.clone().resize_vertically(size, 0.0),
             weights,
+            lumps,
             rings: rings.len(),
             ..structure
         };

@@ -1,10 +1,10 @@
 //! The shaft of a system as a structure: rigid, or of beams that are reduced to its stations.
 
-use nalgebra::{DMatrix, DVector, OMatrix};
+use nalgebra::{DMatrix, DVector, OMatrix, Vector3};
 
 use super::beam::Beams;
 use super::torsion::ReducedTorsion;
-use super::{Carrier, Map, Structure, Turning};
+use super::{Carrier, Lump, Map, Structure, Turning};
 use crate::schema::ShaftSection;
 
 /// \[Hz] modes between stations that are kept, where the file does not say so.
@@ -46,6 +46,7 @@ impl Carrier {
                 gyroscopic: read.gyroscopic.clone(),
                 weights: read.weights.clone(),
                 polar_inertia: read.polar_inertia,
+                lumps: vec![],
                 by_turn: None,
             };
             return Ok(parts.turning(turning, maps, vec![]));
@@ -73,6 +74,11 @@ impl Carrier {
             gyroscopic: reduced.gyroscopic,
             weights: reduced.weights,
             polar_inertia: reduced.polar_inertia,
+            lumps: reduced
+                .lumps
+                .into_iter()
+                .map(|lump| Lump { place: lump.place + origin(section), ..lump })
+                .collect(),
             by_turn: None,
         };
         Ok(match beams.twisting(std::f64::consts::TAU * highest) {
@@ -80,6 +86,11 @@ impl Carrier {
             None => parts.turning(turning, maps, modes),
         })
     }
+}
+
+/// \[m] where positions along a shaft count from, in the axes of the machine.
+fn origin(section: &ShaftSection) -> Vector3<f64> {
+    Vector3::from(section.place(0.0))
 }
 
 fn rigid(section: &ShaftSection, stations: &[f64], turning: Turning) -> Carrier {
@@ -126,6 +137,12 @@ fn rigid(section: &ShaftSection, stations: &[f64], turning: Turning) -> Carrier 
         gyroscopic,
         weights,
         polar_inertia: polar,
+        lumps: vec![Lump {
+            place: Vector3::from(section.place(centre)),
+            mass,
+            inertia: Vector3::new(polar, transverse, transverse),
+            map: map(&centre),
+        }],
         by_turn: None,
     };
     parts.turning(turning, stations.iter().map(map).collect(), vec![])
@@ -139,6 +156,7 @@ struct Parts {
     gyroscopic: DMatrix<f64>,
     weights: OMatrix<f64, nalgebra::Dyn, nalgebra::U3>,
     polar_inertia: f64,
+    lumps: Vec<Lump>,
     /// Inertia of the coordinates by an acceleration of the turn; none of a shaft that does not twist.
     by_turn: Option<DVector<f64>>,
 }
@@ -165,6 +183,8 @@ impl Parts {
             map
         };
         let maps = maps.into_iter().zip(&torsion.stations).map(with_twist).collect();
+        let lumps = self.lumps.into_iter().zip(&torsion.nodes);
+        let lumps = lumps.map(|(lump, twist)| Lump { map: with_twist((lump.map, twist)), ..lump }).collect();
         let parts = Self {
             mass: both(self.mass, &torsion.mass),
             damping: both(self.damping, &(&torsion.stiffness * retardation)),
@@ -172,6 +192,7 @@ impl Parts {
             gyroscopic: self.gyroscopic.resize(n + own, n + own, 0.0),
             weights: self.weights.resize_vertically(n + own, 0.0),
             polar_inertia: self.polar_inertia,
+            lumps,
             by_turn: Some(DVector::from_fn(n + own, |i, _| if i < n { 0.0 } else { torsion.by_turn[i - n] })),
         };
         parts.turning(turning, maps, modes)
@@ -179,12 +200,13 @@ impl Parts {
 
     /// The shaft as it turns: under a torque its angle is one more coordinate.
     fn turning(self, turning: Turning, maps: Vec<Map>, modes: Vec<f64>) -> Carrier {
-        let Self { mass, damping, stiffness, gyroscopic, weights, polar_inertia, by_turn } = self;
+        let Self { mass, damping, stiffness, gyroscopic, weights, polar_inertia, lumps, by_turn } = self;
         let n = mass.nrows();
         let size = if turning == Turning::Free { n + 1 } else { n };
         let wider = |matrix: DMatrix<f64>| matrix.resize(size, size, 0.0);
         let mut mass = wider(mass);
         let mut stations: Vec<Map> = maps.into_iter().map(|map| map.resize_horizontally(size, 0.0)).collect();
+        let mut lumps: Vec<Lump> = lumps.into_iter().map(|lump| lump.widened(size)).collect();
         let mut by_spin = DVector::zeros(size);
         if let Some(by_turn) = by_turn {
             match turning {
@@ -197,7 +219,8 @@ impl Parts {
         }
         if turning == Turning::Free {
             mass[(n, n)] = polar_inertia;
-            stations.iter_mut().for_each(|map| map[(3, n)] = 1.0);
+            let of_lumps = lumps.iter_mut().map(|lump| &mut lump.map);
+            stations.iter_mut().chain(of_lumps).for_each(|map| map[(3, n)] = 1.0);
         }
         let structure = Structure {
             mass,
@@ -207,6 +230,7 @@ impl Parts {
             polar_inertia,
             by_spin,
             weights: weights.resize_vertically(size, 0.0),
+            lumps,
             turning,
             rings: 0,
         };

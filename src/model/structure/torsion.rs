@@ -26,6 +26,8 @@ pub struct ReducedTorsion {
     pub by_turn: DVector<f64>,
     /// Twist of each station by the coordinates.
     pub stations: Vec<DVector<f64>>,
+    /// The same of each node.
+    pub nodes: Vec<DVector<f64>>,
 }
 
 impl Torsion {
@@ -84,7 +86,8 @@ impl Torsion {
             mass: shapes.tr_mul(&(&self.mass * &shapes)),
             stiffness: shapes.tr_mul(&(&self.stiffness * &shapes)),
             by_turn: shapes.tr_mul(&whole),
-            stations: stations.iter().map(station).collect(),
+            stations: stations.iter().map(&station).collect(),
+            nodes: (0..size).map(|node| station(&node)).collect(),
         }
     }
 }

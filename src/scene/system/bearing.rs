@@ -69,7 +69,9 @@ impl WrittenBearing {
     pub fn read(self, given: &Shared) -> Result<MountedScene, SceneError> {
         let Self { name, scene, catalogue, shaft, mounting, set, .. } = self;
         // That there is such a shaft was checked.
-        let shaft = given.shafts.iter().position(|(own, _)| shaft.as_ref() == Some(own)).unwrap_or(0);
+        let named =
+            |name: &Option<String>| given.shafts.iter().position(|(own, _)| name.as_ref() == Some(own));
+        let (shaft, outer_shaft) = (named(&shaft).unwrap_or(0), named(&mounting.outer_shaft));
         let inside =
             |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
         let mut estimated_mass = None;
@@ -103,9 +105,10 @@ impl WrittenBearing {
         if mounting.seats_outer_ring() {
             seat_outer_ring(&mut table, &mounting, estimated_mass).map_err(inside)?;
         }
-        mount(&mut table, given, given.shafts[shaft].1, mounting.direction);
+        let outer_speed = outer_shaft.map(|shaft| given.shafts[shaft].1);
+        mount(&mut table, given, (given.shafts[shaft].1, outer_speed), mounting.direction);
         let scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
-        Ok(MountedScene { name, shaft, mounting, scene })
+        Ok(MountedScene { name, shaft, outer_shaft, mounting, scene })
     }
 }
 
@@ -136,11 +139,12 @@ fn seat_outer_ring(
     estimated_mass: Option<f64>,
 ) -> Result<(), SceneError> {
     let mut outer = section(table, "outer");
-    let why = match &mounting.housing {
-        Some(_) => {
+    let why = match (&mounting.housing, &mounting.outer_shaft) {
+        (_, Some(_)) => "the outer ring is a part of mounting.outer_shaft, which moves it",
+        (Some(_), None) => {
             "the outer race sits in mounting.housing, which moves it; a tilt of its bore is mounting.misalignment"
         }
-        None => "mounting.axial, misalignment and offset say how the outer race sits",
+        (None, None) => "mounting.axial, misalignment and offset say how the outer race sits",
     };
     if let Some(key) = ["support", "misalignment"].into_iter().find(|key| outer.contains_key(*key)) {
         return Err(SceneError::conflict(format!("outer.{key}"), why));
@@ -161,15 +165,22 @@ fn seat_outer_ring(
     Ok(())
 }
 
-/// Makes a bearing's own scene that of a bearing whose inner race the shaft moves.
-fn mount(table: &mut Table, given: &Shared, speed: f64, direction: MountingDirection) {
+/// Makes a bearing's own scene that of a bearing whose inner race a shaft moves; with its speed [rad/s], and that of the shaft that moves the
+/// outer one, if one does.
+fn mount(
+    table: &mut Table,
+    given: &Shared,
+    (speed, of_outer): (f64, Option<f64>),
+    direction: MountingDirection,
+) {
     let mut inner = section(table, "inner");
     inner.insert("drive".into(), "pose".into());
     table.insert("inner".into(), inner.into());
     let mut load = section(table, "load");
     // Phases, too, are those of the shaft.
     table.remove("phase");
-    let outer_speed = load.remove("outer_speed");
+    let of_outer = of_outer.map(|speed| Value::from(direction.sign() * speed));
+    let outer_speed = load.remove("outer_speed").or(of_outer);
     let mut load = Table::new();
     load.extend(outer_speed.map(|speed| ("outer_speed".to_string(), speed)));
     load.insert("duration".into(), given.load.duration.0.into());

@@ -15,7 +15,23 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
     Range::closed(1e-9, load.duration.0, "s").check("load.output_interval", load.output_interval.0)?;
     check_phases(&written.phase, load.duration.0)?;
     if written.gravity.is_scripted() {
-        return Err(SceneError::conflict("gravity", "gravity of a system is constant: give three numbers"));
+        let why = "gravity of a system is constant: give three numbers; a frame that moves has frame.acceleration over time";
+        return Err(SceneError::conflict("gravity", why));
+    }
+    if let Some(frame) = &written.frame {
+        frame.check("frame")?;
+        let of_matrices = |name: &str| {
+            let why = format!(
+                "\"{name}\" is one of matrices, which do not say where its mass is: give frame.acceleration alone, or mass or beams"
+            );
+            Err(SceneError::conflict("frame.angular_velocity", why))
+        };
+        let shafts = written.shaft.0.iter().map(|shaft| (&shaft.name, &shaft.matrices));
+        let housings = written.housing.iter().map(|housing| (&housing.name, &housing.matrices));
+        let mut all = shafts.chain(housings);
+        if let Some((name, _)) = all.find(|(_, matrices)| matrices.is_some() && frame.turns()) {
+            return of_matrices(name);
+        }
     }
     if written.bearing.iter().all(|bearing| bearing.stiffness.is_some()) {
         return Err(SceneError::conflict(
@@ -70,6 +86,7 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
             return Err(SceneError::conflict(format!("bearing.mounting.housing = \"{wanted}\""), why));
         }
         bore(mounting)?;
+        hub(shafts, bearing)?;
         if let Some(stiffness) = &bearing.stiffness {
             by_stiffness(bearing, stiffness)?;
         }
@@ -108,6 +125,37 @@ fn on_one_of(shafts: &[ShaftSection], bearing: &WrittenBearing) -> Result<(), Sc
     }
 }
 
+/// The shaft that an outer ring is a part of.
+fn hub(shafts: &[ShaftSection], bearing: &WrittenBearing) -> Result<(), SceneError> {
+    let mounting = &bearing.mounting;
+    let Some(wanted) = &mounting.outer_shaft else { return Ok(()) };
+    let refuse = |why: String| {
+        Err(SceneError::conflict(
+            format!("bearing \"{}\": bearing.mounting.outer_shaft = \"{wanted}\"", bearing.name),
+            why,
+        ))
+    };
+    let named = |name: &str| shafts.iter().find(|shaft| shaft.name == name);
+    let own = bearing.shaft.as_deref().and_then(named).or(shafts.first());
+    let (Some(own), Some(hub)) = (own, named(wanted)) else {
+        let names: Vec<&str> = shafts.iter().map(|shaft| shaft.name.as_str()).collect();
+        return refuse(format!("there is no such [[shaft]]; there are: {}", names.join(", ")));
+    };
+    if own.name == hub.name {
+        return refuse("is the shaft that the inner ring is a part of: give another one".into());
+    }
+    if mounting.housing.is_some() || mounting.has_bore() {
+        return refuse(
+            "is not for a ring with a seat: take housing, axial, misalignment and offset out".into(),
+        );
+    }
+    let (inner, outer) = (own.place(0.0), hub.place(0.0));
+    if (1..3).any(|axis| (inner[axis] - outer[axis]).abs() > 1e-9) {
+        return refuse("both shafts must be on one axis: give them the same y and z of shaft.origin".into());
+    }
+    Ok(())
+}
+
 /// A bearing by its stiffness has nothing of one that is simulated.
 fn by_stiffness(bearing: &WrittenBearing, stiffness: &StiffnessSection) -> Result<(), SceneError> {
     let inside =
@@ -139,7 +187,9 @@ fn slides(bearing: &WrittenBearing) -> bool {
 /// Something holds a shaft along its axis.
 fn held(shaft: &ShaftSection, written: &Written) -> Result<(), SceneError> {
     let one = written.shaft.0.len() == 1;
-    let mut own = written.bearing.iter().filter(|bearing| one || bearing.shaft.as_ref() == Some(&shaft.name));
+    let has = |name: &Option<String>| name.as_ref() == Some(&shaft.name);
+    let on = |bearing: &&WrittenBearing| one || has(&bearing.shaft) || has(&bearing.mounting.outer_shaft);
+    let mut own = written.bearing.iter().filter(on);
     if shaft.matrices.is_none() && own.all(slides) {
         let why = match one {
             true => {
@@ -318,7 +368,7 @@ fn alone(bearing: &MountedScene) -> Result<(), SceneError> {
     if scene.effects.frame.section.is_some() {
         return refuse(
             "effects.frame",
-            "is for a bearing without a shaft: the equations of a shaft have no moving frame",
+            "is for a bearing without a shaft: a machine has one frame, the section [frame] of its file",
         );
     }
     if scene.effects.support.sections[0].is_some() {
@@ -341,7 +391,8 @@ fn alone(bearing: &MountedScene) -> Result<(), SceneError> {
     if scene.outer.drive == Drive::Wrench {
         return refuse(
             "outer.drive",
-            "\"wrench\" is for a bearing without a shaft: allowed are fixed, hinge, pose, and a support",
+            "\"wrench\" is for a bearing without a shaft: allowed are fixed, hinge, pose, and a support; an outer ring that loads or a \
+             drive act on is a part of a hub: a [[shaft]] of its own, named by mounting.outer_shaft",
         );
     }
     Ok(())

@@ -19,7 +19,8 @@ pub use numbers::{ShaftNumber, ShaftParameter};
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::{Scene, SceneError};
+use super::{FrameMotion, Scene, SceneError};
+use crate::effects::frame::FrameSection;
 use crate::schema::units::{Acceleration, Force, Moment, Time};
 use crate::schema::{
     AxialSeat, Components, GearSection, HousingSection, Matrices, MeshSection, Mounting, PhaseSection,
@@ -43,6 +44,8 @@ pub struct SystemScene {
     pub bearings: Vec<MountedScene>,
     /// [m/s2] acceleration of gravity in the axes of the shaft, constant.
     pub gravity: Vector3<f64>,
+    /// Motion of the machine's frame, which all places and velocities are seen from; none where it rests.
+    pub frame: Option<FrameSection>,
     /// Simulated time, and distance of rows.
     pub load: SystemLoad,
     /// Named windows of the run, of the shaft and of all its bearings.
@@ -58,6 +61,8 @@ pub struct MountedScene {
     pub name: String,
     /// Index of the shaft that it sits on.
     pub shaft: usize,
+    /// Index of the shaft that its outer ring is a part of, if it is one of a shaft.
+    pub outer_shaft: Option<usize>,
     /// Where it sits.
     pub mounting: Mounting,
     /// The bearing by itself, in axes of its own; its inner race is moved by the shaft.
@@ -65,6 +70,11 @@ pub struct MountedScene {
 }
 
 impl MountedScene {
+    /// \[m] place x, y, z of its centre in the axes of all shafts, which are given.
+    pub fn place(&self, shafts: &[ShaftSection]) -> [f64; 3] {
+        shafts[self.shaft].place(self.mounting.position.0)
+    }
+
     /// \[m, rad] place across the axis and tilt of the bore that its outer ring sits in, in the axes of the shaft.
     pub fn bore(&self) -> (Vector3<f64>, Vector3<f64>) {
         let [[y, z], [ry, rz]] = [self.mounting.offset.values(), self.mounting.misalignment.values()]
@@ -132,6 +142,8 @@ struct Written {
     /// [m/s2] acceleration of gravity along the shaft's x, y, z, constant: it acts on the shaft and inside the bearings. 0 if not given.
     #[serde(default)]
     gravity: Components<Acceleration>,
+    /// Motion of the frame that shafts, housings and bearings are seen from, as `effects.frame` of a bearing alone; along the shaft's axes.
+    frame: Option<FrameSection>,
     /// Time integration, as in the scene of a bearing; instead of those of the bearings' own scenes.
     #[serde(default)]
     solver: Table,
@@ -193,6 +205,7 @@ impl SystemScene {
             load,
             phase: phases,
             gravity,
+            frame,
             solver,
         } = written;
         let gravity = gravity.at(0.0);
@@ -227,8 +240,14 @@ impl SystemScene {
             bearing.into_iter().partition(|bearing| bearing.stiffness.is_some());
         let springs = springs.into_iter().filter_map(|spring| spring.spring(&shafts, &housing)).collect();
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
-        let bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
+        let mut bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
         check::solvers(&bearings, &shafts).map_err(placed)?;
+        for mounted in &mut bearings {
+            let (place, direction) = (mounted.place(&shafts), mounted.mounting.direction.sign());
+            let effects = &mut mounted.scene.effects;
+            effects.frame.section = frame.as_ref().map(|frame| frame.at_bearing(&place.into(), direction));
+            effects.gravity.is_input = frame.is_some();
+        }
         let source = standing_alone(text, &bearings, &of_shafts, &of_housings, gravity != Vector3::zeros());
         Ok(Self {
             title,
@@ -238,6 +257,7 @@ impl SystemScene {
             springs,
             bearings,
             gravity,
+            frame,
             load,
             phases,
             source,
@@ -251,6 +271,12 @@ impl SystemScene {
             mounted.scene.notes().into_iter().map(move |note| format!("bearing {name}: {note}"))
         };
         self.bearings.iter().flat_map(of).collect()
+    }
+
+    /// Motion of the machine's frame at a time \[s], and gravity in it.
+    pub fn frame_at(&self, time: f64) -> FrameMotion {
+        let motion = self.frame.as_ref().map(|section| section.at(time)).unwrap_or_default();
+        FrameMotion { gravity: self.gravity, ..motion }
     }
 
     /// Named loads of the shafts, then those of every housing.
@@ -292,9 +318,12 @@ impl SystemScene {
         !section.section.is_empty() && section.torsion.unwrap_or(meshed)
     }
 
-    /// Bearings that sit on a shaft, by their indices.
+    /// Bearings of which a ring is a part of a shaft, by their indices.
     pub fn bearings_on(&self, shaft: usize) -> impl Iterator<Item = usize> {
-        (0..self.bearings.len()).filter(move |bearing| self.bearings[*bearing].shaft == shaft)
+        (0..self.bearings.len()).filter(move |bearing| {
+            let MountedScene { shaft: inner, outer_shaft, .. } = &self.bearings[*bearing];
+            *inner == shaft || *outer_shaft == Some(shaft)
+        })
     }
 
     /// Schedules of what acts on the shafts, their housings and bearings.
@@ -304,7 +333,8 @@ impl SystemScene {
         let gears = self.gears().map(|gear| &gear.torque);
         let frictions = self.bearings.iter().map(|mounted| &mounted.scene.friction.ball_race);
         let oils = self.bearings.iter().filter_map(|mounted| mounted.scene.effects.film.schedule());
-        loads.chain(drive).chain(gears).chain(frictions).chain(oils)
+        let frame = self.frame.iter().flat_map(FrameSection::schedules);
+        loads.chain(drive).chain(gears).chain(frictions).chain(oils).chain(frame)
     }
 
     /// Housing that the outer race of a bearing sits in, by their indices.
@@ -317,7 +347,7 @@ impl SystemScene {
     pub fn bearings_in_ground(&self) -> impl Iterator<Item = usize> {
         (0..self.bearings.len()).filter(|bearing| {
             let mounting = &self.bearings[*bearing].mounting;
-            mounting.housing.is_none() && mounting.seats_outer_ring()
+            mounting.housing.is_none() && mounting.has_bore()
         })
     }
 

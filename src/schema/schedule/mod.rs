@@ -39,6 +39,17 @@ impl Schedule {
         }
     }
 
+    /// The opposite at all times.
+    #[must_use]
+    pub fn negated(&self) -> Self {
+        match self {
+            Self::Constant(value) => Self::Constant(-value),
+            Self::Table(points) => Self::Table(points.iter().map(|(time, value)| (*time, -value)).collect()),
+            Self::Sine(sine) => Self::Sine(Sine { mean: -sine.mean, amplitude: -sine.amplitude, ..*sine }),
+            Self::Sum(parts) => Self::Sum(parts.iter().map(Self::negated).collect()),
+        }
+    }
+
     /// Value and rate at a time \[s] of a smooth motion: through the points of a table monotone cubic (Fritsch and
     /// Carlson 1980), at rest at both ends, so that a scripted displacement has no jump in speed; a sine is what it is.
     pub fn smooth_at(&self, time: f64) -> (f64, f64) {

@@ -266,15 +266,18 @@ fn sliding(scene: &SystemScene, bearings: impl Iterator<Item = usize>) -> Vec<Ri
     let ring = |(station, bearing): (usize, usize)| {
         let mounted = &scene.bearings[bearing];
         let axis = tilt::orientation(&mounted.bore().1) * Vector3::x();
-        mounted.sliding_mass().map(|mass| Ring { station, mass, axis })
+        let place = Vector3::from(mounted.place(&scene.shafts));
+        mounted.sliding_mass().map(|mass| Ring { station, mass, place, axis })
     };
     bearings.enumerate().filter_map(ring).collect()
 }
 
 /// The structure that carries the outer race of a bearing, if one does.
 fn outer_structure(scene: &SystemScene, bearing: usize) -> Option<usize> {
-    let ground = || scene.bearings[bearing].mounting.seats_outer_ring().then_some(scene.housings.len());
-    scene.housing_of(bearing).or_else(ground).map(|structure| structure + scene.shafts.len())
+    let MountedScene { outer_shaft, mounting, .. } = &scene.bearings[bearing];
+    let ground = || mounting.has_bore().then_some(scene.housings.len());
+    let still = || scene.housing_of(bearing).or_else(ground).map(|structure| structure + scene.shafts.len());
+    outer_shaft.or_else(still)
 }
 
 /// Turns of the shafts at the start.

@@ -1,9 +1,12 @@
 //! Inputs from outside a system: loads of the shafts and their drives, and how they move within a communication step.
 
-use nalgebra::{SVector, Vector6};
+use nalgebra::{SVector, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
+use super::super::input_paths::FramePath;
 use super::super::path::Ramp;
+use crate::effects::frame::FrameSection;
+use crate::effects::moving_frame::{FrameInputs, FrameMotion, MovingFrame};
 use crate::model::state::stack;
 use crate::model::structure::Spin;
 use crate::numerics::motion::Wrench;
@@ -20,6 +23,8 @@ pub struct ShaftInputs {
     pub gears: Vec<f64>,
     /// Speed [rad/s] or torque [N m] of every shaft, whichever the scene drives it by.
     pub drives: Vec<f64>,
+    /// Motion of the machine's frame, and gravity in it, where that may move.
+    pub frame: Option<FrameInputs>,
 }
 
 impl ShaftInputs {
@@ -30,7 +35,12 @@ impl ShaftInputs {
         let drive = |shaft| drive_of(shaft).map_or(0.0, |drive| drive.at(time));
         let gears = scene.gears().map(|gear| gear.torque.at(time)).collect();
         let drives = scene.shafts.iter().map(drive).collect();
-        Self { loads: scene.loads().map(wrench).collect(), gears, drives }
+        let frame = scene.frame.as_ref().map(|section| FrameInputs {
+            motion: scene.frame_at(time),
+            rate: FrameMotion::default(),
+            accelerates: section.angular_acceleration.is_some(),
+        });
+        Self { loads: scene.loads().map(wrench).collect(), gears, drives, frame }
     }
 
     /// Are these those of the same system?
@@ -38,6 +48,7 @@ impl ShaftInputs {
         self.loads.len() == other.loads.len()
             && self.gears.len() == other.gears.len()
             && self.drives.len() == other.drives.len()
+            && self.frame.is_some() == other.frame.is_some()
     }
 
     fn components(&self) -> impl Iterator<Item = Vector6<f64>> {
@@ -54,6 +65,8 @@ pub struct Played {
     pub gears: Vec<bool>,
     /// Speed or torque of every shaft.
     pub drives: Vec<bool>,
+    /// Motion of the machine's frame.
+    pub frame: bool,
     /// Groups of inputs of every bearing.
     pub bearings: Vec<Groups>,
 }
@@ -61,7 +74,7 @@ pub struct Played {
 impl Played {
     /// Scripts of a bearing alone.
     pub fn of_bearing(groups: Groups) -> Self {
-        Self { loads: vec![], gears: vec![], drives: vec![], bearings: vec![groups] }
+        Self { loads: vec![], gears: vec![], drives: vec![], frame: false, bearings: vec![groups] }
     }
 
     /// No script.
@@ -70,6 +83,7 @@ impl Played {
             loads: vec![false; scene.loads().count()],
             gears: vec![false; scene.gears().count()],
             drives: vec![false; scene.shafts.len()],
+            frame: false,
             bearings: vec![Groups::default(); scene.bearings.len()],
         }
     }
@@ -80,6 +94,7 @@ impl Played {
             loads: vec![true; scene.loads().count()],
             gears: vec![true; scene.gears().count()],
             drives: vec![true; scene.shafts.len()],
+            frame: true,
             bearings: vec![Groups::ALL; scene.bearings.len()],
         }
     }
@@ -154,6 +169,17 @@ pub struct ShaftPaths {
     torques: Vec<Ramp<1>>,
     /// Speed of every shaft, where that is given.
     turns: Vec<TurnPath>,
+    /// Motion of the machine's frame, where that may move.
+    frame: Option<FramePath>,
+}
+
+/// What acts on all mass of a machine at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Field {
+    /// [m/s2] gravity less the acceleration of the origin of the machine's axes.
+    pub acceleration: Vector3<f64>,
+    /// The frame about that origin, where it turns.
+    pub turning: Option<MovingFrame>,
 }
 
 impl ShaftPaths {
@@ -165,6 +191,7 @@ impl ShaftPaths {
             gears: inputs.gears.iter().map(|torque| Ramp::constant(SVector::from([*torque]))).collect(),
             torques: inputs.drives.iter().map(|drive| Ramp::constant(SVector::from([*drive]))).collect(),
             turns: turns.map(|(angle, drive)| TurnPath::steady(time, *angle, *drive)).collect(),
+            frame: inputs.frame.as_ref().map(FramePath::steady),
         }
     }
 
@@ -179,6 +206,7 @@ impl ShaftPaths {
             gears: gears.map(|(now, next)| now.towards(time, SVector::from([*next]), duration)).collect(),
             torques: torques.map(|(now, next)| now.towards(time, SVector::from([*next]), duration)).collect(),
             turns: turns.map(|(now, next)| now.towards(time, *next, duration)).collect(),
+            frame: self.frame.zip(inputs.frame).map(|(now, next)| now.towards(time, &next, duration)),
         }
     }
 
@@ -192,6 +220,7 @@ impl ShaftPaths {
         self.loads.len() == inputs.loads.len()
             && self.gears.len() == inputs.gears.len()
             && [self.torques.len(), self.turns.len()] == [inputs.drives.len(); 2]
+            && self.frame.is_some() == inputs.frame.is_some()
     }
 }
 
@@ -239,6 +268,25 @@ impl Given<'_> {
         }
     }
 
+    /// What gravity and the motion of the frame do at a time \[s].
+    pub fn field(&self, time: f64) -> Field {
+        let motion = match &self.paths.frame {
+            Some(path) if !self.plays_frame() => path.at(time),
+            _ => self.scene.frame_at(time),
+        };
+        let moving = self.scene.frame.as_ref().map(|section| MovingFrame::new(&motion, section.arm()));
+        let origin = |frame: MovingFrame| frame.field(&Vector3::zeros(), &Vector3::zeros());
+        Field {
+            acceleration: motion.gravity + moving.map_or(Vector3::zeros(), origin),
+            turning: moving.and_then(|frame| frame.about_origin()),
+        }
+    }
+
+    /// Is the motion of the frame that of its tables?
+    pub fn plays_frame(&self) -> bool {
+        self.played.frame && self.scene.frame.as_ref().is_some_and(FrameSection::is_scripted)
+    }
+
     /// Is a load that of its table?
     pub fn plays_load(&self, index: usize) -> bool {
         self.played.loads[index] && self.scene.loads().nth(index).is_some_and(|load| load.is_scripted())
@@ -276,6 +324,10 @@ impl Given<'_> {
             inputs.drives[shaft] = drive;
             paths.torques[shaft] = Ramp::constant(SVector::from([drive]));
             paths.turns[shaft] = TurnPath::steady(time, self.spin(shaft, time).angle, drive);
+        }
+        if self.plays_frame() {
+            inputs.frame = scripted.frame;
+            paths.frame = scripted.frame.as_ref().map(FramePath::steady);
         }
         (inputs, paths)
     }

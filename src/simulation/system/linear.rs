@@ -82,7 +82,12 @@ impl System {
         let mut bearings = self.bearings.clone();
         let of = |index: usize| {
             let (carrier, spin) = (&self.structures.carriers[index], self.structures.states[index].spin);
-            StructureLoad { force: DVector::zeros(carrier.structure.size()), spin, axial_moment: 0.0 }
+            StructureLoad {
+                force: DVector::zeros(carrier.structure.size()),
+                spin,
+                axial_moment: 0.0,
+                frame: None,
+            }
         };
         let loads: Vec<_> = (0..self.structures.carriers.len()).map(of).collect();
         let condensed = |bearing: &super::Simulation| {

@@ -2,11 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::Vector6;
+use nalgebra::{Vector3, Vector6};
 
-use super::inputs::{Given, Played, ShaftInputs, ShaftPaths};
+use super::inputs::{Field, Given, Played, ShaftInputs, ShaftPaths};
 use super::{first_stations, housing_stations};
 use crate::dynamics::system::StructureLoad;
+use crate::effects::frame::FrameSection;
 use crate::loads::{Mesh, unbalance as unbalance_of};
 use crate::model::state::stack;
 use crate::model::structure::{Carrier, Spin, StructureState, Turning};
@@ -25,10 +26,11 @@ pub fn at(
 ) -> Vec<StructureLoad> {
     let scene = given.scene;
     let count = scene.shafts.len();
+    let Field { acceleration, turning } = given.field(time);
     // Loads and gears of shafts that went before.
     let mut before = [0; 2];
     let of_shafts = carriers.iter().zip(states).take(count).enumerate().map(|(shaft, (carrier, state))| {
-        let load = on_shaft(given, (shaft, before), carrier, state, [from, time]);
+        let load = on_shaft(given, (shaft, before), (carrier, state), acceleration, [from, time]);
         before[0] += scene.shafts[shaft].load.len();
         before[1] += scene.shafts[shaft].gear.len();
         load
@@ -37,28 +39,30 @@ pub fn at(
     let mut first = before[0];
     let housings = given.scene.housings.iter().zip(&carriers[count..]).enumerate();
     let of_housings = housings.map(|(index, (housing, carrier))| {
-        let mut force = carrier.structure.weight(&given.scene.gravity);
+        let mut force = carrier.structure.weight(&acceleration);
         let [loads, _] = housing_stations(given.scene, index);
         for own in 0..housing.load.len() {
             force += carrier.stations[loads + own].tr_mul(&given.load(first + own, time));
         }
         first += housing.load.len();
-        StructureLoad { force, spin: Spin::default(), axial_moment: 0.0 }
+        StructureLoad { force, spin: Spin::default(), axial_moment: 0.0, frame: None }
     });
     let ground = carriers.get(scene.housings.len() + count).map(|ground| StructureLoad {
-        force: ground.structure.weight(&given.scene.gravity),
+        force: ground.structure.weight(&acceleration),
         spin: Spin::default(),
         axial_moment: 0.0,
+        frame: None,
     });
-    of_shafts.into_iter().chain(of_housings).chain(ground).collect()
+    let all = of_shafts.into_iter().chain(of_housings).chain(ground);
+    all.map(|load| StructureLoad { frame: turning, ..load }).collect()
 }
 
 /// Loads of a shaft, with the loads and gears of shafts that go before it.
 fn on_shaft(
     given: &Given<'_>,
     (shaft, [first_load, first_gear]): (usize, [usize; 2]),
-    carrier: &Carrier,
-    state: &StructureState,
+    (carrier, state): (&Carrier, &StructureState),
+    acceleration: Vector3<f64>,
     [from, time]: [f64; 2],
 ) -> StructureLoad {
     let scene = given.scene;
@@ -67,7 +71,7 @@ fn on_shaft(
     let free = structure.turning == Turning::Free;
     let spin = if free { ahead(&state.spin, time - from) } else { given.spin(shaft, time) };
     let [loads, _, discs, gears] = first_stations(scene, shaft);
-    let mut force = structure.weight(&scene.gravity);
+    let mut force = structure.weight(&acceleration);
     let mut axial_moment = 0.0;
     let mut add = |station: usize, on: Vector6<f64>| {
         force += carrier.stations[station].tr_mul(&on);
@@ -95,7 +99,7 @@ fn on_shaft(
         let last = force.len() - 1;
         force[last] += given.torque(shaft, time);
     }
-    StructureLoad { force, spin, axial_moment }
+    StructureLoad { force, spin, axial_moment, frame: None }
 }
 
 /// A turn that goes on as it is.
@@ -112,7 +116,8 @@ fn schedules<'a>(given: &Given<'a>) -> Vec<&'a Schedule> {
     let driven = scene.shafts.iter().enumerate().filter(|(shaft, _)| given.plays_drive(*shaft));
     let drive = driven.flat_map(|(_, shaft)| shaft.speed.iter().chain(&shaft.torque));
     let gears = scene.gears().enumerate().filter(|(index, _)| given.plays_gear(*index));
-    components.chain(drive).chain(gears.map(|(_, gear)| &gear.torque)).collect()
+    let frame = scene.frame.iter().filter(|_| given.plays_frame()).flat_map(FrameSection::schedules);
+    components.chain(drive).chain(gears.map(|(_, gear)| &gear.torque)).chain(frame).collect()
 }
 
 /// Does a load or the drive of a scene come to other values within a span \[s] of time?

@@ -23,6 +23,7 @@ use thiserror::Error;
 use super::cage_push::CagePush;
 use super::inputs::Inputs;
 use super::{Simulation, SimulationError, follows_time};
+use crate::effects::frame::FrameSection;
 use crate::model::structure::{Carrier, StructureState};
 use crate::scene::Scene;
 use crate::scene::system::SystemScene;
@@ -142,14 +143,21 @@ impl System {
         &self.structures.inputs
     }
 
-    /// Sets the inputs of the next step: loads and drive, and those of every bearing in the order of the scene, where what is said of
+    /// Sets the inputs of the next step: loads, drive and the motion of the frame, and those of every bearing in the order of the scene, where what is said of
     /// races on the shaft or in a housing counts for nothing. False, with nothing changed, if there are too many or too few.
     #[must_use]
     pub fn set_inputs(&mut self, shaft: ShaftInputs, bearings: Vec<Inputs>) -> bool {
         let fit = shaft.fits(&self.structures.inputs) && bearings.len() == self.bearings.len();
         if fit {
             self.structures.inputs = shaft;
-            self.bearings.iter_mut().zip(bearings).for_each(|(bearing, inputs)| bearing.set_inputs(inputs));
+            let mounted = &self.structures.scene.bearings;
+            for ((bearing, mut inputs), mounted) in self.bearings.iter_mut().zip(bearings).zip(mounted) {
+                // All bearings are in the frame of the machine.
+                if let Some(frame) = &self.structures.inputs.frame {
+                    inputs.effects.frame = frame.seen_along(mounted.mounting.direction.sign());
+                }
+                bearing.set_inputs(inputs);
+            }
         }
         fit
     }
@@ -179,12 +187,16 @@ pub fn shaft_follows_time(scene: &SystemScene) -> bool {
     scene.shafts.iter().any(drive_is_scripted)
         || scene.loads().any(|load| load.is_scripted())
         || scene.gears().any(|gear| gear.torque.is_scripted())
+        || scene.frame.as_ref().is_some_and(FrameSection::is_scripted)
         || scene.bearings.iter().any(|bearing| follows_time(&bearing.scene))
 }
 
 /// Positions of all stations of a shaft along it \[m]: its bearings, then loads, points, discs and gears.
 fn stations(scene: &SystemScene, shaft: usize) -> Vec<f64> {
-    let bearings = scene.bearings_on(shaft).map(|bearing| scene.bearings[bearing].mounting.position.0);
+    let bearings = scene.bearings_on(shaft).map(|bearing| match &scene.bearings[bearing] {
+        mounted if mounted.shaft == shaft => mounted.mounting.position.0,
+        mounted => mounted.place(&scene.shafts)[0] - scene.shafts[shaft].place(0.0)[0],
+    });
     bearings.chain(scene.shafts[shaft].positions()).chain(links::positions(scene, shaft)).collect()
 }
 
@@ -200,10 +212,7 @@ fn first_stations(scene: &SystemScene, shaft: usize) -> [usize; 4] {
 /// Places of all stations of a housing \[m]: its bearings, then its loads and points, then its bearings by their stiffness.
 fn places_of_housing(scene: &SystemScene, index: usize) -> Vec<[f64; 3]> {
     let housing = &scene.housings[index];
-    let seats = scene.bearings_in(index).map(|bearing| {
-        let mounted = &scene.bearings[bearing];
-        scene.shafts[mounted.shaft].place(mounted.mounting.position.0)
-    });
+    let seats = scene.bearings_in(index).map(|bearing| scene.bearings[bearing].place(&scene.shafts));
     let loads = housing.load.iter().map(|load| load.position.map(|length| length.0));
     let points = housing.point.iter().map(|point| point.position.map(|length| length.0));
     let springs = scene.springs.iter().filter(|spring| spring.housing == Some(index));

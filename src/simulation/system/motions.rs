@@ -13,8 +13,11 @@ use crate::simulation::motions::{Motion, Part, free, mover, named, seated, worth
 
 impl System {
     /// Motions of shaft, housings, rings and cages about the present state that swing, by their frequency. None where
-    /// eigenvalues are not found.
+    /// eigenvalues are not found, and in a frame that moves, of which the forces of inertia are not here.
     pub fn motions(&self) -> Option<Vec<Motion>> {
+        if self.structures.scene.frame.is_some() {
+            return None;
+        }
         let own: Vec<Vec<_>> =
             self.bearings.iter().map(|bearing| bearing.moving_bodies().collect()).collect();
         let of_carriers: usize =

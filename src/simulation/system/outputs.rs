@@ -120,10 +120,9 @@ impl SystemOutputs {
                 move |shaft| range(first_stations(scene, shaft)).map(move |station| on_shaft(shaft, station));
             (0..count).flat_map(of).collect()
         };
-        let mut seated = vec![0; count];
-        let seats = scene.bearings.iter().map(|bearing| {
-            seated[bearing.shaft] += 1;
-            on_shaft(bearing.shaft, seated[bearing.shaft] - 1)
+        let seats = scene.bearings.iter().enumerate().map(|(index, bearing)| {
+            let station = scene.bearings_on(bearing.shaft).position(|of| of == index);
+            on_shaft(bearing.shaft, station.unwrap_or(0))
         });
         let shafts = states.iter().zip(torques).map(|(state, torque)| ShaftOutputs {
             spin: state.spin,

@@ -276,11 +276,16 @@ impl Statics<'_> {
         for (((Carrier { structure, .. }, load), scales), (from, state)) in
             loads.zip(first.iter().zip(states))
         {
-            let own = &load.force - &structure.stiffness * &state.coordinates;
+            let mut outside = load.force.clone();
+            if let Some(frame) = &load.frame {
+                outside +=
+                    structure.frame_force(frame, [&state.coordinates, &state.rates], &state.spin).force;
+            }
+            let own = &outside - &structure.stiffness * &state.coordinates;
             residual.rows_mut(*from, own.len()).copy_from(&own);
             let own = structure.size();
             stiffness.view_mut((*from, *from), (own, own)).copy_from(&structure.stiffness);
-            force = force.max(load.force.component_div(scales).amax());
+            force = force.max(outside.component_div(scales).amax());
         }
         for index in 0..self.bearings.len() {
             let bearing = &mut self.bearings[index];
@@ -293,7 +298,10 @@ impl Statics<'_> {
             // Along the axis the races carry the balls together; around it, friction does in part.
             let balls =
                 self.bearings[index].model.bearing.ball.mass * self.bearings[index].state.balls.len() as f64;
-            let weight = Vector3::x() * (balls * inputs.effects.frame.motion.gravity.x);
+            let ambient = self.bearings[index].model.ambient(&inputs.effects.frame.motion);
+            let field =
+                ambient.frame.map_or(0.0, |frame| frame.field(&Vector3::zeros(), &Vector3::zeros()).x);
+            let weight = Vector3::x() * (balls * (ambient.gravity.x + field));
             force = force.max(held.fixed_rows::<3>(0).amax());
             let row = |i: usize| if i < 3 { i } else { i + 1 };
             let mut whole = Matrix6::zeros();

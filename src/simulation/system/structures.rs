@@ -88,15 +88,18 @@ impl Structures {
         .collect()
     }
 
-    /// The inner race of every bearing turns with its shaft at the end of a step.
+    /// Rings that are parts of shafts turn with them at the end of a step.
     pub fn turn_races(&self, boundaries: &mut [Boundary], loads: &[StructureLoad]) {
+        let speed = |shaft: usize| match self.carriers[shaft].structure.turning {
+            Turning::Free => self.states[shaft].spin.speed,
+            Turning::Given | Turning::Still => loads[shaft].spin.speed,
+        };
         for (boundary, bearing) in boundaries.iter_mut().zip(&self.scene.bearings) {
-            let shaft = bearing.shaft;
-            let speed = match self.carriers[shaft].structure.turning {
-                Turning::Free => self.states[shaft].spin.speed,
-                Turning::Given | Turning::Still => loads[shaft].spin.speed,
-            };
-            boundary.loads[Race::Inner].speed = bearing.mounting.direction.sign() * speed;
+            let direction = bearing.mounting.direction.sign();
+            boundary.loads[Race::Inner].speed = direction * speed(bearing.shaft);
+            if let Some(shaft) = bearing.outer_shaft {
+                boundary.loads[Race::Outer].speed = direction * speed(shaft);
+            }
         }
     }
 
