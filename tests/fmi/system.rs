@@ -606,6 +606,45 @@ fn invariant_the_torque_of_a_gear_is_an_input_and_a_table_of_it_a_script() {
     }
 }
 
+/// A gearbox shaft in a frame that moves with an acceleration along y.
+fn framed(acceleration: &str) -> String {
+    format!("frame = {{ acceleration = [0, {acceleration}, 0] }}\n{}", plain())
+}
+
+#[test]
+fn invariant_the_motion_of_the_frame_is_an_input_of_the_machine_and_a_table_of_it_a_script() {
+    // Set from outside it is that of another file, in the bearings too.
+    let (package, other) = (
+        Package::of_system("system-frame", &framed("10.0")),
+        Package::of_system("system-frame-more", &framed("60.0")),
+    );
+    let c = initialising(&package);
+    assert_eq!(get(&package, c, "frame.acceleration.y"), 10.0);
+    assert_eq!(get(&package, c, "frame.gravity.z"), -9.81);
+    assert!(!package.rows.iter().any(|row| row.name.contains("left.frame")));
+    set(&package, c, "frame.acceleration.y", 60.0);
+    assert_eq!(unsafe { fmi2ExitInitializationMode(c) }, Status::Ok);
+    let c_other = other.start();
+    run(c, 0..5);
+    run(c_other, 0..5);
+    assert_eq!(bits(&outputs(&package, c)), bits(&outputs(&other, c_other)));
+    // A table is played, as in a native run, until it is set.
+    let table = framed("[[0, 0], [\"100 us\", 100]]");
+    let scripted = Package::of_system("system-frame-table", &table);
+    let c_scripted = scripted.start();
+    let mut native = System::new(&scene(&table)).unwrap();
+    run(c_scripted, 0..4);
+    advance(&mut native, 0..4);
+    assert_eq!(bits(&outputs(&scripted, c_scripted)), bits(&native_outputs(&native)));
+    assert!((get(&scripted, c_scripted, "frame.acceleration.y") - 80.0).abs() < 1e-9);
+    set(&scripted, c_scripted, "frame.acceleration.x", 1.0);
+    run(c_scripted, 4..6);
+    assert!((get(&scripted, c_scripted, "frame.acceleration.y") - 80.0).abs() < 1e-9, "no table any more");
+    for c in [c, c_other, c_scripted] {
+        unsafe { fmi2FreeInstance(c) };
+    }
+}
+
 /// Parameters of a package: each set to a value, against the file in which a text stands in place of another.
 fn parameters_are_those_of_the_file(
     tag: &str,

@@ -226,12 +226,15 @@ fn identity_a_frame_that_is_set_acts_as_one_by_the_script() {
 }
 
 #[test]
-fn what_has_no_frame_of_its_own_says_so() {
+fn what_a_bearing_on_a_shaft_has_not_of_its_own_says_so() {
     let own =
         pair("", RIGID, "").replacen("effects = {", "effects = { frame = { acceleration = [1, 0, 0] },", 1);
     let large = pair("[frame]\nacceleration = [1e7, 0, 0]", RIGID, "");
     let scripted = pair("gravity = [0, 0, [[0, 0], [1, 1]]]", RIGID, "");
+    let of_shaft =
+        pair("", RIGID, "").replacen("[bearing.set]", "[bearing.set]\nload = { x = { force = 3 } }", 1);
     for (text, parts) in [
+        (of_shaft, ["bearing.set.load.x", "[[shaft.load]]"]),
         (own, ["effects.frame", "[frame]"]),
         (large, ["frame.acceleration.x", "1000000"]),
         (scripted, ["gravity", "frame.acceleration"]),

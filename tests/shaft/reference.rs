@@ -7,8 +7,9 @@ use std::path::Path;
 use crate::sources::{Section, Source, sources};
 
 /// Structs, and the section that each is in a file.
-const SECTIONS: [(&str, &str); 20] = [
+const SECTIONS: [(&str, &str); 21] = [
     ("Written", ""),
+    ("FrameSection", "frame"),
     ("ShaftSection", "shaft"),
     ("BeamSection", "shaft.section"),
     ("Disc", "shaft.disc"),
@@ -34,6 +35,7 @@ fn section<'a>(sources: &'a [Source], name: &str) -> &'a Section {
     let of = |source: &&Source| {
         [
             "schema/shaft.rs",
+            "effects/frame.rs",
             "schema/housing.rs",
             "schema/machine.rs",
             "schema/mesh.rs",

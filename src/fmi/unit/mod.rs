@@ -217,6 +217,8 @@ impl Unit {
         let mut all: Vec<_> =
             self.machine.bearings().flat_map(|(_, bearing)| givers(bearing.scene())).collect();
         if let Some(scene) = self.scene.shaft() {
+            // The frame of every bearing is that of the machine, which has a script of its own.
+            all.iter_mut().skip(Group::Frame as usize).step_by(GROUPS).for_each(|script| *script = None);
             let loads = scene.loads().map(|load| load.is_scripted());
             let gears = scene.gears().map(|gear| gear.torque.is_scripted());
             let drives = scene.shafts.iter().map(drive_is_scripted);

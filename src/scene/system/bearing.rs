@@ -74,6 +74,7 @@ impl WrittenBearing {
         let (shaft, outer_shaft) = (named(&shaft).unwrap_or(0), named(&mounting.outer_shaft));
         let inside =
             |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
+        check_changes(&set).map_err(inside)?;
         let mut estimated_mass = None;
         let (text, folder, file) = match (scene, catalogue) {
             (Some(Value::Table(keys)), None) => (keys.to_string(), given.folder.clone(), None),
@@ -110,6 +111,34 @@ impl WrittenBearing {
         let scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
         Ok(MountedScene { name, shaft, outer_shaft, mounting, scene })
     }
+}
+
+/// Refuses changes that would count for nothing. A scene may have such keys: it is that of a bearing alone, too.
+fn check_changes(set: &Table) -> Result<(), SceneError> {
+    let keys = |section: &str| {
+        let table = set.get(section).and_then(Value::as_table);
+        table.into_iter().flat_map(Table::keys).cloned().collect::<Vec<_>>()
+    };
+    let loads = keys("load").into_iter().find(|key| key != "outer_speed");
+    let inner = keys("inner").into_iter().find(|key| ["drive", "mass", "inertia"].contains(&key.as_str()));
+    let refused = [
+        (
+            loads.map(|key| format!("load.{key}")),
+            "loads and speed are those of the shaft: [[shaft.load]], [[shaft.gear]], shaft.speed",
+        ),
+        (
+            inner.map(|key| format!("inner.{key}")),
+            "the inner ring is a part of the shaft, which moves it and has its mass",
+        ),
+        (
+            set.contains_key("phase").then(|| "phase".into()),
+            "phases are those of the machine: [[phase]] beside the shaft",
+        ),
+    ];
+    refused.into_iter().try_for_each(|(key, why)| match key {
+        Some(key) => Err(SceneError::conflict(format!("bearing.set.{key}"), why)),
+        None => Ok(()),
+    })
 }
 
 /// Sets keys of a table, section by section.
