@@ -123,6 +123,12 @@ fn races(scene: &Scene) -> Result<(), SceneError> {
             }
         }
     }
+    let floats = scene.outer.drive == Drive::Wrench || scene.effects.support.sections[1].is_some();
+    if scene.effects.cage.is_ideal() && floats {
+        let why = "\"ideal\" keeps balls apart about the outer race, whose motion must be given: take \"none\", or a cage of [cage], \
+                   where forces move that race (outer.drive = \"wrench\", outer.support)";
+        return Err(SceneError::conflict("effects.cage", why));
+    }
     if scene.inner.drive == Drive::Hinge {
         let why = "a hinge is offered for the outer race; hold the inner race by displacements and rotations in \
                    [load] under drive = \"wrench\"";

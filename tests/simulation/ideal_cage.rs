@@ -309,3 +309,26 @@ fn a_word_that_is_no_cage_is_refused_with_what_could_be_written() {
     let why = Scene::edited(FREE, [section]).unwrap_err().to_string();
     assert!(why.contains("cage") && why.contains("effects.cage = true"), "{why}");
 }
+
+#[test]
+fn an_outer_race_that_forces_move_is_refused_beside_an_ideal_cage() {
+    let held = [
+        ("inner.drive", "\"pose\""),
+        ("outer.drive", "\"wrench\""),
+        ("load.y.force", ""),
+        ("load.x.force", ""),
+    ];
+    let body = [("outer.mass", "0.3"), ("outer.inertia", "[1e-4, 1e-4, 1e-4]")];
+    let supported = [
+        ("outer.support.stiffness", "[1e8, 1e8, 1e8, 1e4, 1e4]"),
+        ("outer.mass", "0.3"),
+        ("outer.inertia", "[1e-4, 1e-4, 1e-4]"),
+    ];
+    for changes in [[held.as_slice(), body.as_slice()].concat(), supported.to_vec()] {
+        let why = Scene::edited(FREE, changes.iter().copied()).unwrap_err().to_string();
+        assert!(why.contains("effects.cage") && why.contains("whose motion must be given"), "{why}");
+        let other = changes.iter().copied().chain([("effects.cage", "\"none\"")]);
+        let why = Scene::edited(FREE, other).err().map_or(String::new(), |why| why.to_string());
+        assert!(!why.contains("effects.cage"), "{why}");
+    }
+}
