@@ -11,6 +11,7 @@ use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::interface::model_description::{render, render_system};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
+use roulement::simulation::system::{MachineEquilibrium, largest_speed};
 use roulement::{Model, scene};
 use roulement_cli::cage;
 use roulement_cli::cost::{Choice, report, study_of};
@@ -86,8 +87,13 @@ impl Scene {
             }
         };
         py.detach(|| {
-            let MachineScene::Bearing(scene) = self.resolved()? else {
-                return Err(value("an equilibrium of a shaft is not there yet"));
+            let scene = match self.resolved()? {
+                MachineScene::Bearing(scene) => scene,
+                MachineScene::Shaft(scene) => {
+                    let found =
+                        MachineEquilibrium::of(&scene, 0.0, largest_speed(&scene)).map_err(runtime)?;
+                    return Ok(found.to_json().to_string());
+                }
             };
             let model = Model::new(&scene).map_err(runtime)?;
             let input = EquilibriumInput::from_scene(&scene, gyroscopic);

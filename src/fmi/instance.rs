@@ -11,6 +11,7 @@ use crate::interface::variables::{Causality, Kind, Offered, Variable};
 use crate::scene::machine::MachineScene;
 use crate::scene::{Giver, Scene};
 use crate::schema::numbers::Variability;
+use crate::simulation::alarms::Alarms;
 
 /// A slave.
 pub struct Instance {
@@ -34,6 +35,8 @@ pub struct Instance {
     pub columns: Option<Vec<Vec<f64>>>,
     /// Warnings that were given.
     warned: Warned,
+    /// What is watched to be warned of.
+    pub(super) alarms: Alarms,
 }
 
 /// [-] steps in a row whose poses contradict their twists before that is told: a vibration may do so where it turns back.
@@ -101,6 +104,7 @@ impl Instance {
             previous: None,
             columns: None,
             warned: Warned::default(),
+            alarms: Alarms::default(),
         }
     }
 
@@ -122,6 +126,7 @@ impl Instance {
             previous: self.previous.clone(),
             columns: self.columns.clone(),
             warned: self.warned,
+            alarms: self.alarms.clone(),
         }
     }
 
@@ -326,6 +331,7 @@ impl Instance {
         self.previous = None;
         self.columns = None;
         self.warned = Warned::default();
+        self.alarms = Alarms::default();
     }
 
     /// Row of a value reference of one type.

@@ -63,6 +63,9 @@ impl Instance {
                 self.state.values[index] = self.unit.value(index);
             }
         }
+        for alarm in self.unit.alarms(&mut self.alarms) {
+            self.log.write(Status::Warning, &alarm);
+        }
         advanced
     }
 

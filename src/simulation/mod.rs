@@ -1,8 +1,10 @@
 //! A running bearing: model, state, inputs, and the one function that advances it.
 
 mod advance;
+pub mod alarms;
 pub mod cage_push;
 mod cage_start;
+pub mod circling;
 pub mod course;
 pub mod driven;
 mod error;

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use super::Simulation;
 use super::course::Course;
 use super::machine::{Machine, MachineError};
-use super::system::{Played, System};
+use super::system::Played;
 use super::together::{Stopped, Together};
 use crate::scene::machine::MachineScene;
 
@@ -79,23 +79,15 @@ pub trait Scripted {
 
 /// Observer of the start of a run and of every step, not of its rows alone.
 pub trait Observer {
-    /// A bearing alone, where a step has ended.
-    fn bearing(&mut self, bearing: &Simulation);
-
-    /// A shaft with its bearings, where a step has ended.
-    fn shaft(&mut self, system: &System);
+    /// A machine at its start, or where a step has ended.
+    fn step(&mut self, machine: &Machine);
 }
 
 /// Two of them see the same.
 impl<A: Observer, B: Observer> Observer for (A, B) {
-    fn bearing(&mut self, bearing: &Simulation) {
-        self.0.bearing(bearing);
-        self.1.bearing(bearing);
-    }
-
-    fn shaft(&mut self, system: &System) {
-        self.0.shaft(system);
-        self.1.shaft(system);
+    fn step(&mut self, machine: &Machine) {
+        self.0.step(machine);
+        self.1.step(machine);
     }
 }
 
@@ -174,14 +166,10 @@ pub fn play_observed<W: Observer, B>(
     observer: &mut W,
     mut row: impl FnMut(&Machine, &mut W) -> ControlFlow<B>,
 ) -> Result<ControlFlow<B>, MachineError> {
-    play_seen(machine, rows, |machine, seen| match (seen, machine) {
-        (Seen::Row, machine) => row(machine, observer),
-        (Seen::Step, Machine::Bearing(bearing)) => {
-            observer.bearing(bearing);
-            ControlFlow::Continue(())
-        }
-        (Seen::Step, Machine::Shaft(system)) => {
-            observer.shaft(system);
+    play_seen(machine, rows, |machine, seen| match seen {
+        Seen::Row => row(machine, observer),
+        Seen::Step => {
+            observer.step(machine);
             ControlFlow::Continue(())
         }
     })

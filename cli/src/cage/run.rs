@@ -11,7 +11,6 @@ use roulement::simulation::Simulation;
 use roulement::simulation::cage_push::CagePush;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::{Observer, Rows, play_observed};
-use roulement::simulation::system::System;
 
 use super::Push;
 use super::orbit::{Orbit, Place};
@@ -50,12 +49,8 @@ impl Places {
 }
 
 impl Observer for Places {
-    fn bearing(&mut self, bearing: &Simulation) {
-        self.take([bearing].into_iter());
-    }
-
-    fn shaft(&mut self, system: &System) {
-        self.take(system.bearings().map(|(_, bearing)| bearing));
+    fn step(&mut self, machine: &Machine) {
+        self.take(machine.bearings().map(|(_, bearing)| bearing));
     }
 }
 

@@ -229,13 +229,13 @@ impl Place {
         let Own { simulation, seen, shown, verdicts } = *own;
         let (scene, rows) = (simulation.scene(), &played.plotted[index]);
         let mut plots = write_plots(scene, rows, directory)?;
-        if let Some(means) = &seen.means {
+        if let Some(means) = &seen.part.means {
             let life = seen.life.map_or(vec![], |life| life.numbers());
-            let closed = seen.closed.iter().flat_map(Closed::numbers);
+            let closed = seen.part.closed.iter().flat_map(Closed::numbers);
             let others: Vec<_> = closed.chain(life).collect();
             write(&directory.join("means.csv"), |path| means.write(path, &others))?;
         }
-        write_phases(directory, &seen.phases, shown)?;
+        write_phases(directory, &seen.part.phases, shown)?;
         if let Some(spectrum) = &seen.spectrum {
             write(&directory.join("spectrum.csv"), |path| spectrum.write(path))?;
             let picture = directory.join("spectrum.svg");
@@ -266,10 +266,10 @@ impl Place {
         text: &str,
     ) -> Result<PathBuf, Box<dyn Error>> {
         let plot = shaft::write_plot(system.scene(), &played.plotted_shaft, &self.output)?;
-        if let Some(means) = &seen.means {
+        if let Some(means) = &seen.part.means {
             write(&self.output.join("means.csv"), |path| means.write(path, &[]))?;
         }
-        write_phases(&self.output, &seen.phases, shown)?;
+        write_phases(&self.output, &seen.part.phases, shown)?;
         write(&self.output.join("summary.txt"), |path| fs::write(path, text))?;
         let record = record::ShaftRun {
             system,

@@ -17,6 +17,8 @@ use roulement_cli::report::tables::Tables;
 use roulement_cli::report::thinned::Thinned;
 use roulement_cli::watch::{Seen, Watch};
 
+use super::tell;
+
 /// A run that has ended.
 pub struct Played {
     /// The machine at the end.
@@ -110,6 +112,9 @@ impl Player {
             progress.set_position(seen);
             seen += 1;
             watch.push(machine);
+            for alarm in watch.take_alarms(machine) {
+                progress.suspend(|| tell([format!("warning: {alarm}")]));
+            }
             for ((_, bearing), plotted) in machine.bearings().zip(&mut plotted) {
                 plotted.push(bearing.outputs().clone());
             }

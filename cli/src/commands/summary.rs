@@ -6,6 +6,7 @@ use roulement::analysis::estimate::Verdicts;
 use roulement::model::bodies::Race;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
+use roulement::simulation::circling::Circling;
 use roulement::simulation::losses::LOSSES;
 use roulement::simulation::system::System;
 use roulement_cli::report::figures::Shown;
@@ -14,7 +15,7 @@ use roulement_cli::report::losses::Closed;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
 use roulement_cli::report::spectrum::is_wanted;
 use roulement_cli::report::{phases, shaft};
-use roulement_cli::watch::{BearingSeen, Circling, Life, ShaftSeen, headlines};
+use roulement_cli::watch::{BearingSeen, Life, ShaftSeen, headlines};
 
 use super::effects::idle_in;
 use super::player::Played;
@@ -55,7 +56,7 @@ fn write_shaft(
     (system, seen): (&System, &ShaftSeen),
     shown: &Shown,
 ) -> std::fmt::Result {
-    if let Some(closed) = &seen.closed {
+    if let Some(closed) = &seen.part.closed {
         writeln!(
             out,
             "losses           {} W of all bearings, shaft and housings",
@@ -64,13 +65,13 @@ fn write_shaft(
         write_closed(out, closed)?;
     }
     let bearings = system.bearings().zip(&run.seen.bearings);
-    let bearings = bearings.map(|((name, _), seen)| (Some(name), seen.means.as_ref()));
-    write_settled_of_all(out, bearings.chain([(None, seen.means.as_ref())]))?;
-    for (index, phase) in seen.phases.iter().enumerate() {
+    let bearings = bearings.map(|((name, _), seen)| (Some(name), seen.part.means.as_ref()));
+    write_settled_of_all(out, bearings.chain([(None, seen.part.means.as_ref())]))?;
+    for (index, phase) in seen.part.phases.iter().enumerate() {
         phases::head(out, phase)?;
         for ((name, _), seen) in system.bearings().zip(&run.seen.bearings) {
             // All parts come to the same phases.
-            let Some(phase) = seen.phases.get(index) else { continue };
+            let Some(phase) = seen.part.phases.get(index) else { continue };
             let power = phase.means.of("friction power");
             write!(out, "  {name:<14} friction {power:.4} W, heat {:.4e} J", phase.heat.unwrap_or(f64::NAN))?;
             if let Some(life) = &phase.life {
@@ -257,7 +258,8 @@ fn write_bearing(
     shown: &Shown,
     verdicts: &Verdicts,
 ) -> std::fmt::Result {
-    let BearingSeen { means, spectrum, energy, limits, .. } = seen;
+    let BearingSeen { part, spectrum, energy, limits, .. } = seen;
+    let means = &part.means;
     let now = simulation.outputs();
     let text = |name: &str, factor, digits| shown.text(name, factor, digits);
     let range = |[least, most]: [&str; 2]| format!("{} to {}", text(least, 1.0, 3), text(most, 1.0, 3));
@@ -295,7 +297,7 @@ fn write_bearing(
         writeln!(out, "cage centre      {} um off axis", text("end eccentricity", 1e6, 3))?;
     }
     if let Some(means) = means {
-        write_means(out, (means, seen.closed.as_ref()), shown, now.cage.is_some())?;
+        write_means(out, (means, seen.part.closed.as_ref()), shown, now.cage.is_some())?;
         if let Some(life) = &seen.life {
             phases::say_life(out, "life             ", life)?;
             writeln!(out)?;
@@ -311,7 +313,7 @@ fn write_bearing(
         }
         write_settled(out, means)?;
     }
-    seen.phases.iter().try_for_each(|phase| phases::say(out, phase, shown))?;
+    seen.part.phases.iter().try_for_each(|phase| phases::say(out, phase, shown))?;
     for (row, value) in headlines(simulation) {
         writeln!(out, "{:<16} {value:.5e} {} at the end: {}", row.name, row.unit.name, row.description)?;
     }
@@ -331,7 +333,10 @@ fn write_bearing(
         energy.balance(now)
     )?;
     let circling = seen.circling.as_ref().map(Circling::warning);
-    for warning in seen.growing.iter().cloned().chain(circling).chain(energy.warning(simulation)) {
+    let alarms = seen.alarms.iter().map(|alarm| alarm.text(""));
+    for warning in
+        seen.part.growing.iter().cloned().chain(alarms).chain(circling).chain(energy.warning(simulation))
+    {
         writeln!(out, "WARNING          {warning}")?;
     }
     if shown.bars.is_none() {

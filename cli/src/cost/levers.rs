@@ -51,6 +51,11 @@ impl Lever {
         self.into()
     }
 
+    /// Is it a communication step?
+    pub fn is_communication(self) -> bool {
+        matches!(self, Self::CommunicationHeld | Self::CommunicationDerivatives | Self::CommunicationAhead)
+    }
+
     /// Reference of the lever's error.
     pub fn reference(self) -> ReferenceKind {
         match self {
@@ -275,10 +280,11 @@ pub fn numerical_settings(scene: &MachineScene) -> Vec<Setting> {
     ];
     let communication = importers
         .into_iter()
-        // An importer of a shaft gives loads and speeds, no motion of races.
-        .filter(|_| scene.shaft().is_none())
-        // Derivatives are those of a twist: a race under a wrench has none to give.
-        .filter(|&(_, inputs)| inputs != Inputs::Derivatives || first(scene).inner.drive == Drive::Pose)
+        // Derivatives are those of a twist: a race under a wrench has none to give, nor has a shaft under loads.
+        .filter(|&(_, inputs)| {
+            inputs != Inputs::Derivatives
+                || scene.shaft().is_none() && first(scene).inner.drive == Drive::Pose
+        })
         .flat_map(|(lever, inputs)| {
             COMMUNICATION.map(|factor| {
                 let communication = factor * interval;

@@ -12,12 +12,13 @@ use crate::report::means::{Blocks, Means};
 use roulement::model::bodies::Race;
 use roulement::model::state::Statistics;
 use roulement::numerics::motion::{Pose, Twist};
-use roulement::scene::Drive;
+use roulement::scene::{Drive, Groups};
 use roulement::simulation::Simulation;
 use roulement::simulation::inputs;
 use roulement::simulation::machine::{Machine, MachineError};
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::{Rows, play_with};
+use roulement::simulation::system::{Played, ShaftInputs};
 
 /// \[s] CPU time after which a run is not repeated any more, and the largest number of runs.
 const ENOUGH_TIME: f64 = 0.4;
@@ -158,6 +159,17 @@ fn advance(setting: &Setting, machine: &mut Machine, end: f64) -> Result<(), Mac
         (Level::Dynamic, Machine::Bearing(simulation)) => {
             simulation.set_inputs(inputs_of_step(simulation, setting.inputs, end));
             simulation.advance(end)?;
+        }
+        (Level::Dynamic, Machine::Shaft(system)) if setting.lever.is_communication() => {
+            let known = if setting.inputs == Inputs::Ahead { end } else { system.time() };
+            let shaft = ShaftInputs::scripted(system.scene(), known);
+            let bearings = system.bearings().map(|(_, bearing)| *bearing.inputs()).collect();
+            let fit = system.set_inputs(shaft, bearings);
+            debug_assert!(fit, "inputs of this very shaft fit it");
+            // What an importer gives are loads and drives; friction and temperatures are the scene's.
+            let none = Played::none(system.scene());
+            let played = Played { bearings: vec![Groups::ALL; none.bearings.len()], ..none };
+            system.advance_with(end, &played)?;
         }
         (Level::Dynamic, Machine::Shaft(system)) => system.advance(end)?,
         (Level::Equilibrium, Machine::Bearing(simulation)) => {

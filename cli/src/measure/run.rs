@@ -13,7 +13,6 @@ use roulement::simulation::Simulation;
 use roulement::simulation::losses::LOSSES;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::{Observer, Rows, play_observed};
-use roulement::simulation::system::System;
 
 use super::changed::Changed;
 use crate::report::means::Mean;
@@ -46,12 +45,8 @@ impl Largest {
 }
 
 impl Observer for Largest {
-    fn bearing(&mut self, bearing: &Simulation) {
-        self.take([bearing].into_iter());
-    }
-
-    fn shaft(&mut self, system: &System) {
-        self.take(system.bearings().map(|(_, bearing)| bearing));
+    fn step(&mut self, machine: &Machine) {
+        self.take(machine.bearings().map(|(_, bearing)| bearing));
     }
 }
 
@@ -82,7 +77,7 @@ pub fn run(scene: &MachineScene, interrupted: &AtomicBool) -> Result<Vec<Taken>,
 impl Taken {
     fn of(bearing: &Simulation, seen: &BearingSeen, largest_load: f64, cpu: f64) -> Self {
         let mean = |name: &str| {
-            let mean: Option<&Mean> = seen.means.as_ref().and_then(|means| means.find(name));
+            let mean: Option<&Mean> = seen.part.means.as_ref().and_then(|means| means.find(name));
             mean.map_or([f64::NAN; 2], |mean| [mean.mean, mean.interval.unwrap_or(0.0)])
         };
         let race = if Race::loaded(bearing.scene()) == Race::Inner { "inner" } else { "outer" };

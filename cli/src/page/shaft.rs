@@ -17,7 +17,7 @@ pub fn describe(system: &System) -> Value {
     let place = |place: &[Length; 3]| place.map(|length| length.0);
     let force = |force: &Components<Force>| force.0.each_ref().map(schedule);
     json!({
-        "shafts": shafts.iter().zip(system.shafts()).map(|(shaft, carrier)| {
+        "shafts": shafts.iter().zip(system.shafts()).enumerate().map(|(index, (shaft, carrier))| {
             let along = |position: f64| shaft.place(position)[0];
             json!({
                 "name": shaft.name,
@@ -34,13 +34,8 @@ pub fn describe(system: &System) -> Value {
                     "polar_inertia": disc.polar_inertia.0,
                     "unbalance": disc.unbalance.map_or(0.0, |unbalance| unbalance.0),
                 })).collect::<Vec<_>>(),
-                "gears": shaft.gear.iter().map(|gear| json!({
-                    "position": along(gear.offset.0),
-                    "pitch_radius": gear.pitch_radius.0,
-                    "azimuth": gear.position.0,
-                    "helix_angle": gear.helix_angle.0,
-                    "teeth": gear.teeth,
-                })).collect::<Vec<_>>(),
+                "axis": shaft.place(0.0)[1..],
+                "gears": gears(system.scene(), index),
                 "loads": shaft.load.iter().map(|load| json!({
                     "name": load.name,
                     "position": along(load.position.0),
@@ -71,14 +66,46 @@ pub fn describe(system: &System) -> Value {
                 "position": place(&point.position),
             })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
+        "meshes": system.scene().meshes.iter().map(|mesh| &mesh.section.name).collect::<Vec<_>>(),
         "gravity": Vector3::from(*gravity).as_slice(),
     })
+}
+
+/// Gears on a shaft, those in a mesh with their place and width: the azimuth is that of the pitch point, which the other gear is beyond.
+fn gears(scene: &SystemScene, index: usize) -> Vec<Value> {
+    let shaft = &scene.shafts[index];
+    let axis = Vector3::from(shaft.place(0.0));
+    let driven = shaft.gear.iter().map(|gear| {
+        json!({
+            "position": shaft.place(gear.offset.0)[0],
+            "pitch_radius": gear.pitch_radius.0,
+            "azimuth": gear.position.0,
+            "helix_angle": gear.helix_angle.0,
+            "teeth": gear.teeth,
+        })
+    });
+    let meshed = scene.meshes.iter().flat_map(|mesh| (0..2).map(move |end| (mesh, end)));
+    let meshed = meshed.filter(|(mesh, end)| mesh.shafts[*end] == index).map(|(mesh, end)| {
+        let (gear, pair) = (&mesh.section.gears[end], mesh.pair(scene));
+        let arm = mesh.place(scene) - axis;
+        json!({
+            "position": shaft.place(gear.position.0)[0],
+            "pitch_radius": pair.pitch_radii()[end],
+            "azimuth": arm.z.atan2(arm.y),
+            "helix_angle": if end == 0 { pair.helix_angle } else { -pair.helix_angle },
+            "teeth": gear.teeth,
+            "face_width": gear.face_width.0,
+            "mesh": mesh.section.name,
+            "with": scene.shafts[mesh.shafts[1 - end]].name,
+        })
+    });
+    driven.chain(meshed).collect()
 }
 
 /// The columns of its table, of these rows.
 pub fn columns(system: &System, rows: &[SystemOutputs]) -> Grid {
     let mut grid = Grid::new(rows.len());
-    let values: Vec<Vec<f64>> = rows.iter().map(shaft::row).collect();
+    let values: Vec<Vec<f64>> = rows.iter().map(|row| shaft::row(system.scene(), row)).collect();
     for (index, (name, unit)) in shaft::columns(system.scene()).into_iter().enumerate() {
         grid.push(&name, unit, values.iter().map(|row| row[index]).collect());
     }

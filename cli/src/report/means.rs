@@ -40,7 +40,7 @@ const STUDENT_T: [f64; GROUPS / 2 - 2] = [63.657, 9.925, 5.841, 4.604, 4.032, 3.
 const FURTHEST: f64 = 100.0;
 
 /// Largest values that are reported over the window: eccentricity of the cage \[m], pocket load \[N], land load \[N].
-fn largest(instant: &Instant) -> [f64; 3] {
+pub fn largest(instant: &Instant) -> [f64; 3] {
     instant.cage.map_or([0.0; 3], |cage| [cage.eccentricity, cage.pocket_load, cage.land_load])
 }
 
@@ -204,12 +204,6 @@ impl Blocks {
     /// Goes on to where a step of a bearing has ended.
     pub fn push(&mut self, instant: &Instant) {
         self.add(instant.time, &values(instant), &weights(instant), largest(instant));
-    }
-
-    /// Goes on to a time \[s] with these values, which count the same at all times.
-    pub fn push_values(&mut self, time: f64, values: &[f64]) {
-        let same = vec![1.0; values.len()];
-        self.add(time, values, &same, [0.0; 3]);
     }
 
     /// Goes on to a time \[s] with values, what they count for, and the largest values since the last time. A time that was there already adds

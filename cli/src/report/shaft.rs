@@ -60,11 +60,21 @@ pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
             columns.extend(of.map(|(component, unit)| (format!("{housing}.{place}.{component}"), unit)));
         }
     }
+    for (index, name) in scene.link_names().enumerate() {
+        let forces = ["force.x", "force.y", "force.z"].map(|quantity| (quantity, "N"));
+        let others = match index < scene.meshes.len() {
+            true => vec![("normal_force", "N")],
+            false => vec![("moment.y", "N m"), ("moment.z", "N m")],
+        };
+        columns.extend(
+            forces.into_iter().chain(others).map(|(quantity, unit)| (format!("{name}.{quantity}"), unit)),
+        );
+    }
     columns
 }
 
-/// Values of these columns.
-pub fn row(outputs: &SystemOutputs) -> Vec<f64> {
+/// Values of these columns: forces of a mesh are those on its first gear, of a bearing by its stiffness those on the shaft.
+pub fn row(scene: &SystemScene, outputs: &SystemOutputs) -> Vec<f64> {
     let mut row = vec![outputs.time];
     row.extend(outputs.shafts.iter().flat_map(|own| [own.spin.angle, own.spin.speed, own.torque]));
     for PointOutput { displacement: d, tilt, .. } in points(outputs) {
@@ -72,6 +82,14 @@ pub fn row(outputs: &SystemOutputs) -> Vec<f64> {
     }
     for PointOutput { displacement, tilt, .. } in outputs.housings.iter().flat_map(points_of_housing) {
         row.extend(displacement.iter().chain(tilt.iter()));
+    }
+    for (index, link) in outputs.links.iter().enumerate() {
+        let force = &link.state.force;
+        row.extend(force.fixed_rows::<3>(0).iter());
+        match index < scene.meshes.len() {
+            true => row.push(link.normal_force),
+            false => row.extend(force.fixed_rows::<2>(4).iter()),
+        }
     }
     row
 }

@@ -69,7 +69,7 @@ impl Tables {
                 if let (Some((choice, table)), Some(system)) = (shaft, machine.shaft())
                     && choice.window.contains(machine.time())
                 {
-                    table.write(shaft::row(system.outputs()).into_iter())?;
+                    table.write(shaft::row(system.scene(), system.outputs()).into_iter())?;
                 }
                 for ((columns, table), (_, bearing)) in bearings.iter_mut().zip(machine.bearings()) {
                     if let Some(row) = columns.row(bearing.inputs(), bearing.outputs()) {

@@ -179,12 +179,12 @@ fn of_machine(done: &Done, goal: Option<&'static str>) -> Row {
     if let (Some(system), Some(seen)) = (machine.shaft(), &seen.shaft) {
         row.push((Column::text(WARNINGS), Cell::Text(seen.warnings(system).join("; "))));
         row.extend(goal.map(|goal| (Column::text("error_goal"), Cell::Text(goal.to_string()))));
-        if let Some(closed) = &seen.closed {
+        if let Some(closed) = &seen.part.closed {
             row.push(number("loss.total.mean", "W", closed.lost));
             row.push(number("torque_power.mean", "W", closed.torque));
             row.push(number("loss.left_open", "W", closed.left()));
         }
-        let error = |name: &str| seen.means.as_ref()?.find(name)?.error;
+        let error = |name: &str| seen.part.means.as_ref()?.find(name)?.error;
         for column in &gathered.shaft {
             let of = |what: &str| format!("{}.{what}", column.name);
             row.push(number(&of("mean"), &column.unit, column.mean()));
@@ -195,7 +195,7 @@ fn of_machine(done: &Done, goal: Option<&'static str>) -> Row {
                 row.push(number(&of("error"), &column.unit, error.mean));
             }
         }
-        row.extend(seen.phases.iter().flat_map(|phase| of_phase(phase, str::to_string)));
+        row.extend(seen.part.phases.iter().flat_map(|phase| of_phase(phase, str::to_string)));
     }
     let goal = goal.filter(|_| machine.shaft().is_none());
     for (((name, bearing), seen), gathered) in machine.bearings().zip(&seen.bearings).zip(&gathered.bearings)
@@ -276,7 +276,7 @@ fn summary(
 ) -> Row {
     let warnings = seen.warnings(simulation).join("; ");
     let mut row = vec![(Column::text(WARNINGS), Cell::Text(warnings))];
-    if let Some(means) = &seen.means {
+    if let Some(means) = &seen.part.means {
         row.push((Column::text("settled"), Cell::Text(settled(means).to_string())));
         let needed = means.needed().filter(|_| means.unsettled().next().is_some());
         row.push(optional("needed_duration", "s", needed));
@@ -307,7 +307,7 @@ fn summary(
     row.push(number("over_outer_shoulders.largest", "1", seen.limits.over_shoulders[1]));
     row.push(number("between_balls.largest", "N", seen.limits.between_balls));
     row.push(number("energy_balance", "J", seen.energy.balance(simulation.outputs())));
-    if let Some(closed) = &seen.closed {
+    if let Some(closed) = &seen.part.closed {
         row.push(number("torque_power.mean", "W", closed.torque));
         row.push(number("loss.left_open", "W", closed.left()));
     }
@@ -319,7 +319,7 @@ fn summary(
             row.push(optional("life.modified.hours", "h", *modified_hours));
         }
     }
-    row.extend(seen.phases.iter().flat_map(|phase| of_phase(phase, key_of)));
+    row.extend(seen.part.phases.iter().flat_map(|phase| of_phase(phase, key_of)));
     // What effects report at the end: life, heat, growth.
     let variables = Variables::moving(simulation.scene(), false);
     for report in variables.rows().iter().filter(|row| matches!(row.source, Source::Effect(_))) {

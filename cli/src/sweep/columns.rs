@@ -2,10 +2,8 @@
 
 use roulement::interface::variables::{Causality, MachineVariables, Source, Variable};
 use roulement::scene::machine::MachineScene;
-use roulement::simulation::Simulation;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::Observer;
-use roulement::simulation::system::System;
 
 use super::extremes::{Gathered, OfColumn};
 use crate::report::results::{Choice, Columns, ResultsError, fits};
@@ -85,17 +83,13 @@ impl GatheredMachine {
 }
 
 impl Observer for GatheredMachine {
-    fn bearing(&mut self, bearing: &Simulation) {
-        self.bearings.iter_mut().for_each(|gathered| gathered.push(bearing));
-    }
-
-    fn shaft(&mut self, system: &System) {
-        for (gathered, (_, bearing)) in self.bearings.iter_mut().zip(system.bearings()) {
+    fn step(&mut self, machine: &Machine) {
+        for (gathered, (_, bearing)) in self.bearings.iter_mut().zip(machine.bearings()) {
             gathered.push(bearing);
         }
         if let Some(variables) = &self.variables {
             for (column, reference) in self.shaft.iter_mut().zip(&self.references) {
-                column.push(system.time(), variables.value(*reference, system));
+                column.push(machine.time(), variables.value(*reference, machine));
             }
         }
     }

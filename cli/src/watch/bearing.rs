@@ -9,95 +9,102 @@ use roulement::model::Model;
 use roulement::model::bodies::Race;
 use roulement::scene::PhaseSection;
 use roulement::simulation::Simulation;
+use roulement::simulation::alarms::{Alarm, BearingAlarms};
+use roulement::simulation::circling::{Circling, Exciting, Place};
 use roulement::simulation::instant::Instant;
 
-use crate::error::{Course, Lengths, Sample, sizes};
+use crate::error::{Course, Lengths, Sample};
 use crate::report::energy::EnergyWatch;
 use crate::report::figures::Figures;
 use crate::report::limits::Limits;
-use crate::report::losses::{Closed, LossWatch, Sums as LossSums};
-use crate::report::means::{Blocks, Means};
-use crate::report::quantities::{Parts, of_bearing, values, weights};
+use crate::report::losses::Sums as LossSums;
+use crate::report::means::{Blocks, largest};
+use crate::report::quantities::{values, weights};
 use crate::report::spectrum::{Recorder, Spectrum};
 use crate::report::thinned::Thinned;
 
-use super::circling::{Circling, CirclingWatch, Exciting};
-use super::phases::{Now, Phase, PhaseWatch};
+use super::part::{PartSeen, PartWatch};
 
 /// Gathers while a bearing runs.
 pub struct BearingWatch {
-    blocks: Blocks,
+    part: PartWatch,
     spectrum: Option<Recorder>,
     energy: EnergyWatch,
     limits: Limits,
-    losses: LossWatch,
-    circling: CirclingWatch,
+    /// Where its race was across its axis.
+    places: Thinned<Place>,
+    alarms: BearingAlarms,
+    /// What was warned of so far.
+    told: Vec<Alarm>,
     /// Revolutions and loads from step to step, for the life over the window.
     rated: Thinned<(f64, Sums)>,
-    samples: Thinned<Sample>,
-    phases: Vec<PhaseWatch>,
 }
 
 /// Gathered figures of a bearing.
 pub struct BearingSeen {
-    /// Means over the second half.
-    pub means: Option<Means>,
+    /// What every part of a machine has.
+    pub part: PartSeen,
     /// Spectrum of its second half, where the scene asks for one.
     pub spectrum: Option<Spectrum>,
     /// Its energy.
     pub energy: EnergyWatch,
     /// Limits of the bearing that it met.
     pub limits: Limits,
-    /// What closes its losses over the window of the means.
-    pub closed: Option<Closed>,
     /// Life over the window of the means.
     pub life: Option<Life>,
-    /// Phases of the run that it came to.
-    pub phases: Vec<Phase>,
     /// A race that moves by more than its loads explain.
     pub circling: Option<Circling>,
-    /// Motions that grow about where the run starts, a sentence each.
-    pub growing: Vec<String>,
-    /// Rows for comparison with other runs.
-    samples: Vec<Sample>,
+    /// Warnings while it ran.
+    pub alarms: Vec<Alarm>,
 }
 
 impl BearingWatch {
     /// Of a simulation that has not been played yet, and phases of its run.
     pub fn of(simulation: &Simulation, phases: &[PhaseSection]) -> Self {
-        let quantities = of_bearing(Parts::of(simulation));
         let peaks = PEAKS.iter().filter(|peak| peak.is_of(simulation));
         let peaks: Vec<_> = peaks.map(|peak| (peak.name.into(), peak.unit)).collect();
         Self {
-            phases: PhaseWatch::of_all(phases, &quantities, &peaks, lengths(simulation).pitch_radius),
-            blocks: Blocks::of_bearing(simulation),
+            part: PartWatch::new(
+                Blocks::of_bearing(simulation),
+                phases,
+                &peaks,
+                lengths(simulation).pitch_radius,
+            ),
             spectrum: Recorder::of(simulation),
             energy: EnergyWatch::default(),
             limits: Limits::default(),
-            losses: LossWatch::default(),
-            circling: CirclingWatch::default(),
+            places: Thinned::default(),
+            alarms: BearingAlarms::default(),
+            told: vec![],
             rated: Thinned::default(),
-            samples: Thinned::default(),
         }
     }
 
-    /// Takes the start, or where a step has ended.
-    pub fn step(&mut self, simulation: &Simulation) {
+    /// Takes the start, or where a step has ended: what is to be warned of is given. See [`BearingAlarms::step`] for the others.
+    pub fn step(
+        &mut self,
+        simulation: &Simulation,
+        changes: &dyn Fn(f64, f64) -> bool,
+        exciting: Exciting,
+    ) -> Vec<Alarm> {
         let instant = simulation.instant();
-        self.blocks.push(&instant);
-        self.limits.step(&instant);
-        self.losses.step(simulation, &instant);
         let rating = simulation.state().rating.as_ref();
+        let peaks = || {
+            let peaks = PEAKS.iter().filter(|peak| peak.is_of(simulation));
+            peaks.map(|peak| (peak.get)(&instant)).collect()
+        };
+        let now = (instant.time, &values(&instant)[..], &weights(&instant)[..]);
+        self.part.step(now, largest(&instant), &peaks, rating);
+        self.part.losses.step(simulation, &instant);
+        self.limits.step(&instant);
         if let Some(sums) = rating {
             self.rated.push((instant.time, *sums));
         }
-        if !self.phases.is_empty() {
-            let peaks = PEAKS.iter().filter(|peak| peak.is_of(simulation));
-            let peaks: Vec<f64> = peaks.map(|peak| (peak.get)(&instant)).collect();
-            let (values, weights) = (values(&instant), weights(&instant));
-            let now = Now { time: instant.time, values: &values, weights: &weights, peaks: &peaks, rating };
-            self.phases.iter_mut().for_each(|phase| phase.step(&now));
-        }
+        let pressed = self.alarms.press(simulation, instant.peak_pressure.into_iter().fold(0.0, f64::max));
+        let moved = self.alarms.step(simulation, changes, exciting);
+        let alarms: Vec<Alarm> = pressed.into_iter().chain(moved).collect();
+        self.told.extend_from_slice(&alarms);
+        alarms
     }
 
     /// Takes a row.
@@ -107,14 +114,16 @@ impl BearingWatch {
             spectrum.push(outputs);
         }
         self.energy.push(outputs);
-        self.circling.push(simulation);
+        if let Some(place) = Place::of(simulation) {
+            self.places.push(place);
+        }
         self.limits.push(outputs);
-        self.samples.push(Sample::new(outputs));
+        self.part.push(Sample::new(outputs));
     }
 
     /// Its losses so far.
     pub fn lost(&self) -> LossSums {
-        self.losses.last()
+        self.part.losses.last()
     }
 
     /// All of it, at the end. Does a script, of the bearing or of the shaft that carries it, come to other values within a span \[s] of time?
@@ -125,29 +134,19 @@ impl BearingWatch {
         changes: &dyn Fn(f64, f64) -> bool,
         exciting: Exciting,
     ) -> BearingSeen {
-        let means = self
-            .blocks
-            .means()
-            .map(|means| Means { scripted: changes(means.window[0], means.window[1]), ..means });
-        let from = means.as_ref().map_or(0.0, |means| means.window[0]);
-        let scripted = means.as_ref().is_some_and(|means| means.scripted);
-        let circling = self.circling.finish(simulation, from, Exciting { scripted, ..exciting });
+        let part = self.part.finish(Some(simulation.model()), changes);
+        let from = part.means.as_ref().map_or(0.0, |means| means.window[0]);
+        let scripted = part.means.as_ref().is_some_and(|means| means.scripted);
+        let places = self.places.finish().into_iter().filter(|place| place.time >= from).collect();
         let rated = self.rated.finish();
         BearingSeen {
-            closed: means.as_ref().and_then(|means| self.losses.over(means.window)),
-            life: means.as_ref().and_then(|means| Life::over(means.window, &rated, simulation.model())),
-            means,
+            life: part.means.as_ref().and_then(|means| Life::over(means.window, &rated, simulation.model())),
+            part,
             spectrum: self.spectrum.and_then(Recorder::finish),
             energy: self.energy,
             limits: self.limits,
-            circling,
-            growing: vec![],
-            samples: self.samples.finish(),
-            phases: self
-                .phases
-                .into_iter()
-                .filter_map(|phase| phase.finish(Some(simulation.model()), changes))
-                .collect(),
+            circling: Circling::of(places, simulation, Exciting { scripted, ..exciting }),
+            alarms: self.told,
         }
     }
 }
@@ -155,8 +154,8 @@ impl BearingWatch {
 impl BearingSeen {
     /// Figures of the summary of a run that ended so.
     pub fn figures(&self, simulation: &Simulation) -> Figures {
-        let mut figures = Figures::of(simulation, self.means.as_ref(), &self.limits, &self.energy);
-        self.phases.iter().for_each(|phase| figures.add_phase(phase));
+        let mut figures = Figures::of(simulation, self.part.means.as_ref(), &self.limits, &self.energy);
+        self.part.phases.iter().for_each(|phase| figures.add_phase(phase));
         figures
     }
 
@@ -169,8 +168,10 @@ impl BearingSeen {
             })
         };
         let shoulders = Race::BOTH.into_iter().filter_map(of_race);
-        let growing = self.growing.iter().cloned();
+        let growing = self.part.growing.iter().cloned();
+        let alarms = self.alarms.iter().map(|alarm| alarm.text(""));
         growing
+            .chain(alarms)
             .chain(self.remarks(simulation))
             .chain(shoulders)
             .chain(self.energy.warning(simulation))
@@ -189,16 +190,8 @@ impl BearingSeen {
 
     /// Sample for comparison with other runs, under the name of the bearing; its rows move there.
     pub fn take_course(&mut self, name: &str, simulation: &Simulation) -> Course {
-        let quantities = of_bearing(Parts::of(simulation));
-        let samples = std::mem::take(&mut self.samples);
-        Course {
-            name: name.to_string(),
-            sizes: sizes(&samples, &quantities, lengths(simulation), 0.0),
-            quantities,
-            samples,
-            means: self.means.clone(),
-            figures: self.figures(simulation),
-        }
+        let figures = self.figures(simulation);
+        self.part.take_course(name, lengths(simulation), 0.0, figures)
     }
 }
 

@@ -1,17 +1,18 @@
 //! Gatherer of a run step by step and row by row, whoever plays it: of every bearing, and of the shaft with its housings where there is one.
 
 mod bearing;
-mod circling;
+mod part;
 mod phases;
 mod shaft;
 
 use roulement::simulation::Simulation;
+use roulement::simulation::alarms::Alarm;
+use roulement::simulation::circling::Exciting;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::Observer;
-use roulement::simulation::system::System;
 
 pub use bearing::{BearingSeen, BearingWatch, Life, headlines};
-pub use circling::{Circling, Exciting};
+pub use part::PartSeen;
 pub use phases::{Extreme, Phase};
 pub use shaft::{ShaftSeen, ShaftWatch};
 
@@ -23,6 +24,9 @@ use crate::report::means::Means;
 pub struct Watch {
     bearings: Vec<BearingWatch>,
     shaft: Option<ShaftWatch>,
+    exciting: Exciting,
+    /// What is to be warned of since it was taken last, with the index of the bearing.
+    alarms: Vec<(usize, Alarm)>,
 }
 
 /// Gathered figures of a run.
@@ -43,6 +47,8 @@ impl Watch {
         Self {
             bearings: machine.bearings().map(|(_, bearing)| BearingWatch::of(bearing, phases)).collect(),
             shaft: machine.shaft().map(ShaftWatch::of),
+            exciting: machine.shaft().map_or(Exciting::default(), |system| Exciting::of(system.scene())),
+            alarms: vec![],
         }
     }
 
@@ -56,11 +62,18 @@ impl Watch {
         }
     }
 
+    /// What is to be warned of since this was asked for last, a sentence each.
+    pub fn take_alarms(&mut self, machine: &Machine) -> Vec<String> {
+        let text =
+            |(index, alarm): (usize, Alarm)| machine.bearings().nth(index).map(|(name, _)| alarm.text(name));
+        std::mem::take(&mut self.alarms).into_iter().filter_map(text).collect()
+    }
+
     /// All of it, at the end of a machine.
     pub fn finish(self, machine: &Machine) -> Seen {
         let bearings = self.bearings.into_iter().zip(machine.bearings());
         let changes = |from, to| machine.script_changes_within(from, to);
-        let exciting = machine.shaft().map_or(Exciting::default(), |system| Exciting::of(system.scene()));
+        let exciting = self.exciting;
         let finish = |(watch, (_, bearing)): (BearingWatch, (&str, &Simulation))| {
             watch.finish(bearing, &changes, exciting)
         };
@@ -72,7 +85,7 @@ impl Watch {
             .bearings
             .iter()
             .filter(|seen| seen.circling.is_some())
-            .filter_map(|seen| seen.means.as_ref());
+            .filter_map(|seen| seen.part.means.as_ref());
         if let Some(from) = means.map(|means| means.window[0]).reduce(f64::min) {
             seen.set_unstable(from);
         }
@@ -81,15 +94,13 @@ impl Watch {
 }
 
 impl Observer for Watch {
-    fn bearing(&mut self, bearing: &Simulation) {
-        self.bearings.iter_mut().for_each(|watch| watch.step(bearing));
-    }
-
-    fn shaft(&mut self, system: &System) {
-        for ((_, bearing), watch) in system.bearings().zip(&mut self.bearings) {
-            watch.step(bearing);
+    fn step(&mut self, machine: &Machine) {
+        let changes = |from, to| machine.script_changes_within(from, to);
+        for (index, ((_, bearing), watch)) in machine.bearings().zip(&mut self.bearings).enumerate() {
+            let alarms = watch.step(bearing, &changes, self.exciting);
+            self.alarms.extend(alarms.into_iter().map(|alarm| (index, alarm)));
         }
-        if let Some(watch) = &mut self.shaft {
+        if let (Some(watch), Some(system)) = (&mut self.shaft, machine.shaft()) {
             watch.step(system, self.bearings.iter().map(BearingWatch::lost));
         }
     }
@@ -112,7 +123,7 @@ impl Seen {
         };
         let bearings = machine.bearings().zip(&self.bearings).flat_map(named);
         let shaft = self.shaft.as_ref().zip(machine.shaft());
-        let growing = shaft.map(|(seen, _)| seen.growing.clone());
+        let growing = shaft.map(|(seen, _)| seen.part.growing.clone());
         let shaft = shaft.map(|(seen, system)| seen.warnings(system));
         growing.into_iter().flatten().chain(bearings).chain(shaft.into_iter().flatten()).collect()
     }
@@ -129,38 +140,30 @@ impl Seen {
         bearings.chain(shaft).collect()
     }
 
-    /// Nothing has settled of what goes on after a time \[s], in any part of the machine.
-    fn set_unstable(&mut self, from: f64) {
-        let of_bearings = self.bearings.iter_mut().map(|seen| (&mut seen.means, &mut seen.phases));
-        let of_shaft = self.shaft.iter_mut().map(|seen| (&mut seen.means, &mut seen.phases));
-        for (means, phases) in of_bearings.chain(of_shaft) {
-            let all = means.iter_mut().chain(phases.iter_mut().map(|phase| &mut phase.means));
-            all.for_each(|means| means.unstable |= means.window[1] > from);
-        }
+    /// What was gathered of every bearing, then of the shafts.
+    fn parts(&mut self) -> impl Iterator<Item = &mut PartSeen> {
+        let bearings = self.bearings.iter_mut().map(|seen| &mut seen.part);
+        bearings.chain(self.shaft.iter_mut().map(|seen| &mut seen.part))
     }
 
-    /// Takes what grows about where the run starts, a sentence each: no means have settled then.
+    /// Nothing has settled of what goes on after a time \[s], in any part of the machine.
+    fn set_unstable(&mut self, from: f64) {
+        self.parts().for_each(|part| part.set_unstable(from));
+    }
+
+    /// Takes what grows about where the run starts, a sentence each: no means have settled then. The shafts say it of a machine.
     pub fn set_growing(&mut self, growing: &[String]) {
         if !growing.is_empty() {
             self.set_unstable(f64::NEG_INFINITY);
         }
-        match (&mut self.shaft, self.bearings.first_mut()) {
-            (Some(shaft), _) => shaft.growing = growing.to_vec(),
-            (None, Some(alone)) => alone.growing = growing.to_vec(),
-            (None, None) => {}
+        if let Some(part) = self.parts().last() {
+            part.growing = growing.to_vec();
         }
     }
 
     /// Puts means with their errors, of every bearing and then of the shaft, in the place of those that it has.
     pub fn set_means(&mut self, means: Vec<Option<Means>>) {
-        let mut means = means.into_iter();
-        // Whether a motion grows is known of this run.
-        let put = |own: &mut Option<Means>, means: Option<Means>| {
-            let unstable = own.as_ref().is_some_and(|own| own.unstable);
-            *own = means.map(|means| Means { unstable: means.unstable || unstable, ..means });
-        };
-        self.bearings.iter_mut().zip(&mut means).for_each(|(seen, means)| put(&mut seen.means, means));
-        self.shaft.iter_mut().zip(means).for_each(|(seen, means)| put(&mut seen.means, means));
+        self.parts().zip(means).for_each(|(part, means)| part.set_means(means));
     }
 
     /// Sample for comparison with other runs, with the CPU time \[s] of this one; its rows move there.

@@ -5,93 +5,61 @@ use roulement::simulation::losses::LOSSES;
 use roulement::simulation::system::System;
 
 use super::bearing::lengths;
-use super::phases::{Now, Phase, PhaseWatch};
-use crate::error::{Course, Lengths, Sample, sizes};
+use super::part::{PartSeen, PartWatch};
+use crate::error::{Course, Lengths, Sample};
 use crate::report::energy::{ROUNDING, TOLERANCE};
 use crate::report::figures::Figures;
-use crate::report::losses::{Closed, LossWatch, Sums as LossSums};
-use crate::report::means::{Blocks, Means};
-use crate::report::quantities::{ShaftQuantities, Watched};
+use crate::report::losses::Sums as LossSums;
+use crate::report::means::Blocks;
+use crate::report::quantities::ShaftQuantities;
 use crate::report::shaft::creeping;
-use crate::report::thinned::Thinned;
 
 /// [-] of the largest force in a bearing, at its pitch radius: a torque of no account.
 const NOTHING: f64 = 1e-6;
 
-/// Gathers while a shaft runs.
+/// Gathers while shafts run.
 pub struct ShaftWatch {
+    part: PartWatch,
     quantities: ShaftQuantities,
-    blocks: Blocks,
-    samples: Thinned<Sample>,
-    losses: LossWatch,
     /// \[N] largest load of a ball of any bearing.
     largest_load: f64,
-    phases: Vec<PhaseWatch>,
 }
 
-/// Gathered figures of a shaft.
+/// Gathered figures of shafts.
 pub struct ShaftSeen {
-    /// Means over the second half.
-    pub means: Option<Means>,
-    /// Phases of the run that it came to.
-    pub phases: Vec<Phase>,
-    /// Powers that close the losses of the whole machine over the window of the means.
-    pub closed: Option<Closed>,
-    /// Motions that grow about where the run starts, a sentence each.
-    pub growing: Vec<String>,
-    watched: Vec<Watched>,
-    samples: Vec<Sample>,
+    /// What every part of a machine has; losses are those of the whole machine.
+    pub part: PartSeen,
     largest_load: f64,
 }
 
 impl ShaftWatch {
-    /// Of a shaft that has not been played yet.
+    /// Of shafts that have not been played yet.
     pub fn of(system: &System) -> Self {
         let quantities = ShaftQuantities::of(system);
-        let duration = system.scene().load.duration.0;
-        let (watched, arm) = (quantities.watched(), lengths_of(system).pitch_radius);
-        let phases = PhaseWatch::of_all(&system.scene().phases, &watched, &[], arm);
-        let blocks = Blocks::new(watched, arm, duration);
-        let (samples, losses) = (Thinned::default(), LossWatch::default());
-        Self { quantities, blocks, samples, losses, largest_load: 0.0, phases }
+        let (scene, arm) = (system.scene(), lengths_of(system).pitch_radius);
+        let blocks = Blocks::new(quantities.watched(), arm, scene.load.duration.0);
+        Self { part: PartWatch::new(blocks, &scene.phases, &[], arm), quantities, largest_load: 0.0 }
     }
 
     /// Takes the start, or where a step has ended, with the losses of its bearings so far.
     pub fn step(&mut self, system: &System, bearings: impl Iterator<Item = LossSums>) {
-        let (time, values) = (system.time(), self.quantities.values(system));
-        self.blocks.push_values(time, &values);
-        if !self.phases.is_empty() {
-            let weights = vec![1.0; values.len()];
-            let now = Now { time, values: &values, weights: &weights, peaks: &[], rating: None };
-            self.phases.iter_mut().for_each(|phase| phase.step(&now));
-        }
-        self.losses.step_of_shaft(system, bearings);
+        let values = self.quantities.values(system);
+        let weights = vec![1.0; values.len()];
+        self.part.step((system.time(), &values, &weights), [0.0; 3], &Vec::new, None);
+        self.part.losses.step_of_shaft(system, bearings);
     }
 
     /// Takes a row.
     pub fn push(&mut self, system: &System) {
         let values = self.quantities.values(system);
-        self.samples.push(Sample { time: system.time(), values, largest_load: 0.0 });
+        self.part.push(Sample { time: system.time(), values, largest_load: 0.0 });
         let loads = system.bearings().flat_map(|(_, bearing)| bearing.outputs().loads());
         self.largest_load = loads.fold(self.largest_load, f64::max);
     }
 
-    /// All of it, at the end. Does a script, of the shaft or of a bearing, come to other values within a span \[s] of time?
+    /// All of it, at the end. Does a script, of a shaft or of a bearing, come to other values within a span \[s] of time?
     pub fn finish(self, changes: &dyn Fn(f64, f64) -> bool) -> ShaftSeen {
-        let means = self
-            .blocks
-            .means()
-            .map(|means| Means { scripted: changes(means.window[0], means.window[1]), ..means });
-        let phases = self.phases.into_iter().filter_map(|phase| phase.finish(None, changes));
-        ShaftSeen {
-            closed: means.as_ref().and_then(|means| self.losses.over(means.window)),
-            means,
-            phases: phases.collect(),
-            watched: self.quantities.watched(),
-            growing: vec![],
-            samples: self.samples.finish(),
-            largest_load: self.largest_load,
-        }
+        ShaftSeen { part: self.part.finish(None, changes), largest_load: self.largest_load }
     }
 }
 
@@ -110,11 +78,11 @@ impl ShaftSeen {
             set("damped", energies.damping);
             set("balance", energies.unaccounted());
         }
-        if let Some(means) = &self.means {
+        if let Some(means) = &self.part.means {
             figures.add_means(means);
         }
-        self.phases.iter().for_each(|phase| figures.add_phase(phase));
-        if let Some(closed) = &self.closed {
+        self.part.phases.iter().for_each(|phase| figures.add_phase(phase));
+        if let Some(closed) = &self.part.closed {
             figures.set(LOSSES[0].name, closed.lost);
         }
         figures
@@ -143,17 +111,10 @@ impl ShaftSeen {
 
     /// Sample for comparison with other runs; its rows move there.
     pub fn take_course(&mut self, system: &System) -> Course {
-        let samples = std::mem::take(&mut self.samples);
         let lengths = lengths_of(system);
         let torque = NOTHING * self.largest_load * lengths.pitch_radius;
-        Course {
-            name: String::new(),
-            sizes: sizes(&samples, &self.watched, lengths, torque),
-            quantities: self.watched.clone(),
-            samples,
-            means: self.means.clone(),
-            figures: self.figures(system),
-        }
+        let figures = self.figures(system);
+        self.part.take_course("", lengths, torque, figures)
     }
 }
 

@@ -261,11 +261,9 @@ struct Kept {
 }
 
 impl Observer for Kept {
-    fn bearing(&mut self, bearing: &Simulation) {
-        self.blocks.push(&bearing.instant());
+    fn step(&mut self, machine: &Machine) {
+        machine.bearings().for_each(|(_, bearing)| self.blocks.push(&bearing.instant()));
     }
-
-    fn shaft(&mut self, _: &System) {}
 }
 
 /// Plays a scene with other settings.

@@ -20,6 +20,7 @@ use crate::interface::variables::{Causality, MachineGroup, MachineVariables, Var
 use crate::model::bodies::Race;
 use crate::scene::machine::MachineScene;
 use crate::scene::{Giver, Group, Groups, Level, Scene, SceneError, Solver};
+use crate::simulation::alarms::Alarms;
 use crate::simulation::driven::{MachineInputs, MachineSnapshot};
 use crate::simulation::machine::{Machine, MachineError, follows_time};
 use crate::simulation::scripted_groups;
@@ -187,6 +188,11 @@ impl Unit {
         self.machine
             .advance_with(end, &played)
             .map_err(|why: MachineError| (Status::Discard, why.to_string()))
+    }
+
+    /// What there is to warn of where it has come to.
+    pub fn alarms(&self, alarms: &mut Alarms) -> Vec<String> {
+        alarms.step(&self.machine)
     }
 
     /// The point that it is at.

@@ -179,7 +179,15 @@ impl Statics<'_> {
             let trial = step.filter(|step| step.iter().all(|v| v.is_finite())).and_then(|step| {
                 let moved = &at + &step;
                 self.set(states, &moved);
-                let trial = self.evaluate(states).map_err(|why| refused = Some(why)).ok()?;
+                // Only a refusal of the last steps says why the search ends.
+                let trial = match self.evaluate(states) {
+                    Ok(trial) => trial,
+                    Err(why) => {
+                        refused = Some(why);
+                        return None;
+                    }
+                };
+                refused = None;
                 let work = 0.5 * (&here.residual + &trial.residual).dot(&step);
                 let downhill = work > 0.0 && size(&here) > NEAR * here.force;
                 (downhill || size(&trial) < size(&here) * (1.0 - 1e-6)).then_some((moved, trial))

@@ -4,13 +4,11 @@
 //! that whirls is accelerated by many times what is applied. Of a race on a shaft that is the force of the bearing but for its mean, which
 //! carries the loads of the shaft, and for what turns with the shaft, as its unbalance does.
 
+use super::Simulation;
+use crate::model::bodies::{Constraint, Race, RigidBody};
+use crate::scene::Schedule;
+use crate::scene::system::SystemScene;
 use nalgebra::{Complex, Matrix3, Vector2, Vector3};
-use roulement::model::bodies::{Constraint, Race, RigidBody};
-use roulement::scene::Schedule;
-use roulement::scene::system::SystemScene;
-use roulement::simulation::Simulation;
-
-use crate::report::thinned::Thinned;
 
 /// [-] force that accelerates a race over what is applied across the axis, beyond which loads do not explain its motion.
 const BEYOND: f64 = 2.0;
@@ -19,11 +17,11 @@ const LEAST: f64 = 0.02;
 /// [-] how round a motion is from which on it is called a circle: 1 is one.
 const ROUND: f64 = 0.5;
 
-/// A race across its axis in a row.
+/// A race across its axis at an instant.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+pub struct Place {
     /// \[s] time.
-    time: f64,
+    pub time: f64,
     /// \[m] its centre.
     centre: Vector2<f64>,
     /// [m/s] velocity of that.
@@ -33,9 +31,9 @@ struct Place {
     /// \[N] what is applied; on a shaft the mean of what its bearing carries.
     applied: Vector2<f64>,
     /// [rad/s] speed of the race.
-    spin: f64,
+    pub spin: f64,
     /// \[N] the largest of all forces on it.
-    largest: f64,
+    pub largest: f64,
 }
 
 /// What acts on the shafts of a machine beside what is steady.
@@ -65,12 +63,6 @@ impl Exciting {
     }
 }
 
-/// Gathers while a bearing runs; nothing of a race that is held across its axis.
-#[derive(Debug, Default)]
-pub struct CirclingWatch {
-    places: Thinned<Place>,
-}
-
 /// A race that moves by more than its loads explain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circling {
@@ -88,7 +80,7 @@ pub struct Circling {
     pub round: f64,
 }
 
-/// The race that is watched: that which a shaft carries, or which loads act on.
+/// The race that is looked at: that which a shaft carries, or which loads act on.
 fn watched(simulation: &Simulation) -> Race {
     if simulation.model().is_carried(Race::Inner) { Race::Inner } else { Race::loaded(simulation.scene()) }
 }
@@ -99,22 +91,20 @@ fn is_free(moved: &RigidBody) -> bool {
     !moved.constraints.iter().any(held)
 }
 
-impl CirclingWatch {
-    /// Takes a row.
-    pub fn push(&mut self, simulation: &Simulation) {
+impl Place {
+    /// Of a bearing now; none of a race that is held across its axis, or rests on a support.
+    pub fn of(simulation: &Simulation) -> Option<Self> {
         let race = watched(simulation);
         let model = simulation.model();
-        let Some(moved) = &model.bodies[race] else {
-            return;
-        };
+        let moved = model.bodies[race].as_ref()?;
         if !(moved.carried || is_free(moved)) || model.supports[race].is_some() {
-            return;
+            return None;
         }
         let output = simulation.race_output(race);
         let weight = simulation.inputs().effects.frame.motion.gravity * moved.mass;
         let applied = simulation.inputs()[race].applied.force + weight;
-        let across = |v: &nalgebra::Vector3<f64>| Vector2::new(v.y, v.z);
-        self.places.push(Place {
+        let across = |v: &Vector3<f64>| Vector2::new(v.y, v.z);
+        Some(Self {
             time: simulation.time(),
             centre: across(&output.pose.position),
             velocity: across(&output.twist.velocity),
@@ -122,39 +112,39 @@ impl CirclingWatch {
             applied: across(&applied),
             spin: simulation.state().race(race).rate.x,
             largest: applied.norm().max(output.wrench.force.norm()),
-        });
+        })
     }
+}
 
-    /// What was seen from a time \[s] on, where that is beyond what loads explain. Nothing is known of a shaft whose loads change or
-    /// swing.
-    pub fn finish(self, simulation: &Simulation, from: f64, exciting: Exciting) -> Option<Circling> {
-        let race = watched(simulation);
-        let mut places: Vec<Place> =
-            self.places.finish().into_iter().filter(|place| place.time >= from).collect();
-        if simulation.model().is_carried(race) {
+/// Forces across the axis of a race that accelerate it, of which what its loads explain was taken out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unexplained {
+    /// \[N] the largest.
+    pub force: f64,
+    /// \[N] largest force that is applied across the axis; of a shaft the mean that its bearing carries.
+    pub applied: f64,
+    /// \[N] the largest force in all directions.
+    pub largest: f64,
+}
+
+impl Unexplained {
+    /// Of places in the order of time, which lose what is explained. Nothing is known of a shaft whose loads change or swing.
+    pub fn of(places: &mut [Place], simulation: &Simulation, exciting: Exciting) -> Option<Self> {
+        if simulation.model().is_carried(watched(simulation)) {
             if exciting.scripted || exciting.swings {
                 return None;
             }
-            take_explained(&mut places, exciting.unbalance);
+            take_explained(places, exciting.unbalance);
         }
-        let most = |of: &dyn Fn(&Place) -> f64| places.iter().map(of).fold(0.0, f64::max);
-        let force = most(&|place| place.accelerates.norm());
-        let applied = most(&|place| place.applied.norm());
-        let explained = BEYOND * applied.max(LEAST * most(&|place| place.largest));
-        if force <= explained || places.is_empty() {
-            return None;
-        }
-        let middle = places.iter().map(|place| place.centre).sum::<Vector2<f64>>() / places.len() as f64;
-        let from_middle = |place: &Place| place.centre - middle;
-        // r x v over |r| |v|, weighted by these.
-        let (turn, size) = places.iter().fold((0.0, 0.0), |(turn, size), place| {
-            let offset = from_middle(place);
-            (turn + offset.perp(&place.velocity), size + offset.norm() * place.velocity.norm())
-        });
-        let spin = simulation.state().race(race).rate.x.signum();
-        let radius = most(&|place| from_middle(place).norm());
-        let round = spin * turn / size.max(f64::MIN_POSITIVE);
-        Some(Circling { race, radius, force, applied, carried: simulation.model().is_carried(race), round })
+        let most = |of: fn(&Place) -> f64| places.iter().map(of).fold(0.0, f64::max);
+        let force = most(|place| place.accelerates.norm());
+        let applied = most(|place| place.applied.norm());
+        Some(Self { force, applied, largest: most(|place| place.largest) })
+    }
+
+    /// Is it beyond what loads explain?
+    pub fn is_beyond(&self) -> bool {
+        self.force > BEYOND * self.applied.max(LEAST * self.largest)
     }
 }
 
@@ -192,8 +182,39 @@ fn take_explained(places: &mut [Place], unbalance: bool) {
 }
 
 impl Circling {
-    /// In a sentence.
+    /// What is seen at places in the order of time, where that is beyond what loads explain.
+    pub fn of(mut places: Vec<Place>, simulation: &Simulation, exciting: Exciting) -> Option<Self> {
+        let unexplained = Unexplained::of(&mut places, simulation, exciting)?;
+        if !unexplained.is_beyond() {
+            return None;
+        }
+        let race = watched(simulation);
+        let middle = places.iter().map(|place| place.centre).sum::<Vector2<f64>>() / places.len() as f64;
+        let from_middle = |place: &Place| place.centre - middle;
+        // r x v over |r| |v|, weighted by these.
+        let (turn, size) = places.iter().fold((0.0, 0.0), |(turn, size), place| {
+            let offset = from_middle(place);
+            (turn + offset.perp(&place.velocity), size + offset.norm() * place.velocity.norm())
+        });
+        let spin = simulation.state().race(race).rate.x.signum();
+        let Unexplained { force, applied, .. } = unexplained;
+        Some(Self {
+            race,
+            radius: places.iter().map(|place| from_middle(place).norm()).fold(0.0, f64::max),
+            force,
+            applied,
+            carried: simulation.model().is_carried(race),
+            round: spin * turn / size.max(f64::MIN_POSITIVE),
+        })
+    }
+
+    /// In a sentence of a run that has ended.
     pub fn warning(&self) -> String {
+        format!("{}; its means are those of this motion (docs/holding-a-bearing.md)", self.motion())
+    }
+
+    /// In a sentence of a run that goes on.
+    pub fn motion(&self) -> String {
         let Self { race, radius, force, applied, carried, round } = self;
         let way = match round {
             round if *round > ROUND => "goes round forwards",
@@ -208,8 +229,7 @@ impl Circling {
             format!("{force:.1} N accelerate it across its axis where {applied:.1} N are applied")
         };
         format!(
-            "the {} race {way} by up to {:.3} um about the middle of its way: {beyond}; its means are those of this motion \
-             (docs/holding-a-bearing.md)",
+            "the {} race {way} by up to {:.3} um about the middle of its way: {beyond}",
             race.name(),
             radius * 1e6
         )

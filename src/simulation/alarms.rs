@@ -1,0 +1,192 @@
+//! What whoever runs a machine is warned of while it runs: a pressure that marks the races, a race that moves by more than its loads
+//! explain, a motion that grows. Each is told once of each bearing, when it happens.
+
+use super::Simulation;
+use super::circling::{Circling, Exciting, Place, Unexplained};
+use super::driven::Parts;
+use super::system::{ShaftInputs, script_changes_within};
+use crate::model::bodies::Race;
+use crate::scene::Level;
+
+/// \[rad] turn of a race over which its motion is judged.
+const WINDOW: f64 = 3.0 * std::f64::consts::TAU;
+/// [-] places in a window: fewer do not show how a race moves, and beyond the second number every other one is dropped.
+const PLACES: [usize; 2] = [24, 256];
+/// [-] growth of what loads do not explain from one window to the next, and windows in a row that grow so.
+const GROWS: f64 = 1.3;
+const IN_A_ROW: u32 = 4;
+/// [-] of the largest force in all directions: a motion of less is not told of while it grows.
+const SEEN: f64 = 0.05;
+
+/// A warning of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Alarm {
+    /// \[s] when it happened.
+    pub time: f64,
+    /// What did, in a sentence.
+    pub sentence: String,
+}
+
+impl Alarm {
+    /// With its time, after the name of the bearing where that is not alone.
+    pub fn text(&self, bearing: &str) -> String {
+        let before = if bearing.is_empty() { String::new() } else { format!("bearing {bearing}: ") };
+        format!("{before}at {:.3} ms {}", self.time * 1e3, self.sentence)
+    }
+}
+
+/// Watches one bearing, alone or of a machine.
+#[derive(Clone, Debug, Default)]
+pub struct BearingAlarms {
+    pressed: bool,
+    moved: bool,
+    grown: bool,
+    /// Where the race was since the window began.
+    places: Vec<Place>,
+    /// Every so many-th place is kept; how many were not since the last one.
+    stride: u32,
+    skipped: u32,
+    /// \[rad] turn since the window began.
+    turned: f64,
+    /// Was the last window beyond what loads explain?
+    was_beyond: bool,
+    /// \[N] what loads did not explain in it, and windows in a row in which that grew.
+    before: f64,
+    growing: u32,
+}
+
+impl BearingAlarms {
+    /// Takes a largest contact pressure \[Pa].
+    pub fn press(&mut self, bearing: &Simulation, pressure: f64) -> Option<Alarm> {
+        if self.pressed || bearing.scene().pressure_note(pressure).is_none() {
+            return None;
+        }
+        self.pressed = true;
+        let sentence = format!(
+            "the contact pressure is {:.0} MPa, above 4200 MPa: balls leave lasting marks",
+            pressure * 1e-6
+        );
+        Some(Alarm { time: bearing.time(), sentence })
+    }
+
+    /// Takes where a bearing is, later than before; what changes within a span \[s] of time tells `changes`.
+    pub fn step(
+        &mut self,
+        bearing: &Simulation,
+        changes: &dyn Fn(f64, f64) -> bool,
+        exciting: Exciting,
+    ) -> Option<Alarm> {
+        if self.moved && self.grown || bearing.scene().solver.level == Level::Equilibrium {
+            return None;
+        }
+        let time = bearing.time();
+        match self.places.last() {
+            // An importer went back.
+            Some(last) if time <= last.time => self.begin(),
+            Some(last) => {
+                let spin =
+                    bearing.state().race(Race::Inner).rate.x - bearing.state().race(Race::Outer).rate.x;
+                // Turn since the last place that was kept.
+                let turned = spin.abs() * (time - last.time);
+                if self.skipped + 1 < self.stride && self.turned + turned < WINDOW {
+                    self.skipped += 1;
+                    return None;
+                }
+                self.turned += turned;
+            }
+            None => {}
+        }
+        self.skipped = 0;
+        self.places.push(Place::of(bearing)?);
+        if self.turned < WINDOW {
+            if self.places.len() == PLACES[1] {
+                let mut even = false;
+                self.places.retain(|_| {
+                    even = !even;
+                    even
+                });
+                self.stride = 2 * self.stride.max(1);
+            }
+            return None;
+        }
+        let mut places = std::mem::take(&mut self.places);
+        self.begin();
+        if places.len() < PLACES[0] {
+            return None;
+        }
+        let exciting = Exciting { scripted: changes(places[0].time, time), ..exciting };
+        let circling = Circling::of(places.clone(), bearing, exciting);
+        let unexplained = Unexplained::of(&mut places, bearing, exciting)?;
+        let told = self.judge(unexplained, circling.as_ref());
+        told.map(|sentence| Alarm { time, sentence })
+    }
+
+    /// Begins a window.
+    fn begin(&mut self) {
+        (self.stride, self.skipped, self.turned) = (1, 0, 0.0);
+        self.places.clear();
+    }
+
+    /// What to tell of a window.
+    fn judge(&mut self, unexplained: Unexplained, circling: Option<&Circling>) -> Option<String> {
+        let Unexplained { force, largest, .. } = unexplained;
+        self.growing = if force > GROWS * self.before && self.before > 0.0 { self.growing + 1 } else { 0 };
+        let first = std::mem::replace(&mut self.before, force);
+        // A blow is beyond in one window, a motion that stays in the next, too.
+        let beyond = std::mem::replace(&mut self.was_beyond, circling.is_some());
+        if let Some(circling) = circling.filter(|_| beyond && !self.moved) {
+            self.moved = true;
+            return Some(circling.motion());
+        }
+        (self.growing >= IN_A_ROW && force > SEEN * largest && !self.grown && !self.moved).then(|| {
+            self.grown = true;
+            format!(
+                "a motion across the axis grows: what swings of the force grew from {first:.1} to {force:.1} N over the last three turns"
+            )
+        })
+    }
+}
+
+/// Watches all bearings of a machine from outside, at the times that an importer stops at.
+#[derive(Clone, Debug, Default)]
+pub struct Alarms {
+    bearings: Vec<BearingAlarms>,
+    /// Loads and drive that were set last: windows begin anew where they change.
+    inputs: Option<ShaftInputs>,
+    /// [-] steps of the integrator when pressures were looked at.
+    steps: u64,
+}
+
+/// [-] steps of the integrator after which pressures are looked at again: contacts take as long to evaluate as a step.
+const STEPS: u64 = 32;
+
+impl Alarms {
+    /// What there is to warn of where a machine has come to, with the names of bearings.
+    pub fn step(&mut self, machine: &impl Parts) -> Vec<String> {
+        self.bearings.resize_with(machine.bearings().count(), BearingAlarms::default);
+        let steps = machine.bearings().next().map_or(0, |(_, bearing)| bearing.state().statistics.steps);
+        let looks = steps < self.steps || steps >= self.steps + STEPS;
+        if looks {
+            self.steps = steps;
+        }
+        let scene = machine.shaft().map(|system| system.scene());
+        let exciting = scene.map_or(Exciting::default(), Exciting::of);
+        let inputs = machine.shaft().map(|system| system.inputs());
+        if inputs != self.inputs.as_ref() {
+            self.inputs = inputs.cloned();
+            self.bearings.iter_mut().for_each(BearingAlarms::begin);
+        }
+        let mut told = vec![];
+        for ((name, bearing), alarms) in machine.bearings().zip(&mut self.bearings) {
+            let changes = |from, to| {
+                bearing.script_changes_within(from, to)
+                    || scene.is_some_and(|scene| script_changes_within(scene, from, to))
+            };
+            let pressed = looks.then(|| bearing.instant().peak_pressure.into_iter().fold(0.0, f64::max));
+            let pressed = pressed.and_then(|pressure| alarms.press(bearing, pressure));
+            let moved = alarms.step(bearing, &changes, exciting);
+            told.extend(pressed.into_iter().chain(moved).map(|alarm| alarm.text(name)));
+        }
+        told
+    }
+}
