@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use roulement::interface::documentation::page;
-use roulement::interface::model_description::{identifier, render, render_system};
+use roulement::interface::model_description::{all, identifier, render};
 use roulement::interface::variables::{Causality, Variables};
 use roulement::scene::Scene;
 use roulement::scene::system::SystemScene;
@@ -49,7 +49,7 @@ fn names_are_those_that_were_asked_for_and_identifiers_are_those_of_c() {
         assert_eq!(identifier(name), wanted, "{name}");
     }
     let simulation = Simulation::new(&Scene::parse(THRUST).unwrap()).unwrap();
-    let xml = render(&simulation, "front bearing").unwrap().xml;
+    let xml = render(&simulation, "front bearing", &all).unwrap().xml;
     assert!(xml.contains("modelName=\"front bearing\"") && xml.contains("modelIdentifier=\"front_bearing\""));
 }
 
@@ -69,7 +69,7 @@ fn dependencies_are_those_that_the_scene_asks_for() {
     // None at a communication point; the inputs of the step, written out; at the start everything, without lists, but for
     // turn, work and loss.
     let of = |changes: &[(&str, &str)]| {
-        dependencies(&render(&Simulation::new(&scene(THRUST, changes)).unwrap(), "thrust").unwrap().xml)
+        dependencies(&render(&Simulation::new(&scene(THRUST, changes)).unwrap(), "thrust", &all).unwrap().xml)
     };
     let [point, start] = of(&[]);
     let all = names(&Scene::parse(THRUST).unwrap(), Causality::Output).len();
@@ -86,7 +86,7 @@ fn dependencies_are_those_that_the_scene_asks_for() {
 fn shaft() -> String {
     let text = include_str!("../scenes/shafts/pinion.toml");
     let system = SystemScene::parse(text, None, "".as_ref()).unwrap();
-    render_system(&System::new(&system).unwrap(), "shaft").unwrap().xml
+    render(&System::new(&system).unwrap(), "shaft", &all).unwrap().xml
 }
 
 /// Values of an attribute, in the order of the text, within the element of a name.
@@ -101,7 +101,9 @@ fn attributes<'a>(xml: &'a str, within: &str, attribute: &str) -> Vec<&'a str> {
 fn units_and_types_are_defined_where_a_variable_has_them() {
     let mut texts = vec![shaft()];
     for text in [THRUST, CAGE, include_str!("../scenes/effects/stiffness.toml")] {
-        texts.push(render(&Simulation::new(&Scene::parse(text).unwrap()).unwrap(), "bearing").unwrap().xml);
+        texts.push(
+            render(&Simulation::new(&Scene::parse(text).unwrap()).unwrap(), "bearing", &all).unwrap().xml,
+        );
     }
     for xml in texts {
         let set = |within: &str, attribute: &str| -> BTreeSet<&str> {
@@ -123,15 +125,16 @@ fn units_and_types_are_defined_where_a_variable_has_them() {
 fn regression_a_model_description_says_nothing_twice() {
     // 173.6 kB with a list of all knowns for each output at the start, with all units, and with what the standard takes anyway.
     let misalignment = include_str!("../scenes/misalignment.toml");
-    let xml =
-        render(&Simulation::new(&Scene::parse(misalignment).unwrap()).unwrap(), "misalignment").unwrap().xml;
+    let xml = render(&Simulation::new(&Scene::parse(misalignment).unwrap()).unwrap(), "misalignment", &all)
+        .unwrap()
+        .xml;
     assert!(xml.len() < 125_000, "{}", xml.len());
 }
 
 #[test]
 fn regression_counters_are_local_and_inputs_and_parameters_have_starts() {
     let simulation = Simulation::new(&Scene::parse(CAGE).unwrap()).unwrap();
-    let xml = render(&simulation, "cage").unwrap().xml;
+    let xml = render(&simulation, "cage", &all).unwrap().xml;
     for variable in xml.split("<ScalarVariable ").skip(1) {
         let variable = variable.split("</ScalarVariable>").next().unwrap();
         let is = |causality: &str| variable.contains(&format!("causality=\"{causality}\""));
@@ -314,9 +317,9 @@ fn the_page_says_how_orientations_are_written() {
         [("shaft", "spins about that axis"), ("quaternion", "unit quaternions"), ("cardan", "tilts by y")]
     {
         let form = format!("\"{form}\"");
-        assert!(page(&scene(THRUST, &[("interface.orientation", &form)])).contains(wanted), "{form}");
+        assert!(page(&scene(THRUST, &[("interface.orientation", &form)]), &all).contains(wanted), "{form}");
     }
-    assert!(page(&Scene::parse(THRUST).unwrap()).contains("inner.rotation_rate.y"));
+    assert!(page(&Scene::parse(THRUST).unwrap(), &all).contains("inner.rotation_rate.y"));
 }
 
 #[test]
@@ -325,14 +328,17 @@ fn the_page_says_what_dependencies_are_about() {
         [("point", "none follows an input before the next step"), ("step", "these derivatives")]
     {
         let meaning = format!("\"{meaning}\"");
-        assert!(page(&scene(THRUST, &[("interface.dependencies", &meaning)])).contains(wanted), "{meaning}");
+        assert!(
+            page(&scene(THRUST, &[("interface.dependencies", &meaning)]), &all).contains(wanted),
+            "{meaning}"
+        );
     }
 }
 
 #[test]
 fn the_recommended_step_holds_a_shaft_that_moves_by_leapfrog() {
     let step = |changes: &[(&str, &str)]| -> f64 {
-        let xml = render(&Simulation::new(&scene(THRUST, changes)).unwrap(), "thrust").unwrap().xml;
+        let xml = render(&Simulation::new(&scene(THRUST, changes)).unwrap(), "thrust", &all).unwrap().xml;
         let step = xml.split("stepSize=\"").nth(1).unwrap();
         step.split('"').next().unwrap().parse().unwrap()
     };

@@ -8,14 +8,14 @@ use indicatif::ProgressBar;
 use pyo3::prelude::*;
 use roulement::analysis::{auto, estimate};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
-use roulement::interface::model_description::{render, render_system};
+use roulement::interface::model_description::{all, render};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::system::{MachineEquilibrium, largest_speed};
 use roulement::{Model, scene};
 use roulement_cli::cage;
 use roulement_cli::cost::{Choice, report, study_of};
-use roulement_cli::package::{library_beside as built_with, write_fmu_with, write_system_fmu};
+use roulement_cli::package::{library_beside as built_with, write_fmu};
 use roulement_cli::report::json;
 use roulement_cli::sweep::all::threads;
 use serde_json::{Map, Value};
@@ -72,8 +72,9 @@ impl Scene {
     }
 
     /// Equilibrium as JSON.
-    fn equilibrium(&self, py: Python<'_>, gyroscopic: &str) -> PyResult<String> {
-        let gyroscopic = match gyroscopic {
+    fn equilibrium(&self, py: Python<'_>, gyroscopic: Option<&str>) -> PyResult<String> {
+        let by_friction = matches!(gyroscopic, None | Some("friction"));
+        let gyroscopic = match gyroscopic.unwrap_or("outer-race-control") {
             "outer-race-control" => Gyroscopic::OuterRaceControl,
             "inner-race-control" => Gyroscopic::InnerRaceControl,
             "least-heat" => Gyroscopic::LeastHeat,
@@ -89,6 +90,11 @@ impl Scene {
         py.detach(|| {
             let scene = match self.resolved()? {
                 MachineScene::Bearing(scene) => scene,
+                MachineScene::Shaft(_) if !by_friction => {
+                    return Err(value(
+                        "gyroscopic: on a shaft friction carries the gyroscopic moments of balls",
+                    ));
+                }
                 MachineScene::Shaft(scene) => {
                     let found =
                         MachineEquilibrium::of(&scene, 0.0, largest_speed(&scene)).map_err(runtime)?;
@@ -141,11 +147,8 @@ impl Scene {
     /// Model description of its package.
     fn describe(&self, py: Python<'_>, name: &str) -> PyResult<String> {
         py.detach(|| {
-            let description = match Machine::new(&self.0).map_err(runtime)? {
-                Machine::Bearing(bearing) => render(&bearing, name),
-                Machine::Shaft(system) => render_system(&system, name),
-            };
-            description.map(|description| description.xml).map_err(runtime)
+            let machine = Machine::new(&self.0).map_err(runtime)?;
+            render(&machine, name, &all).map(|description| description.xml).map_err(runtime)
         })
     }
 }
@@ -166,13 +169,7 @@ pub fn package(
     name: &str,
     columns: Vec<String>,
 ) -> PyResult<()> {
-    py.detach(|| {
-        match scene.resolved()? {
-            MachineScene::Bearing(scene) => write_fmu_with(&scene, name, &columns, &libraries, &path),
-            MachineScene::Shaft(scene) => write_system_fmu(&scene, name, &columns, &libraries, &path),
-        }
-        .map_err(file)
-    })
+    py.detach(|| write_fmu(&scene.resolved()?, name, &columns, &libraries, &path).map_err(file))
 }
 
 /// Runs the study of accuracy against CPU time into a directory; gives the files.

@@ -46,6 +46,7 @@ function ofShaft(run) {
         `${heading} at its bearings`, ...motion(name, names(bearings), [...axes, ...turns]),
         `${heading} at loads and points`, ...motion(name, names([...loads, ...points]), axes)];
     }),
+    ...(shaft.meshes ?? []).length ? ['Meshes', ['Force normal to the teeth', shaft.meshes.map(name => [`${name}.normal_force`, name])], ...['x', 'y', 'z'].map(axis => [`Force on the first gear along ${axis}`, shaft.meshes.map(name => [`${name}.force.${axis}`, name])])] : [],
     ...shaft.housings.flatMap(housing => [`${housing.name}, at its bearings, loads and points`,
       ...motion(housing.name, [...names(shaft.bearings.filter(bearing => bearing.housing === housing.name)), ...names(housing.loads), ...names(housing.points)], [...axes, ['rx', 'Rotation about x'], ['ry', 'Rotation about y'], ['rz', 'Rotation about z']])]),
   ];

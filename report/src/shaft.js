@@ -20,12 +20,30 @@ export function shaftDrawing(run, open) {
     // A housing is around what is in it of this shaft.
     const one = { ...run, shaft: { ...run.shaft, ...own } };
     return [shafts.length > 1 ? h('h3', {}, own.name) : null, figureOf(one, open), facts(run, one.shaft)];
-  }));
+  }), meshesFigure(run, shafts));
+}
+
+/** Gears in mesh on the axes of all shafts, seen from +x: pitch circles, and a dot where two of them touch. */
+function meshesFigure(run, shafts) {
+  const gears = shafts.flatMap(({ axis, gears: own, name }) => own.filter(gear => gear.mesh).map(gear => ({ ...gear, shaft: name, at: axis })));
+  if (!gears.length) return null;
+  const reach = axis => [Math.min, Math.max].map((most, i) => most(...gears.map(({ at, pitch_radius: radius }) => at[axis] + (i ? radius : -radius))));
+  const [[y0, y1], [z0, z1]] = [0, 1].map(reach);
+  const scale = Math.min((WIDTH - 2 * SIDE) / (y1 - y0), MOST / (z1 - z0));
+  const left = 0.5 * (WIDTH - scale * (y1 - y0)), n = value => value.toFixed(2);
+  const [Y, Z] = [y => n(left + (y - y0) * scale), z => n(30 + (z1 - z) * scale)];
+  const height = Math.round(scale * (z1 - z0) + 60);
+  const out = gears.flatMap(({ mesh, teeth, shaft, at: [y, z], pitch_radius: radius, azimuth }, i) => [
+    s('g', { class: 'gear-seen' }, s('title', {}, `${mesh}: ${teeth} teeth on ${shaft}`), s('circle', { cx: Y(y), cy: Z(z), r: n(radius * scale), class: 'gear' })),
+    i % 2 ? null : s('circle', { cx: Y(y + radius * Math.cos(azimuth)), cy: Z(z + radius * Math.sin(azimuth)), r: 4, class: 'contact outer' })]).filter(Boolean);
+  for (const { name, axis: [y, z] } of shafts) out.push(s('circle', { cx: Y(y), cy: Z(z), r: 3, class: 'place' }), s('text', { x: Number(Y(y)) + 6, y: Number(Z(z)) - 6, class: 'tick place-name' }, name));
+  out.push(...arrowTo([14, height - 14], [14, height - 50], 'z'), ...arrowTo([14, height - 14], [42, height - 14], 'y'));
+  return [h('h3', {}, 'The meshes'), h('figure', {}, h('div', { class: 'scroll' }, s('svg', { viewBox: `0 0 ${WIDTH} ${height}`, role: 'img', class: 'shaft meshes', 'aria-label': `Meshes: ${run.shaft.meshes.join(', ')}` }, out)), h('figcaption', {}, 'Seen from +x, to scale: pitch circles of the gears, and where they touch.'))];
 }
 
 function figureOf(run, open) {
   const { picture, stretched } = draw(run, open);
-  return h('figure', {}, h('div', { class: 'scroll' }, picture), h('figcaption', {}, `Seen along +y, to scale${stretched === 1 ? '' : `; radii and heights are drawn ${digits(stretched, 2)} times as large`}. Red: lines through the contacts, to where they meet the axis. Arrows: forces at named places.${run.shaft.discs.length ? ' Discs are drawn as steel ones of their mass and inertia.' : ''}${run.shaft.gears.length ? ' Gears reach to their pitch circle; their width is not known.' : ''}${run.shaft.housings.length ? ' What housings look like is not known: frames are around their bearings, feet and places.' : ''}`));
+  return h('figure', {}, h('div', { class: 'scroll' }, picture), h('figcaption', {}, `Seen along +y, to scale${stretched === 1 ? '' : `; radii and heights are drawn ${digits(stretched, 2)} times as large`}. Red: lines through the contacts, to where they meet the axis. Arrows: forces at named places.${run.shaft.discs.length ? ' Discs are drawn as steel ones of their mass and inertia.' : ''}${run.shaft.gears.length ? ` Gears reach to their pitch circle, dots are pitch points${run.shaft.gears.every(gear => gear.face_width) ? '' : '; the width of a gear without a mesh is not known'}.` : ''}${run.shaft.housings.length ? ' What housings look like is not known: frames are around their bearings, feet and places.' : ''}`));
 }
 
 /** All that has a place, [m]: x along the axis, r across it, and a label with a leader to the point (x, r). */
@@ -46,9 +64,9 @@ function parts(run) {
     list.push({ x: [position - half, position + half], r: [-radius, radius], label: { x: position, r: radius, text: `disc ${i + 1}, ${short(mass, 4)}\u202fkg`, top: true } });
     return { position, radius, half };
   });
-  const gears = shaft.gears.map(({ position, pitch_radius: radius, teeth, azimuth }, i) => {
-    const half = 0.2 * radius;
-    list.push({ x: [position - half, position + half], r: [-radius, radius], label: { x: position, r: radius, text: `gear ${i + 1}${teeth ? `, ${teeth} teeth` : ''}`, top: true } });
+  const gears = shaft.gears.map(({ position, pitch_radius: radius, teeth, azimuth, face_width: width, mesh, with: other }, i) => {
+    const half = width ? width / 2 : 0.2 * radius;
+    list.push({ x: [position - half, position + half], r: [-radius, radius], label: { x: position, r: radius, text: mesh ? `${mesh}, ${teeth} teeth, with ${other}` : `gear ${i + 1}${teeth ? `, ${teeth} teeth` : ''}`, top: true } });
     return { position, radius, half, mesh: radius * Math.sin(azimuth) };
   });
   const sections = shaft.sections.map(({ from, to, outer_diameter: outer, inner_diameter: inner }) => {
@@ -241,7 +259,7 @@ function facts(run, shaft) {
     ['Shaft', shaft.sections.length ? `${shaft.sections.length} section${shaft.sections.length > 1 ? 's' : ''} of beams` : shaft.modes.length ? 'of matrices' : 'rigid'],
     ['Modes', shaft.modes.length ? `${shaft.modes.length} between held places, ${digits(shaft.modes[0], 4)} to ${digits(shaft.modes.at(-1), 4)}\u202fHz` : null],
     ['Bearings', [...kinds].map(([kind, names]) => `${names.join(', ')}: ${kind}`).join('; ')],
-    ['Gears', shaft.gears.map(({ position, pitch_radius: radius, helix_angle: helix }, i) => `gear ${i + 1}: pitch radius ${millimetres(radius)}${helix ? `, helix ${short((helix * 180) / Math.PI, 4)}\u00b0` : ''}, at ${millimetres(position)}`).join('; ')],
+    ['Gears', shaft.gears.map(({ position, pitch_radius: radius, helix_angle: helix, mesh }, i) => `${mesh ?? `gear ${i + 1}`}: pitch radius ${millimetres(radius)}${helix ? `, helix ${short((helix * 180) / Math.PI, 4)}\u00b0` : ''}, at ${millimetres(position)}`).join('; ')],
     ['Discs', shaft.discs.map(({ position, mass, unbalance }, i) => `disc ${i + 1}: ${short(mass)}\u202fkg${unbalance ? `, unbalance ${short(unbalance * 1e6, 4)}\u202fg\u202fmm` : ''}, at ${millimetres(position)}`).join('; ')],
     ['Forces along x, y, z', loads.map(({ name, force }) => `${name}: ${vector(force)}`).join('; ')],
     ['Gravity', size > 0 ? `${short(size)}\u202fm/s\u00b2` : null],

@@ -81,13 +81,8 @@ fn interface(rows: &[Variable], wanted: Wanted<'_>) -> String {
     )
 }
 
-/// The page of a system's package.
-pub fn system_page(system: &System) -> String {
-    system_page_with(system, &|_| true)
-}
-
-/// The same with some of its outputs.
-pub fn system_page_with(system: &System, wanted: Wanted<'_>) -> String {
+/// The page of a system's package, with some of its outputs.
+pub fn system_page(system: &System, wanted: Wanted<'_>) -> String {
     let (scene, variables) = (system.scene(), MachineVariables::new(system));
     let title = if scene.title.is_empty() { "Shaft on ball bearings" } else { &scene.title };
     let against = scene.bearings.iter().filter(|bearing| bearing.mounting.direction.sign() < 0.0);
@@ -139,13 +134,8 @@ fn parameters(rows: &[Variable]) -> String {
     table(rows, |row| row.causality == Causality::Parameter, start)
 }
 
-/// The page of a scene's package.
-pub fn page(scene: &Scene) -> String {
-    page_with(scene, &|_| true)
-}
-
-/// The same with some of its outputs.
-pub fn page_with(scene: &Scene, wanted: Wanted<'_>) -> String {
+/// The page of a scene's package, with some of its outputs.
+pub fn page(scene: &Scene, wanted: Wanted<'_>) -> String {
     let title = if scene.title.is_empty() { "Ball bearing" } else { &scene.title };
     let variables = Variables::new(scene);
     let interface = interface(variables.rows(), wanted);

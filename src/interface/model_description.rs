@@ -7,13 +7,12 @@ use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
 
 use crate::analysis::condensed::Condensed;
-use crate::interface::variables::{
-    Causality, InputKind, Kind, MachineVariables, Offered, Source, Variable, Variables,
-};
+use crate::interface::variables::{Causality, InputKind, Kind, MachineVariables, Offered, Source, Variable};
 use crate::scene::{Dependencies, Drive};
 use crate::schema::numbers::Variability;
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::Simulation;
+use crate::simulation::driven::Parts;
 use crate::simulation::system::System;
 
 /// Model identifier of a package with a name, which its library has as its file name: the name with every character that
@@ -52,69 +51,44 @@ pub fn is_exported(row: &Variable, wanted: Wanted<'_>) -> bool {
     row.causality != Causality::Output || wanted(&row.name)
 }
 
-/// Renders the model description of a started scene for a package with a name.
+/// All outputs.
+pub fn all(_: &str) -> bool {
+    true
+}
+
+/// Renders the model description of a started machine for a package with a name, with some of its outputs. Value references and the identifier
+/// are those of all: what the library knows does not change.
 ///
 /// # Errors
 /// Only those of writing to memory.
-pub fn render(simulation: &Simulation, name: &str) -> std::io::Result<ModelDescription> {
-    render_with(simulation, name, &|_| true)
-}
-
-/// The same with some of its outputs. Value references and the identifier are those of all: what the library knows does not change.
-///
-/// # Errors
-/// As [`render`].
-pub fn render_with(
-    simulation: &Simulation,
-    name: &str,
-    wanted: Wanted<'_>,
-) -> std::io::Result<ModelDescription> {
-    let scene = simulation.scene();
-    let variables = Variables::new(scene);
-    let guid = guid(&scene.source, variables.rows());
+pub fn render(machine: &impl Parts, name: &str, wanted: Wanted<'_>) -> std::io::Result<ModelDescription> {
+    let variables = MachineVariables::new(machine);
+    let bearings = || machine.bearings().map(|(_, bearing)| bearing);
+    let (usual, title, source, load, dependencies) = match machine.shaft().map(System::scene) {
+        Some(scene) => {
+            let load = (scene.load.duration.0, scene.load.output_interval.0);
+            ("shaft on ball bearings", &scene.title, &scene.source, load, Dependencies::Point)
+        }
+        None => {
+            let scene = bearings().next().expect("a machine without a shaft is a bearing").scene();
+            let load = (scene.load.duration.0, scene.load.output_interval.0);
+            ("ball bearing", &scene.title, &scene.source, load, scene.interface.dependencies)
+        }
+    };
+    let step: fn(&Simulation) -> f64 = match machine.shaft() {
+        Some(_) => passing_step,
+        None => recommended_step,
+    };
+    let guid = guid(source, variables.rows());
     let about = About {
-        title: if scene.title.is_empty() { "ball bearing" } else { &scene.title },
+        title: if title.is_empty() { usual } else { title },
         name,
         guid: &guid,
-        dependencies: scene.interface.dependencies,
-        stop: scene.load.duration.0,
-        step: recommended_step(simulation),
+        dependencies,
+        stop: load.0,
+        step: bearings().map(step).fold(load.1, f64::min),
     };
-    let starts = variables.values(simulation.inputs(), simulation.outputs());
-    let xml = document(&about, &Exported::new(variables.rows(), &starts, wanted))?;
-    Ok(ModelDescription { xml, guid })
-}
-
-/// Renders the model description of a started system for a package with a name.
-///
-/// # Errors
-/// Only those of writing to memory.
-pub fn render_system(system: &System, name: &str) -> std::io::Result<ModelDescription> {
-    render_system_with(system, name, &|_| true)
-}
-
-/// The same with some of its outputs, as [`render_with`].
-///
-/// # Errors
-/// As [`render`].
-pub fn render_system_with(
-    system: &System,
-    name: &str,
-    wanted: Wanted<'_>,
-) -> std::io::Result<ModelDescription> {
-    let scene = system.scene();
-    let variables = MachineVariables::new(system);
-    let guid = guid(&scene.source, variables.rows());
-    let steps = system.bearings().map(|(_, bearing)| passing_step(bearing));
-    let about = About {
-        title: if scene.title.is_empty() { "shaft on ball bearings" } else { &scene.title },
-        name,
-        guid: &guid,
-        dependencies: Dependencies::Point,
-        stop: scene.load.duration.0,
-        step: steps.fold(scene.load.output_interval.0, f64::min),
-    };
-    let xml = document(&about, &Exported::new(variables.rows(), &variables.values(system), wanted))?;
+    let xml = document(&about, &Exported::new(variables.rows(), &variables.values(machine), wanted))?;
     Ok(ModelDescription { xml, guid })
 }
 

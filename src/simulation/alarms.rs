@@ -9,7 +9,7 @@ use crate::model::bodies::Race;
 use crate::scene::Level;
 
 /// \[rad] turn of a race over which its motion is judged.
-const WINDOW: f64 = 3.0 * std::f64::consts::TAU;
+const WINDOW: f64 = 2.0 * std::f64::consts::TAU;
 /// [-] places in a window: fewer do not show how a race moves, and beyond the second number every other one is dropped.
 const PLACES: [usize; 2] = [24, 256];
 /// [-] growth of what loads do not explain from one window to the next, and windows in a row that grow so.
@@ -141,7 +141,7 @@ impl BearingAlarms {
         (self.growing >= IN_A_ROW && force > SEEN * largest && !self.grown && !self.moved).then(|| {
             self.grown = true;
             format!(
-                "a motion across the axis grows: what swings of the force grew from {first:.1} to {force:.1} N over the last three turns"
+                "a motion across the axis grows: what swings of the force grew from {first:.1} to {force:.1} N over the last two turns"
             )
         })
     }

@@ -177,6 +177,16 @@ impl Parts for Machine {
     }
 }
 
+impl Parts for Simulation {
+    fn shaft(&self) -> Option<&System> {
+        None
+    }
+
+    fn bearings(&self) -> impl Iterator<Item = (&str, &Simulation)> {
+        std::iter::once(("", self))
+    }
+}
+
 impl Parts for System {
     fn shaft(&self) -> Option<&System> {
         Some(self)

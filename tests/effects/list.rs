@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use roulement::interface::documentation::page;
+use roulement::interface::model_description::all;
 use roulement::interface::variables::Variables;
 use roulement::scene::Scene;
 
@@ -212,8 +213,8 @@ fn settings_say_how_an_effect_is_set() {
 
 #[test]
 fn the_page_of_a_package_names_every_effect_on_or_off() {
-    let on = page(&Scene::parse(include_str!("../../scenes/cage.toml")).unwrap());
-    let off = page(&parse(OFF));
+    let on = page(&Scene::parse(include_str!("../../scenes/cage.toml")).unwrap(), &all);
+    let off = page(&parse(OFF), &all);
     let escaped = |text: &str| text.replace('\'', "&apos;");
     for effect in parse(OFF).effects.each() {
         let info = effect.info();

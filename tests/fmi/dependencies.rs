@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use roulement::fmi::v2::Status;
-use roulement::interface::model_description::render;
+use roulement::interface::model_description::{all, render};
 use roulement::interface::variables::{Causality, InputKind};
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
@@ -45,7 +45,8 @@ impl Listed {
         let changes = quoted.iter().map(|meaning| ("interface.dependencies", meaning.as_str()));
         let text = Scene::edited(&case.source, changes).unwrap().source;
         let package = Package::new(&format!("dependencies-{name}"), &text);
-        let xml = render(&Simulation::new(&Scene::parse(&text).unwrap()).unwrap(), "bearing").unwrap().xml;
+        let xml =
+            render(&Simulation::new(&Scene::parse(&text).unwrap()).unwrap(), "bearing", &all).unwrap().xml;
         let [step, start] = ["Outputs", "InitialUnknowns"].map(|element| lists(&xml, element));
         let outputs: Vec<u32> = package.references(Causality::Output);
         for list in [&step, &start] {

@@ -94,6 +94,21 @@ fn a_package_with_an_error_goal_says_that_it_runs_once() {
     }
 }
 
+/// A ring that one bearing does not hold (docs/holding-a-bearing.md), for a while after it was told.
+#[test]
+fn a_package_warns_once_of_a_motion_that_loads_do_not_explain() {
+    let text = include_str!("../../scenes/error/high_speed.toml");
+    for (text, told) in [(text.to_string(), 1), (text.replace("65217 rpm", "6000 rpm"), 0)] {
+        let (package, messages) = package("whirls", &text);
+        let c = start(&package, 0.0, None);
+        for point in 0..400 {
+            assert_eq!(unsafe { fmi2DoStep(c, f64::from(point) * 2e-5, 2e-5, 0) }, Status::Ok);
+        }
+        assert_eq!(count(messages, Status::Warning, "the inner race goes round forwards by up to"), told);
+        unsafe { fmi2FreeInstance(c) };
+    }
+}
+
 #[test]
 fn invariant_a_package_plays_the_scripts_as_a_native_run_does() {
     let text = scripted("wrench", &TABLES);

@@ -5,7 +5,7 @@ use std::ptr;
 use nalgebra::Vector3;
 use roulement::fmi::v2::Status;
 use roulement::interface::documentation::system_page;
-use roulement::interface::model_description::render_system;
+use roulement::interface::model_description::{all, render};
 use roulement::interface::variables::{Causality, Kind, MachineVariables};
 use roulement::scene::system::SystemScene;
 use roulement::simulation::system::System;
@@ -457,7 +457,7 @@ fn names_units_and_abilities_are_told() {
         (0..count).filter(|&r| real(r)).all(|r| table.value(r, &system).to_bits() == values[r].to_bits())
     );
 
-    let description = render_system(&system, "gear").unwrap();
+    let description = render(&system, "gear", &all).unwrap();
     for word in [
         "canGetAndSetFMUstate=\"true\"",
         "canSerializeFMUstate=\"true\"",
@@ -466,7 +466,7 @@ fn names_units_and_abilities_are_told() {
     ] {
         assert!(description.xml.contains(word), "{word}");
     }
-    assert!(system_page(&system).contains("Here this is so of: right."));
+    assert!(system_page(&system, &all).contains("Here this is so of: right."));
 }
 
 #[test]

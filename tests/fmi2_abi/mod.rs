@@ -7,7 +7,7 @@ use std::ptr;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use roulement::fmi::v2::{CallbackFunctions, Status};
-use roulement::interface::model_description::{render, render_system};
+use roulement::interface::model_description::{all, render};
 use roulement::interface::variables::{Causality, MachineVariables, Variable, Variables};
 use roulement::scene::Scene;
 use roulement::scene::system::SystemScene;
@@ -132,7 +132,7 @@ impl Package {
     /// `name` tells the folders of tests that run at the same time apart.
     pub fn new(name: &str, text: &str) -> Self {
         let scene = Scene::parse(text).unwrap();
-        let guid = render(&Simulation::new(&scene).unwrap(), "bearing").unwrap().guid;
+        let guid = render(&Simulation::new(&scene).unwrap(), "bearing", &all).unwrap().guid;
         Self::of(name, text, guid, Variables::new(&scene).rows().to_vec())
     }
 
@@ -140,7 +140,7 @@ impl Package {
     pub fn of_system(name: &str, text: &str) -> Self {
         let scene = SystemScene::parse(text, None, "".as_ref()).unwrap();
         let system = System::new(&scene).unwrap();
-        let guid = render_system(&system, "bearing").unwrap().guid;
+        let guid = render(&system, "bearing", &all).unwrap().guid;
         Self::of(name, &scene.source, guid, MachineVariables::new(&system).rows().to_vec())
     }
 

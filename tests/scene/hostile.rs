@@ -141,7 +141,7 @@ pub fn read_scene(text: &str) -> Option<Scene> {
 
 /// A scene starts or is refused; one that starts can be described and stepped, to numbers or a refusal.
 pub fn start_scene(scene: &Scene) -> bool {
-    documentation::page(scene);
+    documentation::page(scene, &|_| true);
     let Ok(mut simulation) = Simulation::new(scene) else { return false };
     render(&simulation, "bearing").unwrap();
     if simulation.advance(STEP).is_ok() {

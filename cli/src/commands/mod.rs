@@ -30,11 +30,10 @@ use std::time::Duration;
 use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use roulement::analysis::auto;
-use roulement::interface::model_description::{render, render_system};
+use roulement::interface::model_description::{all, render};
 use roulement::scene::machine::MachineScene;
-use roulement::simulation::Simulation;
-use roulement::simulation::system::System;
-use roulement_cli::package::{library_beside_executable, name_of, write_fmu_with, write_system_fmu};
+use roulement::simulation::machine::Machine;
+use roulement_cli::package::{library_beside_executable, name_of, write_fmu};
 
 /// 3-D dynamic ball bearing for gearbox co-simulation.
 #[derive(Parser)]
@@ -163,12 +162,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Fmu { scene, output, library, name, columns } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
             let name = name.unwrap_or_else(|| name_of(&output));
-            match load_for(&scene, true)? {
-                MachineScene::Shaft(scene) => {
-                    write_system_fmu(&scene, &name, &columns, &libraries, &output)?;
-                }
-                MachineScene::Bearing(scene) => write_fmu_with(&scene, &name, &columns, &libraries, &output)?,
-            }
+            write_fmu(&load_for(&scene, true)?, &name, &columns, &libraries, &output)?;
             say(&format!("{}\n", output.display()))?;
         }
         Command::Scene(options) => scene::run(&options)?,
@@ -182,11 +176,8 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Cost(options) => return cost::run(options),
         Command::Describe { scene } => {
             let name = name_of(&scene);
-            let description = match load_for(&scene, true)? {
-                MachineScene::Shaft(scene) => render_system(&System::new(&scene)?, &name)?,
-                MachineScene::Bearing(scene) => render(&Simulation::new(&scene)?, &name)?,
-            };
-            say(&description.xml)?;
+            let machine = Machine::new(&load_for(&scene, true)?)?;
+            say(&render(&machine, &name, &all)?.xml)?;
         }
     }
     Ok(ExitCode::SUCCESS)

@@ -17,15 +17,11 @@ use zip::write::SimpleFileOptions;
 
 use roulement::fmi::SCENE_FILE;
 use roulement::interface::documentation;
-use roulement::interface::model_description::{
-    ModelDescription, identifier, render_system_with, render_with,
-};
-use roulement::interface::variables::{Causality, MachineVariables, Variable, Variables};
-use roulement::scene::Scene;
-use roulement::scene::system::SystemScene;
+use roulement::interface::model_description::{ModelDescription, identifier, render};
+use roulement::interface::variables::{Causality, MachineVariables, Variable};
+use roulement::scene::machine::MachineScene;
 use roulement::schema::regular::{self, LARGEST_BINARY};
-use roulement::simulation::system::{System, SystemError};
-use roulement::simulation::{Simulation, SimulationError};
+use roulement::simulation::machine::{Machine, MachineError};
 
 use crate::report::results::fits;
 
@@ -34,10 +30,7 @@ use crate::report::results::fits;
 pub enum PackageError {
     /// The scene cannot be started, so that its package could not either.
     #[error(transparent)]
-    Start(#[from] SimulationError),
-    /// The same of a system.
-    #[error(transparent)]
-    StartSystem(#[from] SystemError),
+    Start(#[from] MachineError),
     /// A file could not be read or written.
     #[error("{what} {path}: {source}")]
     File {
@@ -129,36 +122,27 @@ struct Content<'a> {
     page: String,
 }
 
-/// Writes the package of a scene under a name, with one library per platform, to `output`; an existing file is replaced only
-/// by a complete one.
+/// Writes the package of a machine under a name, with one library per platform, to `output`; an existing file is replaced only by a complete one.
+/// It has those outputs alone whose names fit one of the patterns, as [`crate::report::results::Choice`] has them; all if there is none.
 ///
 /// # Errors
 /// See [`PackageError`].
 pub fn write_fmu(
-    scene: &Scene,
-    name: &str,
-    libraries: &[PathBuf],
-    output: &Path,
-) -> Result<(), PackageError> {
-    write_fmu_with(scene, name, &[], libraries, output)
-}
-
-/// The same with those outputs alone whose names fit one of the patterns, as [`crate::report::results::Choice`] has them; all if there is none.
-///
-/// # Errors
-/// See [`PackageError`].
-pub fn write_fmu_with(
-    scene: &Scene,
+    scene: &MachineScene,
     name: &str,
     columns: &[String],
     libraries: &[PathBuf],
     output: &Path,
 ) -> Result<(), PackageError> {
     let libraries = read_libraries(libraries)?;
-    let wanted = wanted(columns, Variables::new(scene).rows())?;
-    let description = render_with(&Simulation::new(scene)?, name, &wanted)?;
-    let page = documentation::page_with(scene, &wanted);
-    write(&Content { description, source: &scene.source, page }, name, &libraries, output)
+    let machine = Machine::new(scene)?;
+    let wanted = wanted(columns, MachineVariables::new(&machine).rows())?;
+    let description = render(&machine, name, &wanted)?;
+    let page = match &machine {
+        Machine::Bearing(bearing) => documentation::page(bearing.scene(), &wanted),
+        Machine::Shaft(system) => documentation::system_page(system, &wanted),
+    };
+    write(&Content { description, source: scene.source(), page }, name, &libraries, output)
 }
 
 /// Names of outputs that fit one of the patterns.
@@ -172,25 +156,6 @@ fn wanted<'a>(
         Some(pattern) => Err(PackageError::Column(pattern.clone())),
         None => Ok(move |name: &str| columns.is_empty() || columns.iter().any(|pattern| fits(name, pattern))),
     }
-}
-
-/// Writes the package of a shaft with its bearings, as [`write_fmu_with`] does that of a bearing.
-///
-/// # Errors
-/// See [`PackageError`].
-pub fn write_system_fmu(
-    scene: &SystemScene,
-    name: &str,
-    columns: &[String],
-    libraries: &[PathBuf],
-    output: &Path,
-) -> Result<(), PackageError> {
-    let libraries = read_libraries(libraries)?;
-    let system = System::new(scene)?;
-    let wanted = wanted(columns, MachineVariables::new(&system).rows())?;
-    let description = render_system_with(&system, name, &wanted)?;
-    let page = documentation::system_page_with(&system, &wanted);
-    write(&Content { description, source: &scene.source, page }, name, &libraries, output)
 }
 
 /// Reads one library per platform.

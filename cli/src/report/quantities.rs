@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use roulement::interface::variables::{MachineVariables, Source};
+use roulement::interface::variables::{Causality, MachineVariables, Source, Variable};
 use roulement::model::bodies::Race;
 use roulement::simulation::Simulation;
 use roulement::simulation::instant::Instant;
@@ -170,7 +170,7 @@ impl ShaftQuantities {
         let variables = MachineVariables::new(system);
         let rows = variables.rows().iter().enumerate();
         let own = rows.filter(|(_, row)| matches!(row.source, Source::Shaft(_)));
-        let own = own.filter(|(_, row)| size_of(&row.name, row.unit.name).is_some());
+        let own = own.filter(|(_, row)| size_of(row).is_some());
         let references = own.map(|(reference, _)| reference).collect();
         Self { variables, references }
     }
@@ -179,7 +179,7 @@ impl ShaftQuantities {
     pub fn watched(&self) -> Vec<Watched> {
         let rows = self.references.iter().map(|reference| &self.variables.rows()[*reference]);
         let watched = rows.filter_map(|row| {
-            let size = size_of(&row.name, row.unit.name)?;
+            let size = size_of(row)?;
             Some(Watched { name: row.name.clone().into(), unit: row.unit.name, size, shown: true })
         });
         watched.collect()
@@ -192,15 +192,17 @@ impl ShaftQuantities {
 }
 
 /// What the size of a shaft's variable is measured by; none of what is no quantity with a mean: angle, velocities, energies, and loads,
-/// which are given.
-fn size_of(name: &str, unit: &str) -> Option<Size> {
-    let of_whole = name.split_once('.').map_or(name, |(_, key)| key);
-    match (of_whole, unit) {
+/// which are given. Forces that are not given are those of meshes and of bearings by their stiffness.
+fn size_of(row: &Variable) -> Option<Size> {
+    let of_whole = row.name.split_once('.').map_or(row.name.as_str(), |(_, key)| key);
+    match (of_whole, row.unit.name) {
         ("speed", _) => Some(Size::Speed),
         ("torque", _) => Some(Size::Own),
         ("angle", _) => None,
         (_, "m") => Some(Size::Position),
         (_, "rad") => Some(Size::Tilt),
+        (_, "N") if row.causality == Causality::Output => Some(Size::Force),
+        (_, "N.m") if row.causality == Causality::Output => Some(Size::Moment),
         _ => None,
     }
 }

@@ -88,7 +88,8 @@ pub fn prepare(
                 if libraries.is_empty() {
                     libraries.push(library_beside_executable().map_err(|why| failed(why.to_string()))?);
                 }
-                write_fmu(&scene, name, &libraries, &package).map_err(|why| failed(why.to_string()))?;
+                write_fmu(&scene.into(), name, &[], &libraries, &package)
+                    .map_err(|why| failed(why.to_string()))?;
                 regular::bytes(&package, LARGEST_BINARY).map_err(file_error("read", &package))?
             }
         };

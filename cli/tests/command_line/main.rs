@@ -1,6 +1,7 @@
 //! The command line as a user meets it.
 #![allow(clippy::unwrap_used)]
 
+mod alarms;
 mod bearing;
 mod cage;
 #[path = "../common/mod.rs"]

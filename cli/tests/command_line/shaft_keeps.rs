@@ -176,7 +176,8 @@ fn what_accuracy_costs_on_a_shaft_is_measured() {
     let file = scratch.path("shaft.toml");
     std::fs::write(&file, pinion().replace("\"2 ms\"", "\"1 ms\"")).unwrap();
     let to = scratch.path("cost");
-    let said = good(&roulement(&["cost", &file, "-o", &to, "--only", "step-cap,creep-law"]));
+    let only = "step-cap,creep-law,communication-held,communication-ahead";
+    let said = good(&roulement(&["cost", &file, "-o", &to, "--only", only]));
     assert!(said.contains("For 1 % of the mean power take "), "{said}");
     let table = std::fs::read_dir(&to).unwrap().map(|file| file.unwrap().path());
     let table =
@@ -186,4 +187,77 @@ fn what_accuracy_costs_on_a_shaft_is_measured() {
     assert!(
         levers.iter().any(|lever| lever == "step cap") && levers.iter().any(|lever| lever == "creep law")
     );
+    // An importer that knows the load at the end of a step is nearer than one that knows it at the start.
+    let (shown, errors) = (&table["setting"], &table["worst [-]"]);
+    let of = |lever: &str| {
+        let found = (0..levers.len()).find(|&i| levers[i] == lever && shown[i] == "20 us");
+        errors[found.unwrap_or_else(|| panic!("{lever}: {levers:?} {shown:?}"))].parse::<f64>().unwrap()
+    };
+    let [held, ahead] = [of("communication (held)"), of("communication (ahead)")];
+    assert!(ahead < 0.3 * held && held > 1e-4, "{held} {ahead}");
+}
+
+/// Two shafts with 20 and 40 teeth of 2 mm in mesh, the second one braked by 30 N m.
+fn meshed() -> String {
+    let shaft = |name: &str, origin: &str, drive: &str| {
+        let bearing = |side: &str, at: &str, way: &str| {
+            format!(
+                "[[bearing]]\nname = \"{name}-{side}\"\nshaft = \"{name}\"\ncatalogue = \"6205\"\n\
+                 mounting = {{ position = \"{at}\", direction = \"{way}\", preload = {{ force = \"200 N\" }} }}\n"
+            )
+        };
+        format!(
+            "[[shaft]]\nname = \"{name}\"\norigin = {origin}\nmass = 2\npolar_inertia = 1e-3\ntransverse_inertia = 3e-3\n{drive}\n"
+        ) + &bearing("left", "-40 mm", "+x")
+            + &bearing("right", "40 mm", "-x")
+    };
+    shaft("one", "[0, 0, 0]", "speed = \"300 rpm\"")
+        + &shaft("two", "[0, 0, \"60 mm\"]", "torque = 30")
+        + "[[mesh]]\nname = \"gears\"\nnormal_module = \"2 mm\"\ndamping_ratio = 0.1\n\
+           gears = [{ shaft = \"one\", position = \"-5 mm\", teeth = 20, face_width = \"20 mm\" }, \
+           { shaft = \"two\", position = 0, teeth = 40, face_width = \"24 mm\" }]\n\
+           [load]\nduration = \"2 ms\"\noutput_interval = \"20 us\"\n"
+}
+
+/// Forces of a mesh are in the table, among the means and on the page, and its gears where they are.
+#[test]
+fn closed_form_a_mesh_has_its_forces_and_its_place_in_what_a_run_leaves() {
+    let scratch = Scratch::new("shaft-mesh");
+    let (code, said, told) = run(&scratch, &meshed(), "out", &["--error"]);
+    assert_eq!(code, Some(0), "{said}{told}");
+    // Torque over the pitch radius of 40 mm.
+    let tangential = 30.0 / 0.04;
+    let table = columns(&scratch.read("out/shaft.csv"));
+    let [y, normal] = ["gears.force.y [N]", "gears.normal_force [N]"].map(|name| numbers(&table[name]));
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    assert!((mean(&y).abs() / tangential - 1.0).abs() < 0.02, "{}", mean(&y));
+    assert!((mean(&normal) * 20f64.to_radians().cos() / tangential - 1.0).abs() < 0.02, "{}", mean(&normal));
+    let means = columns(&scratch.read("out/means.csv"));
+    let at = means["quantity"].iter().position(|name| name == "gears.normal_force").unwrap();
+    let [value, bar] = ["mean", "error"].map(|column| means[column][at].parse::<f64>().unwrap());
+    assert!(
+        (value * 20f64.to_radians().cos() / tangential - 1.0).abs() < 0.02 && bar < 0.02 * value,
+        "{value} {bar}"
+    );
+    let record: Value = serde_json::from_str(&scratch.read("out/run.json")).unwrap();
+    let gears = [0, 1].map(|shaft| &record["shaft"]["shafts"][shaft]["gears"][0]);
+    for (gear, [radius, turned, teeth, position, width]) in
+        gears.into_iter().zip([[0.02, 0.5, 20.0, -0.005, 0.02], [0.04, -0.5, 40.0, 0.0, 0.024]])
+    {
+        let of = |key: &str| gear[key].as_f64().unwrap();
+        // The second axis is at +z of the first.
+        let azimuth = turned * std::f64::consts::PI;
+        let expected = [
+            ("pitch_radius", radius),
+            ("azimuth", azimuth),
+            ("teeth", teeth),
+            ("position", position),
+            ("face_width", width),
+        ];
+        for (key, value) in expected {
+            assert!((of(key) - value).abs() < 1e-9, "{key}: {gear}");
+        }
+        assert_eq!(gear["mesh"], "gears");
+    }
+    assert_eq!(record["shaft"]["meshes"], serde_json::json!(["gears"]));
 }

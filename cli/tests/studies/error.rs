@@ -8,7 +8,6 @@ use roulement::simulation::Simulation;
 use roulement::simulation::losses::LOSSES;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::{Observer, Rows, play_observed};
-use roulement::simulation::system::System;
 use roulement_cli::error::{Course, Difference, Judgement, Lengths, Rounds, Run, Sample, sizes};
 use roulement_cli::report::figures::Figures;
 use roulement_cli::report::means::{Blocks, Means};

@@ -14,7 +14,7 @@ import importlib
 from . import catalogue, coupling, load_cases, shaft
 from .contacts import LAWS, contact
 from .cost import cost
-from .equilibrium import Equilibrium, equilibrium
+from .equilibrium import Equilibrium, MachineEquilibrium, equilibrium
 from .modes import Modes, Motions, modes
 from .results import Results, run
 from .scene import Scene, cage, effects, package
@@ -23,6 +23,7 @@ from .simulation import Simulation
 __all__ = [
     "LAWS",
     "Equilibrium",
+    "MachineEquilibrium",
     "Modes",
     "Motions",
     "Results",

@@ -34,15 +34,34 @@ class Equilibrium:
     """All of it as the command line prints it (`--json`)."""
 
 
-def equilibrium(scene, gyroscopic="outer-race-control"):
-    """Solves the quasi-static equilibrium of a scene at time 0.
+@dataclass(frozen=True)
+class MachineEquilibrium:
+    """Shafts in balance on their bearings at time 0. Forces are those on the shaft, in its axes; stiffness is in the axes of each bearing."""
+
+    bearings: dict
+    """Of every bearing by its name: force, moment, displacement and tilt of the shaft there (x, y, z) [N, N m, m, rad], stiffness (6 x 6)
+    [N/m, N, N m/rad], peak_pressure [Pa], friction_torque [N m], balls as in `Equilibrium`, life or None."""
+    meshes: dict
+    """Of every mesh by its name: force_on_first_gear (x, y, z) and normal_force [N]."""
+    modes: list
+    """Natural frequencies: frequency [Hz], damping [-], whirl, and where most of it is (`at`)."""
+    critical_speeds: list
+    """The same at every critical speed, with that speed [rad/s]."""
+    report: dict
+    """All of it as the command line prints it (`--json`), with the Campbell table."""
+
+
+def equilibrium(scene, gyroscopic=None):
+    """Solves the quasi-static equilibrium of a scene at time 0: an `Equilibrium` of a bearing, a `MachineEquilibrium` of shafts.
 
     `gyroscopic` says how the gyroscopic moment of the balls is carried: by friction at the outer race alone
-    ("outer-race-control"), at the inner one alone ("inner-race-control"), for each ball at the one where spin would cost more
-    ("least-heat"), not at all ("none"), or by friction at both races ("friction"). Raises RuntimeError if there is
-    none.
+    ("outer-race-control", as if not given), at the inner one alone ("inner-race-control"), for each ball at the one where spin would cost more
+    ("least-heat"), not at all ("none"), or by friction at both races ("friction", on shafts the only one).
+    Raises RuntimeError if there is none.
     """
     report = json.loads(scene._native.equilibrium(gyroscopic))
+    if "bearings" in report:
+        return _of_machine(report)
     return Equilibrium(
         displacement=np.array([report["displacement"][of] for of in ("x", "y", "z", "ry", "rz")]),
         load=np.array([report["load"][of] for of in ("Fx", "Fy", "Fz", "My", "Mz")]),
@@ -53,5 +72,24 @@ def equilibrium(scene, gyroscopic="outer-race-control"):
         peak_pressure=report["peak_pressure"],
         balls=SimpleNamespace(**{name: np.array(values) for name, values in report["balls"].items()}),
         life=SimpleNamespace(**report["life"]) if "life" in report else None,
+        report=report,
+    )
+
+
+def _of_machine(report):
+    def bearing(of):
+        vectors = {name: np.array([of[name][axis] for axis in "xyz"]) for name in ("force", "moment", "displacement", "tilt")}
+        balls = SimpleNamespace(**{name: np.array(values) for name, values in of["balls"].items()})
+        life = SimpleNamespace(**of["life"]) if of["life"] else None
+        return SimpleNamespace(**{**of, **vectors, "stiffness": np.array(of["stiffness"]), "balls": balls, "life": life})
+
+    return MachineEquilibrium(
+        bearings={name: bearing(of) for name, of in report["bearings"].items()},
+        meshes={
+            name: SimpleNamespace(force_on_first_gear=np.array([of["force_on_first_gear"][axis] for axis in "xyz"]), normal_force=of["normal_force"])
+            for name, of in report["meshes"].items()
+        },
+        modes=[SimpleNamespace(**mode) for mode in report["modes"]],
+        critical_speeds=[SimpleNamespace(**critical) for critical in report["critical_speeds"]],
         report=report,
     )
