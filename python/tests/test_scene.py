@@ -54,6 +54,20 @@ def test_consistency_equilibrium_is_that_of_the_command_line(tmp_path):
         roulement.equilibrium(rated, "both")
 
 
+def test_consistency_equilibrium_of_a_shaft_is_that_of_the_command_line():
+    path = ROOT / "scenes" / "shafts" / "pinion.toml"
+    printed = json.loads(program("equilibrium", path, "--json").stdout)
+    scene = roulement.Scene.load(path)
+    found = roulement.equilibrium(scene)
+    assert found.report == printed
+    left = found.bearings["left"]
+    assert left.stiffness.shape == (6, 6) and left.stiffness.tolist() == printed["bearings"]["left"]["stiffness"]
+    assert left.force[2] == printed["bearings"]["left"]["force"]["z"] and left.life.L10r > 1 and len(left.balls.inner_load) > 5
+    assert found.modes[0].frequency == printed["modes"][0]["frequency"] and found.meshes == {}
+    with pytest.raises(ValueError, match="friction carries"):
+        roulement.equilibrium(scene, "none")
+
+
 def test_consistency_effects_and_model_description(thrust, tmp_path):
     (tmp_path / "scene.toml").write_text(thrust.source)
     assert roulement.effects(thrust) == json.loads(program("effects", tmp_path / "scene.toml", "--json").stdout)
