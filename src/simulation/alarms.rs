@@ -4,7 +4,7 @@
 use super::Simulation;
 use super::circling::{Circling, Exciting, Place, Unexplained};
 use super::driven::Parts;
-use super::system::{ShaftInputs, script_changes_within};
+use super::system::{ShaftInputs, System, script_changes_within};
 use crate::model::bodies::Race;
 use crate::scene::Level;
 
@@ -169,9 +169,9 @@ impl Alarms {
         if looks {
             self.steps = steps;
         }
-        let scene = machine.shaft().map(|system| system.scene());
+        let scene = machine.shaft().map(System::scene);
         let exciting = scene.map_or(Exciting::default(), Exciting::of);
-        let inputs = machine.shaft().map(|system| system.inputs());
+        let inputs = machine.shaft().map(System::inputs);
         if inputs != self.inputs.as_ref() {
             self.inputs = inputs.cloned();
             self.bearings.iter_mut().for_each(BearingAlarms::begin);
