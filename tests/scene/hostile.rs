@@ -143,7 +143,7 @@ pub fn read_scene(text: &str) -> Option<Scene> {
 pub fn start_scene(scene: &Scene) -> bool {
     documentation::page(scene, &|_| true);
     let Ok(mut simulation) = Simulation::new(scene) else { return false };
-    render(&simulation, "bearing").unwrap();
+    render(&simulation, "bearing", &|_| true).unwrap();
     if simulation.advance(STEP).is_ok() {
         let values = Variables::new(scene).values(simulation.inputs(), simulation.outputs());
         assert!(values.iter().all(|value| value.is_finite()), "{values:?}");

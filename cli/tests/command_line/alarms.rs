@@ -44,11 +44,23 @@ fn command_line_a_pressure_that_marks_races_is_told_when_it_comes() {
         ];
         edited("thrust", &changes.each_ref().map(|(key, value)| (*key, value.as_str()))).source
     };
-    let pinion = std::fs::read_to_string(scene("shafts/pinion")).unwrap();
-    let on_shaft =
-        |end: &str| pinion.replace("[337.8,", &format!("[{},", rising(end))).replace("\"20 ms\"", "\"5 ms\"");
-    assert_ne!(on_shaft("1 kN"), pinion);
-    for (text, before) in [(alone("80 kN"), ""), (on_shaft("90 kN"), "bearing left: ")] {
+    let on_shaft = |end: &str| {
+        let bearing = |name: &str, mounting: &str| {
+            format!(
+                "[[bearing]]\nname = \"{name}\"\ncatalogue = \"6206\"\nmounting = {{ {mounting}, preload = {{ force = \"500 N\" }} }}\n"
+            )
+        };
+        "[shaft]\nspeed = \"1500 rpm\"\nmass = 2\npolar_inertia = 1e-3\ntransverse_inertia = 4e-3\n"
+            .to_string()
+            + &format!(
+                "[[shaft.load]]\nname = \"press\"\nposition = \"-10 mm\"\nforce = [0, {}, 0]\nmoment = [0, 0, 0]\n",
+                rising(end)
+            )
+            + &bearing("left", "position = \"-50 mm\"")
+            + &bearing("right", "position = \"50 mm\", direction = \"-x\"")
+            + "[load]\nduration = \"5 ms\"\noutput_interval = \"100 us\"\n"
+    };
+    for (text, before) in [(alone("80 kN"), ""), (on_shaft("25 kN"), "bearing left: ")] {
         let found = alarms(&scratch, &text);
         let [(time, said)] = &found[..] else { panic!("{found:?}") };
         assert!(*time > 2.0 && *time < 4.1, "{said}");
@@ -68,18 +80,18 @@ fn command_line_a_motion_that_loads_do_not_explain_is_told_while_it_goes_on() {
     let scratch = Scratch::new("alarms-motion");
     std::fs::copy(scene("error/high_speed"), scratch.path("high.toml")).unwrap();
     std::fs::copy(scene("whirl/one"), scratch.path("one.toml")).unwrap();
-    let alone = std::fs::read_to_string(scene("error/high_speed")).unwrap();
+    let alone = std::fs::read_to_string(scene("error/high_speed")).unwrap().replace("\"5 ms\"", "\"6 ms\"");
     let shaft = "[shaft]\nspeed = \"65217 rpm\"\nmass = \"0.2 kg\"\npolar_inertia = \"6e-5 kg m^2\"\n\
                  transverse_inertia = \"4e-5 kg m^2\"\ncentre = 0\n\
                  [[bearing]]\nname = \"only\"\nscene = \"high.toml\"\nmounting = { position = 0, direction = \"+x\" }\n\
                  [[shaft.load]]\nname = \"thrust\"\nposition = 0\nforce = [1500, 100, 0]\n\
-                 [load]\nduration = \"5 ms\"\noutput_interval = \"10 us\"\n";
+                 [load]\nduration = \"6 ms\"\noutput_interval = \"10 us\"\n";
     for (text, before) in [(alone.as_str(), ""), (shaft, "bearing only: ")] {
         let found = alarms(&scratch, text);
         let moves =
             found.iter().find(|(_, said)| said.contains("the inner race goes round forwards by up to"));
         let (time, said) = moves.unwrap_or_else(|| panic!("{found:?}"));
-        assert!(*time < 5.0 && said.starts_with(before), "{said}");
+        assert!(*time < 5.6 && said.starts_with(before), "{said}");
     }
     let two = std::fs::read_to_string(scene("whirl/two")).unwrap();
     assert_eq!(alarms(&scratch, &two), []);
