@@ -142,7 +142,6 @@ impl Bearing {
             String::new(),
             "[effects]".into(),
             "damping = \"0.02 s/m\"           # estimated: bouncing of balls ends within about 1 ms; spread a factor of 3".into(),
-            "cage = \"ideal\"                  # balls at even spacing, without a cage's mass, play and friction; \"none\": they may touch".into(),
             String::new(),
             "[inner]".into(),
             "drive = \"wrench\"".into(),

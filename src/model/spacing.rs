@@ -1,8 +1,7 @@
 //! Balls that an ideal cage keeps apart: without mass, play and friction, it holds them at even spacing around the bearing.
 //!
 //! All balls share one turn. The forces of the pockets act along the orbit, and their moments about the axis add up to nothing, as what has
-//! no mass has no moment of its own. The axis is the x axis through a centre: where the outer race is, if its motion is given, and else where
-//! it was at the start.
+//! no mass has no moment of its own. The axis is the x axis through the centre of the outer race, whose motion is given.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

@@ -81,6 +81,6 @@ fn invariant_tangents_of_a_race_in_a_carrier_are_differences_of_runs() {
 #[test]
 fn invariant_tangents_of_balls_kept_apart_are_differences_of_runs() {
     let push = |inputs: &mut Inputs, by: f64| inputs.inner.applied.force.y += by;
-    let scene = SOFT_HOUSING.replace("[effects]\n", "[effects]\ncage = \"ideal\"\n");
+    let scene = SHAFT_SUPPORT.replace("[effects]\n", "[effects]\ncage = \"ideal\"\n");
     assert_same(changes("ideal cage", &scene, push, 1.0), 1e-5);
 }

@@ -179,22 +179,23 @@ fn order_of_convergence_is_two() {
         let simulation = run(&scene, [1e-3, 1e-3], |_, _| ());
         let (state, turn) = (simulation.state(), simulation.state().spacing.clone().unwrap());
         let at = state.bodies[Race::Inner].pose.position;
-        [at.x, at.y, turn.angle * 0.02, turn.speed * 1e-5]
+        [at.x, at.y, turn.angle * 0.02]
     };
-    let ends = [4e-6, 2e-6, 1e-6, 5e-7].map(end);
-    let change = |k: usize, i: usize| (ends[k][i] - ends[k + 1][i]).abs();
-    for i in 0..4 {
-        let orders = [0, 1].map(|k| (change(k, i) / change(k + 1, i)).log2());
-        println!("{i}: {orders:?} {:e}", change(2, i));
-    }
-    for i in [1, 2] {
-        let order = (change(1, i) / change(2, i)).log2();
-        assert!((1.6..2.6).contains(&order), "{i}: {order}");
+    // Over a factor of eight in the step, against a step that is a fourth of the least.
+    let [exact, least, most] = [1.25e-7, 5e-7, 4e-6].map(end);
+    for (i, name) in ["x", "y", "angle of the cage"].into_iter().enumerate() {
+        let error = |of: [f64; 3]| (of[i] - exact[i]).abs();
+        let order = (error(most) / error(least)).log2() / 3.0;
+        println!("{name}: {order} {:e} {:e}", error(most), error(least));
+        assert!(order > 1.8, "{name}: {order}");
     }
 }
 
-/// A cage that is a body, light and smooth: the less play it has, the nearer it is to an ideal one. With play balls roll at speeds of their own
-/// while they are loaded.
+/// Steps that follow all forces, as those of a cage that is a body do.
+const FINE: (&str, &str) = ("solver.tolerance", "2e-9");
+
+/// A cage that is a body, light and smooth: the less play it has, the nearer its speed is to that of an ideal one. With play balls roll at speeds
+/// of their own while they are loaded. Torque is not compared: balls knock in the pockets of a body, which takes a few per cent.
 #[test]
 fn limit_a_light_smooth_cage_goes_to_an_ideal_one_with_its_play() {
     let body = |clearance: f64| {
@@ -203,27 +204,27 @@ fn limit_a_light_smooth_cage_goes_to_an_ideal_one_with_its_play() {
              guidance_clearance = \"20 um\", land_diameter = \"42 mm\", land_width = \"2 mm\" }}"
         );
         let friction = [("friction.ball_cage", "0.0"), ("friction.cage_race", "0.0")];
-        scene(FREE, &[("effects.cage", "true"), ("cage", &section), friction[0], friction[1]])
+        scene(FREE, &[("effects.cage", "true"), ("cage", &section), friction[0], friction[1], FINE])
     };
     let mean = |scene: &Scene| {
-        let (mut sums, mut count) = ([0.0; 3], 0.0);
+        let (mut sums, mut count) = ([0.0; 2], 0.0);
         run(scene, [5e-5, 30e-3], |outputs, _| {
             if outputs.time > 10e-3 {
-                let now = [outputs.cage_speed, outputs.friction_torque, outputs.inner.pose.position.y];
-                sums = [0, 1, 2].map(|k| sums[k] + now[k]);
+                let now = [outputs.cage_speed, outputs.inner.pose.position.y];
+                sums = [0, 1].map(|k| sums[k] + now[k]);
                 count += 1.0;
             }
         });
         sums.map(|sum| sum / count)
     };
-    let ideal = mean(&scene(FREE, &[]));
+    let ideal = mean(&scene(FREE, &[FINE]));
     let [tight, loose] = [40e-6, 320e-6].map(|clearance| {
         let body = mean(&body(clearance));
-        [0, 1, 2].map(|k| (body[k] / ideal[k] - 1.0).abs())
+        [0, 1].map(|k| (body[k] / ideal[k] - 1.0).abs())
     });
     println!("{ideal:?}; {tight:?} {loose:?}");
     assert!(tight[0] < 0.4 * loose[0] && tight[0] < 2e-3, "speed {} {}", tight[0], loose[0]);
-    assert!(tight[1] < 0.02 && tight[2] < 0.01, "torque {} displacement {}", tight[1], tight[2]);
+    assert!(tight[1] < 0.01, "displacement {}", tight[1]);
 }
 
 /// From rest balls without load stay behind, and strike each other unless something keeps them apart.
@@ -320,9 +321,10 @@ fn an_outer_race_that_forces_move_is_refused_beside_an_ideal_cage() {
     ];
     let body = [("outer.mass", "0.3"), ("outer.inertia", "[1e-4, 1e-4, 1e-4]")];
     let supported = [
-        ("outer.support.stiffness", "[1e8, 1e8, 1e8, 1e4, 1e4]"),
-        ("outer.mass", "0.3"),
-        ("outer.inertia", "[1e-4, 1e-4, 1e-4]"),
+        ("outer.support.stiffness", "[1e8, 1e8, 1e8, 1e4, 1e4, 1e4]"),
+        ("outer.support.mass", "0.3"),
+        ("outer.support.inertia", "[1e-4, 1e-4, 1e-4]"),
+        ("outer.drive", "\"pose\""),
     ];
     for changes in [[held.as_slice(), body.as_slice()].concat(), supported.to_vec()] {
         let why = Scene::edited(FREE, changes.iter().copied()).unwrap_err().to_string();

@@ -213,7 +213,7 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                 // A housing is added to the shaft that is shipped, bearings take the place of those with their names.
                 let of_shaft =
                     ["housing", "bearing", "mesh"].map(|key| table.get(key).is_some_and(Value::is_array));
-                if of_shaft.contains(&true) {
+                if of_shaft.contains(&true) || table.contains_key("frame") {
                     // Bearings that name their shaft are of a file with several.
                     let named = |bearings: &Vec<Value>| bearings.iter().any(|one| one.get("shaft").is_some());
                     let several =
