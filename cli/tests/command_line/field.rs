@@ -74,7 +74,7 @@ fn independent_data_fields_of_a_table_sum_up_to_the_forces_of_boundary_elements(
     let rows: Vec<&str> = [2, oblique].iter().map(|line| data.lines().nth(*line).unwrap()).collect();
     std::fs::write(scratch.path("cases.csv"), format!("{head}\n{}\n{}\n", rows[0], rows[1])).unwrap();
     let folder = scratch.path("fields");
-    let output = roulement(&["contact", &scratch.path("cases.csv"), "--field", &folder, "--cells", "32"]);
+    let output = roulement(&["contact", &scratch.path("cases.csv"), "--field", &folder, "--cells", "64"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let printed = String::from_utf8(output.stdout).unwrap();
     let cases = scratch.read("cases.csv");
