@@ -20,6 +20,15 @@ class Equilibrium:
     life: SimpleNamespace | None
     report: dict[str, Any]
 
+@dataclass(frozen=True)
+class MachineEquilibrium:
+    bearings: dict[str, SimpleNamespace]
+    meshes: dict[str, SimpleNamespace]
+    modes: list[SimpleNamespace]
+    critical_speeds: list[SimpleNamespace]
+    report: dict[str, Any]
+
 def equilibrium(
-    scene: Scene, gyroscopic: Literal["outer-race-control", "none", "friction"] = "outer-race-control"
-) -> Equilibrium: ...
+    scene: Scene,
+    gyroscopic: Literal["outer-race-control", "inner-race-control", "least-heat", "none", "friction"] | None = None,
+) -> Equilibrium | MachineEquilibrium: ...
