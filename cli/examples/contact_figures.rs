@@ -12,6 +12,7 @@ use roulement::kalker::half_space::{HalfSpace, cells};
 use roulement::kalker::linear::Scales;
 use roulement::kalker::nonlinear::Kalker;
 use roulement::scene::CreepLaw;
+use roulement_cli::field::figure::shade;
 use roulement_cli::report::fine::{FINE, Key, LABEL, LINE, MARGIN, axes, headed, picture};
 use roulement_cli::report::style::{Area, COLOURS, Drawn};
 use serde::Deserialize;
@@ -145,12 +146,6 @@ fn complete_slip(contact: &RollingContact) -> [f64; 2] {
         }
     }
     force
-}
-
-/// Light where nothing is used of the friction limit, dark where all is.
-fn shade(fraction: f64) -> RGBColor {
-    let mix = |light: f64, dark: f64| (light + (dark - light) * fraction.min(1.0)) as u8;
-    RGBColor(mix(240.0, 0.0), mix(245.0, 60.0), mix(255.0, 140.0))
 }
 
 /// Traction over its bound on the ellipse: 1 where the contact slides.

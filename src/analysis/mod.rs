@@ -4,6 +4,7 @@
 pub mod auto;
 pub mod condensed;
 pub mod estimate;
+mod kept_apart;
 mod looked_at;
 pub mod natural_frequency;
 mod settled;

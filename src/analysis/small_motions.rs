@@ -18,6 +18,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector, DVectorView, Matrix3, Matrix6, Vector3};
 
+use super::kept_apart::{Caged, OF_BALL, kept_apart};
 use super::tangents::{Tangents, by_first, first_ball};
 use crate::contact::BallMotion;
 use crate::dynamics::carried::SeatMotion;
@@ -28,11 +29,6 @@ use crate::model::structure::Map;
 use crate::model::{Conditions, Model};
 use crate::numerics::eigen::eigenpairs;
 
-/// Unknowns of a ball: place, velocity, angular velocity.
-const OF_BALL: usize = 9;
-/// Which of its places are along the radius and along the orbit.
-const RADIAL: usize = 1;
-const ALONG: usize = 2;
 /// [-] eigenvalues whose imaginary part is a smaller part of their size do not swing.
 const SWINGS: f64 = 1e-6;
 
@@ -142,7 +138,11 @@ impl SmallMotions {
         let accelerations = accelerations.unwrap_or_else(|| forces * f64::NAN);
         matrix.rows_mut(size, size).copy_from(&accelerations);
         matrix.view_mut((0, size), (size, size)).fill_with_identity();
-        let (matrix, lift) = kept_apart(matrix, 2 * size, bearings);
+        let apart = bearings.iter().map(|of| Caged {
+            balls: of.state.balls.len(),
+            speed: of.model.spacing.is_some().then(|| mean_orbital_speed(of.state)),
+        });
+        let (matrix, lift) = kept_apart(matrix, 2 * size, &apart.collect::<Vec<_>>());
         Self { matrix, mass, balls, lift }
     }
 
@@ -392,54 +392,6 @@ impl Seated {
         world.fixed_rows_mut::<3>(3).copy_from(&turned);
         world
     }
-}
-
-/// Equations of balls that ideal cages keep apart, from those of free ones, and all unknowns by those that are left. Pockets act on the rates
-/// along the orbit, and their sum is nothing.
-fn kept_apart(
-    free: DMatrix<f64>,
-    first: usize,
-    bearings: &[Running<'_>],
-) -> (DMatrix<f64>, Option<DMatrix<f64>>) {
-    let ideal: usize =
-        bearings.iter().filter(|of| of.model.spacing.is_some()).map(|of| of.state.balls.len() - 1).sum();
-    if ideal == 0 {
-        return (free, None);
-    }
-    let left = free.nrows() - 2 * ideal;
-    let (mut lift, mut fall) = (DMatrix::zeros(free.nrows(), left), DMatrix::zeros(left, free.nrows()));
-    let [mut from, mut to] = [first; 2];
-    for k in 0..first {
-        (lift[(k, k)], fall[(k, k)]) = (1.0, 1.0);
-    }
-    for bearing in bearings {
-        let (count, apart) = (bearing.state.balls.len(), bearing.model.spacing.is_some());
-        // In an ideal cage all have `u_along = s` and `v_along = s' + W u_radial`: s and s' take the places of those of the first ball.
-        let (speed, share, common) = (mean_orbital_speed(bearing.state), 1.0 / count as f64, to);
-        for ball in 0..count {
-            let mut radial = 0;
-            for k in 0..OF_BALL {
-                if !apart || ball == 0 || (k != ALONG && k != 3 + ALONG) {
-                    if k == RADIAL {
-                        radial = to;
-                    }
-                    let own = apart && (k == ALONG || k == 3 + ALONG);
-                    (lift[(from + k, to)], fall[(to, from + k)]) =
-                        if own { (1.0, share) } else { (1.0, 1.0) };
-                    to += 1;
-                } else {
-                    let shared = common + k;
-                    (lift[(from + k, shared)], fall[(shared, from + k)]) = (1.0, share);
-                }
-            }
-            if apart {
-                lift[(from + 3 + ALONG, radial)] = speed;
-                fall[(common + 3 + ALONG, from + RADIAL)] = -share * speed;
-            }
-            from += OF_BALL;
-        }
-    }
-    (&fall * free * &lift, Some(lift))
 }
 
 /// Axes of each ball as columns: axial, radial, along the orbit.

@@ -82,9 +82,7 @@ impl StepEnd {
         let solved = Solved { workspace, guide: model.cage_guide() };
         let n_balls = workspace.balls.len();
         let mut totals = Totals::of(&solved, n_balls);
-        if let (Some(spacing), Some(trial), None) =
-            (&model.spacing, &workspace.spacing, &model.bodies[Race::Outer])
-        {
+        if let (Some(spacing), Some(trial)) = (&model.spacing, &workspace.spacing) {
             let places = (0..n_balls).map(|ball| workspace.groups.position(ball));
             totals.add(Race::Outer.into(), spacing::on_guide(spacing, &trial.end, places));
         }
@@ -364,7 +362,7 @@ pub(super) fn take_forces(model: &Model, state: &mut State, boundary: &Boundary,
     let mut totals = Totals::of(contacts, state.balls.len());
     if let Some(spacing) = &model.spacing {
         spacing::make_consistent(spacing, model, state, boundary);
-        if let (Some(turn), None) = (&state.spacing, &model.bodies[Race::Outer]) {
+        if let Some(turn) = &state.spacing {
             let places = state.balls.iter().map(|ball| ball.position);
             totals.add(Race::Outer.into(), spacing::on_guide(spacing, turn, places));
         }

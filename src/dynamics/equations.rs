@@ -66,8 +66,7 @@ impl<'a> BearingStep<'a> {
             PerRace::new(|race| ContactGroup::filled(&contacts[race].evaluate(&motion, &races[race])))
         });
         workspace.races = races;
-        workspace.spacing =
-            start.spacing.as_ref().map(|turn| SpacingTrial::new(turn, model, boundary, &step));
+        workspace.spacing = start.spacing.as_ref().map(|turn| SpacingTrial::new(turn, boundary, &step));
         if let (Some(spacing), Some(trial)) = (&model.spacing, &workspace.spacing) {
             let ball = (&model.bearing.ball, &step);
             workspace.groups.keep_apart(&start.balls, &spacing.azimuths, trial, ball);

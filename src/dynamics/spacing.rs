@@ -312,9 +312,9 @@ pub struct SpacingTrial {
 
 impl SpacingTrial {
     /// A turn in a step that ends under a boundary.
-    pub fn new(start: &CommonTurn, model: &Model, boundary: &Boundary, step: &HhtStep) -> Self {
+    pub fn new(start: &CommonTurn, boundary: &Boundary, step: &HhtStep) -> Self {
         let mut end = start.clone();
-        (end.centre, end.velocity) = centre(model, boundary, start);
+        (end.centre, end.velocity) = centre(boundary);
         Self {
             ahead: start.angle + (start.speed + 0.5 * start.acceleration * step.h) * step.h,
             drift: (end.velocity - start.velocity) / step.h,
@@ -374,22 +374,17 @@ impl SpacingTrial {
     }
 }
 
-/// Centre of the orbits \[m] and its velocity [m/s] under a boundary.
-fn centre(model: &Model, boundary: &Boundary, before: &CommonTurn) -> (Vector3<f64>, Vector3<f64>) {
-    match model.bodies[Race::Outer] {
-        None => {
-            let (pose, twist) = &boundary.motion[Race::Outer];
-            (pose.position, twist.velocity)
-        }
-        Some(_) => (before.centre, Vector3::zeros()),
-    }
+/// Centre of the orbits \[m] and its velocity [m/s] under a boundary: those of the outer race, whose motion is given.
+fn centre(boundary: &Boundary) -> (Vector3<f64>, Vector3<f64>) {
+    let (pose, twist) = &boundary.motion[Race::Outer];
+    (pose.position, twist.velocity)
 }
 
 /// Makes accelerations and forces of balls that are kept apart consistent with the total force on each \[N], and the turn with what is
 /// imposed.
 pub fn make_consistent(spacing: &Spacing, model: &Model, state: &mut State, boundary: &Boundary) {
     let Some(turn) = &mut state.spacing else { return };
-    (turn.centre, turn.velocity) = centre(model, boundary, turn);
+    (turn.centre, turn.velocity) = centre(boundary);
     let mass = model.bearing.ball.mass;
     let (mut inertia, mut moment) = (0.0, 0.0);
     for ((ball, azimuth), pocket) in state.balls.iter_mut().zip(&spacing.azimuths).zip(&mut turn.pockets) {
@@ -421,7 +416,7 @@ fn turn_directions(angle: f64, [c, s]: [f64; 2]) -> Directions {
     Directions { radial: Vector3::new(0.0, cos, sin), tangential: Vector3::new(0.0, -sin, cos) }
 }
 
-/// Force and moment of the guide that holds the centre of an ideal cage: on the outer race about its origin \[m], where its motion is given.
+/// Force and moment of the guide that holds the centre of an ideal cage: on the outer race about its origin \[m].
 pub fn on_guide(spacing: &Spacing, turn: &CommonTurn, places: impl Iterator<Item = Vector3<f64>>) -> Wrench {
     let mut sum = Wrench::default();
     for ((azimuth, pocket), place) in spacing.azimuths.iter().zip(&turn.pockets).zip(places) {

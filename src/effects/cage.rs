@@ -112,6 +112,11 @@ impl Settings {
     }
 }
 
+/// What an ideal cage asks for: the force that it holds its centre by is on the outer race, and none of its equations of motion.
+pub const IDEAL_CAGE_NEEDS: &str = "\"ideal\" keeps balls apart about the outer race, whose motion must be given (outer.drive = \"fixed\" or \"pose\", on a \
+     shaft in the ground, straight): take \"none\", or a cage of [cage], where forces move that race: under a wrench, on a hinge or a \
+     support, in a housing, on a hub, where it slides, or in a bore that lies off or is tilted";
+
 const INERTIA: Range = Range::above(0.0, 1e4, "kg m2");
 /// Lengths; those of the bearing narrow it.
 const LENGTH: Range = Range::above(0.0, 1e3, "m");

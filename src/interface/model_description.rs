@@ -70,9 +70,10 @@ pub fn render(machine: &impl Parts, name: &str, wanted: Wanted<'_>) -> std::io::
             ("shaft on ball bearings", &scene.title, &scene.source, load, Dependencies::Point)
         }
         None => {
-            let scene = bearings().next().expect("a machine without a shaft is a bearing").scene();
-            let load = (scene.load.duration.0, scene.load.output_interval.0);
-            ("ball bearing", &scene.title, &scene.source, load, scene.interface.dependencies)
+            let alone =
+                bearings().next().ok_or_else(|| std::io::Error::other("there is no bearing"))?.scene();
+            let load = (alone.load.duration.0, alone.load.output_interval.0);
+            ("ball bearing", &alone.title, &alone.source, load, alone.interface.dependencies)
         }
     };
     let step: fn(&Simulation) -> f64 = match machine.shaft() {

@@ -2,6 +2,7 @@
 
 use super::numbers::STEP;
 use super::{BearingSection, Condition, Drive, Giver, Group, Scene, SceneError, Schedule};
+use crate::effects::cage::IDEAL_CAGE_NEEDS;
 use crate::effects::defects::On;
 use crate::schema::numbers::Range;
 use crate::schema::{Race, check_phases};
@@ -123,11 +124,9 @@ fn races(scene: &Scene) -> Result<(), SceneError> {
             }
         }
     }
-    let floats = scene.outer.drive == Drive::Wrench || scene.effects.support.sections[1].is_some();
-    if scene.effects.cage.is_ideal() && floats {
-        let why = "\"ideal\" keeps balls apart about the outer race, whose motion must be given: take \"none\", or a cage of [cage], \
-                   where forces move that race (outer.drive = \"wrench\", outer.support)";
-        return Err(SceneError::conflict("effects.cage", why));
+    let is_given = matches!(scene.outer.drive, Drive::Fixed | Drive::Pose);
+    if scene.effects.cage.is_ideal() && (!is_given || scene.effects.support.sections[1].is_some()) {
+        return Err(SceneError::conflict("effects.cage", IDEAL_CAGE_NEEDS));
     }
     if scene.inner.drive == Drive::Hinge {
         let why = "a hinge is offered for the outer race; hold the inner race by displacements and rotations in \

@@ -7,6 +7,7 @@ use roulement::model::bodies::Race;
 use roulement::model::spacing::{CommonTurn, Spacing};
 use roulement::model::state::BallState;
 use roulement::scene::Scene;
+use roulement::scene::system::SystemScene;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::{Rows, play};
@@ -326,11 +327,30 @@ fn an_outer_race_that_forces_move_is_refused_beside_an_ideal_cage() {
         ("outer.support.inertia", "[1e-4, 1e-4, 1e-4]"),
         ("outer.drive", "\"pose\""),
     ];
-    for changes in [[held.as_slice(), body.as_slice()].concat(), supported.to_vec()] {
+    let hinged = [("outer.drive", "\"hinge\"")];
+    for changes in [
+        [held.as_slice(), body.as_slice()].concat(),
+        supported.to_vec(),
+        [hinged.as_slice(), body.as_slice()].concat(),
+    ] {
         let why = Scene::edited(FREE, changes.iter().copied()).unwrap_err().to_string();
         assert!(why.contains("effects.cage") && why.contains("whose motion must be given"), "{why}");
         let other = changes.iter().copied().chain([("effects.cage", "\"none\"")]);
         let why = Scene::edited(FREE, other).err().map_or(String::new(), |why| why.to_string());
         assert!(!why.contains("effects.cage"), "{why}");
     }
+    // On shafts: in a housing, and in a bore that is tilted, which a structure stands for; straight in the ground it is held.
+    let housing = include_str!("../../scenes/shafts/housing.toml");
+    let pinion = include_str!("../../scenes/shafts/pinion.toml");
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/shafts");
+    let parsed = |text: &str| {
+        let text = text.replace("[[bearing]]\n", "[[bearing]]\nset = { effects = { cage = \"ideal\" } }\n");
+        SystemScene::parse(&text, None, &folder).err().map_or(String::new(), |why| why.to_string())
+    };
+    let tilted = pinion.replacen("direction = \"-x\"", "direction = \"-x\", misalignment = { ry = 1e-4 }", 1);
+    for text in [housing, &tilted] {
+        let why = parsed(text);
+        assert!(why.contains("effects.cage") && why.contains("whose motion must be given"), "{why}");
+    }
+    assert_eq!(parsed(pinion), "");
 }

@@ -131,8 +131,8 @@ fn rounded(value: f64) -> String {
     }
 }
 
-/// From light at 0 to dark at 1.
-fn shade(fraction: f64) -> RGBColor {
+/// Colour of a part of the largest value: from light at 0 to dark at 1.
+pub fn shade(fraction: f64) -> RGBColor {
     let mix = |light: f64, dark: f64| (light + (dark - light) * fraction.min(1.0)) as u8;
     RGBColor(mix(240.0, 0.0), mix(245.0, 60.0), mix(255.0, 140.0))
 }

@@ -221,11 +221,9 @@ impl<'a> SystemStep<'a> {
     fn assemble_structures(&mut self) -> f64 {
         self.trials.iter_mut().for_each(StructureTrial::clear);
         let mut tolerance = f64::INFINITY;
-        let mut races = vec![0.0; self.structures.len()];
         for Joint { bearing, race, structure, seat } in self.joined.joints {
             let step = &self.bearings[*bearing];
             tolerance = tolerance.min(step.force_tolerance);
-            races[*structure] += 1.0;
             if let Some(trial) = &step.workspace.bodies[*race]
                 && let Some(motion) = trial.seat()
             {
@@ -239,11 +237,12 @@ impl<'a> SystemStep<'a> {
             }
         }
         let mut norm = 0.0;
-        for ((one, trial), races) in self.structures.iter().zip(&mut self.trials).zip(races) {
+        for (index, (one, trial)) in self.structures.iter().zip(&mut self.trials).enumerate() {
             trial.assemble(one.model, one.start, one.load, &self.step);
             let forces = trial.residual.component_div(one.scales);
             // All its races leave something in it: without this, each of many would be held to a tighter tolerance than one of a pair.
-            let tolerance = tolerance * f64::max(0.5 * races, 1.0);
+            let races = self.joined.joints.iter().filter(|joint| joint.structure == index).count();
+            let tolerance = tolerance * f64::max(0.5 * races as f64, 1.0);
             norm = larger(norm, largest(forces.iter()) / tolerance);
         }
         norm

@@ -9,6 +9,7 @@ use toml::{Table, Value};
 use super::mesh::SceneSpring;
 use super::{MountedScene, SystemLoad};
 use crate::catalogue::Request;
+use crate::effects::cage::IDEAL_CAGE_NEEDS;
 use crate::scene::{Scene, SceneError};
 use crate::schema::{
     AxialSeat, HousingSection, Mounting, MountingDirection, ShaftSection, StiffnessSection, explain, regular,
@@ -109,6 +110,10 @@ impl WrittenBearing {
         let outer_speed = outer_shaft.map(|shaft| given.shafts[shaft].1);
         mount(&mut table, given, (given.shafts[shaft].1, outer_speed), mounting.direction);
         let scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
+        // A housing, a hub or the bore that a ring slides in moves it by forces.
+        if mounting.seats_outer_ring() && scene.effects.cage.is_ideal() {
+            return Err(inside(SceneError::conflict("effects.cage", IDEAL_CAGE_NEEDS)));
+        }
         Ok(MountedScene { name, shaft, outer_shaft, mounting, scene })
     }
 }
