@@ -190,3 +190,31 @@ impl Alarms {
         told
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is told of windows with these forces \[N] that loads do not explain.
+    fn told(forces: &[f64]) -> Vec<Option<String>> {
+        let mut alarms = BearingAlarms::default();
+        let judged = forces
+            .iter()
+            .map(|force| alarms.judge(Unexplained { force: *force, applied: 1000.0, largest: 1000.0 }, None));
+        judged.collect()
+    }
+
+    #[test]
+    fn closed_form_a_motion_is_said_to_grow_after_four_windows_of_growth_and_once() {
+        let grows = told(&[10.0, 20.0, 40.0, 80.0, 160.0, 320.0]);
+        assert!(grows[..4].iter().all(Option::is_none) && grows[5].is_none(), "{grows:?}");
+        assert!(grows[4].as_deref().unwrap().contains("grew from 80.0 to 160.0 N"), "{grows:?}");
+        // Neither a motion that stays, nor one that grows too little or by fits, nor one that is small beside the load.
+        for forces in
+            [[100.0; 6], [100.0, 120.0, 144.0, 173.0, 207.0, 249.0], [50.0, 100.0, 90.0, 180.0, 170.0, 340.0]]
+        {
+            assert!(told(&forces).iter().all(Option::is_none), "{forces:?}");
+        }
+        assert!(told(&[0.5, 1.0, 2.0, 4.0, 8.0, 16.0]).iter().all(Option::is_none));
+    }
+}
