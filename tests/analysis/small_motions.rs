@@ -154,11 +154,11 @@ impl Case {
         // Both directions may have nearly one frequency, and not one growth.
         let way = if frequency < 0.0 { "backward" } else { "forward" };
         let of = |motions: &Vec<Motion>| {
-            let turning = motions.iter().filter(|motion| motion.shape.contains(way)).cloned();
-            let turning: Vec<Motion> = turning.collect();
-            // A race that is held differently in two directions swings to and fro.
-            let these = if turning.is_empty() { motions } else { &turning };
-            nearest(these, frequency.abs(), |motion| motion.frequency).clone()
+            let first = nearest(motions, frequency.abs(), |motion| motion.frequency);
+            let beside = |motion: &&Motion| {
+                motion.shape.contains(way) && (motion.frequency / first.frequency - 1.0).abs() < 1e-3
+            };
+            motions.iter().find(beside).unwrap_or(first).clone()
         };
         let motions = self.motions.each_ref().map(of);
         // Only what stands out of the series is found by it.
