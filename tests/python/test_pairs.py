@@ -69,7 +69,7 @@ def cofmupy_python():
     python = environment / "bin" / "python"
     if not (installed.exists() and installed.read_text() == requirements.read_text()):
         subprocess.run([sys.executable, "-m", "venv", environment], check=True)
-        pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", requirements]
+        pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-compile", "-r", requirements]
         subprocess.run(pip, check=True)
         installed.write_text(requirements.read_text())
     return python

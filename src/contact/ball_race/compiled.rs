@@ -49,15 +49,20 @@ impl ContactModel<'_> {
     }
 }
 
-/// That by the plain path, where it holds. Compiled twice, as contacts of many balls are ([`super::many`]): the start of an instance spends
-/// half of its time here.
+/// That by the plain path, where it holds. The start of an instance spends half of its time here, so it is compiled with vectors; processors
+/// without them take the general path, which has the same bits.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn plain_on_ball(
     contact: &ContactModel<'_>,
     ball: &BallMotion<Own>,
     race: &RaceMotion<f64>,
 ) -> Option<Wrench<Own>> {
-    if matches!(contact.law, Law::Frictionless) {
+    #[cfg(feature = "vectors")]
+    let is_compiled =
+        multiversion::target::target_cfg_f!(any(not(target_arch = "x86_64"), target_feature = "avx2"));
+    #[cfg(not(feature = "vectors"))]
+    let is_compiled = true;
+    if !is_compiled || matches!(contact.law, Law::Frictionless) {
         return None;
     }
     let (contact, oblique) = contact.rolling::<Own, false>(ball, &race.constant());
