@@ -1,10 +1,13 @@
 //! Films of oil between balls and races: single contacts against independent data (tests/data/effects/README.md) and closed forms.
 
+use roulement::contact::film::mixed::MixedFriction;
 use roulement::contact::film::rolling::{self, Inlet};
 use roulement::contact::film::thickness::{Ellipse, inlet_factor};
-use roulement::contact::film::{Film, Loading, Lubricant, RacewayFilm, Supply};
+use roulement::contact::film::traction::ShearPressure;
+use roulement::contact::film::{Film, FilmForces, Loading, Lubricant, RacewayFilm, Supply};
 use roulement::contact::hertz::HertzContact;
 use roulement::effects::film::oil::Oil;
+use roulement::numerics::scalar::Dual;
 
 const FILMS: &str = include_str!("../data/effects/ehl_film.csv");
 const TRACTION: &str = include_str!("../data/effects/ehl_traction.csv");
@@ -24,7 +27,9 @@ const OIL: Lubricant = Lubricant {
     conductivity: 0.14,
     eyring_stress: 6e6,
     limiting_shear: 0.08,
+    shear_pressure: ShearPressure::Mean,
     roughness: 0.1e-6,
+    mixed_friction: MixedFriction::OlverSpikes,
     inlet_heating: false,
     rolling_resistance: true,
 };
@@ -61,7 +66,7 @@ fn with_contact<T>(
     let axes = [hertz.semi_axis_rolling * root, hertz.semi_axis_transverse * root];
     let ellipse = Ellipse::new(axes, load, MODULUS, along);
     let raceway = RacewayFilm::new(OIL, MODULUS, ellipse);
-    let supply = Supply { viscosity: VISCOSITY, lubrication: 1.0, replenishment: 1.0 };
+    let supply = Supply { viscosity: VISCOSITY, lubrication: 1.0, replenishment: 1.0, dry_share: 0.0 };
     let area = std::f64::consts::PI * axes[0] * axes[1];
     let film = Film::new(&raceway, supply, 0.1);
     of(&film, &Loading { load, speed, slip, curvature: along, area })
@@ -129,6 +134,160 @@ fn independent_data_traction_at_mean_pressure() {
     }
     assert_eq!(seen, 127);
     assert!(near > 40, "{near}");
+}
+
+/// Places and weights of Gauss and Legendre's quadrature over 0 to 1.
+fn gauss(points: usize) -> Vec<[f64; 2]> {
+    let legendre = |x: f64| {
+        let (mut before, mut now) = (1.0, x);
+        for k in 2..=points {
+            let k = k as f64;
+            (before, now) = (now, ((2.0 * k - 1.0) * x * now - (k - 1.0) * before) / k);
+        }
+        (now, points as f64 * (x * now - before) / (x * x - 1.0))
+    };
+    let place = |i: usize| {
+        let guess = (std::f64::consts::PI * (i as f64 + 0.75) / (points as f64 + 0.5)).cos();
+        (0..20).fold(guess, |x, _| x - legendre(x).0 / legendre(x).1)
+    };
+    (0..points)
+        .map(|i| {
+            let x = place(i);
+            [0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * legendre(x).1.powi(2))]
+        })
+        .collect()
+}
+
+#[test]
+fn order_of_convergence_of_shear_integrated_over_the_ellipse() {
+    // Against the data's own integral over the ellipse, which has five digits.
+    let hertz = Lubricant { shear_pressure: ShearPressure::Hertz, ..OIL };
+    let worst = |shear: &dyn Fn(f64, f64) -> f64| {
+        let apart = rows(TRACTION).map(|(_, row)| {
+            let [_, _, _, slip, film, peak, _, local, ..] = row[..] else { panic!("{row:?}") };
+            (shear(2.0 / 3.0 * peak, slip / film) / local - 1.0).abs()
+        });
+        apart.fold(0.0, f64::max)
+    };
+    let of = |points: usize| {
+        let rings = gauss(points);
+        worst(&|mean, rate| hertz.shear_over_ellipse(VISCOSITY, mean, rate, &rings).friction)
+    };
+    let errors = [3, 6, 12, 24].map(of);
+    println!("3, 6, 12, 24 places: {errors:?}");
+    // The edge of the limiting stress leaves the order two, what is smooth converges faster.
+    assert!(errors.windows(2).all(|pair| pair[1] < pair[0] / 4.0), "{errors:?}");
+    assert!(errors[3] < 2e-5, "{errors:?}");
+    // What simulations take has six of them.
+    let taken = worst(&|mean, rate| hertz.shear(VISCOSITY, mean, rate).friction);
+    assert!((taken / errors[1] - 1.0).abs() < 1e-9 && taken < 0.005, "{taken} {errors:?}");
+}
+
+#[test]
+fn independent_data_slope_of_light_contacts() {
+    // As the documents have it: up to ten times steeper where a light contact hardly slips.
+    let hertz = Lubricant { shear_pressure: ShearPressure::Hertz, ..OIL };
+    let steepest = rows(TRACTION).fold(0.0f64, |most, (_, row)| {
+        let [load, _, _, slip, film, peak, ..] = row[..] else { panic!("{row:?}") };
+        let (mean, rate) = (2.0 / 3.0 * peak, slip / film);
+        let ratio = hertz.shear(VISCOSITY, mean, rate).friction / OIL.shear(VISCOSITY, mean, rate).friction;
+        if load <= 100.0 { most.max(ratio) } else { most }
+    });
+    assert!(steepest > 9.0 && steepest < 11.0, "{steepest}");
+    // All oil at its limit carries the same share of any pressure.
+    let limited = hertz.shear(VISCOSITY, 1e9, 1e12);
+    close(limited.friction, OIL.limiting_shear, 2e-3, "limiting shear");
+    assert!(limited.thinning < 1e-6, "{limited:?}");
+    let viscous = hertz.shear(VISCOSITY, 1e8, 1.0);
+    assert!(viscous.thinning > 0.999_999, "{viscous:?}");
+}
+
+/// Films of all laws.
+fn of_all_laws(mut see: impl FnMut(&Film<'_>, &Loading<f64>)) {
+    for mixed_friction in [MixedFriction::OlverSpikes, MixedFriction::Erf, MixedFriction::Skf] {
+        for shear_pressure in [ShearPressure::Mean, ShearPressure::Hertz] {
+            let lubricant = Lubricant { mixed_friction, shear_pressure, inlet_heating: true, ..OIL };
+            for (load, speed, slip) in [
+                (20.0, 5.0, 1e-3),
+                (100.0, 0.1, 1e-4),
+                (500.0, 5.0, 0.05),
+                (1500.0, 0.02, 1e-3),
+                (1500.0, 20.0, 1.0),
+            ] {
+                with_contact(true, load, speed, slip, |film, loading| {
+                    let raceway = RacewayFilm::new(lubricant, MODULUS, film.raceway.ellipse);
+                    let supply = Supply { dry_share: 0.3, ..film.supply };
+                    see(&Film::new(&raceway, supply, film.dry_friction), loading);
+                });
+            }
+        }
+    }
+}
+
+#[test]
+fn exact_derivatives_of_all_laws() {
+    let numbers = |forces: FilmForces<f64>| [forces.friction, forces.viscous_share, forces.rolling_force];
+    let mut seen = 0;
+    of_all_laws(|film, loading| {
+        let Loading { load, speed, slip, curvature, area } = *loading;
+        let x = [load, speed, slip, curvature, area];
+        let of = |x: [f64; 5]| {
+            let [load, speed, slip, curvature, area] = x;
+            numbers(film.forces(&Loading { load, speed, slip, curvature, area }))
+        };
+        let [load, speed, slip, curvature, area] = std::array::from_fn(|i| Dual::<5>::variable(x[i], i, 1.0));
+        let exact = film.forces(&Loading { load, speed, slip, curvature, area });
+        let exact = [exact.friction, exact.viscous_share, exact.rolling_force];
+        for i in 0..5 {
+            let change = 1e-5 * x[i];
+            let [up, down] = [change, -change].map(|change| {
+                let mut x = x;
+                x[i] += change;
+                of(x)
+            });
+            for (of, exact) in exact.iter().enumerate() {
+                let difference = (up[of] - down[of]) / (2.0 * change);
+                // Over what a change of all of a quantity would make.
+                let error = (exact.derivatives[i] - difference).abs() * x[i] / exact.value.abs();
+                assert!(error < 1e-7, "{:?} of {of} by {i}: {error}", film.raceway.lubricant);
+                seen += 1;
+            }
+        }
+    });
+    assert_eq!(seen, 6 * 5 * 5 * 3);
+}
+
+#[test]
+fn invariant_mixed_friction_of_all_laws_is_between_that_of_film_and_roughness() {
+    of_all_laws(|film, loading| {
+        let full = {
+            let smooth =
+                Lubricant { roughness: 1e-12, mixed_friction: MixedFriction::Erf, ..film.raceway.lubricant };
+            let raceway = RacewayFilm::new(smooth, MODULUS, film.raceway.ellipse);
+            Film::new(&raceway, film.supply, film.dry_friction).forces(loading).friction
+        };
+        let law = film.raceway.lubricant.mixed_friction;
+        let mut shares = vec![];
+        for lubrication in [1.0, 0.5, 0.2, 1e-9] {
+            // As a whole bearing has it: 1500 rpm, 32 mm2/s, 46 mm.
+            let dry_share = law.of_bearing(1500.0, 32.0, 0.046, lubrication);
+            let supply = Supply { lubrication, dry_share, ..film.supply };
+            let mixed = Film::new(film.raceway, supply, film.dry_friction).forces(loading).friction;
+            shares.push((mixed - full) / (film.dry_friction - full));
+        }
+        // More of it is dry, the less oil there is; all at last.
+        assert!(shares.windows(2).all(|pair| pair[1] >= pair[0] - 1e-12), "{law:?}: {shares:?}");
+        assert!(shares[0] >= -1e-12 && (shares[3] - 1.0).abs() < 1e-6, "{law:?}: {shares:?}");
+    });
+}
+
+#[test]
+fn published_dry_share_of_a_whole_bearing() {
+    // By independent code, all of a 6206.
+    for line in include_str!("../data/effects/skf_6206.csv").lines().skip(1) {
+        let row: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        close(MixedFriction::Skf.of_bearing(row[2], row[3], 0.046, 1.0), row[8], 1e-9, "phi_bl");
+    }
 }
 
 #[test]

@@ -1,9 +1,12 @@
 //! Runs in oil: dry at no lubrication, energy, the loss of oil, what is refused, and when balls skid.
 
+use roulement::effects::Effect;
 use roulement::interface::variables::Variables;
 use roulement::scene::Scene;
+use roulement::scene::system::SystemScene;
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::Outputs;
+use roulement::simulation::system::System;
 
 use crate::tables::{compare, count, row};
 
@@ -137,11 +140,50 @@ fn what_does_not_go_together_is_refused() {
         (vec![("film.viscosity", "0.02"), ("film.roughness", "0.0")], "[0.000000001, 0.0001] m"),
         (vec![("film.viscosity", "\"20 mm\"")], "mm measures something else"),
         (vec![("film.viscosity", "0.02"), ("film.supply", "\"jet\"")], "flooded, bath, oil_air"),
+        (vec![("film.viscosity", "0.02"), ("film.mixed_friction", "\"stribeck\"")], "olver_spikes, erf, skf"),
+        (vec![("film.viscosity", "0.02"), ("film.shear_pressure", "\"peak\"")], "mean, hertz"),
         (vec![("interface.inputs.lubrication", "\"master\"")], "[film]"),
     ] {
         let why = why(&changes);
         assert!(why.contains(part), "{changes:?}: {why}");
     }
+}
+
+#[test]
+fn identity_laws_of_the_film_of_a_shafts_bearing_are_those_of_its_text() {
+    // The left bearing has a law, the right one keeps the default; each bearing's film is the one that its own scene would have.
+    let text = include_str!("../../scenes/shafts/pinion.toml");
+    let mut powers = vec![];
+    for law in ["", "mixed_friction = \"erf\"", "mixed_friction = \"skf\"", "shear_pressure = \"hertz\""] {
+        let oil = |law: &str| {
+            format!("[bearing.set.film]\niso_vg = 32\ntemperature = 90.0\nroughness = 5e-7\n{law}\n")
+        };
+        let text = text
+            .replace("[[bearing]]\nname = \"right\"", &format!("{}[[bearing]]\nname = \"right\"", oil(law)))
+            .replace("\n[load]\n", &format!("\n{}[load]\n", oil("")));
+        let scene = SystemScene::parse(&text, None, "".as_ref()).unwrap_or_else(|why| panic!("{why}"));
+        let system = System::new(&scene).unwrap();
+        let told: Vec<String> =
+            system.bearings().map(|(_, bearing)| bearing.scene().effects.film.setting().unwrap()).collect();
+        assert!(told[1].ends_with("bath"), "{told:?}");
+        assert_eq!(law.is_empty(), told[0] == told[1], "{told:?}");
+        powers.push([0, 1].map(|place| system.bearings().nth(place).unwrap().1.outputs().friction_power));
+    }
+    // Films of a third of the roughness: most friction is dry, by each law another share.
+    for (i, [left, right]) in powers.iter().enumerate() {
+        assert!((right / powers[0][1] - 1.0).abs() < 1e-3, "{powers:?}");
+        assert!(powers[..i].iter().all(|before| (before[0] / left - 1.0).abs() > 1e-4), "{powers:?}");
+    }
+    let why = SystemScene::parse(
+        &text.replace(
+            "\n[load]\n",
+            "\n[bearing.set.film]\nviscosity = 0.02\nmixed_friction = \"wet\"\n[load]\n",
+        ),
+        None,
+        "".as_ref(),
+    );
+    let why = why.unwrap_err().to_string();
+    assert!(why.contains("olver_spikes, erf, skf"), "{why}");
 }
 
 /// \[N mm] friction torque of a 6206 under 1500 N at 6000 rpm, in an oil or dry, at a settled time.

@@ -13,6 +13,8 @@ use super::losses::{ContactPower, Part};
 use super::per_ball::ball_row;
 use super::reports::{BallOutput, ContactOutput, FilmOutput, Reports};
 use super::twin::{Switch, Twin};
+use crate::contact::film::mixed::MixedFriction;
+use crate::contact::film::traction::ShearPressure;
 use crate::contact::film::{Film, Loading, Lubricant, RacewayFilm, Supply};
 use crate::schema::numbers::{Number, four};
 use crate::schema::schedule::Schedule;
@@ -35,6 +37,10 @@ pub struct Films {
     warms: bool,
     /// [1/(mm2/s rpm)] starvation constant times lengths: by viscosity and speed the exponent of the replenishment.
     starvation: f64,
+    /// \[m] mean of bore and outside diameter.
+    mean_diameter: f64,
+    /// What of the friction is dry.
+    mixed_friction: MixedFriction,
     /// [kg/m3] density.
     density: f64,
     races: [RacewayFilm; 2],
@@ -87,7 +93,8 @@ impl Films {
         let turns = (inner - outer).abs() * 30.0 / std::f64::consts::PI;
         let kinematic = viscosity / self.density * 1e6;
         let replenishment = (-self.starvation * kinematic * turns).exp();
-        Supply { viscosity, lubrication, replenishment }
+        let dry_share = self.mixed_friction.of_bearing(turns, kinematic, self.mean_diameter, lubrication);
+        Supply { viscosity, lubrication, replenishment, dry_share }
     }
 }
 
@@ -121,6 +128,8 @@ impl Settings {
             temperature: section.oil_temperature(),
             warms: section.cold_temperature.is_some(),
             starvation: section.supply.starvation() * lengths,
+            mean_diameter: 0.5e-3 * (bore + outside),
+            mixed_friction: section.mixed_friction,
             density: section.density.0,
             races,
             cage: section.cage,
@@ -157,7 +166,9 @@ impl Section {
             conductivity: self.conductivity,
             eyring_stress: self.eyring_stress.0,
             limiting_shear: self.limiting_shear,
+            shear_pressure: self.shear_pressure,
             roughness: self.roughness.0,
+            mixed_friction: self.mixed_friction,
             inlet_heating: self.inlet_heating,
             rolling_resistance: self.rolling_resistance,
         }
@@ -238,8 +249,15 @@ impl Effect for Settings {
             degree => format!(", lubrication {degree}"),
         };
         let resistance = if section.rolling_resistance { "" } else { ", without rolling resistance" };
+        let mut laws = String::new();
+        if section.mixed_friction != MixedFriction::default() {
+            laws += &format!(", mixed_friction {}", <&str>::from(section.mixed_friction));
+        }
+        if section.shear_pressure != ShearPressure::default() {
+            laws += &format!(", shear_pressure {}", <&str>::from(section.shear_pressure));
+        }
         Some(format!(
-            "{}, {:.3} mPa s, {}{degree}{resistance}",
+            "{}, {:.3} mPa s, {}{degree}{resistance}{laws}",
             oil.name(temperature),
             1e3 * oil.viscosity(temperature),
             section.supply.name()

@@ -3,6 +3,8 @@
 use serde::Deserialize;
 
 use super::oil::Oil;
+use crate::contact::film::mixed::MixedFriction;
+use crate::contact::film::traction::ShearPressure;
 use crate::effects::effect::Setup;
 use crate::effects::keys::Keys;
 use crate::schema::SceneError;
@@ -50,8 +52,12 @@ pub struct Section {
     pub eyring_stress: Pressure,
     /// [-] largest shear stress over pressure.
     pub limiting_shear: f64,
+    /// The pressure under which a film shears, with which its viscosity grows.
+    pub shear_pressure: ShearPressure,
     /// \[m] roughness of ball and race together, root mean square.
     pub roughness: Length,
+    /// How much of a contact is dry where the film is thin.
+    pub mixed_friction: MixedFriction,
     /// Is there rolling resistance?
     pub rolling_resistance: bool,
     /// Does the shear of the inlet heat the oil?
@@ -60,7 +66,7 @@ pub struct Section {
     pub cage: bool,
     /// How oil comes back to where balls have pushed it away.
     pub supply: Supplied,
-    /// \[m] bore of the inner ring and outside diameter of the outer one, for starvation; usual ones if not given.
+    /// \[m] bore of the inner ring and outside diameter of the outer one, for starvation and SKF's mixed friction; usual ones if not given.
     pub bore: Option<Length>,
     /// See `bore`.
     pub outside: Option<Length>,
@@ -80,7 +86,9 @@ impl Default for Section {
             conductivity: 0.14,
             eyring_stress: Pressure(6e6),
             limiting_shear: 0.08,
+            shear_pressure: ShearPressure::Mean,
             roughness: Length(0.1e-6),
+            mixed_friction: MixedFriction::OlverSpikes,
             rolling_resistance: true,
             inlet_heating: true,
             cage: false,

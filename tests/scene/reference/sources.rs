@@ -232,7 +232,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 pub fn sources() -> Vec<Source> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut found = vec![];
-    for folder in ["schema", "effects", "scene"] {
+    for folder in ["schema", "effects", "scene", "contact/ball_race/film"] {
         files(&root.join(folder), &mut found);
     }
     found.sort();

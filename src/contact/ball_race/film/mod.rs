@@ -9,14 +9,17 @@
 //! 0.3 % (6206, tests/contact/film.rs).
 
 mod functions;
+pub mod mixed;
 pub mod rolling;
 pub mod thickness;
 pub mod traction;
 
 use crate::numerics::scalar::{Dual, Scalar, SmoothMap, Values};
 use functions::ln;
+use mixed::MixedFriction;
 use rolling::Inlet;
 use thickness::Ellipse;
+use traction::ShearPressure;
 
 /// [m/s] slip that is added to the true one as if at a right angle: friction of a film that does not slip at all is 0, and a creep law
 /// over a limit of 0 is none.
@@ -38,8 +41,12 @@ pub struct Lubricant {
     pub eyring_stress: f64,
     /// [-] largest shear stress over pressure.
     pub limiting_shear: f64,
+    /// The pressure under which it shears.
+    pub shear_pressure: ShearPressure,
     /// \[m] roughness of ball and race together, root mean square.
     pub roughness: f64,
+    /// What of the friction is dry.
+    pub mixed_friction: MixedFriction,
     /// Does the shear of the inlet heat the oil?
     pub inlet_heating: bool,
     /// Is there rolling resistance?
@@ -84,6 +91,8 @@ pub struct Supply {
     pub lubrication: f64,
     /// [-] what starvation leaves of the rolling resistance.
     pub replenishment: f64,
+    /// [-] share of friction that is dry, where the law of mixed friction has one for the whole bearing.
+    pub dry_share: f64,
 }
 
 /// The film of a raceway during a step.
@@ -201,7 +210,7 @@ impl Film<'_> {
         let [central, minimum] = self.films_at(&loading, &logarithms);
         let shear = lubricant.shear(self.supply.viscosity, load / area, slip / central);
         let ratio = minimum.scale(self.supply.lubrication / lubricant.roughness);
-        let touching = S::one() / (S::one() + ratio).square();
+        let touching = lubricant.mixed_friction.dry_share(ratio, self.supply.dry_share);
         let friction = shear.friction + (S::constant(self.dry_friction) - shear.friction) * touching;
         let viscous = S::one_minus(touching) * shear.friction * shear.thinning / friction;
         let rolling = if lubricant.rolling_resistance {
