@@ -15,6 +15,7 @@ mod margins;
 mod mechanics;
 mod outer_wrench;
 mod outputs;
+mod paper;
 mod published_torque;
 #[path = "../common/random.rs"]
 mod random;
@@ -30,3 +31,5 @@ mod start;
 #[path = "../common/statics.rs"]
 mod statics;
 mod steady_state;
+#[path = "../common/tables.rs"]
+mod tables;
