@@ -101,12 +101,35 @@ function axialSection(run) {
       dimension([X(-outline.width / 2), top - 20], [X(outline.width / 2), top - 20], `width ${about}${millimetres(outline.width)}`),
       extension(X(-outline.width / 2), top - 26, X(-outline.width / 2), top), extension(X(outline.width / 2), top - 26, X(outline.width / 2), top));
   }
+  parts.push(...grooves(bearing, contact < 0 ? -1 : 1, X, Y, reach, high, extension), ...plays(bearing, X(0) + 18, Y(Math.min(...all.map(p => p[1]))) + 24));
   // Frame.
   const origin = [X(0), axisY];
   parts.push(...arrowTo(origin, [origin[0] + 50, axisY], 'x'), ...arrowTo(origin, [origin[0], axisY - 50], 'r'));
   // Axial load of the race that is loaded, and of the other one its opposite.
   parts.push(...axialLoad(run, X, Y, sections));
   return s('svg', { viewBox: `0 0 ${SIZE} ${SIZE}`, role: 'img', class: 'drawing', 'aria-label': `Section: ${bearing.balls} balls of ${millimetres(ball)}, pitch diameter ${millimetres(pitch)}, contact angle ${digits((contact * 180) / Math.PI, 3)} degrees` }, parts);
+}
+
+/** Radii of both grooves, each in its ring on the side that the contact is not on. */
+function grooves(bearing, side, X, Y, reach, high, extension) {
+  if (bearing.is_thrust_bearing) return [];
+  const low = Math.min(...ringSections(bearing).inner.map(p => p[1]));
+  return [['outer', -side, Y(high) + 24], ['inner', side, Y(low) - 12]].flatMap(([race, at, y]) => {
+    const [minus, plus] = bearing[race].shoulders;
+    const [gx, gr] = groovePoint(bearing, race, -0.6 * side * Math.min(side > 0 === (race === 'outer') ? minus : plus, 1.45));
+    const x = X(at * reach) - at * 8;
+    return [
+      extension(x - at * 64, y + (race === 'outer' ? 6 : -14), X(gx), Y(gr)),
+      s('g', { class: 'dim' }, s('text', { x, y, 'text-anchor': at < 0 ? 'start' : 'end' }, `r${race === 'outer' ? '\u2092' : '\u1d62'} = ${millimetres(bearing[race].groove_radius)}`))];
+  });
+}
+
+/** What is too small to be seen to scale, line by line: clearance or free contact angle, and the play of a cage. */
+function plays({ clearance, contact_angle: angle, cage }, x, y) {
+  const lines = [clearance === null ? `\u03b1\u2080 = ${short((angle * 180) / Math.PI)}\u00b0 without load` : `clearance ${digits(clearance * 1e6, 4)}\u202f\u00b5m`];
+  if (cage) lines.push(`pockets ${millimetres(cage.pocket_clearance)} clear`);
+  if (cage && cage.guidance_clearance !== null) lines.push(`guidance ${millimetres(cage.guidance_clearance)} clear`);
+  return lines.map((line, i) => s('g', { class: 'dim' }, s('text', { x, y: y + 18 * i }, line)));
 }
 
 export const marker = (id, name) => s('marker', { id, viewBox: '0 0 10 10', refX: 8, refY: 5, markerWidth: 6, markerHeight: 6, orient: 'auto-start-reverse' },
