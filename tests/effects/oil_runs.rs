@@ -81,8 +81,16 @@ fn identity_an_importer_that_sets_lubrication_does_what_the_script_does() {
 fn invariant_energy_closes_in_oil_and_while_it_is_lost() {
     let mut changes = OIL.to_vec();
     changes.push(("film.lubrication", "[[0, 1], [0.003, 1], [0.006, 0]]"));
-    for (text, cage) in [(THRUST, "false"), (CAGE, "true")] {
+    let runs = [
+        (THRUST, "false", "olver_spikes", "mean"),
+        (CAGE, "true", "olver_spikes", "mean"),
+        (THRUST, "false", "erf", "hertz"),
+        (CAGE, "true", "skf", "hertz"),
+    ];
+    for (text, cage, mixed, pressure) in runs {
+        let [mixed, pressure] = [mixed, pressure].map(|law| format!("\"{law}\""));
         let mut changes = changes.clone();
+        changes.extend([("film.mixed_friction", mixed.as_str()), ("film.shear_pressure", pressure.as_str())]);
         if text == CAGE {
             changes.push(("film.cage", cage));
         }

@@ -76,17 +76,16 @@ fn invariant_the_paper_s_change_of_laws_brings_lateral_creepage() {
     first.advance_scripted(2e-3).unwrap();
     let mut then = Simulation::new(&scene(&[("effects.creep", "\"kalker_table\"")])).unwrap();
     assert!(then.restore(&first.snapshot()));
-    let contact = |simulation: &Simulation| -> ContactOutput { simulation.outputs().balls[0].inner.clone() };
+    let contact = |simulation: &Simulation| -> ContactOutput { simulation.outputs().balls[0].inner };
     let (simple, kalker) = (contact(&first), contact(&then));
     // The same motion, another law, in which spin makes a lateral force.
     assert_eq!(simple.creepage_spin, kalker.creepage_spin);
     assert!(kalker.force_lateral.abs() > 5.0 * simple.force_lateral.abs(), "{simple:?} {kalker:?}");
     // Lateral creepage follows within a period, where without the change it stays as it was; a force of spin alone is left.
-    let [before, _] = [&first, &then].map(|of| contact(of).creepage_lateral);
+    let before = simple.creepage_lateral;
     first.advance_scripted(2.3e-3).unwrap();
     then.advance_scripted(2.3e-3).unwrap();
     let [simple, kalker] = [&first, &then].map(contact);
-    println!("{before}: {simple:?} {kalker:?}");
     let change = |of: &ContactOutput| (of.creepage_lateral - before).abs();
     assert!(change(&kalker) > 5.0 * change(&simple), "{before}: {simple:?} {kalker:?}");
 }
