@@ -181,6 +181,17 @@ fn order_of_convergence_of_shear_integrated_over_the_ellipse() {
     // What simulations take has six of them.
     let taken = worst(&|mean, rate| hertz.shear(VISCOSITY, mean, rate).friction);
     assert!((taken / errors[1] - 1.0).abs() < 1e-9 && taken < 0.005, "{taken} {errors:?}");
+    // From light to heavy contacts of thin and thick oils, from no shear to the limiting one.
+    let (fine, mut most) = (gauss(64), 0.0f64);
+    for mean in [0.3e9, 0.6e9, 1e9, 2e9, 2.7e9] {
+        for viscosity in [0.003, 0.02, 0.1] {
+            for rate in (-3..9).map(|power| 10f64.powi(power)) {
+                let exact = hertz.shear_over_ellipse(viscosity, mean, rate, &fine).friction;
+                most = most.max((hertz.shear(viscosity, mean, rate).friction / exact - 1.0).abs());
+            }
+        }
+    }
+    assert!(most < 0.0135, "{most}");
 }
 
 #[test]

@@ -46,7 +46,7 @@ impl MixedFriction {
         }
     }
 
-    /// [-] dry share of a whole bearing in SKF's model, as far as the law has it: speed [rpm], viscosity [mm2/s], mean diameter \[m], and
+    /// [-] dry share of a whole bearing in SKF's model, as far as the law has it: speed \[rpm], viscosity [mm2/s], mean diameter \[m], and
     /// degree of lubrication. A film of a part of the thickness is one at less speed: thickness goes with the power of 0.7 of the speed.
     pub fn of_bearing(self, speed: f64, viscosity: f64, mean_diameter: f64, lubrication: f64) -> f64 {
         match self {
