@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use roulement::kalker::packed::packed;
-use roulement::kalker::table::{RATIOS, axis_ratio};
+use roulement::kalker::table::{GRID, RATIOS, axis_ratio};
 use roulement::kalker::table_nodes::build;
 
 fn part(file: &str, index: usize) -> PathBuf {
@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let bytes = fs::read(part(&file, index))?;
         numbers.extend(bytes.chunks_exact(4).map(|one| f32::from_le_bytes([one[0], one[1], one[2], one[3]])));
     }
-    let bytes = packed(&numbers);
+    let bytes = packed(&numbers, GRID);
     fs::write(&file, &bytes)?;
     for index in 0..=RATIOS {
         fs::remove_file(part(&file, index))?;

@@ -41,6 +41,9 @@ const AROUND: usize = (SHAPE[1] + 1) * SHAPE[2];
 /// Nodes of one axis ratio: behind rest, where linear theory holds.
 pub const NODES: usize = SHAPE[0] * AROUND;
 
+/// Shape of the whole table: axis ratios, t behind rest, theta, phi, values of a node.
+pub const GRID: [usize; 5] = [RATIOS + 1, SHAPE[0], SHAPE[1] + 1, SHAPE[2], 3];
+
 /// Number of a node of one axis ratio behind rest, by t (from 1 on), theta and phi.
 pub fn index(i: usize, j: usize, k: usize) -> usize {
     ((i - 1) * (SHAPE[1] + 1) + j) * SHAPE[2] + k
@@ -49,7 +52,7 @@ pub fn index(i: usize, j: usize, k: usize) -> usize {
 /// Shipped values of all nodes of one tabulated axis ratio, three a node.
 pub fn shipped(ratio: usize) -> &'static [f32] {
     static PARSED: OnceLock<Vec<f32>> = OnceLock::new();
-    let values = PARSED.get_or_init(|| unpacked(SHIPPED, (RATIOS + 1) * NODES * 3));
+    let values = PARSED.get_or_init(|| unpacked(SHIPPED, GRID));
     &values[ratio * NODES * 3..(ratio + 1) * NODES * 3]
 }
 
