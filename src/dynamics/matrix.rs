@@ -1,12 +1,11 @@
 //! The Newton matrix of a step: balls, eliminated, that many steps share, and the bodies' own rows, new in every step.
 //!
-//! A ball's block turns with its orbit and changes with its load, and blocks are computed anew one by one: each where the
-//! corrections that it was not good enough for have cost as much as it does.
+//! A ball's block turns with its orbit and changes with its load, and blocks are computed anew one by one ([`super::wear`]).
 
 use nalgebra::{DMatrix, Vector3, Vector6};
 
-use super::Workspace;
 use super::equations::BearingStep;
+use super::{Workspace, wear};
 use crate::model::bodies::{Body, Race};
 use crate::model::state::{BlockRenewal, KeptBlock};
 use crate::numerics::arrowhead::{BLOCK, Block, Eliminated, Member, Offsets, Six};
@@ -14,16 +13,6 @@ use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::orbit_turn::OrbitTurn;
 use crate::numerics::ring::Link;
 use crate::numerics::scalar::constant_vector;
-use crate::numerics::size::larger;
-
-/// [-] price of one more correction, per ball, over that of a new block (benches/speed.rs): where balls are solved together and all
-/// are evaluated, and where each is alone. With twice that, balls together take 7 % more time in the radial and the cage scene.
-const TOGETHER: f64 = 0.05;
-const ALONE: f64 = 0.2;
-/// Most steps in a row that begin with a new block before an old one is tried again.
-const LONGEST_PAUSE: u8 = 31;
-/// [-] most corrections that are foreseen.
-const MOST: f64 = 20.0;
 
 impl Workspace {
     /// Lists the bodies that forces move, as they are in the trial step.
@@ -37,88 +26,7 @@ impl Workspace {
     }
 }
 
-impl BlockRenewal {
-    /// Shall blocks of a `cost` be new, as one or as many, for what is saved in this step and what was not in earlier ones?
-    /// If not, this block has cost some more.
-    fn renew(&mut self, cost: f64, saved: f64, lost: f64, more: f64) -> bool {
-        // One that is new and leads badly tells that no block is good for long here.
-        if self.new || saved + lost < cost {
-            self.price += more;
-            return false;
-        }
-        if saved >= cost {
-            self.back_off();
-        }
-        true
-    }
-
-    /// Lets the next steps begin with a new one: twice as many as the last time, unless an old one was good since then.
-    fn back_off(&mut self) {
-        self.pause = (2 * self.pause + 1).min(LONGEST_PAUSE);
-        self.due = self.pause;
-    }
-}
-
 impl BearingStep<'_> {
-    /// Marks the balls whose blocks shall be new from the beginning of a step.
-    pub(super) fn mark_due(&mut self) {
-        let Workspace { balls, kept, .. } = &mut *self.workspace;
-        for (trial, KeptBlock { renewal, .. }) in balls.iter_mut().zip(&mut kept.balls) {
-            if !renewal.new {
-                renewal.pause = 0;
-            }
-            renewal.new = false;
-            trial.renewed = renewal.due > 0;
-            renewal.due = renewal.due.saturating_sub(1);
-        }
-    }
-
-    /// Notes which old blocks have led nowhere, before all are computed anew.
-    pub(super) fn give_up_old(&mut self) {
-        let tolerance = self.force_tolerance;
-        let Workspace { balls, groups, kept, .. } = &mut *self.workspace;
-        for (ball, (trial, KeptBlock { renewal, .. })) in balls.iter().zip(&mut kept.balls).enumerate() {
-            if !renewal.new && trial.before > 1.0 && groups.size(ball) > tolerance {
-                renewal.back_off();
-            }
-        }
-    }
-
-    /// Marks the balls whose blocks shall be computed anew, after a correction that has not led to the solution; are there some?
-    ///
-    /// From how far the last one has come it follows how many more are needed with the blocks there are. New ones lead there
-    /// in one more; and what they would have saved in earlier steps counts as well.
-    fn mark_stale(&mut self) -> bool {
-        let together = !self.balls_are_independent();
-        let tolerance = self.force_tolerance;
-        let Workspace { balls, groups, kept, .. } = &mut *self.workspace;
-        let correction = TOGETHER * balls.len() as f64;
-        let before = balls.iter().map(|trial| trial.before).fold(0.0, larger);
-        let (mut bad, mut most, mut price) = (0.0, 0.0f64, 0.0);
-        for (ball, (trial, kept)) in balls.iter_mut().zip(&mut kept.balls).enumerate() {
-            let now = groups.size(ball) / tolerance;
-            trial.renewed = now > 1.0;
-            if !trial.renewed {
-                continue;
-            }
-            let rate = now / if together { before } else { trial.before };
-            let more = if rate < 1.0 { (now.ln() / -rate.ln()).ceil().min(MOST) } else { MOST };
-            if together {
-                bad += 1.0;
-                most = most.max(more);
-                price += kept.renewal.price;
-            } else {
-                trial.renewed = kept.renewal.renew(1.0, ALONE * (more - 1.0), kept.renewal.price, ALONE);
-            }
-        }
-        if together {
-            for (trial, kept) in balls.iter_mut().zip(&mut kept.balls).filter(|(trial, _)| trial.renewed) {
-                trial.renewed = kept.renewal.renew(bad, correction * (most - 1.0), price, correction / bad);
-            }
-        }
-        balls.iter().any(|trial| trial.renewed)
-    }
-
     /// Eliminates the balls whose derivatives are new; without any matrix if one of them is singular.
     pub(super) fn eliminate_renewed(&mut self) {
         self.workspace.list_members(self.model.border_offsets());
@@ -222,7 +130,7 @@ impl BearingStep<'_> {
 
     /// Writes the Newton correction of the present residual; false if the matrix is singular.
     pub(super) fn correct(&mut self, correction: &mut [f64]) -> bool {
-        self.prepare_correction();
+        prepare_correction(std::slice::from_mut(self));
         if self.balls_are_independent() {
             let tolerance = self.force_tolerance;
             self.correct_balls(correction, |_, size| size > tolerance)
@@ -231,24 +139,18 @@ impl BearingStep<'_> {
         }
     }
 
-    /// Brings balls back that are far out of balance, and renews blocks that have worn, before a correction.
-    pub(super) fn prepare_correction(&mut self) {
-        self.workspace.balls.iter_mut().for_each(|trial| trial.repaired = None);
-        let mut renewed = false;
-        if self.keeps_matrices() {
-            let repaired = !self.balls_are_independent() && self.repair_balls();
-            renewed = self.corrections > 0 && self.mark_stale();
-            if repaired {
-                // Their blocks are for contacts as they were.
-                for trial in self.workspace.balls.iter_mut() {
-                    trial.renewed = (renewed && trial.renewed) || trial.repaired.is_some();
-                }
-                let sums = self.scatter();
-                self.assemble_bodies(&sums);
-                renewed = true;
+    /// Computes blocks anew of balls that were brought back, and where all were looked at, of those that are marked.
+    fn renew(&mut self, looked: bool) {
+        let repaired = self.workspace.balls.iter().any(|trial| trial.repaired.is_some());
+        if repaired {
+            // Their blocks are for contacts as they were.
+            for trial in self.workspace.balls.iter_mut() {
+                trial.renewed = (looked && trial.renewed) || trial.repaired.is_some();
             }
+            let sums = self.scatter();
+            self.assemble_bodies(&sums);
         }
-        if renewed {
+        if repaired || (looked && self.workspace.balls.iter().any(|trial| trial.renewed)) {
             self.workspace.counted.renewals += 1;
             self.differentiate_bodies();
             self.differentiate_renewed();
@@ -256,12 +158,6 @@ impl BearingStep<'_> {
             if !self.balls_are_independent() {
                 self.factorise();
             }
-        }
-        self.corrections += 1;
-        let tolerance = self.force_tolerance;
-        let Workspace { balls, groups, .. } = &mut *self.workspace;
-        for (ball, trial) in balls.iter_mut().enumerate() {
-            trial.before = groups.size(ball) / tolerance;
         }
     }
 
@@ -404,6 +300,32 @@ impl BearingStep<'_> {
             chunk.copy_from_slice(x.as_slice());
         }
         border.copy_from_slice(y.as_slice());
+    }
+}
+
+/// Brings balls of bearings that are corrected together back where they are far out of balance, and renews blocks that have worn, before a
+/// correction.
+pub(super) fn prepare_correction(bearings: &mut [BearingStep<'_>]) {
+    for step in bearings.iter_mut() {
+        step.workspace.balls.iter_mut().for_each(|trial| trial.repaired = None);
+        if step.keeps_matrices() && !step.balls_are_independent() {
+            step.repair_balls();
+        }
+    }
+    let corrected = bearings.iter().any(|step| step.corrections > 0);
+    if corrected {
+        wear::mark_stale(bearings);
+    }
+    for step in bearings {
+        if step.keeps_matrices() {
+            step.renew(corrected);
+        }
+        step.corrections += 1;
+        let tolerance = step.force_tolerance;
+        let workspace = &mut *step.workspace;
+        for (ball, trial) in workspace.balls.iter_mut().enumerate() {
+            trial.before = workspace.groups.size(ball) / tolerance;
+        }
     }
 }
 

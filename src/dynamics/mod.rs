@@ -25,6 +25,7 @@ mod spacing;
 mod step_turn;
 mod support;
 pub mod system;
+mod wear;
 
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector6};
 

@@ -29,9 +29,9 @@ const LEFT: f64 = 1e-2;
 const MOST: u32 = 12;
 
 impl BearingStep<'_> {
-    /// Brings balls back that are far out of balance, with all bodies where they are; were there some? Their blocks of the matrix are
-    /// then to be computed anew.
-    pub(super) fn repair_balls(&mut self) -> bool {
+    /// Brings balls back that are far out of balance, with all bodies where they are. Their blocks of the matrix are then to be computed
+    /// anew.
+    pub(super) fn repair_balls(&mut self) {
         let workspace = &mut *self.workspace;
         let (balls, groups, counted) = (&mut workspace.balls, &mut workspace.groups, &mut workspace.counted);
         let (tolerance, ball) = (self.force_tolerance, &self.model.bearing.ball);
@@ -39,7 +39,7 @@ impl BearingStep<'_> {
             |index: usize, groups: &Groups| groups.is_thrown(index, tolerance, &self.step, ball.mass);
         let thrown = (0..balls.len()).filter(|index| is_thrown(*index, groups)).count();
         if thrown == 0 || thrown as f64 > MANY * balls.len() as f64 {
-            return false;
+            return;
         }
         let bodies = (&workspace.races, &workspace.bodies, workspace.cage.as_ref());
         let acts = (&self.contacts, &self.ambient);
@@ -62,7 +62,6 @@ impl BearingStep<'_> {
             }
         }
         self.evaluate_moved();
-        true
     }
 }
 

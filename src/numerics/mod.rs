@@ -17,5 +17,6 @@ pub mod ring;
 pub mod rotation;
 pub mod scalar;
 pub mod size;
+pub mod sparse;
 pub mod step_control;
 pub mod tilt;

@@ -177,7 +177,7 @@ fn invariant_a_shaft_from_a_file_of_matrices_moves_as_the_beams_they_are_of() {
     let stations: Vec<_> = [0.0, 0.4, 0.2].into_iter().zip(&shaft.stations).map(station).collect();
     let structure = &shaft.structure;
     let weights = nalgebra::DMatrix::from_fn(structure.size(), 3, |i, k| structure.weights[(i, k)]);
-    let translations = structure.mass.clone().lu().solve(&weights).unwrap();
+    let translations = (*structure.mass).clone().lu().solve(&weights).unwrap();
     let mut file = serde_json::json!({
         "mass": rows(&structure.mass),
         "stiffness": rows(&structure.stiffness),

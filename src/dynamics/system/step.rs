@@ -8,6 +8,7 @@ use super::super::StepFailure;
 use super::super::accept::StepEnd;
 use super::super::equations::BearingStep;
 use super::super::local_error::Allowed;
+use super::super::matrix::prepare_correction;
 use super::Part;
 use super::border::{Border, CarriedRace};
 use super::structure::{Seat, StructureLoad, StructureTrial};
@@ -258,8 +259,7 @@ impl<'a> SystemStep<'a> {
     fn factorise(&mut self) {
         let mut matrix = self.border.cleared(self.rows[self.structures.len()]);
         for ((one, trial), at) in self.structures.iter().zip(&self.trials).zip(&self.rows) {
-            let (at, size) = (*at, one.model.size());
-            matrix.view_mut((at, at), (size, size)).copy_from(&trial.tangent(one.model, &self.step));
+            trial.add_tangent(one.model, &self.step, &mut matrix, *at);
         }
         for Joint { bearing, race, structure, seat } in self.joined.joints {
             if let Some(trial) = &self.bearings[*bearing].workspace.bodies[*race]
@@ -379,7 +379,7 @@ impl Equations for SystemStep<'_> {
         if let Some(bearing) = self.alone() {
             return bearing.correction(correction);
         }
-        self.bearings.iter_mut().for_each(BearingStep::prepare_correction);
+        prepare_correction(&mut self.bearings);
         // Balls that were brought back press differently.
         self.assemble_structures();
         let assembled = Some(self.bearings.iter().map(|step| step.assembled).sum());

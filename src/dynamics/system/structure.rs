@@ -211,7 +211,7 @@ impl StructureTrial {
         self.sum_forces(model, load);
         let end = &mut self.end;
         // The ground has no coordinates where no ring slides.
-        let solved = (model.size() > 0).then(|| model.mass.clone().lu().solve(&end.total));
+        let solved = (model.size() > 0).then(|| (*model.mass).clone().lu().solve(&end.total));
         end.accelerations = solved.flatten().unwrap_or_else(|| DVector::zeros(model.size()));
         end.spin = model.spin([&end.coordinates, &end.rates, &end.accelerations], end.spin);
         self.account(model, load);
@@ -288,27 +288,30 @@ impl StructureTrial {
         };
     }
 
-    /// Tangent of the residual by the accelerations, without that of the bearings, and without a frame that turns: its part is the way
-    /// that the frame turns by in a step.
-    pub fn tangent(&self, model: &Structure, step: &HhtStep) -> DMatrix<f64> {
+    /// Adds the tangent of the residual by the accelerations to a matrix, from a row and column on: without that of the bearings, and
+    /// without a frame that turns, as its part is the way that the frame turns by in a step.
+    pub fn add_tangent(&self, model: &Structure, step: &HhtStep, matrix: &mut DMatrix<f64>, from: usize) {
         let fraction = 1.0 - step.alpha_f;
-        let (position, velocity) = (step.position_gain(), step.velocity_gain());
+        let (position, velocity) = (fraction * step.position_gain(), fraction * step.velocity_gain());
         let StructureState { coordinates, rates, accelerations, spin, .. } = &self.end;
-        let mut forces = &model.stiffness * position
-            + &model.damping * velocity
-            + &model.gyroscopic * (velocity * spin.speed + position * 0.5 * spin.acceleration);
+        model.mass.add_to(1.0, matrix, from);
+        model.stiffness.add_to(position, matrix, from);
+        model.damping.add_to(velocity, matrix, from);
+        model.gyroscopic.add_to(velocity * spin.speed + position * 0.5 * spin.acceleration, matrix, from);
         if model.turning == Turning::Free {
-            let last = model.size() - 1;
-            let by_spin = &model.gyroscopic * (rates * velocity + coordinates * 0.5);
-            let mut column = forces.column_mut(last);
+            let last = from + model.size() - 1;
+            let half = 0.5 * fraction;
+            let by_spin = &model.gyroscopic * &(rates * velocity + coordinates * half);
+            let mut column = matrix.column_mut(last);
+            let mut column = column.rows_mut(from, by_spin.len());
             column += by_spin;
             // `1/2 q''^T G q`
             let of_q = model.gyroscopic.tr_mul(accelerations) * (0.5 * position);
-            let of_accelerations = &model.gyroscopic * coordinates * 0.5;
-            let mut row = forces.row_mut(last);
+            let of_accelerations = &model.gyroscopic * coordinates * half;
+            let mut row = matrix.row_mut(last);
+            let mut row = row.columns_mut(from, of_q.len());
             row += (of_q + of_accelerations).transpose();
         }
-        &model.mass + forces * fraction
     }
 
     /// Derivative of the residual by the accelerations through the direction of a bearing's moments alone; rows and columns are

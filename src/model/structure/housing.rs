@@ -37,7 +37,7 @@ impl Carrier {
             }
             None => rigid(section, stations),
         };
-        if carrier.structure.stiffness.clone().cholesky().is_none() {
+        if (*carrier.structure.stiffness).clone().cholesky().is_none() {
             return Err(
                 "it can move without a force: give it stiffness in every direction, or three feet".into()
             );
@@ -77,10 +77,10 @@ fn still(
 ) -> Carrier {
     let size = mass.nrows();
     let structure = Structure {
-        mass,
-        damping,
-        stiffness,
-        gyroscopic: DMatrix::zeros(size, size),
+        mass: mass.into(),
+        damping: damping.into(),
+        stiffness: stiffness.into(),
+        gyroscopic: DMatrix::zeros(size, size).into(),
         polar_inertia: 0.0,
         by_spin: DVector::zeros(size),
         weights,

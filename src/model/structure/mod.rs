@@ -15,9 +15,11 @@ mod shaft;
 mod torsion;
 
 pub use lump::{FrameForce, Lump};
-use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6, Vector3};
+use nalgebra::{DVector, Dyn, OMatrix, U6, Vector3};
 pub use ring::Ring;
 use serde::{Deserialize, Serialize};
+
+use crate::numerics::sparse::Sparse;
 
 /// Vectors of any length as lists of numbers.
 mod list {
@@ -51,13 +53,13 @@ pub type Map = OMatrix<f64, U6, Dyn>;
 #[derive(Clone, Debug)]
 pub struct Structure {
     /// Mass matrix of the coordinates.
-    pub mass: DMatrix<f64>,
+    pub mass: Sparse,
     /// Damping matrix.
-    pub damping: DMatrix<f64>,
+    pub damping: Sparse,
     /// Stiffness matrix.
-    pub stiffness: DMatrix<f64>,
+    pub stiffness: Sparse,
     /// Gyroscopic matrix of a spin of 1 rad/s.
-    pub gyroscopic: DMatrix<f64>,
+    pub gyroscopic: Sparse,
     /// [kg m2] polar moment of inertia.
     pub polar_inertia: f64,
     /// Inertia of the coordinates by an acceleration of the spin; zero where the angle is a coordinate.
@@ -198,7 +200,7 @@ impl Structure {
         }
         let weights = self.weights.column(axis);
         // `M t = w`, hence `t^T M t = w^T M^-1 w`.
-        let solved = self.mass.clone().lu().solve(&weights.into_owned());
+        let solved = (*self.mass).clone().lu().solve(&weights.into_owned());
         solved.map_or(0.0, |t| weights.dot(&t))
     }
 

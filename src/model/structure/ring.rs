@@ -26,10 +26,10 @@ impl Carrier {
     pub fn of_ground(stations: usize) -> Self {
         let none = DMatrix::zeros(0, 0);
         let structure = Structure {
-            mass: none.clone(),
-            damping: none.clone(),
-            stiffness: none.clone(),
-            gyroscopic: none,
+            mass: none.clone().into(),
+            damping: none.clone().into(),
+            stiffness: none.clone().into(),
+            gyroscopic: none.into(),
             polar_inertia: 0.0,
             by_spin: DVector::zeros(0),
             weights: OMatrix::zeros_generic(Dyn(0), U3),
@@ -70,10 +70,10 @@ impl Carrier {
             lumps.push(Lump { place: *place, mass: *own, inertia: Vector3::zeros(), map: along });
         }
         let structure = Structure {
-            mass,
-            damping: wider(&structure.damping),
-            stiffness: wider(&structure.stiffness),
-            gyroscopic: wider(&structure.gyroscopic),
+            mass: mass.into(),
+            damping: wider(&structure.damping).into(),
+            stiffness: wider(&structure.stiffness).into(),
+            gyroscopic: wider(&structure.gyroscopic).into(),
             by_spin: structure.by_spin.clone().resize_vertically(size, 0.0),
             weights,
             lumps,

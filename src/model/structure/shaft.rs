@@ -223,10 +223,10 @@ impl Parts {
             stations.iter_mut().chain(of_lumps).for_each(|map| map[(3, n)] = 1.0);
         }
         let structure = Structure {
-            mass,
-            damping: wider(damping),
-            stiffness: wider(stiffness),
-            gyroscopic: wider(gyroscopic),
+            mass: mass.into(),
+            damping: wider(damping).into(),
+            stiffness: wider(stiffness).into(),
+            gyroscopic: wider(gyroscopic).into(),
             polar_inertia,
             by_spin,
             weights: weights.resize_vertically(size, 0.0),

@@ -122,7 +122,7 @@ impl System {
             let at = ((from, from), (structure.size(), structure.size()));
             mass.view_mut(at.0, at.1).copy_from(&structure.mass);
             let mut own = damping.view_mut(at.0, at.1);
-            own += &structure.damping + &structure.gyroscopic * state.spin.speed;
+            own += &*structure.damping + &*structure.gyroscopic * state.spin.speed;
         }
         Ok(Linear { mass, damping, stiffness })
     }

@@ -32,9 +32,9 @@ impl System {
             first.push(next);
             next += structure.size();
             movers.push(Mover {
-                mass: structure.mass.clone(),
-                damping: &structure.damping + &structure.gyroscopic * state.spin.speed,
-                stiffness: structure.stiffness.clone(),
+                mass: (*structure.mass).clone(),
+                damping: &*structure.damping + &*structure.gyroscopic * state.spin.speed,
+                stiffness: (*structure.stiffness).clone(),
             });
         }
         let structures = movers.clone();
