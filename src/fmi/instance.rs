@@ -164,18 +164,18 @@ impl Instance {
 
     /// Scripts of the scene that are played.
     pub fn played(&self) -> Vec<bool> {
-        let scripts = self.unit.scripts().into_iter();
-        scripts.zip(&self.state.set).map(|(giver, set)| giver == Some(Giver::Scene) && !set).collect()
+        let scripts = self.unit.scripts().iter();
+        scripts.zip(&self.state.set).map(|(giver, set)| *giver == Some(Giver::Scene) && !set).collect()
     }
 
     /// Tells which scripts of the scene are played.
     fn announce_scripts(&self) {
-        for (script, giver) in self.unit.scripts().into_iter().enumerate() {
+        for (script, giver) in self.unit.scripts().iter().enumerate() {
             let Some(giver) = giver else {
                 continue;
             };
             let (name, group) = self.unit.script_name(script);
-            if giver == Giver::Master {
+            if *giver == Giver::Master {
                 let why = format!(
                     "the scene's script of {name} is not played: interface.inputs.{group} = \"master\""
                 );

@@ -46,19 +46,23 @@ impl Instance {
             self.state.changed = false;
         }
         self.state.played = self.played();
-        let before = self.state.before.insert(self.unit.snapshot());
+        match &mut self.state.before {
+            Some(before) => self.unit.snapshot_into(before),
+            none => *none = Some(self.unit.snapshot()),
+        }
         let advanced = self.unit.advance(time + step, &self.state.played);
         // A derivative belongs to the communication point that it was set for.
-        self.state.rates.fill(0.0);
+        self.unit.inputs().iter().for_each(|index| self.state.rates[*index] = 0.0);
         let reached = self.unit.time();
         self.state.last_step = reached - now;
         if !self.unit.is_finite() {
-            let restored = self.unit.restore(before);
+            let restored = self.state.before.as_ref().is_some_and(|before| self.unit.restore(before));
             debug_assert!(restored, "a snapshot of this very unit fits it");
             self.state.last_step = 0.0;
             return Err((Status::Discard, format!("a result is not a number after {now} s")));
         }
-        for &index in self.unit.inputs() {
+        let some_played = self.state.played.contains(&true);
+        for &index in self.unit.inputs().iter().filter(|_| some_played) {
             if self.unit.script_of(index).is_some_and(|script| self.state.played[script]) {
                 self.state.values[index] = self.unit.value(index);
             }

@@ -266,6 +266,56 @@ pub struct State {
 }
 
 impl State {
+    /// Becomes a copy of another without taking memory, where both are of one bearing.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self {
+            time,
+            balls,
+            bodies,
+            spacing,
+            supports,
+            differences,
+            control,
+            force_tolerance,
+            matrix,
+            trend,
+            powers,
+            energies,
+            statistics,
+            grown,
+            rating,
+            warm,
+            heat,
+            means,
+            orientations,
+        } = self;
+        (*time, *force_tolerance, *statistics) = (other.time, other.force_tolerance, other.statistics);
+        balls.clone_from(&other.balls);
+        match bodies.len() == other.bodies.len() {
+            true => bodies
+                .iter_mut()
+                .zip(other.bodies.iter())
+                .for_each(|((_, own), (_, other))| own.copy_from(other)),
+            false => bodies.clone_from(&other.bodies),
+        }
+        matrix.copy_from(&other.matrix);
+        trend.step = other.trend.step;
+        trend.changes.clone_from(&other.trend.changes);
+        trend.smooth.clone_from(&other.trend.smooth);
+        spacing.clone_from(&other.spacing);
+        supports.clone_from(&other.supports);
+        differences.clone_from(&other.differences);
+        control.clone_from(&other.control);
+        powers.clone_from(&other.powers);
+        energies.clone_from(&other.energies);
+        grown.clone_from(&other.grown);
+        rating.clone_from(&other.rating);
+        warm.clone_from(&other.warm);
+        heat.clone_from(&other.heat);
+        means.clone_from(&other.means);
+        orientations.clone_from(&other.orientations);
+    }
+
     /// Force and moment of the bearing on what holds a race: on its flange where it rests on a support.
     pub fn wrench_on(&self, race: Race) -> Wrench {
         self.supports[race].as_ref().map_or(self.race(race).bearing_wrench, |support| support.wrench)
@@ -367,6 +417,18 @@ pub struct KeptMatrix {
     pub balls: Vec<KeptBlock>,
     /// The blocks themselves, several in the lanes of one, and their couplings to the bodies that forces move.
     pub blocks: Vec<Eliminated>,
+}
+
+impl KeptMatrix {
+    /// Becomes a copy of another without taking memory, where both have as many blocks.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { step, balls, blocks } = self;
+        *step = other.step;
+        balls.clone_from(&other.balls);
+        blocks.truncate(other.blocks.len());
+        blocks.iter_mut().zip(&other.blocks).for_each(|(own, other)| own.copy_from(other));
+        blocks.extend_from_slice(&other.blocks[blocks.len()..]);
+    }
 }
 
 /// Age and place of the eliminated block of one ball.

@@ -142,6 +142,15 @@ impl Machine {
         }
     }
 
+    /// That, in the memory of an earlier one of this machine.
+    pub fn snapshot_into(&self, snapshot: &mut MachineSnapshot) {
+        match (self, snapshot) {
+            (Self::Bearing(bearing), MachineSnapshot::Bearing(snapshot)) => bearing.snapshot_into(snapshot),
+            (Self::Shaft(system), MachineSnapshot::Shaft(snapshot)) => system.snapshot_into(snapshot),
+            (_, snapshot) => *snapshot = self.snapshot(),
+        }
+    }
+
     /// Goes to a point that the same machine was at; false, with nothing changed, if the snapshot is of another one.
     #[must_use]
     pub fn restore(&mut self, snapshot: &MachineSnapshot) -> bool {

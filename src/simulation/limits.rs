@@ -102,10 +102,19 @@ impl Simulation {
         for race in Race::BOTH {
             let axis = self.state.race(race).axes[0];
             let touch = |ball| self.workspace.touch(ball, race);
-            let angle = |ball| towards_x(&touch(ball).normal, &touch(ball).radial, &axis);
+            let towards_x = |ball| towards_x(&touch(ball).normal, &touch(ball).radial, &axis);
+            let balls = 0..self.state.balls.len();
+            let clear = self.model.bearing.shoulders[race].clear();
+            if balls.clone().all(|ball| clear(towards_x(ball))) {
+                continue;
+            }
+            let angle = |ball| {
+                let (sine, cosine) = towards_x(ball);
+                sine.atan2(cosine)
+            };
             self.model
                 .bearing
-                .check_shoulders(race, (0..self.state.balls.len()).map(|ball| touch(ball).load), angle)
+                .check_shoulders(race, balls.map(|ball| touch(ball).load), angle)
                 .map_err(|contact| SimulationError::BeyondShoulder { time: self.state.time, contact })?;
         }
         Ok(())

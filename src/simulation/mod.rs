@@ -216,6 +216,14 @@ impl Simulation {
         Snapshot { inputs: self.inputs, state: self.state.clone(), paths: self.paths.clone() }
     }
 
+    /// That, in the memory of an earlier one.
+    pub fn snapshot_into(&self, snapshot: &mut Snapshot) {
+        let Snapshot { inputs, state, paths } = snapshot;
+        *inputs = self.inputs;
+        state.copy_from(&self.state);
+        paths.clone_from(&self.paths);
+    }
+
     /// Goes to a point that a simulation of the same scene was at; false, with nothing changed, if the snapshot is of
     /// another bearing.
     #[must_use]
@@ -223,7 +231,7 @@ impl Simulation {
         let same = self.fits(snapshot);
         if same {
             self.inputs = snapshot.inputs;
-            self.state.clone_from(&snapshot.state);
+            self.state.copy_from(&snapshot.state);
             self.paths.clone_from(&snapshot.paths);
             self.reach(false);
         }

@@ -383,9 +383,10 @@ fn reaction(race: &BodyState, body: &RigidBody, axis: &Vector3<f64>) -> Wrench {
     sum
 }
 
-/// \[rad] contact angle towards the +x side of a race of this axis, of a contact with this normal and radial direction.
-pub(super) fn towards_x(normal: &Vector3<f64>, radial: &Vector3<f64>, axis: &Vector3<f64>) -> f64 {
-    normal.dot(axis).atan2(normal.dot(radial).abs())
+/// Sine and cosine, times a length, of the contact angle towards the +x side of a race of this axis, of a contact with this normal and radial
+/// direction.
+pub(super) fn towards_x(normal: &Vector3<f64>, radial: &Vector3<f64>, axis: &Vector3<f64>) -> (f64, f64) {
+    (normal.dot(axis), normal.dot(radial).abs())
 }
 
 /// Output with power against rolling and film.
@@ -410,7 +411,8 @@ fn contact_output(
     // The outer normal points outwards, the inner one inwards: the angle is that of the force on the ball for the
     // inner race, and of its opposite for the outer, so that both are positive under the same thrust.
     let (axial, radial) = (normal.dot(axis), normal.dot(&contact.geometry.radial));
-    let towards_x = towards_x(normal, &contact.geometry.radial, axis);
+    let (sine, cosine) = towards_x(normal, &contact.geometry.radial, axis);
+    let towards_x = sine.atan2(cosine);
     let contact_angle = match (model.bearing.is_thrust_bearing(), race) {
         (true, Race::Inner) => (-axial).atan2(-radial),
         (true, Race::Outer) => axial.atan2(radial),

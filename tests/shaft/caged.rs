@@ -8,7 +8,7 @@ use crate::common::{forces, imbalance, stored, system};
 
 /// As many 6205 with cages, 20 mm apart, on a shaft of 25 mm in a housing on four feet, pulled at in the middle. They are shaken so that
 /// cages fall on balls and lands within the first millisecond.
-fn caged(bearings: usize, solver: &str) -> String {
+pub fn caged(bearings: usize, solver: &str) -> String {
     let mut text = format!(
         r#"
 gravity = [0, 0, -300]

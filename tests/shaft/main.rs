@@ -3,6 +3,7 @@
 
 mod caged;
 mod common;
+mod cost;
 mod equilibrium;
 mod frame;
 mod hard;

@@ -192,6 +192,23 @@ fn invariant_reruns_and_snapshots_give_the_same_bits() {
 }
 
 #[test]
+fn identity_a_snapshot_in_the_memory_of_an_earlier_one_is_a_new_one() {
+    let mut kept = None;
+    // Each bearing in the memory of the one before, then in its own.
+    for text in [THRUST, include_str!("../../scenes/cage.toml"), RADIAL, MISALIGNMENT] {
+        let mut simulation = Simulation::new(&Scene::parse(text).unwrap()).unwrap();
+        for point in 1..=3 {
+            simulation.advance_scripted(f64::from(point) * 1e-4).unwrap();
+            let kept = kept.get_or_insert_with(|| simulation.snapshot());
+            simulation.snapshot_into(kept);
+            // As bytes, which tell zeros of unlike sign apart.
+            let [ours, new] = [&*kept, &simulation.snapshot()].map(|s| postcard::to_allocvec(s).unwrap());
+            assert!(ours == new, "{} at point {point}", simulation.scene().title);
+        }
+    }
+}
+
+#[test]
 fn invariant_a_restored_state_knows_nothing_of_oblique_rolling_and_goes_on_to_the_same_bits() {
     const INTERVAL: f64 = 1e-4;
     // A race that tips to and fro before it turns: balls roll across their grooves, and then along them.

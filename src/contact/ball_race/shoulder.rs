@@ -4,9 +4,14 @@
 //! at angle `a` whose ellipse is seen from the ball's centre under the half angle `b` is cut off at `t = (end - |a|)/b` of its
 //! semi-axis; beyond lies the share `(1 - t)^2 (2 + t)/4` of a Hertzian load.
 
+use std::f64::consts::PI;
+
 /// [-] load of a contact over the largest of its race below which its place is not looked at: balls that others leave without
 /// load rattle about their groove.
 pub const SMALL_LOAD: f64 = 0.05;
+
+/// \[rad] distance from the end of a groove within which the angle of a contact is computed.
+const CLEAR: f64 = 5.0 * PI / 180.0;
 
 /// Largest share beyond the shoulders of a race among contacts that carry load, by their loads \[N] and shares.
 pub fn largest_share(contacts: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
@@ -66,10 +71,43 @@ impl Shoulders {
         (self.ends[0] + towards_x).min(self.ends[1] - towards_x) - half_angle
     }
 
+    /// Is a contact far from both shoulders, by more than five degrees? By sine and cosine, times any length, of its angle towards +x: angles
+    /// themselves would cost more than all else that is looked at in a communication point.
+    pub fn clear(&self) -> impl Fn((f64, f64)) -> bool + use<> {
+        let [minus_x, plus_x] = self.ends.map(|end| (end - CLEAR).tan());
+        move |(sine, cosine)| -minus_x * cosine < sine && sine < plus_x * cosine
+    }
+
     /// Is a contact at an angle \[rad] towards +x beyond a shoulder?
     pub fn beyond(&self, towards_x: f64) -> Option<Beyond> {
         let side = usize::from(towards_x > 0.0);
         let (angle, end) = (towards_x.abs(), self.ends[side]);
         (angle > end).then_some(Beyond { side, angle, end })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    #[test]
+    fn closed_form_what_is_clear_of_the_shoulders_is_five_degrees_from_both() {
+        for ends in [[0.3, 0.9], [1.2, FRAC_PI_2], [0.05, 0.5]] {
+            let shoulders = Shoulders { ends };
+            let clear = shoulders.clear();
+            for k in -900..=900 {
+                let angle = f64::from(k) * 1e-3 * FRAC_PI_2 / 0.9;
+                let (sine, cosine) = angle.sin_cos();
+                let margin = shoulders.margin(angle, 0.0);
+                // To the rounding of the slopes.
+                if (margin - CLEAR).abs() > 1e-12 {
+                    assert_eq!(clear((0.7 * sine, 0.7 * cosine.abs())), margin > CLEAR, "{ends:?} {angle}");
+                }
+                assert!(shoulders.beyond(angle).is_none() || margin < 0.0);
+            }
+        }
+        assert!(!Shoulders { ends: [1.0; 2] }.clear()((f64::NAN, 1.0)));
     }
 }

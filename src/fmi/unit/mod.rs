@@ -41,6 +41,8 @@ pub struct Unit {
     machine: Machine,
     /// Inputs of the next step.
     next: MachineInputs,
+    /// [`Unit::scripts`].
+    scripts: Vec<Option<Giver>>,
 }
 
 /// A refusal for a reason.
@@ -63,6 +65,22 @@ fn givers(scene: &Scene) -> impl Iterator<Item = Option<Giver>> {
         .map(move |&group| scripted.contains(group).then(|| scene.interface.inputs.of(group)))
 }
 
+/// Scripts of a machine of a scene: who gives what there is one for.
+fn scripts(machine: &Machine, scene: &MachineScene) -> Vec<Option<Giver>> {
+    let mut all: Vec<_> = machine.bearings().flat_map(|(_, bearing)| givers(bearing.scene())).collect();
+    if let Some(scene) = scene.shaft() {
+        // The frame of every bearing is that of the machine, which has a script of its own.
+        all.iter_mut().skip(Group::Frame as usize).step_by(GROUPS).for_each(|script| *script = None);
+        let loads = scene.loads().map(|load| load.is_scripted());
+        let gears = scene.gears().map(|gear| gear.torque.is_scripted());
+        let drives = scene.shafts.iter().map(drive_is_scripted);
+        let frame = scene.frame.iter().map(FrameSection::is_scripted);
+        let of_shaft = loads.chain(gears).chain(drives).chain(frame);
+        all.extend(of_shaft.map(|scripted| scripted.then_some(Giver::Scene)));
+    }
+    all
+}
+
 impl Unit {
     /// A machine of a scene whose effects are found out, started.
     ///
@@ -71,7 +89,8 @@ impl Unit {
     pub fn new(scene: MachineScene) -> Outcome<Self> {
         let machine = Machine::new(&scene).map_err(|why| refused(&why))?;
         let variables = Arc::new(MachineVariables::new(&machine));
-        Ok(Self { variables, scene: Arc::new(scene), next: machine.inputs(), machine })
+        let scripts = scripts(&machine, &scene);
+        Ok(Self { variables, scene: Arc::new(scene), next: machine.inputs(), machine, scripts })
     }
 
     /// The variables; the index of a row is its value reference.
@@ -132,6 +151,7 @@ impl Unit {
     pub fn start_at(&mut self, time: f64, values: &[f64]) -> Outcome {
         let scene = self.scene_with(values)?;
         self.machine = Machine::starting_at(&scene, time).map_err(|why| refused(&why))?;
+        self.scripts = scripts(&self.machine, &scene);
         self.scene = Arc::new(scene);
         Ok(())
     }
@@ -151,6 +171,7 @@ impl Unit {
     pub fn tune(&mut self, values: &[f64]) -> Outcome {
         let scene = self.scene_with(values)?;
         self.machine.tune(&scene);
+        self.scripts = scripts(&self.machine, &scene);
         self.scene = Arc::new(scene);
         Ok(())
     }
@@ -200,6 +221,11 @@ impl Unit {
         self.machine.snapshot()
     }
 
+    /// That, in the memory of an earlier one.
+    pub fn snapshot_into(&self, snapshot: &mut MachineSnapshot) {
+        self.machine.snapshot_into(snapshot);
+    }
+
     /// Goes to a point; false, with nothing changed, if that is of another unit.
     #[must_use]
     pub fn restore(&mut self, snapshot: &MachineSnapshot) -> bool {
@@ -219,20 +245,8 @@ impl Unit {
     }
 
     /// Scripts: who gives what there is one for; none where the scene has no script.
-    pub fn scripts(&self) -> Vec<Option<Giver>> {
-        let mut all: Vec<_> =
-            self.machine.bearings().flat_map(|(_, bearing)| givers(bearing.scene())).collect();
-        if let Some(scene) = self.scene.shaft() {
-            // The frame of every bearing is that of the machine, which has a script of its own.
-            all.iter_mut().skip(Group::Frame as usize).step_by(GROUPS).for_each(|script| *script = None);
-            let loads = scene.loads().map(|load| load.is_scripted());
-            let gears = scene.gears().map(|gear| gear.torque.is_scripted());
-            let drives = scene.shafts.iter().map(drive_is_scripted);
-            let frame = scene.frame.iter().map(FrameSection::is_scripted);
-            let of_shaft = loads.chain(gears).chain(drives).chain(frame);
-            all.extend(of_shaft.map(|scripted| scripted.then_some(Giver::Scene)));
-        }
-        all
+    pub fn scripts(&self) -> &[Option<Giver>] {
+        &self.scripts
     }
 
     /// Group of inputs that a script gives.

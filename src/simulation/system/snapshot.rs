@@ -40,6 +40,19 @@ impl System {
         }
     }
 
+    /// That, in the memory of an earlier one of this system.
+    pub fn snapshot_into(&self, snapshot: &mut SystemSnapshot) {
+        let SystemSnapshot { inputs, paths, states, links, bearings } = snapshot;
+        inputs.clone_from(&self.structures.inputs);
+        paths.clone_from(&self.structures.paths);
+        states.clone_from(&self.structures.states);
+        links.clone_from(&self.structures.link_states);
+        bearings.truncate(self.bearings.len());
+        let (old, new) = self.bearings.split_at(bearings.len());
+        old.iter().zip(&mut *bearings).for_each(|(bearing, snapshot)| bearing.snapshot_into(snapshot));
+        bearings.extend(new.iter().map(Simulation::snapshot));
+    }
+
     /// Goes to a point that the same system was at; false, with nothing changed, if the snapshot is of another one.
     #[must_use]
     pub fn restore(&mut self, snapshot: &SystemSnapshot) -> bool {

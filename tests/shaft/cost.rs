@@ -1,0 +1,88 @@
+//! Work of machines of many bearings, counted: it grows with their number alone.
+
+use std::fs;
+use std::path::Path;
+
+use roulement::simulation::system::System;
+
+use crate::caged::caged;
+use crate::common::system;
+
+/// [-] price of a contact with derivatives over one without (docs/decisions/kept-matrices.md).
+const TANGENT: f64 = 5.0;
+
+/// As many 6205 in the ground, 20 mm apart, on a shaft of 25 mm that is pulled at in the middle, or on a rigid one.
+fn plain(bearings: usize, rigid: bool) -> String {
+    let (end, middle) = (20 * bearings, 20 * (bearings / 2));
+    let mut text = match rigid {
+        true => format!(
+            "[shaft]\nspeed = \"600 rpm\"\nmass = {}\npolar_inertia = 1e-3\ntransverse_inertia = {}\ncentre = \"{} mm\"\n",
+            0.1 * bearings as f64,
+            1e-3 * (bearings as f64).powi(3),
+            10 * bearings
+        ),
+        false => format!(
+            "[shaft]\nspeed = \"600 rpm\"\n[[shaft.section]]\nfrom = \"-20 mm\"\nto = \"{end} mm\"\nouter_diameter = \"25 mm\"\n"
+        ),
+    };
+    text += &format!(
+        "[[shaft.load]]\nname = \"pull\"\nposition = \"{middle} mm\"\nforce = [0, {}, 0]\n",
+        100 * bearings
+    );
+    for k in 0..bearings {
+        let direction = if k % 2 == 0 { "+x" } else { "-x" };
+        text += &format!(
+            "[[bearing]]\nname = \"b{k}\"\ncatalogue = \"6205\"\n\
+             mounting = {{ position = \"{} mm\", direction = \"{direction}\", preload = {{ force = \"100 N\" }} }}\n\
+             [bearing.set]\neffects = {{ creep = \"saturated\", heathcote_slip = false }}\n",
+            20 * k
+        );
+    }
+    text + "[load]\nduration = \"1 ms\"\noutput_interval = \"100 us\"\n"
+}
+
+/// Contacts evaluated per step and bearing from 0.1 to 0.3 ms, those with derivatives at their price.
+fn work(text: &str) -> f64 {
+    let mut machine = system(text);
+    let count = |machine: &System| {
+        let of = machine.bearings().map(|(_, bearing)| bearing.state().statistics);
+        of.fold([0.0; 2], |[contacts, steps], one| {
+            let own = one.contact_values as f64 + TANGENT * one.contact_tangents as f64;
+            [contacts + own, steps + one.steps as f64]
+        })
+    };
+    machine.advance(1e-4).unwrap();
+    let [before, first] = count(&machine);
+    machine.advance(3e-4).unwrap();
+    let [after, last] = count(&machine);
+    (after - before) / (last - first)
+}
+
+#[test]
+fn invariant_twenty_bearings_take_no_more_work_each_than_two() {
+    let machines: [(&str, fn(usize) -> String); 3] = [
+        ("beams", |bearings| plain(bearings, false)),
+        ("rigid", |bearings| plain(bearings, true)),
+        ("caged", |bearings| caged(bearings, "")),
+    ];
+    for (name, text) in machines {
+        let [two, many] = [2, 20].map(|bearings| work(&text(bearings)));
+        println!("{name}: {two:.1} contacts a step and bearing of two, {many:.1} of twenty");
+        assert!(many < 1.1 * two, "{name}: {two} {many}");
+    }
+}
+
+#[test]
+fn regression_instructions_of_recorded_machines_grow_with_their_bearings() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/shaft-cost.csv");
+    let record = fs::read_to_string(path).unwrap();
+    let rows: Vec<Vec<&str>> = record.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let mut compared = 0;
+    for two in rows.iter().filter(|row| row[2] == "2") {
+        let many = rows.iter().find(|row| row[..2] == two[..2] && row[2] == "20").unwrap();
+        let [two_cost, many_cost] = [two, many].map(|row| row[4].parse::<f64>().unwrap());
+        assert!(many_cost < 1.1 * two_cost, "{} {}: {two_cost} {many_cost}", two[0], two[1]);
+        compared += 1;
+    }
+    assert_eq!(compared, 4);
+}
