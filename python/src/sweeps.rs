@@ -55,7 +55,7 @@ impl Sweep {
                 (None, Some(path)) => base_of(path).map_err(refused)?.0,
                 (None, None) => return Err(value("name the base scene")),
             };
-            let wanted = Wanted { columns, tables: None };
+            let wanted = Wanted { columns, ..Wanted::default() };
             let sweep = all::Sweep::new(cases, base, wanted, &directory).map_err(failed)?;
             Ok(Self { sweep, directory })
         })
@@ -158,7 +158,7 @@ pub fn base_scene(py: Python<'_>, path: PathBuf) -> PyResult<String> {
 #[pyfunction]
 pub fn case_row(py: Python<'_>, scene: &str, columns: Vec<String>) -> PyResult<String> {
     py.detach(|| {
-        let wanted = Wanted { columns, tables: None };
+        let wanted = Wanted { columns, ..Wanted::default() };
         let row = case::run_text(scene, &wanted, None, &AtomicBool::new(false)).map_err(failed)?;
         to_text(&row.unwrap_or_default()).map_err(value)
     })

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import roulement
 from roulement import shaft, sweep
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
@@ -121,3 +122,31 @@ def test_cases_of_a_shaft_run_in_a_sweep(pinion, tmp_path):
     # Twice the force deflects the shaft further, and friction costs power.
     z, power = table["left.seat.displacement.z.end"], table["left.friction_power.mean"]
     assert z[1] > z[0] > 0 and power[2] > power[0]
+
+
+def test_a_shaft_goes_step_by_step(pinion):
+    """Inputs act, a bearing's variables have its name before them, and points are come back to with the same bits."""
+    simulation = roulement.Simulation(roulement.Scene.load(pinion))
+    assert simulation.variables["mesh.force.z"][1] == "input" and simulation.variables["left.inner.force.x"][1] == "output"
+    before = simulation["left.seat.displacement.z"]
+    assert simulation["left.inner.force"].shape == (3,)
+    point = simulation.snapshot()
+
+    def goes_on(force):
+        simulation["mesh.force.z"] = force
+        for _ in range(10):
+            simulation.step(2e-5)
+        return np.array([*simulation["left.inner.force"], simulation["shaft.torque"], simulation["left.seat.displacement.z"]])
+
+    end = goes_on(2500.0)
+    assert simulation.time == pytest.approx(2e-4)
+    assert end[-1] > before + 1e-7
+    matrix = simulation.derivatives(["left.inner.force", "right.inner.force"], "mesh.force.z")
+    assert matrix.shape == (6, 1) and np.isfinite(matrix).all() and np.abs(matrix).max() > 1e-3
+    simulation.restore(point)
+    assert np.array_equal(end.view(np.int64), goes_on(2500.0).view(np.int64))
+    other = simulation.copy()
+    simulation.step(2e-5), other.step(2e-5)
+    assert np.array_equal(other["right.inner.force"], simulation["right.inner.force"])
+    with pytest.raises(KeyError, match="middle.inner.force"):
+        simulation.signal("middle.inner.force")

@@ -21,7 +21,9 @@ pub(super) fn under(
     let input = problem(Gyroscopic::OuterRaceControl);
     let solution = equilibrium::solve(model, &input)
         .or_else(|_| equilibrium::solve(model, &problem(Gyroscopic::Friction)))?;
-    let speeds = [input.inner_speed, input.outer_speed];
+    // What throws balls and rings outwards is how they turn in all, not how they do in a frame.
+    let turn = input.frame.angular_velocity.x;
+    let speeds = [input.inner_speed, input.outer_speed].map(|speed| speed + turn);
     let most = solution.balls.iter().max_by(|a, b| a.report.inner_load.total_cmp(&b.report.inner_load));
     let most = most.filter(|ball| ball.report.inner_load > 0.0).ok_or(EstimateError::Unloaded)?;
     let depth =
@@ -42,7 +44,10 @@ pub(super) fn under(
         threshold: scene.effects.auto.threshold(),
         deepest: solution.balls.iter().map(depth).fold(0.0, f64::max),
         loads: [largest(|ball| ball.report.inner_load), largest(|ball| ball.report.outer_load)],
-        centrifugal_force: most.report.centrifugal_force,
+        centrifugal_force: match turn {
+            0.0 => most.report.centrifugal_force,
+            turn => bearing.ball.mass * most.position.yz().norm() * (solution.cage_speed + turn).powi(2),
+        },
         gyroscopic_moment: most.report.gyroscopic_moment,
         ball_radius: bearing.ball.radius,
         balls: bearing.n_balls,

@@ -43,6 +43,16 @@ pub struct Mover {
     pub stiffness: DMatrix<f64>,
 }
 
+impl Mover {
+    /// Adds to stiffness and damping, where there is something to be added.
+    pub fn add(&mut self, matrices: Option<[DMatrix<f64>; 2]>) {
+        if let Some([stiffness, damping]) = matrices {
+            self.stiffness += stiffness;
+            self.damping += damping;
+        }
+    }
+}
+
 /// Where a body of a bearing is on a mover.
 #[derive(Clone, Debug)]
 pub struct Seated {
@@ -144,6 +154,17 @@ impl SmallMotions {
         });
         let (matrix, lift) = kept_apart(matrix, 2 * size, &apart.collect::<Vec<_>>());
         Self { matrix, mass, balls, lift }
+    }
+
+    /// With some coordinates, which inertia does not couple with others, that do not move.
+    #[must_use]
+    pub fn holding(mut self, coordinates: &[usize]) -> Self {
+        // Of what ideal cages leave, coordinates and their rates come first, too.
+        for k in coordinates.iter().flat_map(|k| [*k, self.mass.nrows() + k]) {
+            self.matrix.row_mut(k).fill(0.0);
+            self.matrix.column_mut(k).fill(0.0);
+        }
+        self
     }
 
     /// All motions, the fastest growing first; one of each conjugate pair. None where eigenvalues are not found.

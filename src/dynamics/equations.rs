@@ -379,14 +379,18 @@ impl Boundary {
         }
     }
 
-    /// Takes the spins of the races, which rings grow by and oil is thrown off by, from their motions and prescribed speeds.
+    /// Takes the spins of the races, which rings grow by and oil is thrown off by, from their motions and prescribed speeds, and the turn of
+    /// the frame that these are seen from.
     pub fn see_spins(&mut self, model: &Model) {
         if model.growth.is_some() || model.films.is_some() {
-            self.conditions.warmth.spins = Race::BOTH.map(|race| match &model.bodies[race] {
-                Some(_) => self.loads[race].speed,
-                None => {
-                    let (pose, twist) = &self.motion[race];
-                    (pose.orientation.inverse() * twist.angular_velocity).x
+            let turn = self.frame.angular_velocity.x;
+            self.conditions.warmth.spins = Race::BOTH.map(|race| {
+                turn + match &model.bodies[race] {
+                    Some(_) => self.loads[race].speed,
+                    None => {
+                        let (pose, twist) = &self.motion[race];
+                        (pose.orientation.inverse() * twist.angular_velocity).x
+                    }
                 }
             });
         }

@@ -11,7 +11,8 @@ use crate::schema::Components;
 use crate::schema::numbers::{Number, Place, Range};
 use crate::schema::units::Acceleration;
 
-const GRAVITY: Range = Range::closed(-1e6, 1e6, "m/s2");
+/// Allowed components.
+pub const GRAVITY: Range = Range::closed(-1e6, 1e6, "m/s2");
 
 /// [m/s2] standard gravity.
 const STANDARD: f64 = 9.80665;

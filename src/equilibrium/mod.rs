@@ -105,7 +105,9 @@ impl EquilibriumInput {
 
     /// Conditions of every contact, without friction.
     pub fn surroundings(&self) -> Conditions {
-        let warmth = Warmth { rises: self.rises, spins: [self.inner_speed, self.outer_speed] };
+        // Rings grow by what they turn in all.
+        let spins = [self.inner_speed, self.outer_speed].map(|speed| speed + self.frame.angular_velocity.x);
+        let warmth = Warmth { rises: self.rises, spins };
         Conditions { friction: 0.0, warmth, lubrication: 0.0 }
     }
 

@@ -7,16 +7,21 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::scalar::{Scalar, cross};
 
-/// \[rad] turn, tilt about y and z of an orientation; the turn is in (-pi, pi].
-pub fn coordinates(orientation: &UnitQuaternion<f64>) -> Vector3<f64> {
+/// \[rad] rotation vector `[0, r_y, r_z]` of an orientation's x axis.
+pub fn of_axis(orientation: &UnitQuaternion<f64>) -> Vector3<f64> {
     let axis = orientation * Vector3::x();
     let across = Vector3::new(0.0, -axis.z, axis.y);
     let sine = across.norm();
     // By the sine, as the cosine of a small angle does not tell it.
-    let tilt = match sine.atan2(axis.x) {
+    match sine.atan2(axis.x) {
         angle if sine > 0.0 => across * (angle / sine),
         half_turn => Vector3::y() * half_turn,
-    };
+    }
+}
+
+/// \[rad] turn, tilt about y and z of an orientation; the turn is in (-pi, pi].
+pub fn coordinates(orientation: &UnitQuaternion<f64>) -> Vector3<f64> {
+    let tilt = of_axis(orientation);
     let turn = tilted(&tilt).inverse() * orientation;
     let turn = 2.0 * turn.i.atan2(turn.w);
     // q and -q are the same turn.

@@ -96,6 +96,11 @@ fn check_all(range: Range, key: &str, schedule: &Schedule) -> Result<(), SceneEr
     schedule.values().into_iter().try_for_each(|value| range.check(key, value))
 }
 
+/// Angle \[rad], speed [rad/s] and its rate [rad/s2] at a time \[s] of what turns at a given speed.
+fn turn_by(speed: &Schedule, time: f64) -> [f64; 3] {
+    [speed.integral(0.0, time), speed.at(time), speed.slope(time)]
+}
+
 /// \[s] period of what happens so many times in a turn, at a speed [rad/s]; none at rest.
 fn period(times: f64, speed: f64) -> Option<f64> {
     let rate = (times * speed).abs();
@@ -105,15 +110,27 @@ fn period(times: f64, speed: f64) -> Option<f64> {
 impl RotatingSection {
     /// Wrench at a time \[s] about the middle of the bearing; `own` is the speed of the race.
     pub fn at(&self, own: &Schedule, time: f64) -> Wrench {
-        let speed = self.speed(own);
-        let azimuth = self.phase.0 + speed.integral(0.0, time);
+        self.turned(turn_by(self.speed(own), time), self.offset.0, time)
+    }
+
+    /// Wrench at a time \[s] about the point of a shaft's axis that is in its plane; `own` is the shaft's angle \[rad], speed [rad/s] and its
+    /// rate [rad/s2].
+    pub fn on_shaft(&self, own: [f64; 3], time: f64) -> Wrench {
+        let turn = self.speed.as_ref().map_or(own, |speed| turn_by(speed, time));
+        self.turned(turn, 0.0, time)
+    }
+
+    fn turned(&self, [angle, speed, rate]: [f64; 3], offset: f64, time: f64) -> Wrench {
+        let azimuth = self.phase.0 + angle;
         match (&self.force, self.unbalance) {
-            (Some(force), _) => radial_force(force.at(time), azimuth, self.offset.0),
-            (None, of) => {
-                let product = of.map_or(0.0, |of| of.0);
-                unbalance(product, azimuth, speed.at(time), speed.slope(time), self.offset.0)
-            }
+            (Some(force), _) => radial_force(force.at(time), azimuth, offset),
+            (None, of) => unbalance(of.map_or(0.0, |of| of.0), azimuth, speed, rate, offset),
         }
+    }
+
+    /// Schedules of its own.
+    pub fn schedules(&self) -> impl Iterator<Item = &Schedule> {
+        self.force.iter().chain(&self.speed)
     }
 
     fn speed<'a>(&'a self, own: &'a Schedule) -> &'a Schedule {
@@ -124,7 +141,11 @@ impl RotatingSection {
         self.force.as_ref().is_some_and(Schedule::is_scripted) || largest(self.speed(own)) > 0.0
     }
 
-    fn check(&self, key: &str, own: &Schedule) -> Result<(), SceneError> {
+    /// Checks every value against its range; `key` is that of the entry, `own` the speed of what it is on.
+    ///
+    /// # Errors
+    /// Names the key, the value and the range.
+    pub fn check(&self, key: &str, own: &Schedule) -> Result<(), SceneError> {
         let of = |name: &str| format!("{key}.{name}");
         if self.unbalance.is_some() == self.force.is_some() {
             return Err(SceneError::conflict(key, "give exactly one of unbalance and force"));

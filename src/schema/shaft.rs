@@ -5,7 +5,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::components::Components;
-use super::machine::GearSection;
+use super::machine::{GearSection, RotatingSection};
 use super::matrices::StructureMatrices;
 use super::schedule::{self, Schedule};
 use super::sections::Material;
@@ -58,6 +58,8 @@ pub struct ShaftSection {
     pub load: Vec<PointLoad>,
     /// Meshes of helical gears on the shaft; `offset` is the place of the pitch point along it, and the ripple follows its turn.
     pub gear: Vec<GearSection>,
+    /// Forces that turn with the shaft, or at a speed of their own; `offset` is the place of their plane along it.
+    pub rotating: Vec<RotatingSection>,
     /// Points whose motion is reported.
     pub point: Vec<Point>,
 }
@@ -69,13 +71,14 @@ impl ShaftSection {
         [x + position, y, z]
     }
 
-    /// \[m] positions of everything on it: loads, points, discs and gears.
+    /// \[m] positions of everything on it: loads, points, discs, gears and forces that turn.
     pub fn positions(&self) -> impl Iterator<Item = f64> {
         let loads = self.load.iter().map(|load| load.position.0);
         let points = self.point.iter().map(|point| point.position.0);
         let discs = self.disc.iter().map(|disc| disc.position.0);
         let gears = self.gear.iter().map(|gear| gear.offset.0);
-        loads.chain(points).chain(discs).chain(gears)
+        let rotating = self.rotating.iter().map(|part| part.offset.0);
+        loads.chain(points).chain(discs).chain(gears).chain(rotating)
     }
 }
 
@@ -155,6 +158,54 @@ pub struct PointLoad {
     /// [N m] moment, components about x, y, z.
     #[serde(default)]
     pub moment: Components<Moment>,
+    /// Displacement of the point, where that is given and not the force.
+    #[serde(default)]
+    pub displacement: PointDisplacement,
+    /// Tilt of the shaft there, where that is given and not the moment.
+    #[serde(default)]
+    pub rotation: PointRotation,
+}
+
+/// Displacement of a point along some of the axes.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table { x = ..., y = ..., z = ... }")]
+pub struct PointDisplacement {
+    /// \[m] displacement along x, constant, or over time as a smooth motion through the points of a table; what holds it there is a result.
+    #[serde(deserialize_with = "some::<Length, _>")]
+    pub x: Option<Schedule>,
+    /// \[m] the same along y.
+    #[serde(deserialize_with = "some::<Length, _>")]
+    pub y: Option<Schedule>,
+    /// \[m] the same along z.
+    #[serde(deserialize_with = "some::<Length, _>")]
+    pub z: Option<Schedule>,
+}
+
+/// Tilt at a point about some of the axes.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table { ry = ..., rz = ... }")]
+pub struct PointRotation {
+    /// \[rad] tilt about y, likewise.
+    #[serde(deserialize_with = "some::<Angle, _>")]
+    pub ry: Option<Schedule>,
+    /// \[rad] tilt about z.
+    #[serde(deserialize_with = "some::<Angle, _>")]
+    pub rz: Option<Schedule>,
+}
+
+impl PointLoad {
+    /// What is given of its motion: key, component (displacements 0 to 2, rotations 3 to 5), and schedule.
+    pub fn motion(&self) -> impl Iterator<Item = (&'static str, usize, &Schedule)> {
+        let (PointDisplacement { x, y, z }, PointRotation { ry, rz }) = (&self.displacement, &self.rotation);
+        let all = [
+            ("displacement.x", 0, x),
+            ("displacement.y", 1, y),
+            ("displacement.z", 2, z),
+            ("rotation.ry", 4, ry),
+            ("rotation.rz", 5, rz),
+        ];
+        all.into_iter().filter_map(|(key, component, given)| Some((key, component, given.as_ref()?)))
+    }
 }
 
 /// A point whose motion is reported.

@@ -5,6 +5,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::inputs::RaceInput;
 use crate::equilibrium;
 use crate::numerics::motion::Pose;
+use crate::numerics::tilt;
 
 /// Pose of the race that moved into balance.
 pub fn pose_of(solution: &equilibrium::Equilibrium) -> Pose {
@@ -19,7 +20,7 @@ pub fn own_spin(input: &RaceInput) -> f64 {
 
 /// Orientation of a race without its turn about its own axis; that of the outer race is the equilibrium's frame.
 pub fn spin_free(race: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-    UnitQuaternion::rotation_between(&Vector3::x(), &(race * Vector3::x())).unwrap_or_default()
+    UnitQuaternion::new(tilt::of_axis(race))
 }
 
 /// \[rad] turn of a race about its own axis beyond its tilt.
@@ -30,5 +31,26 @@ pub fn turn_of(race: &UnitQuaternion<f64>) -> f64 {
 
 /// Rotation vector [0, ry, rz] that carries the x axis to a pose's axis.
 pub fn tilt_of(pose: &Pose) -> Vector3<f64> {
-    spin_free(&pose.orientation).scaled_axis()
+    tilt::of_axis(&pose.orientation)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Stiff bearings tell tilts of far less than a nanoradian.
+    #[test]
+    fn identity_tilts_are_read_to_their_last_digits() {
+        for tilt in [1e-12, 3e-9, 1.2e-7, 1e-4, 0.05] {
+            let tilt = Vector3::new(0.0, 0.6 * tilt, -0.8 * tilt);
+            let turned = UnitQuaternion::new(tilt) * UnitQuaternion::new(Vector3::x() * 2.0);
+            let pose = Pose { position: Vector3::zeros(), orientation: turned };
+            assert!(
+                (tilt_of(&pose) - tilt).norm() < 1e-15 * (1.0 + tilt.norm()),
+                "{tilt} {}",
+                tilt_of(&pose)
+            );
+            assert!((turn_of(&turned) - 2.0).abs() < 1e-14);
+        }
+    }
 }

@@ -1,11 +1,14 @@
 //! Machines in a frame that moves: forces of inertia on shafts, housings, rings and what is in the bearings.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector3;
 use roulement::interface::variables::{Causality, MachineVariables};
 use roulement::scene::Scene;
 use roulement::scene::system::SystemScene;
 use roulement::simulation::Simulation;
 use roulement::simulation::machine::Machine;
+use roulement::simulation::motions::Motion;
 use roulement::simulation::system::System;
 
 use crate::common::{forces, held, imbalance, stored, system};
@@ -230,16 +233,67 @@ fn what_a_bearing_on_a_shaft_has_not_of_its_own_says_so() {
     let own =
         pair("", RIGID, "").replacen("effects = {", "effects = { frame = { acceleration = [1, 0, 0] },", 1);
     let large = pair("[frame]\nacceleration = [1e7, 0, 0]", RIGID, "");
-    let scripted = pair("gravity = [0, 0, [[0, 0], [1, 1]]]", RIGID, "");
     let of_shaft =
         pair("", RIGID, "").replacen("[bearing.set]", "[bearing.set]\nload = { x = { force = 3 } }", 1);
     for (text, parts) in [
         (of_shaft, ["bearing.set.load.x", "[[shaft.load]]"]),
         (own, ["effects.frame", "[frame]"]),
         (large, ["frame.acceleration.x", "1000000"]),
-        (scripted, ["gravity", "frame.acceleration"]),
     ] {
         let why = SystemScene::edited(&text).unwrap_err().to_string();
         assert!(parts.iter().all(|part| why.contains(part)), "{why}");
+    }
+}
+
+/// A machine whose outer rings turn, and the same one seen from these: what swings forwards or backwards is slower or faster by the turn
+/// of the frame, what goes along the axis is as fast, and all decays alike. Nothing else differs, balls and cages included.
+#[test]
+fn identity_seen_from_a_frame_that_turns_motions_are_slower_or_faster_by_its_turn() {
+    let (speed, turn) = (3000.0, 90.0);
+    let machine = |first: &str, speed: f64, outer: f64| {
+        let text = pair(first, RIGID, "").replace("speed = 300", &format!("speed = {speed}"));
+        let text = text.replace("force = [100, -475.0, 260.5]", "force = [100, 0, 0]");
+        let text =
+            text.replacen("[bearing.set]", &format!("[bearing.set]\nload = {{ outer_speed = {outer} }}"), 1);
+        let (left, right) = text.split_once("name = \"right\"").unwrap();
+        let right = right.replacen(
+            "[bearing.set]",
+            &format!("[bearing.set]\nload = {{ outer_speed = {} }}", -outer),
+            1,
+        );
+        system(&format!("{left}name = \"right\"{right}"))
+    };
+    let mut still = machine("", speed, turn);
+    let mut seen = machine(&format!("[frame]\nangular_velocity = [{turn}, 0, 0]"), speed - turn, 0.0);
+    let shift = turn / TAU;
+    let by_whirl = |whirl: &str| match whirl {
+        "forward" => -shift,
+        "backward" => shift,
+        _ => 0.0,
+    };
+    let found = seen.modes().unwrap().unwrap();
+    let modes = still.modes().unwrap().unwrap();
+    assert_eq!([modes.len(), found.len()], [5; 2]);
+    for mode in &modes {
+        let expected = mode.frequency + by_whirl(mode.whirl.name());
+        let apart = found.iter().map(|own| (own.frequency - expected).abs()).fold(f64::INFINITY, f64::min);
+        assert!(apart < 1e-5 * expected, "{mode:?} {found:?}");
+    }
+    for system in [&mut still, &mut seen] {
+        system.advance(1e-3).unwrap();
+    }
+    let found = seen.motions().unwrap();
+    let motions = still.motions().unwrap();
+    assert!(motions.len() >= 4, "{motions:?}");
+    for motion in &motions {
+        let whirl = motion.shape.rsplit(", ").next().unwrap();
+        let expected = motion.frequency + by_whirl(whirl);
+        let away = |own: &&Motion| (own.frequency - expected).abs();
+        let nearest = found.iter().min_by(|a, b| away(a).total_cmp(&away(b))).unwrap();
+        assert!(away(&nearest) < 1e-3 * expected, "{motion:?} {nearest:?}");
+        assert!(
+            (nearest.growth - motion.growth).abs() < 0.02 * motion.growth.abs() + 1.0,
+            "{motion:?} {nearest:?}"
+        );
     }
 }

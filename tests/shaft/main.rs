@@ -9,6 +9,7 @@ mod frame;
 mod hard;
 mod housing;
 mod hub;
+mod loads;
 mod mesh;
 mod motion;
 mod quasi_static;

@@ -7,14 +7,17 @@ use std::path::Path;
 use crate::sources::{Section, Source, sources};
 
 /// Structs, and the section that each is in a file.
-const SECTIONS: [(&str, &str); 21] = [
+const SECTIONS: [(&str, &str); 24] = [
     ("Written", ""),
     ("FrameSection", "frame"),
     ("ShaftSection", "shaft"),
     ("BeamSection", "shaft.section"),
     ("Disc", "shaft.disc"),
     ("PointLoad", "shaft.load"),
+    ("PointDisplacement", "shaft.load.displacement"),
+    ("PointRotation", "shaft.load.rotation"),
     ("GearSection", "shaft.gear"),
+    ("RotatingSection", "shaft.rotating"),
     ("Point", "shaft.point"),
     ("HousingSection", "housing"),
     ("Foot", "housing.foot"),

@@ -115,15 +115,15 @@ fn closed_form_a_housing_that_two_shafts_share_carries_both_where_they_lie() {
         // The drive holds the moment about the axis of a shaft: what is left of the force's own lever is that of the axis.
         let about = mesh.moment.at(0.0);
         moment += at.cross(&pull) + nalgebra::Vector3::new(0.0, about.y, about.z);
-        let weight = of.gravity * shaft.mass.unwrap().0;
+        let weight = of.gravity.at(0.0) * shaft.mass.unwrap().0;
         moment += place.cross(&weight);
         force += pull + weight;
     }
-    let held = middle.displacement * 1e8 - of.gravity * 12.0;
+    let held = middle.displacement * 1e8 - of.gravity.at(0.0) * 12.0;
     let balls = of.bearings.len() as f64
         * system.bearings().next().unwrap().1.model().bearing.ball.mass
         * system.bearings().next().unwrap().1.state().balls.len() as f64;
-    let force = force + of.gravity * balls;
+    let force = force + of.gravity.at(0.0) * balls;
     assert!((held - force).norm() < 1e-3 * force.norm(), "{held} {force}");
     // Weights of balls and friction torques are of some N mm.
     let turned = middle.tilt * 1e6;

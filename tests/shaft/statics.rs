@@ -1,6 +1,6 @@
 //! A shaft at rest on its bearings.
 
-use crate::common::{GEARBOX, ROTOR, forces, run, system};
+use crate::common::{GEARBOX, ROTOR, forces, held, run, system};
 
 /// Forces by hand: each bearing's radial force acts where the cone of its contacts meets the axis.
 #[test]
@@ -97,4 +97,36 @@ fn an_unloaded_ball_that_leaves_its_groove_is_told_from_too_large_a_load() {
     let steepest = steepest.map(|ball| ball.inner.contact_angle.abs()).fold(0.0, f64::max);
     println!("{steepest} rad");
     assert!((1.4..std::f64::consts::FRAC_PI_2).contains(&steepest), "{steepest} rad");
+}
+
+/// A heavy rotor on stiff bearings, which tilts by a tenth of a microradian: every load is balanced.
+#[test]
+fn regression_a_rotor_that_hardly_tilts_is_balanced_under_every_load() {
+    let weight = 9.81 * 20.0;
+    let loads =
+        [[200.0, -100.0], [196.2, -18.0], [196.2, -19.5], [196.2, -20.0], [196.2, -22.0], [0.0, -50.0]];
+    for [along, across] in loads {
+        let bearing = |name: &str, position: f64, direction: &str| {
+            format!(
+                "[[bearing]]\nname = \"{name}\"\nscene = \"whirl/one.toml\"\n\
+                 mounting = {{ position = {position}, direction = \"{direction}\", preload = {{ force = 200 }} }}\n"
+            )
+        };
+        let text = [
+            "gravity = [-9.81, 0, 0]\n[shaft]\nspeed = \"6000 rpm\"\nmass = 20\npolar_inertia = 0.1\ntransverse_inertia = 0.3\n",
+            &format!("[[shaft.load]]\nname = \"side\"\nposition = 0.03\nforce = [{along}, 0, {across}]\n"),
+            &bearing("left", -0.15, "+x"),
+            &bearing("right", 0.15, "-x"),
+            "[load]\nduration = 0.005\noutput_interval = 5e-5\n",
+        ];
+        let system = system(&text.concat());
+        let held: Vec<_> = held(&system).into_iter().map(|[force, _]| force).collect();
+        let sum = held[0] + held[1];
+        let expected = nalgebra::Vector3::new(weight - along, 0.0, -across);
+        // What weighs inside of the bearings is theirs.
+        assert!(
+            (sum - expected).yz().norm() < 1e-6 && (sum.x - expected.x).abs() < 1.0,
+            "{along} {across}: {held:?}"
+        );
+    }
 }

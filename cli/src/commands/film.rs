@@ -99,12 +99,14 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let path = options.film.as_ref().ok_or("give a table of contacts, or --film with a scene")?;
     let machine = load(path)?;
     let index = super::field::bearing(&machine, options.bearing.as_deref())?;
-    let scene = machine.bearings()[index].1;
+    let (name, scene) = machine.bearings()[index];
+    let of_bearing = if name.is_empty() { String::new() } else { format!("bearing {name}: ") };
     let race = match options.race {
         RaceChoice::Inner => Race::Inner,
         RaceChoice::Outer => Race::Outer,
     };
-    let contact = FilmContact::new(scene, race).map_err(|why| format!("{}: {why}", path.display()))?;
+    let contact =
+        FilmContact::new(scene, race).map_err(|why| format!("{}: {of_bearing}{why}", path.display()))?;
     let loads: Vec<f64> = options.loads.iter().map(|load| load.value).collect();
     let speeds: Vec<f64> = options.speeds.iter().map(|speed| speed.value).collect();
     let slips: Vec<f64> = match options.slips.is_empty() {
@@ -151,7 +153,12 @@ pub fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     }
     rows.flush().map_err(|why| cannot_write(why.into()))?;
     let title = if scene.title.is_empty() { "contact" } else { &scene.title };
-    figure::write(&picture, &format!("{title}: film on the {} race", race.name()), &over_slip, &over_speed)?;
+    figure::write(
+        &picture,
+        &format!("{of_bearing}{title}: film on the {} race", race.name()),
+        &over_slip,
+        &over_speed,
+    )?;
     say(&format!("{}\n{}\n", table.display(), picture.display()))?;
     Ok(ExitCode::SUCCESS)
 }

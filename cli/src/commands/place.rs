@@ -15,7 +15,7 @@ use roulement_cli::report::json;
 use roulement_cli::report::losses::Closed;
 use roulement_cli::report::phases;
 use roulement_cli::report::plots::{title, write_plots};
-use roulement_cli::report::results::{Choice, Columns, MachineColumns, ResultsError, is_parquet};
+use roulement_cli::report::results::{Choice, MachineColumns, PartColumns, ResultsError, is_parquet};
 use roulement_cli::report::shaft;
 use roulement_cli::report::spectrum;
 use roulement_cli::report::tables::Tables;
@@ -79,8 +79,7 @@ impl Place {
     pub fn begin(&self, scene: &MachineScene, machine: &Machine) -> Result<(), Box<dyn Error>> {
         // Before anything of a former run goes.
         if self.has_files() {
-            let check = |(_, scene)| Columns::new(scene, &self.choice).map(drop);
-            scene.bearings().into_iter().try_for_each(check)?;
+            PartColumns::new(scene, &self.choice)?;
         } else {
             MachineColumns::new(machine, &self.choice)?;
         }

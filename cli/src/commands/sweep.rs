@@ -46,6 +46,10 @@ pub struct Options {
     /// Keep the whole table of every case, too.
     #[arg(long, value_enum)]
     tables: Option<Format>,
+    /// Look at what grows about the start of each case, and at races that circle, as `roulement run` does: columns `grows`, `growth`,
+    /// `growth.frequency`, `growth.motion` and, of every bearing, `circles`. It costs 2 ms of run and some eigenvalues a case.
+    #[arg(long)]
+    growth: bool,
     /// Cases at a time; as many as there are cores if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -80,7 +84,7 @@ impl Format {
 /// # Errors
 /// If the cases or the scene cannot be read, no case can be run, or files cannot be written.
 pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
-    let Options { cases: table, scene, output, columns, tables, threads, runs } = options;
+    let Options { cases: table, scene, output, columns, tables, growth, threads, runs } = options;
     let cases = Cases::load(&table)?;
     let Some(scene) = scene.or_else(|| cases.scene.clone()) else {
         return Err(format!("{}: name the base scene by --scene", table.display()).into());
@@ -91,7 +95,7 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     }
     let (base, notes) = base_of(&scene)?;
     tell(notes);
-    let wanted = Wanted { columns, tables: tables.map(Format::ending) };
+    let wanted = Wanted { columns, tables: tables.map(Format::ending), growth };
     let sweep = Sweep::new(cases, base, wanted, &output)?;
     let missing = sweep.missing();
     let damaged = missing.iter().filter(|case| sweep.is_damaged(**case)).count();

@@ -20,7 +20,7 @@ const BEYOND: f64 = 1.5;
 const MOMENTS: usize = 5;
 /// [-] of that time, an earlier look: what grows by more than `e` until then may have moved the state away that was asked about.
 const EARLIER: f64 = 0.1;
-/// Balls of a machine from which on it is looked at once, as it takes a second.
+/// Balls of a machine from which on it is looked at once where nothing grows then, as a look takes a second.
 const MANY_BALLS: usize = 60;
 /// [-] frequencies of one motion at two moments differ by less.
 const SAME: f64 = 0.05;
@@ -108,24 +108,35 @@ impl Modes {
 /// \[s] how long a machine runs before it is judged, at most, and which part of its run.
 const JUDGED_AFTER: (f64, f64) = (2e-3, 0.2);
 
-/// What grows where the script of a scene is at a time \[s], in a sentence: what whoever runs this machine should know. Nothing is said of a
-/// machine that cannot run.
-pub fn warnings(scene: &MachineScene, time: f64) -> Vec<String> {
+/// Motions where the script of a scene is at a time \[s], the one that grows fastest first. None of a machine that cannot run, whose motions
+/// cannot be found, or whose level has none.
+pub fn judged(scene: &MachineScene, time: f64) -> Option<Vec<Found>> {
     let duration = match scene {
         MachineScene::Bearing(scene) => scene.load.duration.0,
         MachineScene::Shaft(scene) => scene.load.duration.0,
     };
     if scene.solver().level == Level::Equilibrium {
-        return vec![];
+        return None;
     }
     let after = JUDGED_AFTER.0.min(JUDGED_AFTER.1 * duration);
     let found = at(scene, &Asked { time, after, up_to: None, speeds: 0 });
-    let mut growing: Vec<Found> = found.ok().and_then(|(_, motions)| motions.ok()).unwrap_or_default();
-    growing.retain(Found::grows);
-    growing.sort_by(|a, b| b.motion.growth.total_cmp(&a.motion.growth));
+    let mut motions = found.ok()?.1.ok()?;
+    motions.sort_by(|a, b| b.motion.growth.total_cmp(&a.motion.growth));
+    Some(motions)
+}
+
+/// What grows where the script of a scene is at a time \[s], in a sentence: what whoever runs this machine should know. Nothing is said of a
+/// machine that cannot run.
+pub fn warnings(scene: &MachineScene, time: f64) -> Vec<String> {
+    told(&judged(scene, time).unwrap_or_default())
+}
+
+/// What grows of motions, the one that grows fastest first, in a sentence.
+pub fn told(motions: &[Found]) -> Vec<String> {
+    let growing: Vec<&Found> = motions.iter().filter(|found| found.grows()).collect();
     let rest = growing.len().saturating_sub(1);
     let others = if rest > 0 { format!(" (and {rest} more)") } else { String::new() };
-    let sentence = |Found { motion: Motion { frequency, growth, shape, .. }, .. }: &Found| {
+    let sentence = |Found { motion: Motion { frequency, growth, shape, .. }, .. }: &&Found| {
         format!(
             "a motion grows: {shape}, {frequency:.2} Hz, by {growth:.1} 1/s{others}; `roulement modes` tells more, docs/holding-a-bearing.md \
              what stops it"
@@ -159,7 +170,12 @@ fn at(scene: &MachineScene, asked: &Asked) -> Result<Looked, MachineError> {
 fn look(machine: &mut Machine, time: f64, after: f64) -> Result<Result<Vec<Found>, String>, MachineError> {
     let balls: usize = machine.bearings().map(|(_, bearing)| bearing.state().balls.len()).sum();
     let mut moments = vec![];
-    for moment in 0..if after > 0.0 && balls < MANY_BALLS { MOMENTS } else { 1 } {
+    for moment in 0..if after > 0.0 { MOMENTS } else { 1 } {
+        if balls >= MANY_BALLS
+            && moments.first().is_some_and(|first: &Vec<Motion>| !first.iter().any(Motion::grows))
+        {
+            break;
+        }
         let end = time + after * (1.0 + moment as f64 / (MOMENTS - 1) as f64);
         match machine {
             Machine::Bearing(bearing) if end > bearing.time() => bearing.advance_scripted(end)?,
@@ -168,7 +184,7 @@ fn look(machine: &mut Machine, time: f64, after: f64) -> Result<Result<Vec<Found
         }
         match machine.motions() {
             Some(motions) => moments.push(motions),
-            None => return Ok(Err("no eigenvalues were found, or the frame of the bearing moves".into())),
+            None => return Ok(Err("no eigenvalues were found".into())),
         }
     }
     Ok(Ok(joined(&moments)))

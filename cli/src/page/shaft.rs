@@ -67,7 +67,7 @@ pub fn describe(system: &System) -> Value {
             })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
         "meshes": system.scene().meshes.iter().map(|mesh| &mesh.section.name).collect::<Vec<_>>(),
-        "gravity": Vector3::from(*gravity).as_slice(),
+        "gravity": gravity.at(0.0).as_slice(),
     })
 }
 

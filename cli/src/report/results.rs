@@ -9,18 +9,19 @@ use thiserror::Error;
 
 use roulement::interface::variables::{MachineVariables, Source, Variables, quoted};
 use roulement::scene::Scene;
+use roulement::scene::machine::MachineScene;
 use roulement::scene::units::{Quantity, Time};
 use roulement::simulation::Simulation;
 use roulement::simulation::inputs::Inputs;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::outputs::Outputs;
 
-use super::number;
 #[cfg(feature = "parquet")]
 use super::{
     cells::{Cell, Column},
     parquet::ParquetWriter,
 };
+use super::{number, shaft};
 
 /// Why results could not be written.
 #[derive(Debug, Error)]
@@ -133,12 +134,17 @@ impl Columns {
         Ok(Self { variables, chosen, window: choice.window })
     }
 
+    /// Those of a bearing of a machine that a rule chooses by their own names.
+    fn that(scene: &Scene, window: Window, is_chosen: impl Fn(&str) -> bool) -> Self {
+        let variables = Variables::moving(scene, true);
+        let rows = variables.rows().iter().enumerate();
+        let chosen = rows.filter(|(_, row)| is_chosen(&row.name)).map(|(i, _)| i).collect();
+        Self { variables, chosen, window }
+    }
+
     /// Those of a bearing of a shaft that are chosen with its name before them.
     fn named(scene: &Scene, bearing: &str, choice: &Choice) -> Self {
-        let variables = Variables::moving(scene, true);
-        let names = variables.rows().iter().map(|row| named(bearing, &row.name)).enumerate();
-        let chosen = names.filter(|(_, name)| choice.wants(name)).map(|(i, _)| i).collect();
-        Self { variables, chosen, window: choice.window }
+        Self::that(scene, choice.window, |name| choice.wants(&named(bearing, name)))
     }
 
     /// Names and units, the time first.
@@ -163,6 +169,53 @@ impl Columns {
 /// Name of a column of a bearing of a machine.
 fn named(bearing: &str, column: &str) -> String {
     if bearing.is_empty() { column.to_string() } else { format!("{}.{column}", quoted(bearing)) }
+}
+
+/// Columns of the tables of a machine's parts.
+pub struct PartColumns {
+    /// Of every bearing.
+    pub bearings: Vec<Columns>,
+    /// Which of the table of the shaft, the time first; none of a bearing alone.
+    pub shaft: Option<Vec<bool>>,
+}
+
+impl PartColumns {
+    /// Those that are chosen: of bearings by names of their own tables, which choose of all of them, or with the name of a bearing before
+    /// them; of the shaft by the names of its table, which is whole if none is chosen.
+    ///
+    /// # Errors
+    /// If a chosen column is in none of the tables.
+    pub fn new(scene: &MachineScene, choice: &Choice) -> Result<Self, ResultsError> {
+        let Some(system) = scene.shaft() else {
+            let of = |(_, scene)| Columns::new(scene, choice);
+            let bearings = scene.bearings().into_iter().map(of).collect::<Result<_, _>>()?;
+            return Ok(Self { bearings, shaft: None });
+        };
+        let of_shaft = shaft::columns(system);
+        let own = || of_shaft.iter().skip(1).map(|(name, _)| name.as_str());
+        let in_bearings = |pattern: &str| {
+            scene.bearings().into_iter().any(|(bearing, scene)| {
+                let fit = |name: &str| fits(name, pattern) || fits(&named(bearing, name), pattern);
+                Variables::moving(scene, true).rows().iter().any(|row| fit(&row.name))
+            })
+        };
+        let missing =
+            |pattern: &&String| !own().any(|name| fits(name, pattern)) && !in_bearings(pattern.as_str());
+        if let Some(pattern) = choice.columns.iter().find(missing) {
+            return Err(ResultsError::Column(pattern.clone()));
+        }
+        let of = |(bearing, scene): (&str, &Scene)| {
+            Columns::that(scene, choice.window, |name| {
+                choice.wants(name) || choice.wants(&named(bearing, name))
+            })
+        };
+        let whole = !own().any(|name| choice.wants(name));
+        let of_table = own().map(|name| whole || choice.wants(name));
+        Ok(Self {
+            bearings: scene.bearings().into_iter().map(of).collect(),
+            shaft: Some(std::iter::once(true).chain(of_table).collect()),
+        })
+    }
 }
 
 /// Columns of the one table of a whole machine: of a bearing alone its own; of a shaft those of the shaft and its housings, then those

@@ -70,6 +70,12 @@ pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
             forces.into_iter().chain(others).map(|(quantity, unit)| (format!("{name}.{quantity}"), unit)),
         );
     }
+    for (shaft, own) in scene.shafts.iter().enumerate() {
+        columns.extend(scene.held(shaft).map(|(load, _, component, _)| {
+            let (what, unit) = if component < 3 { ("force", "N") } else { ("moment", "N m") };
+            (format!("{}.{what}.{}", own.load[load].name, ["x", "y", "z"][component % 3]), unit)
+        }));
+    }
     columns
 }
 
@@ -91,6 +97,7 @@ pub fn row(scene: &SystemScene, outputs: &SystemOutputs) -> Vec<f64> {
             false => row.extend(force.fixed_rows::<2>(4).iter()),
         }
     }
+    row.extend(&outputs.holding);
     row
 }
 

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use roulement::scene::machine::MachineScene;
+use roulement::scene::system::SystemScene;
 use roulement::simulation::machine::Machine;
 
-use super::results::{Choice, Columns, MachineColumns, ResultsError, TableWriter};
+use super::results::{Choice, Columns, MachineColumns, PartColumns, ResultsError, TableWriter, Window};
 use super::shaft;
 
 /// Where the rows of a run go.
@@ -16,9 +17,17 @@ pub enum Tables {
     Each {
         /// Of every bearing.
         bearings: Vec<(Columns, TableWriter)>,
-        /// Of the shaft, and what of it is written.
-        shaft: Option<(Choice, TableWriter)>,
+        /// Of the shaft.
+        shaft: Option<ShaftTable>,
     },
+}
+
+/// The table of a shaft being written.
+pub struct ShaftTable {
+    /// Which of its columns.
+    chosen: Vec<bool>,
+    window: Window,
+    table: TableWriter,
 }
 
 impl Tables {
@@ -42,17 +51,20 @@ impl Tables {
         of_bearing: impl Fn(&str) -> PathBuf,
         of_shaft: &Path,
     ) -> Result<Self, ResultsError> {
-        let begin = |(name, scene)| {
-            let columns = Columns::new(scene, choice)?;
+        let columns = PartColumns::new(scene, choice)?;
+        let begin = |((name, _), columns): ((&str, _), Columns)| {
             let table = TableWriter::create(&of_bearing(name), columns.names())?;
             Ok((columns, table))
         };
-        let bearings = scene.bearings().into_iter().map(begin).collect::<Result<_, ResultsError>>()?;
-        let begin = |scene| {
-            let table = TableWriter::create(of_shaft, shaft::columns(scene).into_iter())?;
-            Ok((choice.clone(), table))
+        let bearings = scene.bearings().into_iter().zip(columns.bearings).map(begin);
+        let bearings = bearings.collect::<Result<_, ResultsError>>()?;
+        let begin = |(scene, chosen): (&SystemScene, Vec<bool>)| {
+            let all = shaft::columns(scene).into_iter().zip(&chosen);
+            let names = all.filter(|(_, chosen)| **chosen).map(|(name, _)| name).collect::<Vec<_>>();
+            let table = TableWriter::create(of_shaft, names.into_iter())?;
+            Ok(ShaftTable { chosen, window: choice.window, table })
         };
-        Ok(Self::Each { bearings, shaft: scene.shaft().map(begin).transpose()? })
+        Ok(Self::Each { bearings, shaft: scene.shaft().zip(columns.shaft).map(begin).transpose()? })
     }
 
     /// Writes a row of each, if its time is in the window.
@@ -66,10 +78,11 @@ impl Tables {
                 columns.row(machine).map_or(Ok(()), |row| table.write(row.into_iter()))
             }
             Self::Each { bearings, shaft } => {
-                if let (Some((choice, table)), Some(system)) = (shaft, machine.shaft())
-                    && choice.window.contains(machine.time())
+                if let (Some(ShaftTable { chosen, window, table }), Some(system)) = (shaft, machine.shaft())
+                    && window.contains(machine.time())
                 {
-                    table.write(shaft::row(system.scene(), system.outputs()).into_iter())?;
+                    let row = shaft::row(system.scene(), system.outputs()).into_iter().zip(&*chosen);
+                    table.write(row.filter(|(_, chosen)| **chosen).map(|(value, _)| value))?;
                 }
                 for ((columns, table), (_, bearing)) in bearings.iter_mut().zip(machine.bearings()) {
                     if let Some(row) = columns.row(bearing.inputs(), bearing.outputs()) {
@@ -90,7 +103,7 @@ impl Tables {
             Self::Whole(whole) => whole.1.finish(),
             Self::Each { bearings, shaft } => {
                 let tables = bearings.into_iter().map(|(_, table)| table);
-                tables.chain(shaft.map(|(_, table)| table)).try_for_each(TableWriter::finish)
+                tables.chain(shaft.map(|shaft| shaft.table)).try_for_each(TableWriter::finish)
             }
         }
     }

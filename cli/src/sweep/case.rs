@@ -8,12 +8,14 @@ use roulement::interface::variables::{Source, Variables};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::Simulation;
 use roulement::simulation::machine::Machine;
+use roulement::simulation::motions::Motion;
 use roulement::simulation::play::{Rows, play_observed};
 
 use super::SweepError;
 use super::columns::GatheredMachine;
 use super::extremes::{Gathered, OF_BALLS};
 use crate::error::{Compared, Refined, Run, refine};
+use crate::modes::{Found, judged, told};
 use crate::report::cells::{Cell, Column};
 use crate::report::means::Means;
 use crate::report::quantities::QUANTITIES;
@@ -28,6 +30,8 @@ pub struct Wanted {
     pub columns: Vec<String>,
     /// Ending of the files of whole tables, `csv` or `parquet`; none where they are not wanted.
     pub tables: Option<String>,
+    /// What grows or decays where a case starts, and whether races circle.
+    pub growth: bool,
 }
 
 /// Column of what a plain run would have warned of.
@@ -51,6 +55,8 @@ struct Done {
     machine: Machine,
     seen: Seen,
     gathered: GatheredMachine,
+    /// Motions about its start, the one that grows fastest first, where they are wanted and there are some.
+    motions: Option<Option<Vec<Found>>>,
 }
 
 /// Runs a case and gives its row, which begins with how it ended; none if it was interrupted. A whole table goes to a file.
@@ -67,6 +73,7 @@ pub fn run(
         Ok((done, goal)) => {
             let mut row = ended("done", "");
             row.push(number("time", "s", done.machine.time()));
+            row.extend(done.motions.iter().flat_map(|motions| of_motions(motions.as_deref())));
             row.extend(of_machine(&done, goal));
             Ok(Some(row))
         }
@@ -168,16 +175,39 @@ fn played(
     }
     table.map(|(_, table)| table.finish()).transpose().map_err(written)?;
     let (watch, gathered) = observers;
-    let seen = watch.finish(&machine);
-    Ok(Done { machine, seen, gathered })
+    let mut seen = watch.finish(&machine);
+    let motions = wanted.growth.then(|| judged(scene, 0.0));
+    if let Some(Some(motions)) = &motions {
+        seen.set_growing(&told(motions));
+    }
+    Ok(Done { machine, seen, gathered, motions })
+}
+
+/// Growth of the motion that grows fastest or decays slowest, its frequency, what it is, and whether something grows.
+fn of_motions(motions: Option<&[Found]>) -> Row {
+    let first = motions.and_then(<[Found]>::first).map(|found| &found.motion);
+    let of = |get: fn(&Motion) -> f64| first.map(get);
+    let grows = match motions {
+        None => "cannot tell",
+        Some(motions) if motions.iter().any(Found::grows) => "yes",
+        Some(_) => "no",
+    };
+    let shape = first.map_or(String::new(), |motion| motion.shape.clone());
+    vec![
+        (Column::text("grows"), Cell::Text(grows.to_string())),
+        optional("growth", "1/s", of(|motion| motion.growth)),
+        optional("growth.frequency", "Hz", of(|motion| motion.frequency)),
+        (Column::text("growth.motion"), Cell::Text(shape)),
+    ]
 }
 
 /// Results of a machine: of a shaft its own columns, then those of every bearing with its name before them.
 fn of_machine(done: &Done, goal: Option<&'static str>) -> Row {
-    let Done { machine, seen, gathered } = done;
+    let Done { machine, seen, gathered, .. } = done;
     let mut row = vec![];
     if let (Some(system), Some(seen)) = (machine.shaft(), &seen.shaft) {
-        row.push((Column::text(WARNINGS), Cell::Text(seen.warnings(system).join("; "))));
+        let warnings: Vec<String> = seen.part.growing.iter().cloned().chain(seen.warnings(system)).collect();
+        row.push((Column::text(WARNINGS), Cell::Text(warnings.join("; "))));
         row.extend(goal.map(|goal| (Column::text("error_goal"), Cell::Text(goal.to_string()))));
         if let Some(closed) = &seen.part.closed {
             row.push(number("loss.total.mean", "W", closed.lost));
@@ -200,7 +230,11 @@ fn of_machine(done: &Done, goal: Option<&'static str>) -> Row {
     let goal = goal.filter(|_| machine.shaft().is_none());
     for (((name, bearing), seen), gathered) in machine.bearings().zip(&seen.bearings).zip(&gathered.bearings)
     {
-        let own = summary(bearing, seen, gathered, goal);
+        let mut own = summary(bearing, seen, gathered, goal);
+        if done.motions.is_some() {
+            let circles = if seen.circling.is_some() { "yes" } else { "no" };
+            own.insert(1, (Column::text("circles"), Cell::Text(circles.to_string())));
+        }
         row.extend(own.into_iter().map(|(mut column, cell)| {
             if !name.is_empty() {
                 column.name = format!("{name}.{}", column.name);

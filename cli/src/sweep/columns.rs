@@ -1,6 +1,9 @@
 //! Columns that are chosen for the summary, of bearings and of a shaft.
 
-use roulement::interface::variables::{Causality, MachineVariables, Source, Variable};
+use roulement::interface::variables::{
+    Causality, MachineVariables, Source, Variable, Variables, rows_of_shaft,
+};
+use roulement::scene::Scene;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::Observer;
@@ -11,17 +14,25 @@ use crate::report::results::{Choice, Columns, ResultsError, fits};
 /// Columns that are chosen of each bearing, by the names that its own table has: those that begin with its name, or with `*`; of a
 /// bearing alone, all of them.
 fn of_bearings(scene: &MachineScene, chosen: &[String]) -> Vec<Vec<String>> {
-    let of = |name: &str| -> Vec<String> {
+    let of_shaft = scene.shaft().map_or(vec![], rows_of_shaft);
+    let of = |(name, bearing): (&str, &Scene)| -> Vec<String> {
         if name.is_empty() {
             return chosen.to_vec();
         }
+        let rows = Variables::moving(bearing, true);
         let own = |pattern: &String| {
             let (bearing, column) = pattern.split_once('.')?;
-            fits(name, bearing).then(|| column.to_string())
+            let is_here = fits_one(rows.rows(), column) || !fits_one(&of_shaft, pattern);
+            (fits(name, bearing) && is_here).then(|| column.to_string())
         };
         chosen.iter().filter_map(own).collect()
     };
-    scene.bearings().into_iter().map(|(name, _)| of(name)).collect()
+    scene.bearings().into_iter().map(of).collect()
+}
+
+/// Does the name of a variable fit a pattern?
+fn fits_one(rows: &[Variable], pattern: &str) -> bool {
+    rows.iter().any(|row| fits(&row.name, pattern))
 }
 
 /// Is all there that is chosen?
@@ -33,10 +44,13 @@ pub fn check(scene: &MachineScene, chosen: &[String]) -> Result<(), ResultsError
         Columns::new(bearing, &Choice { columns, ..Choice::default() })?;
     }
     let Some(shaft) = scene.shaft() else { return Ok(()) };
+    // All outputs of the shaft are in the summary; a name among them chooses for tables of cases.
+    let own = rows_of_shaft(shaft);
     let known = |pattern: &str| {
-        pattern
+        let of_bearing = pattern
             .split_once('.')
-            .is_some_and(|(bearing, _)| shaft.bearings.iter().any(|own| fits(&own.name, bearing)))
+            .is_some_and(|(bearing, _)| shaft.bearings.iter().any(|own| fits(&own.name, bearing)));
+        of_bearing || fits_one(&own, pattern)
     };
     match chosen.iter().find(|pattern| !known(pattern)) {
         Some(pattern) => Err(ResultsError::Column(pattern.clone())),

@@ -46,7 +46,9 @@ impl Store {
     pub fn name(scene: &str, wanted: &Wanted) -> String {
         let program = env!("ROULEMENT_VERSION");
         let tables = wanted.tables.as_deref().unwrap_or_default();
-        let wanted = format!("{}\0{tables}", wanted.columns.join(","));
+        // Without growth a case has the name that it had before there was such a choice.
+        let growth = if wanted.growth { "\0growth" } else { "" };
+        let wanted = format!("{}\0{tables}{growth}", wanted.columns.join(","));
         let hash = Sha256::digest(format!("{SCHEMA}\0{program}\0{wanted}\0{scene}"));
         hex(&hash[..BYTES])
     }

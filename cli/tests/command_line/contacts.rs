@@ -348,3 +348,54 @@ fn independent_data_films_of_a_scene_over_load_speed_and_slip() {
         assert!(!output.status.success() && message.contains(part), "{message}\nshould have {part}");
     }
 }
+
+/// Of a shaft it is the bearing that is named: what the scene of that alone has.
+#[test]
+fn a_film_of_a_shaft_is_that_of_the_bearing_that_is_named() {
+    let scratch = Scratch::new("film-of-a-shaft");
+    std::fs::write(scratch.path("oiled.toml"), OILED).unwrap();
+    let dry = OILED
+        .replace("[film]\nviscosity = \"58.5 mPa s\"\ninlet_heating = false\nsupply = \"flooded\"\n", "");
+    std::fs::write(scratch.path("dry.toml"), dry).unwrap();
+    let bearing = |name: &str, file: &str, direction: &str, set: &str| {
+        format!(
+            "[[bearing]]\nname = \"{name}\"\nscene = \"{file}.toml\"\nmounting = {{ position = 0, direction = \"{direction}\" }}\n{set}"
+        )
+    };
+    let thin = "[bearing.set]\nfilm = { viscosity = \"10 mPa s\" }\n";
+    let shaft = [
+        "[shaft]\nspeed = 300\nmass = 1\npolar_inertia = 1e-3\ntransverse_inertia = 1e-3\n",
+        &bearing("left", "oiled", "+x", ""),
+        &bearing("right", "oiled", "-x", thin),
+        &bearing("bare", "dry", "-x", ""),
+        "[load]\nduration = 1e-3\noutput_interval = 1e-4\n",
+    ];
+    std::fs::write(scratch.path("shaft.toml"), shaft.concat()).unwrap();
+    let film = |scene: &str, options: &[&str]| {
+        let (scene, folder) = (scratch.path(scene), scratch.path("film"));
+        let asked = [
+            "contact", "--film", &scene, "--loads", "100 N", "--speeds", "5", "--slips", "0.1", "-o", &folder,
+        ];
+        let output = roulement(&[&asked[..], options].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        (
+            output.status.success(),
+            said,
+            std::fs::read_to_string(scratch.path("film/film.csv")).unwrap_or_default(),
+        )
+    };
+    let (_, _, alone) = film("oiled.toml", &[]);
+    let (good, said, left) = film("shaft.toml", &["--bearing", "left"]);
+    assert!(good, "{said}");
+    assert_eq!(alone, left);
+    assert!(scratch.read("film/film.svg").contains("bearing left: "));
+    assert_ne!(film("shaft.toml", &["--bearing", "right"]).2, left);
+    for (options, part) in [
+        (&[][..], "say which one of left, right, bare"),
+        (&["--bearing", "bare"][..], "bearing bare: "),
+        (&["--bearing", "middle"][..], "no bearing middle, but left, right, bare"),
+    ] {
+        let (good, said, _) = film("shaft.toml", options);
+        assert!(!good && said.contains(part), "{said}");
+    }
+}

@@ -145,3 +145,55 @@ fn auto_says_what_it_switches_and_packages_have_it_switched() {
     let message = String::from_utf8(refused.stderr).unwrap();
     assert!(message.contains("effects = \"all\" is not known") && message.contains("auto"), "{message}");
 }
+
+/// A machine whose outer rings turn, and the same one seen from these: verdicts are the same. Drag is not, as its medium rests in the frame.
+#[test]
+fn identity_verdicts_in_a_frame_that_turns_are_those_of_the_machine_seen_from_outside() {
+    let scratch = Scratch::new("effects-frame");
+    let turn = 400.0;
+    let judged = |name: &str, frame: &str, speed: f64, outer: f64| -> Value {
+        let bearing = |name: &str, position: f64, direction: &str, outer: f64| {
+            format!(
+                "[[bearing]]\nname = \"{name}\"\ncatalogue = \"6206\"\n\
+                 mounting = {{ position = {position}, direction = \"{direction}\", preload = {{ force = 300 }} }}\n\
+                 [bearing.set]\nload = {{ outer_speed = {outer:?} }}\neffects = {{ creep = \"saturated\" }}\n"
+            )
+        };
+        let text = [
+            frame,
+            &format!(
+                "[shaft]\nspeed = {speed:?}\nmass = 1.8\npolar_inertia = 6e-4\ntransverse_inertia = 4e-3\n"
+            ),
+            "[[shaft.load]]\nname = \"pull\"\nposition = 0.02\nforce = [100, 0, 0]\n",
+            &bearing("left", -0.05, "+x", outer),
+            &bearing("right", 0.05, "-x", -outer),
+            "[load]\nduration = 0.002\noutput_interval = 0.0002\n",
+        ];
+        let file = scratch.path(&format!("{name}.toml"));
+        std::fs::write(&file, text.concat()).unwrap();
+        serde_json::from_str(&said(&roulement(&["effects", "--json", &file]))).unwrap()
+    };
+    let still = judged("still", "", 1000.0, turn);
+    let seen = judged("seen", "[frame]\nangular_velocity = [400, 0, 0]\n", 1000.0 - turn, 0.0);
+    for bearing in ["left", "right"] {
+        let values = |of: &Value| -> std::collections::BTreeMap<String, (f64, bool)> {
+            let all = of[bearing]["estimates"].as_array().unwrap().iter();
+            let told = all.filter(|one| !["drag", "cage"].contains(&one["subject"].as_str().unwrap()));
+            told.map(|one| {
+                let value = one["value"].as_f64().unwrap();
+                (one["subject"].as_str().unwrap().to_string(), (value, one["matters"] == true))
+            })
+            .collect()
+        };
+        let (still, seen) = (values(&still), values(&seen));
+        assert!(still.len() > 8 && still.contains_key("growth by rotation"), "{still:?}");
+        assert_eq!(still.keys().collect::<Vec<_>>(), seen.keys().collect::<Vec<_>>());
+        for (subject, (value, matters)) in &still {
+            let (other, also) = seen[subject];
+            assert!(
+                (value - other).abs() < 2e-3 * value.abs() + 1e-6 && *matters == also,
+                "{subject}: {value} {other}"
+            );
+        }
+    }
+}

@@ -182,3 +182,44 @@ fn speeds_and_times_that_cannot_be_are_refused() {
         assert!(why.contains(allowed) && why.contains(option), "{why}");
     }
 }
+
+/// Sweeps look at growth where they are asked to, of bearings and of shafts, with the numbers of `roulement modes`.
+#[test]
+fn consistency_sweeps_tell_what_grows_of_bearings_and_shafts() {
+    let scratch = Scratch::new("sweep-growth");
+    for name in ["one", "two"] {
+        std::fs::write(scratch.path(&format!("{name}.toml")), std::fs::read_to_string(whirl(name)).unwrap())
+            .unwrap();
+    }
+    let of = |base: &str, key: &str| {
+        let (cases, base, to) = (scratch.path("cases.csv"), scratch.path(base), scratch.path("sweep"));
+        std::fs::write(&cases, format!("{key},load.duration\n12000 rpm,2 ms\n24000 rpm,2 ms\n")).unwrap();
+        let swept = roulement(&["sweep", &cases, "--scene", &base, "-o", &to, "--growth"]);
+        assert!(swept.status.success(), "{}", String::from_utf8_lossy(&swept.stderr));
+        super::sweep::columns(&scratch.read("sweep/summary.csv"))
+    };
+    let bearing = of("one.toml", "load.inner_speed");
+    assert_eq!(bearing["grows"], ["no", "yes"]);
+    let growth = super::sweep::numbers(&bearing["growth [1/s]"]);
+    assert!(growth[0] < 0.0 && (growth[1] / 112.0 - 1.0).abs() < 0.2, "{growth:?}");
+    assert_eq!(bearing["growth.motion"][1], "inner ring tilts and shifts forward");
+    assert!(bearing["warnings"][1].contains("a motion grows") && !bearing["warnings"][0].contains("grows"));
+    assert!(bearing["settled"][1].starts_with("no: a motion grows"), "{:?}", bearing["settled"]);
+    assert_eq!(bearing["circles"], ["no", "no"]);
+    let shaft = of("two.toml", "shaft.speed");
+    assert_eq!(shaft["grows"], ["no", "no"]);
+    assert!(super::sweep::numbers(&shaft["growth [1/s]"]).iter().all(|growth| *growth < 1.0));
+    assert!(shaft["growth.motion"].iter().all(|motion| !motion.is_empty()));
+    assert!(shaft.keys().any(|key| key.ends_with(".circles")), "{:?}", shaft.keys());
+}
+
+/// Output bearings that roll at 3 mm/s stick within the period of a vibration. An eigenvalue there is no growth: the run decays.
+#[test]
+fn limit_contacts_that_are_not_rolled_over_in_a_period_feed_no_growth() {
+    let gearbox = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/gearbox/three_stage.toml");
+    let found = json(&["modes", gearbox.to_str().unwrap(), "--up-to", "175 rpm", "--speeds", "1", "--json"]);
+    let slow = found["speeds"][0]["motions"].as_array().unwrap();
+    assert!(slow.iter().any(|motion| motion["growth"].as_f64().unwrap() > 5.0), "{slow:?}");
+    assert!(slow.iter().all(|motion| motion["grows"] == false), "{slow:?}");
+    assert_eq!(growing(&found), []);
+}

@@ -147,6 +147,51 @@ fn consistency_whole_tables_of_a_sweep_have_shaft_and_bearings() {
     }
 }
 
+/// A name chooses of one bearing with its own before it, of all of them without, and of the shaft as in its table.
+#[test]
+fn columns_of_a_machine_are_chosen_by_their_names_with_those_of_the_bearings() {
+    let scratch = Scratch::new("shaft-columns");
+    let of = |to: &str, columns: &str| {
+        let (code, _, told) = run(&scratch, &pinion(), to, &["--columns", columns]);
+        assert_eq!(code, Some(0), "{told}");
+        ["left/results.csv", "right/results.csv", "shaft.csv"].map(|file| {
+            let table = columns_in_order(&scratch.read(&format!("{to}/{file}")));
+            table.into_iter().map(|name| name.split(" [").next().unwrap().to_string()).collect::<Vec<_>>()
+        })
+    };
+    let [left, right, shaft] = of("one", "left.inner.force.*,*.friction_torque,shaft.torque");
+    assert_eq!(left, ["time", "inner.force.x", "inner.force.y", "inner.force.z", "friction_torque"]);
+    assert_eq!(right, ["time", "friction_torque"]);
+    assert_eq!(shaft, ["time", "shaft.torque"]);
+    let [left, right, shaft] = of("all", "inner.force.x");
+    assert_eq!([left, right], [["time", "inner.force.x"]; 2]);
+    assert!(shaft.len() > 10, "{shaft:?}");
+    let (code, _, told) =
+        run(&scratch, &pinion(), "none", &["--columns", "left.inner.force.x,middle.inner.force.x"]);
+    assert_eq!(code, Some(1), "{told}");
+    assert!(told.contains("--columns middle.inner.force.x") && told.contains("no such column"), "{told}");
+
+    // A sweep has the same names, of the shaft too.
+    let (base, cases, to) = (scratch.path("one.toml"), scratch.path("cases.csv"), scratch.path("sweep"));
+    std::fs::write(&cases, "shaft.mass\n2 kg\n").unwrap();
+    let chosen = "left.inner.force.x,shaft.torque,right.seat.displacement.*";
+    good(&roulement(&["sweep", &cases, "--scene", &base, "-o", &to, "--tables", "csv", "--columns", chosen]));
+    let summary = columns(&scratch.read("sweep/summary.csv"));
+    assert!(summary.contains_key("left.inner.force.x.end [N]"), "{:?}", summary.keys());
+    let table = columns_in_order(&scratch.read(&format!("sweep/tables/{}.csv", summary["file"][0])));
+    let names: Vec<&str> = table.iter().map(|name| name.split(" [").next().unwrap()).collect();
+    let seats = ["x", "y", "z"].map(|axis| format!("right.seat.displacement.{axis}"));
+    let expected =
+        [&["time", "shaft.torque"], &seats.each_ref().map(String::as_str)[..], &["left.inner.force.x"]]
+            .concat();
+    assert_eq!(names, expected);
+}
+
+/// Heads of a table's columns, as they stand.
+fn columns_in_order(table: &str) -> Vec<String> {
+    table.lines().next().unwrap().split(',').map(String::from).collect()
+}
+
 #[test]
 fn regression_a_load_that_no_bearing_bears_is_warned_of_on_a_shaft_too() {
     let scratch = Scratch::new("shaft-overload");

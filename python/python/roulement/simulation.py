@@ -1,4 +1,4 @@
-"""A running bearing, step by step."""
+"""A running bearing, or a shaft with its bearings, step by step."""
 
 import numpy as np
 
@@ -30,7 +30,8 @@ class Signal:
 
 
 class Simulation:
-    """A bearing that is moved step by step, with the variables of its FMI package: inputs are those at the start of a step.
+    """A bearing, or a shaft with its bearings, that is moved step by step, with the variables of its FMI package: inputs are those at the
+    start of a step. Names of a shaft's bearings stand before their variables, as in `left.inner.force`.
 
     It starts at a time [s] from the equilibrium; `values` are parameters and inputs at the start by name. What the scene gives
     as a table over time is played until an input of that group is set. Raises RuntimeError if it cannot start.
@@ -51,12 +52,13 @@ class Simulation:
         """What the bearing had to say at its start, or in its last step that had something to say."""
 
     def _places(self, name):
-        """References of a variable, or of its components x, y, z (of the balls, for `ball.`)."""
+        """References of a variable, or of its components x, y, z (of the balls, for `ball.`, or `left.ball.` of a shaft)."""
         if name in self._table:
             return [self._table[name][0]]
-        if name.startswith("ball."):
+        bearing, of_balls, what = name.rpartition("ball.")
+        if of_balls and (not bearing or bearing.endswith(".")):
             count = range(1, 201)
-            found = [self._table[of][0] for of in (f"ball[{ball}].{name[5:]}" for ball in count) if of in self._table]
+            found = [self._table[of][0] for of in (f"{bearing}ball[{ball}].{what}" for ball in count) if of in self._table]
         else:
             found = [self._table[of][0] for of in (f"{name}.{axis}" for axis in "wxyz") if of in self._table]
         if not found:

@@ -30,7 +30,7 @@ pub fn within(
     let moved = structures
         .iter()
         .zip(ends)
-        .map(|(one, end)| StructureTrial::within(one.model, [one.start, end], between, one.load.spin));
+        .map(|(one, end)| StructureTrial::within(one.model, [one.start, end], between, one.load));
     let mut trials: Vec<_> = moved.collect();
     let mut seats = vec![];
     for Joint { bearing, race, structure, seat } in joined.joints {

@@ -140,7 +140,7 @@ fn count(statistics: &mut Statistics, of: Counted, work: NewtonWork, second: u64
 fn finished(one: &StructureStep<'_>, mut end: StructureState, step: &HhtStep) -> StructureState {
     let (before, after) = (&one.start.powers, &end.powers);
     let integral = |before: f64, after: f64| 0.5 * step.h * (before + after);
-    let input = integral(before.input, after.input) + spun_up(one, &end, step);
+    let input = integral(before.input, after.input) + spun_up(one, &end, step) + sped_up(one, &end, step);
     let energies = &one.start.energies;
     end.energies = StructureEnergies {
         input: energies.input + input,
@@ -163,4 +163,15 @@ fn spun_up(one: &StructureStep<'_>, end: &StructureState, step: &HhtStep) -> f64
     let power = |spin: &Spin| spin.acceleration * spin.speed;
     let gained = 0.5 * (after.speed * after.speed - before.speed * before.speed);
     one.model.polar_inertia * (gained - 0.5 * step.h * (power(before) + power(after)))
+}
+
+/// \[J] the same of coordinates whose motion is given.
+fn sped_up(one: &StructureStep<'_>, end: &StructureState, step: &HhtStep) -> f64 {
+    let of = |k: &usize| {
+        let power = |state: &StructureState| state.accelerations[*k] * state.rates[*k];
+        let (before, after) = (one.start.rates[*k], end.rates[*k]);
+        let gained = 0.5 * (after * after - before * before);
+        one.model.mass[(*k, *k)] * (gained - 0.5 * step.h * (power(one.start) + power(end)))
+    };
+    one.model.held.iter().map(of).sum()
 }

@@ -74,6 +74,8 @@ pub struct SystemStep<'a> {
     first: Vec<usize>,
     /// First border row of each structure, and the end.
     rows: Vec<usize>,
+    /// Rows of it of coordinates whose motion is given.
+    held: Vec<usize>,
     border: &'a mut Border,
     /// How often the matrices of the bearings whose rows the border has were assembled; none before it has some.
     assembled: Option<u64>,
@@ -118,6 +120,7 @@ impl<'a> SystemStep<'a> {
             step,
             first: vec![],
             rows: vec![],
+            held: vec![],
             border,
             assembled: None,
             norms: vec![],
@@ -144,6 +147,8 @@ impl<'a> SystemStep<'a> {
         let of_structure = |one: &StructureStep<'_>| one.model.size();
         let of_structures = self.structures.iter().map(of_structure);
         self.rows = ends(&mut of_structures.clone());
+        let held = |(one, at): (&'a StructureStep<'a>, usize)| one.model.held.iter().map(move |k| at + k);
+        self.held = self.structures.iter().zip(self.rows.iter().copied()).flat_map(held).collect();
         self.first = ends(&mut self.bearings.iter().map(of_bearing).chain(of_structures));
         let bearings = self.bearings.iter().enumerate();
         let carried = |(index, step)| CarriedRace::of_bearing(index, step, self.joined.joints, &self.rows);
@@ -297,6 +302,11 @@ impl<'a> SystemStep<'a> {
                     .for_each(|columns| rows.add_block(columns, &step.workspace.reduced, &mut matrix));
             }
         }
+        for &row in &self.held {
+            matrix.row_mut(row).fill(0.0);
+            matrix.column_mut(row).fill(0.0);
+            matrix[(row, row)] = 1.0;
+        }
         self.border.factorise(matrix);
     }
 
@@ -333,7 +343,8 @@ impl<'a> SystemStep<'a> {
         let bearings = self.bearings.iter().map(BearingStep::local_error);
         let allowed = self.bearings.iter().map(BearingStep::allowed).reduce(Allowed::and);
         let structures = self.structures.iter().zip(&self.trials).map(|(one, trial)| {
-            let change = &trial.end.accelerations - &one.start.accelerations;
+            let mut change = &trial.end.accelerations - &one.start.accelerations;
+            one.model.held.iter().for_each(|k| change[*k] = 0.0);
             let moved = change.component_mul(one.scales);
             let gain = (self.step.beta - 0.5 * self.step.alpha_f - 1.0 / 6.0) * self.step.h * self.step.h;
             let error = (moved.norm_squared() / moved.len().max(1) as f64).sqrt() * gain.abs();
@@ -359,7 +370,7 @@ impl Equations for SystemStep<'_> {
         let count = self.bearings.len();
         for (index, (one, trial)) in self.structures.iter().zip(&mut self.trials).enumerate() {
             let own = &unknowns[self.first[count + index]..self.first[count + index + 1]];
-            trial.move_to(one.model, own, one.start, &self.step, one.load.spin);
+            trial.move_to(one.model, own, one.start, &self.step, one.load);
         }
         self.carry_races();
         self.norms.clear();
@@ -399,6 +410,7 @@ impl Equations for SystemStep<'_> {
             let own = &step.workspace.border_correction;
             carried.iter().for_each(|race| race.project(own, &mut border.right));
         }
+        self.held.iter().for_each(|row| border.right[*row] = 0.0);
         if !border.solve() {
             return false;
         }

@@ -24,6 +24,8 @@ pub struct StructureLoad {
     pub axial_moment: f64,
     /// The frame that turns, about the origin of the machine's axes; what its origin's acceleration does is in the force.
     pub frame: Option<MovingFrame>,
+    /// Value, rate and its rate of each coordinate whose motion is given.
+    pub held: Vec<[f64; 3]>,
 }
 
 impl StructureLoad {
@@ -149,7 +151,7 @@ impl StructureTrial {
         unknowns: &[f64],
         start: &StructureState,
         step: &HhtStep,
-        given: Spin,
+        load: &StructureLoad,
     ) {
         let end = &mut self.end;
         end.accelerations.copy_from_slice(unknowns);
@@ -158,7 +160,8 @@ impl StructureTrial {
         end.coordinates = &start.coordinates
             + &start.rates * step.h
             + (before * (0.5 - step.beta) + after * step.beta) * (step.h * step.h);
-        end.spin = model.spin([&end.coordinates, &end.rates, &end.accelerations], given);
+        model.hold(end, &load.held);
+        end.spin = model.spin([&end.coordinates, &end.rates, &end.accelerations], load.spin);
     }
 
     /// Motion of a seat at the end of the step.
@@ -202,6 +205,7 @@ impl StructureTrial {
         self.residual =
             &model.mass * &end.accelerations - &end.total * fraction - &start.total * step.alpha_f
                 + &start.remainder;
+        model.held.iter().for_each(|k| self.residual[*k] = 0.0);
         end.remainder.copy_from(&self.residual);
         self.account(model, load);
     }
@@ -213,6 +217,7 @@ impl StructureTrial {
         // The ground has no coordinates where no ring slides.
         let solved = (model.size() > 0).then(|| (*model.mass).clone().lu().solve(&end.total));
         end.accelerations = solved.flatten().unwrap_or_else(|| DVector::zeros(model.size()));
+        model.hold(end, &load.held);
         end.spin = model.spin([&end.coordinates, &end.rates, &end.accelerations], end.spin);
         self.account(model, load);
         let mut end = self.end;
@@ -226,7 +231,7 @@ impl StructureTrial {
         model: &Structure,
         [start, end]: [&StructureState; 2],
         between: Hermite,
-        given: Spin,
+        load: &StructureLoad,
     ) -> Self {
         let mut trial = Self::new(start);
         let at = &mut trial.end;
@@ -237,7 +242,8 @@ impl StructureTrial {
         at.accelerations = between.linear([a0, a1]);
         at.coordinates = between.at([q0, q1], [v0.clone(), v1.clone()]);
         at.rates = between.linear([v0, v1]);
-        at.spin = model.spin([&at.coordinates, &at.rates, &at.accelerations], given);
+        model.hold(at, &load.held);
+        at.spin = model.spin([&at.coordinates, &at.rates, &at.accelerations], load.spin);
         trial
     }
 
@@ -265,12 +271,17 @@ impl StructureTrial {
         }
     }
 
-    /// Torque that holds a given speed, and powers.
+    /// What holds a given speed and given coordinates, and powers.
     fn account(&mut self, model: &Structure, load: &StructureLoad) {
         let end = &mut self.end;
+        for (force, &k) in end.holding.iter_mut().zip(&model.held) {
+            *force = model.mass.row(k).transpose().dot(&end.accelerations) - end.total[k];
+        }
+        let holding = end.holding.iter().zip(&model.held);
+        let held: f64 = holding.map(|(force, k)| force * end.rates[*k]).sum();
         let turns = model.turning == Turning::Given;
         let mut outside = load.axial_moment;
-        let mut power = load.force.dot(&end.rates);
+        let mut power = load.force.dot(&end.rates) + held;
         if let Some(frame) = &self.from_frame {
             outside += frame.axial;
             power += frame.force.dot(&end.rates);

@@ -183,6 +183,7 @@ impl MachineVariables {
             | ShaftSource::Whole(..)
             | ShaftSource::Link(..)
             | ShaftSource::Housing(..)
+            | ShaftSource::Holding(_)
             | ShaftSource::Motion(..) => None,
         }
     }

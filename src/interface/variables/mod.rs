@@ -25,7 +25,7 @@ pub use machine::{MachineGroup, MachineVariables};
 use race_rows::RaceVariable;
 pub use race_setting::InputKind;
 use race_setting::RaceSetting;
-pub use shaft_rows::{ShaftSource, quoted};
+pub use shaft_rows::{ShaftSource, quoted, rows as rows_of_shaft};
 
 /// FMI causality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use super::{Causality, Kind, Source, Variable};
 use crate::effects::frame::FrameSection;
-use crate::scene::system::{ShaftParameter, SystemScene};
+use crate::scene::system::{NamedLoad, ShaftParameter, SystemScene};
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::system::{
     HousingOutputs, LinkOutputs, PointOutput, ShaftInputs, ShaftOutputs, SystemOutputs,
@@ -29,6 +29,8 @@ pub enum ShaftSource {
     Link(usize, LinkQuantity),
     /// A housing as a whole, by its index.
     Housing(usize, fn(&HousingOutputs) -> f64),
+    /// What holds a motion that is given, by its index among all of them.
+    Holding(usize),
     /// Motion of a station.
     Motion(Station, PointQuantity, usize),
 }
@@ -147,6 +149,7 @@ impl ShaftSource {
             Self::Whole(shaft, get) => get(&outputs.shafts[shaft]),
             Self::Link(index, quantity) => quantity.read(&outputs.links[index]),
             Self::Housing(index, get) => get(&outputs.housings[index]),
+            Self::Holding(index) => outputs.holding[index],
             Self::Motion(station, quantity, axis) => quantity.read(station.of(outputs), axis),
         }
     }
@@ -163,7 +166,12 @@ impl ShaftSource {
                     frame.motion.vector_mut(quantity)[axis] = value;
                 }
             }
-            Self::Number(_) | Self::Whole(..) | Self::Link(..) | Self::Housing(..) | Self::Motion(..) => {}
+            Self::Number(_)
+            | Self::Whole(..)
+            | Self::Link(..)
+            | Self::Housing(..)
+            | Self::Holding(_)
+            | Self::Motion(..) => {}
         }
     }
 }
@@ -204,21 +212,31 @@ fn row(
 pub fn rows(scene: &SystemScene) -> Vec<Variable> {
     let mut rows = vec![];
     let on_shafts = scene.shafts.iter().map(|shaft| shaft.load.len()).sum();
+    // An input, or what holds a motion that is given there.
+    let mut holding = 0;
+    let mut effort =
+        |load: &NamedLoad<'_>, component: usize, input: ShaftSource| match load.is_given(component) {
+            true => {
+                holding += 1;
+                (Causality::Output, ShaftSource::Holding(holding - 1), ", which holds the given motion there")
+            }
+            false => (Causality::Input, input, ""),
+        };
     for (index, load) in scene.loads().enumerate() {
         let what = if index < on_shafts { "shaft" } else { "housing" };
         for (axis, letter) in AXES.into_iter().enumerate() {
             let name = format!("{}.force.{letter}", quoted(load.name));
+            let (causality, source, more) = effort(&load, axis, ShaftSource::Force(index, axis));
             let description =
-                format!("force on the {what} at {}, {letter} component, axes of the shaft", load.name);
-            let source = ShaftSource::Force(index, axis);
-            rows.push(row(name, (units::NEWTON, 1e3), Causality::Input, description, source));
+                format!("force on the {what} at {}, {letter} component, axes of the shaft{more}", load.name);
+            rows.push(row(name, (units::NEWTON, 1e3), causality, description, source));
         }
         for (axis, letter) in AXES.into_iter().enumerate() {
             let name = format!("{}.moment.{letter}", quoted(load.name));
+            let (causality, source, more) = effort(&load, 3 + axis, ShaftSource::Moment(index, axis));
             let description =
-                format!("moment on the {what} at {}, {letter} component, axes of the shaft", load.name);
-            let source = ShaftSource::Moment(index, axis);
-            rows.push(row(name, (units::NEWTON_METRE, 1.0), Causality::Input, description, source));
+                format!("moment on the {what} at {}, {letter} component, axes of the shaft{more}", load.name);
+            rows.push(row(name, (units::NEWTON_METRE, 1.0), causality, description, source));
         }
     }
     let gears = scene.shafts.iter().flat_map(|shaft| (1..=shaft.gear.len()).map(move |gear| (shaft, gear)));

@@ -87,6 +87,7 @@ fn still(
         lumps,
         turning: Turning::Still,
         rings: 0,
+        held: vec![],
     };
     Carrier { structure, stations, sliding: vec![], modes: vec![] }
 }

@@ -8,13 +8,14 @@
 //! are taken as small: a shaft in bearings tilts by some mrad, what is left out is of their square.
 
 mod beam;
+mod held;
 mod housing;
 mod lump;
 mod ring;
 mod shaft;
 mod torsion;
 
-pub use lump::{FrameForce, Lump};
+pub use lump::{FrameForce, Lump, frame_matrices};
 use nalgebra::{DVector, Dyn, OMatrix, U6, Vector3};
 pub use ring::Ring;
 use serde::{Deserialize, Serialize};
@@ -72,6 +73,8 @@ pub struct Structure {
     pub turning: Turning,
     /// How many of its last coordinates are displacements of rings that slide along their bores.
     pub rings: usize,
+    /// Coordinates whose motion is given ([`Carrier::holding`]); inertia does not couple them with others.
+    pub held: Vec<usize>,
 }
 
 /// A structure that carries races, and what its stations do: places where races sit, loads act or motion is reported.
@@ -109,6 +112,8 @@ pub struct StructureState {
     pub spin: Spin,
     /// [N m] torque that drives it: that given, or that which holds the given speed.
     pub torque: f64,
+    /// \[N, N m] what holds each coordinate whose motion is given.
+    pub holding: Vec<f64>,
     /// Powers now.
     pub powers: StructurePowers,
     /// Energies since the start.
@@ -167,12 +172,13 @@ impl StructureEnergies {
 }
 
 impl StructureState {
-    /// Can a structure with that many coordinates be in this state?
-    pub fn fits(&self, size: usize) -> bool {
+    /// Can a structure with that many coordinates, of which so many are given, be in this state?
+    pub fn fits(&self, size: usize, held: usize) -> bool {
         let Self { coordinates, rates, accelerations, total, remainder, .. } = self;
         [coordinates, rates, accelerations, total, remainder]
             .iter()
             .all(|list| list.len() == size && list.iter().all(|value| value.is_finite()))
+            && self.holding.len() == held
     }
 }
 
@@ -180,6 +186,15 @@ impl Structure {
     /// Number of coordinates.
     pub fn size(&self) -> usize {
         self.mass.nrows()
+    }
+
+    /// Puts the coordinates that are given where they are: value, rate and its rate of each.
+    pub fn hold(&self, state: &mut StructureState, given: &[[f64; 3]]) {
+        for (k, [value, rate, acceleration]) in self.held.iter().zip(given) {
+            state.coordinates[*k] = *value;
+            state.rates[*k] = *rate;
+            state.accelerations[*k] = *acceleration;
+        }
     }
 
     /// \[m] size of a unit of each coordinate: root mean square, over the mass of the structure, of what it moves. Residuals times these

@@ -36,6 +36,7 @@ impl Carrier {
             lumps: vec![],
             turning: Turning::Still,
             rings: 0,
+            held: vec![],
         };
         Self { structure, stations: vec![Map::zeros(0); stations], sliding: vec![], modes: vec![] }
     }

@@ -233,6 +233,7 @@ impl Parts {
             lumps,
             turning,
             rings: 0,
+            held: vec![],
         };
         Carrier { structure, stations, sliding: vec![], modes }
     }

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::{Table, Value};
 
@@ -11,8 +10,10 @@ use super::{MountedScene, SystemLoad};
 use crate::catalogue::Request;
 use crate::effects::cage::IDEAL_CAGE_NEEDS;
 use crate::scene::{Scene, SceneError};
+use crate::schema::units::Acceleration;
 use crate::schema::{
-    AxialSeat, HousingSection, Mounting, MountingDirection, ShaftSection, StiffnessSection, explain, regular,
+    AxialSeat, Components, HousingSection, Mounting, MountingDirection, ShaftSection, StiffnessSection,
+    explain, regular,
 };
 
 /// A bearing as it is written.
@@ -39,7 +40,7 @@ pub struct WrittenBearing {
 /// Data that all bearings of a system share.
 pub struct Shared {
     /// [m/s2] gravity in the axes of the shaft.
-    pub gravity: Vector3<f64>,
+    pub gravity: Components<Acceleration>,
     /// Name of every shaft, and its speed [rad/s] at the start.
     pub shafts: Vec<(String, f64)>,
     /// Simulated time, and distance of rows.
@@ -109,7 +110,13 @@ impl WrittenBearing {
         }
         let outer_speed = outer_shaft.map(|shaft| given.shafts[shaft].1);
         mount(&mut table, given, (given.shafts[shaft].1, outer_speed), mounting.direction);
-        let scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
+        let mut scene = Scene::parse_of(&table.to_string(), None, &folder).map_err(inside)?;
+        if given.gravity.is_scripted() {
+            scene.effects.gravity.acceleration = match mounting.direction {
+                MountingDirection::Along => given.gravity.clone(),
+                MountingDirection::Against => given.gravity.half_turned(),
+            };
+        }
         // A housing, a hub or the bore that a ring slides in moves it by forces.
         if mounting.seats_outer_ring() && scene.effects.cage.is_ideal() {
             return Err(inside(SceneError::conflict("effects.cage", IDEAL_CAGE_NEEDS)));
@@ -129,7 +136,7 @@ fn check_changes(set: &Table) -> Result<(), SceneError> {
     let refused = [
         (
             loads.map(|key| format!("load.{key}")),
-            "loads and speed are those of the shaft: [[shaft.load]], [[shaft.gear]], shaft.speed",
+            "loads and speed are those of the shaft: [[shaft.load]], [[shaft.rotating]], [[shaft.gear]], shaft.speed",
         ),
         (
             inner.map(|key| format!("inner.{key}")),
@@ -234,9 +241,9 @@ fn mount(
         table.insert("solver".into(), given.solver.clone().into());
     }
     let mut effects = section(table, "effects");
-    if given.gravity != Vector3::zeros() {
-        let sign = direction.sign();
-        let turned = [sign * given.gravity.x, sign * given.gravity.y, given.gravity.z];
+    if given.gravity.largest() != 0.0 {
+        let (sign, gravity) = (direction.sign(), given.gravity.at(0.0));
+        let turned = [sign * gravity.x, sign * gravity.y, gravity.z];
         effects.insert("gravity".into(), turned.map(Value::from).to_vec().into());
     }
     table.insert("effects".into(), effects.into());

@@ -1,11 +1,12 @@
 //! Checks of the keys of a system.
 
 use super::bearing::WrittenBearing;
-use super::ranges::{BORE_OFFSET, BORE_TILT, INERTIA, MASS, POSITION};
+use super::ranges::{BORE_OFFSET, BORE_TILT, GIVEN_DISPLACEMENT, GIVEN_ROTATION, INERTIA, MASS, POSITION};
 use super::{MountedScene, Written, check_housing, mesh};
+use crate::effects::gravity::GRAVITY;
 use crate::schema::numbers::Range;
 use crate::schema::{
-    AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, StiffnessSection, check_phases,
+    AxialSeat, Drive, Level, Mounting, PointLoad, SceneError, ShaftSection, StiffnessSection, check_phases,
 };
 
 /// Checks every value against its range, and the keys against one another.
@@ -14,9 +15,9 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
     Range::above(0.0, 1e4, "s").check("load.duration", load.duration.0)?;
     Range::closed(1e-9, load.duration.0, "s").check("load.output_interval", load.output_interval.0)?;
     check_phases(&written.phase, load.duration.0)?;
-    if written.gravity.is_scripted() {
-        let why = "gravity of a system is constant: give three numbers; a frame that moves has frame.acceleration over time";
-        return Err(SceneError::conflict("gravity", why));
+    for (schedule, axis) in written.gravity.0.iter().zip(["x", "y", "z"]) {
+        let key = format!("gravity.{axis}");
+        schedule.values().into_iter().try_for_each(|value| GRAVITY.check(&key, value))?;
     }
     if let Some(frame) = &written.frame {
         frame.check("frame")?;
@@ -105,6 +106,50 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
     shafts.iter().try_for_each(|one| shaft(one, shafts.len() > 1))
 }
 
+/// Keys that the scene of a bearing alone has, and what a machine has in their place.
+const ELSEWHERE: [(&str, &[&str], &str); 5] = [
+    (
+        "",
+        &["interface"],
+        "is for a bearing without a shaft: inputs of a machine are played by its scripts until the importer sets one of them; who gives \
+         friction, temperatures and oil of a bearing, and how its orientations are written, is [bearing.set] interface",
+    ),
+    (
+        "",
+        &["effects"],
+        "are those of a bearing, in its scene or in [bearing.set]; gravity and [frame] are those of the machine",
+    ),
+    (
+        "load",
+        &["x", "y", "z", "ry", "rz"],
+        "is for a bearing without a shaft: a force, a moment, a displacement or a rotation of a shaft is that of a [[shaft.load]]",
+    ),
+    (
+        "load",
+        &["rotating", "gear"],
+        "is for a bearing without a shaft: a machine has [[shaft.rotating]] and [[shaft.gear]]",
+    ),
+    (
+        "load",
+        &["inner_speed", "outer_speed", "outer"],
+        "is for a bearing without a shaft: a machine has shaft.speed or shaft.torque, and mounting.outer_shaft for an outer ring that turns",
+    ),
+];
+
+/// Refuses keys of a bearing alone in the file of a machine.
+pub fn elsewhere(text: &str) -> Result<(), SceneError> {
+    let Ok(table) = toml::from_str::<toml::Table>(text) else { return Ok(()) };
+    for (section, keys, why) in ELSEWHERE {
+        let within =
+            if section.is_empty() { Some(&table) } else { table.get(section).and_then(|of| of.as_table()) };
+        if let Some(key) = keys.iter().find(|key| within.is_some_and(|table| table.contains_key(**key))) {
+            let key = if section.is_empty() { key.to_string() } else { format!("{section}.{key}") };
+            return Err(SceneError::conflict(key, why));
+        }
+    }
+    Ok(())
+}
+
 /// A bearing sits on a shaft that there is.
 fn on_one_of(shafts: &[ShaftSection], bearing: &WrittenBearing) -> Result<(), SceneError> {
     let names = || shafts.iter().map(|shaft| shaft.name.as_str());
@@ -190,7 +235,8 @@ fn held(shaft: &ShaftSection, written: &Written) -> Result<(), SceneError> {
     let has = |name: &Option<String>| name.as_ref() == Some(&shaft.name);
     let on = |bearing: &&WrittenBearing| one || has(&bearing.shaft) || has(&bearing.mounting.outer_shaft);
     let mut own = written.bearing.iter().filter(on);
-    if shaft.matrices.is_none() && own.all(slides) {
+    let driven = shaft.load.iter().any(|load| load.displacement.x.is_some());
+    if shaft.matrices.is_none() && !driven && own.all(slides) {
         let why = match one {
             true => {
                 "nothing would hold the shaft along its axis: at least one bearing needs axial = \"held\""
@@ -309,10 +355,38 @@ fn keys_of_shaft(shaft: &ShaftSection) -> Result<(), SceneError> {
             return Err(SceneError::conflict(format!("shaft.gear[{place}].speed"), why));
         }
     }
+    for (place, part) in shaft.rotating.iter().enumerate() {
+        let own = shaft.speed.clone().unwrap_or_default();
+        part.check(&format!("shaft.rotating[{place}]"), &own)?;
+    }
     for load in &shaft.load {
         POSITION.check("shaft.load.position", load.position.0)?;
+        given_motion(load)?;
     }
     sections(shaft)
+}
+
+/// Motions of a named load that are given: within their ranges, without a jump in speed, and not beside a force or a moment of their own.
+fn given_motion(load: &PointLoad) -> Result<(), SceneError> {
+    for (key, component, motion) in load.motion() {
+        let key = format!("shaft.load \"{}\": {key}", load.name);
+        let (range, other, effort) = match component {
+            0..3 => (GIVEN_DISPLACEMENT, "force", &load.force.0[component]),
+            _ => (GIVEN_ROTATION, "moment", &load.moment.0[component - 3]),
+        };
+        motion.values().into_iter().try_for_each(|value| range.check(&key, value))?;
+        if !motion.begins_at_rest() {
+            let why = "a motion begins at rest, and a sine does so with phase = \"90 deg\" or \"-90 deg\"";
+            return Err(SceneError::conflict(key, why));
+        }
+        if effort.values().into_iter().any(|value| value != 0.0) {
+            let why = format!(
+                "is given and so is {other}: what it takes follows from the motion; give one of both"
+            );
+            return Err(SceneError::conflict(key, why));
+        }
+    }
+    Ok(())
 }
 
 /// Beams that make one piece.
@@ -374,7 +448,8 @@ fn alone(bearing: &MountedScene) -> Result<(), SceneError> {
     if scene.effects.support.sections[0].is_some() {
         return refuse(
             "inner.support",
-            "is for a bearing without a shaft: the inner race is a part of the shaft",
+            "is for a bearing without a shaft: here the inner ring is a part of the shaft; springs and dampers that hold a shaft are a [[bearing]] \
+             with stiffness",
         );
     }
     if bearing.mounting.axial == AxialSeat::Free {

@@ -24,7 +24,7 @@ use crate::effects::frame::FrameSection;
 use crate::schema::units::{Acceleration, Force, Moment, Time};
 use crate::schema::{
     AxialSeat, Components, GearSection, HousingSection, Matrices, MeshSection, Mounting, PhaseSection,
-    Schedule, ShaftSection, Shafts, Solver, explain, regular,
+    PointLoad, RotatingSection, Schedule, ShaftSection, Shafts, Solver, explain, regular,
 };
 
 /// A shaft with its bearings, as described by a file.
@@ -42,8 +42,8 @@ pub struct SystemScene {
     pub springs: Vec<SceneSpring>,
     /// The bearings.
     pub bearings: Vec<MountedScene>,
-    /// [m/s2] acceleration of gravity in the axes of the shaft, constant.
-    pub gravity: Vector3<f64>,
+    /// [m/s2] acceleration of gravity in the axes of the shaft.
+    pub gravity: Components<Acceleration>,
     /// Motion of the machine's frame, which all places and velocities are seen from; none where it rests.
     pub frame: Option<FrameSection>,
     /// Simulated time, and distance of rows.
@@ -98,9 +98,16 @@ pub struct NamedLoad<'a> {
     pub force: &'a Components<Force>,
     /// [N m] moment.
     pub moment: &'a Components<Moment>,
+    /// The load of a shaft that it is; none of a housing's.
+    of_shaft: Option<&'a PointLoad>,
 }
 
 impl NamedLoad<'_> {
+    /// Is a component (displacements 0 to 2, rotations 3 to 5) of the motion there given?
+    pub fn is_given(&self, component: usize) -> bool {
+        self.of_shaft.is_some_and(|load| load.motion().any(|(_, given, _)| given == component))
+    }
+
     /// Does a table give something of it?
     pub fn is_scripted(&self) -> bool {
         self.force.is_scripted() || self.moment.is_scripted()
@@ -139,7 +146,7 @@ struct Written {
     /// Named windows of the run, which have means and lives of their own.
     #[serde(default)]
     phase: Vec<PhaseSection>,
-    /// [m/s2] acceleration of gravity along the shaft's x, y, z, constant: it acts on the shaft and inside the bearings. 0 if not given.
+    /// [m/s2] acceleration of gravity along the shaft's x, y, z, each constant or a table: it acts on the shaft and inside the bearings. 0 if not given.
     #[serde(default)]
     gravity: Components<Acceleration>,
     /// Motion of the frame that shafts, housings and bearings are seen from, as `effects.frame` of a bearing alone; along the shaft's axes.
@@ -193,6 +200,7 @@ impl SystemScene {
         folder: &Path,
         place: impl Fn(SceneError, Option<usize>) -> SceneError,
     ) -> Result<Self, SceneError> {
+        check::elsewhere(text).map_err(|why| place(why, None))?;
         let written: Written = explain::read(text).map_err(|(why, spot)| place(why, spot))?;
         let placed = |error| place(error, None);
         check::check(&written).map_err(placed)?;
@@ -208,7 +216,6 @@ impl SystemScene {
             frame,
             solver,
         } = written;
-        let gravity = gravity.at(0.0);
         let matrices = |given: &Option<Value>, key: &str| {
             let read = given.as_ref().map(|given| Matrices::of(given, folder, key)).transpose()?;
             let checked = read.as_ref().map(|matrices| matrices.checked(key)).transpose()?;
@@ -235,7 +242,13 @@ impl SystemScene {
         };
         let turning = shafts.iter().zip(mesh::trains(&shafts, &meshes));
         let shafts_turn = turning.map(|(shaft, train)| (shaft.name.clone(), speed(train))).collect();
-        let given = Shared { gravity, shafts: shafts_turn, load, solver, folder: folder.to_path_buf() };
+        let given = Shared {
+            gravity: gravity.clone(),
+            shafts: shafts_turn,
+            load,
+            solver,
+            folder: folder.to_path_buf(),
+        };
         let (springs, bearing): (Vec<_>, Vec<_>) =
             bearing.into_iter().partition(|bearing| bearing.stiffness.is_some());
         let springs = springs.into_iter().filter_map(|spring| spring.spring(&shafts, &housing)).collect();
@@ -248,7 +261,7 @@ impl SystemScene {
             effects.frame.section = frame.as_ref().map(|frame| frame.at_bearing(&place.into(), direction));
             effects.gravity.is_input = frame.is_some();
         }
-        let source = standing_alone(text, &bearings, &of_shafts, &of_housings, gravity != Vector3::zeros());
+        let source = standing_alone(text, &bearings, &of_shafts, &of_housings, gravity.largest() != 0.0);
         Ok(Self {
             title,
             shafts,
@@ -276,26 +289,30 @@ impl SystemScene {
     /// Motion of the machine's frame at a time \[s], and gravity in it.
     pub fn frame_at(&self, time: f64) -> FrameMotion {
         let motion = self.frame.as_ref().map(|section| section.at(time)).unwrap_or_default();
-        FrameMotion { gravity: self.gravity, ..motion }
+        FrameMotion { gravity: self.gravity.at(time), ..motion }
     }
 
     /// Named loads of the shafts, then those of every housing.
     pub fn loads(&self) -> impl Iterator<Item = NamedLoad<'_>> {
-        let shafts = self.shafts.iter().flat_map(|shaft| &shaft.load);
-        let shafts =
-            shafts.map(|load| NamedLoad { name: &load.name, force: &load.force, moment: &load.moment });
-        let housings = self.housings.iter().flat_map(|housing| &housing.load);
-        shafts.chain(housings.map(|load| NamedLoad {
+        let shafts = self.shafts.iter().flat_map(|shaft| &shaft.load).map(|load| NamedLoad {
             name: &load.name,
             force: &load.force,
             moment: &load.moment,
-        }))
+            of_shaft: Some(load),
+        });
+        let housings = self.housings.iter().flat_map(|housing| &housing.load).map(|load| NamedLoad {
+            name: &load.name,
+            force: &load.force,
+            moment: &load.moment,
+            of_shaft: None,
+        });
+        shafts.chain(housings)
     }
 
     /// Writes the scenes of its bearings into the text, after they were changed.
     pub(crate) fn renew_source(&mut self) {
         if let Ok(mut table) = toml::from_str::<Table>(&self.source) {
-            write_bearings(&mut table, &self.bearings, self.gravity != Vector3::zeros());
+            write_bearings(&mut table, &self.bearings, self.gravity.largest() != 0.0);
             self.source = table.to_string();
         }
     }
@@ -303,6 +320,20 @@ impl SystemScene {
     /// Meshes `[[shaft.gear]]` of the first shaft, then of the next.
     pub fn gears(&self) -> impl Iterator<Item = &GearSection> {
         self.shafts.iter().flat_map(|shaft| &shaft.gear)
+    }
+
+    /// Components of the motion of named loads of a shaft that are given: which of its loads, its key, which component (displacements 0 to 2,
+    /// rotations 3 to 5), and over time.
+    pub fn held(&self, shaft: usize) -> impl Iterator<Item = (usize, &'static str, usize, &Schedule)> {
+        let loads = self.shafts[shaft].load.iter().enumerate();
+        loads.flat_map(|(load, own)| {
+            own.motion().map(move |(key, component, given)| (load, key, component, given))
+        })
+    }
+
+    /// Forces that turn of the first shaft, then of the next.
+    pub fn rotating(&self) -> impl Iterator<Item = &RotatingSection> {
+        self.shafts.iter().flat_map(|shaft| &shaft.rotating)
     }
 
     /// Names of meshes, then of bearings by their stiffness.
@@ -333,8 +364,10 @@ impl SystemScene {
         let gears = self.gears().map(|gear| &gear.torque);
         let frictions = self.bearings.iter().map(|mounted| &mounted.scene.friction.ball_race);
         let oils = self.bearings.iter().filter_map(|mounted| mounted.scene.effects.film.schedule());
-        let frame = self.frame.iter().flat_map(FrameSection::schedules);
-        loads.chain(drive).chain(gears).chain(frictions).chain(oils).chain(frame)
+        let frame = self.frame.iter().flat_map(FrameSection::schedules).chain(&self.gravity.0);
+        let rotating = self.rotating().flat_map(RotatingSection::schedules);
+        let held = (0..self.shafts.len()).flat_map(|shaft| self.held(shaft)).map(|(.., schedule)| schedule);
+        loads.chain(held).chain(drive).chain(gears).chain(rotating).chain(frictions).chain(oils).chain(frame)
     }
 
     /// Housing that the outer race of a bearing sits in, by their indices.

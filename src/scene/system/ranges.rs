@@ -12,3 +12,7 @@ pub const BORE_TILT: Range = Range::closed(-0.05, 0.05, "rad");
 pub const BORE_OFFSET: Range = Range::closed(-0.01, 0.01, "m");
 /// Positions along a shaft.
 pub const POSITION: Range = Range::closed(-1e3, 1e3, "m");
+/// Displacements of a point of a shaft that are given.
+pub const GIVEN_DISPLACEMENT: Range = Range::closed(-0.1, 0.1, "m");
+/// Tilts there: what shafts may tilt by.
+pub const GIVEN_ROTATION: Range = Range::closed(-0.1, 0.1, "rad");

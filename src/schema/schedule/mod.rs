@@ -55,12 +55,24 @@ impl Schedule {
     pub fn smooth_at(&self, time: f64) -> (f64, f64) {
         match self {
             Self::Constant(value) => (*value, 0.0),
-            Self::Table(points) => smooth(points, time).unwrap_or_else(|| (self.at(time), 0.0)),
+            Self::Table(points) => {
+                smooth(points, time).map_or((self.at(time), 0.0), |[value, rate, _]| (value, rate))
+            }
             Self::Sine(sine) => (sine.at(time), sine.rate(time)),
             Self::Sum(parts) => parts
                 .iter()
                 .map(|part| part.smooth_at(time))
                 .fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1)),
+        }
+    }
+
+    /// Rate of change of that rate.
+    pub fn smooth_acceleration(&self, time: f64) -> f64 {
+        match self {
+            Self::Constant(_) => 0.0,
+            Self::Table(points) => smooth(points, time).map_or(0.0, |[_, _, acceleration]| acceleration),
+            Self::Sine(sine) => sine.acceleration(time),
+            Self::Sum(parts) => parts.iter().map(|part| part.smooth_acceleration(time)).sum(),
         }
     }
 
@@ -225,8 +237,8 @@ fn sum_values(parts: &[(f64, &Schedule)]) -> Vec<f64> {
     outside.into_iter().chain(between).flatten().collect()
 }
 
-/// Value and rate of a smooth motion through points between their ends.
-fn smooth(points: &[(f64, f64)], time: f64) -> Option<(f64, f64)> {
+/// Value, rate and acceleration of a smooth motion through points between their ends.
+fn smooth(points: &[(f64, f64)], time: f64) -> Option<[f64; 3]> {
     let next = points.partition_point(|&(t, _)| t <= time);
     let (&(t1, v1), &(t0, v0)) = (points.get(next)?, points.get(next.wrapping_sub(1))?);
     // Harmonic mean of the secants on both sides; 0 at extrema and at the ends.
@@ -243,7 +255,8 @@ fn smooth(points: &[(f64, f64)], time: f64) -> Option<(f64, f64)> {
     let rise = v1 - v0;
     let value = v0 + s * (m0 + s * (3.0 * rise - 2.0 * m0 - m1 + s * (m0 + m1 - 2.0 * rise)));
     let rate = m0 + s * (2.0 * (3.0 * rise - 2.0 * m0 - m1) + 3.0 * s * (m0 + m1 - 2.0 * rise));
-    Some((value, rate / duration))
+    let acceleration = 2.0 * (3.0 * rise - 2.0 * m0 - m1) + 6.0 * s * (m0 + m1 - 2.0 * rise);
+    Some([value, rate / duration, acceleration / (duration * duration)])
 }
 
 /// Area below a table from its first point to a time \[s]; negative before that point.

@@ -33,6 +33,12 @@ impl Sine {
         if self.begin == Some(time) { 0.0 } else { self.rate(time) }
     }
 
+    /// Rate of change of that rate.
+    pub fn acceleration(&self, time: f64) -> f64 {
+        let pace = TAU * self.frequency;
+        if self.swings(time) { -pace * pace * self.amplitude * self.angle(time).sin() } else { 0.0 }
+    }
+
     /// Integral of the value from one time \[s] to another.
     pub fn integral(&self, from: f64, to: f64) -> f64 {
         let begin = self.begin.unwrap_or(f64::NEG_INFINITY);

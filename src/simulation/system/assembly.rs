@@ -11,7 +11,7 @@ use super::super::{Simulation, SimulationError};
 use super::inputs::{Given, Played, ShaftInputs, ShaftPaths, scripted_spin};
 use super::start::found_out;
 use super::statics::Statics;
-use super::{System, SystemError, links, loads, places_of_housing, stations};
+use super::{System, SystemError, first_stations, links, loads, places_of_housing, stations};
 use crate::dynamics::system::{Joint, Seat, StructureLoad};
 use crate::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::Model;
@@ -24,7 +24,7 @@ use crate::numerics::tilt;
 use crate::scene::Scene;
 use crate::scene::system::mesh::{InTrain, trains};
 use crate::scene::system::{MountedScene, SystemScene};
-use crate::schema::ShaftSection;
+use crate::schema::{Schedule, ShaftSection};
 
 /// The parts of a system at a time.
 pub(super) struct Assembly {
@@ -84,13 +84,16 @@ impl Assembly {
         let spins = spins.unwrap_or_else(|| initial_spins(scene, &inputs, &carriers, time));
         let still = std::iter::repeat(Spin::default());
         let turning = carriers.iter().zip(spins.iter().copied().chain(still));
-        let states: Vec<_> = turning.map(|(one, spin)| at_rest(&one.structure, spin)).collect();
+        let mut states: Vec<_> = turning.map(|(one, spin)| at_rest(&one.structure, spin)).collect();
         let angles: Vec<f64> = spins.iter().map(|spin| spin.angle).collect();
         let paths = ShaftPaths::steady(&inputs, time, &angles);
         // What scripts say at this time is among the inputs.
         let played = Played::none(scene);
         let loads =
             loads::at(&Given { scene, paths: &paths, played: &played }, &carriers, &states, time, time);
+        for ((one, state), load) in carriers.iter().zip(&mut states).zip(&loads) {
+            one.structure.hold(state, &load.held);
+        }
         let scales = carriers.iter().map(|one| one.structure.scales()).collect();
         let links = links::of(scene, &carriers);
         let friction = vec![0.0; bearings.len()];
@@ -249,7 +252,15 @@ fn carriers(scene: &SystemScene) -> Result<Vec<Carrier>, SystemError> {
     let named = |name: String| move |why| SystemError::Structure { name, why };
     let shafts = scene.shafts.iter().enumerate().map(|(index, shaft)| {
         let name = if scene.shafts.len() == 1 { "shaft".into() } else { format!("shaft \"{}\"", shaft.name) };
-        Carrier::of_shaft(shaft, &stations(scene, index), scene.twists(index)).map_err(named(name))
+        let carrier = Carrier::of_shaft(shaft, &stations(scene, index), scene.twists(index)).map_err(named(name.clone()))?;
+        let [first, ..] = first_stations(scene, index);
+        let held: Vec<_> = scene.held(index).map(|(load, _, component, _)| (first + load, component)).collect();
+        carrier.holding(&held).map_err(|which| {
+            let (load, key, ..) = scene.held(index).nth(which).unwrap_or((0, "", 0, &Schedule::Constant(0.0)));
+            let name_of_load = &shaft.load[load].name;
+            let why = format!("shaft.load \"{name_of_load}\": {key} follows from the motions that are given before it: take it out");
+            SystemError::Structure { name, why }
+        })
     });
     let housings = scene.housings.iter().enumerate().map(|(index, housing)| {
         let name = format!("housing \"{}\"", housing.name);
@@ -325,6 +336,7 @@ fn at_rest(structure: &Structure, spin: Spin) -> StructureState {
         remainder: zero,
         spin,
         torque: 0.0,
+        holding: vec![0.0; structure.held.len()],
         powers: StructurePowers::default(),
         energies: StructureEnergies::default(),
     }

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use super::super::input_paths::FramePath;
 use super::super::path::Ramp;
-use crate::effects::frame::FrameSection;
 use crate::effects::moving_frame::{FrameInputs, FrameMotion, MovingFrame};
 use crate::model::state::stack;
 use crate::model::structure::Spin;
@@ -282,9 +281,10 @@ impl Given<'_> {
         }
     }
 
-    /// Is the motion of the frame that of its tables?
+    /// Is the motion of the frame, and gravity in it, that of its tables?
     pub fn plays_frame(&self) -> bool {
-        self.played.frame && self.scene.frame.as_ref().is_some_and(FrameSection::is_scripted)
+        let SystemScene { frame, gravity, .. } = self.scene;
+        self.played.frame && frame.as_ref().is_some_and(|own| own.is_scripted() || gravity.is_scripted())
     }
 
     /// Is a load that of its table?

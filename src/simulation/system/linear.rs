@@ -3,6 +3,8 @@
 //! ```text
 //! M q'' + (C + W G) q' + K q = 0          W spin of the shaft
 //! ```
+//! In a frame that turns, Coriolis forces are in C and what depends on places in K.
+//!
 //! Coordinates are those of all structures, one after the other. Bearings are springs between their races, with the stiffness of their
 //! quasi-static equilibrium, and dampers, with their balls condensed out ([`crate::analysis::condensed`]); what supports of a bearing's own
 //! weigh and damp is left out. Dampers are those of rolling: where balls hardly roll there are none, as a contact that sticks is a spring
@@ -10,12 +12,13 @@
 
 use nalgebra::{Complex, DMatrix, DVector, Matrix6};
 
+use super::super::play::Scripted;
 use super::links;
 use super::statics::{Statics, of_link};
 use super::{System, SystemError};
 use crate::analysis::condensed::Condensed;
 use crate::dynamics::system::StructureLoad;
-use crate::model::structure::Carrier;
+use crate::model::structure::{Carrier, Structure, StructureState};
 use crate::numerics::modes::{Mode, modes};
 
 /// [-] of the displacements of a mode: more along the axis is an axial one; less whirl goes to and fro.
@@ -87,6 +90,7 @@ impl System {
                 spin,
                 axial_moment: 0.0,
                 frame: None,
+                held: vec![],
             }
         };
         let loads: Vec<_> = (0..self.structures.carriers.len()).map(of).collect();
@@ -109,7 +113,7 @@ impl System {
             bearings: &mut bearings,
             friction: &mut vec![0.0; dampers.len()],
         };
-        let stiffness = statics.stiffness(&self.structures.states)?;
+        let mut stiffness = statics.stiffness(&self.structures.states)?;
         let mut damping = statics.spread(&dampers);
         for (link, state) in self.structures.links.iter().zip(&self.structures.link_states) {
             let map = of_link(link, &statics.first());
@@ -123,8 +127,41 @@ impl System {
             mass.view_mut(at.0, at.1).copy_from(&structure.mass);
             let mut own = damping.view_mut(at.0, at.1);
             own += &*structure.damping + &*structure.gyroscopic * state.spin.speed;
+            if let Some([stiff, coriolis]) = self.frame_matrices(structure, state) {
+                own += coriolis;
+                let mut own = stiffness.view_mut(at.0, at.1);
+                own += stiff;
+            }
+        }
+        // What is given does not swing; inertia does not couple it with what does.
+        for k in self.held() {
+            for matrix in [&mut damping, &mut stiffness] {
+                matrix.row_mut(k).fill(0.0);
+                matrix.column_mut(k).fill(0.0);
+            }
         }
         Ok(Linear { mass, damping, stiffness })
+    }
+
+    /// Stiffness and damping of a structure in a state by a frame of the machine that turns now.
+    pub(super) fn frame_matrices(
+        &self,
+        structure: &Structure,
+        state: &StructureState,
+    ) -> Option<[DMatrix<f64>; 2]> {
+        let frame = self.structures.given(&self.scripts()).field(self.time()).turning?;
+        Some(structure.frame_matrices(&frame, [&state.coordinates, &state.rates], &state.spin))
+    }
+
+    /// Coordinates, of those of all structures, whose motion is given.
+    pub(super) fn held(&self) -> Vec<usize> {
+        let mut first = 0;
+        let of = |carrier: &Carrier| {
+            let from = first;
+            first += carrier.structure.size();
+            carrier.structure.held.iter().map(move |k| from + k).collect::<Vec<_>>()
+        };
+        self.structures.carriers.iter().flat_map(of).collect()
     }
 
     /// All modes about the present state, by their frequency; none where eigenvalues are not found.
@@ -189,6 +226,7 @@ impl System {
                 names.extend(shaft.point.iter().map(|of| of.name.clone()));
                 names.extend(numbered("disc", shaft.disc.len()));
                 names.extend(numbered("gear", shaft.gear.len()));
+                names.extend(numbered("rotating force", shaft.rotating.len()));
                 names.extend(links::names(scene, structure));
                 let which = if scene.shafts.len() == 1 { "the shaft" } else { &shaft.name };
                 named(names).map(|name| format!("{which} at {name}"))

@@ -13,7 +13,7 @@ use crate::model::state::stack;
 use crate::model::structure::{Carrier, Spin, StructureState, Turning};
 use crate::numerics::motion::Wrench;
 use crate::scene::system::SystemScene;
-use crate::scene::{GearSection, Schedule};
+use crate::scene::{GearSection, RotatingSection, Schedule};
 
 /// Loads of the shafts, the housings and the ground at a time \[s]. Where the turn of a shaft is a coordinate, the direction of unbalance
 /// follows it from the state it had.
@@ -45,13 +45,14 @@ pub fn at(
             force += carrier.stations[loads + own].tr_mul(&given.load(first + own, time));
         }
         first += housing.load.len();
-        StructureLoad { force, spin: Spin::default(), axial_moment: 0.0, frame: None }
+        StructureLoad { force, spin: Spin::default(), axial_moment: 0.0, frame: None, held: vec![] }
     });
     let ground = carriers.get(scene.housings.len() + count).map(|ground| StructureLoad {
         force: ground.structure.weight(&acceleration),
         spin: Spin::default(),
         axial_moment: 0.0,
         frame: None,
+        held: vec![],
     });
     let all = of_shafts.into_iter().chain(of_housings).chain(ground);
     all.map(|load| StructureLoad { frame: turning, ..load }).collect()
@@ -70,7 +71,7 @@ fn on_shaft(
     let structure = &carrier.structure;
     let free = structure.turning == Turning::Free;
     let spin = if free { ahead(&state.spin, time - from) } else { given.spin(shaft, time) };
-    let [loads, _, discs, gears] = first_stations(scene, shaft);
+    let [loads, _, discs, gears, rotating] = first_stations(scene, shaft);
     let mut force = structure.weight(&acceleration);
     let mut axial_moment = 0.0;
     let mut add = |station: usize, on: Vector6<f64>| {
@@ -95,11 +96,19 @@ fn on_shaft(
         let Wrench { force, moment } = mesh.wrench(given.gear(first_gear + index, time) * factor);
         add(gears + index, stack(&force, &moment));
     }
+    for (index, part) in section.rotating.iter().enumerate() {
+        let Wrench { force, moment } = part.on_shaft([spin.angle, spin.speed, spin.acceleration], time);
+        add(rotating + index, stack(&force, &moment));
+    }
     if free {
         let last = force.len() - 1;
         force[last] += given.torque(shaft, time);
     }
-    StructureLoad { force, spin, axial_moment, frame: None }
+    let motions = scene.held(shaft).map(|(.., schedule)| {
+        let (value, rate) = schedule.smooth_at(time);
+        [value, rate, schedule.smooth_acceleration(time)]
+    });
+    StructureLoad { force, spin, axial_moment, frame: None, held: motions.collect() }
 }
 
 /// A turn that goes on as it is.
@@ -108,7 +117,8 @@ fn ahead(spin: &Spin, duration: f64) -> Spin {
     Spin { angle: spin.angle + 0.5 * (spin.speed + speed) * duration, speed, ..*spin }
 }
 
-/// Schedules of named loads and the drive that are played.
+/// Schedules of named loads, drives, the frame and gravity that are played; those of forces that turn and of given motions
+/// always are.
 fn schedules<'a>(given: &Given<'a>) -> Vec<&'a Schedule> {
     let scene = given.scene;
     let played = given.scene.loads().enumerate().filter(|(index, _)| given.plays_load(*index));
@@ -117,7 +127,11 @@ fn schedules<'a>(given: &Given<'a>) -> Vec<&'a Schedule> {
     let drive = driven.flat_map(|(_, shaft)| shaft.speed.iter().chain(&shaft.torque));
     let gears = scene.gears().enumerate().filter(|(index, _)| given.plays_gear(*index));
     let frame = scene.frame.iter().filter(|_| given.plays_frame()).flat_map(FrameSection::schedules);
-    components.chain(drive).chain(gears.map(|(_, gear)| &gear.torque)).chain(frame).collect()
+    let gravity = scene.gravity.0.iter().filter(|_| scene.frame.is_none() || given.plays_frame());
+    let rotating = scene.rotating().flat_map(RotatingSection::schedules);
+    let held = (0..scene.shafts.len()).flat_map(|shaft| scene.held(shaft)).map(|(.., schedule)| schedule);
+    let loads = components.chain(gears.map(|(_, gear)| &gear.torque)).chain(rotating);
+    loads.chain(held).chain(drive).chain(frame).chain(gravity).collect()
 }
 
 /// Does a load or the drive of a scene come to other values within a span \[s] of time?
@@ -138,10 +152,13 @@ pub fn knots(given: &Given<'_>, from: f64, to: f64) -> Vec<f64> {
 pub fn shortest_period(given: &Given<'_>, states: &[StructureState], time: f64) -> Option<f64> {
     let scripted = schedules(given).into_iter().filter_map(|schedule| schedule.shortest_period(time));
     let turning = given.scene.shafts.iter().zip(states).flat_map(|(shaft, state)| {
-        let per_turn = shaft.disc.iter().filter(|disc| disc.unbalance.is_some()).map(|_| 1.0);
+        let discs = shaft.disc.iter().filter(|disc| disc.unbalance.is_some()).map(|_| 1.0);
+        let per_turn = discs.chain(shaft.rotating.iter().filter(|part| part.speed.is_none()).map(|_| 1.0));
         let meshes = shaft.gear.iter().filter_map(GearSection::ripple).map(|ripple| ripple.teeth);
         let speed = state.spin.speed.abs();
         per_turn.chain(meshes).filter(move |_| speed > 0.0).map(move |times| TAU / (times * speed))
     });
-    scripted.chain(turning).reduce(f64::min)
+    let by_themselves = given.scene.rotating().filter_map(|part| part.speed.as_ref());
+    let by_themselves = by_themselves.map(|speed| speed.at(time).abs()).filter(|speed| *speed > 0.0);
+    scripted.chain(turning).chain(by_themselves.map(|speed| TAU / speed)).reduce(f64::min)
 }

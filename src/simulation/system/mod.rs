@@ -187,11 +187,14 @@ pub fn shaft_follows_time(scene: &SystemScene) -> bool {
     scene.shafts.iter().any(drive_is_scripted)
         || scene.loads().any(|load| load.is_scripted())
         || scene.gears().any(|gear| gear.torque.is_scripted())
+        || scene.rotating().any(|part| part.force.is_some() || part.speed.is_some())
+        || scene.gravity.is_scripted()
+        || (0..scene.shafts.len()).any(|shaft| scene.held(shaft).any(|(.., given)| given.is_scripted()))
         || scene.frame.as_ref().is_some_and(FrameSection::is_scripted)
         || scene.bearings.iter().any(|bearing| follows_time(&bearing.scene))
 }
 
-/// Positions of all stations of a shaft along it \[m]: its bearings, then loads, points, discs and gears.
+/// Positions of all stations of a shaft along it \[m]: its bearings, then loads, points, discs, gears and forces that turn.
 fn stations(scene: &SystemScene, shaft: usize) -> Vec<f64> {
     let bearings = scene.bearings_on(shaft).map(|bearing| match &scene.bearings[bearing] {
         mounted if mounted.shaft == shaft => mounted.mounting.position.0,
@@ -200,13 +203,14 @@ fn stations(scene: &SystemScene, shaft: usize) -> Vec<f64> {
     bearings.chain(scene.shafts[shaft].positions()).chain(links::positions(scene, shaft)).collect()
 }
 
-/// First station of loads, of points, of discs and of gears of a shaft.
-fn first_stations(scene: &SystemScene, shaft: usize) -> [usize; 4] {
+/// First station of loads, of points, of discs, of gears and of forces that turn of a shaft.
+fn first_stations(scene: &SystemScene, shaft: usize) -> [usize; 5] {
     let section = &scene.shafts[shaft];
     let loads = scene.bearings_on(shaft).count();
     let points = loads + section.load.len();
     let discs = points + section.point.len();
-    [loads, points, discs, discs + section.disc.len()]
+    let gears = discs + section.disc.len();
+    [loads, points, discs, gears, gears + section.gear.len()]
 }
 
 /// Places of all stations of a housing \[m]: its bearings, then its loads and points, then its bearings by their stiffness.

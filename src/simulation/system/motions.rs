@@ -1,23 +1,20 @@
 //! Small motions of a shaft, its housings and its bearings about where they are: which grow, and what moves in them.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::System;
 use super::statics::of_link;
 use crate::analysis::small_motions::{Mover, Seated, SmallMotion, SmallMotions};
 use crate::dynamics::system::{Joint, StructureTrial};
-use crate::model::bodies::Body;
-use crate::model::structure::Carrier;
+use crate::model::bodies::{Body, Race};
+use crate::model::structure::{Carrier, Map};
 use crate::numerics::modes::Mode;
-use crate::simulation::motions::{Motion, Part, free, mover, named, seated, worth_telling};
+use crate::simulation::motions::{Motion, Part, free, named, seated, worth_telling};
 
 impl System {
-    /// Motions of shaft, housings, rings and cages about the present state that swing, by their frequency. None where
-    /// eigenvalues are not found, and in a frame that moves, of which the forces of inertia are not here.
+    /// Motions of shaft, housings, rings and cages about the present state that swing, by their frequency; in a frame that moves, as they are
+    /// seen from it. None where eigenvalues are not found.
     pub fn motions(&self) -> Option<Vec<Motion>> {
-        if self.structures.scene.frame.is_some() {
-            return None;
-        }
         let own: Vec<Vec<_>> =
             self.bearings.iter().map(|bearing| bearing.moving_bodies().collect()).collect();
         let of_carriers: usize =
@@ -31,11 +28,13 @@ impl System {
         {
             first.push(next);
             next += structure.size();
-            movers.push(Mover {
+            let mut own = Mover {
                 mass: (*structure.mass).clone(),
                 damping: &*structure.damping + &*structure.gyroscopic * state.spin.speed,
                 stiffness: (*structure.stiffness).clone(),
-            });
+            };
+            own.add(self.frame_matrices(structure, state));
+            movers.push(own);
         }
         let structures = movers.clone();
         if !self.structures.links.is_empty() {
@@ -47,14 +46,14 @@ impl System {
             let carried = self.structures.joints.iter().filter(|joint| joint.bearing == index);
             let mut seats: Vec<Seated> = carried.map(|joint| self.seated(joint, size, &first)).collect();
             for (body, moved, state) in bodies {
-                movers.push(mover(moved, state.rate.x));
+                movers.push(bearing.mover(moved, state));
                 seats.push(seated((*body, moved), state, bearing.applied_moment(*body), (next, size)));
                 parts.push((index, (*body, *moved, *state), next));
                 next += free(moved).len();
             }
             running.push(bearing.running(seats));
         }
-        let motions = SmallMotions::new(&movers, &running).motions()?;
+        let motions = SmallMotions::new(&movers, &running).holding(&self.held()).motions()?;
         let structures = structures.iter().zip(&first);
         let structures: Vec<_> = structures.collect();
         let name = |motion: &SmallMotion| {
@@ -79,7 +78,23 @@ impl System {
             let mode = self.describe(&Mode { eigenvalue: motion.value, shape });
             format!("{}, {}", mode.place, mode.whirl.name())
         };
-        Some(worth_telling(&motions, name))
+        // Places of one race against the other, by all coordinates.
+        let across = running.iter().map(|bearing| {
+            let map =
+                |race: Race| bearing.seats.iter().find(|seat| seat.body == race.into()).map(|seat| &seat.map);
+            let zero = || Map::zeros(size);
+            map(Race::Inner).cloned().unwrap_or_else(zero) - map(Race::Outer).cloned().unwrap_or_else(zero)
+        });
+        let across: Vec<Map> = across.collect();
+        let moves_most = |motion: &SmallMotion| {
+            let moved = |map: &Map| {
+                let rows = map.fixed_rows::<3>(0).map(Complex::from) * &motion.shape;
+                rows.iter().map(Complex::norm_sqr).sum::<f64>()
+            };
+            let most = across.iter().zip(&self.bearings).max_by(|a, b| moved(a.0).total_cmp(&moved(b.0)));
+            most.and_then(|(_, bearing)| bearing.rolls_over())
+        };
+        Some(worth_telling(&motions, name, moves_most))
     }
 
     /// All structures with what links them.

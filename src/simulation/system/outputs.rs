@@ -82,6 +82,8 @@ pub struct SystemOutputs {
     pub loads: Vec<PointOutput>,
     /// Motion at every named point, likewise.
     pub points: Vec<PointOutput>,
+    /// \[N, N m] what holds each motion that is given, in the order of [`SystemScene::held`] of the shafts: force and moment on the shaft.
+    pub holding: Vec<f64>,
     /// Outputs of meshes, then of bearings by their stiffness, in the order of the scene.
     pub links: Vec<LinkOutputs>,
     /// Outputs of the housings, in the order of the scene.
@@ -115,7 +117,7 @@ impl SystemOutputs {
                 moved(&carriers[shaft].stations[station], &states[shaft]);
             PointOutput { displacement, velocity, tilt: Vector3::new(0.0, tilt.y, tilt.z) }
         };
-        let each = |range: fn([usize; 4]) -> std::ops::Range<usize>| {
+        let each = |range: fn([usize; 5]) -> std::ops::Range<usize>| {
             let of =
                 move |shaft| range(first_stations(scene, shaft)).map(move |station| on_shaft(shaft, station));
             (0..count).flat_map(of).collect()
@@ -147,7 +149,8 @@ impl SystemOutputs {
             shafts: shafts.collect(),
             seats: seats.collect(),
             loads: each(|[loads, points, ..]| loads..points),
-            points: each(|[_, points, discs, _]| points..discs),
+            points: each(|[_, points, discs, ..]| points..discs),
+            holding: states.iter().take(count).flat_map(|state| state.holding.iter().copied()).collect(),
             links: vec![],
             housings: housings.collect(),
             ground: states

@@ -67,7 +67,7 @@ impl System {
                 .carriers
                 .iter()
                 .zip(&snapshot.states)
-                .all(|(one, state)| state.fits(one.structure.size()))
+                .all(|(one, state)| state.fits(one.structure.size(), one.structure.held.len()))
             && snapshot.bearings.iter().all(|bearing| bearing.time() == snapshot.time());
         if same {
             self.structures.inputs.clone_from(&snapshot.inputs);

@@ -168,7 +168,7 @@ impl Statics<'_> {
             for (i, scale) in scales.iter().enumerate() {
                 matrix[(i, i)] += shift * TYPICAL_STIFFNESS * scale * scale;
             }
-            self.hold_turns(&mut matrix);
+            self.hold_given(&mut matrix);
             let step = matrix.lu().solve(&here.residual).map(|mut step| {
                 let way = step.component_mul(&scales).amax();
                 if way > longest {
@@ -243,22 +243,25 @@ impl Statics<'_> {
         }
     }
 
-    /// The turn of a shaft is not a matter of statics.
-    fn hold_turns(&self, matrix: &mut DMatrix<f64>) {
-        for turn in self.turns() {
-            matrix.row_mut(turn).fill(0.0);
-            matrix.column_mut(turn).fill(0.0);
-            matrix[(turn, turn)] = 1.0;
+    /// The turn of a shaft and motions that are given are not a matter of statics.
+    fn hold_given(&self, matrix: &mut DMatrix<f64>) {
+        for given in self.given() {
+            matrix.row_mut(given).fill(0.0);
+            matrix.column_mut(given).fill(0.0);
+            matrix[(given, given)] = 1.0;
         }
     }
 
-    /// The coordinates that are turns of shafts which nothing holds.
-    fn turns(&self) -> Vec<usize> {
+    /// The coordinates that are turns of shafts which nothing holds, or whose motion is given.
+    fn given(&self) -> Vec<usize> {
         let held = self.free_turns();
         let ends = self.carriers.iter().zip(self.first().into_iter().skip(1)).enumerate();
         let free =
             ends.filter(|(index, (one, _))| one.structure.turning == Turning::Free && !held.contains(index));
-        free.map(|(_, (_, end))| end - 1).collect()
+        let turns = free.map(|(_, (_, end))| end - 1);
+        let held = self.carriers.iter().zip(self.first());
+        let held = held.flat_map(|(one, from)| one.structure.held.iter().map(move |k| from + k));
+        turns.chain(held).collect()
     }
 
     /// Puts the races of all bearings where the structures are.
@@ -345,8 +348,8 @@ impl Statics<'_> {
             residual += relative.tr_mul(&on);
             stiffness -= relative.tr_mul(&(by_displacement * &relative));
         }
-        for turn in self.turns() {
-            residual[turn] = 0.0;
+        for given in self.given() {
+            residual[given] = 0.0;
         }
         Ok(Trial { residual, stiffness, force })
     }
