@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use roulement::numerics::hht::HhtStep;
-use roulement::numerics::newton::{Equations, NewtonBuffers, NewtonWork, solve};
+use roulement::numerics::newton::{Equations, NewtonBuffers, NewtonWork, Patience, solve};
 
 /// `x'' = -k x - c x' - q x^3` per unit mass, three components at once.
 #[derive(Clone, Copy)]
@@ -76,7 +76,7 @@ fn integrate(oscillator: &Oscillator, alpha_f: f64, time: f64, n: u32) -> (Vecto
             tangent: Vector3::zeros(),
         };
         let mut unknowns = [state[2].x, state[2].y, state[2].z];
-        solve(&mut step, &mut unknowns, &mut buffers, &mut work).unwrap();
+        solve(&mut step, &mut unknowns, &mut buffers, &mut work, Patience::USUAL).unwrap();
         state = step.end;
     }
     (state[0], state[1])

@@ -14,7 +14,7 @@ use crate::model::state::{State, Statistics};
 use crate::model::structure::{Spin, StructureEnergies, StructureState, Turning};
 use crate::numerics::arrowhead::BLOCK;
 use crate::numerics::hht::HhtStep;
-use crate::numerics::newton::{self, NewtonBuffers, NewtonWork};
+use crate::numerics::newton::{self, NewtonBuffers, NewtonWork, Patience};
 use crate::numerics::size::larger;
 use crate::numerics::step_control::StepControl;
 use border::Border;
@@ -72,19 +72,19 @@ pub fn try_step(
     let mut equations = SystemStep::of_parts(parts, structures, joined, h, border);
     equations.list_near();
     equations.guess(unknowns, false);
-    let mut solve = |equations: &mut SystemStep<'_>, unknowns: &mut [f64]| {
-        newton::solve(equations, unknowns, buffers, &mut work)?;
+    let mut solve = |equations: &mut SystemStep<'_>, unknowns: &mut [f64], patience| {
+        newton::solve(equations, unknowns, buffers, &mut work, patience)?;
         // Each time around another pair of balls touches.
         while equations.list_touching() {
-            newton::solve(equations, unknowns, buffers, &mut work)?;
+            newton::solve(equations, unknowns, buffers, &mut work, patience)?;
         }
         Ok(())
     };
-    let mut solved = solve(&mut equations, unknowns);
+    let mut solved = solve(&mut equations, unknowns, Patience::USUAL);
     if solved.is_err() {
         equations.forget_matrices();
         equations.guess(unknowns, true);
-        solved = solve(&mut equations, unknowns);
+        solved = solve(&mut equations, unknowns, Patience::ALL);
         second = 1;
     }
     let tried = match solved {
