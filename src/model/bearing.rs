@@ -128,7 +128,8 @@ impl Bearing {
             };
             let why = if self.free_contact_angle > 0.0 && beyond.side != loaded_side(race) {
                 "a single-row angular-contact bearing carries thrust of its inner race along +x alone and falls apart under \
-                 one along -x: turn it round, or pair it with a second one"
+                 one along -x: its rings leave each other freely, up to this edge, and nothing holds them beyond; turn it round, pair it with \
+                 a second one, or give both races a groove that reaches there (shoulder_height or shoulder_angle in [inner] and [outer])"
             } else {
                 "the load, the displacement or the tilt is too large for this shoulder"
             };

@@ -169,7 +169,38 @@ fn regression_a_load_that_turns_round_stops_the_run() {
     };
     assert!(simulation.time() > 4e-3, "{}", simulation.time());
     assert!(matches!(why, SimulationError::BeyondShoulder { .. }), "{why}");
-    assert!(why.to_string().contains("falls apart"), "{why}");
+    for part in ["at 0.00", "falls apart", "leave each other", "[inner] and [outer]"] {
+        assert!(why.to_string().contains(part), "{why}");
+    }
+}
+
+/// The keys that the refusal names are the way on: the race flies through its play and is carried by the other flank.
+#[test]
+fn closed_form_thrust_through_zero_goes_on_with_the_keys_that_its_refusal_names() {
+    let table = "[[0.0, 1500.0], [0.002, 1500.0], [0.006, -1500.0]]";
+    for end in [("shoulder_height", "[\"3 mm\", \"3 mm\"]"), ("shoulder_angle", "[\"50 deg\", \"50 deg\"]")] {
+        let keys = ["inner", "outer"].map(|race| format!("{race}.{}", end.0));
+        let changes = [(keys[0].as_str(), end.1), (keys[1].as_str(), end.1), ("load.x.force", table)];
+        let mut simulation = Simulation::new(&scene(THRUST, &changes)).unwrap();
+        let before = simulation.outputs().inner.pose.position.x;
+        let mut free = 0;
+        for point in 1..=300 {
+            simulation.advance_scripted(1e-4 * f64::from(point)).unwrap();
+            free += u32::from(simulation.outputs().balls.iter().all(|ball| ball.inner.load == 0.0));
+        }
+        // For a while nothing holds it.
+        assert!(free >= 2, "{free}");
+        // It has moved by its play and the compression of both flanks.
+        let at = |force: &str| {
+            let held = [(keys[0].as_str(), end.1), (keys[1].as_str(), end.1), ("load.x.force", force)];
+            solve(&scene(THRUST, &held)).unwrap().displacement[0]
+        };
+        let (moved, expected) =
+            (before - simulation.outputs().inner.pose.position.x, at("1500.0") - at("-1500.0"));
+        assert!((moved / expected - 1.0).abs() < 0.02, "{moved} {expected}");
+        let force = simulation.outputs().inner.wrench.force.x;
+        assert!((force / 1500.0 - 1.0).abs() < 0.05, "{force}");
+    }
 }
 
 #[test]

@@ -28,3 +28,4 @@ mod rolling_laws;
 mod scenes;
 mod shaft;
 mod start_and_stop;
+mod stops;

@@ -1,6 +1,7 @@
 //! Several bearings on one shaft.
 #![allow(clippy::unwrap_used)]
 
+mod breakaway;
 mod caged;
 mod common;
 mod cost;
