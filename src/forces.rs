@@ -190,8 +190,14 @@ pub fn kinetic_energy<'a>(
 ) -> f64 {
     let of_ball = |motion: BallMotion<f64>| kinetic_energy_of(&model.bearing.ball, &motion);
     let of_body = |(body, state): (&RigidBody, &BodyState)| {
-        0.5 * body.mass * state.velocity.norm_squared()
-            + 0.5 * state.rate.component_mul(&body.inertia).dot(&state.rate)
+        let own = 0.5 * body.mass * state.velocity.norm_squared()
+            + 0.5 * state.rate.component_mul(&body.inertia).dot(&state.rate);
+        match &body.unbalance {
+            Some(unbalance) => {
+                own + state.velocity.dot(&(state.pose.orientation * state.rate.cross(unbalance)))
+            }
+            None => own,
+        }
     };
     balls.map(of_ball).chain(bodies.map(of_body)).fold(0.0, |sum, energy| sum + energy)
 }

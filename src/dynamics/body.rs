@@ -8,6 +8,7 @@ use super::directions::{D, SECOND_ROTATION, by_first, by_second};
 use super::reaction::Reaction;
 use super::step_turn::{Own, StepTurn, as_second};
 use super::support::{Flange, on_race};
+use super::unbalance::{balanced, of_unbalance, power_of_weight};
 use crate::contact::RaceMotion;
 use crate::contact::motion::BodyMotion;
 use crate::effects::moving_frame::MovingFrame;
@@ -210,6 +211,13 @@ impl BodyTrial {
             sums.force += held.force;
             moment += held.moment;
         }
+        if let Some(unbalance) = &body.unbalance {
+            let gravity = load.applied.force / body.mass;
+            let inertial = of_unbalance(unbalance, turn, &(end.acceleration - gravity));
+            sums.force += inertial.force;
+            moment += inertial.moment;
+            *input_power += power_of_weight(unbalance, end, &gravity);
+        }
         end.total = Wrench { force: sums.force, moment };
         end.bearing_wrench = *pairs;
 
@@ -316,6 +324,14 @@ impl BodyTrial {
                 force_by_place += by(&wrench.force);
                 moment_by_place += by(&wrench.moment);
             }
+        }
+        if let Some(unbalance) = &body.unbalance {
+            let falling = end.acceleration - load.applied.force / body.mass;
+            let by_rotation = of_unbalance(unbalance, turn, &constant_vector(&falling));
+            sums.force += by_rotation.force;
+            moment += by_rotation.moment;
+            let falling = Vector3::from_fn(|i, _| Own::variable(falling[i], i, 1.0));
+            moment_by_place += by(&of_unbalance(unbalance, &value.constant(), &falling).moment);
         }
         for i in 0..3 {
             let rotation = turn.rate_derivative[i].scale(body.inertia[i]) - moment[i].scale(fraction);
@@ -462,6 +478,11 @@ pub fn make_consistent(
     }
     if moving.is_some() {
         power += inertial_power;
+    }
+    if let Some(unbalance) = &body.unbalance {
+        let gravity = load.applied.force / body.mass;
+        power += power_of_weight(unbalance, state, &gravity);
+        (force, moment) = balanced(body, unbalance, state, (&force, &moment), &gravity);
     }
     state.total = Wrench { force, moment };
     state.remainder = Wrench::default();

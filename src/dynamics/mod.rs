@@ -26,6 +26,7 @@ mod step_turn;
 mod support;
 pub mod system;
 mod wear;
+mod unbalance;
 
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector6};
 

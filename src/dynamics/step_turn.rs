@@ -70,7 +70,7 @@ impl<S: Scalar> StepTurn<S> {
     }
 
     /// A vector in world axes, from one in the body's own.
-    fn spatial(&self, material: &Vector3<S>) -> Vector3<S> {
+    pub fn spatial(&self, material: &Vector3<S>) -> Vector3<S> {
         turn_by(&self.start_axes, &rotate(&self.rotation, material))
     }
 

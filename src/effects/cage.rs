@@ -10,7 +10,7 @@ use super::losses::Part;
 use super::per_ball::ball_row;
 use super::reports::{BallOutput, CageOutput, PocketOutput};
 use crate::schema::numbers::{DISSIPATION, Number, POISSON_RATIO, Place, Range, YOUNGS_MODULUS};
-use crate::schema::units::{DissipationFactor, Inertia, Length, Mass, Pressure};
+use crate::schema::units::{DissipationFactor, Inertia, Length, Mass, Pressure, Unbalance};
 use crate::schema::variable_units::{
     METRE, METRE_PER_SECOND, NEWTON, ONE, RADIAN, RADIAN_PER_SECOND, Unit, WATT,
 };
@@ -74,6 +74,8 @@ pub struct CageSection {
     pub mass: Mass,
     /// [kg m2] moments of inertia about the cage's x (bearing axis), y and z axes.
     pub inertia: [Inertia; 3],
+    /// [kg m] unbalance: mass times the distance of the centre of mass from the cage's axis, towards its y axis; 0 if not given.
+    pub unbalance: Option<Unbalance>,
     /// \[m] diametral clearance of a ball in its pocket.
     pub pocket_clearance: Length,
     /// What guides the cage.
@@ -104,6 +106,19 @@ impl Settings {
     /// Is there a cage that is a body?
     pub fn is_body(&self) -> bool {
         self.kind == CageKind::Body
+    }
+
+    /// Refuses an unbalance in a frame that moves.
+    ///
+    /// # Errors
+    /// Names the key.
+    pub fn check_frame(&self, moves: bool) -> Result<(), SceneError> {
+        let unbalance = self.section.and_then(|cage| cage.unbalance).map_or(0.0, |product| product.0);
+        if unbalance > 0.0 && moves {
+            let why = "a cage with an unbalance is not simulated in a frame that moves: leave out the unbalance or the frame";
+            return Err(SceneError::conflict("cage.unbalance", why));
+        }
+        Ok(())
     }
 
     /// Does an ideal cage keep the balls apart?
@@ -220,6 +235,11 @@ impl Effect for Settings {
         Number::fixed("cage.inertia.z", INERTIA, "moment of inertia of the cage about its z axis", |s| {
             Place::Value(s.section.as_mut().map(|cage| &mut cage.inertia[2].0))
         }),
+        Number::fixed("cage.unbalance", Range::closed(0.0, 1e3, "kg m"), "unbalance of the cage", |s| {
+            Place::Value(
+                s.section.as_mut().and_then(|cage| cage.unbalance.as_mut()).map(|product| &mut product.0),
+            )
+        }),
         Number::fixed("cage.pocket_clearance", LENGTH, "diametral clearance of a ball in its pocket", |s| {
             Place::Value(s.section.as_mut().map(|cage| &mut cage.pocket_clearance.0))
         }),
@@ -261,6 +281,7 @@ impl Effect for Settings {
         let friction = [("ball_cage", setup.friction.ball_cage), ("cage_race", setup.friction.cage_race)];
         match (self.is_body(), &self.section) {
             (true, Some(cage)) => {
+                unbalance(cage)?;
                 pockets(cage, setup.bearing)?;
                 lands(cage, setup.friction.cage_race.is_some(), setup.bearing)
             }
@@ -290,6 +311,23 @@ impl Effect for Settings {
             CageKind::Body => pocket_rows(ball),
         }
     }
+}
+
+/// [-] largest distance of a cage's centre of mass from its axis over its least radius of gyration about its centre.
+const LARGEST_OFFSET: f64 = 0.3;
+
+impl CageSection {
+    /// [kg m] largest unbalance that the inertia of a cage allows.
+    pub fn largest_unbalance(&self) -> f64 {
+        let least = self.inertia.iter().map(|moment| moment.0).fold(f64::INFINITY, f64::min);
+        LARGEST_OFFSET * (self.mass.0 * least).sqrt()
+    }
+}
+
+/// A centre of mass within the cage.
+fn unbalance(cage: &CageSection) -> Result<(), SceneError> {
+    let largest = Range::closed(0.0, cage.largest_unbalance(), "kg m");
+    cage.unbalance.map_or(Ok(()), |product| largest.check("cage.unbalance", product.0))
 }
 
 /// Pockets that hold their balls, and do not overlap.

@@ -184,6 +184,9 @@ pub struct RigidBody {
     pub mass: f64,
     /// [kg m2] moments of inertia about the body's own axes.
     pub inertia: Vector3<f64>,
+    /// [kg m] mass times the offset of the centre of mass from the origin, in the body's own axes; none where they are the same. The load
+    /// on such a body is its weight alone.
+    pub unbalance: Option<Vector3<f64>>,
     /// Constraints, in the order of their multipliers.
     pub constraints: Vec<Constraint>,
     /// Is it part of a structure that carries it, such as a shaft? It then has neither mass nor equations of its own.
@@ -193,7 +196,7 @@ pub struct RigidBody {
 impl RigidBody {
     /// A body that forces move, with a mass \[kg], moments of inertia about its own axes [kg m2], and constraints.
     pub fn new(mass: f64, inertia: Vector3<f64>, constraints: Vec<Constraint>) -> Self {
-        Self { mass, inertia, constraints, carried: false }
+        Self { mass, inertia, unbalance: None, constraints, carried: false }
     }
 
     /// A race that a structure carries.
@@ -222,7 +225,8 @@ impl RigidBody {
     /// A cage; it has no constraints.
     pub(super) fn cage(section: &CageSection) -> Self {
         let inertia = Vector3::from(section.inertia.map(|moment| moment.0));
-        Self::new(section.mass.0, inertia, vec![])
+        let unbalance = section.unbalance.map(|product| Vector3::y() * product.0);
+        Self { unbalance, ..Self::new(section.mass.0, inertia, vec![]) }
     }
 
     /// A race under a wrench, held where the scene's load gives motions.

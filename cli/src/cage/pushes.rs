@@ -1,7 +1,8 @@
 //! Push of a cage.
 
 use roulement::scene::machine::MachineScene;
-use roulement::scene::{Scene, Schedule};
+use roulement::scene::units::Unbalance;
+use roulement::scene::{CageSection, Scene, Schedule};
 
 /// [m/s2] standard gravity.
 const GRAVITY: f64 = 9.80665;
@@ -13,6 +14,8 @@ pub enum Push {
     AsItIs,
     /// Weight of cage, balls and moved rings, across the axis.
     Weight,
+    /// Its centre of mass is half of its play off its axis.
+    Unbalance,
     /// It starts half of its play off the centre.
     Offset,
     /// It starts with a velocity across the axis that takes it through its play while it turns by 1 rad.
@@ -30,7 +33,15 @@ impl Push {
         let framed = |scene: &Scene| scene.effects.frame.section.is_some();
         let has = scene.bearings().iter().any(|(_, own)| weighs(own) || framed(own));
         let weight = if has { None } else { Some(Self::Weight) };
-        [Some(Self::AsItIs), weight, Some(Self::Offset), Some(Self::Kick)].into_iter().flatten().collect()
+        let cages = scene.bearings().into_iter().filter_map(|(_, own)| own.effects.cage.section);
+        let has = cages.filter_map(|cage| cage.unbalance).any(|product| product.0 > 0.0);
+        // A frame that moves allows none.
+        let can = !has && !scene.bearings().iter().any(|(_, own)| framed(own));
+        let unbalance = can.then_some(Self::Unbalance);
+        [Some(Self::AsItIs), weight, unbalance, Some(Self::Offset), Some(Self::Kick)]
+            .into_iter()
+            .flatten()
+            .collect()
     }
 
     /// The scene that is run with it.
@@ -39,7 +50,12 @@ impl Push {
             Self::Weight => {
                 scene.with(|own| own.effects.gravity.acceleration.0[2] = Schedule::Constant(-GRAVITY))
             }
-            _ => scene.clone(),
+            Self::Unbalance => scene.with(|own| {
+                if let Some(cage) = &mut own.effects.cage.section {
+                    cage.unbalance = Some(Unbalance(usual_unbalance(cage)));
+                }
+            }),
+            Self::AsItIs | Self::Offset | Self::Kick => scene.clone(),
         }
     }
 
@@ -48,8 +64,15 @@ impl Push {
         match self {
             Self::AsItIs => "as it is",
             Self::Weight => "weight",
+            Self::Unbalance => "unbalance",
             Self::Offset => "offset",
             Self::Kick => "kick",
         }
     }
+}
+
+/// [kg m] unbalance of a cage whose centre of mass lies half of its play off its axis, or as far as its inertia allows.
+fn usual_unbalance(cage: &CageSection) -> f64 {
+    let play = 0.5 * cage.guidance_clearance.unwrap_or(cage.pocket_clearance).0;
+    (0.5 * play * cage.mass.0).min(cage.largest_unbalance())
 }

@@ -85,7 +85,7 @@ fn start(bearing: &Simulation, push: Push) -> CagePush {
     let free = play.min(cage.pocket.half_clearance);
     let towards = Vector3::new(0.0, TOWARDS.cos(), TOWARDS.sin());
     match push {
-        Push::AsItIs | Push::Weight => CagePush::default(),
+        Push::AsItIs | Push::Weight | Push::Unbalance => CagePush::default(),
         Push::Offset => CagePush { offset: towards * (0.5 * free), velocity: Vector3::zeros() },
         Push::Kick => {
             let velocity = towards * (play * bearing.state().cage_speed().abs());

@@ -38,6 +38,7 @@ fn usual(estimate: &Estimate) -> CageSection {
     CageSection {
         mass: Mass(mass),
         inertia: [polar, 0.5 * polar, 0.5 * polar].map(Inertia),
+        unbalance: None,
         pocket_clearance: Length(USUAL_CLEARANCE * 2.0 * ball_radius),
         guided_by: Guidance::Balls,
         guidance_clearance: None,

@@ -39,6 +39,9 @@ fn a_symmetric_scene_is_stable_as_it_is_and_rattles_under_its_weight() {
     assert_eq!(weight["motion"], "rattles");
     // It weighs 0.2 N.
     assert!(weight["land_load"].as_f64().unwrap() > 1.0 && weight["eccentricity"].as_f64().unwrap() > 0.9);
+    // Half of its play off its axis, 0.05 mm, its mass asks for 20 g x 0.05 mm x (2386 rpm)^2 = 0.06 N to go round.
+    let unbalance = push(&found, "unbalance");
+    assert!(unbalance["eccentricity"].as_f64().unwrap() > 0.3, "{unbalance}");
     assert_eq!(found[0]["verdict"], "rattles");
     assert!((found[0]["play"].as_f64().unwrap() - 1e-4).abs() < 1e-12);
     let picture = scratch.read("out/cage.svg");
@@ -58,7 +61,7 @@ fn a_cage_that_is_pressed_on_its_land_is_stable_and_takes_its_share() {
     let said = roulement(&["cage", &scene("cage")]);
     assert!(said.status.success());
     let text = String::from_utf8(said.stdout).unwrap();
-    assert!(text.contains("verdict: stable (as it is, offset, kick)"), "{text}");
+    assert!(text.contains("verdict: stable (as it is, unbalance, offset, kick)"), "{text}");
     assert!(!text.contains("weight"), "the scene has it: {text}");
     let found = motions(&["cage", &scene("cage"), "--json"]);
     let share = push(&found, "kick")["share"].as_f64().unwrap();

@@ -22,6 +22,7 @@ use crate::scenes::scene;
 
 mod bearings;
 mod contacts;
+mod unbalance;
 
 const THRUST: &str = include_str!("../../../scenes/thrust.toml");
 const CAGE: &str = include_str!("../../../scenes/cage.toml");
