@@ -25,7 +25,7 @@ pub fn resolve(mut scene: Scene) -> FoundOut<Scene> {
     Ok((scene, notes))
 }
 
-/// The same of a scene whose inputs an importer may set: within the ranges that its scripts give. Where it gives none for loads, poses or
+/// The same of a scene whose inputs an importer may set: within the ranges that it and its scripts give. Where it gives none for loads, poses or
 /// speeds nothing is known of them, and effects that can be switched on are.
 ///
 /// # Errors
@@ -36,7 +36,8 @@ pub fn resolve_for_importer(mut scene: Scene) -> FoundOut<Scene> {
     }
     let mut verdicts = estimate::verdicts_in_ranges(&scene);
     let groups = [Group::Loads, Group::Speeds, Group::Tilts];
-    if !groups.into_iter().any(|group| scripted_groups(&scene).contains(group)) {
+    let scripted = groups.into_iter().any(|group| scripted_groups(&scene).contains(group));
+    if scene.ranges.is_empty() && !scripted {
         take_all(&mut verdicts);
     }
     let notes = settle(&mut scene, verdicts)?;
@@ -44,7 +45,7 @@ pub fn resolve_for_importer(mut scene: Scene) -> FoundOut<Scene> {
 }
 
 /// The same of the bearings of a shaft that ask for it, by the settled states of the whole shaft; for an importer, who may set loads and
-/// speeds, all that can be switched on where no script gives these.
+/// speeds, within the ranges that it and its scripts give, and all that can be switched on where nothing gives these.
 ///
 /// # Errors
 /// If there is no equilibrium to estimate from.
@@ -54,8 +55,12 @@ pub fn resolve_shaft(mut scene: SystemScene, for_importer: bool) -> FoundOut<Sys
     if scene.bearings.iter().any(asks) {
         let mut written = scene.clone();
         written.bearings.iter_mut().for_each(|mounted| mounted.scene.effects.auto.on = false);
-        let all = estimate::verdicts_of_shaft(&written);
-        let unknown = for_importer && !scene.schedules().any(Schedule::is_scripted);
+        let all = match for_importer {
+            true => estimate::verdicts_of_shaft_in_ranges(&written),
+            false => estimate::verdicts_of_shaft(&written),
+        };
+        let known = !scene.ranges.is_empty() || scene.schedules().any(Schedule::is_scripted);
+        let unknown = for_importer && !known;
         let asking = scene.bearings.iter_mut().zip(all).filter(|(mounted, _)| asks(mounted));
         for (mounted, mut verdicts) in asking {
             if unknown {

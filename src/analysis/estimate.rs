@@ -2,6 +2,7 @@
 //! load first, with every race at the largest speed of its script. An effect that does not matter then may do at another time of the
 //! scripts, so that these are looked at, too.
 
+use super::corners::{Corner, corners};
 use super::looked_at::{fastest, under};
 use super::settled::Settled;
 use crate::effects::Effects;
@@ -42,8 +43,9 @@ pub type Verdicts = Result<Vec<Verdict>, EstimateError>;
 const CAGED: f64 = 0.1;
 /// Most times of the scripts that are looked at.
 const MOST_TIMES: usize = 24;
-/// Most ranges whose corners are looked at.
+/// Most ranges whose corners are looked at, beyond those that a scene gives: of a bearing alone, and of a shaft, whose states cost more.
 const MOST_RANGES: usize = 6;
+const MOST_OF_SHAFT: usize = 3;
 /// Times in a period of what swings.
 const IN_A_PERIOD: u32 = 8;
 
@@ -86,32 +88,23 @@ fn over_time(scene: &Scene, model: &Model, known: &[Verdict]) -> Verdicts {
     Ok(verdicts)
 }
 
-/// The same, and at all corners of the ranges of what acts on the bearing, which may come together in any way: those of its scripts.
+/// The same, and at all corners of the ranges of what acts on the bearing, which may come together in any way: those that the scene gives, and those
+/// of its scripts.
 ///
 /// # Errors
 /// See [`EstimateError`].
 pub fn verdicts_in_ranges(scene: &Scene) -> Verdicts {
     let mut verdicts = verdicts(scene, &Model::new(scene)?)?;
-    let scripted: Vec<usize> = acting(&mut scene.clone())
-        .iter()
-        .enumerate()
-        .filter(|(_, one)| one.is_scripted())
-        .map(|(i, _)| i)
-        .collect();
-    for corner in 0..1usize << scripted.len().min(MOST_RANGES) {
-        let mut there = scene.clone();
-        let mut schedules = acting(&mut there);
-        for (bit, index) in scripted.iter().enumerate() {
-            let values = schedules[*index].values();
-            let end = if corner >> bit & 1 == 0 { f64::min } else { f64::max };
-            *schedules[*index] = Schedule::Constant(values.into_iter().reduce(end).unwrap_or(0.0));
-        }
+    let read = |text: &str| Scene::edited(text, [("", ""); 0]);
+    for Corner { scene, place } in
+        corners((scene, &scene.source), (&scene.ranges, MOST_RANGES), (&read, &acting))
+    {
         // What cannot be has nothing to say.
-        let judged = Model::new(&there)
+        let judged = Model::new(&scene)
             .map_err(EstimateError::from)
-            .and_then(|model| over_time(&there, &model, &verdicts));
+            .and_then(|model| over_time(&scene, &model, &verdicts));
         if let Ok(there) = judged {
-            take_what_matters(&mut verdicts, there, "at a corner of the ranges of the scripts");
+            take_what_matters(&mut verdicts, there, &place);
         }
     }
     Ok(verdicts)
@@ -140,7 +133,13 @@ pub fn verdicts_of(machine: &machine::Machine) -> Vec<Verdicts> {
 
 /// The same of every bearing of a shaft, where shaft and housings put its races: with the whole shaft in balance again.
 pub fn verdicts_of_shaft(scene: &SystemScene) -> Vec<Verdicts> {
-    let at = |system: &InBalance, index: usize, known: &[Verdict]| {
+    shaft_over_time(scene, &[])
+}
+
+/// The same, but for effects that are known to matter.
+fn shaft_over_time(scene: &SystemScene, known: &[Verdicts]) -> Vec<Verdicts> {
+    let known = |index: usize| known.get(index).and_then(|own| own.as_deref().ok()).unwrap_or_default();
+    let at = |system: &InBalance, index: usize, here: &[Verdict]| {
         let own = system.scene(index);
         let start = |switches: &[&Switch]| {
             let mut changed = judged_scene(own);
@@ -149,7 +148,7 @@ pub fn verdicts_of_shaft(scene: &SystemScene) -> Vec<Verdicts> {
             Ok(Settled::of(&bearing))
         };
         let bearing = system.with(index, own).map_err(|why| EstimateError::Start(why.to_string()))?;
-        judge(&own.effects, on_shaft(&bearing)?, [known, &[]], &start)
+        judge(&own.effects, on_shaft(&bearing)?, [known(index), here], &start)
     };
     let first = InBalance::new(scene, 0.0).map_err(|why| EstimateError::Start(why.to_string()));
     let mut all: Vec<Verdicts> = (0..scene.bearings.len())
@@ -159,16 +158,35 @@ pub fn verdicts_of_shaft(scene: &SystemScene) -> Vec<Verdicts> {
         let Ok(system) = InBalance::new(scene, time) else { continue };
         for (index, verdicts) in all.iter_mut().enumerate() {
             let there = at(&system, index, verdicts.as_deref().unwrap_or_default());
-            match (verdicts, there) {
-                (Ok(verdicts), Ok(there)) => {
-                    take_what_matters(verdicts, there, &format!("at {} ms", digits(1e3 * time)));
-                }
-                (verdicts @ Err(_), there @ Ok(_)) => *verdicts = there,
-                _ => {}
-            }
+            take_verdicts(verdicts, there, &format!("at {} ms", digits(1e3 * time)));
         }
     }
     all
+}
+
+/// The same of a shaft whose inputs an importer may set: at all corners of the ranges of what acts on it, too.
+pub fn verdicts_of_shaft_in_ranges(scene: &SystemScene) -> Vec<Verdicts> {
+    let mut all = verdicts_of_shaft(scene);
+    let read = |text: &str| {
+        let mut scene = SystemScene::edited(text)?;
+        scene.bearings.iter_mut().for_each(|mounted| mounted.scene.effects.auto.on = false);
+        Ok(scene)
+    };
+    let ranges = (&scene.ranges, MOST_OF_SHAFT);
+    for Corner { scene, place } in corners((scene, &scene.source), ranges, (&read, &SystemScene::acting)) {
+        let there = shaft_over_time(&scene, &all);
+        all.iter_mut().zip(there).for_each(|(verdicts, there)| take_verdicts(verdicts, there, &place));
+    }
+    all
+}
+
+/// Puts what matters elsewhere in the place of what did not, or of nothing.
+fn take_verdicts(verdicts: &mut Verdicts, there: Verdicts, place: &str) {
+    match (verdicts, there) {
+        (Ok(verdicts), Ok(there)) => take_what_matters(verdicts, there, place),
+        (verdicts @ Err(_), there @ Ok(_)) => *verdicts = there,
+        _ => {}
+    }
 }
 
 /// Input of closed forms, of a bearing of a shaft that was just started.

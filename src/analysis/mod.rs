@@ -3,6 +3,7 @@
 
 pub mod auto;
 pub mod condensed;
+mod corners;
 pub mod estimate;
 mod kept_apart;
 mod looked_at;

@@ -8,6 +8,7 @@ pub mod machine;
 mod notes;
 mod numbers;
 mod race;
+pub mod ranges;
 mod scales;
 pub mod system;
 mod validate;
@@ -31,6 +32,7 @@ pub use crate::schema::{
     Sine, Solver, Start, Tilt, Translation, schedule, units,
 };
 use crate::schema::{Follows, explain, regular};
+pub use ranges::Ranges;
 pub use scales::Scales;
 
 /// A bearing, its load and its simulation, as described by a scene file.
@@ -91,6 +93,9 @@ pub struct Scene {
     /// Interface of the FMU.
     #[serde(default)]
     pub interface: Interface,
+    /// Keys of this file, each with the two ends of the range that a package can meet; `effects.auto` of a package is judged at all their corners.
+    #[serde(default)]
+    pub ranges: Ranges,
     /// The text the scene was read from.
     #[serde(skip)]
     pub source: String,
@@ -152,6 +157,8 @@ impl Scene {
         }
         scene.solver.fit_to(scene.bearing.ball_diameter.0);
         scene.check().map_err(|why| (why, None))?;
+        let again = |text: &str| Self::read_whole(text, folder).map_or_else(|(why, _)| Err(why), |_| Ok(()));
+        scene.ranges.check(&scene.source, again).map_err(|why| (why, None))?;
         Ok(scene)
     }
 

@@ -128,6 +128,7 @@ fn races(scene: &Scene) -> Result<(), SceneError> {
     if scene.effects.cage.is_ideal() && (!is_given || scene.effects.support.sections[1].is_some()) {
         return Err(SceneError::conflict("effects.cage", IDEAL_CAGE_NEEDS));
     }
+    scene.effects.cage.check_frame(scene.effects.frame.section.is_some())?;
     if scene.inner.drive == Drive::Hinge {
         let why = "a hinge is offered for the outer race; hold the inner race by displacements and rotations in \
                    [load] under drive = \"wrench\"";

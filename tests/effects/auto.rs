@@ -217,3 +217,77 @@ fn bearings_of_a_shaft_have_their_effects_found_out_under_what_the_shaft_carries
     assert!(notes.iter().any(|note| note.ends_with(all)), "{notes:?}");
     assert!(unknown.bearings[0].scene.effects.groove_slip.on);
 }
+
+#[test]
+fn ranges_that_a_scene_gives_tell_what_an_importer_may_set() {
+    let importer = |changes: Changes| auto::resolve_for_importer(scene(THRUST, changes)).unwrap();
+    let auto = ("effects", "{ auto = true, creep = \"saturated\" }");
+    // Nothing is scripted, and what is known is a range in which groove slip does not matter.
+    let thrust = ("ranges.load.x.force", "[\"1500 N\", \"2 kN\"]");
+    let (within, notes) = importer(&[auto, thrust]);
+    assert!(!within.effects.groove_slip.on, "{notes:?}");
+    // A radial load beside the thrust, at one corner alone.
+    let wide: Changes = &[
+        auto,
+        ("load.y.force", "0.0"),
+        ("ranges.load.x.force", "[\"1500 N\", \"6 kN\"]"),
+        ("ranges.load.y.force", "[\"0 N\", \"1 kN\"]"),
+    ];
+    let (corners, notes) = importer(wide);
+    assert!(corners.effects.groove_slip.on, "{notes:?}");
+    let told = notes.iter().find(|note| note.contains("heathcote_slip = true")).unwrap();
+    assert!(told.contains("load.y.force = 1 kN") && told.contains(" %"), "{told}");
+    // What was found out stands in the text of the package, with its numbers.
+    assert_eq!(Scene::parse(&corners.source).unwrap().effects.auto.found, notes);
+    // A run knows what it is asked for.
+    assert!(!found_out(THRUST, wide).0.effects.groove_slip.on);
+    // Ranges of a temperature and of a speed.
+    let warm: Changes = &[
+        ("effects", "{ auto = true, creep = \"saturated\" }"),
+        ("film", "{ iso_vg = 68, temperature = \"70 degC\" }"),
+        ("ranges.film.temperature", "[\"40 degC\", \"120 degC\"]"),
+        ("ranges.load.inner_speed", "[\"600 rpm\", \"12000 rpm\"]"),
+    ];
+    let (_, notes) = importer(warm);
+    assert!(!notes.is_empty() && notes.iter().all(|note| !note.contains("gives no range")), "{notes:?}");
+}
+
+#[test]
+fn ranges_of_keys_and_values_that_no_scene_has_are_refused() {
+    let refused = |key: &str, value: &str| Scene::edited(THRUST, [(key, value)]).unwrap_err().to_string();
+    for (key, value, parts) in [
+        ("ranges.load.x.force", "[\"1 mm\", \"2 kN\"]", &["ranges", "load.x.force", "1 mm", "N"][..]),
+        ("ranges.load.x.forse", "[1, 2]", &["ranges", "forse"]),
+        ("ranges.load.inner_speed", "[0, 1e9]", &["ranges", "load.inner_speed", "1000000000", "allowed"]),
+        ("ranges.load.inner_speed", "\"6000 rpm\"", &["ranges.load.inner_speed", "two ends"]),
+        ("ranges.load.inner_speed", "[1, 2, 3]", &["ranges.load.inner_speed", "two ends"]),
+        ("ranges.ranges.x", "[1, 2]", &["ranges.ranges"]),
+    ] {
+        let why = refused(key, value);
+        assert!(parts.iter().all(|part| why.contains(part)), "{key} = {value}: {why}");
+    }
+}
+
+#[test]
+fn a_shaft_is_judged_at_the_corners_of_its_ranges() {
+    let text = include_str!("../../scenes/shafts/pinion.toml");
+    let asks = "name = \"left\"\nset = { effects.auto = true, effects.auto_threshold = 0.23, effects.damping = \"0.02 s/m\" }";
+    let ranged = |ranges: &str| text.replacen("name = \"left\"", asks, 1) + ranges;
+    let read = |text: &str| SystemScene::parse(text, None, "".as_ref());
+    let found = |ranges: &str| auto::resolve_shaft(read(&ranged(ranges)).unwrap(), true).unwrap();
+    let (scene, notes) = found("\n[ranges]\nshaft.speed = [\"600 rpm\", \"20000 rpm\"]\n");
+    assert!(notes.iter().all(|note| !note.contains("gives no range")), "{notes:?}");
+    // At 6000 rpm hysteresis changes the torque by 22 %: it matters where the shaft is slow alone, and that is told.
+    let told = notes.iter().find(|note| note.contains("effects.hysteresis = true")).unwrap();
+    assert!(told.ends_with("at shaft.speed = 600 rpm") && told.contains("torque +23"), "{told}");
+    let (run, notes) = auto::resolve_shaft(read(&ranged("")).unwrap(), false).unwrap();
+    assert!(!run.bearings[0].scene.effects.hysteresis.on, "{notes:?}");
+    // The text of the package can be read again.
+    read(&scene.source).unwrap();
+    for (wrong, part) in
+        [("shaft.sped = [1, 2]", "sped"), ("shaft.speed = [\"1 N\", \"2 N\"]", "shaft.speed")]
+    {
+        let why = read(&ranged(&format!("\n[ranges]\n{wrong}\n"))).unwrap_err().to_string();
+        assert!(why.contains("ranges") && why.contains(part), "{why}");
+    }
+}

@@ -19,7 +19,7 @@ pub use numbers::{ShaftNumber, ShaftParameter};
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::{FrameMotion, Scene, SceneError};
+use super::{FrameMotion, Ranges, Scene, SceneError};
 use crate::effects::frame::FrameSection;
 use crate::schema::units::{Acceleration, Force, Moment, Time};
 use crate::schema::{
@@ -44,6 +44,8 @@ pub struct SystemScene {
     pub bearings: Vec<MountedScene>,
     /// [m/s2] acceleration of gravity in the axes of the shaft.
     pub gravity: Components<Acceleration>,
+    /// Ranges of its keys that a package can meet.
+    pub ranges: Ranges,
     /// Motion of the machine's frame, which all places and velocities are seen from; none where it rests.
     pub frame: Option<FrameSection>,
     /// Simulated time, and distance of rows.
@@ -154,6 +156,9 @@ struct Written {
     /// Time integration, as in the scene of a bearing; instead of those of the bearings' own scenes.
     #[serde(default)]
     solver: Table,
+    /// Keys of this file, each with the two ends of the range that a package can meet; `effects.auto` of a package is judged at all their corners.
+    #[serde(default)]
+    ranges: Ranges,
 }
 
 impl SystemScene {
@@ -215,6 +220,7 @@ impl SystemScene {
             gravity,
             frame,
             solver,
+            ranges,
         } = written;
         let matrices = |given: &Option<Value>, key: &str| {
             let read = given.as_ref().map(|given| Matrices::of(given, folder, key)).transpose()?;
@@ -260,8 +266,10 @@ impl SystemScene {
             let effects = &mut mounted.scene.effects;
             effects.frame.section = frame.as_ref().map(|frame| frame.at_bearing(&place.into(), direction));
             effects.gravity.is_input = frame.is_some();
+            effects.cage.check_frame(frame.is_some()).map_err(placed)?;
         }
         let source = standing_alone(text, &bearings, &of_shafts, &of_housings, gravity.largest() != 0.0);
+        ranges.check(&source, |text| Self::edited(text).map(drop)).map_err(placed)?;
         Ok(Self {
             title,
             shafts,
@@ -273,6 +281,7 @@ impl SystemScene {
             frame,
             load,
             phases,
+            ranges,
             source,
         })
     }
@@ -368,6 +377,22 @@ impl SystemScene {
         let rotating = self.rotating().flat_map(RotatingSection::schedules);
         let held = (0..self.shafts.len()).flat_map(|shaft| self.held(shaft)).map(|(.., schedule)| schedule);
         loads.chain(held).chain(drive).chain(gears).chain(rotating).chain(frictions).chain(oils).chain(frame)
+    }
+
+    /// Those of loads, speeds and torques, which an importer may set, to be changed.
+    pub(crate) fn acting(&mut self) -> Vec<&mut Schedule> {
+        let Self { shafts, housings, .. } = self;
+        let mut all = vec![];
+        for shaft in shafts {
+            all.extend(shaft.speed.iter_mut().chain(&mut shaft.torque));
+            all.extend(
+                shaft.load.iter_mut().flat_map(|load| load.force.0.iter_mut().chain(&mut load.moment.0)),
+            );
+            all.extend(shaft.gear.iter_mut().map(|gear| &mut gear.torque));
+        }
+        let of_housing = housings.iter_mut().flat_map(|housing| &mut housing.load);
+        all.extend(of_housing.flat_map(|load| load.force.0.iter_mut().chain(&mut load.moment.0)));
+        all
     }
 
     /// Housing that the outer race of a bearing sits in, by their indices.

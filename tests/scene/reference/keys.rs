@@ -14,7 +14,7 @@ pub const THRUST: &str = include_str!("../../../scenes/thrust.toml");
 const UNIONS: [(&str, &[&str]); 2] =
     [("Given", &["RestitutionSection", "RetardationSection"]), ("Shape", &["WaveSection"])];
 /// Values of types that have a way of their own to be written.
-const VALUES: [(&str, &str); 6] = [
+const VALUES: [(&str, &str); 7] = [
     ("Given", "s/m, or text: `\"0.02 s/m\"`, or a table, below"),
     (
         "Shape",
@@ -24,6 +24,10 @@ const VALUES: [(&str, &str); 6] = [
     ("DirectionMatrix", "six numbers, or six rows of six"),
     ("Goal", "text or table"),
     ("CageKind", "`true`, `false`, `\"ideal\"`, `\"none\"`"),
+    (
+        "Ranges",
+        "table of keys with their sections, each `[one end, other end]`: `load.y.force = [\"0 N\", \"5 kN\"]`",
+    ),
 ];
 /// Keys of such types.
 pub const UNION_KEYS: [&str; 3] = ["effects.damping", "form.inner", "form.outer"];
@@ -268,6 +272,7 @@ impl Reference {
         Some(match kind.name.as_str() {
             "bool" => "`false`".into(),
             "String" => "`\"\"`".into(),
+            "Ranges" => "none".into(),
             _ if kind.several.is_some() => "none".into(),
             _ => "0".into(),
         })
