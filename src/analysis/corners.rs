@@ -16,7 +16,8 @@ pub(super) struct Corner<S> {
 pub(super) fn corners<S: Clone>(
     (scene, text): (&S, &str),
     (ranges, most): (&Ranges, usize),
-    (read, acting): (&dyn Fn(&str) -> Result<S, SceneError>, &dyn Fn(&mut S) -> Vec<&mut Schedule>),
+    read: impl Fn(&str) -> Result<S, SceneError>,
+    acting: impl Fn(&mut S) -> Vec<&mut Schedule>,
 ) -> Vec<Corner<S>> {
     // They were found to be right when the scene was read.
     let given = ranges.all().unwrap_or_default();

@@ -96,8 +96,7 @@ fn over_time(scene: &Scene, model: &Model, known: &[Verdict]) -> Verdicts {
 pub fn verdicts_in_ranges(scene: &Scene) -> Verdicts {
     let mut verdicts = verdicts(scene, &Model::new(scene)?)?;
     let read = |text: &str| Scene::edited(text, [("", ""); 0]);
-    for Corner { scene, place } in
-        corners((scene, &scene.source), (&scene.ranges, MOST_RANGES), (&read, &acting))
+    for Corner { scene, place } in corners((scene, &scene.source), (&scene.ranges, MOST_RANGES), read, acting)
     {
         // What cannot be has nothing to say.
         let judged = Model::new(&scene)
@@ -173,7 +172,7 @@ pub fn verdicts_of_shaft_in_ranges(scene: &SystemScene) -> Vec<Verdicts> {
         Ok(scene)
     };
     let ranges = (&scene.ranges, MOST_OF_SHAFT);
-    for Corner { scene, place } in corners((scene, &scene.source), ranges, (&read, &SystemScene::acting)) {
+    for Corner { scene, place } in corners((scene, &scene.source), ranges, read, SystemScene::acting) {
         let there = shaft_over_time(&scene, &all);
         all.iter_mut().zip(there).for_each(|(verdicts, there)| take_verdicts(verdicts, there, &place));
     }

@@ -61,7 +61,7 @@ impl Ranges {
     }
 }
 
-/// The text of a file without its ranges, with changed keys.
+/// The text of a file that has ranges without these, with changed keys.
 ///
 /// # Errors
 /// If a key cannot be changed.
@@ -69,8 +69,7 @@ pub fn without<'a>(
     text: &str,
     changes: impl IntoIterator<Item = (&'a str, &'a str)>,
 ) -> Result<String, SceneError> {
-    let none = text.contains("ranges").then_some(("ranges", ""));
-    Scene::edited_text(text, none.into_iter().chain(changes))
+    Scene::edited_text(text, [("ranges", "")].into_iter().chain(changes))
 }
 
 /// Keys of a table that have a pair of values.
