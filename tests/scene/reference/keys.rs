@@ -14,7 +14,7 @@ pub const THRUST: &str = include_str!("../../../scenes/thrust.toml");
 const UNIONS: [(&str, &[&str]); 2] =
     [("Given", &["RestitutionSection", "RetardationSection"]), ("Shape", &["WaveSection"])];
 /// Values of types that have a way of their own to be written.
-const VALUES: [(&str, &str); 7] = [
+const VALUES: [(&str, &str); 6] = [
     ("Given", "s/m, or text: `\"0.02 s/m\"`, or a table, below"),
     (
         "Shape",
@@ -24,10 +24,6 @@ const VALUES: [(&str, &str); 7] = [
     ("DirectionMatrix", "six numbers, or six rows of six"),
     ("Goal", "text or table"),
     ("CageKind", "`true`, `false`, `\"ideal\"`, `\"none\"`"),
-    (
-        "Ranges",
-        "table of keys with their sections, each `[one end, other end]`: `load.y.force = [\"0 N\", \"5 kN\"]`",
-    ),
 ];
 /// Keys of such types.
 pub const UNION_KEYS: [&str; 3] = ["effects.damping", "form.inner", "form.outer"];
@@ -272,7 +268,6 @@ impl Reference {
         Some(match kind.name.as_str() {
             "bool" => "`false`".into(),
             "String" => "`\"\"`".into(),
-            "Ranges" => "none".into(),
             _ if kind.several.is_some() => "none".into(),
             _ => "0".into(),
         })
@@ -417,6 +412,9 @@ pub fn reference() -> Reference {
             let until = section.1.doc.clone();
             let doc = if field.doc.contains("until it joins") { until } else { field.doc.clone() };
             reference.add(std::slice::from_ref(&field.name), &doc, section);
+        } else if kind.name == "Ranges" {
+            let (title, doc) = (format!("`{}`", field.name), field.doc.clone());
+            reference.chapters.push(Chapter { title, doc, keys: vec![] });
         }
     }
     reference

@@ -70,6 +70,8 @@ pub fn schema(reference: &Reference) -> Value {
             }
         }
     }
+    // Its keys are those of all sections.
+    schema["properties"]["ranges"]["additionalProperties"] = true.into();
     // The word alone: effects = "auto".
     let effects = schema["properties"]["effects"].take();
     schema["properties"]["effects"] = json!({ "anyOf": [{ "enum": ["auto"] }, effects] });
