@@ -43,7 +43,8 @@ pub type Verdicts = Result<Vec<Verdict>, EstimateError>;
 const CAGED: f64 = 0.1;
 /// Most times of the scripts that are looked at.
 const MOST_TIMES: usize = 24;
-/// Most ranges whose corners are looked at, beyond those that a scene gives: of a bearing alone, and of a shaft, whose states cost more.
+/// Most ranges, those that a scene gives among them, up to which those of scripts are looked at: of a bearing alone, and of a shaft, whose states
+/// cost more.
 const MOST_RANGES: usize = 6;
 const MOST_OF_SHAFT: usize = 3;
 /// Times in a period of what swings.
