@@ -25,8 +25,8 @@ mod spacing;
 mod step_turn;
 mod support;
 pub mod system;
-mod wear;
 mod unbalance;
+mod wear;
 
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector6};
 
