@@ -436,14 +436,27 @@ const LET_GO: &str = "[bearing]\nballs = 12\nball_diameter = \"33 mm\"\npitch_di
 
 #[test]
 fn invariant_energy_closes_where_steps_look_at_it() {
-    let open = |changes: &[(&str, &str)]| {
-        let (simulation, history) = run(&scene(LET_GO, changes), 50);
-        let last = simulation.outputs();
-        let stored = last.stored_energy - history[0].stored_energy;
-        let balance = last.work + last.stiffened - last.dissipated - stored;
-        (balance.abs() / last.work.abs().max(last.dissipated), last.statistics.steps)
+    // Where one run ends turns on its last digits: the mean of nine neighbours does not.
+    let open = |change: (&str, &str)| {
+        let mut sums = (0.0, 0);
+        for across in ["3000", "3700", "4400"] {
+            for left in ["45e3", "51.5e3", "58e3"] {
+                let thrust = format!("{{ force = [[0, 103e3], [\"2 ms\", 103e3], [\"2.1 ms\", {left}]] }}");
+                let across = format!("{{ force = {across} }}");
+                let changes = [change, ("load.x", &*thrust), ("load.y", &*across)];
+                let (simulation, history) = run(&scene(LET_GO, &changes), 50);
+                let last = simulation.outputs();
+                let stored = last.stored_energy - history[0].stored_energy;
+                let balance = last.work + last.stiffened - last.dissipated - stored;
+                let open = balance.abs() / last.work.abs().max(last.dissipated);
+                assert!(open < 0.1, "{open} with {across}, {thrust}");
+                sums = (sums.0 + open / 9.0, sums.1 + last.statistics.steps);
+            }
+        }
+        sums
     };
-    let ((blind, steps), (looking, more)) = (open(&[("solver.energy_error", "0")]), open(&[]));
-    assert!(blind > 0.02, "{blind} in {steps} steps");
-    assert!(looking < 0.01 && more < 2 * steps, "{looking} in {more} steps, {blind} in {steps}");
+    let (blind, steps) = open(("solver.energy_error", "0"));
+    let (looking, more) = open(("solver.energy_error", "0.01"));
+    assert!(blind > 0.04, "{blind} in {steps} steps");
+    assert!(looking < 0.015 && more < 2 * steps, "{looking} in {more} steps, {blind} in {steps}");
 }

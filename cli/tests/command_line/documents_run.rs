@@ -210,6 +210,18 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                     read += 1;
                     continue;
                 }
+                // Forces that turn are added to the shaft that is shipped.
+                if let (Some(shaft), None) =
+                    (table.get("shaft").and_then(Value::as_table), table.get("bearing"))
+                {
+                    let pinion = fs::read_to_string(common::scene("shafts/pinion")).unwrap();
+                    let mut system: Table = pinion.parse().unwrap();
+                    merge(&mut system, Table::from_iter([("shaft".into(), shaft.clone().into())]));
+                    SystemScene::parse(&system.to_string(), None, &root())
+                        .unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
+                    read += 1;
+                    continue;
+                }
                 // A housing is added to the shaft that is shipped, bearings take the place of those with their names.
                 let of_shaft =
                     ["housing", "bearing", "mesh"].map(|key| table.get(key).is_some_and(Value::is_array));
