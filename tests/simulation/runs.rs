@@ -458,5 +458,9 @@ fn invariant_energy_closes_where_steps_look_at_it() {
     let (blind, steps) = open(("solver.energy_error", "0"));
     let (looking, more) = open(("solver.energy_error", "0.01"));
     assert!(blind > 0.04, "{blind} in {steps} steps");
-    assert!(looking < 0.015 && more < 2 * steps, "{looking} in {more} steps, {blind} in {steps}");
+    // Steps that follow all of what comes and goes, and those with own losses, are excused (`Energies::error_since`).
+    assert!(
+        looking < 0.02 && looking < 0.25 * blind && more < 2 * steps,
+        "{looking} in {more} steps, {blind} in {steps}"
+    );
 }
