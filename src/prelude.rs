@@ -1,4 +1,4 @@
-//! What most programs need: `use roulement::prelude::*;`.
+//! Types that most programs need: `use roulement::prelude::*;`.
 
 pub use crate::equilibrium::{self, EquilibriumInput, Gyroscopic};
 pub use crate::model::bodies::Race;

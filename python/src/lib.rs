@@ -1,4 +1,4 @@
-//! What the Python package `roulement` calls in Rust. Its users see the Python files beside it, which give arrays and names.
+//! Functions in Rust that the Python package `roulement` calls. Its users see the Python files beside it, which give arrays and names.
 
 #![allow(missing_docs)]
 // Arguments of Python come by value.

@@ -52,7 +52,7 @@ async function start() {
         root.append(transport());
         startPlots();
       }
-      if (!made.has(run)) made.set(run, run.shaft ? partsOfShaft(run, beside, open) : partsOf(run, beside));
+      if (!made.has(run)) made.set(run, partsOf(run, beside, open));
     }
     body.replaceChildren(...sweepParts, ...(made.get(run) ?? []), bottom);
     contents.replaceChildren(...[...body.querySelectorAll('section')].map(part => h('a', { href: `#${part.id}` }, part.querySelector('h2').textContent)));
@@ -64,16 +64,12 @@ async function start() {
   window.roulement = { runs, sweeps, clock, setZoom, ready: true };
 }
 
-/** All that is shown of a run; figures and curves stand beside those of others. */
-function partsOf(run, beside) {
-  const parts = [h('div', { id: 'cards' }, cards(run)), drawing(run), playback(run), polar(run), summary(beside), plotsSection(beside, run), spectra(run), power(beside), contacts(run), effects(run), cost(beside), sceneText(run)];
-  return parts.filter(Boolean);
-}
-
-/** The same of a shaft; `open` shows one of its bearings. */
-function partsOfShaft(run, beside, open) {
-  const parts = [h('div', { id: 'cards' }, machineCards(run)), shaftDrawing(run, open), machineSection(run, open), summary(beside), plotsSection(beside, run), orbits(run), spectra(run), cost(beside), sceneText(run)];
-  return parts.filter(Boolean);
+/** All that is shown of a run; figures and curves stand beside those of others, and `open` shows one of the bearings of a machine. */
+function partsOf(run, beside, open) {
+  const [figures, before, after] = run.shaft
+    ? [machineCards(run), [shaftDrawing(run, open), machineSection(run, open)], [orbits(run), spectra(run)]]
+    : [cards(run), [drawing(run), playback(run), polar(run)], [spectra(run), power(beside), contacts(run), effects(run)]];
+  return [h('div', { id: 'cards' }, figures), ...before, summary(beside), plotsSection(beside, run), ...after, cost(beside), sceneText(run)].filter(Boolean);
 }
 
 function head(runs, sweeps, show) {

@@ -26,7 +26,7 @@ fn tube(inside: f64, outside: f64, width: f64) -> Ring {
     Ring { mass, inertia: [polar, 0.5 * polar + mass * width * width / 12.0] }
 }
 
-/// What a groove takes away, in its section: a segment of a circle. Area \[m2], and depth of its centroid below the shoulder \[m].
+/// Section that a groove takes away, a segment of a circle: area \[m2], and depth of its centroid below the shoulder \[m].
 fn segment(radius: f64, depth: f64) -> [f64; 2] {
     let half = (1.0 - depth / radius).acos();
     let area = radius * radius * (half - half.sin() * half.cos());

@@ -44,7 +44,7 @@ impl Bearing {
         format!("{bore} x {outside} x {width} mm")
     }
 
-    /// What it is, in a line.
+    /// Description in a line.
     pub fn title(&self) -> String {
         let name = if self.designation.is_empty() { "Bearing" } else { &self.designation };
         if self.is_deep_groove() {

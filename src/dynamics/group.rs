@@ -177,7 +177,7 @@ impl Groups {
         group.apart.as_ref().map(|(apart, _)| apart.in_lane(lane))
     }
 
-    /// What a ball adds to the turn of an ideal cage.
+    /// Share of a ball in the turn of an ideal cage.
     pub fn share(&self, ball: usize) -> Option<Share<f64>> {
         let (group, lane) = self.place(ball);
         let of = |Share { inertia, moment, radius }: &Share<Lanes>| {
@@ -380,7 +380,7 @@ fn keep_apart_lanes(apart: &Apart<Lanes>, unknowns: &Six<Lanes>, motion: &mut Ba
     apart.move_to(unknowns, motion);
 }
 
-/// What the forces on balls that an ideal cage keeps apart leave of their equations.
+/// Residuals of balls that an ideal cage keeps apart.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn balance_apart_lanes(
     apart: &Apart<Lanes>,

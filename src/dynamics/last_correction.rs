@@ -1,6 +1,6 @@
 //! A last correction of balls, without evaluation, in a step that is solved.
 //!
-//! What Newton's method leaves of a step, up to its tolerance, makes stiff contacts swing, and the next guess misses by many times that.
+//! The residual that Newton's method leaves, up to its tolerance, makes stiff contacts swing, and the next guess misses by many times that.
 //! Without it the guess is mostly the solution where all goes on evenly, and a step takes one evaluation. Powers and elastic energy of the
 //! step are those of its contacts as they were evaluated, within the tolerance.
 

@@ -66,7 +66,7 @@ pub struct Placed<S: Scalar> {
     rate: S,
 }
 
-/// What a ball adds to the equation of the turn.
+/// Share of a ball in the equation of the turn.
 #[derive(Clone, Copy, Debug)]
 pub struct Share<S: Scalar> {
     /// [kg m2] moment of inertia.

@@ -38,7 +38,7 @@ impl BlockRenewal {
     }
 }
 
-/// What a correction of balls that are solved together has led to.
+/// Outcome of a correction of balls that are solved together.
 #[derive(Clone, Copy, Debug, Default)]
 struct Progress {
     /// Number of balls.

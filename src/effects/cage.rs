@@ -16,7 +16,7 @@ use crate::schema::variable_units::{
 };
 use crate::schema::{BearingSection, SceneError};
 
-/// What keeps the balls apart.
+/// Means that keep the balls apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CageKind {
     /// Nothing: they touch where they meet.
@@ -54,7 +54,7 @@ impl<'de> Deserialize<'de> for CageKind {
     }
 }
 
-/// What guides the cage radially.
+/// Radial guidance of the cage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Guidance {
@@ -127,7 +127,7 @@ impl Settings {
     }
 }
 
-/// What an ideal cage asks for: the force that it holds its centre by is on the outer race, and none of its equations of motion.
+/// Requirement of an ideal cage: the force that it holds its centre by is on the outer race, and none of its equations of motion.
 pub const IDEAL_CAGE_NEEDS: &str = "\"ideal\" keeps balls apart about the outer race, whose motion must be given (outer.drive = \"fixed\" or \"pose\", on a \
      shaft in the ground, straight): take \"none\", or a cage of [cage], where forces move that race: under a wrench, on a hinge or a \
      support, in a housing, on a hub, where it slides, or in a bore that lies off or is tilted";

@@ -81,7 +81,7 @@ fn exact(e: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// What is given of the damping.
+/// Given quantity of the damping.
 #[derive(Clone, Copy, Debug)]
 pub enum Given {
     /// [s/m] Hunt-Crossley dissipation factor; 0 is off.

@@ -13,7 +13,7 @@ use crate::schema::numbers::Range;
 use crate::schema::units::{Angle, Length};
 use crate::schema::variable_units::HERTZ;
 
-/// What is damaged.
+/// Damaged body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum On {

@@ -1,5 +1,5 @@
 //! A bearing whose frame moves, such as one in a planet carrier: inertia forces on balls, cage and races that forces move.
-//! What acts on them is in [`super::moving_frame`].
+//! Forces on them are in [`super::moving_frame`].
 
 use nalgebra::Vector3;
 use serde::Deserialize;

@@ -70,7 +70,7 @@ fn row(of: &str, (name, part, get): (&str, &str, FromHeat)) -> Row {
     }
 }
 
-/// What is reported beside the heat of friction where a medium is around the balls.
+/// Row that is reported beside the heat of friction where a medium is around the balls.
 pub fn row_of_medium() -> Row {
     row("heat of drag", ("medium", "the medium around the balls", |heat| heat.medium))
 }

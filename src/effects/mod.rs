@@ -1,6 +1,6 @@
 //! Effects on demand. One that is off has no state and no variables, and a step does not evaluate it.
 //!
-//! What an effect shares with others stays, though: a step without friction (`creep = "frictionless"`) still has the normal
+//! Work that an effect shares with others stays, though: a step without friction (`creep = "frictionless"`) still has the normal
 //! contacts, their derivatives and the Newton matrix, which are 64 % of the instructions of a step with `saturated` under
 //! prescribed races and 56 % with a race as a body (`scripts/step-cost`).
 //!

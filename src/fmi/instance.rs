@@ -35,7 +35,7 @@ pub struct Instance {
     pub columns: Option<Vec<Vec<f64>>>,
     /// Warnings that were given.
     warned: Warned,
-    /// What is watched to be warned of.
+    /// Watch on pressures and motions, for warnings in the log.
     pub(super) alarms: Alarms,
 }
 

@@ -117,7 +117,7 @@ struct About<'a> {
     title: &'a str,
     name: &'a str,
     guid: &'a str,
-    /// What the dependencies of its outputs are about.
+    /// Meaning of the dependencies of its outputs.
     dependencies: Dependencies,
     /// \[s] end of the default experiment.
     stop: f64,

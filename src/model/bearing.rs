@@ -39,7 +39,7 @@ pub struct BeyondShoulder {
     pub angle: f64,
     /// \[rad] where the groove ends.
     pub end: f64,
-    /// What that says of the bearing.
+    /// Reason, said of the bearing.
     pub why: &'static str,
 }
 

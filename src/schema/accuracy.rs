@@ -41,13 +41,13 @@ pub struct Solver {
     pub energy_step: Time,
     /// Error that `roulement run` measures and keeps, if the scene states one.
     pub goal: Option<ErrorGoal>,
-    /// What follows the bearing's own frequency and load: see [`Solver::follow`].
+    /// Settings that follow the bearing's own frequency and load: see [`Solver::follow`].
     pub follows: Follows,
-    /// What is computed.
+    /// Level of the model.
     pub level: Level,
 }
 
-/// What a run computes.
+/// Level of the model of a run: what it computes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
@@ -65,12 +65,12 @@ pub enum Level {
 pub struct ErrorGoal {
     /// [-] largest numerical error of any quantity, over its size.
     pub error: f64,
-    /// What has to have no larger error.
+    /// Results whose error is meant.
     #[serde(default)]
     pub of: ErrorOf,
 }
 
-/// What an error goal is about.
+/// Results that an error goal is about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]

@@ -10,7 +10,7 @@ pub enum SceneError {
     Read {
         /// Path as given.
         path: String,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// Not TOML, an unknown or missing key, or a value of the wrong kind or dimension.
@@ -21,7 +21,7 @@ pub enum SceneError {
     At {
         /// File and line, or one of them.
         place: String,
-        /// What is wrong there.
+        /// Error there.
         source: Box<SceneError>,
     },
     /// A value outside its range.
@@ -41,7 +41,7 @@ pub enum SceneError {
     Change {
         /// Key with its section.
         key: String,
-        /// What stands against it.
+        /// Reason.
         why: String,
     },
     /// Keys that do not go together.
@@ -49,7 +49,7 @@ pub enum SceneError {
     Conflict {
         /// Key with its section.
         key: String,
-        /// What is wrong, and what would be right.
+        /// Reason, and what would be right.
         why: String,
     },
 }

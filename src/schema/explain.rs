@@ -1,4 +1,4 @@
-//! What is wrong with a scene's text, in plain words: key, line, what was meant perhaps, and what to write.
+//! Errors in a scene's text in plain words: key, line, what was meant perhaps, and what to write.
 
 use serde::de::DeserializeOwned;
 use toml::Table;
@@ -7,7 +7,7 @@ use toml::de::{DeTable, DeValue};
 use super::error::SceneError;
 use super::reader;
 
-/// What to write for keys that are needed: the end of the key, and a hint.
+/// Hints for keys that are missing: the end of the key, and what to write.
 const HINTS: [(&str, &str); 13] = [
     (
         "bearing",

@@ -3,7 +3,7 @@
 use super::accuracy::Solver;
 use super::units::Time;
 
-/// What of the settings follows the bearing, until [`Solver::follow`] has set it.
+/// Settings that follow the bearing, until [`Solver::follow`] has set them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Follows {
     /// Nothing: the settings are as they were given.

@@ -30,7 +30,7 @@ pub struct HousingSection {
     pub foot: Vec<Foot>,
     /// JSON file with the matrices of a housing from another program (docs/shaft.md), or its keys; instead of `mass` and what holds it.
     pub matrices: Option<toml::Value>,
-    /// What that file has.
+    /// Matrices of that file.
     #[serde(skip)]
     pub read: Option<StructureMatrices>,
     /// Forces and moments at points of the housing.

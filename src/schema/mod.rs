@@ -1,4 +1,4 @@
-//! What scenes are made of: quantities with units, schedules, sections, ranges of numbers, and why a scene is refused.
+//! Parts of scenes: quantities with units, schedules, sections, ranges of numbers, and why a scene is refused.
 
 mod accuracy;
 mod components;

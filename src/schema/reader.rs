@@ -20,7 +20,7 @@ pub struct ReadError {
 }
 
 impl ReadError {
-    /// What is wrong, as serde says it.
+    /// Message of serde.
     pub fn message(&self) -> &str {
         &self.message
     }
@@ -79,7 +79,7 @@ pub fn read_with<'de, V: Visitor<'de>>(visitor: V, value: Value) -> Result<V::Va
 /// A value to be read.
 struct Reader(Value);
 
-/// What a value is, for messages.
+/// Kind of a value, for messages.
 fn kind(value: &Value) -> Unexpected<'_> {
     match value {
         Value::String(text) => Unexpected::Str(text),
@@ -236,7 +236,7 @@ impl<'de> EnumAccess<'de> for Choice {
     }
 }
 
-/// What a choice has beside its name.
+/// Data of a choice beside its name.
 struct Content(Option<Value>);
 
 impl Content {

@@ -301,7 +301,7 @@ fn default_output_interval() -> Time {
     Time(1e-4)
 }
 
-/// What is asked of one of the five directions x, y, z, ry, rz of a race.
+/// Condition for one of the five directions x, y, z, ry, rz of a race.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Condition {
     /// External force \[N] or moment [N m].
@@ -310,7 +310,7 @@ pub enum Condition {
     Motion(Schedule),
 }
 
-/// What a scene gives for a direction of a race.
+/// Load or motion that a scene gives for a direction of a race.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Direction<'a> {
     /// \[N, N m] external force or moment.
@@ -375,7 +375,7 @@ pub enum Orientation {
     Cardan,
 }
 
-/// What the FMU's lists of dependencies are about.
+/// Meaning of the FMU's lists of dependencies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Dependencies {

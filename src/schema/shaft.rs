@@ -45,7 +45,7 @@ pub struct ShaftSection {
     pub disc: Vec<Disc>,
     /// JSON file with the matrices of a shaft from another program (docs/shaft.md), or its keys; instead of `mass` and `section`.
     pub matrices: Option<toml::Value>,
-    /// What that file has.
+    /// Matrices of that file.
     #[serde(skip)]
     pub read: Option<StructureMatrices>,
     /// Material of the beams.

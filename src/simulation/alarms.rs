@@ -1,4 +1,4 @@
-//! What whoever runs a machine is warned of while it runs: a pressure that marks the races, a race that moves by more than its loads
+//! Warnings to whoever runs a machine, while it runs: a pressure that marks the races, a race that moves by more than its loads
 //! explain, a motion that grows. Each is told once of each bearing, when it happens.
 
 use super::Simulation;
@@ -23,7 +23,7 @@ const SEEN: f64 = 0.05;
 pub struct Alarm {
     /// \[s] when it happened.
     pub time: f64,
-    /// What did, in a sentence.
+    /// Description in a sentence.
     pub sentence: String,
 }
 
@@ -127,7 +127,7 @@ impl BearingAlarms {
         self.places.clear();
     }
 
-    /// What to tell of a window.
+    /// Warning of a window, if there is one.
     fn judge(&mut self, unexplained: Unexplained, circling: Option<&Circling>) -> Option<String> {
         let Unexplained { force, largest, .. } = unexplained;
         self.growing = if force > GROWS * self.before && self.before > 0.0 { self.growing + 1 } else { 0 };
@@ -161,7 +161,7 @@ pub struct Alarms {
 const STEPS: u64 = 32;
 
 impl Alarms {
-    /// What there is to warn of where a machine has come to, with the names of bearings.
+    /// Warnings at the present time of a machine, with the names of bearings.
     pub fn step(&mut self, machine: &impl Parts) -> Vec<String> {
         self.bearings.resize_with(machine.bearings().count(), BearingAlarms::default);
         let steps = machine.bearings().next().map_or(0, |(_, bearing)| bearing.state().statistics.steps);
@@ -195,7 +195,7 @@ impl Alarms {
 mod tests {
     use super::*;
 
-    /// What is told of windows with these forces \[N] that loads do not explain.
+    /// Warnings of windows with these forces \[N] that loads do not explain.
     fn told(forces: &[f64]) -> Vec<Option<String>> {
         let mut alarms = BearingAlarms::default();
         let judged = forces

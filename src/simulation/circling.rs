@@ -1,6 +1,6 @@
 //! Does a race that is free across its axis go round, or swing, by more than its loads explain?
 //!
-//! What accelerates it is the force of the bearing and what is applied to it. In a race that is at rest under its loads both cancel; one
+//! The force of the bearing and the applied loads accelerate it. In a race that is at rest under its loads both cancel; one
 //! that whirls is accelerated by many times what is applied. Of a race on a shaft that is the force of the bearing but for its mean, which
 //! carries the loads of the shaft, and for what turns with the shaft, as its unbalance does.
 
@@ -36,7 +36,7 @@ pub struct Place {
     pub largest: f64,
 }
 
-/// What acts on the shafts of a machine beside what is steady.
+/// Unsteady loads on the shafts of a machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Exciting {
     /// Do scripts come to other values?
@@ -182,7 +182,7 @@ fn take_explained(places: &mut [Place], unbalance: bool) {
 }
 
 impl Circling {
-    /// What is seen at places in the order of time, where that is beyond what loads explain.
+    /// Circling at places in the order of time, where it is beyond what loads explain.
     pub fn of(mut places: Vec<Place>, simulation: &Simulation, exciting: Exciting) -> Option<Self> {
         let unexplained = Unexplained::of(&mut places, simulation, exciting)?;
         if !unexplained.is_beyond() {

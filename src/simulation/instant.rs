@@ -180,7 +180,7 @@ impl From<&Outputs> for Instant {
 }
 
 impl Simulation {
-    /// What it does where the last step ended; without all other outputs, where nobody asked for these.
+    /// Quantities where the last step ended; without all other outputs, where nobody asked for these.
     pub fn instant(&self) -> Instant {
         self.point.instant(self)
     }

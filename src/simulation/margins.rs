@@ -31,7 +31,7 @@ pub struct Margins {
 pub struct Margin {
     /// Name of its variable.
     pub name: &'static str,
-    /// What it is.
+    /// Description in a sentence.
     pub description: &'static str,
     /// Does a scene have what it measures?
     pub is_of: fn(&Scene) -> bool,

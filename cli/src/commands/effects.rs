@@ -88,10 +88,10 @@ fn measured(options: &Options) -> Result<(), Box<dyn Error>> {
     Ok(say(&text)?)
 }
 
-/// What estimates of a bearing alone are of.
+/// States that estimates of a bearing alone are of.
 const UNDER_SCRIPTS: &str =
     "settled states at the start with and without each, every race at the largest speed of its script";
-/// What those of a bearing on a shaft are of.
+/// States that those of a bearing on a shaft are of.
 const UNDER_SHAFT: &str = "settled states at the start with and without each, the whole shaft in balance";
 
 /// Says what is on, and what is off and would matter; nothing more where nothing can be estimated but why. The name of a bearing that is
@@ -106,7 +106,7 @@ pub fn announce(name: &str, scene: &Scene, verdicts: &Verdicts) {
     tell(all.map(|line| format!("{before}{line}")));
 }
 
-/// What was on in a run and did not matter, a line each; `cut` tells whether a shoulder cut a contact in it.
+/// Effects that were on in a run and did not matter, a line each; `cut` tells whether a shoulder cut a contact in it.
 pub fn idle_in(verdicts: &Verdicts, cut: bool) -> Vec<String> {
     let idle = verdicts
         .iter()
@@ -126,7 +126,7 @@ const GROUPS: [(&str, InGroup); 6] = [
     ("not simulated by any effect yet", |v| v.standing == Standing::Missing),
 ];
 
-/// What an effect costs, in words.
+/// Cost of an effect in words.
 fn price(scene: &Scene, verdict: &Verdict) -> String {
     let is_own = |key: &str| verdict.key.is_some_and(|own| own == key || own.starts_with(&format!("{key}.")));
     let price = scene.effects.each().into_iter().find(|effect| is_own(effect.info().key));

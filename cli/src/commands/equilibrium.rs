@@ -19,7 +19,7 @@ use roulement_cli::modes::warnings;
 use super::field::Moment;
 use super::{load, say, tell};
 
-/// What an equilibrium says of races on supports.
+/// Note on races on supports.
 const SUPPORTS_LEFT_OUT: &str = "note: displacements are those of one race against the other; flexible supports give way beside them, \
                                  as a run shows from its start";
 

@@ -6,20 +6,18 @@ use std::path::{Path, PathBuf};
 
 use roulement::analysis::estimate::Verdicts;
 use roulement::scene::machine::MachineScene;
-use roulement::simulation::Simulation;
 use roulement::simulation::machine::Machine;
-use roulement::simulation::system::System;
-use roulement_cli::page::record;
+use roulement_cli::page::{self, history, record};
+use roulement_cli::report;
 use roulement_cli::report::figures::{Figures, Shown};
 use roulement_cli::report::json;
 use roulement_cli::report::losses::Closed;
 use roulement_cli::report::phases;
 use roulement_cli::report::plots::{title, write_plots};
 use roulement_cli::report::results::{Choice, MachineColumns, PartColumns, ResultsError, is_parquet};
-use roulement_cli::report::shaft;
 use roulement_cli::report::spectrum;
 use roulement_cli::report::tables::Tables;
-use roulement_cli::watch::{BearingSeen, Phase, ShaftSeen};
+use roulement_cli::watch::{Life, Part};
 
 use super::player::{End, Played};
 use super::summary;
@@ -40,7 +38,7 @@ pub enum Said {
 pub struct Place {
     /// Directory, or the file of the table.
     pub output: PathBuf,
-    /// What the tables have.
+    /// Columns and time window of the tables.
     pub choice: Choice,
     /// How the summary is said.
     pub said: Said,
@@ -57,19 +55,15 @@ impl Place {
         if name.is_empty() { self.output.clone() } else { self.output.join(name) }
     }
 
-    /// Table of a bearing; of a round until it is whole.
-    fn table(&self, name: &str, of_round: bool) -> PathBuf {
+    /// Table of a bearing, or of the shaft; of a round until it is whole.
+    fn table(&self, name: &str, of_shaft: bool, of_round: bool) -> PathBuf {
+        let file = if of_shaft { "shaft.csv" } else { "results.csv" };
         match (self.has_files(), of_round) {
-            (true, false) => self.of_bearing(name).join("results.csv"),
-            (true, true) => self.of_bearing(name).join("results.csv.round"),
+            (true, false) => self.of_bearing(name).join(file),
+            (true, true) => self.of_bearing(name).join(format!("{file}.round")),
             (false, false) => self.output.clone(),
             (false, true) => self.output.with_extension("round.parquet"),
         }
-    }
-
-    /// Table of the shaft; of a round until it is whole.
-    fn table_of_shaft(&self, of_round: bool) -> PathBuf {
-        self.output.join(if of_round { "shaft.csv.round" } else { "shaft.csv" })
     }
 
     /// Takes the place for a run: nothing of a former one stays that could be taken for a part of it.
@@ -105,9 +99,9 @@ impl Place {
         machine: &Machine,
         of_round: bool,
     ) -> Result<Tables, ResultsError> {
-        let of_bearing = |name: &str| self.table(name, of_round);
+        let of_bearing = |name: &str| self.table(name, false, of_round);
         match self.has_files() {
-            true => Tables::each(scene, &self.choice, of_bearing, &self.table_of_shaft(of_round)),
+            true => Tables::each(scene, &self.choice, of_bearing, &self.table("", true, of_round)),
             false => Tables::whole(machine, &self.choice, &of_bearing("")),
         }
     }
@@ -134,14 +128,15 @@ impl Place {
 
     /// Tables of a round, and where they belong.
     fn rounds(&self, scene: &MachineScene) -> impl Iterator<Item = [PathBuf; 2]> {
-        let names = match self.has_files() {
-            true => scene.bearings().into_iter().map(|(name, _)| name).collect(),
-            false => vec![""],
-        };
-        let shaft = scene.shaft().filter(|_| self.has_files());
-        let shaft = shaft.map(|_| [true, false].map(|round| self.table_of_shaft(round)));
-        let tables = names.into_iter().map(|name| [true, false].map(|round| self.table(name, round)));
-        tables.chain(shaft)
+        let mut tables = vec![];
+        if self.has_files() {
+            tables.extend(scene.bearings().into_iter().map(|(name, _)| (name, false)));
+            tables.extend(scene.shaft().map(|_| ("", true)));
+        } else {
+            tables.push(("", false));
+        }
+        let path = |(name, of_shaft)| [true, false].map(|round| self.table(name, of_shaft, round));
+        tables.into_iter().map(path)
     }
 
     /// Leaves plots, means, summaries and records of a run, and says the summary. Verdicts are those of every bearing; error bars, of
@@ -163,44 +158,33 @@ impl Place {
             }
             None => figures.map(|figures| Shown { figures, bars: None }).collect(),
         };
-        let is_shaft = played.machine.shaft().is_some();
-        let mut text = String::new();
-        let mut listed = String::new();
-        for (index, (name, bearing)) in played.machine.bearings().enumerate() {
-            let (shown, seen) = (&shown[index], &played.seen.bearings[index]);
-            let of_bearing = summary::of_bearing(played, (bearing, seen), shown, &verdicts[index]);
-            let of_bearing = if is_shaft { of_bearing } else { of_bearing + errors };
-            let directory = self.of_bearing(name);
-            if self.has_files() {
-                let own = Own { simulation: bearing, seen, shown, verdicts: &verdicts[index] };
-                let plots = self.write_bearing(played, index, &own, &directory, &of_bearing)?;
-                if is_shaft {
-                    let directory = directory.display();
-                    listed += &format!("bearing          {directory} (roulement report {directory})\n");
-                } else {
-                    plots.iter().for_each(|plot| listed += &format!("plot             {}\n", plot.display()));
+        let (mut text, mut listed) = (String::new(), String::new());
+        for (index, ((name, part), own)) in played.seen.parts(&played.machine).zip(&shown).enumerate() {
+            text = match part {
+                Part::Bearing(bearing, seen) => {
+                    summary::of_bearing(played, (bearing, seen), own, &verdicts[index])
                 }
-            }
-            if !is_shaft {
-                text = of_bearing;
-                listed = format!("results          {}\n{listed}", self.table(name, false).display());
-            }
-        }
-        if let (Some(system), Some(seen), Some((of_shaft, of_bearings))) =
-            (played.machine.shaft(), &played.seen.shaft, shown.split_last())
-        {
-            text = summary::of_shaft(played, (system, seen), of_shaft, of_bearings) + errors;
-            listed = match self.has_files() {
-                true => {
-                    let plot = self.write_shaft(played, (system, seen), of_shaft, &text)?;
-                    format!(
-                        "results          {}\nplot             {}\n{listed}",
-                        self.table_of_shaft(false).display(),
-                        plot.display()
-                    )
-                }
-                false => format!("results          {}\n", self.output.display()),
+                Part::Shaft(system, seen) => summary::of_shaft(played, (system, seen), own, &shown[..index]),
             };
+            // The last part stands for the machine.
+            let is_whole = index + 1 == shown.len();
+            if is_whole {
+                text += errors;
+            }
+            let plots = match self.has_files() {
+                true => self.write_part(played, (index, name, part), own, verdicts.get(index), &text)?,
+                false => vec![],
+            };
+            if is_whole {
+                let table = self.table("", matches!(part, Part::Shaft(..)), false);
+                let plots = plots.iter().map(|plot| format!("plot             {}\n", plot.display()));
+                listed =
+                    format!("results          {}\n{}{listed}", table.display(), plots.collect::<String>());
+            } else if self.has_files() {
+                let directory = self.of_bearing(name);
+                let directory = directory.display();
+                listed += &format!("bearing          {directory} (roulement report {directory})\n");
+            }
         }
         let listed = match self.said {
             Said::Nothing => return Ok(()),
@@ -216,89 +200,60 @@ impl Place {
         Ok(())
     }
 
-    /// Writes all files of a bearing beside its table; gives those of the plots.
-    fn write_bearing(
+    /// Writes all files of a part of the machine beside its table; gives those of the plots.
+    fn write_part(
         &self,
         played: &Played,
-        index: usize,
-        own: &Own<'_>,
-        directory: &Path,
+        (index, name, part): (usize, &str, Part<'_>),
+        shown: &Shown,
+        verdicts: Option<&Verdicts>,
         text: &str,
     ) -> Result<Vec<PathBuf>, Box<dyn Error>> {
-        let Own { simulation, seen, shown, verdicts } = *own;
-        let (scene, rows) = (simulation.scene(), &played.plotted[index]);
-        let mut plots = write_plots(scene, rows, directory)?;
-        if let Some(means) = &seen.part.means {
-            let life = seen.life.map_or(vec![], |life| life.numbers());
-            let closed = seen.part.closed.iter().flat_map(Closed::numbers);
-            let others: Vec<_> = closed.chain(life).collect();
-            write(&directory.join("means.csv"), |path| means.write(path, &others))?;
+        let directory = self.of_bearing(name);
+        let (gathered, mut plots, mut numbers) = (part.gathered(), vec![], vec![]);
+        let (history, work);
+        match part {
+            Part::Bearing(bearing, seen) => {
+                let rows = &played.plotted[index];
+                plots.extend(write_plots(bearing.scene(), rows, &directory)?);
+                if let Some(spectrum) = &seen.spectrum {
+                    write(&directory.join("spectrum.csv"), |path| spectrum.write(path))?;
+                    let picture = directory.join("spectrum.svg");
+                    spectrum::picture::write(spectrum, title(bearing.scene()), &picture)?;
+                    plots.push(picture);
+                }
+                numbers.extend(gathered.closed.iter().flat_map(Closed::numbers));
+                numbers.extend(seen.life.iter().flat_map(Life::numbers));
+                (history, work) = (history::columns(rows), bearing.outputs().statistics);
+            }
+            Part::Shaft(system, _) => {
+                let rows = &played.plotted_shaft;
+                plots.push(report::shaft::write_plot(system.scene(), rows, &directory)?);
+                (history, work) = (page::shaft::columns(system, rows), played.machine.statistics());
+            }
         }
-        write_phases(directory, &seen.part.phases, shown)?;
-        if let Some(spectrum) = &seen.spectrum {
-            write(&directory.join("spectrum.csv"), |path| spectrum.write(path))?;
-            let picture = directory.join("spectrum.svg");
-            spectrum::picture::write(spectrum, title(scene), &picture)?;
-            plots.push(picture);
+        if let Some(means) = &gathered.means {
+            write(&directory.join("means.csv"), |path| means.write(path, &numbers))?;
+        }
+        if !gathered.phases.is_empty() {
+            let bars = shown.bars.as_ref();
+            write(&directory.join(phases::FILE), |path| phases::write(path, &gathered.phases, bars))?;
         }
         write(&directory.join("summary.txt"), |path| fs::write(path, text))?;
         let record = record::Run {
-            simulation,
-            rows,
-            seen,
+            part,
+            history,
             shown,
+            warnings: if name.is_empty() { played.seen.warnings(&played.machine) } else { part.warnings() },
             verdicts,
             summary: text,
             took: [played.wall.as_secs_f64(), played.cpu],
+            work,
             ended_early: played.end.early(),
         };
         write(&directory.join(record::FILE), |path| record.write(path))?;
         Ok(plots)
     }
-
-    /// Writes all files of a shaft beside its table; gives that of the plot.
-    fn write_shaft(
-        &self,
-        played: &Played,
-        (system, seen): (&System, &ShaftSeen),
-        shown: &Shown,
-        text: &str,
-    ) -> Result<PathBuf, Box<dyn Error>> {
-        let plot = shaft::write_plot(system.scene(), &played.plotted_shaft, &self.output)?;
-        if let Some(means) = &seen.part.means {
-            write(&self.output.join("means.csv"), |path| means.write(path, &[]))?;
-        }
-        write_phases(&self.output, &seen.part.phases, shown)?;
-        write(&self.output.join("summary.txt"), |path| fs::write(path, text))?;
-        let record = record::ShaftRun {
-            system,
-            rows: &played.plotted_shaft,
-            seen,
-            shown,
-            warnings: played.seen.warnings(&played.machine),
-            summary: text,
-            took: [played.wall.as_secs_f64(), played.cpu],
-            ended_early: played.end.early(),
-        };
-        write(&self.output.join(record::FILE), |path| record.write(path))?;
-        Ok(plot)
-    }
-}
-
-/// A bearing at the end of a run, and what is said of it.
-struct Own<'a> {
-    simulation: &'a Simulation,
-    seen: &'a BearingSeen,
-    shown: &'a Shown,
-    verdicts: &'a Verdicts,
-}
-
-/// Writes the table of phases, where there are some.
-fn write_phases(directory: &Path, phases: &[Phase], shown: &Shown) -> Result<(), String> {
-    if phases.is_empty() {
-        return Ok(());
-    }
-    write(&directory.join(phases::FILE), |path| phases::write(path, phases, shown.bars.as_ref()))
 }
 
 /// Writes a file, with its name in the error.

@@ -27,7 +27,7 @@ pub struct Played {
     pub plotted: Vec<Vec<Outputs>>,
     /// Rows of the shaft for the plots.
     pub plotted_shaft: Vec<SystemOutputs>,
-    /// What was gathered of its rows.
+    /// Gathered figures.
     pub seen: Seen,
     /// Time that it took.
     pub wall: Duration,
@@ -60,13 +60,13 @@ impl End {
 }
 
 impl Played {
-    /// What is kept for comparison with other runs; its rows move there.
+    /// Sample for comparison with other runs; its rows move there.
     pub fn take_comparable(&mut self) -> Run {
         self.seen.take_comparable(&self.machine, self.cpu)
     }
 }
 
-/// What a run ends early for.
+/// Reason to end a run early.
 enum Stop {
     Interrupted,
     Results(ResultsError),
@@ -76,7 +76,7 @@ enum Stop {
 pub struct Player {
     /// Set by Ctrl-C.
     pub interrupted: Arc<AtomicBool>,
-    /// What progress begins with.
+    /// Words before the progress.
     pub words: String,
 }
 

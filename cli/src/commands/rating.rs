@@ -109,7 +109,7 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     Ok(say(&text)?)
 }
 
-/// What several loads come to: each takes its revolutions over its life from the whole (Palmgren 1924; Miner 1945).
+/// Rating under several loads in turn: each takes its revolutions over its life from the whole (Palmgren 1924; Miner 1945).
 fn together(rated: &[Rated]) -> Rated {
     let speed: f64 = rated.iter().map(|of| of.share * of.speed).sum();
     let lives = [0, 1].map(|which| {

@@ -126,7 +126,7 @@ pub fn simulate(
     ended(&played)
 }
 
-/// What the program says at the end of a run that was not compared with another.
+/// Exit code and last words of a run that was not compared with another.
 fn ended(played: &Played) -> Result<ExitCode, Box<dyn Error>> {
     match &played.end {
         End::Reached => Ok(ExitCode::SUCCESS),

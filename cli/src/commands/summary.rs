@@ -15,7 +15,7 @@ use roulement_cli::report::losses::Closed;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
 use roulement_cli::report::spectrum::is_wanted;
 use roulement_cli::report::{phases, shaft};
-use roulement_cli::watch::{BearingSeen, Life, ShaftSeen, headlines};
+use roulement_cli::watch::{BearingSeen, ShaftSeen, headlines};
 
 use super::effects::idle_in;
 use super::player::Played;
@@ -43,10 +43,11 @@ pub fn of_shaft(
     shown: &Shown,
     bearings: &[Shown],
 ) -> String {
-    let lives: Vec<Option<Life>> = run.seen.bearings.iter().map(|seen| seen.life).collect();
-    let mut text = shaft::summary(system, shown, bearings, &lives);
+    let mut text = String::new();
+    let bearings = bearings.iter().zip(&run.seen.bearings);
     // Writing to a string cannot fail.
-    let _ = write_shaft(&mut text, run, (system, seen), shown);
+    let _ = shaft::write_summary(&mut text, system, shown, bearings)
+        .and_then(|()| write_shaft(&mut text, run, (system, seen), shown));
     text
 }
 
@@ -86,17 +87,15 @@ fn write_shaft(
     if shown.bars.is_none() {
         write_unmeasured(out)?;
     }
-    if let Some((_, bearing)) = system.bearings().next() {
-        let s = &bearing.state().statistics;
-        writeln!(
-            out,
-            "steps            {} accepted, {} rejected by error, {} by Newton; {:.2} Newton iterations a step",
-            s.steps,
-            s.rejected_error,
-            s.rejected_newton,
-            s.newton.iterations as f64 / s.steps.max(1) as f64
-        )?;
-    }
+    let s = run.machine.statistics();
+    writeln!(
+        out,
+        "steps            {} accepted, {} rejected by error, {} by Newton; {:.2} Newton iterations a step",
+        s.steps,
+        s.rejected_error,
+        s.rejected_newton,
+        s.newton.iterations as f64 / s.steps.max(1) as f64
+    )?;
     write_wall(out, run, system.time())
 }
 
@@ -105,7 +104,7 @@ fn write_unmeasured(out: &mut String) -> std::fmt::Result {
     writeln!(out, "error            not measured: --error measures it, by a run with half the steps")
 }
 
-/// What it took, for so much simulated time \[s].
+/// Wall time, for so much simulated time \[s].
 fn write_wall(out: &mut String, run: &Played, simulated: f64) -> std::fmt::Result {
     let seconds = run.wall.as_secs_f64();
     let rate = seconds / simulated.max(f64::MIN_POSITIVE);
@@ -162,12 +161,12 @@ fn write_losses(out: &mut String, means: &Means, shown: &Shown) -> std::fmt::Res
     Ok(())
 }
 
-/// What closes losses.
+/// Balance of losses.
 fn write_closed(out: &mut String, closed: &Closed) -> std::fmt::Result {
     closed.lines().into_iter().try_for_each(|line| writeln!(out, "{:16} {line}", ""))
 }
 
-/// What the creep law of the scene misses.
+/// Effects that the creep law of the scene misses.
 fn write_law(out: &mut String, scene: &Scene) -> std::fmt::Result {
     let (law, slip) = (scene.effects.creep.law, scene.effects.groove_slip.on);
     let Some(missing) = law.misses(slip) else {
@@ -237,7 +236,7 @@ fn write_settled_of_all<'a>(
     }
 }
 
-/// What a run met of shoulders and neighbouring balls; nothing where it met none.
+/// Loads on shoulders and between balls; nothing where a run had none.
 fn write_limits(out: &mut String, limits: &Limits, shown: &Shown) -> std::fmt::Result {
     if limits.over_shoulders != [0.0; 2] {
         let [inner, outer] =

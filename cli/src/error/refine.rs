@@ -9,7 +9,7 @@ pub const MOST_ROUNDS: u32 = 6;
 
 /// A run that can be compared with others.
 pub trait Compared {
-    /// What is kept of it for that.
+    /// Sample that is kept of it for that.
     fn comparable(&mut self) -> Run;
 }
 

@@ -37,7 +37,7 @@ pub enum Judgement {
     Twin,
     /// The goal is met, or there was none.
     Done,
-    /// What differs is chaotic, and its means are not known well enough: a longer run is needed.
+    /// Chaos, whose means are not known well enough: a longer run is needed.
     TooShort,
     /// As many runs as are allowed, and the goal is not met.
     TooMany,

@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 
 use memchr::memmem;
 
-/// What stands before the files of a crate, and how many folders follow it that are of the machine, too.
+/// Folders before the files of a crate, and how many folders follow them that are of the machine, too.
 const BEFORE_CRATES: [(&str, usize); 3] =
     [("/registry/src/", 1), ("/git/checkouts/", 2), ("/rustlib/src/rust/library/", 0)];
 /// Folders that the makers of Rust have put in place of theirs.
 const OF_RUST: [&str; 2] = ["/rustc/", "/rust/deps/"];
 /// Rust ends names of files by a zero, for C.
 const END: &[u8] = b".rs\0";
-/// What is written in place of a folder; the rest of its length is filled with separators.
+/// Text in place of a folder; the rest of its length is filled with separators.
 const CRATES: &[u8] = b"crates";
 
 /// Overwrites the folders of source files by `crates////`, in place: nothing moves, and a name stays a name of the same file.

@@ -82,7 +82,7 @@ fn guide(guidance: Guidance) -> &'static str {
     }
 }
 
-/// What it is at the start, and its least and largest value.
+/// Value at the start, least and largest value.
 pub fn schedule(schedule: &Schedule) -> Value {
     let values = schedule.values();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -90,7 +90,7 @@ pub fn schedule(schedule: &Schedule) -> Value {
     json!({ "start": schedule.at(0.0), "least": least, "most": most })
 }
 
-/// What is given for each direction of a race; nothing for those that are not.
+/// Loads or motions that are given for directions of a race.
 fn loads(directions: [Direction<'_>; 5]) -> Value {
     let given = DIRECTIONS.iter().zip(directions).filter_map(|(name, direction)| {
         let (kind, given) = direction

@@ -14,7 +14,7 @@ use super::grid::Grid;
 /// [-] cells across an ellipse.
 const CELLS: usize = 24;
 
-/// What the fields follow from of the contacts of the ball with the largest and of the one with the least load as they are now; those
+/// Causes of the fields of the contacts of the ball with the largest and of the one with the least load as they are now; those
 /// without load or without friction are left out. The fields themselves take longer than a short run: they are solved for a page.
 pub fn causes(simulation: &Simulation) -> Vec<Value> {
     let load = |ball: usize| simulation.outputs().balls[ball].inner.load;

@@ -79,7 +79,7 @@ impl Grid {
     }
 }
 
-/// What is not a number has no form in JSON.
+/// Number in JSON; null where it is not finite.
 fn number(value: f64) -> Value {
     if value.is_finite() { value.into() } else { Value::Null }
 }

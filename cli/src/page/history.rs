@@ -1,4 +1,4 @@
-//! What a table of results does not have and the page needs: motion of every body for the playback, ellipses, the parts of the power,
+//! Columns that a table of results does not have and the page needs: motion of every body for the playback, ellipses, parts of the power,
 //! steps, frequencies. Of at most about a thousand rows of a run.
 
 use nalgebra::Vector3;

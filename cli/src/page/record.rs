@@ -4,23 +4,22 @@ use std::io;
 use std::path::Path;
 
 use roulement::analysis::estimate::Verdicts;
+use roulement::model::state::Statistics;
 use roulement::scene::Scene;
 use roulement::schema::regular;
-use roulement::simulation::Simulation;
-use roulement::simulation::outputs::Outputs;
-use roulement::simulation::system::{System, SystemOutputs};
 use serde_json::{Value, json};
 
-use super::{bearing, fields, history, shaft};
+use super::grid::Grid;
+use super::{bearing, fields, shaft};
 use crate::report::figures::Shown;
 use crate::report::json;
 use crate::report::spectrum::Spectrum;
 use crate::sweep::store::aside;
-use crate::watch::{BearingSeen, ShaftSeen};
+use crate::watch::Part;
 
 /// Name of its file.
 pub const FILE: &str = "run.json";
-/// What runs write beside the record, those of shafts too. Tables of a new run take the place of former ones by themselves.
+/// Names of the files that runs write beside the record, those of shafts too. Tables of a new run take the place of former ones by themselves.
 const BESIDE: [&str; 12] = [
     "summary.txt",
     "means.csv",
@@ -38,22 +37,25 @@ const BESIDE: [&str; 12] = [
 /// Form of the record: another number where its parts mean something else.
 pub const FORM: u64 = 1;
 
-/// What a record is made of.
+/// Source of the record of a part of a machine: of a bearing, or of the shafts, whose bearings have records of their own in directories of
+/// their names beside it.
 pub struct Run<'a> {
-    /// The bearing at the end.
-    pub simulation: &'a Simulation,
-    /// Rows that pictures are drawn of.
-    pub rows: &'a [Outputs],
-    /// What was gathered of all rows.
-    pub seen: &'a BearingSeen,
+    /// The part at the end.
+    pub part: Part<'a>,
+    /// Columns that are drawn over time.
+    pub history: Grid,
     /// Figures and their error bars.
     pub shown: &'a Shown,
-    /// What estimates of effects say.
-    pub verdicts: &'a Verdicts,
+    /// Warnings for whoever reads its results; of shafts, those of their bearings, too.
+    pub warnings: Vec<String>,
+    /// Estimates of effects of a bearing.
+    pub verdicts: Option<&'a Verdicts>,
     /// The summary in words.
     pub summary: &'a str,
     /// \[s] wall and CPU time.
     pub took: [f64; 2],
+    /// Work of the integrator; of shafts, that for their bearings.
+    pub work: Statistics,
     /// Why it ended before its time.
     pub ended_early: Option<String>,
 }
@@ -61,85 +63,41 @@ pub struct Run<'a> {
 impl Run<'_> {
     /// The record.
     pub fn to_json(&self) -> Value {
-        let Self { simulation, rows, seen, shown, verdicts, summary, took, ended_early } = self;
-        let (scene, model) = (simulation.scene(), simulation.model());
-        let statistics = &simulation.outputs().statistics;
-        json!({
+        let Self { part, history, shown, warnings, verdicts, summary, took, work, ended_early } = self;
+        let mut record = json!({
             "form": FORM,
             "program": env!("ROULEMENT_VERSION"),
-            "title": scene.title,
-            "scene": scene.source,
+            "title": part.title(),
+            "scene": part.source(),
             "ended_early": ended_early,
-            "warnings": seen.warnings(simulation),
-            "bearing": bearing::describe(scene, model),
-            "summary": json::summary(simulation, seen, shown),
+            "warnings": warnings,
+            "summary": json::summary(*part, shown),
             "summary_text": summary,
-            "effects": effects(scene, verdicts),
             "cost": {
                 "wall": took[0],
                 "cpu": took[1],
-                "steps": statistics.steps,
-                "rejected_by_error": statistics.rejected_error,
-                "rejected_by_newton": statistics.rejected_newton,
-                "newton_iterations": statistics.newton.iterations,
-                "factorisations": statistics.newton.factorisations,
-                "contact_values": statistics.contact_values,
-                "contact_tangents": statistics.contact_tangents,
-                "polynomials": statistics.polynomials,
-                "polynomial_failures": statistics.polynomial_failures,
+                "steps": work.steps,
+                "rejected_by_error": work.rejected_error,
+                "rejected_by_newton": work.rejected_newton,
+                "newton_iterations": work.newton.iterations,
+                "factorisations": work.newton.factorisations,
+                "contact_values": work.contact_values,
+                "contact_tangents": work.contact_tangents,
+                "polynomials": work.polynomials,
+                "polynomial_failures": work.polynomial_failures,
             },
-            "spectrum": seen.spectrum.as_ref().map(spectrum),
-            "history": history::columns(rows).to_json(),
-            "field_causes": fields::causes(simulation),
-        })
-    }
-
-    /// Writes it: the run is finished then.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
-    pub fn write(&self, path: &Path) -> io::Result<()> {
-        put(path, &self.to_json())
-    }
-}
-
-/// What the record of a shaft with its bearings is made of; each bearing has one of its own, in a directory of its name beside it.
-pub struct ShaftRun<'a> {
-    /// The shaft at the end.
-    pub system: &'a System,
-    /// Rows that pictures are drawn of.
-    pub rows: &'a [SystemOutputs],
-    /// What was gathered of all rows.
-    pub seen: &'a ShaftSeen,
-    /// Figures and their error bars.
-    pub shown: &'a Shown,
-    /// What whoever reads its results should know, of its bearings, too.
-    pub warnings: Vec<String>,
-    /// The summary in words.
-    pub summary: &'a str,
-    /// \[s] wall and CPU time.
-    pub took: [f64; 2],
-    /// Why it ended before its time.
-    pub ended_early: Option<String>,
-}
-
-impl ShaftRun<'_> {
-    /// The record.
-    pub fn to_json(&self) -> Value {
-        let Self { system, rows, seen, shown, warnings, summary, took, ended_early } = self;
-        json!({
-            "form": FORM,
-            "program": env!("ROULEMENT_VERSION"),
-            "title": system.scene().title,
-            "scene": system.scene().source,
-            "ended_early": ended_early,
-            "shaft": shaft::describe(system),
-            "warnings": warnings,
-            "summary": json::of_shaft(system, seen, shown),
-            "summary_text": summary,
-            "cost": { "wall": took[0], "cpu": took[1] },
-            "history": shaft::columns(system, rows).to_json(),
-        })
+            "history": history.to_json(),
+        });
+        match part {
+            Part::Shaft(system, _) => record["shaft"] = shaft::describe(system),
+            Part::Bearing(simulation, seen) => {
+                record["bearing"] = bearing::describe(simulation.scene(), simulation.model());
+                record["effects"] = verdicts.map(|verdicts| effects(simulation.scene(), verdicts)).into();
+                record["spectrum"] = seen.spectrum.as_ref().map(spectrum).into();
+                record["field_causes"] = fields::causes(simulation).into();
+            }
+        }
+        record
     }
 
     /// Writes it: the run is finished then.

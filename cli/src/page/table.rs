@@ -12,7 +12,7 @@ use crate::report::results::fits;
 /// [-] numbers that are taken of the columns of balls, and of all others: together about a megabyte of the page.
 const ROOM: usize = 300_000;
 
-/// What is taken of a table.
+/// Columns and rows that are taken of a table.
 #[derive(Clone, Debug, Default)]
 pub struct Choice {
     /// Names of columns with `*` for any characters; all if empty.

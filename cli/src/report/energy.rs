@@ -13,7 +13,7 @@ pub const ROUNDING: f64 = 1e-6;
 /// [-] steps in a period of the highest natural frequency below which the scheme damps it.
 const STEPS_A_PERIOD: f64 = 20.0;
 
-/// What of a run its energy balance needs.
+/// Sums of a run that its energy balance needs.
 #[derive(Clone, Debug, Default)]
 pub struct EnergyWatch {
     stored_at_start: Option<f64>,
@@ -55,7 +55,7 @@ impl EnergyWatch {
         now.work + now.stiffened - now.dissipated - stored
     }
 
-    /// What to say where the energy does not close; none where it does.
+    /// Warning where the energy does not close; none where it does.
     pub fn warning(&self, simulation: &Simulation) -> Option<String> {
         // Equilibria have no history that work could be done in.
         if simulation.scene().solver.level == Level::Equilibrium {

@@ -2,84 +2,71 @@
 
 use roulement::Scene;
 use roulement::effects::estimate::Verdict;
-use roulement::simulation::Simulation;
 use roulement::simulation::losses::LOSSES;
 use roulement::simulation::machine::Machine;
-use roulement::simulation::system::System;
 use serde_json::{Map, Value, json};
 
 use super::figures::{Figures, Shown};
 use super::losses::Closed;
 use super::means::{Mean, Means};
-use crate::watch::{BearingSeen, Extreme, Life, Phase, Seen, ShaftSeen, headlines};
+use crate::watch::{Extreme, Life, Part, Phase, Seen, headlines};
 
 /// Summary of a run, with error bars where figures have them: of a bearing alone, or of each bearing of a shaft by its name, and of the
 /// shaft as `shaft`. Figures are those of the bearings, then of the shaft.
 pub fn of_machine(machine: &Machine, seen: &Seen, shown: &[Shown]) -> Value {
-    let bearings = machine.bearings().zip(&seen.bearings).zip(shown);
-    let mut all: Map<String, Value> = bearings
-        .map(|(((name, bearing), seen), shown)| (name.to_string(), summary(bearing, seen, shown)))
-        .collect();
-    if let (Some(system), Some(seen), Some(shown)) = (machine.shaft(), &seen.shaft, shown.last()) {
-        all.insert("shaft".into(), of_shaft(system, seen, shown));
-        return Value::Object(all);
+    let all = seen.parts(machine).zip(shown);
+    let mut all = all.map(|((name, part), shown)| (name, summary(part, shown)));
+    if machine.shaft().is_none() {
+        return all.next().map_or(Value::Null, |(_, alone)| alone);
     }
-    all.into_iter().next().map_or(Value::Null, |(_, of_bearing)| of_bearing)
+    all.map(|(name, part)| (if name.is_empty() { "shaft" } else { name }.to_string(), part)).collect()
 }
 
-/// Summary of a shaft with its housings.
-pub fn of_shaft(system: &System, seen: &ShaftSeen, shown: &Shown) -> Value {
-    json!({
-        "title": system.scene().title,
-        "time": system.time(),
+/// Summary of a part of a machine.
+pub fn summary(part: Part<'_>, shown: &Shown) -> Value {
+    let gathered = part.gathered();
+    let mut summary = json!({
+        "title": part.title(),
+        "time": part.time(),
         "figures": figures(&shown.figures),
         "error_bars": shown.bars.as_ref().map(figures),
-        "means": seen.part.means.as_ref().map(means),
-        "phases": phases(&seen.part.phases, shown),
-        "losses": seen.part.closed.as_ref().map(closed),
-        "warnings": seen.warnings(system),
-    })
-}
-
-/// Summary of a bearing.
-pub fn summary(simulation: &Simulation, seen: &BearingSeen, shown: &Shown) -> Value {
-    let statistics = &simulation.outputs().statistics;
-    json!({
-        "title": simulation.scene().title,
-        "time": simulation.time(),
-        "figures": figures(&shown.figures),
-        "error_bars": shown.bars.as_ref().map(figures),
-        "means": seen.part.means.as_ref().map(means),
-        "losses": seen.part.means.as_ref().zip(seen.part.closed.as_ref()).map(|(means, of)| losses(means, of)),
-        "life": seen.life.as_ref().map(life),
-        "phases": phases(&seen.part.phases, shown),
-        "effects": headlines(simulation).into_iter().map(|(row, value)| (row.name, value.into())).collect::<Map<_, _>>(),
-        "peak_pressure": seen.limits.peak_pressure,
-        "energy_balance": seen.energy.balance(simulation.outputs()),
-        "warning": seen.energy.warning(simulation),
-        "warnings": seen.warnings(simulation),
-        "steps": {
+        "means": gathered.means.as_ref().map(means),
+        "losses": gathered.closed.as_ref().map(closed),
+        "phases": phases(&gathered.phases, shown),
+        "warnings": part.warnings(),
+    });
+    if let Part::Bearing(simulation, seen) = part {
+        let statistics = &simulation.outputs().statistics;
+        if let (Some(means), Some(_)) = (&gathered.means, &gathered.closed) {
+            summary["losses"]["parts"] = parts_of_losses(means);
+        }
+        summary["life"] = seen.life.as_ref().map(life).into();
+        summary["effects"] =
+            headlines(simulation).into_iter().map(|(row, value)| (row.name, value)).collect();
+        summary["peak_pressure"] = seen.limits.peak_pressure.into();
+        summary["energy_balance"] = seen.energy.balance(simulation.outputs()).into();
+        summary["warning"] = seen.energy.warning(simulation).into();
+        summary["steps"] = json!({
             "accepted": statistics.steps,
             "rejected_by_error": statistics.rejected_error,
             "rejected_by_newton": statistics.rejected_newton,
-        },
-    })
+        });
+    }
+    summary
 }
 
-/// Losses of a bearing by part, and what closes them: mean powers \[W].
-fn losses(means: &Means, of: &Closed) -> Value {
+/// Losses of a bearing by part: mean powers \[W] and shares.
+fn parts_of_losses(means: &Means) -> Value {
     let all = means.of(LOSSES[0].name);
     let parts = LOSSES[1..].iter().filter_map(|part| {
         let power = means.find(part.name)?.mean;
         let share = if all > 0.0 { power / all } else { 0.0 };
         Some(json!({ "name": part.name, "words": part.words, "power": power, "share": share }))
     });
-    let mut value = closed(of);
-    value["parts"] = parts.collect();
-    value
+    parts.collect()
 }
 
-/// What closes losses: mean powers \[W].
+/// Balance of losses: mean powers \[W].
 fn closed(closed: &Closed) -> Value {
     let Closed { torque, other, stored, lost, .. } = closed;
     json!({ "torque_times_speed": torque, "other_work": other, "stored": stored, "lost": lost, "left_open": closed.left() })

@@ -81,7 +81,7 @@ impl Block {
     }
 }
 
-/// What values count for at an instant, and their products with it.
+/// Weights of values at an instant, and products of both.
 #[derive(Clone, Debug, Default)]
 struct Weighted {
     time: f64,
@@ -189,7 +189,7 @@ impl Blocks {
         Self { window: Some(window), ..Self::new(quantities, arm, to - from) }
     }
 
-    /// What they are of.
+    /// Quantities that they are of.
     pub fn quantities(&self) -> &[Watched] {
         &self.quantities
     }
@@ -457,7 +457,7 @@ impl Means {
         self.find(name).map_or(f64::NAN, |mean| mean.mean)
     }
 
-    /// What has not settled.
+    /// Means that have not settled.
     pub fn unsettled(&self) -> impl Iterator<Item = (&Mean, &Trend)> {
         let trends = self.means.iter().filter_map(|mean| Some((mean, mean.trend.as_ref()?)));
         trends.filter(|(_, trend)| !trend.settled)

@@ -9,7 +9,7 @@ use roulement::simulation::instant::Instant;
 use roulement::simulation::losses::LOSSES;
 use roulement::simulation::system::System;
 
-/// What the size of a quantity is measured by.
+/// Measure of the size of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
     /// Its own mean.
@@ -37,7 +37,7 @@ pub struct Watched {
     pub name: Cow<'static, str>,
     /// Unit.
     pub unit: &'static str,
-    /// What its size is measured by.
+    /// Measure of its size.
     pub size: Size,
     /// Is its mean reported?
     pub shown: bool,
@@ -50,7 +50,7 @@ pub struct Quantity {
     pub name: &'static str,
     /// Unit.
     pub unit: &'static str,
-    /// What its size is measured by.
+    /// Measure of its size.
     pub size: Size,
     shown: fn(Parts) -> bool,
     get: fn(&Instant) -> f64,
@@ -191,7 +191,7 @@ impl ShaftQuantities {
     }
 }
 
-/// What the size of a shaft's variable is measured by; none of what is no quantity with a mean: angle, velocities, energies, and loads,
+/// Measure of the size of a shaft's variable; none of one that is no quantity with a mean: angle, velocities, energies, and loads,
 /// which are given. Forces that are not given are those of meshes and of bearings by their stiffness.
 fn size_of(row: &Variable) -> Option<Size> {
     let of_whole = row.name.split_once('.').map_or(row.name.as_str(), |(_, key)| key);
@@ -212,7 +212,7 @@ pub fn values(instant: &Instant) -> [f64; COUNT] {
     std::array::from_fn(|i| (QUANTITIES[i].get)(instant))
 }
 
-/// What an instant counts for in the means of all of them.
+/// Weights of an instant in the means of all of them.
 pub fn weights(instant: &Instant) -> [f64; COUNT] {
     std::array::from_fn(|i| (QUANTITIES[i].weight)(instant))
 }

@@ -11,7 +11,6 @@ use roulement::interface::variables::{MachineVariables, Source, Variables, quote
 use roulement::scene::Scene;
 use roulement::scene::machine::MachineScene;
 use roulement::scene::units::{Quantity, Time};
-use roulement::simulation::Simulation;
 use roulement::simulation::inputs::Inputs;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::outputs::Outputs;
@@ -39,7 +38,7 @@ pub enum ResultsError {
     Column(String),
 }
 
-/// What of a run is written.
+/// Columns and rows of a run that are written.
 #[derive(Clone, Debug, Default)]
 pub struct Choice {
     /// Names of columns with `*` for any characters; empty is all.
@@ -142,7 +141,7 @@ impl Columns {
         Self { variables, chosen, window }
     }
 
-    /// Those of a bearing of a shaft that are chosen with its name before them.
+    /// Those of a bearing of a machine that are chosen with its name before them; unknown names are passed over.
     fn named(scene: &Scene, bearing: &str, choice: &Choice) -> Self {
         Self::that(scene, choice.window, |name| choice.wants(&named(bearing, name)))
     }
@@ -233,23 +232,19 @@ impl MachineColumns {
     /// # Errors
     /// If a chosen column is not there.
     pub fn new(machine: &Machine, choice: &Choice) -> Result<Self, ResultsError> {
-        let Some(system) = machine.shaft() else {
-            let of = |(name, bearing): (&str, &Simulation)| {
-                Ok((name.to_string(), Columns::new(bearing.scene(), choice)?))
-            };
-            let bearings = machine.bearings().map(of).collect::<Result<_, _>>()?;
-            return Ok(Self { shaft: None, bearings, window: choice.window });
-        };
-        let variables = MachineVariables::new(system);
-        let own = variables.rows().iter().enumerate();
-        let own = own.filter(|(_, row)| matches!(row.source, Source::Shaft(_)));
-        let chosen = own.filter(|(_, row)| choice.wants(&row.name)).map(|(reference, _)| reference).collect();
-        let mut bearings = vec![];
-        for (name, bearing) in system.bearings() {
+        let shaft = machine.shaft().map(|system| {
+            let variables = MachineVariables::new(system);
+            let own = variables.rows().iter().enumerate();
+            let own =
+                own.filter(|(_, row)| matches!(row.source, Source::Shaft(_)) && choice.wants(&row.name));
+            let chosen = own.map(|(reference, _)| reference).collect();
+            (variables, chosen)
+        });
+        let bearings = machine.bearings().map(|(name, bearing)| {
             let columns = Columns::named(bearing.scene(), name, choice);
-            bearings.push((name.to_string(), columns));
-        }
-        let all = Self { shaft: Some((variables, chosen)), bearings, window: choice.window };
+            (name.to_string(), columns)
+        });
+        let all = Self { shaft, bearings: bearings.collect(), window: choice.window };
         let names: Vec<String> = all.names().map(|(name, _)| name).collect();
         let missing = |pattern: &&String| !names.iter().any(|name| fits(name, pattern));
         match choice.columns.iter().find(missing) {

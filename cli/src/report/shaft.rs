@@ -1,4 +1,4 @@
-//! What is left of a run of a shaft with its housings: its table, its plots, its words.
+//! Results of a run of a shaft with its housings: its table, its plots, its words.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use roulement::simulation::system::{HousingOutputs, PointOutput, ShaftOutputs, S
 use super::figures::Shown;
 use super::plots::{Curve, Panel, figure};
 use super::style::PlotError;
-use crate::watch::Life;
+use crate::watch::{BearingSeen, Life};
 
 /// Names of all points of shafts whose motion is known, with that of their shaft before them: bearings, loads, points.
 pub fn places(scene: &SystemScene) -> Vec<String> {
@@ -204,7 +204,7 @@ fn of_housings(scene: &SystemScene, rows: &[SystemOutputs]) -> Vec<Panel> {
     ]
 }
 
-/// What to say of a shaft that creeps under a torque which its friction holds; nothing of one that moves or is driven by a speed.
+/// Warning of a shaft that creeps under a torque which its friction holds; none of one that moves or is driven by a speed.
 pub fn creeping(system: &System) -> Option<String> {
     // Of several shafts, one that another drives creeps under no torque of its own.
     let [ShaftOutputs { spin, torque, .. }] = &system.outputs().shafts[..] else { return None };
@@ -226,20 +226,16 @@ pub fn creeping(system: &System) -> Option<String> {
     })
 }
 
-/// What a shaft's run came to, in words, with error bars where its figures and those of its bearings have them: of the shaft, and of its
-/// bearings some lines each.
-pub fn summary(system: &System, shaft: &Shown, bearings: &[Shown], lives: &[Option<Life>]) -> String {
-    let mut text = String::new();
-    // Writing to a string cannot fail.
-    let _ = write_summary(&mut text, system, shaft, (bearings, lives));
-    text
-}
-
-fn write_summary(
+/// Writes the summary of a shaft's run in words, with error bars where its figures and those of its bearings have them: of the shaft, and of
+/// its bearings some lines each.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_summary<'a>(
     out: &mut String,
     system: &System,
     shaft: &Shown,
-    (bearings, lives): (&[Shown], &[Option<Life>]),
+    bearings: impl Iterator<Item = (&'a Shown, &'a BearingSeen)>,
 ) -> std::fmt::Result {
     let (scene, outputs) = (system.scene(), system.outputs());
     if !scene.title.is_empty() {
@@ -256,7 +252,7 @@ fn write_summary(
             writeln!(out, "{modes:<16} {count} between held stations, {first:.0} to {last:.0} Hz")?;
         }
     }
-    for ((name, bearing), (shown, life)) in system.bearings().zip(bearings.iter().zip(lives)) {
+    for ((name, bearing), (shown, seen)) in system.bearings().zip(bearings) {
         let direction = scene.bearings.iter().find(|mounted| mounted.name == name);
         let sign = direction.map_or(1.0, |mounted| mounted.mounting.direction.sign());
         // What the shaft does to the bearing, in the shaft's axes.
@@ -283,7 +279,7 @@ fn write_summary(
             format!("; mean losses {power} W, friction torque {torque} N m")
         });
         writeln!(out, "{:<16} ball loads {least:.1} to {most:.1} N{}", "", power.unwrap_or_default())?;
-        if let Some(Life { life, hours: Some(hours), .. }) = life {
+        if let Some(Life { life, hours: Some(hours), .. }) = &seen.life {
             writeln!(out, "{:<16} life L10r {hours:.0} h, static safety {:.2}", "", life.static_safety)?;
         }
     }

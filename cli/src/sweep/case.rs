@@ -19,7 +19,8 @@ use crate::modes::{Found, judged, told};
 use crate::report::cells::{Cell, Column};
 use crate::report::means::Means;
 use crate::report::quantities::QUANTITIES;
-use crate::report::results::{Choice, MachineColumns, ResultsError, TableWriter};
+use crate::report::results::{Choice, ResultsError};
+use crate::report::tables::Tables;
 use crate::watch::{BearingSeen, Life, Phase, Seen, Watch};
 
 /// Wanted results of every case.
@@ -150,19 +151,13 @@ fn played(
     let gathered = GatheredMachine::new(scene, &machine, rows.duration, &wanted.columns).map_err(written)?;
     let mut observers = (Watch::of(&machine), gathered);
     let choice = Choice { columns: wanted.columns.clone(), ..Choice::default() };
-    let begun = |path: &Path| -> Result<_, ResultsError> {
-        let columns = MachineColumns::new(&machine, &choice)?;
-        let table = TableWriter::create(path, columns.names())?;
-        Ok((columns, table))
-    };
+    let begun = |path: &Path| Tables::whole(&machine, &choice, path);
     let mut table = table.map(begun).transpose().map_err(written)?;
     let flow = play_observed(&mut machine, rows, &mut observers, |machine, (watch, _)| {
         if interrupted.load(Ordering::Relaxed) {
             return ControlFlow::Break(Ended::Interrupted);
         }
-        if let Some((columns, table)) = &mut table
-            && let Some(Err(why)) = columns.row(machine).map(|row| table.write(row.into_iter()))
-        {
+        if let Some(Err(why)) = table.as_mut().map(|table| table.write(machine)) {
             return ControlFlow::Break(written(why));
         }
         watch.push(machine);
@@ -173,7 +168,7 @@ fn played(
         Ok(ControlFlow::Break(why)) => return Err(why),
         Ok(ControlFlow::Continue(())) => {}
     }
-    table.map(|(_, table)| table.finish()).transpose().map_err(written)?;
+    table.map(Tables::finish).transpose().map_err(written)?;
     let (watch, gathered) = observers;
     let mut seen = watch.finish(&machine);
     let motions = wanted.growth.then(|| judged(scene, 0.0));

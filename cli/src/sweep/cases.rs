@@ -85,7 +85,7 @@ impl Cases {
     /// Reads CSV.
     ///
     /// # Errors
-    /// What is wrong.
+    /// If the text is no table of cases; the reason is given.
     pub fn from_csv(text: &str) -> Result<Self, String> {
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
         let header = reader.headers().map_err(|why| why.to_string())?.clone();
@@ -110,7 +110,7 @@ impl Cases {
     /// Reads TOML.
     ///
     /// # Errors
-    /// What is wrong.
+    /// If the text is no table of cases; the reason is given.
     pub fn from_toml(text: &str) -> Result<Self, String> {
         let table: Table = text.parse().map_err(|why: toml::de::Error| why.to_string())?;
         let mut cases = Self::default();

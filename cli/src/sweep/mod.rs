@@ -32,7 +32,7 @@ pub enum SweepError {
     Cases {
         /// File.
         file: String,
-        /// What is wrong in it.
+        /// Reason.
         why: String,
     },
     /// The base scene.

@@ -18,7 +18,7 @@ const SCHEMA: u32 = 2;
 /// [-] bytes of the hash in a name: two of 1e9 cases agree by chance with 1e-21.
 const BYTES: usize = 16;
 
-/// What stands before the checksum of a whole table, and before that of all lines above it, which is the last.
+/// Marks before the checksum of a whole table, and before that of all lines above it, which is the last.
 const OF_TABLE: &str = "# sha256 of the table ";
 const OF_LINES: &str = "# sha256 of these lines ";
 
@@ -74,7 +74,7 @@ impl Store {
         self.path(name).is_file()
     }
 
-    /// What is written of a case above its checksum; none if it is not there or not as it was written.
+    /// Lines of a case above its checksum; none if it is not there or not as it was written.
     fn lines(&self, name: &str) -> Option<String> {
         let mut text = regular::text(&self.path(name)).ok()?;
         let (lines, sum) = text.strip_suffix('\n')?.rsplit_once(OF_LINES)?;

@@ -32,7 +32,7 @@ impl Connection {
 /// A component by a name with it in front, and the rest of the name.
 ///
 /// # Errors
-/// What is wrong, and the nearest name.
+/// If there is no such end; with the nearest name.
 pub fn end<'a>(text: &'a str, components: &[Component]) -> Result<(usize, &'a str), String> {
     let Some((name, variable)) = text.split_once('.') else {
         return Err(format!("{text:?} has to be a component and a variable with a dot between them"));

@@ -119,7 +119,7 @@ impl Description {
     }
 }
 
-/// What names may be.
+/// Rule for names.
 const NAMES: &str = "a name has letters, digits and _ alone, and does not begin with a digit";
 
 fn is_name(name: &str) -> bool {

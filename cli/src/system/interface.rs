@@ -82,7 +82,7 @@ impl Interface {
     /// Reads the model description of a package.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// If it is no package that can be read; the reason is given.
     pub fn of_package(package: &[u8]) -> Result<Self, String> {
         let mut zip = ZipArchive::new(Cursor::new(package)).map_err(|why| format!("it is no FMU: {why}"))?;
         let mut text = String::new();

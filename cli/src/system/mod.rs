@@ -39,7 +39,7 @@ pub enum SystemError {
     /// A file could not be read or written.
     #[error("cannot {what} {path}: {source}")]
     File {
-        /// What could not be done.
+        /// Action that failed.
         what: &'static str,
         /// File.
         path: String,
@@ -81,7 +81,7 @@ struct System {
     starts: Vec<Vec<start::Start>>,
 }
 
-/// What was written.
+/// Files that were written.
 pub struct Written {
     /// The SSP file.
     pub ssp: PathBuf,

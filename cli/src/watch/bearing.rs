@@ -34,7 +34,7 @@ pub struct BearingWatch {
     /// Where its race was across its axis.
     places: Thinned<Place>,
     alarms: BearingAlarms,
-    /// What was warned of so far.
+    /// Alarms so far.
     told: Vec<Alarm>,
     /// Revolutions and loads from step to step, for the life over the window.
     rated: Thinned<(f64, Sums)>,
@@ -42,7 +42,7 @@ pub struct BearingWatch {
 
 /// Gathered figures of a bearing.
 pub struct BearingSeen {
-    /// What every part of a machine has.
+    /// Figures that every part of a machine has.
     pub part: PartSeen,
     /// Spectrum of its second half, where the scene asks for one.
     pub spectrum: Option<Spectrum>,
@@ -237,7 +237,7 @@ impl Life {
     }
 }
 
-/// What has a least and a largest value in a phase, beside quantities with means.
+/// Quantity that has a least and a largest value in a phase and no mean.
 struct Peak {
     name: &'static str,
     unit: &'static str,
@@ -270,7 +270,7 @@ const PEAKS: [Peak; 6] = [
     Peak { name: "land load", unit: "N", of_cage: true, get: |o| o.cage.map_or(0.0, |cage| cage.land_load) },
 ];
 
-/// What every effect that is on promises for the summary, with its value at the end.
+/// Rows of all effects that are on for the summary, with their values at the end.
 pub fn headlines(simulation: &Simulation) -> Vec<(Row, f64)> {
     let reports = simulation.outputs().reports();
     let rows = simulation.scene().effects.headlines();

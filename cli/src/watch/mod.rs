@@ -10,6 +10,7 @@ use roulement::simulation::alarms::Alarm;
 use roulement::simulation::circling::Exciting;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::Observer;
+use roulement::simulation::system::System;
 
 pub use bearing::{BearingSeen, BearingWatch, Life, headlines};
 pub use part::PartSeen;
@@ -25,7 +26,7 @@ pub struct Watch {
     bearings: Vec<BearingWatch>,
     shaft: Option<ShaftWatch>,
     exciting: Exciting,
-    /// What is to be warned of since it was taken last, with the index of the bearing.
+    /// Alarms since they were taken last, with the index of the bearing.
     alarms: Vec<(usize, Alarm)>,
 }
 
@@ -35,6 +36,73 @@ pub struct Seen {
     pub bearings: Vec<BearingSeen>,
     /// Of the shaft with its housings.
     pub shaft: Option<ShaftSeen>,
+}
+
+/// Part of a machine at the end of a run, with its gathered figures.
+#[derive(Clone, Copy)]
+pub enum Part<'a> {
+    /// A bearing, alone or on a shaft.
+    Bearing(&'a Simulation, &'a BearingSeen),
+    /// The shafts with their housings.
+    Shaft(&'a System, &'a ShaftSeen),
+}
+
+impl<'a> Part<'a> {
+    /// Figures that parts of all kinds have.
+    pub fn gathered(self) -> &'a PartSeen {
+        match self {
+            Self::Bearing(_, seen) => &seen.part,
+            Self::Shaft(_, seen) => &seen.part,
+        }
+    }
+
+    /// Figures of its summary.
+    pub fn figures(self) -> Figures {
+        match self {
+            Self::Bearing(bearing, seen) => seen.figures(bearing),
+            Self::Shaft(system, seen) => seen.figures(system),
+        }
+    }
+
+    /// Warnings for whoever reads its results, a sentence each.
+    pub fn warnings(self) -> Vec<String> {
+        match self {
+            Self::Bearing(bearing, seen) => seen.warnings(bearing),
+            Self::Shaft(system, seen) => seen.warnings(system),
+        }
+    }
+
+    /// Warnings that its summary in words does not have, a sentence each; of shafts all.
+    fn remarks(self) -> Vec<String> {
+        match self {
+            Self::Bearing(bearing, seen) => seen.remarks(bearing),
+            Self::Shaft(..) => self.warnings(),
+        }
+    }
+
+    /// Title of its scene.
+    pub fn title(self) -> &'a str {
+        match self {
+            Self::Bearing(bearing, _) => &bearing.scene().title,
+            Self::Shaft(system, _) => &system.scene().title,
+        }
+    }
+
+    /// Text of its scene.
+    pub fn source(self) -> &'a str {
+        match self {
+            Self::Bearing(bearing, _) => &bearing.scene().source,
+            Self::Shaft(system, _) => &system.scene().source,
+        }
+    }
+
+    /// \[s] time.
+    pub fn time(self) -> f64 {
+        match self {
+            Self::Bearing(bearing, _) => bearing.time(),
+            Self::Shaft(system, _) => system.time(),
+        }
+    }
 }
 
 impl Watch {
@@ -62,7 +130,7 @@ impl Watch {
         }
     }
 
-    /// What is to be warned of since this was asked for last, a sentence each.
+    /// Alarms since this was asked for last, a sentence each.
     pub fn take_alarms(&mut self, machine: &Machine) -> Vec<String> {
         let text =
             |(index, alarm): (usize, Alarm)| machine.bearings().nth(index).map(|(name, _)| alarm.text(name));
@@ -107,48 +175,51 @@ impl Observer for Watch {
 }
 
 impl Seen {
-    /// Figures of the summary of every bearing, then of the shaft.
+    /// Every bearing with its name, then the shafts. The last part stands for the whole machine: its name is empty.
+    pub fn parts<'a>(&'a self, machine: &'a Machine) -> impl Iterator<Item = (&'a str, Part<'a>)> {
+        let bearings = machine.bearings().zip(&self.bearings);
+        let bearings = bearings.map(|((name, bearing), seen)| (name, Part::Bearing(bearing, seen)));
+        let shaft = machine.shaft().zip(self.shaft.as_ref());
+        bearings.chain(shaft.map(|(system, seen)| ("", Part::Shaft(system, seen))))
+    }
+
+    /// Figures of the summary of every part.
     pub fn figures(&self, machine: &Machine) -> Vec<Figures> {
-        let bearings =
-            machine.bearings().zip(&self.bearings).map(|((_, bearing), seen)| seen.figures(bearing));
-        let shaft = self.shaft.as_ref().zip(machine.shaft()).map(|(seen, system)| seen.figures(system));
-        bearings.chain(shaft).collect()
+        self.parts(machine).map(|(_, part)| part.figures()).collect()
     }
 
     /// Warnings for whoever reads results of this run, a sentence each, with the name of the bearing before it.
     pub fn warnings(&self, machine: &Machine) -> Vec<String> {
-        let named = |((name, bearing), seen): ((&str, &Simulation), &BearingSeen)| {
-            let before = if name.is_empty() { String::new() } else { format!("bearing {name}: ") };
-            seen.warnings(bearing).into_iter().map(move |warning| format!("{before}{warning}"))
-        };
-        let bearings = machine.bearings().zip(&self.bearings).flat_map(named);
-        let shaft = self.shaft.as_ref().zip(machine.shaft());
-        let growing = shaft.map(|(seen, _)| seen.part.growing.clone());
-        let shaft = shaft.map(|(seen, system)| seen.warnings(system));
-        growing.into_iter().flatten().chain(bearings).chain(shaft.into_iter().flatten()).collect()
+        let growing = self.shaft.iter().flat_map(|seen| seen.part.growing.clone());
+        growing.chain(self.of_all(machine, Part::warnings)).collect()
     }
 
-    /// Remarks on a run beside its summary, a sentence each: warnings, but for what summaries of bearings say themselves.
+    /// Warnings that summaries of bearings do not have, a sentence each.
     pub fn remarks(&self, machine: &Machine) -> Vec<String> {
-        let named = |((name, bearing), seen): ((&str, &Simulation), &BearingSeen)| {
-            let before = if name.is_empty() { String::new() } else { format!("bearing {name}: ") };
-            seen.remarks(bearing).into_iter().map(move |remark| format!("warning: {before}{remark}"))
-        };
-        let bearings = machine.bearings().zip(&self.bearings).flat_map(named);
-        let shaft = self.shaft.as_ref().zip(machine.shaft()).map(|(seen, system)| seen.warnings(system));
-        let shaft = shaft.into_iter().flatten().map(|warning| format!("warning: {warning}"));
-        bearings.chain(shaft).collect()
+        self.of_all(machine, Part::remarks).map(|remark| format!("warning: {remark}")).collect()
     }
 
-    /// What was gathered of every bearing, then of the shafts.
-    fn parts(&mut self) -> impl Iterator<Item = &mut PartSeen> {
+    /// Sentences of all parts, with the name of the bearing before each.
+    fn of_all<'a>(
+        &'a self,
+        machine: &'a Machine,
+        of: fn(Part<'a>) -> Vec<String>,
+    ) -> impl Iterator<Item = String> {
+        self.parts(machine).flat_map(move |(name, part)| {
+            let before = if name.is_empty() { String::new() } else { format!("bearing {name}: ") };
+            of(part).into_iter().map(move |sentence| format!("{before}{sentence}"))
+        })
+    }
+
+    /// Gathered figures of every bearing, then of the shafts.
+    fn parts_mut(&mut self) -> impl Iterator<Item = &mut PartSeen> {
         let bearings = self.bearings.iter_mut().map(|seen| &mut seen.part);
         bearings.chain(self.shaft.iter_mut().map(|seen| &mut seen.part))
     }
 
     /// Nothing has settled of what goes on after a time \[s], in any part of the machine.
     fn set_unstable(&mut self, from: f64) {
-        self.parts().for_each(|part| part.set_unstable(from));
+        self.parts_mut().for_each(|part| part.set_unstable(from));
     }
 
     /// Takes what grows about where the run starts, a sentence each: no means have settled then. The shafts say it of a machine.
@@ -156,14 +227,14 @@ impl Seen {
         if !growing.is_empty() {
             self.set_unstable(f64::NEG_INFINITY);
         }
-        if let Some(part) = self.parts().last() {
+        if let Some(part) = self.parts_mut().last() {
             part.growing = growing.to_vec();
         }
     }
 
     /// Puts means with their errors, of every bearing and then of the shaft, in the place of those that it has.
     pub fn set_means(&mut self, means: Vec<Option<Means>>) {
-        self.parts().zip(means).for_each(|(part, means)| part.set_means(means));
+        self.parts_mut().zip(means).for_each(|(part, means)| part.set_means(means));
     }
 
     /// Sample for comparison with other runs, with the CPU time \[s] of this one; its rows move there.

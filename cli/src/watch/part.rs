@@ -1,4 +1,4 @@
-//! What is gathered of every part of a machine, a bearing or its shafts with their housings: means, phases, losses, and rows that errors are
+//! Figures of every part of a machine, a bearing or its shafts with their housings: means, phases, losses, and rows that errors are
 //! told from.
 
 use roulement::effects::rating::Sums;
@@ -22,15 +22,15 @@ pub struct PartWatch {
     phases: Vec<PhaseWatch>,
 }
 
-/// What was gathered of a part.
+/// Gathered figures of a part.
 pub struct PartSeen {
     /// Means over the second half.
     pub means: Option<Means>,
     /// Phases of the run that it came to.
     pub phases: Vec<Phase>,
-    /// What closes its losses over the window of the means; of shafts those of the whole machine.
+    /// Balance of its losses over the window of the means; of shafts that of the whole machine.
     pub closed: Option<Closed>,
-    /// What grows about where the run starts, a sentence each.
+    /// Motions that grow about where the run starts, a sentence each.
     pub growing: Vec<String>,
     /// Quantities that means are of.
     pub watched: Vec<Watched>,
@@ -92,7 +92,7 @@ impl PartSeen {
         all.for_each(|means| means.unstable |= means.window[1] > from);
     }
 
-    /// What is kept for comparison with other runs under a name, with figures of the run; its rows move there. Torques below `torque` \[N m] are
+    /// Sample for comparison with other runs under a name, with figures of the run; its rows move there. Torques below `torque` \[N m] are
     /// of no account.
     pub fn take_course(&mut self, name: &str, lengths: Lengths, torque: f64, figures: Figures) -> Course {
         let samples = std::mem::take(&mut self.samples);

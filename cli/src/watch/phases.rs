@@ -11,7 +11,7 @@ use super::bearing::Life;
 use crate::report::means::{Blocks, Means};
 use crate::report::quantities::Watched;
 
-/// What has its least and largest values gathered, beside quantities with means: name and unit.
+/// Name and unit of a quantity that has least and largest values and no mean.
 pub type Peak = (Cow<'static, str>, &'static str);
 
 /// Gathers one phase.
@@ -199,7 +199,7 @@ impl Phase {
         self.extremes.iter().find(|extreme| extreme.name == name)
     }
 
-    /// What has least and largest values and no mean.
+    /// Extremes of quantities that have no mean.
     pub fn peaks(&self) -> impl Iterator<Item = &Extreme> {
         self.extremes.iter().filter(|extreme| self.means.find(&extreme.name).is_none())
     }

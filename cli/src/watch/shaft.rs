@@ -27,7 +27,7 @@ pub struct ShaftWatch {
 
 /// Gathered figures of shafts.
 pub struct ShaftSeen {
-    /// What every part of a machine has; losses are those of the whole machine.
+    /// Figures that every part of a machine has; losses are those of the whole machine.
     pub part: PartSeen,
     largest_load: f64,
 }

@@ -133,7 +133,7 @@ pub struct StructureTrial {
     from_bearings: DVector<f64>,
     /// [N m] moment of them about its axis.
     axial: f64,
-    /// What a frame that turns does.
+    /// Inertial forces of a frame that turns.
     from_frame: Option<FrameForce>,
 }
 

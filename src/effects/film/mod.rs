@@ -39,7 +39,7 @@ pub struct Films {
     starvation: f64,
     /// \[m] mean of bore and outside diameter.
     mean_diameter: f64,
-    /// What of the friction is dry.
+    /// Law of mixed friction: how much of a contact is dry.
     mixed_friction: MixedFriction,
     /// [kg/m3] density.
     density: f64,

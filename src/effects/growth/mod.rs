@@ -170,7 +170,7 @@ struct Ring {
     bottom: f64,
     /// [1/K] coefficient of thermal expansion.
     expansion: f64,
-    /// What it sits on; none where nothing is known of it.
+    /// Shaft or housing that it sits on; none where nothing is known of it.
     seat: Option<Seat>,
 }
 

@@ -18,13 +18,13 @@ use crate::schema::{BearingSection, Drive, Friction, Group, SceneError};
 pub struct Info {
     /// Key that switches it, with its section.
     pub key: &'static str,
-    /// What it adds, in one sentence.
+    /// Physics that it adds, in one sentence.
     pub adds: &'static str,
     /// Which states it has.
     pub states: &'static str,
     /// Author and year, or section of the paper.
     pub source: &'static str,
-    /// What it costs when on, measured: instructions of a step more than without it (`scripts/step-instructions` counts alike).
+    /// Cost when on, measured: instructions of a step more than without it (`scripts/step-instructions` counts alike).
     pub price: &'static str,
     /// Part of a scene that switches it on.
     pub example: &'static str,

@@ -16,7 +16,7 @@ pub struct RingEstimate {
     pub speed: f64,
 }
 
-/// What keeps balls apart, or does not, where there is no cage.
+/// Spacing of balls where there is no cage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spacing {
     /// \[m] how far balls would lead or lag in a revolution, each at the speed at which it rolls by itself.

@@ -125,7 +125,7 @@ impl MovingFrame {
         Self { arm, acceleration, turn: angular_velocity, change: angular_acceleration }
     }
 
-    /// What of it acts beside the acceleration of the point that places are counted from; none where it does not turn.
+    /// Centrifugal, Euler and Coriolis terms without the acceleration of the point that places are counted from; none where it does not turn.
     pub fn about_origin(&self) -> Option<Self> {
         let turns = self.turn != Vector3::zeros() || self.change != Vector3::zeros();
         turns.then_some(Self { arm: Vector3::zeros(), acceleration: Vector3::zeros(), ..*self })

@@ -235,7 +235,7 @@ pub struct LifeOutput {
     pub damage: f64,
     /// The race that the load stands still on, by the scene or as it was found.
     pub load_rests_on: LoadRests,
-    /// What was found, where the scene says otherwise.
+    /// Race that the load was found to rest on, where the scene says otherwise.
     pub contradiction: Option<LoadRests>,
 }
 

@@ -168,7 +168,7 @@ impl Sums {
     }
 }
 
-/// What the loads come to at an instant.
+/// Sums of the loads at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Instant {
     /// Powers of loads, and speed.

@@ -211,7 +211,7 @@ impl Unit {
             .map_err(|why: MachineError| (Status::Discard, why.to_string()))
     }
 
-    /// What there is to warn of where it has come to.
+    /// Warnings at its present time, a sentence each.
     pub fn alarms(&self, alarms: &mut Alarms) -> Vec<String> {
         alarms.step(&self.machine)
     }

@@ -47,11 +47,11 @@ pub struct Shared {
     pub column: Vector6<f64>,
     /// Its row, own columns.
     pub row: Vector6<f64>,
-    /// What the block adds to its row and column.
+    /// Diagonal entry that the block adds.
     pub own: f64,
-    /// What the block adds to its row, columns of each member of the border.
+    /// Entries that the block adds to its row, columns of each member of the border.
     pub right: [Vector6<f64>; SLOTS],
-    /// What the block adds to rows of each member, its column.
+    /// Entries that the block adds to rows of each member, its column.
     pub left: [Vector6<f64>; SLOTS],
 }
 

@@ -26,9 +26,9 @@ pub(super) struct SharedCoupling {
     pub(super) column: Six<Lanes>,
     /// Its row.
     pub(super) row: Six<Lanes>,
-    /// What is left in its row and column.
+    /// Diagonal entry that is left.
     pub(super) rest: Lanes,
-    /// What is left in its row and the columns of each member, and in the rows of that and its column.
+    /// Entries that are left in its row and the columns of each member, and in the rows of that and its column.
     members: Vec<[Six<Lanes>; 2]>,
 }
 

@@ -40,7 +40,7 @@ pub struct Arrowhead {
     worlds: Vec<Six<Lanes>>,
     /// Border row of the unknown that the blocks share, where there is one.
     shared: Option<usize>,
-    /// What all blocks leave in its row and the columns of each member, and in the rows of that and its column, in world axes, by lane.
+    /// Sums that all blocks leave in its row and the columns of each member, and in the rows of that and its column, in world axes, by lane.
     shared_sums: Vec<[Six<Lanes>; 2]>,
 }
 

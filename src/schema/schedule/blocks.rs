@@ -31,7 +31,7 @@ const SCALE: Range = Range::closed(-1e12, 1e12, "");
 
 /// A building block by its keys.
 struct Kind {
-    /// What it is called.
+    /// Name in messages.
     name: &'static str,
     /// Keys by one of which it is known.
     marks: &'static [&'static str],
@@ -133,7 +133,7 @@ impl Keys {
         self.get(key, &Q::DIMENSION)?.map(|value| allowed(key, value, range)).transpose()
     }
 
-    /// What a key has that must be given.
+    /// Value of a key that must be given.
     fn needed<T>(&self, key: &str, value: Option<T>) -> Result<T, String> {
         value.ok_or_else(|| format!("{} needs {key}", self.name))
     }

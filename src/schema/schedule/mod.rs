@@ -192,7 +192,7 @@ impl Schedule {
         sum_values(&signed(1.0, self).chain(signed(-1.0, other)).collect::<Vec<_>>())
     }
 
-    /// What it is the sum of: itself, where it is none.
+    /// Terms of a sum; a schedule that is none is its own one term.
     fn parts(&self) -> &[Self] {
         match self {
             Self::Sum(parts) => parts,

@@ -58,7 +58,7 @@ pub(super) enum Problem<'a> {
 /// The product of units that a text stands for.
 ///
 /// # Errors
-/// What is wrong with it.
+/// [`Problem`] with it.
 pub(super) fn unit(text: &str) -> Result<Product, Problem<'_>> {
     if text.len() > MAX_TEXT {
         return Err(Problem::Form);
@@ -68,12 +68,12 @@ pub(super) fn unit(text: &str) -> Result<Product, Problem<'_>> {
     if reader.rest.is_empty() { Ok(product) } else { Err(Problem::Form) }
 }
 
-/// What is still to read of a text.
+/// Rest of a text that is still to be read.
 struct Reader<'a> {
     rest: &'a str,
 }
 
-/// What stands between two terms.
+/// Operator between two terms.
 #[derive(PartialEq)]
 enum Sign {
     Times,

@@ -21,10 +21,10 @@ pub type Exponents = [i8; 5];
 /// [-] largest decimal exponent accepted: no number of a scene is larger.
 const MAX_EXPONENT: i32 = 99;
 
-/// What a number measures, for conversions and messages.
+/// Dimension of a number, for conversions and messages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dimension {
-    /// What it is called, with its article.
+    /// Name with its article.
     pub name: &'static str,
     /// SI unit.
     pub unit: &'static str,
@@ -35,7 +35,7 @@ pub struct Dimension {
 }
 
 impl Dimension {
-    /// What to write.
+    /// Sentence that says what to write.
     fn wanted(&self) -> String {
         let Self { name, unit, examples: [first, second], .. } = self;
         format!("{name} is a number in {unit} or text with a unit, such as \"{first}\" or \"{second}\"")
@@ -229,7 +229,7 @@ macro_rules! quantities {
 
 /// A number of one physical dimension, in SI.
 pub trait Quantity: Copy {
-    /// What it measures.
+    /// Its dimension.
     const DIMENSION: Dimension;
     /// Value in that unit.
     fn si(self) -> f64;

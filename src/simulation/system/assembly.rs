@@ -32,7 +32,7 @@ pub(super) struct Assembly {
     pub carriers: Vec<Carrier>,
     /// Of each structure.
     pub scales: Vec<DVector<f64>>,
-    /// What acts on each from outside.
+    /// External loads on each.
     pub loads: Vec<StructureLoad>,
     /// Races on their seats.
     pub joints: Vec<Joint>,

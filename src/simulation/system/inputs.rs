@@ -172,7 +172,7 @@ pub struct ShaftPaths {
     frame: Option<FramePath>,
 }
 
-/// What acts on all mass of a machine at an instant.
+/// Field of inertial forces and gravity on all mass of a machine at an instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     /// [m/s2] gravity less the acceleration of the origin of the machine's axes.
@@ -267,7 +267,7 @@ impl Given<'_> {
         }
     }
 
-    /// What gravity and the motion of the frame do at a time \[s].
+    /// Field of gravity and of the motion of the frame at a time \[s].
     pub fn field(&self, time: f64) -> Field {
         let motion = match &self.paths.frame {
             Some(path) if !self.plays_frame() => path.at(time),

@@ -52,7 +52,7 @@ pub enum SystemError {
     /// The shaft or a housing cannot be built.
     #[error("{name}: {why}")]
     Structure {
-        /// What it is.
+        /// Name of the shaft or the housing.
         name: String,
         /// Why not.
         why: String,

@@ -49,7 +49,7 @@ pub struct ShaftOutputs {
 /// Outputs of a link: a mesh, or a bearing by its stiffness.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinkOutputs {
-    /// What it does; forces are those on the first gear, or on the shaft.
+    /// Forces and energies; forces are those on the first gear, or on the shaft.
     pub state: LinkState,
     /// \[N] normal force of teeth: positive on the flank that presses where the first gear drives while it turns about +x, negative on the other.
     pub normal_force: f64,

@@ -370,7 +370,7 @@ impl Statics<'_> {
         self.evaluate(states).map(|trial| trial.stiffness)
     }
 
-    /// What a matrix of each bearing, of forces on its inner race by motion of that against the outer one, is of all coordinates.
+    /// Matrix of all coordinates from one of each bearing, of forces on its inner race by motion of that against the outer one.
     pub fn spread(&self, of_bearings: &[Matrix6<f64>]) -> DMatrix<f64> {
         let first = self.first();
         let size = first[first.len() - 1];

@@ -45,7 +45,7 @@ pub struct Lubricant {
     pub shear_pressure: ShearPressure,
     /// \[m] roughness of ball and race together, root mean square.
     pub roughness: f64,
-    /// What of the friction is dry.
+    /// Law of mixed friction: how much of a contact is dry.
     pub mixed_friction: MixedFriction,
     /// Does the shear of the inlet heat the oil?
     pub inlet_heating: bool,
