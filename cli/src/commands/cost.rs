@@ -12,8 +12,10 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use roulement::scene::Scene;
 use roulement::scene::machine::MachineScene;
+use roulement_cli::cost::json::of_study;
 use roulement_cli::cost::levers::Lever;
 use roulement_cli::cost::{Choice, SCENES, SceneStudy, StudyError, report, study_of};
+use serde_json::Value;
 
 use super::interrupt::{INTERRUPTED, heeded_interrupt};
 use super::{say, tell};
@@ -33,6 +35,9 @@ pub struct Options {
     /// share the memory of the machine: give 1 for the best of them.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Print the studies as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 /// Studies one scene file, or the standard scenes if there is none, into a directory. What is there at Ctrl-C is kept.
@@ -40,7 +45,7 @@ pub struct Options {
 /// # Errors
 /// If a scene has no reference, or files cannot be written.
 pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
-    let Options { scene, output: directory, only, threads } = options;
+    let Options { scene, output: directory, only, threads, json } = options;
     let interrupted = heeded_interrupt()?;
     let threads = threads.map_or(Choice::default().threads, usize::from);
     let choice = Choice { only, threads, interrupted: Arc::clone(&interrupted) };
@@ -77,14 +82,20 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
         }
     }
     bar.finish_and_clear();
-    if !studies.is_empty() {
-        for path in report::write(&studies, &directory)? {
+    let paths = if studies.is_empty() { vec![] } else { report::write(&studies, &directory)? };
+    if json {
+        let all: Vec<_> = studies.iter().map(of_study).collect();
+        say(&format!("{:#}\n", Value::from(all)))?;
+    } else {
+        for path in paths {
             say(&format!("{}\n", path.display()))?;
         }
-    }
-    for study in &studies {
-        say(&format!("{}: {}\n", study.name, study.settled.join(" ")))?;
-        say(&format!("{}: {}\n", study.name, study.advice.join(" ")))?;
+        for study in &studies {
+            let said = [study.settled.join(" ")].into_iter().chain(study.promise());
+            for sentence in said.chain([study.advice.join(" ")]) {
+                say(&format!("{}: {sentence}\n", study.name))?;
+            }
+        }
     }
     if interrupted.load(Ordering::Relaxed) {
         let what = if studies.is_empty() {

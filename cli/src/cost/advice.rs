@@ -25,7 +25,7 @@ fn combinations<'a>(points: &'a [Point], own: CreepModel, norm: Norm) -> Vec<Com
     let ok = |point: &'a Point| Some((point, point.result.as_ref().ok()?));
     let laws: Vec<(&Point, &Measured)> =
         points.iter().filter(|point| point.lever == Lever::CreepLaw).filter_map(ok).collect();
-    let numerical = [Lever::Goal, Lever::FixedStep, Lever::Tolerance, Lever::StepCap];
+    let numerical = [Lever::Default, Lever::Goal, Lever::FixedStep, Lever::Tolerance, Lever::StepCap];
     let steps: Vec<(&Point, &Measured)> =
         points.iter().filter(|point| numerical.contains(&point.lever)).filter_map(ok).collect();
     let error = |measured: &Measured| measured.errors.get(norm).unwrap_or(f64::INFINITY);
@@ -115,6 +115,7 @@ pub fn advise(
 fn step_of(point: Option<&Point>) -> String {
     let Some(point) = point else { return " with the scene's own steps".into() };
     match point.lever {
+        Lever::Default => format!(" with {}", point.label),
         Lever::Goal => format!(" with accuracy = \"{}\"", point.label),
         Lever::FixedStep => format!(" with fixed steps of {}", point.label),
         Lever::Tolerance => format!(" with tolerance = {} and no other limit of the step", point.label),

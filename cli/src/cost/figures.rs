@@ -5,7 +5,7 @@ use std::path::Path;
 use plotters::prelude::*;
 use strum::VariantArray;
 
-use super::levers::{CreepModel, Level, Lever, ReferenceKind};
+use super::levers::{CreepModel, Level, Lever, ReferenceKind, STEPS_OF_SCENE};
 use super::norms::{Errors, Norm};
 use super::{Point, SceneStudy};
 use crate::report::fine::{CAPTION, DESCRIPTION, FINE, LINE, MARGIN, axes, picture};
@@ -135,6 +135,7 @@ impl Look {
     fn of_lever(lever: Lever) -> Self {
         let circle = |colour: usize, filled| Self { shape: Shape::Circle, colour: COLOURS[colour], filled };
         match lever {
+            Lever::Default => Self { shape: Shape::Triangle, colour: BLACK, filled: true },
             Lever::Goal => Self { shape: Shape::Square, colour: BLACK, filled: true },
             Lever::FixedStep => circle(0, true),
             Lever::Tolerance => circle(1, true),
@@ -167,7 +168,10 @@ impl Look {
 
     fn of(point: &Point) -> Self {
         match point.lever.reference() {
-            ReferenceKind::Numerical => Self::of_lever(point.lever),
+            ReferenceKind::Numerical => {
+                let look = Self::of_lever(point.lever);
+                Self { filled: look.filled && point.label != STEPS_OF_SCENE, ..look }
+            }
             ReferenceKind::Model => Self::of_model(point.creep, point.level),
         }
     }
@@ -197,8 +201,12 @@ fn key(kind: ReferenceKind) -> Vec<(String, Option<Look>)> {
     let entries: Vec<_> = match kind {
         ReferenceKind::Numerical => levers_of(kind)
             .map(|lever| {
-                let from_left = if lever == Lever::Goal { ": fast, balanced, reference" } else { "" };
-                (format!("{}{from_left}", lever.name()), Some(Look::of_lever(lever)))
+                let more = match lever {
+                    Lever::Default => " (open: steps of the scene)",
+                    Lever::Goal => ": fast, balanced, reference",
+                    _ => "",
+                };
+                (format!("{}{more}", lever.name()), Some(Look::of_lever(lever)))
             })
             .collect(),
         ReferenceKind::Model => {
@@ -273,15 +281,17 @@ fn draw(panel: &Panel<'_>, area: &Area<'_>) -> Drawn {
         .x_label_formatter(&|value| format!("{}", (value * 1e6).round() / 1e6))
         .y_label_formatter(&|value| format!("{value:.0e}"))
         .draw()?;
-    // The goals last, on top of the others.
+    // Defaults and goals last, on top of the others.
     let mut levers: Vec<_> = levers_of(kind).collect();
-    levers.sort_by_key(|lever| *lever == Lever::Goal);
+    levers.sort_by_key(|lever| [Lever::Goal, Lever::Default].iter().position(|last| last == lever));
     for lever in levers {
         let points = study.points_of(kind).filter(|point| point.lever == lever);
         let places: Vec<_> =
             points.filter_map(|point| Some((Look::of(point), panel.place(point)?))).collect();
-        // Models are no scale: no line joins them.
-        if let (ReferenceKind::Numerical, Some((look, _))) = (kind, places.first()) {
+        // Models and defaults are no scale: no line joins them.
+        if let (ReferenceKind::Numerical, Some((look, _))) = (kind, places.first())
+            && lever != Lever::Default
+        {
             let line = places.iter().map(|(_, place)| *place);
             chart.draw_series(LineSeries::new(line, look.colour.stroke_width(LINE)))?;
         }

@@ -5,7 +5,7 @@ use strum::{IntoStaticStr, VariantArray};
 
 use roulement::scene::machine::MachineScene;
 use roulement::scene::units::Time;
-use roulement::scene::{Accuracy, CreepLaw, Drive, Scales, Scene};
+use roulement::scene::{Accuracy, CreepLaw, Drive, Scales, Scene, Solver};
 
 /// A setting that trades accuracy for speed; one curve in the plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, IntoStaticStr, ValueEnum, VariantArray)]
@@ -16,6 +16,9 @@ pub enum Lever {
     /// Creep law, degree of its polynomials, slip of bent grooves.
     #[strum(serialize = "creep law")]
     CreepLaw,
+    /// Steps where nothing is said, and those of the scene if it says some.
+    #[strum(serialize = "default")]
+    Default,
     /// Goal of `solver.accuracy`.
     #[strum(serialize = "goal")]
     Goal,
@@ -193,6 +196,8 @@ impl CreepModel {
 const DEGREES: [usize; 4] = [1, 3, 5, 7];
 /// Name of the richest model at the lever `level`.
 pub const DYNAMIC: &str = "dynamic";
+/// Steps of a scene that says something of them, at the lever `default`.
+pub const STEPS_OF_SCENE: &str = "steps of the scene";
 /// [-] largest tolerance that a scene may have.
 const OPEN_TOLERANCE: f64 = 1e-2;
 /// [-] tiny step of the reference in periods of the most loaded ball between its races, about.
@@ -238,18 +243,36 @@ pub fn model_settings(scene: &MachineScene) -> Vec<Setting> {
     [quasi_static, richest].into_iter().chain(laws).collect()
 }
 
+/// The scene with the steps that it has where nothing is said of accuracy, then with its own if it says something.
+pub fn usual_settings(scene: &MachineScene) -> Vec<Setting> {
+    let usual = scene.with(|scene| {
+        let Solver { alpha_f, matrix_reuse, level, .. } = scene.solver;
+        follow(scene, Solver { alpha_f, matrix_reuse, level, ..Solver::default() });
+    });
+    let solvers = |scene: &MachineScene| -> Vec<Solver> {
+        scene.bearings().into_iter().map(|(_, scene)| scene.solver).collect()
+    };
+    let own = (solvers(scene) != solvers(&usual))
+        .then(|| Setting::plain(Lever::Default, STEPS_OF_SCENE, scene.clone()));
+    std::iter::once(Setting::plain(Lever::Default, "default steps", usual)).chain(own).collect()
+}
+
+/// Gives a bearing other settings of the integration, as where its scene is read.
+fn follow(scene: &mut Scene, solver: Solver) {
+    let Scales { approach, frequency } = Scales::of(scene);
+    scene.solver = solver;
+    scene.solver.follow(frequency, approach);
+    scene.solver.fit_to(scene.bearing.ball_diameter.0);
+}
+
 /// All settings of the levers that leave the model as it is.
 pub fn numerical_settings(scene: &MachineScene) -> Vec<Setting> {
     let interval = scene.output_interval();
     let changed =
         |lever, label: String, change: &dyn Fn(&mut Scene)| Setting::plain(lever, label, scene.with(change));
-    let goals = Accuracy::VARIANTS.iter().map(|&goal| {
-        changed(Lever::Goal, <&str>::from(goal).to_string(), &|s| {
-            let Scales { approach, frequency } = Scales::of(s);
-            s.solver = goal.solver();
-            s.solver.follow(frequency, approach);
-        })
-    });
+    let goals = Accuracy::VARIANTS
+        .iter()
+        .map(|&goal| changed(Lever::Goal, <&str>::from(goal).to_string(), &|s| follow(s, goal.solver())));
     let fixed = (0..=reference_halvings(scene) - ABOVE_REFERENCE)
         .map(|k| Setting::fixed_step(scene, interval * f64::from(-k).exp2()));
     let tolerances = TOLERANCES.iter().map(|&tolerance| {
@@ -293,7 +316,9 @@ pub fn numerical_settings(scene: &MachineScene) -> Vec<Setting> {
             })
         })
         .filter(|setting| setting.communication <= 0.5 * scene.duration());
-    goals
+    usual_settings(scene)
+        .into_iter()
+        .chain(goals)
         .chain(fixed)
         .chain(tolerances)
         .chain(caps)
@@ -310,4 +335,23 @@ pub fn seconds(time: f64) -> String {
     let text = format!("{microseconds:.digits$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     format!("{text} us")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn invariant_default_steps_are_those_of_a_scene_that_says_nothing_of_them() {
+        let text = include_str!("../../../scenes/radial.toml");
+        let own = MachineScene::from(Scene::parse(text).unwrap());
+        let nothing = MachineScene::from(Scene::edited(text, [("solver", "{}")]).unwrap());
+        let shaft = MachineScene::parse(include_str!("../../../scenes/shafts/pinion.toml")).unwrap();
+        for scene in [&nothing, &shaft] {
+            let [usual] = &usual_settings(scene)[..] else { panic!("it says nothing") };
+            assert_eq!(usual.scene.solver(), scene.solver());
+        }
+        let [usual, said] = &usual_settings(&own)[..] else { panic!("it says its steps") };
+        assert_eq!((usual.scene.solver(), said.scene.solver()), (nothing.solver(), own.solver()));
+    }
 }

@@ -8,11 +8,13 @@
 pub mod advice;
 mod document;
 pub mod figures;
+pub mod json;
 pub mod levers;
 mod meter;
 pub mod norms;
 mod pool;
 pub mod record;
+pub mod regret;
 pub mod report;
 mod settling;
 pub mod table;
@@ -28,6 +30,7 @@ use levers::{CreepModel, Level, Lever, ReferenceKind, Setting};
 use norms::{Comparison, Errors, Norm, errors};
 use pool::Job;
 use record::{Record, record};
+use regret::{Judged, Regret};
 use roulement::scene::machine::MachineScene;
 use roulement::scene::units::Time;
 use roulement::simulation::machine::MachineError;
@@ -104,12 +107,31 @@ pub struct SceneStudy {
     pub settled: Vec<String>,
     /// Advice, a sentence for each quantity that is asked for.
     pub advice: Vec<String>,
+    /// What steps where nothing is said, and those of the scene, cost beside the cheapest tolerance that keeps their promise, or why that
+    /// is not known; none if it was not asked for.
+    pub regret: Option<Result<Regret, String>>,
 }
 
 impl SceneStudy {
     /// Title of the scene, or its name.
     pub fn title(&self) -> &str {
         if self.scene.title().is_empty() { &self.name } else { self.scene.title() }
+    }
+
+    /// How much steps where nothing is said cost, and whether they keep their promise; nothing if that was not asked for.
+    pub fn promise(&self) -> Vec<String> {
+        match &self.regret {
+            None => vec![],
+            Some(Ok(regret)) => regret.sentences(),
+            Some(Err(why)) => vec![format!("What the default steps cost beside others is not known: {why}.")],
+        }
+    }
+
+    /// A setting judged by the promise, with its cost over the cheapest that keeps it.
+    pub fn judged(&self, point: &Point) -> Option<(Judged, Option<f64>)> {
+        let regret = self.regret.as_ref()?.as_ref().ok().filter(|_| point.lever == Lever::Default)?;
+        let judged = *regret.steps.iter().find(|tried| tried.label == point.label)?.result.as_ref().ok()?;
+        Some((judged, regret.of(&judged)))
     }
 
     /// Error bar of a reference.
@@ -235,18 +257,9 @@ pub fn study_of(
         .chain(others)
         .map(|(what, setting, needed)| Job { what: format!("{name}: {what}"), setting, needed })
         .collect();
-    progress.set_length(jobs.iter().map(Job::weight).sum());
-    progress.reset();
-    let mut results = pool::run_all(&jobs, choice.threads, &choice.interrupted, progress);
-    let failed = |(job, result): (&Job<'_>, &pool::Outcome)| job.needed && matches!(result, Some(Err(_)));
-    if let Some(index) = jobs.iter().zip(&results).position(failed)
-        && let Some(Err(why)) = results.swap_remove(index)
-    {
-        return Err(why);
-    }
-    // As none that is needed has failed, a job was not begun only where the study was interrupted.
-    let mut results = results.into_iter();
-    let mut finished = || results.next().flatten().unwrap_or(Err(StudyError::Interrupted));
+    let run = |setting: &Setting| record(setting, &choice.interrupted);
+    let mut results = pool::run_all(&jobs, choice, progress, run)?.into_iter();
+    let mut finished = || results.next().unwrap_or(Err(StudyError::Interrupted));
 
     let (finest, second) = (finished()?, finished()?);
     let divergence = errors(&second, &finest, Comparison::Pointwise, window_start).worst().unwrap_or(0.0);
@@ -287,6 +300,9 @@ pub fn study_of(
         let run = record(setting, &choice.interrupted).ok()?;
         Some((compare(&run, &reference(kind).run), run.cost.cpu / duration))
     });
+    // Equilibria have no steps.
+    let judged = choice.has(Lever::Default) && scene.solver().level == roulement::scene::Level::Dynamic;
+    let regret = judged.then(|| regret::regret(name, scene, choice, progress).map_err(|why| why.to_string()));
     let runs = [("reference", Some(&tiny)), ("richest model", rich.as_ref())];
     let settled = runs
         .into_iter()
@@ -304,5 +320,6 @@ pub fn study_of(
         points,
         settled,
         advice,
+        regret,
     })
 }

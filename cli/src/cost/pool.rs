@@ -6,9 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use indicatif::ProgressBar;
 use roulement::scene::CreepLaw;
 
-use super::StudyError;
 use super::levers::{CreepModel, Level, Setting};
-use super::record::{Record, record};
+use super::{Choice, StudyError};
 
 /// A run to be done.
 pub struct Job<'a> {
@@ -43,26 +42,28 @@ impl Job<'_> {
     }
 }
 
-/// Result of a job; none if it was not begun.
-pub type Outcome = Option<Result<Record, StudyError>>;
-
-/// Runs all jobs on some threads. A job that was not begun, because a needed one failed or all were interrupted, has no result.
-pub fn run_all(
+/// Runs all jobs on some threads; the bar shows which. A job that was not begun was interrupted.
+///
+/// # Errors
+/// Why a needed job failed.
+pub fn run_all<T: Send>(
     jobs: &[Job<'_>],
-    threads: usize,
-    interrupted: &AtomicBool,
+    choice: &Choice,
     progress: &ProgressBar,
-) -> Vec<Outcome> {
+    run: impl Fn(&Setting) -> Result<T, StudyError> + Sync,
+) -> Result<Vec<Result<T, StudyError>>, StudyError> {
+    progress.set_length(jobs.iter().map(Job::weight).sum());
+    progress.reset();
     let mut order: Vec<usize> = (0..jobs.len()).collect();
     order.sort_by_key(|&job| (!jobs[job].needed, u64::MAX - jobs[job].weight()));
     let (next, over) = (AtomicUsize::new(0), AtomicBool::new(false));
     let results = Mutex::new(jobs.iter().map(|_| None).collect::<Vec<_>>());
     let work = || {
-        while !over.load(Ordering::Relaxed) && !interrupted.load(Ordering::Relaxed) {
+        while !over.load(Ordering::Relaxed) && !choice.interrupted.load(Ordering::Relaxed) {
             let Some(&index) = order.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
             let job = &jobs[index];
             progress.set_message(job.what.clone());
-            let result = record(job.setting, interrupted);
+            let result = run(job.setting);
             progress.inc(job.weight());
             if job.needed && result.is_err() {
                 over.store(true, Ordering::Relaxed);
@@ -74,10 +75,20 @@ pub fn run_all(
         }
     };
     std::thread::scope(|scope| {
-        for _ in 1..threads.clamp(1, jobs.len().max(1)) {
+        for _ in 1..choice.threads.clamp(1, jobs.len().max(1)) {
             scope.spawn(work);
         }
         work();
     });
-    results.into_inner().unwrap_or_default()
+    let mut results = results.into_inner().unwrap_or_default();
+    let failed = |(job, result): (&Job<'_>, &Option<Result<T, StudyError>>)| {
+        job.needed && matches!(result, Some(Err(_)))
+    };
+    if let Some(index) = jobs.iter().zip(&results).position(failed)
+        && let Some(Err(why)) = results.swap_remove(index)
+    {
+        return Err(why);
+    }
+    // As none that is needed has failed, a job was not begun only where all were interrupted.
+    Ok(results.into_iter().map(|result| result.unwrap_or(Err(StudyError::Interrupted))).collect())
 }

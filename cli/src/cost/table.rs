@@ -6,11 +6,12 @@ use strum::VariantArray;
 
 use super::levers::ReferenceKind;
 use super::norms::{Comparison, Errors, Norm};
+use super::regret::Judged;
 use super::{Measured, SceneStudy};
 
 /// Columns before the errors, and after them.
 const KEYS: [&str; 5] = ["scene", "comparison", "reference", "lever", "setting"];
-const COSTS: [&str; 11] = [
+const COSTS: [&str; 13] = [
     "worst [-]",
     "cpu [s/s]",
     "instructions [1/s]",
@@ -21,6 +22,9 @@ const COSTS: [&str; 11] = [
     "factorisations",
     "contact values",
     "contact tangents",
+    // Of the lever `default` alone.
+    "error over the promise [-]",
+    "cost over the cheapest that keeps it [-]",
     "status",
 ];
 
@@ -35,7 +39,7 @@ pub fn write(studies: &[SceneStudy], path: &Path) -> Result<(), csv::Error> {
     writer.write_record(text(&KEYS).into_iter().chain(errors).chain(text(&COSTS)))?;
     for study in studies {
         for kind in [ReferenceKind::Numerical, ReferenceKind::Model] {
-            let mut row = |lever: &str, label: &str, errors: Option<&Errors>, measured, status: &str| {
+            let mut row = |lever: &str, label: &str, errors: Option<&Errors>, costs, status: &str| {
                 let comparison = match study.comparison {
                     Comparison::Pointwise => "pointwise",
                     Comparison::WindowMeans => "window means",
@@ -43,16 +47,21 @@ pub fn write(studies: &[SceneStudy], path: &Path) -> Result<(), csv::Error> {
                 let mut fields = text(&[&study.name, comparison, kind.into(), lever, label]);
                 fields.extend(Norm::VARIANTS.iter().map(|&norm| number(errors.and_then(|e| e.get(norm)))));
                 fields.push(number(errors.and_then(Errors::worst)));
-                fields.extend(costs(measured));
+                fields.extend::<Vec<String>>(costs);
                 fields.push(status.to_string());
                 writer.write_record(&fields)
             };
-            row("reference", "error bar", Some(study.error_bar(kind)), None, "ok")?;
+            // Between the largest error and the status.
+            let none = || vec![String::new(); COSTS.len() - 2];
+            row("reference", "error bar", Some(study.error_bar(kind)), none(), "ok")?;
             for point in study.points_of(kind) {
                 let lever = point.lever.name();
                 match &point.result {
-                    Ok(measured) => row(lever, &point.label, Some(&measured.errors), Some(measured), "ok")?,
-                    Err(why) => row(lever, &point.label, None, None, why)?,
+                    Ok(measured) => {
+                        let costs = costs(measured, study.judged(point));
+                        row(lever, &point.label, Some(&measured.errors), costs, "ok")?;
+                    }
+                    Err(why) => row(lever, &point.label, None, none(), why)?,
                 }
             }
         }
@@ -65,10 +74,7 @@ fn number(value: Option<f64>) -> String {
     value.map(|value| format!("{value:.4e}")).unwrap_or_default()
 }
 
-fn costs(measured: Option<&Measured>) -> Vec<String> {
-    let Some(measured) = measured else {
-        return vec![String::new(); COSTS.len() - 2];
-    };
+fn costs(measured: &Measured, judged: Option<(Judged, Option<f64>)>) -> Vec<String> {
     let work = &measured.work;
     let counts = [
         work.steps,
@@ -80,5 +86,6 @@ fn costs(measured: Option<&Measured>) -> Vec<String> {
         work.contact_tangents,
     ];
     let rates = [number(Some(measured.cpu)), number(measured.instructions)];
-    rates.into_iter().chain(counts.map(|count| count.to_string())).collect()
+    let promise = [judged.map(|(judged, _)| judged.over), judged.and_then(|(_, regret)| regret)];
+    rates.into_iter().chain(counts.map(|count| count.to_string())).chain(promise.map(number)).collect()
 }

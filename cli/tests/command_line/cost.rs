@@ -1,6 +1,102 @@
 //! `roulement cost`.
 
+use std::collections::HashMap;
+
+use roulement::Scene;
+
+use super::sweep::{columns, good, numbers};
 use super::*;
+
+/// What `cost` says as JSON of the default steps of a scene, and its table.
+fn judged(scratch: &Scratch, scene: &Scene) -> (Value, Value, HashMap<String, Vec<String>>) {
+    let file = scratch.path("judged.toml");
+    std::fs::write(&file, &scene.source).unwrap();
+    let said = good(&roulement(&["cost", &file, "-o", &scratch.path("out"), "--only", "default", "--json"]));
+    let said: Value = serde_json::from_str(&said).unwrap();
+    let table = columns(&scratch.read("out/cost.csv"));
+    (said[0]["promise"].clone(), said[0]["says"]["promise"].clone(), table)
+}
+
+#[test]
+fn regression_cost_says_what_the_default_steps_cost_and_where_they_do_not_keep_their_promise() {
+    // As in the table of docs/accuracy-cost.md: 2.58 times the cheapest, and a blow whose history is off by twice the promise.
+    let scratch = Scratch::new("promise");
+    let run = |scene: &Scene| -> f64 {
+        good(&scratch.run(scene, "run", &[]));
+        let record: Value = serde_json::from_str(&scratch.read("run/run.json")).unwrap();
+        // One with derivatives counts as three.
+        record["cost"]["contact_values"].as_f64().unwrap()
+            + 3.0 * record["cost"]["contact_tangents"].as_f64().unwrap()
+    };
+    let short = [("solver", "{}"), ("load.duration", "\"10 ms\""), ("load.output_interval", "\"100 us\"")];
+    for (scene, kept, costs) in
+        [("error/miniature", true, 2.0..3.2), ("effects/soft_housing", false, 0.4..0.7)]
+    {
+        let changes = if kept { &short[..1] } else { &short };
+        let scene = edited(scene, changes);
+        let (promise, says, table) = judged(&scratch, &scene);
+        let [steps] = &promise["steps"].as_array().unwrap()[..] else { panic!("{promise}") };
+        let of = |key: &str| steps[key].as_f64().unwrap();
+        let (over, cost) = (of("error_over_promise"), of("cost_over_cheapest"));
+        assert!(steps["kept"] == kept && (over <= 1.0) == kept && costs.contains(&cost), "{promise}");
+        assert_eq!(run(&scene), of("contact_evaluations"));
+        // The cheapest that keeps it is among those that were tried, and none that is cheaper keeps it.
+        let tolerances = promise["tolerances"].as_array().unwrap();
+        let cheapest =
+            tolerances.iter().find(|tried| tried["tolerance"] == promise["cheapest_tolerance"]).unwrap();
+        let evaluations = |tried: &Value| tried["contact_evaluations"].as_f64().unwrap();
+        assert!(
+            cheapest["kept"] == true
+                && (evaluations(steps) / evaluations(cheapest) / cost - 1.0).abs() < 1e-12
+        );
+        assert!(
+            tolerances
+                .iter()
+                .all(|tried| tried["kept"] == false || evaluations(tried) >= evaluations(cheapest))
+        );
+        // The sentence and the table say the same.
+        let sentence = says[0].as_str().unwrap();
+        let words = match kept {
+            true => format!(
+                "default steps: {cost:.2} times the cost of the cheapest tolerance that keeps 1 % of means and 2 % of histories ("
+            ),
+            false => format!(
+                "default steps do NOT keep 1 % of means and 2 % of histories here: errors are up to {over:.2} times that; "
+            ),
+        };
+        assert!(sentence.starts_with(&words), "{sentence}");
+        assert!(scratch.read("out/report.md").contains(sentence));
+        let row = table["setting"].iter().position(|setting| setting == "default steps").unwrap();
+        let number = |name: &str| table[name][row].parse::<f64>().unwrap();
+        for (name, value) in
+            [("error over the promise [-]", over), ("cost over the cheapest that keeps it [-]", cost)]
+        {
+            assert!((number(name) / value - 1.0).abs() < 1e-4, "{name}");
+        }
+    }
+}
+
+#[test]
+fn cost_judges_the_steps_of_a_scene_beside_the_default() {
+    let scratch = Scratch::new("own-steps");
+    let duration = ("load.duration", "\"2 ms\"");
+    let fixed = edited("cost/thrust", &[duration, ("solver", "{ max_step = \"2 us\", tolerance = 1e-6 }")]);
+    let (promise, says, table) = judged(&scratch, &fixed);
+    let [usual, own] = &promise["steps"].as_array().unwrap()[..] else { panic!("{promise}") };
+    let of = |steps: &Value, key: &str| steps[key].as_f64().unwrap();
+    assert!(of(own, "tolerance") == 1e-6 && of(usual, "tolerance") <= 5e-9, "{promise}");
+    assert_eq!(table["setting"][1..3], ["default steps", "steps of the scene"]);
+    assert!(says[1].as_str().unwrap().starts_with("steps of the scene"), "{says}");
+    // Steps of 2 us are short, and every one of them is taken.
+    let row = numbers(&table["steps"][1..3]);
+    assert!(
+        row[1] >= 1000.0 && of(own, "cost_over_cheapest") > 1.5 * of(usual, "cost_over_cheapest"),
+        "{promise}"
+    );
+    // The default does not depend on what the scene says.
+    let (nothing, _, _) = judged(&scratch, &edited("cost/thrust", &[duration, ("solver", "{}")]));
+    assert_eq!((&nothing["steps"][0], &nothing["tolerances"]), (usual, &promise["tolerances"]));
+}
 
 #[test]
 fn cost_studies_the_levers_that_are_asked_for_and_ends_with_advice() {

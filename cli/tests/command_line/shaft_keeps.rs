@@ -221,7 +221,7 @@ fn what_accuracy_costs_on_a_shaft_is_measured() {
     let file = scratch.path("shaft.toml");
     std::fs::write(&file, pinion().replace("\"2 ms\"", "\"1 ms\"")).unwrap();
     let to = scratch.path("cost");
-    let only = "step-cap,creep-law,communication-held,communication-ahead";
+    let only = "default,step-cap,creep-law,communication-held,communication-ahead";
     let said = good(&roulement(&["cost", &file, "-o", &to, "--only", only]));
     assert!(said.contains("For 1 % of the mean power take "), "{said}");
     let table = std::fs::read_dir(&to).unwrap().map(|file| file.unwrap().path());
@@ -232,6 +232,14 @@ fn what_accuracy_costs_on_a_shaft_is_measured() {
     assert!(
         levers.iter().any(|lever| lever == "step cap") && levers.iter().any(|lever| lever == "creep law")
     );
+    // What the default costs, once for the whole machine.
+    let at = levers.iter().position(|lever| lever == "default").unwrap();
+    let regret = numbers(&table["cost over the cheapest that keeps it [-]"][at..=at])[0];
+    assert!(numbers(&table["error over the promise [-]"][at..=at])[0] <= 1.0);
+    let sentence =
+        format!("shaft: default steps: {regret:.2} times the cost of the cheapest tolerance that keeps ");
+    assert_eq!(said.matches("default steps: ").count(), 1);
+    assert!(said.contains(&sentence), "{said}");
     // An importer that knows the load at the end of a step is nearer than one that knows it at the start.
     let (shown, errors) = (&table["setting"], &table["worst [-]"]);
     let of = |lever: &str| {

@@ -1,65 +1,17 @@
 //! What steps where nothing is said cost beside the cheapest tolerance that keeps the same promise: means within 1 %, histories but that of
 //! the torque within 2 %.
 
-use std::ops::ControlFlow;
-
-use roulement::scene::Solver;
+use indicatif::ProgressBar;
 use roulement::scene::machine::MachineScene;
-use roulement::simulation::machine::{Machine, MachineError};
-use roulement::simulation::play::{Rows, play_observed};
-use roulement_cli::error::{Difference, Run};
-use roulement_cli::watch::Watch;
+use roulement_cli::cost::Choice;
+use roulement_cli::cost::regret::{played, regret};
 
 use crate::common::edited;
 use crate::random::Random;
 use crate::random_machines::machine;
 
 /// Contact evaluations of a run whose reference takes longer than anyone would wait for.
-const MOST_WORK: f64 = 4e6;
-/// [-] price of an evaluation with exact derivatives, in evaluations.
-const TANGENT: u64 = 3;
-
-/// Plays a scene: what comes of it, and contact evaluations.
-fn played(scene: &MachineScene) -> Result<(Run, f64), MachineError> {
-    let mut machine = Machine::new(scene)?;
-    let mut watch = Watch::of(&machine);
-    let _: ControlFlow<()> =
-        play_observed(&mut machine, Rows::of_scene(scene), &mut watch, |machine, watch| {
-            watch.push(machine);
-            ControlFlow::Continue(())
-        })?;
-    let work = machine.bearings().map(|(_, bearing)| {
-        let counted = bearing.state().statistics;
-        counted.contact_values + TANGENT * counted.contact_tangents
-    });
-    let work = work.sum::<u64>() as f64;
-    Ok((watch.finish(&machine).take_comparable(&machine, 0.0), work))
-}
-
-/// A scene with other steps: this many times the tolerance, all followed.
-fn with_tolerance(scene: &MachineScene, factor: f64) -> MachineScene {
-    let mut other = scene.clone();
-    for bearing in other.bearings_mut() {
-        bearing.solver.tolerance *= factor;
-        bearing.solver.unresolved = 0.0;
-    }
-    other
-}
-
-/// [-] largest error of a run over what is promised, and of the torque's history.
-fn kept(run: &Run, reference: &Run) -> [f64; 2] {
-    let difference = Difference::of(run, reference);
-    let (mut worst, mut torque) = (0.0f64, 0.0f64);
-    for (i, (part, own)) in run.quantities().enumerate() {
-        worst = worst.max(difference.means[i] / 0.01);
-        match part.quantities[own].name.contains("torque") {
-            true => torque = torque.max(difference.histories[i]),
-            false => worst = worst.max(difference.histories[i] / 0.02),
-        }
-    }
-    [worst, torque]
-}
-
+const MOST_WORK: u64 = 4_000_000;
 /// Scenes of this project as they are but for their steps, with what is changed.
 fn scenes() -> Vec<(String, MachineScene)> {
     let radial: &[(&str, &str)] = &[("load.duration", "\"20 ms\"")];
@@ -125,45 +77,34 @@ fn invariant_steps_where_nothing_is_said_keep_the_promise_and_cost_little_more_t
     );
     println!("|---|---:|---:|---:|---:|");
     let (mut regrets, mut broken, mut none) = (vec![], vec![], 0);
+    let choice = Choice::default();
     for (name, scene) in scenes() {
-        let (run, work) = match played(&scene) {
-            Ok(run) => run,
+        match played(&scene, &choice.interrupted) {
+            Ok((_, work)) if work <= MOST_WORK => {}
+            Ok((_, work)) => {
+                println!("| {name} | left out: {work} evaluations | | |");
+                continue;
+            }
             Err(why) => {
                 println!("| {name} | refused: {why} | | |");
                 continue;
             }
-        };
-        if work > MOST_WORK {
-            println!("| {name} | left out: {work:.1e} evaluations | | |");
-            continue;
         }
-        let mut fine = with_tolerance(&scene, 2.0);
-        for bearing in fine.bearings_mut() {
-            bearing.solver = Solver { energy_error: 0.0, ..bearing.solver.refined(2) };
-        }
-        let Ok((reference, _)) = played(&fine) else {
+        let Ok(found) = regret(&name, &scene, &choice, &ProgressBar::hidden()) else {
             println!("| {name} | no reference | | |");
             continue;
         };
-        let cheapest = [2e4, 2e3, 2e2, 2e1, 2.0, 0.2].map(|factor| {
-            let (run, work) = played(&with_tolerance(&scene, factor)).ok()?;
-            Some((kept(&run, &reference)[0] <= 1.0, work))
-        });
-        let before = cheapest[4].map(|(_, work)| work);
-        let keep = |tried: Option<(bool, f64)>| tried.and_then(|(keeps, work)| keeps.then_some(work));
-        let cheapest = cheapest.into_iter().filter_map(keep).reduce(f64::min);
-        let [worst, torque] = kept(&run, &reference);
-        let regret = cheapest.map(|cheapest| work / cheapest);
-        let cost = regret.map_or("none keeps it".into(), |regret| format!("{regret:.2}"));
-        let before = before
-            .zip(cheapest)
-            .map_or(String::new(), |(before, cheapest)| format!("{:.2}", before / cheapest));
-        println!("| {name} | {worst:.2} | {torque:.1e} | {cost} | {before} |");
-        match regret {
+        let [usual] = &found.steps[..] else { panic!("{name} says something of its steps") };
+        let usual = usual.result.as_ref().unwrap();
+        let cost = found.of(usual).map_or("none keeps it".into(), |regret| format!("{regret:.2}"));
+        let before = found.tolerances[4].result.as_ref().ok().and_then(|before| found.of(before));
+        let before = before.map(|before| format!("{before:.2}")).unwrap_or_default();
+        println!("| {name} | {:.2} | {:.1e} | {cost} | {before} |", usual.over, usual.torque);
+        match found.of(usual) {
             None => none += 1,
             Some(regret) => {
                 regrets.push(regret);
-                if worst > 1.0 {
+                if !usual.keeps() {
                     broken.push(name);
                 }
             }
