@@ -81,8 +81,9 @@ impl Effect for Settings {
         } else {
             ""
         };
+        // It changes how balls come to their axes, too: 0.2 % of a settled torque went with 1.3 % in a run.
         vec![
-            Twin { always_matters: estimate.caged, ..twin.remarked(caged) }
+            Twin { always_matters: estimate.caged, unsettled: true, ..twin.remarked(caged) }
                 .written(write)
                 .automatic(estimate.saturates.then_some(KEY)),
         ]

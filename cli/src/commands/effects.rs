@@ -163,7 +163,7 @@ fn write_text(
     writeln!(out, "{}", scene.effects.simulated())?;
     writeln!(
         out,
-        "{of}; what changes a quantity by more than {} matters",
+        "{of}; what changes a quantity by more than {} matters, a tenth of that by support, by groove slip or beside a cage",
         percent(scene.effects.auto.threshold())
     )?;
     let verdicts = json::ranked(verdicts);

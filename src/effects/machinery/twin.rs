@@ -29,6 +29,8 @@ pub struct Twin {
     pub remark: String,
     /// Does it matter whatever it changes at a settled state?
     pub always_matters: bool,
+    /// Does it change motions that a settled state does not have: vibration, or how balls come to turn? Less of a settled change matters then.
+    pub unsettled: bool,
 }
 
 impl Twin {
@@ -51,6 +53,7 @@ impl Twin {
             auto: None,
             remark: String::new(),
             always_matters: false,
+            unsettled: false,
         }
     }
 
