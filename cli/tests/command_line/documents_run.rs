@@ -204,12 +204,6 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                     read += 1;
                     continue;
                 }
-                if SystemScene::is_system(part) || table.get("shaft").is_some_and(Value::is_array) {
-                    SystemScene::parse(&with_bearings(part, &table), None, &root())
-                        .unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
-                    read += 1;
-                    continue;
-                }
                 // Forces that turn are added to the shaft that is shipped.
                 if let (Some(shaft), None) =
                     (table.get("shaft").and_then(Value::as_table), table.get("bearing"))
@@ -218,6 +212,12 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                     let mut system: Table = pinion.parse().unwrap();
                     merge(&mut system, Table::from_iter([("shaft".into(), shaft.clone().into())]));
                     SystemScene::parse(&system.to_string(), None, &root())
+                        .unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
+                    read += 1;
+                    continue;
+                }
+                if SystemScene::is_system(part) || table.get("shaft").is_some_and(Value::is_array) {
+                    SystemScene::parse(&with_bearings(part, &table), None, &root())
                         .unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
                     read += 1;
                     continue;
