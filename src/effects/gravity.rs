@@ -94,7 +94,7 @@ impl Effect for Settings {
         let unheld = estimate.spacing.unheld;
         let falls =
             if unheld { "; and balls that no load holds fall, which has no part in this" } else { "" };
-        let twin = Twin { always_matters: unheld, ..twin.remarked(falls) };
+        let twin = Twin { always_matters: unheld, unsettled: true, ..twin.remarked(falls) };
         vec![twin.written("[effects] gravity = [0, -9.81, 0]; its direction is not known here")]
     }
 

@@ -52,9 +52,8 @@ fn power(scene: &Scene) -> f64 {
 #[test]
 fn regression_an_effect_that_matters_later_in_the_script_stays_on() {
     // Little slip of grooves under a light radial load beside thrust, most of the power under a heavy one: it was switched off, by the
-    // start alone. A tenth of the threshold is enough for it.
-    let threshold = ("effects.auto_threshold", "0.4");
-    let auto = ("effects", "{ auto = true, auto_threshold = 0.4 }");
+    // start alone.
+    let auto = ("effects", "\"auto\"");
     let [thrust, end] = [("load.x", "{ force = 300 }"), ("load.duration", "\"20 ms\"")];
     let light = [auto, thrust, end, ("load.y.force", "100")];
     assert!(!found_out(RADIAL, &light).0.effects.groove_slip.on);
@@ -73,7 +72,7 @@ fn regression_an_effect_that_matters_later_in_the_script_stays_on() {
     ] {
         let (found, notes) = found_out(RADIAL, &[auto, thrust, end, ("load.y.force", load)]);
         assert!(found.effects.groove_slip.on, "{load}: {notes:?}");
-        let changes = [("effects.heathcote_slip", "false"), threshold, thrust, end, ("load.y.force", load)];
+        let changes = [("effects.heathcote_slip", "false"), thrust, end, ("load.y.force", load)];
         let verdicts = estimate::verdicts(&scene(RADIAL, &changes), &model(RADIAL, &changes)).unwrap();
         let slip = verdicts.iter().find(|verdict| verdict.subject == "groove slip").unwrap();
         assert!(slip.matters && slip.sentence.contains(at), "{}", slip.sentence);
@@ -177,7 +176,7 @@ fn what_an_importer_may_set_is_judged_at_the_corners_of_its_ranges() {
     assert!(!within.effects.groove_slip.on, "{notes:?}");
     // In no instant of the scripts is the radial load large while the thrust is small; they may be set so.
     let together: Changes = &[
-        ("effects", "{ auto = true, auto_threshold = 0.3, creep = \"saturated\" }"),
+        auto,
         ("load.x.force", "[[0, 1500], [\"10 ms\", 6000]]"),
         ("load.y.force", "[[0, 0], [\"10 ms\", 1000]]"),
     ];
@@ -222,8 +221,7 @@ fn bearings_of_a_shaft_have_their_effects_found_out_under_what_the_shaft_carries
 #[test]
 fn ranges_that_a_scene_gives_tell_what_an_importer_may_set() {
     let importer = |changes: Changes| auto::resolve_for_importer(scene(THRUST, changes)).unwrap();
-    // A tenth of the threshold is enough for groove slip.
-    let auto = ("effects", "{ auto = true, auto_threshold = 0.4, creep = \"saturated\" }");
+    let auto = ("effects", "{ auto = true, creep = \"saturated\" }");
     // Nothing is scripted, and what is known is a range in which groove slip does not matter.
     let thrust = ("ranges.load.x.force", "[\"1500 N\", \"2 kN\"]");
     let (within, notes) = importer(&[auto, thrust]);

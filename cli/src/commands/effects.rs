@@ -163,8 +163,9 @@ fn write_text(
     writeln!(out, "{}", scene.effects.simulated())?;
     writeln!(
         out,
-        "{of}; what changes a quantity by more than {} matters, a tenth of that by support, by groove slip or beside a cage",
-        percent(scene.effects.auto.threshold())
+        "{of}; what changes a quantity by more than {} matters, {} by gravity, by support or by groove slip, a tenth beside a cage",
+        percent(scene.effects.auto.threshold()),
+        percent(estimate::unsettled(scene.effects.auto.threshold()))
     )?;
     let verdicts = json::ranked(verdicts);
     for (heading, is_in) in GROUPS {

@@ -39,7 +39,21 @@ pub fn measure(
     interrupted: &AtomicBool,
     done: impl Fn(usize) + Sync,
 ) -> Result<Vec<Measured>, String> {
-    let Pairs { scenes, pairs } = Pairs::of(scene)?;
+    measure_some(scene, |_| true, threads, interrupted, done)
+}
+
+/// The same of those effects alone whose subjects are wanted.
+///
+/// # Errors
+/// See [`measure`].
+pub fn measure_some(
+    scene: &MachineScene,
+    wanted: impl Fn(&str) -> bool,
+    threads: usize,
+    interrupted: &AtomicBool,
+    done: impl Fn(usize) + Sync,
+) -> Result<Vec<Measured>, String> {
+    let Pairs { scenes, pairs } = Pairs::of(scene, wanted)?;
     let steps = scenes.iter().flat_map(|scene| [scene.clone(), finer(scene, 1)]).collect::<Vec<_>>();
     let runs: Vec<Result<Vec<Taken>, String>> = on_threads(steps.len(), threads, |index| {
         let taken = run(&steps[index], interrupted);

@@ -40,11 +40,11 @@ pub struct Pairs {
 }
 
 impl Pairs {
-    /// Those of a scene.
+    /// Those of a scene whose subjects are wanted.
     ///
     /// # Errors
     /// If there are no estimates, which say how effects are taken in and out.
-    pub fn of(scene: &MachineScene) -> Result<Self, String> {
+    pub fn of(scene: &MachineScene, wanted: impl Fn(&str) -> bool) -> Result<Self, String> {
         // Life is among what may change.
         let rated = |scene: &mut Scene| {
             scene.effects.rating.section.get_or_insert_default();
@@ -52,10 +52,8 @@ impl Pairs {
         let mut all = Self { scenes: vec![scene.with(rated)], pairs: vec![] };
         let estimates = estimates(scene).map_err(|why| why.to_string())?;
         for (bearing, ((name, own), estimate)) in scene.bearings().into_iter().zip(&estimates).enumerate() {
-            for twin in own.effects.twins(estimate).into_iter().chain(in_runs::twins(&own.effects, estimate))
-            {
-                all.push(bearing, name, &twin);
-            }
+            let twins = own.effects.twins(estimate).into_iter().chain(in_runs::twins(&own.effects, estimate));
+            twins.filter(|twin| wanted(twin.subject)).for_each(|twin| all.push(bearing, name, &twin));
         }
         Ok(all)
     }

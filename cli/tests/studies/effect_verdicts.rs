@@ -1,5 +1,6 @@
 //! Is it true what is said of effects before a run? For each of them twenty scenes of catalogue bearings, dry and oiled, slow and fast, light
-//! and heavy, without the effect and with it, each with its error bar: what "would not matter" below one percent does not, in 19 of 20.
+//! and heavy, that say of it "would not matter", without the effect and with it, each with its error bar: in 19 of 20 it changes less than one
+//! percent.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
@@ -10,15 +11,19 @@ use roulement::effects::estimate::Verdict;
 use roulement::model::Model;
 use roulement::scene::Scene;
 use roulement::scene::machine::MachineScene;
-use roulement_cli::measure::{Measured, measure};
+use roulement_cli::measure::{Measured, measure_some};
 
 use crate::random::Random;
 
 /// [-] change below which nothing matters.
 const LIMIT: f64 = 0.01;
-/// Scenes.
-const SCENES: usize = 20;
-/// Scenes of an effect that may be told wrong.
+/// Seed of the scenes: rules were found on others (46 and before).
+const SEED: u64 = 27_110;
+/// Scenes that are judged; what an effect changes is run in those that say of it that it would not matter.
+const SCENES: usize = 300;
+/// Such scenes of each effect, where there are as many.
+const OF_EACH: usize = 20;
+/// Those of them that may be told wrong.
 const WRONG: usize = 1;
 
 const BEARINGS: [&str; 12] = [
@@ -74,55 +79,77 @@ fn scene(random: &mut Random) -> Option<Scene> {
     Scene::edited(&text, changes).ok()
 }
 
-/// How verdicts of an effect were.
+/// How verdicts of an effect were that it would not matter, and how often it was said to.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
-    scenes: usize,
+    /// Scenes in which it was said not to matter, and measured.
     idle: usize,
+    /// Those of them in which it did.
     wrong: usize,
-    /// Exported to matter, and measured to.
-    right: usize,
+    /// Scenes in which it was said to matter.
+    matters: usize,
+    /// Scenes that do not run without it, of which nothing is known.
+    unknown: usize,
 }
 
 #[test]
 #[ignore = "minutes; scripts/soak runs it"]
 fn invariant_what_would_not_matter_does_not_in_nineteen_of_twenty_scenes() {
-    let mut random = Random::new(46);
+    let mut random = Random::new(std::env::var("ROULEMENT_SEED").map_or(SEED, |seed| seed.parse().unwrap()));
     let mut counts: BTreeMap<&'static str, Count> = BTreeMap::new();
     let mut scenes = 0;
     while scenes < SCENES {
         let Some(scene) = scene(&mut random) else { continue };
         let Ok(model) = Model::new(&scene) else { continue };
         let Ok(verdicts) = estimate::verdicts(&scene, &model) else { continue };
+        scenes += 1;
+        let judged = verdicts.iter().filter(|verdict| verdict.changes.is_some() || verdict.subject == "cage");
+        let (said, idle): (Vec<&Verdict>, Vec<_>) = judged.partition(|verdict| verdict.matters);
+        said.iter().for_each(|verdict| counts.entry(verdict.subject).or_default().matters += 1);
+        // Those of which there are enough are not run any more.
+        let wanted = |subject: &str| {
+            let few = counts.get(subject).is_none_or(|count| count.idle < OF_EACH);
+            few && idle.iter().any(|verdict| verdict.subject == subject)
+        };
+        let idle: Vec<_> = idle.iter().filter(|verdict| wanted(verdict.subject)).collect();
+        if idle.is_empty() {
+            continue;
+        }
         let machine = MachineScene::from(scene.clone());
         println!("{}, {}", scene.title, scene.effects.simulated());
-        let measured = measure(&machine, 2, &AtomicBool::new(false), |_| {}).unwrap();
-        scenes += 1;
-        for verdict in
-            verdicts.iter().filter(|verdict| verdict.changes.is_some() || verdict.subject == "cage")
-        {
+        let measured = measure_some(&machine, wanted, 2, &AtomicBool::new(false), |_| {}).unwrap();
+        for verdict in idle {
             judge(verdict, &measured, counts.entry(verdict.subject).or_default());
         }
     }
-    println!("{counts:#?}");
+    println!("{:<24} {:>8} {:>8} {:>8}", "of so many scenes", "not", "wrong", "matters");
+    for (subject, Count { idle, wrong, matters, .. }) in &counts {
+        println!("{subject:<24} {idle:>8} {wrong:>8} {matters:>8}");
+    }
     for (subject, count) in &counts {
-        assert!(count.scenes >= SCENES - WRONG, "{subject}: {count:?}");
+        // Each effect was judged until there were enough, but in scenes that have no settled state with it.
+        let judged = count.idle + count.matters + count.unknown;
+        assert!(count.idle == OF_EACH || judged >= SCENES - SCENES / 100, "{subject}: {count:?}");
         assert!(count.wrong <= WRONG, "{subject}: {count:?}");
     }
+    let enough = counts.values().filter(|count| count.idle == OF_EACH).count();
+    assert!(enough >= 4, "{counts:?}");
 }
 
 /// Compares a verdict with what was measured of its effect.
 fn judge(verdict: &Verdict, measured: &[Measured], count: &mut Count) {
     let own: Vec<&Measured> = measured.iter().filter(|one| one.pair.subject == verdict.subject).collect();
+    if own.iter().any(|one| one.result.as_ref().is_err_and(|why| why.starts_with("without it"))) {
+        count.unknown += 1;
+        return;
+    }
     let changed: Vec<_> = own.iter().filter_map(|one| one.result.as_ref().ok()).collect();
     // A scene that does not run with it tells nothing of what it changes; that it matters should be said.
     let failed = changed.len() < own.len();
     let beyond = changed.iter().any(|changed| changed.surely_beyond(LIMIT));
-    count.scenes += 1;
-    count.idle += usize::from(!verdict.matters);
-    count.wrong += usize::from(!verdict.matters && (beyond || failed));
-    count.right += usize::from(verdict.matters && beyond);
-    let mark = if !verdict.matters && (beyond || failed) { "WRONG" } else { "" };
+    count.idle += 1;
+    count.wrong += usize::from(beyond || failed);
+    let mark = if beyond || failed { "WRONG" } else { "" };
     println!("  {:<24} {:<5} {} {mark}", verdict.subject, verdict.matters, verdict.sentence);
     for one in own {
         let words = one.result.as_ref().map(|changed| {
