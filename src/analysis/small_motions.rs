@@ -28,6 +28,7 @@ use crate::model::state::{BallState, BodyState, State};
 use crate::model::structure::Map;
 use crate::model::{Conditions, Model};
 use crate::numerics::eigen::eigenpairs;
+use crate::numerics::given::take_out;
 
 /// [-] eigenvalues whose imaginary part is a smaller part of their size do not swing.
 const SWINGS: f64 = 1e-6;
@@ -160,10 +161,8 @@ impl SmallMotions {
     #[must_use]
     pub fn holding(mut self, coordinates: &[usize]) -> Self {
         // Of what ideal cages leave, coordinates and their rates come first, too.
-        for k in coordinates.iter().flat_map(|k| [*k, self.mass.nrows() + k]) {
-            self.matrix.row_mut(k).fill(0.0);
-            self.matrix.column_mut(k).fill(0.0);
-        }
+        let size = self.mass.nrows();
+        take_out(&mut self.matrix, coordinates.iter().flat_map(|k| [*k, size + k]), 0.0);
         self
     }
 

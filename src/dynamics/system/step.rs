@@ -17,6 +17,7 @@ use crate::model::link::{self, Link, LinkForce};
 use crate::model::state::KeptMatrix;
 use crate::model::structure::{Structure, StructureState};
 use crate::numerics::arrowhead::BLOCK;
+use crate::numerics::given::take_out;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::newton::{Equations, NewtonFailure};
 use crate::numerics::size::{larger, largest};
@@ -302,11 +303,7 @@ impl<'a> SystemStep<'a> {
                     .for_each(|columns| rows.add_block(columns, &step.workspace.reduced, &mut matrix));
             }
         }
-        for &row in &self.held {
-            matrix.row_mut(row).fill(0.0);
-            matrix.column_mut(row).fill(0.0);
-            matrix[(row, row)] = 1.0;
-        }
+        take_out(&mut matrix, self.held.iter().copied(), 1.0);
         self.border.factorise(matrix);
     }
 

@@ -19,6 +19,7 @@ use super::{System, SystemError};
 use crate::analysis::condensed::Condensed;
 use crate::dynamics::system::StructureLoad;
 use crate::model::structure::{Carrier, Structure, StructureState};
+use crate::numerics::given::take_out;
 use crate::numerics::modes::{Mode, modes};
 
 /// [-] of the displacements of a mode: more along the axis is an axial one; less whirl goes to and fro.
@@ -134,11 +135,8 @@ impl System {
             }
         }
         // What is given does not swing; inertia does not couple it with what does.
-        for k in self.held() {
-            for matrix in [&mut damping, &mut stiffness] {
-                matrix.row_mut(k).fill(0.0);
-                matrix.column_mut(k).fill(0.0);
-            }
+        for matrix in [&mut damping, &mut stiffness] {
+            take_out(matrix, self.held(), 0.0);
         }
         Ok(Linear { mass, damping, stiffness })
     }

@@ -13,6 +13,7 @@ use crate::model::link::tooth_mesh::ToothMesh;
 use crate::model::link::{self, Law, Link, LinkForce};
 use crate::model::state::stack;
 use crate::model::structure::{Carrier, Map, StructureState, Turning};
+use crate::numerics::given::take_out;
 use crate::scene::system::SystemScene;
 use crate::scene::system::mesh::trains;
 
@@ -168,7 +169,8 @@ impl Statics<'_> {
             for (i, scale) in scales.iter().enumerate() {
                 matrix[(i, i)] += shift * TYPICAL_STIFFNESS * scale * scale;
             }
-            self.hold_given(&mut matrix);
+            // The turn of a shaft and motions that are given are not a matter of statics.
+            take_out(&mut matrix, self.given(), 1.0);
             let step = matrix.lu().solve(&here.residual).map(|mut step| {
                 let way = step.component_mul(&scales).amax();
                 if way > longest {
@@ -240,15 +242,6 @@ impl Statics<'_> {
         for (state, from) in states.iter_mut().zip(self.first()) {
             let size = state.coordinates.len();
             state.coordinates.copy_from(&all.rows(from, size));
-        }
-    }
-
-    /// The turn of a shaft and motions that are given are not a matter of statics.
-    fn hold_given(&self, matrix: &mut DMatrix<f64>) {
-        for given in self.given() {
-            matrix.row_mut(given).fill(0.0);
-            matrix.column_mut(given).fill(0.0);
-            matrix[(given, given)] = 1.0;
         }
     }
 
