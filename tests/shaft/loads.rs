@@ -217,12 +217,10 @@ fn independent_code_a_shaft_whose_motion_is_given_moves_its_bearing_as_one_alone
         assert!((one.twist.velocity - other.twist.velocity).norm() < 1e-12, "{time}: {one:?} {other:?}");
         let turning = (one.twist.angular_velocity - other.twist.angular_velocity).norm();
         assert!(turning < 1e-4, "{time}: {one:?} {other:?}");
-        // Balls of both start with other spins, which they forget slowly.
-        let size = other.wrench.force.norm();
-        assert!(
-            (one.wrench.force - other.wrench.force).norm() < 0.05 * size && size > 300.0,
-            "{one:?} {other:?}"
-        );
+        // Both start alike; their steps are not the same ones.
+        let (size, allowed) = (other.wrench.force.norm(), if time > 0.0 { 2e-3 } else { 1e-10 });
+        let apart = (one.wrench.force - other.wrench.force).norm();
+        assert!(apart < allowed * size && size > 300.0, "{time}: {one:?} {other:?}");
     }
 }
 
@@ -240,6 +238,7 @@ fn identity_what_holds_a_displacement_is_the_force_that_makes_it() {
     moved.advance(2e-3).unwrap();
     assert_eq!(moved.outputs().loads[0].displacement.y, 40e-6);
     let holding = moved.outputs().holding[0];
+    // Balls have come a tenth of a turn on: the force swings as each enters the load.
     assert!((holding - force).abs() < 0.03 * force, "{holding} {force}");
 }
 
