@@ -11,9 +11,12 @@ use serde::de::{
 use serde::forward_to_deserialize_any;
 use toml::{Value, map};
 
-/// Why a value cannot be read.
+/// Why a value cannot be read. Boxed: every field of every section hands it on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ReadError {
+pub struct ReadError(Box<Why>);
+
+#[derive(Clone, Debug, PartialEq)]
+struct Why {
     /// Names of the sections on the way to the value, the innermost first.
     inside_out: Vec<String>,
     message: String,
@@ -22,13 +25,13 @@ pub struct ReadError {
 impl ReadError {
     /// Message of serde.
     pub fn message(&self) -> &str {
-        &self.message
+        &self.0.message
     }
 
     /// Key of the value with its sections, as `load.x.force` or `defect[0].length`; empty for the whole.
     pub fn key(&self) -> String {
         let mut key = String::new();
-        for name in self.inside_out.iter().rev() {
+        for name in self.0.inside_out.iter().rev() {
             if !key.is_empty() && !name.starts_with('[') {
                 key.push('.');
             }
@@ -40,7 +43,7 @@ impl ReadError {
     #[cold]
     #[inline(never)]
     fn inside(mut self, name: &str) -> Self {
-        self.inside_out.push(name.to_owned());
+        self.0.inside_out.push(name.to_owned());
         self
     }
 }
@@ -48,15 +51,43 @@ impl ReadError {
 impl std::fmt::Display for ReadError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let key = self.key();
-        if key.is_empty() { f.write_str(&self.message) } else { write!(f, "{key}: {}", self.message) }
+        if key.is_empty() { f.write_str(self.message()) } else { write!(f, "{key}: {}", self.message()) }
     }
 }
 
 impl std::error::Error for ReadError {}
 
+impl ReadError {
+    #[cold]
+    #[inline(never)]
+    fn of(message: std::fmt::Arguments<'_>) -> Self {
+        Self(Box::new(Why { inside_out: vec![], message: message.to_string() }))
+    }
+}
+
+// The words are those of serde; here, they are compiled once and not for each field.
 impl Error for ReadError {
+    #[inline]
     fn custom<T: std::fmt::Display>(message: T) -> Self {
-        Self { inside_out: vec![], message: message.to_string() }
+        Self::of(format_args!("{message}"))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn missing_field(field: &'static str) -> Self {
+        Self::of(format_args!("missing field `{field}`"))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn duplicate_field(field: &'static str) -> Self {
+        Self::of(format_args!("duplicate field `{field}`"))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn invalid_type(unexpected: Unexpected<'_>, expected: &dyn serde::de::Expected) -> Self {
+        Self::of(format_args!("invalid type: {unexpected}, expected {expected}"))
     }
 }
 
